@@ -1,0 +1,83 @@
+# Every target works alone on a machine with Python 3.11 or newer and make: it makes .venv and installs what it needs.
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+RUNTIME := $(VENV)/.installed
+DEV := $(VENV)/.installed-dev
+DEMO := runs/demo
+
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+.PHONY: help demo test lint types arch check bench trials browser clean
+
+help: ## list the targets
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+demo: $(RUNTIME) ## tune the bundled ship on its bundled trials and say where the report is
+	$(BIN)/mmgtune fit --ar 0.5 --out $(DEMO) --force
+	@report=$$(find $(CURDIR)/$(DEMO) -name '*.html' | sort | head -n 1); \
+	if [ -z "$$report" ]; then echo "no HTML report was written to $(DEMO)" >&2; exit 1; fi; \
+	echo; echo "HTML report: $$report"
+
+test: $(DEV) ## run the tests (those of the page need chromium: make browser)
+	$(BIN)/pytest
+
+lint: $(DEV) ## style and common mistakes
+	$(BIN)/ruff check .
+
+types: $(DEV) ## static types
+	$(BIN)/mypy
+
+arch: $(DEV) ## which module may use which
+	$(BIN)/lint-imports --no-logo
+
+check: ## lint, types, arch and test
+	@$(MAKE) --no-print-directory lint
+	@$(MAKE) --no-print-directory types
+	@$(MAKE) --no-print-directory arch
+	@$(MAKE) --no-print-directory test
+
+bench: $(RUNTIME) ## time the simulation and the fit
+	$(BIN)/python tools/bench.py
+
+trials: $(RUNTIME) ## write the bundled trials anew
+	$(BIN)/python tools/generate_suzaku_trials.py
+
+browser: ## install Debian's chromium for the tests of the page, where that is possible
+	@if command -v chromium >/dev/null; then \
+		echo "chromium is installed"; \
+	elif [ "$$(id -u)" -ne 0 ] || ! command -v apt-get >/dev/null; then \
+		echo "chromium is missing: install it as root with apt-get, else the browser tests are skipped"; \
+	else \
+		export DEBIAN_FRONTEND=noninteractive; \
+		apt-get update -q || true; \
+		apt-get install -q -y --no-install-recommends chromium \
+			|| echo "chromium could not be installed: the browser tests are skipped"; \
+	fi
+
+clean: ## remove caches and built packages; .venv and runs stay
+	rm -rf build dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
+	find . -path ./$(VENV) -prune -o -path ./.git -prune -o -type d -name __pycache__ -exec rm -rf {} +
+
+$(RUNTIME): pyproject.toml
+	$(call install,.)
+	@touch $@
+
+$(DEV): pyproject.toml
+	$(call install,.[dev])
+	@touch $(RUNTIME) $@
+
+define install
+@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || { \
+	echo "mmgtune needs Python 3.11 or newer, and '$(PYTHON)' is $$($(PYTHON) --version 2>&1 || echo not there)." >&2; \
+	echo "Name one that is: make PYTHON=python3.11 ..." >&2; \
+	exit 1; \
+}
+@$(PYTHON) -m venv $(VENV) || { \
+	echo "'$(PYTHON)' cannot make a virtual environment; on Debian, install python3-venv." >&2; \
+	exit 1; \
+}
+@echo "installing mmgtune into $(VENV): a minute or two, once"
+@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '$(1)'
+endef

@@ -1,0 +1,78 @@
+"""Calibrate MMG manoeuvring models of ships against measured trials.
+
+    import mmgtune
+    profile = mmgtune.load_profile("suzaku")
+    trials = mmgtune.load_trials("suzaku")
+    result = mmgtune.fit(profile, trials, mmgtune.FitOptions(a_r=0.5))
+    print(result.verdict())
+
+Everything listed here is what the commands call; it is imported when first used.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .errors import MmgtuneError as MmgtuneError
+    from .fit import FitOptions as FitOptions
+    from .fit import FitResult as FitResult
+    from .fit import SweepResult as SweepResult
+    from .fit import fit as fit
+    from .fit import sweep as sweep
+    from .fit import write_run as write_run
+    from .manoeuvres import Track as Track
+    from .manoeuvres.summary import indices_of as indices_of
+    from .model import Model as Model
+    from .orders import TurningOrder as TurningOrder
+    from .orders import ZigzagOrder as ZigzagOrder
+    from .orders import run_manoeuvre as run_manoeuvre
+    from .profile import ShipProfile as ShipProfile
+    from .profile import load_profile as load_profile
+    from .report import render as render
+    from .simulate import breakdown as breakdown
+    from .simulate import simulate as simulate
+    from .trial import Trial as Trial
+    from .trial import TrialSet as TrialSet
+    from .trial import load_trials as load_trials
+    from .trial import read_trial as read_trial
+    from .trial import write_trial as write_trial
+
+_WHERE = {
+    "MmgtuneError": "errors",
+    "FitOptions": "fit",
+    "FitResult": "fit",
+    "SweepResult": "fit",
+    "fit": "fit",
+    "sweep": "fit",
+    "write_run": "fit",
+    "Track": "manoeuvres",
+    "indices_of": "manoeuvres.summary",
+    "Model": "model",
+    "TurningOrder": "orders",
+    "ZigzagOrder": "orders",
+    "run_manoeuvre": "orders",
+    "ShipProfile": "profile",
+    "load_profile": "profile",
+    "render": "report",
+    "breakdown": "simulate",
+    "simulate": "simulate",
+    "Trial": "trial",
+    "TrialSet": "trial",
+    "load_trials": "trial",
+    "read_trial": "trial",
+    "write_trial": "trial",
+}
+
+__all__ = sorted(_WHERE)
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _WHERE:
+        raise AttributeError(f"module 'mmgtune' has no attribute '{name}'")
+    return getattr(import_module(f".{_WHERE[name]}", __name__), name)
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -1,0 +1,6 @@
+"""``python -m mmgtune``."""
+
+from .cli import main
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,24 @@
+"""Simulators: the equations of ``physics`` evaluated on lanes of candidates and cases."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+from ..errors import OptionError, Problem, closest
+from .cases import STATES, Backend, Cases, Integrator, LaneResult, pad
+from .compiled import Compiled
+from .numpy_lanes import NumpyLanes
+
+BACKENDS = ("compiled", "numpy")
+
+__all__ = ["BACKENDS", "STATES", "Backend", "Cases", "Integrator", "LaneResult", "get_backend", "pad"]
+
+
+@lru_cache(maxsize=len(BACKENDS))
+def get_backend(name: str = "compiled") -> Backend:
+    """The back end of that name.  Raises OptionError for an unknown one."""
+    if name == "compiled":
+        return Compiled()
+    if name == "numpy":
+        return NumpyLanes()
+    raise OptionError(Problem(f"unknown back end '{name}'", "--backend", fix=closest(name, BACKENDS)))

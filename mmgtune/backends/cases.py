@@ -1,0 +1,151 @@
+"""What every simulator takes and gives: cases, an integrator, a result per case and candidate."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from ..model import Model
+
+FloatArray = npt.NDArray[np.float64]
+
+STATES = ("x", "y", "psi", "u", "v_m", "r")
+"""Order of the state in every array; units m, m, rad, m/s, m/s, rad/s."""
+
+SPEED_LIMIT = 1e3
+"""Speed [m/s] beyond which a lane counts as diverged, far above any ship and far below overflow."""
+
+
+@dataclass(frozen=True, eq=False)
+class Cases:
+    """Runs to simulate, of different length, padded at the end to the longest.
+
+    t          (n_cases, T) time [s]; padding repeats the last
+    n_samples  (n_cases,) samples that count
+    controls   (n_cases, T, 2) propeller revolutions [1/s] and rudder angle [rad]
+    initial    (n_cases, 6) state at the first sample
+    target     (n_cases, T, 6) what the motion is compared with; 0 where there is nothing
+    weight     (n_cases, T, 6) weight of each squared difference in the cost; 0 where there is nothing
+    """
+
+    t: FloatArray
+    n_samples: npt.NDArray[np.int64]
+    controls: FloatArray
+    initial: FloatArray
+    target: FloatArray
+    weight: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+    @property
+    def steps(self) -> int:
+        """Steps of all cases together."""
+        return int(np.sum(self.n_samples - 1))
+
+    def subset(self, rows: Sequence[int]) -> Cases:
+        """The cases at ``rows``, cut to the longest of them."""
+        picked = list(rows)
+        T = int(self.n_samples[picked].max())
+        return Cases(
+            t=self.t[picked, :T],
+            n_samples=self.n_samples[picked],
+            controls=self.controls[picked, :T],
+            initial=self.initial[picked],
+            target=self.target[picked, :T],
+            weight=self.weight[picked, :T],
+        )
+
+
+def pad(
+    times: Sequence[FloatArray],
+    controls: Sequence[FloatArray],
+    initial: Sequence[FloatArray],
+    target: Sequence[FloatArray] | None = None,
+    weight: Sequence[FloatArray] | None = None,
+) -> Cases:
+    """Cases out of runs: times (n_i,), controls (n_i, 2), initial (6,), target and weight (n_i, 6) each."""
+    n_samples = np.array([len(t) for t in times], dtype=np.int64)
+    T = int(n_samples.max())
+    padded = Cases(
+        t=np.zeros((len(times), T)),
+        n_samples=n_samples,
+        controls=np.zeros((len(times), T, 2)),
+        initial=np.array(initial, dtype=float),
+        target=np.zeros((len(times), T, 6)),
+        weight=np.zeros((len(times), T, 6)),
+    )
+    for i, n in enumerate(n_samples):
+        padded.t[i, :n], padded.t[i, n:] = times[i], times[i][-1]
+        padded.controls[i, :n], padded.controls[i, n:] = controls[i], controls[i][-1]
+        if target is not None and weight is not None:
+            padded.target[i, :n] = target[i]
+            padded.weight[i, :n] = weight[i]
+    return padded
+
+
+@dataclass(frozen=True)
+class Integrator:
+    """A fixed-step method in which each stage needs only the one before.
+
+    name      "euler" (the paper's) or "rk4"
+    substeps  steps between two samples; inputs are interpolated linearly where the method looks between samples
+    """
+
+    name: str = "euler"
+    substeps: int = 1
+
+    @property
+    def tableau(self) -> tuple[FloatArray, FloatArray]:
+        """Position of each stage within the step, and its share in the result: (n_stages,) each."""
+        if self.name == "rk4":
+            return np.array([0.0, 0.5, 0.5, 1.0]), np.array([1.0, 2.0, 2.0, 1.0]) / 6.0
+        return np.array([0.0]), np.array([1.0])
+
+
+@dataclass(frozen=True, eq=False)
+class LaneResult:
+    """What came out, per case and candidate.
+
+    cost      (n_cases, n_candidates) sum of weight * (state - target)^2; inf where diverged
+    diverged  (n_cases, n_candidates) bool
+    states    (n_cases, n_candidates, T, 6), None unless asked for; after the end of a case the last state
+    """
+
+    cost: FloatArray
+    diverged: npt.NDArray[np.bool_]
+    states: FloatArray | None
+
+
+class Backend(Protocol):
+    """A way to evaluate the equations on lanes."""
+
+    name: str
+
+    def run(
+        self,
+        model: Model,
+        theta: FloatArray,
+        cases: Cases,
+        *,
+        initial: FloatArray | None = None,
+        integrator: Integrator = Integrator(),
+        keep_states: bool = False,
+    ) -> LaneResult:
+        """Simulate every case with every candidate.
+
+        theta (n_rows, n_candidates); initial (n_cases, n_candidates, 6), the cases' own where None.
+        A lane that diverges has infinite cost; it never raises and never touches other lanes.
+        """
+        ...
+
+
+def finish(cost: FloatArray, fastest2: FloatArray, last: FloatArray, states: FloatArray | None) -> LaneResult:
+    """The result, with lanes that left the world of ships marked; last (n_cases, n_candidates, 6), fastest2 [m^2/s^2]."""
+    with np.errstate(invalid="ignore"):
+        sound = np.isfinite(last).all(axis=-1) & np.isfinite(cost) & (fastest2 < SPEED_LIMIT**2)
+    return LaneResult(cost=np.where(sound, cost, np.inf), diverged=~sound, states=states)

@@ -1,0 +1,100 @@
+"""The same equations compiled: blocks of lanes through vector instructions, blocks shared out over the cores."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from functools import lru_cache
+
+import numpy as np
+
+from ..model import Model
+from .cases import Cases, FloatArray, Integrator, LaneResult, finish
+from .kernel_source import WIDTH, kernel_source
+
+WORTH_A_THREAD = 200_000
+"""Lane-steps (about 8 ms of work) below which starting a second thread costs more than it saves."""
+
+
+@lru_cache(maxsize=1)
+def _pool() -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(max_workers=cores(), thread_name_prefix="mmgtune")
+
+
+def cores() -> int:
+    """Cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+class Compiled:
+    """Runs kernels made by ``kernel_source``; one per combination of components, kept in memory and on disk."""
+
+    name = "compiled"
+
+    def __init__(self) -> None:
+        self._kernels: dict[tuple[str, ...], Callable[..., None]] = {}
+
+    def kernel(self, model: Model) -> Callable[..., None]:
+        """The compiled simulator for the components of ``model``."""
+        if model.tags not in self._kernels:
+            from .compiling import load_kernel
+
+            self._kernels[model.tags] = load_kernel(kernel_source(model))
+        return self._kernels[model.tags]
+
+    def run(
+        self,
+        model: Model,
+        theta: FloatArray,
+        cases: Cases,
+        *,
+        initial: FloatArray | None = None,
+        integrator: Integrator = Integrator(),
+        keep_states: bool = False,
+    ) -> LaneResult:
+        """See ``Backend.run``.  Lanes are padded to whole blocks by repeating the last candidate."""
+        n_cases, n_candidates = len(cases), theta.shape[1]
+        n_blocks = -(-n_candidates // WIDTH)
+        lanes = np.minimum(np.arange(n_blocks * WIDTH), n_candidates - 1)
+        blocked = theta[:, lanes].reshape(-1, n_blocks, WIDTH).transpose(1, 0, 2).reshape(n_blocks, -1)
+        if initial is None:
+            initial = np.repeat(cases.initial[:, None], n_candidates, axis=1)
+        start = initial[:, lanes].reshape(n_cases, n_blocks, WIDTH, 6).transpose(0, 1, 3, 2)
+        T = cases.t.shape[1]
+        cost = np.empty((n_cases, n_blocks, WIDTH))
+        fastest2 = np.empty((n_cases, n_blocks, WIDTH))
+        end = np.empty((n_cases, n_blocks, 6 * WIDTH))
+        states = np.empty((n_cases, n_blocks, T if keep_states else 1, 6 * WIDTH))
+        position, share = integrator.tableau
+        fixed = (
+            np.ascontiguousarray(blocked),
+            np.ascontiguousarray(start).reshape(n_cases, n_blocks, 6 * WIDTH),
+            *map(np.ascontiguousarray, (cases.t, cases.n_samples, cases.controls, cases.target, cases.weight)),
+            position,
+            share,
+            integrator.substeps,
+        )
+        kernel = self.kernel(model)
+        tasks = n_cases * n_blocks
+        work = cases.steps * n_blocks * WIDTH * len(position) * integrator.substeps
+        if work < WORTH_A_THREAD or tasks == 1 or cores() == 1:
+            kernel(*fixed, 0, tasks, cost, fastest2, end, states)
+        else:
+            cuts = np.linspace(0, tasks, min(tasks, 4 * cores()) + 1).astype(int)
+            jobs = [
+                _pool().submit(kernel, *fixed, int(a), int(b), cost, fastest2, end, states)
+                for a, b in zip(cuts[:-1], cuts[1:], strict=True)
+            ]
+            for job in jobs:
+                job.result()
+
+        def per_candidate(values: FloatArray) -> FloatArray:
+            return values.reshape(n_cases, n_blocks * WIDTH)[:, :n_candidates]
+
+        last = end.reshape(n_cases, n_blocks, 6, WIDTH).transpose(0, 1, 3, 2).reshape(n_cases, -1, 6)[:, :n_candidates]
+        kept = None
+        if keep_states:
+            by_lane = states.reshape(n_cases, n_blocks, T, 6, WIDTH).transpose(0, 1, 4, 2, 3)
+            kept = by_lane.reshape(n_cases, n_blocks * WIDTH, T, 6)[:, :n_candidates]
+        return finish(per_candidate(cost), per_candidate(fastest2), last, kept)

@@ -1,0 +1,115 @@
+"""Making the functions of ``physics`` callable from compiled code, and keeping what was compiled.
+
+Importing this module imports numba and registers the physics once.  Kernels live as real files in the user's cache
+folder, named by a hash of everything they were made from, so that numba's own cache beside them never goes stale.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import inspect
+import os
+import pkgutil
+import sys
+import tempfile
+from collections.abc import Callable
+from functools import lru_cache
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numba
+from llvmlite import ir
+from numba import carray, njit, types
+from numba.core import cgutils
+from numba.extending import intrinsic, overload, register_jitable
+
+from .. import physics
+from ..physics import elementary
+from . import vector_math
+from .vector_math import OPTIONS, select, vector_arctan2, vector_cos, vector_exp, vector_sin
+
+__all__ = ["carray", "load_kernel", "njit", "stack"]
+
+
+@intrinsic(prefer_literal=True)
+def stack(context: Any, size: Any) -> Any:
+    """Pointer to ``size`` float64 on the stack; the compiler knows that nothing else points there."""
+    count = size.literal_value
+
+    def generate(_context: Any, builder: Any, _signature: Any, _args: Any) -> Any:
+        room = cgutils.alloca_once(builder, ir.ArrayType(ir.DoubleType(), count))
+        return builder.bitcast(room, ir.DoubleType().as_pointer())
+
+    return types.CPointer(types.float64)(size), generate
+
+
+def _physics_modules() -> list[ModuleType]:
+    names = sorted(info.name for info in pkgutil.walk_packages(physics.__path__, physics.__name__ + "."))
+    return [importlib.import_module(name) for name in names]
+
+
+def _register() -> None:
+    """Tell numba how to compile each function of ``physics``: as written, but elementary ones as vector arithmetic."""
+
+    def replace(function: Callable[..., Any], by: Callable[..., Any]) -> None:
+        overload(function, jit_options=OPTIONS)(by)
+
+    replace(elementary.exp, lambda x: lambda x: vector_exp(x))
+    replace(elementary.sin, lambda x: lambda x: vector_sin(x))
+    replace(elementary.cos, lambda x: lambda x: vector_cos(x))
+    replace(elementary.arctan2, lambda y, x: lambda y, x: vector_arctan2(y, x))
+    replace(elementary.where, lambda condition, a, b: lambda condition, a, b: select(condition, float(a), float(b)))
+    for module in _physics_modules():
+        if module is elementary:
+            continue
+        for value in vars(module).values():
+            if inspect.isfunction(value) and value.__module__ == module.__name__:
+                register_jitable(**OPTIONS)(value)
+
+
+_register()
+
+
+@lru_cache(maxsize=1)
+def _source_hash() -> str:
+    """Hash of everything compiled code depends on besides the kernel's own text."""
+    digest = hashlib.sha256(f"{numba.__version__} {sys.version} ".encode())
+    for module in (*_physics_modules(), vector_math, sys.modules[__name__]):
+        digest.update(Path(str(module.__file__)).read_bytes())
+    return digest.hexdigest()
+
+
+def cache_folder() -> Path:
+    """Where kernels are kept: MMGTUNE_CACHE, else the user's cache folder, else a temporary one that we may write."""
+    from platformdirs import user_cache_path
+
+    chosen = os.environ.get("MMGTUNE_CACHE")
+    folder = Path(chosen) if chosen else user_cache_path("mmgtune")
+    for candidate in (folder / "kernels", Path(tempfile.gettempdir()) / f"mmgtune-{os.getuid()}" / "kernels"):
+        try:
+            candidate.mkdir(parents=True, exist_ok=True, mode=0o700)
+            if candidate.stat().st_uid == os.getuid() and os.access(candidate, os.W_OK):
+                return candidate
+        except OSError:
+            continue
+    return Path(tempfile.mkdtemp(prefix="mmgtune-"))
+
+
+def load_kernel(text: str) -> Callable[..., None]:
+    """The compiled ``kernel`` function of a generated text; compiled at its first call unless cached on disk."""
+    name = "mmgtune_kernel_" + hashlib.sha256((text + _source_hash()).encode()).hexdigest()[:16]
+    path = cache_folder() / f"{name}.py"
+    if not path.exists() or path.read_text(encoding="utf-8") != text:
+        part = path.with_suffix(f".{os.getpid()}.part")
+        part.write_text(text, encoding="utf-8")
+        part.replace(path)
+    spec = importlib.util.spec_from_file_location(name, path)
+    assert spec is not None  # a .py path always has a loader
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    spec.loader.exec_module(module)
+    function: Callable[..., None] = module.kernel
+    return function

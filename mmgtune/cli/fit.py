@@ -1,0 +1,117 @@
+"""``mmgtune fit``."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ..errors import OptionError, Problem
+from . import common as c
+from .exitcodes import ExitCode
+from .progress import Progress
+
+if TYPE_CHECKING:
+    from ..fit import FitResult
+
+
+def command(
+    ar: Annotated[
+        float, typer.Option("--ar", help="Half width of the box, as a share of each pre-determined value.", rich_help_panel=c.SEARCH)
+    ] = 0.5,
+    profile: c.Profile = "suzaku",
+    trials: c.Trials = "suzaku",
+    targets: c.Targets = None,
+    fix: c.Fix = None,
+    identifiable: c.Identifiable = False,
+    channels: c.Channels = None,
+    window: c.Window = None,
+    method: c.Method = "cma-es",
+    starts: c.Starts = 20,
+    integrator: c.IntegratorName = "euler",
+    substeps: c.Substeps = 1,
+    backend: c.BackendName = "compiled",
+    seed: c.Seed = 1,
+    out: c.Out = None,
+    force: c.Force = False,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Continue the interrupted search in --out.", rich_help_panel=c.OUTPUT)
+    ] = False,
+    strict: Annotated[
+        bool, typer.Option("--strict", help="Exit 1 unless the searches agree on the optimum.", rich_help_panel=c.OUTPUT)
+    ] = False,
+    json: c.Json = False,
+    quiet: c.Quiet = False,
+    dry_run: c.DryRun = False,
+    no_report: c.NoReport = False,
+) -> None:
+    """Fine-tune the coefficients of a profile to trials, within +-a_r of their pre-determined values.
+
+    Examples:
+
+      mmgtune fit --ar 0.5
+
+      mmgtune fit -p my_ship.toml -t my_trials/ --targets "hull.Y_*,hull.N_*" --method least-squares
+
+      mmgtune fit --ar 0.5 --json --out runs/today | jq .J_test
+    """
+    from ..fit import FitOptions, fit, prepare, write_run
+
+    ship, data = c.load(profile, trials)
+    options = FitOptions(
+        a_r=ar,
+        seed=seed,
+        method=method,
+        targets=c.split(targets),
+        fixed=c.split(fix),
+        channels=c.split(channels),
+        window=c.window_of(window),
+        integrator=integrator,
+        substeps=substeps,
+        backend=backend,
+        starts=starts,
+        identifiable=identifiable,
+    )
+    if resume and out is None:
+        raise OptionError(Problem("--resume needs the folder of the interrupted run", "--resume", fix="add --out FOLDER"))
+    folder = out or c.default_out(ship)
+    if dry_run:
+        print(c.plan(ship, data, options, folder))
+        return
+    prepare(folder, force=force, resume=resume)
+    with Progress(quiet) as progress:
+        result = fit(
+            ship, data, options, hooks=progress.hooks(), checkpoint_folder=folder, resume=resume, command=c.command_line()
+        )
+        document = write_run(result, folder)
+    if not no_report:
+        from ..report import render
+
+        render(folder)
+    if json:
+        c.print_json(document)
+    else:
+        print(summary(result, str(folder), report=not no_report))
+    if result.interrupted:
+        raise typer.Exit(ExitCode.INTERRUPTED)
+    if strict and not result.converged:
+        raise typer.Exit(ExitCode.NO)
+
+
+def summary(result: FitResult, folder: str, report: bool) -> str:
+    """The result as a person wants to read it in a terminal."""
+    lines = [f"{'coefficient':<24}{'before':>11}{'tuned':>11}{'std.err':>10}  place in box", ""]
+    for row in result.coefficients():
+        error = "" if row["stderr"] is None else f"{row['stderr']:.2g}"
+        mark = f"at {row['at_bound']}er bound" if row["at_bound"] == "low" else "at upper bound" if row["at_bound"] else ""
+        note = ", ".join(word for word in (mark, "" if row["determined"] else "not determined") if word)
+        place = "".join("*" if round(row["position"] * 20) == k else "-" for k in range(21))
+        lines.append(f"{row['name']:<24}{row['pre_determined']:>11.4g}{row['value']:>11.4g}{error:>10}  {place} {note}")
+    lines += ["", f"{'trial':<24}{'role':<7}{'J before':>11}{'J after':>11}", ""]
+    for one in result.compared:
+        lines.append(f"{one.trial.id:<24}{one.role:<7}{one.J['before']:>11.4g}{one.J['after']:>11.4g}")
+    lines += ["", *result.certificate.sentences[:2], *result.identifiability.sentences[:2]]
+    lines += [f"Note: {warning}" for warning in result.warnings()]
+    lines += ["", result.verdict(), f"{result.evaluations} evaluations in {result.wall_s:.1f} s."]
+    lines.append(f"Report: {folder}/report.html" if report else f"Results: {folder}")
+    return "\n".join(lines)

@@ -1,0 +1,87 @@
+"""Progress on stderr, and Ctrl-C: once to finish with the best so far, twice to stop at once."""
+
+from __future__ import annotations
+
+import signal
+import sys
+import time
+from types import FrameType, TracebackType
+from typing import TYPE_CHECKING, Any
+
+from ..errors import Interrupted, Problem
+from .common import say
+
+if TYPE_CHECKING:
+    from ..fit import Hooks
+    from ..fit.cmaes import Search
+
+LINE_EVERY = 5.0
+"""Seconds between two lines where stderr is no terminal."""
+
+
+class Progress:
+    """A context in which a fit reports what it does and can be interrupted."""
+
+    def __init__(self, quiet: bool, fits: int = 1):
+        self.quiet = quiet
+        self.fits = fits
+        self.stopped = False
+        self._phase = ""
+        self._began = time.monotonic()
+        self._last_line = 0.0
+        self._status: Any = None
+        self._previous: Any = None
+
+    def hooks(self) -> Hooks:
+        """What to hand to the fit."""
+        from ..fit import Hooks
+
+        return Hooks(on_phase=self._on_phase, on_generation=self._on_generation, stop=lambda: self.stopped)
+
+    def __enter__(self) -> Progress:
+        self._previous = signal.signal(signal.SIGINT, self._interrupt)
+        if not self.quiet and sys.stderr.isatty():
+            from rich.console import Console
+
+            self._status = Console(stderr=True).status("starting")
+            self._status.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._status is not None:
+            self._status.stop()
+        signal.signal(signal.SIGINT, self._previous)
+
+    def _interrupt(self, _signal: int, _frame: FrameType | None) -> None:
+        if self.stopped:
+            raise Interrupted(Problem("stopped at once", fix="the last checkpoint in --out can be continued with --resume"))
+        self.stopped = True
+        say("finishing this step, then saving the best so far; press Ctrl-C again to stop at once")
+
+    def _on_phase(self, words: str) -> None:
+        self._phase = words
+        self._show(words, line=True)
+
+    def _on_generation(self, state: Search) -> None:
+        from ..fit.cmaes import LAMBDAS
+
+        now = state.history[-1]
+        # A restart's share of the work grows with its population; generations of restarts differ little.
+        done = sum(LAMBDAS[: now.restart]) + now.population * min(now.generation / 400.0, 0.95)
+        elapsed = time.monotonic() - self._began
+        left = elapsed * (sum(LAMBDAS) / done - 1.0)
+        self._show(
+            f"{self._phase}: restart {now.restart + 1} of {len(LAMBDAS)} (lambda {now.population}), generation {now.generation}, "
+            f"{now.evaluations} evaluations, J {state.J:.6g}, sigma {now.sigma:.1e}, lost {state.diverged}, about {left:.0f} s left"
+        )
+
+    def _show(self, text: str, line: bool = False) -> None:
+        if self.quiet:
+            return
+        if self._status is not None:
+            self._status.update(text)
+        elif line or time.monotonic() - self._last_line > LINE_EVERY:
+            self._last_line = time.monotonic()
+            say(text)

@@ -1,0 +1,23 @@
+"""``mmgtune report``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def command(
+    run: Annotated[Path, typer.Argument(help="Run folder of a fit or a sweep.")],
+) -> None:
+    """Render the report of a run again, without fitting.
+
+    Example:
+
+      mmgtune report runs/today
+    """
+    from ..report import render
+
+    for path in render(run):
+        print(path)

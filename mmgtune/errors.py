@@ -1,0 +1,77 @@
+"""What the program says when it cannot go on: what, where, why, and the fix."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One thing wrong with an input: everything a user needs to put it right.
+
+    what   what is wrong, in one sentence without the place
+    where  file, key, row or option it was found at ("" if it has no place)
+    why    why that cannot be worked with ("" if evident)
+    fix    what to do about it ("" if nothing better than what ``what`` says)
+    """
+
+    what: str
+    where: str = ""
+    why: str = ""
+    fix: str = ""
+
+    def __str__(self) -> str:
+        lines = [f"{self.what} ({self.where})" if self.where else self.what]
+        if self.why:
+            lines.append(f"  why: {self.why}")
+        if self.fix:
+            lines.append(f"  fix: {self.fix}")
+        return "\n".join(lines)
+
+    def to_dict(self) -> dict[str, str]:
+        """The same four fields, for JSON."""
+        return {"what": self.what, "where": self.where, "why": self.why, "fix": self.fix}
+
+
+class MmgtuneError(Exception):
+    """The program could not run; carries every problem found, not only the first.  Exit code 2."""
+
+    def __init__(self, *problems: Problem):
+        self.problems = problems
+        super().__init__("\n".join(str(problem) for problem in problems))
+
+
+class ProfileError(MmgtuneError):
+    """A ship profile cannot be used."""
+
+
+class TrialError(MmgtuneError):
+    """A trial file or a data set cannot be used."""
+
+
+class OptionError(MmgtuneError):
+    """An option or argument makes no sense, alone or with the others."""
+
+
+class OutputError(MmgtuneError):
+    """A result cannot be written."""
+
+
+class Interrupted(MmgtuneError):
+    """Stopped by the user; the best result so far has been saved where the message says.  Exit code 130."""
+
+
+def closest(name: str, known: list[str] | tuple[str, ...]) -> str:
+    """A sentence naming the nearest known names, or what is known if nothing is near."""
+    import difflib
+
+    near = difflib.get_close_matches(name, known, n=3, cutoff=0.5)
+    if near:
+        return "did you mean " + " or ".join(f"'{other}'" for other in near) + "?"
+    return "known here: " + ", ".join(known)
+
+
+def cannot_write_reason(error: OSError) -> str:
+    """One line for an error of the operating system."""
+    reason = error.strerror or str(error)
+    return f"{reason}: {error.filename}" if error.filename else reason

@@ -1,0 +1,82 @@
+"""Checkpoints of a search: the costs of every generation so far, and what they belong to.
+
+A search is a function of its seed and these costs, so replaying them restores it exactly.  Nothing in the file is
+executed on loading.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import OptionError, Problem
+from ..files import atomic
+
+FloatArray = npt.NDArray[np.float64]
+
+NAME = "checkpoint.npz"
+EVERY = 25
+"""Generations between two checkpoints: about a second of work."""
+
+
+@dataclass(eq=False)
+class Checkpoint:
+    """A checkpoint file of one run folder.
+
+    identity  everything the costs depend on: hashes of profile and trials, options, versions
+    """
+
+    folder: Path
+    identity: dict[str, Any]
+    costs: list[FloatArray] = field(default_factory=list)
+
+    @property
+    def path(self) -> Path:
+        """The file."""
+        return self.folder / NAME
+
+    def save(self, costs: list[FloatArray]) -> None:
+        """Write the costs of all generations so far, whole or not at all."""
+        with atomic(self.path) as part, part.open("wb") as file:
+            np.savez(
+                file,
+                identity=np.array(json.dumps(self.identity, sort_keys=True)),
+                sizes=np.array([len(c) for c in costs], dtype=np.int64),
+                costs=np.concatenate(costs) if costs else np.zeros(0),
+            )
+
+    def load(self) -> list[FloatArray]:
+        """Costs by generation.  Raises OptionError where there is no checkpoint or it belongs to another fit."""
+        if not self.path.is_file():
+            raise OptionError(
+                Problem("nothing to resume", str(self.folder), "the folder holds no checkpoint", "run without --resume")
+            )
+        try:
+            with np.load(self.path, allow_pickle=False) as data:
+                identity = json.loads(str(data["identity"]))
+                sizes, costs = data["sizes"], data["costs"]
+            parts = np.split(costs, np.cumsum(sizes)[:-1]) if len(sizes) else []
+        except (OSError, ValueError, KeyError, EOFError) as error:
+            raise OptionError(
+                Problem("the checkpoint cannot be read", str(self.path), str(error), "delete it, or run without --resume")
+            ) from error
+        changed = sorted(key for key in {*identity, *self.identity} if identity.get(key) != self.identity.get(key))
+        if changed:
+            raise OptionError(
+                Problem(
+                    "the checkpoint belongs to another fit",
+                    str(self.path),
+                    f"different now: {', '.join(changed)}",
+                    "repeat the command it was made with, or run without --resume",
+                )
+            )
+        return parts
+
+    def remove(self) -> None:
+        """Delete the file: the fit is finished."""
+        self.path.unlink(missing_ok=True)

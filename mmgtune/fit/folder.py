@@ -1,0 +1,90 @@
+"""The run folder: everything a fit leaves behind, each file whole or not there."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..backends import STATES
+from ..errors import OutputError, Problem
+from ..files import atomic, cannot_write, exists, write_text
+from .cmaes import Generation
+from .comparison import TrialComparison
+from .result import FitResult
+
+RESULT = "fit.json"
+OWN_FILES = (RESULT, "sweep.json", "profile.toml", "history.parquet", "motions.parquet", "checkpoint.npz", "report.html")
+
+
+def prepare(folder: Path, *, force: bool = False, resume: bool = False) -> Path:
+    """Make sure results can be written to ``folder``, before any work is done.
+
+    Raises OutputError where it holds results already (unless ``force`` or ``resume``), is a file, or cannot be
+    written to.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise OutputError(Problem("the output is a file, not a folder", str(folder), fix="choose another --out"))
+    taken = folder.is_dir() and any(folder.iterdir())
+    if taken and not (force or resume):
+        raise OutputError(exists(folder))
+    if taken and force and not any((folder / name).exists() for name in OWN_FILES):
+        raise OutputError(
+            Problem("the folder holds files that are not a run of mmgtune", str(folder), "--force would mix them", "choose another --out")
+        )
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise cannot_write(folder, error) from error
+    if not os.access(folder, os.W_OK):
+        raise cannot_write(folder, PermissionError(13, "permission denied"))
+    with atomic(folder / ".writable") as part:
+        part.write_text("", encoding="utf-8")
+    (folder / ".writable").unlink(missing_ok=True)
+    return folder
+
+
+def write_run(result: FitResult, folder: Path) -> dict[str, Any]:
+    """Write a run folder; the result last, so that its presence means the rest is there.  Returns its document."""
+    write_text(folder / "profile.toml", result.tuned_text())
+    _write_table(folder / "history.parquet", _history(result.history))
+    _write_table(folder / "motions.parquet", _motions(result.compared))
+    document = {**result.to_dict(), "out": str(folder)}
+    write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+    return document
+
+
+def _history(history: Iterable[Generation]) -> dict[str, Any]:
+    rows = list(history)
+    names = ("restart", "generation", "evaluations", "population", "J", "J_best", "sigma")
+    columns: dict[str, Any] = {name: [getattr(row, name) for row in rows] for name in names}
+    columns["lambda"] = columns.pop("population")
+    columns["J_generation"] = columns.pop("J")
+    return columns
+
+
+def _motions(compared: Iterable[TrialComparison]) -> dict[str, Any]:
+    parts: dict[str, list[Any]] = {name: [] for name in ("trial", "which", "t", *STATES, "n", "delta")}
+    for one in compared:
+        trial = one.trial
+        runs = {"measured": trial.motion, **{which: motion.states for which, motion in one.motions.items()}}
+        for which, states in runs.items():
+            parts["trial"].append(np.full(trial.n_samples, trial.id, dtype=object))
+            parts["which"].append(np.full(trial.n_samples, which, dtype=object))
+            for name, values in zip(STATES, states.T, strict=True):
+                parts[name].append(values)
+            for name, values in (("t", trial.t), ("n", trial.n), ("delta", trial.delta)):
+                parts[name].append(values)
+    return {name: np.concatenate(values) for name, values in parts.items()}
+
+
+def _write_table(path: Path, columns: dict[str, Any]) -> None:
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    with atomic(path) as part:
+        pq.write_table(pa.table(columns), part, compression="zstd")

@@ -1,0 +1,244 @@
+"""What the data says about each coefficient, what it says about combinations only, and what it does not say."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .combinations import COMBINATIONS
+from .problem import FitProblem
+from .whitening import estimate_whitening
+
+FloatArray = npt.NDArray[np.float64]
+
+NULL_RATIO = 1e-6
+"""Singular values below this share of the largest are zero but for the rounding of finite differences."""
+
+PART = 0.02
+"""Share of a direction's largest weight from which a coefficient counts as taking part in it."""
+
+
+@dataclass(frozen=True)
+class NullDirection:
+    """Coefficients that can be traded against each other without changing any simulated motion.
+
+    weights  relative change of each member [%] for one step of 1 % of the first
+    largest_shift  largest change of any simulated position over that step [m]: second order, so near but not at zero
+    """
+
+    weights: dict[str, float]
+    largest_shift: float
+
+    @property
+    def sentence(self) -> str:
+        """The direction in words."""
+        parts = ", ".join(f"{name} {weight:+.3g} %" for name, weight in self.weights.items())
+        return (
+            f"No trial can tell these coefficients apart: {parts} together leave every simulated motion unchanged "
+            f"(largest shift of a position at this step {self.largest_shift:.2g} m). "
+            f"Only combinations of them are known; hold one with --fix {next(iter(self.weights))}."
+        )
+
+
+@dataclass(frozen=True)
+class KnownCombination:
+    """A combination the data determines, with its standard error."""
+
+    expression: str
+    value: float
+    stderr: float
+
+
+@dataclass(frozen=True, eq=False)
+class Identifiability:
+    """Result of the analysis at one point.
+
+    names            targets, the order of everything below
+    singular_values  of the whitened derivatives by relative change of each target, largest first [-]
+    stderr           per target, in profile units; None on a bound or where the data does not determine it
+    correlation      names and matrix for the targets that have a standard error
+    undetermined     targets the data does not determine, each with the reason
+    autocorrelation  of neighbouring residuals per channel
+    """
+
+    names: tuple[str, ...]
+    singular_values: FloatArray
+    stderr: dict[str, float | None]
+    correlation_names: tuple[str, ...]
+    correlation: FloatArray
+    null_directions: tuple[NullDirection, ...]
+    undetermined: dict[str, str]
+    combinations: tuple[KnownCombination, ...]
+    autocorrelation: dict[str, float]
+    sentences: tuple[str, ...] = field(default=())
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "names": list(self.names),
+            "singular_values": self.singular_values.tolist(),
+            "correlation": {"names": list(self.correlation_names), "matrix": self.correlation.tolist()},
+            "null_directions": [
+                {"sentence": d.sentence, "weights": d.weights, "largest_shift_m": d.largest_shift}
+                for d in self.null_directions
+            ],
+            "combinations": [
+                {"expression": c.expression, "value": c.value, "stderr": c.stderr} for c in self.combinations
+            ],
+            "undetermined": self.undetermined,
+            "autocorrelation": self.autocorrelation,
+            "sentences": list(self.sentences),
+        }
+
+
+def analyse(problem: FitProblem, unit: FloatArray, active: npt.NDArray[np.bool_]) -> Identifiability:
+    """Identifiability at a point of the unit cube (n_targets,); ``active`` marks targets held by their bound.
+
+    Standard errors are those of the whitened, linearised problem over the targets that are free; they leave out
+    errors of the model itself and of the measured initial states.
+    """
+    box = problem.box
+    residuals, jacobian = problem.central_jacobian(unit)
+    whitening = estimate_whitening(problem, residuals)
+    relative = np.abs(np.where(box.pre != 0.0, box.pre, box.width))
+    sensitivity = whitening.apply(jacobian * (relative / box.width))
+    _, singular, vectors = np.linalg.svd(sensitivity, full_matrices=False)
+    null = singular < NULL_RATIO * singular[0]
+    directions = tuple(_direction(problem, unit, relative, v) for v in _sparse(vectors[null]))
+
+    undetermined: dict[str, str] = {}
+    for direction in directions:
+        for name in direction.weights:
+            undetermined[name] = "only combinations of it with others show in the motion"
+    stderr, covariance, known = _errors(sensitivity, ~active)
+    for i, name in enumerate(box.names):
+        half = 0.5 * box.width[i] / relative[i]
+        if name not in undetermined and not active[i] and not stderr[i] < half:
+            undetermined[name] = f"its standard error exceeds the half width of its box, {half:.0%} of its value"
+    usable = [i for i in range(len(box)) if known[i] and box.names[i] not in undetermined]
+    deviation = np.sqrt(np.diag(covariance))[usable]
+    correlation = covariance[np.ix_(usable, usable)] / np.outer(deviation, deviation)
+    result = Identifiability(
+        names=box.names,
+        singular_values=singular,
+        stderr={name: float(stderr[i] * relative[i]) if i in usable else None for i, name in enumerate(box.names)},
+        correlation_names=tuple(box.names[i] for i in usable),
+        correlation=correlation,
+        null_directions=directions,
+        undetermined=undetermined,
+        combinations=_combinations(problem, unit, relative, singular, vectors, null),
+        autocorrelation=whitening.phi,
+    )
+    return Identifiability(**{**result.__dict__, "sentences": _sentences(problem, result, active)})
+
+
+def _errors(
+    sensitivity: FloatArray, free: npt.NDArray[np.bool_]
+) -> tuple[FloatArray, FloatArray, npt.NDArray[np.bool_]]:
+    """Relative standard errors (inf where unknown), covariance, and which targets have one; null directions left out."""
+    n = sensitivity.shape[1]
+    covariance = np.zeros((n, n))
+    error = np.full(n, np.inf)
+    if free.any():
+        _, s, v = np.linalg.svd(sensitivity[:, free], full_matrices=False)
+        kept = s > NULL_RATIO * s[0]
+        covariance[np.ix_(free, free)] = (v[kept].T / s[kept] ** 2) @ v[kept]
+        taking_part = (np.abs(v[~kept]) > PART).any(axis=0) if (~kept).any() else np.zeros(int(free.sum()), dtype=bool)
+        deviation = np.sqrt(np.diag(covariance)[free])
+        error[free] = np.where(taking_part, np.inf, deviation)
+    return error, covariance, np.isfinite(error)
+
+
+def _sparse(vectors: FloatArray) -> list[FloatArray]:
+    """A basis of the same space in which as many members as possible are zero (reduced row echelon, by pivots)."""
+    basis = vectors.copy()
+    for k in range(len(basis)):
+        pivot = int(np.argmax(np.abs(basis[k])))
+        basis[k] /= basis[k, pivot]
+        for other in range(len(basis)):
+            if other != k:
+                basis[other] -= basis[other, pivot] * basis[k]
+    return list(basis)
+
+
+def _direction(problem: FitProblem, unit: FloatArray, relative: FloatArray, vector: FloatArray) -> NullDirection:
+    """The direction in percent of each member, scaled to 1 % of a member near the middle of the range, and checked."""
+    box = problem.box
+    members = np.flatnonzero(np.abs(vector) > PART * np.abs(vector).max())
+    values = box.from_unit(unit)
+    percent = 100.0 * vector * relative / np.abs(np.where(values != 0.0, values, relative))
+    by_size = sorted(members, key=lambda i: abs(percent[i]))
+    first = by_size[len(by_size) // 3] if len(by_size) > 2 else by_size[0]
+    factor = 1.0 / percent[first]
+    step = 0.01 * vector * relative * factor * 100.0 / box.width
+    both = np.column_stack([unit, unit + step])
+    result = problem.backend.run(
+        problem.model, problem.theta(both), problem.cases, integrator=problem.integrator, keep_states=True
+    )
+    assert result.states is not None  # asked for
+    shift = np.abs(result.states[:, 1, :, :2] - result.states[:, 0, :, :2]).max()
+    ordered = [first, *(i for i in members if i != first)]
+    return NullDirection({box.names[i]: float(percent[i] * factor) for i in ordered}, float(shift))
+
+
+def _combinations(
+    problem: FitProblem,
+    unit: FloatArray,
+    relative: FloatArray,
+    singular: FloatArray,
+    vectors: FloatArray,
+    null: npt.NDArray[np.bool_],
+) -> tuple[KnownCombination, ...]:
+    """Offered combinations that involve an undetermined target and are constant along every null direction."""
+    if not null.any():
+        return ()
+    box, profile = problem.box, problem.model.profile
+    names = profile.names()
+    values = {name: profile.value(name) for name in names}
+    values.update(zip(box.names, box.from_unit(unit).tolist(), strict=True))
+    known: list[KnownCombination] = []
+    for offered in COMBINATIONS:
+        if not set(offered.needs) <= set(values) or not set(offered.needs) & set(box.names):
+            continue
+        gradient = np.zeros(len(box))
+        for i, name in enumerate(box.names):
+            if name in offered.needs:
+                h = 1e-6 * relative[i]
+                above, below = ({**values, name: values[name] + side * h} for side in (1.0, -1.0))
+                gradient[i] = (offered.value(above) - offered.value(below)) / (2e-6)
+        along = np.abs(vectors[null] @ gradient) / np.linalg.norm(gradient)
+        if along.max() < 1e-3:
+            variance = np.sum((vectors[~null] @ gradient) ** 2 / singular[~null] ** 2)
+            known.append(KnownCombination(offered.expression, float(offered.value(values)), float(np.sqrt(variance))))
+    return tuple(known)
+
+
+def _sentences(problem: FitProblem, result: Identifiability, active: npt.NDArray[np.bool_]) -> tuple[str, ...]:
+    """The findings in words, most important first."""
+    n, lost = len(result.names), len(result.null_directions)
+    sentences = [f"{n - lost} of {n} combinations of the targets can be known from these trials."]
+    sentences += [direction.sentence for direction in result.null_directions]
+    weak = [name for name, why in result.undetermined.items() if why.startswith("its standard error")]
+    if weak:
+        sentences.append(f"Not determined by these trials within their box: {', '.join(weak)}.")
+    held = [name for name, on in zip(result.names, active, strict=True) if on]
+    if held:
+        sentences.append(f"Held by a bound, so known to one side only: {', '.join(held)}.")
+    pairs = [
+        (abs(result.correlation[i, j]), a, b)
+        for i, a in enumerate(result.correlation_names)
+        for j, b in enumerate(result.correlation_names[:i])
+        if abs(result.correlation[i, j]) > 0.95
+    ]
+    if pairs:
+        worst = ", ".join(f"{a} with {b} ({value:.3f})" for value, a, b in sorted(pairs, reverse=True)[:4])
+        sentences.append(f"Strongly correlated, so hardly known one by one: {worst}.")
+    phi = max(result.autocorrelation.values(), default=0.0)
+    sentences.append(
+        f"Standard errors take account of neighbouring residuals being correlated (up to {phi:.3f}); "
+        "they do not cover errors of the model's form."
+    )
+    return tuple(sentences)

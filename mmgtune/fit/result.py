@@ -1,0 +1,213 @@
+"""What a fit returns."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..profile import ShipProfile, parse_profile, tuned_text
+from .box import Box
+from .certificate import Certificate
+from .cmaes import Generation, Restart
+from .comparison import TrialComparison, finite, total
+from .identifiability import Identifiability
+from .least_squares import LeastSquaresResult
+from .options import FitOptions
+
+FloatArray = npt.NDArray[np.float64]
+
+SCHEMA = 1
+
+
+@dataclass(frozen=True, eq=False)
+class FitResult:
+    """A finished (or interrupted) fit, complete enough to write every output from it.
+
+    unit         (n_targets,) position of the tuned values in the box
+    provenance   what it was made from: profile, trials with their hashes, command, versions, time
+    interrupted  stopped by the user; the values are the best so far
+    """
+
+    profile: ShipProfile
+    options: FitOptions
+    box: Box
+    unit: FloatArray
+    J: float
+    J_before: float
+    compared: tuple[TrialComparison, ...]
+    restarts: tuple[Restart, ...]
+    starts: tuple[LeastSquaresResult, ...]
+    history: tuple[Generation, ...]
+    certificate: Certificate
+    identifiability: Identifiability
+    evaluations: int
+    diverged: int
+    wall_s: float
+    held: tuple[str, ...]
+    scales: Mapping[str, float]
+    channels: tuple[str, ...]
+    provenance: Mapping[str, Any]
+    interrupted: bool = False
+
+    @property
+    def theta(self) -> dict[str, float]:
+        """Tuned values by name, in profile units."""
+        return dict(zip(self.box.names, self.box.from_unit(self.unit).tolist(), strict=True))
+
+    @property
+    def at_bound(self) -> list[str]:
+        """Targets on a bound of their box."""
+        return [n for n, z in zip(self.box.names, self.unit, strict=True) if z <= 0.0 or z >= 1.0]
+
+    @property
+    def converged(self) -> bool:
+        """Whether the searches agree: CMA-ES (where used) and at least half of the starts end on the same J."""
+        c = self.certificate
+        return not self.interrupted and 2 * c.starts_agreeing >= c.starts and (c.restarts == 0 or c.restarts_agreeing > 0)
+
+    def J_of(self, role: str, which: str) -> float | None:
+        """J over the "tune" or "test" trials, "before" or "after"; None without such trials."""
+        return finite(total(self.compared, role, which))
+
+    def verdict(self) -> str:
+        """The result in one sentence."""
+        before, after = self.J_of("test", "before"), self.J_of("test", "after")
+        tests = [c for c in self.compared if c.role == "test"]
+        better = sum(c.J["after"] < c.J["before"] for c in tests)
+        if before and after is not None:
+            change = after / before - 1.0
+            word = "better" if change < 0 else "worse"
+            return (
+                f"On {len(tests)} trials not used for tuning the tuned {self.profile.name} is {abs(change):.1%} {word} "
+                f"(J {before:.4g} to {after:.4g}); {better} of {len(tests)} of these trials improve."
+            )
+        return (
+            f"On the {sum(c.role == 'tune' for c in self.compared)} trials it was tuned to, the tuned {self.profile.name} "
+            f"has J {self.J:.4g} instead of {self.J_before:.4g}; there are no test trials to confirm it."
+        )
+
+    def warnings(self) -> list[str]:
+        """What a reader must know before trusting the numbers."""
+        found = []
+        if self.interrupted:
+            found.append("The fit was interrupted; these are the best values so far, not an optimum.")
+        if self.diverged:
+            found.append(f"{self.diverged} candidates diverged during the search and were given up.")
+        generated = sorted({c.trial.id for c in self.compared if c.trial.source == "generated"})
+        if generated:
+            found.append(f"{len(generated)} of {len(self.compared)} trials are generated, not measured.")
+        gaps = [c.trial.id for c in self.compared if np.isnan(c.trial.motion).any()]
+        if gaps:
+            found.append(f"Gaps in these trials do not count: {', '.join(gaps)}.")
+        lost = [c.trial.id for c in self.compared if c.motions["after"].diverged]
+        if lost:
+            found.append(f"The tuned model diverges on: {', '.join(lost)}.")
+        worse = [c.trial.id for c in self.compared if c.role == "test" and c.J["after"] > c.J["before"]]
+        if worse:
+            found.append(f"Worse than before on test trials: {', '.join(worse)}: the tuning does not carry over to them.")
+        return found
+
+    def coefficients(self) -> list[dict[str, Any]]:
+        """Each target with its box, value and what is known of it."""
+        rows = []
+        stderr, undetermined = self.identifiability.stderr, self.identifiability.undetermined
+        for i, (name, value) in enumerate(self.theta.items()):
+            section, _, symbol = name.partition(".")
+            field = self.profile.sections[section].component.fields[symbol]
+            z = float(self.unit[i])
+            rows.append(
+                {
+                    "name": name,
+                    "label": field.label,
+                    "unit": field.unit,
+                    "pre_determined": float(self.box.pre[i]),
+                    "low": float(self.box.low[i]),
+                    "high": float(self.box.high[i]),
+                    "value": value,
+                    "position": z,
+                    "stderr": stderr.get(name),
+                    "at_bound": "low" if z <= 0.0 else "high" if z >= 1.0 else None,
+                    "determined": name not in undetermined,
+                }
+            )
+        return rows
+
+    def tuned_text(self) -> str:
+        """TOML of the tuned profile."""
+        return tuned_text(
+            self.profile,
+            self.theta,
+            self.identifiability.stderr,
+            {
+                "made_by": f"mmgtune {self.provenance['mmgtune']}",
+                "command": self.provenance["command"],
+                "created": self.provenance["created"],
+                "profile": self.profile.id,
+                "profile_sha256": self.profile.sha256,
+                "trials": self.provenance["trials"]["sha256"],
+                "tuned_on": self.provenance["trials"]["tune"],
+                "source_of_trials": self.provenance["trials"]["source"],
+                "a_r": self.options.a_r,
+                "seed": self.options.seed,
+                "method": self.options.method,
+                "J_tune": self.J,
+                "at_bound": self.at_bound,
+                "undetermined": list(self.identifiability.undetermined),
+            },
+        )
+
+    def tuned_profile(self) -> ShipProfile:
+        """The tuned profile, ready to simulate."""
+        return parse_profile(self.tuned_text())
+
+    def to_dict(self) -> dict[str, Any]:
+        """The document of ``fit.json``, schema 1 (docs/formats.md)."""
+        return {
+            "schema": SCHEMA,
+            "kind": "fit",
+            **self.provenance,
+            "interrupted": self.interrupted,
+            "verdict": self.verdict(),
+            "warnings": self.warnings(),
+            "J_tune": self.J_of("tune", "after"),
+            "J_test": self.J_of("test", "after"),
+            "J_tune_before": self.J_of("tune", "before"),
+            "J_test_before": self.J_of("test", "before"),
+            "theta": self.theta,
+            "stderr": self.identifiability.stderr,
+            "at_bound": self.at_bound,
+            "undetermined": list(self.identifiability.undetermined),
+            "held": list(self.held),
+            "options": {
+                **self.options.to_dict(),
+                "targets": list(self.box.names),
+                "channels": list(self.channels),
+                "scales": dict(self.scales),
+            },
+            "coefficients": self.coefficients(),
+            "trial_results": [c.to_dict() for c in self.compared],
+            "evaluations": self.evaluations,
+            "diverged": self.diverged,
+            "restarts": [
+                {"lambda": r.population, "J": finite(r.J), "generations": r.generations, "evaluations": r.evaluations, "stop": r.stop}
+                for r in self.restarts
+            ],
+            "starts": [{"J": finite(s.J), "iterations": s.iterations, "converged": s.converged} for s in self.starts],
+            "agreement": self.certificate.agreement(),
+            "certificate": self.certificate.to_dict(),
+            "identifiability": self.identifiability.to_dict(),
+            "assumptions": [
+                {"name": name, "value": _text(coefficient.value), "note": coefficient.note}
+                for name, coefficient in self.profile.assumptions()
+            ],
+            "citations": self.profile.cites(),
+            "wall_s": self.wall_s,
+        }
+
+
+def _text(value: float | tuple[float, ...]) -> str:
+    return ", ".join(f"{number:.4g}" for number in value) if isinstance(value, tuple) else f"{value:g}"

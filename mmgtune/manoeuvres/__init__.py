@@ -1,0 +1,26 @@
+"""Manoeuvring indices: the numbers a turning circle or a zigzag is summed up in, and the IMO criteria on them.
+
+The same functions read measured and simulated records, so that the two differ by the ship and not by the reading.
+"""
+
+from .criteria import Criterion, check_turning, check_zigzag, first_overshoot_limit, second_overshoot_limit
+from .track import Execute, Track, find_execute, find_executes
+from .turning import TurningIndices, turning_indices
+from .zigzag import ZigzagIndices, manoeuvre_kind, zigzag_indices
+
+__all__ = [
+    "Criterion",
+    "Execute",
+    "Track",
+    "TurningIndices",
+    "ZigzagIndices",
+    "check_turning",
+    "check_zigzag",
+    "find_execute",
+    "find_executes",
+    "first_overshoot_limit",
+    "manoeuvre_kind",
+    "second_overshoot_limit",
+    "turning_indices",
+    "zigzag_indices",
+]

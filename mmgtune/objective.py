@@ -1,0 +1,108 @@
+"""What a fit makes small: J, the sum of squared scaled differences between simulated and measured motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .backends import STATES, Cases, pad
+from .backends.cases import FloatArray
+from .errors import OptionError, Problem, closest
+from .trial import Trial
+
+PAPER_CHANNELS = ("x", "y", "psi")
+"""Position and heading: the channels of Suyama et al. 2023, eq. 39-40."""
+
+
+def default_scales(L_pp: float) -> dict[str, float]:
+    """What differences are divided by: L_pp [m], L_pp [m], pi/4 [rad] as in Suyama et al. 2023, eq. 40.
+
+    The paper prints Q = diag(L_pp, L_pp, 0.25 pi) but its values of J are only possible when residuals are divided
+    by these.  For velocities, which the paper leaves out: a tenth of sqrt(g L_pp) [m/s], and 0.1 of that over L_pp.
+    """
+    speed = 0.1 * float(np.sqrt(9.81 * L_pp))
+    return {"x": L_pp, "y": L_pp, "psi": 0.25 * np.pi, "u": speed, "v_m": speed, "r": speed / L_pp}
+
+
+@dataclass(frozen=True)
+class Objective:
+    """J = sum over trials, samples after the first and channels of weight * ((simulated - measured) / scale)^2.
+
+    scales   what each channel is divided by, in its SI unit
+    weights  channels that count, and how much (1 unless told)
+    window   first and last time [s] that count, None for the whole trial
+    """
+
+    scales: Mapping[str, float]
+    weights: Mapping[str, float] = field(default_factory=lambda: dict.fromkeys(PAPER_CHANNELS, 1.0))
+    window: tuple[float, float] | None = None
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Channels that count, in the order of the state."""
+        return tuple(name for name in STATES if self.weights.get(name, 0.0) > 0.0)
+
+    def weight(self, trial: Trial) -> FloatArray:
+        """(n_samples, 6) weight of each squared difference: 0 outside the window, in gaps and at the first sample."""
+        per_channel = np.array([self.weights.get(name, 0.0) / self.scales[name] ** 2 for name in STATES])
+        weight = np.where(np.isnan(trial.motion), 0.0, per_channel)
+        weight[0] = 0.0
+        if self.window is not None:
+            outside = (trial.t < self.window[0]) | (trial.t > self.window[1])
+            weight[outside] = 0.0
+        return weight
+
+
+def make_objective(
+    L_pp: float, channels: Sequence[str] | None = None, window: tuple[float, float] | None = None
+) -> Objective:
+    """The paper's objective, or one over other channels: "x", "y", ... or "u:2" for a weight of 2.
+
+    Raises OptionError for an unknown channel, a weight that is not positive, or an empty window.
+    """
+    weights: dict[str, float] = {}
+    for entry in channels or PAPER_CHANNELS:
+        name, _, written = entry.partition(":")
+        name = "v_m" if name == "v" else name
+        if name not in STATES:
+            raise OptionError(Problem(f"unknown channel '{name}'", "--channels", fix=closest(name, STATES)))
+        try:
+            weights[name] = float(written) if written else 1.0
+        except ValueError:
+            weights[name] = -1.0
+        if not (np.isfinite(weights[name]) and weights[name] > 0.0):
+            raise OptionError(
+                Problem(f"weight '{written}' of channel '{name}' is not a positive number", "--channels", fix=f"write {name}:1")
+            )
+    if window is not None and not window[0] < window[1]:
+        raise OptionError(
+            Problem(f"the time window {window[0]:g}..{window[1]:g} s is empty", "--window", fix="write --window FIRST:LAST in seconds")
+        )
+    return Objective(scales=default_scales(L_pp), weights=weights, window=window)
+
+
+def cases_of(trials: Sequence[Trial], objective: Objective) -> Cases:
+    """Trials as cases to simulate: driven by the measured inputs from the first measured state.
+
+    Raises OptionError where the window or gaps leave a trial without a sample to compare.
+    """
+    weight = [objective.weight(trial) for trial in trials]
+    for trial, values in zip(trials, weight, strict=True):
+        if not values.any():
+            raise OptionError(
+                Problem(
+                    f"trial '{trial.id}' has no sample to compare with",
+                    "--window" if objective.window else str(trial.path or trial.id),
+                    f"it lasts from {trial.t[0]:g} to {trial.t[-1]:g} s and needs two samples or more that count",
+                    "choose a window inside the trial, or leave the trial out of the split",
+                )
+            )
+    return pad(
+        [trial.t for trial in trials],
+        [np.column_stack([trial.n, trial.delta]) for trial in trials],
+        [trial.motion[0] for trial in trials],
+        [np.nan_to_num(trial.motion, nan=0.0) for trial in trials],
+        weight,
+    )

@@ -1,0 +1,164 @@
+"""Standard manoeuvres given as orders: a helmsman, a steering gear and the model, stepped together.
+
+The rudder depends on the motion here, so these runs cannot be prepared as inputs; they are single runs on NumPy.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import OptionError, Problem
+from .model import Model
+from .physics.mmg import derivatives
+from .physics.quantities import Control, State
+from .profile import ShipProfile, SteeringGear
+from .simulate import Motion
+
+FloatArray = npt.NDArray[np.float64]
+
+FINE = 0.1
+"""Step of the integration [s], fourth-order Runge-Kutta."""
+
+
+class Helmsman(Protocol):
+    """Turns time and heading into rudder orders; may remember what it has seen."""
+
+    def order(self, t: float, heading: float) -> float:
+        """Rudder ordered [rad] at time t [s] and heading off the approach course [rad]."""
+        ...
+
+    def finished(self, heading: float) -> bool:
+        """Whether the manoeuvre is complete."""
+        ...
+
+
+@dataclass
+class TurningOrder:
+    """One rudder angle [rad], positive to starboard, from time ``at`` [s] until the heading has changed by ``until`` [rad]."""
+
+    angle: float
+    at: float = 20.0
+    until: float = math.radians(540.0)
+
+    def order(self, t: float, heading: float) -> float:
+        """See ``Helmsman``."""
+        return self.angle if t >= self.at else 0.0
+
+    def finished(self, heading: float) -> bool:
+        """See ``Helmsman``."""
+        return abs(heading) >= self.until
+
+
+@dataclass
+class ZigzagOrder:
+    """Rudder [rad] put over to the other side whenever the heading passes ``heading`` [rad]; ``legs`` orders in all."""
+
+    rudder: float
+    heading: float
+    at: float = 20.0
+    legs: int = 5
+    _side: float = 0.0
+    _given: int = 0
+
+    def order(self, t: float, heading: float) -> float:
+        """See ``Helmsman``."""
+        if self._given == 0 and t >= self.at:
+            self._side, self._given = 1.0, 1
+        elif self._given and heading * self._side * math.copysign(1.0, self.rudder) >= abs(self.heading):
+            self._side, self._given = -self._side, self._given + 1
+        return self._side * self.rudder
+
+    def finished(self, heading: float) -> bool:
+        """See ``Helmsman``."""
+        return self._given > self.legs
+
+
+def move_rudder(delta: float, ordered: float, gear: SteeringGear | None, dt: float) -> float:
+    """Rudder angle [rad] after dt [s] of a gear with constant rate; at once where there is no gear."""
+    if gear is None:
+        return ordered
+    goal = min(max(ordered, -gear.max_angle), gear.max_angle)
+    return delta + min(max(goal - delta, -gear.rate * dt), gear.rate * dt)
+
+
+def run_manoeuvre(
+    ship: ShipProfile | Model,
+    helmsman: Helmsman,
+    *,
+    id: str = "run",
+    speed: float | None = None,
+    n: float | None = None,
+    heading: float = 0.0,
+    longest: float = 1800.0,
+    sample: float = 1.0,
+    engine: Callable[[float], float] | None = None,
+) -> Motion:
+    """Simulate a manoeuvre given as orders, sampled every ``sample`` seconds.
+
+    speed    approach speed [m/s], the profile's where None
+    n        propeller revolutions [1/s], the profile's where None
+    heading  approach heading [rad]
+    longest  time [s] after which the run ends in any case
+    engine   revolutions as a share of ``n`` from the share of the approach speed left; constant where None
+    Raises OptionError where the profile has no approach condition and none is given.
+    """
+    model = ship if isinstance(ship, Model) else Model(ship)
+    profile = model.profile
+    if (speed is None or n is None) and profile.approach is None:
+        raise OptionError(
+            Problem(
+                "the approach condition is not known",
+                str(profile.path or profile.id),
+                "the profile has no [approach] section",
+                "add one, or give --speed and --rpm",
+            )
+        )
+    U_0 = speed if speed is not None else profile.approach.speed  # type: ignore[union-attr]
+    n_0 = n if n is not None else profile.approach.n  # type: ignore[union-attr]
+    if not (U_0 > 0.0 and math.isfinite(U_0)):
+        raise OptionError(Problem(f"the approach speed is {U_0:g} m/s", "--speed", fix="give a speed above 0"))
+    p = model.coefficients(model.matrix())
+    state = np.array([0.0, 0.0, heading, U_0, 0.0, 0.0])
+    delta, revolutions = 0.0, n_0
+    steps = max(1, round(sample / FINE))
+    h = sample / steps
+    rows, controls = [state], [(revolutions, delta)]
+    diverged = False
+    for i in range(round(longest / sample)):
+        for k in range(steps):
+            t = i * sample + k * h
+            ordered = helmsman.order(t, float(state[2] - heading))
+            now = (revolutions, delta)
+            delta = move_rudder(delta, ordered, profile.steering_gear, h)
+            if engine is not None:
+                revolutions = n_0 * engine(math.hypot(state[3], state[4]) / U_0)
+            state = _rk4(model, p, state, now, (revolutions, delta), h)
+        rows.append(state)
+        controls.append((revolutions, delta))
+        diverged = not bool(np.isfinite(state).all())
+        if diverged or helmsman.finished(float(state[2] - heading)):
+            break
+    return Motion(id, sample * np.arange(len(rows)), np.array(rows), np.array(controls), diverged)
+
+
+def _rk4(
+    model: Model, p: object, state: FloatArray, now: tuple[float, float], then: tuple[float, float], h: float
+) -> FloatArray:
+    """One step of the classical Runge-Kutta method, inputs linear over the step."""
+
+    def rate(f: float, s: FloatArray) -> FloatArray:
+        n, delta = (a + f * (b - a) for a, b in zip(now, then, strict=True))
+        with np.errstate(all="ignore"):
+            return np.array([np.ravel(q)[0] for q in derivatives(State(*s), Control(n, delta), model.components, p)])
+
+    k1 = rate(0.0, state)
+    k2 = rate(0.5, state + 0.5 * h * k1)
+    k3 = rate(0.5, state + 0.5 * h * k2)
+    k4 = rate(1.0, state + h * k3)
+    return np.asarray(state + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4))

@@ -1,0 +1,63 @@
+"""The MMG model: components put together into accelerations and a force breakdown."""
+
+from typing import NamedTuple
+
+from .kinematics import flow, pose_rate
+from .quantities import Flow, Force, PropellerOut, RudderOut, State, WakeOut
+from .rigid_body import accelerations
+
+
+class Breakdown(NamedTuple):
+    """Everything the model knows about one instant: forces and the intermediates they come from."""
+
+    flow: Flow
+    hull: Force
+    wake: WakeOut
+    propeller: PropellerOut
+    rudder: RudderOut
+    total: Force
+
+
+class Components(NamedTuple):
+    """The four functions a model is made of, in the order their results are needed."""
+
+    hull: object
+    wake: object
+    propeller: object
+    rudder: object
+
+
+class Coefficients(NamedTuple):
+    """The coefficients of the ship and of its four components."""
+
+    ship: object
+    hull: object
+    wake: object
+    propeller: object
+    rudder: object
+
+
+def forces(state, control, components, p):
+    """All forces on the ship in one instant: Suyama et al. 2023, eq. 8.
+
+    state State, control Control, components Components, p Coefficients: floats or (n_lanes,) -> Breakdown.
+    """
+    water = flow(state.u, state.v_m, state.r, p.ship.L_pp)
+    hull = components.hull(water, p.ship, p.hull)
+    wake = components.wake(water, p.wake)
+    propeller = components.propeller(wake.u_P, control.n, p.ship, p.propeller)
+    rudder = components.rudder(water, p.ship, wake, propeller, control.delta, p.rudder)
+    total = Force(
+        X=hull.X + propeller.force.X + rudder.force.X,
+        Y=hull.Y + propeller.force.Y + rudder.force.Y,
+        N=hull.N + propeller.force.N + rudder.force.N,
+    )
+    return Breakdown(flow=water, hull=hull, wake=wake, propeller=propeller, rudder=rudder, total=total)
+
+
+def derivatives(state, control, components, p):
+    """Time derivatives of the state: Suyama et al. 2023, eq. 12-13; arguments as for ``forces`` -> State of rates."""
+    total = forces(state, control, components, p).total
+    x_dot, y_dot, psi_dot = pose_rate(state.psi, state.u, state.v_m, state.r)
+    u_dot, v_m_dot, r_dot = accelerations(state.u, state.v_m, state.r, total.X, total.Y, total.N, p.ship)
+    return State(x=x_dot, y=y_dot, psi=psi_dot, u=u_dot, v_m=v_m_dot, r=r_dot)

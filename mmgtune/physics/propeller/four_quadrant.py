@@ -1,0 +1,62 @@
+"""Propeller as polynomials of the hydrodynamic pitch angle, with side force and moment."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..elementary import arctan2, where
+from ..quantities import Force, Lanes, PropellerOut
+
+
+class FourQuadrantPropeller(NamedTuple):
+    """Coefficients of the polynomials in phi_P [deg]: all [-] per power of a degree."""
+
+    D_P: Lanes  # diameter [m]
+    t_P: Lanes  # thrust deduction [-]
+    K_T0: Lanes
+    K_T1: Lanes
+    K_T2: Lanes
+    K_T3: Lanes
+    C_PY0: Lanes
+    C_PY1: Lanes
+    C_PY2: Lanes
+    C_PN0_low: Lanes  # below phi_switch
+    C_PN1_low: Lanes
+    C_PN0_high: Lanes  # from phi_switch on
+    C_PN1_high: Lanes
+    phi_switch: Lanes  # [deg]
+    phi_min: Lanes  # range in which the polynomials may be used [deg]
+    phi_max: Lanes
+    slipstream_kt: Lanes  # 0: K_T of eq. 30 converted from eq. 16; 1: the printed polynomial taken literally
+
+
+def four_quadrant_propeller(u_P, n, ship, p):
+    """Propeller force: Suyama et al. 2023, eq. 16-22.
+
+    u_P inflow [m/s], n [1/s], ship Ship, p FourQuadrantPropeller: floats or (n_lanes,) -> PropellerOut.
+
+    In eq. 16 K_T multiplies V_r^2, so it is the four-quadrant coefficient C_T*; the K_T of eq. 30 follows from
+    it as (pi/8) C_T* (J^2 + (0.7 pi)^2), which makes 8 K_T n^2 D_P^2 / pi simply C_T* V_r^2: finite as u_P -> 0.
+    Outside phi_min..phi_max the coefficients keep their end values (assumption; the source covers ahead only).
+    """
+    v_tip = 0.7 * np.pi * n * p.D_P
+    V_r2 = u_P * u_P + v_tip * v_tip
+    phi = np.minimum(np.maximum(arctan2(u_P, v_tip) * (180.0 / np.pi), p.phi_min), p.phi_max)
+    C_T = ((p.K_T3 * phi + p.K_T2) * phi + p.K_T1) * phi + p.K_T0
+    C_PY = (p.C_PY2 * phi + p.C_PY1) * phi + p.C_PY0
+    C_PN = where(phi < p.phi_switch, p.C_PN1_low * phi + p.C_PN0_low, p.C_PN1_high * phi + p.C_PN0_high)
+    S_P = 0.25 * np.pi * p.D_P * p.D_P
+    q = 0.5 * ship.rho * S_P * V_r2
+    force = Force(X=q * (1.0 - p.t_P) * C_T, Y=q * C_PY, N=q * ship.L_pp * C_PN)
+    n_D = n * p.D_P
+    jet = where(p.slipstream_kt > 0.5, (8.0 / np.pi) * C_T * n_D * n_D, C_T * V_r2)
+    turning = np.abs(n_D) > 0.0
+    n_D_safe = where(turning, n_D, 1.0)
+    return PropellerOut(
+        force=force,
+        J=where(turning, u_P / n_D_safe, 0.0),
+        K_T=where(turning, (np.pi / 8.0) * jet / (n_D_safe * n_D_safe), 0.0),
+        jet=jet,
+        D_P=p.D_P,
+        n=n,
+    )

@@ -1,0 +1,42 @@
+"""Propeller with a thrust coefficient quadratic in the advance ratio."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..elementary import where
+from ..quantities import Force, Lanes, PropellerOut
+
+
+class OpenWaterPropeller(NamedTuple):
+    """D_P [m], t_P thrust deduction [-], K_T = k_0 + k_1 J + k_2 J^2 [-]."""
+
+    D_P: Lanes
+    t_P: Lanes
+    k_0: Lanes
+    k_1: Lanes
+    k_2: Lanes
+
+
+def open_water_propeller(u_P, n, ship, p):
+    """Propeller force: Yasukawa & Yoshimura 2015, X_P = (1 - t_P) rho n^2 D_P^4 K_T(J); no side force.
+
+    u_P inflow [m/s], n [1/s], ship Ship, p OpenWaterPropeller: floats or (n_lanes,) -> PropellerOut.
+
+    n^2 K_T is written out in n and u_P / D_P, so that nothing is divided by n.  With n < 0 the bollard thrust
+    changes sign (assumption; the source covers ahead only).
+    """
+    s = u_P / p.D_P
+    n2_K_T = p.k_0 * n * np.abs(n) + p.k_1 * np.abs(n) * s + p.k_2 * s * s
+    D2 = p.D_P * p.D_P
+    X = (1.0 - p.t_P) * ship.rho * D2 * D2 * n2_K_T
+    turning = np.abs(n) > 0.0
+    n_safe = where(turning, n, 1.0)
+    return PropellerOut(
+        force=Force(X=X, Y=0.0 * X, N=0.0 * X),
+        J=where(turning, s / n_safe, 0.0),
+        K_T=where(turning, n2_K_T / (n_safe * n_safe), 0.0),
+        jet=(8.0 / np.pi) * n2_K_T * D2,
+        D_P=p.D_P,
+        n=n,
+    )

@@ -1,0 +1,107 @@
+"""A ship profile in memory."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from ..components import Component
+
+
+@dataclass(frozen=True)
+class Coefficient:
+    """One number (or table) of a profile with what is known of it; value in the unit of its field."""
+
+    value: float | tuple[float, ...]
+    source: str
+    assumption: bool = False
+    note: str = ""
+    bounds: tuple[float, float] | None = None
+    pre_determined: float | None = None
+    stderr: float | None = None
+
+
+@dataclass(frozen=True)
+class Section:
+    """One component of the ship with its coefficients, in the order of the component's fields."""
+
+    component: Component
+    coefficients: dict[str, Coefficient]
+    source: str
+
+
+@dataclass(frozen=True)
+class SteeringGear:
+    """Limits of the rudder's motion, for manoeuvres that give orders: max_angle [rad], rate [rad/s]."""
+
+    max_angle: float
+    rate: float
+
+
+@dataclass(frozen=True)
+class Approach:
+    """The condition standard manoeuvres start from: speed [m/s], propeller revolutions n [1/s]."""
+
+    speed: float
+    n: float
+
+
+@dataclass(frozen=True)
+class ShipProfile:
+    """A ship: its components and coefficients, and what standard manoeuvres need.
+
+    text    the TOML it was read from; tuned profiles are made from it, comments and all
+    sha256  of that text
+    """
+
+    id: str
+    name: str
+    source: str
+    sections: dict[str, Section]
+    steering_gear: SteeringGear | None
+    approach: Approach | None
+    targets: tuple[str, ...]
+    provenance: dict[str, Any] = field(default_factory=dict)
+    path: Path | None = None
+    text: str = ""
+    sha256: str = ""
+
+    def coefficient(self, name: str) -> Coefficient:
+        """The coefficient called 'section.symbol'; KeyError if there is none."""
+        section, _, symbol = name.partition(".")
+        return self.sections[section].coefficients[symbol]
+
+    def names(self) -> list[str]:
+        """Every 'section.symbol' that holds one number, in order."""
+        return [
+            f"{kind}.{symbol}"
+            for kind, section in self.sections.items()
+            for symbol, coefficient in section.coefficients.items()
+            if not isinstance(coefficient.value, tuple)
+        ]
+
+    def value(self, name: str) -> float:
+        """The number called 'section.symbol'."""
+        value = self.coefficient(name).value
+        if isinstance(value, tuple):
+            raise KeyError(f"{name} is a table")
+        return value
+
+    @property
+    def L_pp(self) -> float:
+        """Length between perpendiculars [m]."""
+        return self.value("particulars.L_pp")
+
+    def assumptions(self) -> list[tuple[str, Coefficient]]:
+        """The coefficients marked as assumptions."""
+        return [
+            (f"{kind}.{symbol}", coefficient)
+            for kind, section in self.sections.items()
+            for symbol, coefficient in section.coefficients.items()
+            if coefficient.assumption
+        ]
+
+    def cites(self) -> list[str]:
+        """The papers behind the components in use, each once."""
+        return list(dict.fromkeys(cite for section in self.sections.values() for cite in section.component.cites))

@@ -1,0 +1,303 @@
+"""Reading a ship profile from TOML; every problem of a file is reported at once."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from .. import units
+from ..components import KINDS, SHIP, Component, Field, find, tags
+from ..errors import Problem, ProfileError, closest
+from ..resources import folder, profile_names
+from .model import Approach, Coefficient, Section, ShipProfile, SteeringGear
+
+SCHEMA = 1
+SECTIONS = ("schema", "ship", *KINDS, "steering_gear", "approach", "tuning", "provenance")
+VALUE_KEYS = ("value", "source", "assumption", "note", "bounds", "pre_determined", "stderr")
+
+
+def find_profile(name: str | Path) -> Path:
+    """The file of a profile given by path or by the name of a bundled one; ProfileError if there is none."""
+    path = Path(name)
+    if path.is_file():
+        return path
+    bundled = folder("ship_profiles") / f"{name}.toml"
+    if path.name == str(name) and bundled.is_file():
+        return bundled
+    what = "the profile is a folder, not a file" if path.is_dir() else "no such ship profile"
+    raise ProfileError(
+        Problem(what, where=str(name), fix=f"give a path to a TOML file, or a bundled name: {', '.join(profile_names())}")
+    )
+
+
+def load_profile(name: str | Path) -> ShipProfile:
+    """Read and validate a profile by path or bundled name.  Raises ProfileError with everything wrong in it."""
+    path = find_profile(name)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise ProfileError(
+            Problem("cannot read the profile", str(path), str(error), "check the file; it must be UTF-8 text")
+        ) from error
+    return parse_profile(text, path)
+
+
+def parse_profile(text: str, path: Path | None = None) -> ShipProfile:
+    """The profile written in ``text``; ``path`` is for messages.  Raises ProfileError."""
+    where = str(path) if path else "profile"
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ProfileError(Problem("the profile is not valid TOML", where, str(error), "correct the line named")) from error
+    reader = _Reader(data, text, where)
+    profile = reader.read(path)
+    if reader.problems:
+        raise ProfileError(*reader.problems)
+    return profile
+
+
+class _Reader:
+    """One pass over a parsed profile, collecting problems as it goes."""
+
+    def __init__(self, data: dict[str, Any], text: str, where: str):
+        self.data = data
+        self.text = text
+        self.where = where
+        self.lines = _line_index(text)
+        self.problems: list[Problem] = []
+
+    def problem(self, what: str, section: str = "", key: str = "", why: str = "", fix: str = "") -> None:
+        line = self.lines.get((section, key)) or self.lines.get((section, ""))
+        self.problems.append(Problem(what, f"{self.where}, line {line}" if line else self.where, why, fix))
+
+    def read(self, path: Path | None) -> ShipProfile:
+        for name in self.data:
+            if name not in SECTIONS:
+                self.problem(f"unknown section [{name}]", name, fix=closest(name, SECTIONS))
+        if self.data.get("schema") != SCHEMA:
+            self.problem(
+                f"schema is {self.data.get('schema')!r}, not {SCHEMA}", "", "schema", fix=f"write 'schema = {SCHEMA}' on top"
+            )
+        ship = self.table("ship")
+        self.unknown("ship", ship, ("name", "id", "source"))
+        sections: dict[str, Section] = {}
+        for kind in KINDS:
+            section = self.component(kind)
+            if section is not None:
+                sections[kind] = section
+        complete = len(sections) == len(KINDS) and not self.problems
+        gear = self.plain("steering_gear", {"max_angle": Field("", "rad", low=0.0, high=1.6), "rate": Field("", "rad/s", low=0.0)})
+        approach = self.plain("approach", {"speed": Field("", "m/s", low=0.0), "n": Field("", "1/s")})
+        profile = ShipProfile(
+            id=self.word("ship", ship, "id"),
+            name=self.word("ship", ship, "name"),
+            source=self.word("ship", ship, "source"),
+            sections=sections,
+            steering_gear=SteeringGear(**gear) if gear else None,
+            approach=Approach(**approach) if approach else None,
+            targets=self.targets(sections) if complete else (),
+            provenance=self.data.get("provenance", {}),
+            path=path,
+            text=self.text,
+            sha256=hashlib.sha256(self.text.encode()).hexdigest(),
+        )
+        if complete:
+            self.together(profile)
+        return profile
+
+    def table(self, name: str) -> dict[str, Any]:
+        value = self.data.get(name)
+        if isinstance(value, dict):
+            return value
+        self.problem(f"section [{name}] is missing", fix=f"add [{name}]; see the bundled profiles for an example")
+        return {}
+
+    def word(self, section: str, table: dict[str, Any], key: str) -> str:
+        value = table.get(key)
+        if isinstance(value, str) and value.strip():
+            return value
+        if table:
+            self.problem(f"'{key}' of [{section}] is missing or not text", section, key, fix=f'write {key} = "..."')
+        return ""
+
+    def unknown(self, section: str, table: dict[str, Any], known: tuple[str, ...]) -> None:
+        for key in table:
+            if key not in known:
+                self.problem(f"unknown key '{section}.{key}'", section, key, fix=closest(key, known))
+
+    def component(self, kind: str) -> Section | None:
+        if kind not in self.data:
+            self.table(kind)
+            return None
+        table = self.table(kind)
+        component: Component | None = SHIP
+        if kind != "particulars":
+            tag = table.get("model")
+            component = find(kind, tag) if isinstance(tag, str) else None
+            if component is None:
+                what = f"unknown {kind} model '{tag}'" if tag else f"[{kind}] names no model"
+                self.problem(what, kind, "model", fix=f"{kind} models: {', '.join(tags(kind))}")
+                return None
+        assert component is not None  # for the type checker: both branches have set it
+        source = self.word(kind, table, "source")
+        known = ("source", *(("model",) if kind != "particulars" else ()), *component.fields)
+        self.unknown(kind, table, known)
+        coefficients: dict[str, Coefficient] = {}
+        for symbol, field in component.fields.items():
+            if symbol in table:
+                coefficient = self.coefficient(kind, symbol, field, table[symbol], source)
+            elif field.default is not None:
+                coefficient = Coefficient(field.default, source="default of the program")
+            else:
+                self.problem(
+                    f"'{kind}.{symbol}' is missing ({field.label} [{field.unit}])",
+                    kind,
+                    why=f"{kind} model '{component.tag}' needs it",
+                    fix=f"add {symbol} = ... to [{kind}]",
+                )
+                coefficient = None
+            if coefficient is not None:
+                coefficients[symbol] = coefficient
+        return Section(component, coefficients, source)
+
+    def coefficient(self, kind: str, symbol: str, field: Field, written: Any, source: str) -> Coefficient | None:
+        facts: dict[str, Any] = {"source": source}
+        if isinstance(written, dict):
+            self.unknown_value_keys(kind, symbol, written)
+            facts["source"] = written.get("source", source)
+            facts["assumption"] = bool(written.get("assumption", False))
+            facts["note"] = str(written.get("note", ""))
+            for key in ("pre_determined", "stderr"):
+                if key in written:
+                    numbers = self.numbers(kind, symbol, Field("", field.unit), written[key])
+                    facts[key] = numbers[0] if numbers else None
+            if "bounds" in written:
+                facts["bounds"] = self.bounds(kind, symbol, field, written["bounds"])
+            if "value" not in written:
+                self.problem(f"'{kind}.{symbol}' has no value", kind, symbol, fix="write { value = ..., ... }")
+                return None
+            written = written["value"]
+        numbers = self.numbers(kind, symbol, field, written)
+        if numbers is None:
+            return None
+        value = numbers if field.table else numbers[0]
+        bounds = facts.get("bounds")
+        if bounds and not isinstance(value, tuple) and not bounds[0] <= value <= bounds[1]:
+            self.problem(f"'{kind}.{symbol}' = {value} lies outside its own bounds {list(bounds)}", kind, symbol)
+        return Coefficient(value, **facts)
+
+    def unknown_value_keys(self, kind: str, symbol: str, written: dict[str, Any]) -> None:
+        for key in written:
+            if key not in VALUE_KEYS:
+                self.problem(f"unknown key '{key}' of '{kind}.{symbol}'", kind, symbol, fix=closest(key, VALUE_KEYS))
+
+    def bounds(self, kind: str, symbol: str, field: Field, written: Any) -> tuple[float, float] | None:
+        if isinstance(written, list) and len(written) == 2:
+            ends = [self.numbers(kind, symbol, Field("", field.unit), end) for end in written]
+            if ends[0] and ends[1] and ends[0][0] < ends[1][0]:
+                return ends[0][0], ends[1][0]
+        self.problem(f"bounds of '{kind}.{symbol}' are not two rising numbers", kind, symbol, fix="write bounds = [low, high]")
+        return None
+
+    def numbers(self, kind: str, symbol: str, field: Field, written: Any) -> tuple[float, ...] | None:
+        """The value(s) in the field's unit, None after reporting what is wrong."""
+        name = f"{kind}.{symbol}"
+        if field.choices:
+            if written in field.choices:
+                return (field.choices[written],)
+            self.problem(f"'{name}' is {written!r}", kind, symbol, fix=f"one of: {', '.join(field.choices)}")
+            return None
+        if isinstance(written, str):
+            try:
+                numbers = units.parse(written, field.unit)
+            except ValueError as error:
+                self.problem(f"'{name}': {error}", kind, symbol)
+                return None
+        elif isinstance(written, (int, float)) and not isinstance(written, bool):
+            if field.unit not in units.DIMENSIONLESS:
+                self.problem(
+                    f"'{name}' = {written} has no unit", kind, symbol, fix=f'write {symbol} = "{written} {field.unit}"'
+                )
+                return None
+            numbers = (float(written),)
+        else:
+            self.problem(f"'{name}' is {written!r}, not a number", kind, symbol, fix=f"write {symbol} = {units.example(field.unit)}")
+            return None
+        return numbers if self.possible(kind, symbol, field, numbers) else None
+
+    def possible(self, kind: str, symbol: str, field: Field, numbers: tuple[float, ...]) -> bool:
+        name = f"{kind}.{symbol}"
+        expected = field.table or 1
+        if len(numbers) != expected:
+            self.problem(f"'{name}' has {len(numbers)} values, not {expected}", kind, symbol)
+            return False
+        for number in numbers:
+            if not math.isfinite(number):
+                self.problem(f"'{name}' is {number}", kind, symbol, why="only finite numbers can be simulated")
+                return False
+            if field.low is not None and number <= field.low or field.high is not None and number >= field.high:
+                low, high = ("" if end is None else f"{end:g}" for end in (field.low, field.high))
+                limits = f"above {low}" if not high else f"below {high}" if not low else f"between {low} and {high}"
+                self.problem(
+                    f"'{name}' = {number:g} is impossible",
+                    kind,
+                    symbol,
+                    why=f"{field.label or symbol} must be {limits} {field.unit}",
+                    fix="check number and unit",
+                )
+                return False
+        return True
+
+    def plain(self, section: str, fields: dict[str, Field]) -> dict[str, float] | None:
+        """A section of plain numbers that may be absent as a whole."""
+        if section not in self.data:
+            return None
+        table = self.table(section)
+        self.unknown(section, table, ("source", *fields))
+        values: dict[str, float] = {}
+        for key, field in fields.items():
+            if key not in table:
+                self.problem(f"'{section}.{key}' is missing", section, fix=f'write {key} = "{units.example(field.unit)}"')
+                continue
+            coefficient = self.coefficient(section, key, field, table[key], str(table.get("source", "")))
+            if coefficient is not None and not isinstance(coefficient.value, tuple):
+                values[key] = coefficient.value
+        return values if len(values) == len(fields) else None
+
+    def targets(self, sections: dict[str, Section]) -> tuple[str, ...]:
+        table = self.data.get("tuning", {})
+        self.unknown("tuning", table, ("targets", "source"))
+        known = [f"{kind}.{symbol}" for kind, section in sections.items() for symbol in section.component.fields]
+        targets = table.get("targets", [])
+        for name in targets:
+            if name not in known:
+                self.problem(f"unknown target '{name}'", "tuning", "targets", fix=closest(name, known))
+        return tuple(targets)
+
+    def together(self, profile: ShipProfile) -> None:
+        """What is impossible about numbers that are possible one by one."""
+        L_pp = profile.L_pp
+        if profile.value("particulars.B") >= L_pp:
+            self.problem("'particulars.B' is not below L_pp", "particulars", "B", fix="check the units of both")
+        if abs(profile.value("particulars.x_G")) > 0.25 * L_pp:
+            self.problem("'particulars.x_G' is more than a quarter of L_pp from midship", "particulars", "x_G")
+        propeller = profile.sections["propeller"].coefficients
+        if "phi_min" in propeller and profile.value("propeller.phi_min") >= profile.value("propeller.phi_max"):
+            self.problem("'propeller.phi_min' is not below phi_max", "propeller", "phi_min")
+
+
+def _line_index(text: str) -> dict[tuple[str, str], int]:
+    """Line numbers of sections, under (section, ""), and of keys, under (section, key)."""
+    index: dict[tuple[str, str], int] = {}
+    section = ""
+    for number, line in enumerate(text.splitlines(), start=1):
+        if header := re.match(r"\s*\[([\w.-]+)\]", line):
+            section = header.group(1)
+            index.setdefault((section, ""), number)
+        elif key := re.match(r"\s*([\w-]+)\s*=", line):
+            index.setdefault((section, key.group(1)), number)
+    return index

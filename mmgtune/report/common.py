@@ -1,0 +1,112 @@
+"""Parts that the reports of a fit and of a sweep share."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from .drawing import Drawn
+from .page import Details, Picture, Prose, Section, Table, Tile
+from .tables import pairs, tone
+from .wording import NONE, change, clean, number, percent, shown
+
+
+def generated_banner(trials: Mapping[str, Any]) -> tuple[str, ...]:
+    """A banner where any trial was generated rather than measured."""
+    sources = trials.get("source") or {}
+    made = [str(name) for name, source in sources.items() if source == "generated"]
+    if not made:
+        return ()
+    if len(made) == len(sources):
+        said = "The trials in this data set are generated, not measured."
+        return (f"{said} What follows says how the method works, not how the real ship moves.",)
+    return (
+        f"{len(made)} of the {len(sources)} trials in this data set are generated, not measured: "
+        + ", ".join(clean(name) for name in made)
+        + ".",
+    )
+
+
+def warnings(data: Mapping[str, Any]) -> tuple[str, ...]:
+    """What a reader must know, less what the banner says already."""
+    said = bool(generated_banner(data["trials"]))
+    found = (clean(text) for text in data.get("warnings") or ())
+    return tuple(text for text in found if not (said and text.endswith("trials are generated, not measured.")))
+
+
+def misfit_tile(label: str, before: Any, after: Any, none: str) -> Tile:
+    """J of a set before and after tuning, or why there is none."""
+    if number(after) is None:
+        return Tile(label, NONE, note=none)
+    moved = change(before, after)
+    return Tile(label, f"{shown(before)} → {shown(after)}", percent(moved), "", tone(moved))
+
+
+def picture(drawn: Drawn, title: str, caption: str, *data: Table) -> Picture:
+    """A drawn figure with its caption and data."""
+    return Picture(drawn.name, title, caption, drawn.inline, data)
+
+
+def assumptions(data: Mapping[str, Any]) -> Section | None:
+    """What had to be assumed."""
+    items = data.get("assumptions") or []
+    if not items:
+        return None
+    return Section(
+        "assumptions",
+        "Assumptions",
+        (
+            pairs(
+                "assumptions-table",
+                "What the sources leave open, and what was taken",
+                ("assumption", "taken, and why"),
+                (
+                    (
+                        str(row.get("name", "")),
+                        ": ".join(filter(None, (str(row.get("value") or ""), str(row.get("note") or "")))),
+                    )
+                    for row in items
+                ),
+            ),
+        ),
+    )
+
+
+def provenance(data: Mapping[str, Any]) -> Section:
+    """Where everything came from: command, versions, hashes, sources."""
+    profile, trials = data["profile"], data["trials"]
+    items = [
+        ("command", data.get("command")),
+        ("made", data.get("created")),
+        ("mmgtune", data.get("mmgtune")),
+        ("time taken", f"{shown(data.get('wall_s'), 3)} s" if number(data.get("wall_s")) is not None else None),
+        ("ship profile", profile.get("path")),
+        ("profile's hash (SHA-256)", profile.get("sha256")),
+        ("profile's source", profile.get("source")),
+        ("trials", trials.get("path")),
+        ("tuned on", ", ".join(map(str, trials.get("tune") or [])) or "none"),
+        ("tested on", ", ".join(map(str, trials.get("test") or [])) or "none"),
+    ]
+    known = [(name, str(text)) for name, text in items if text not in (None, "")]
+    versions = [(str(name), str(text)) for name, text in sorted((data.get("environment") or {}).items())]
+    hashes = [(str(name), str(text)) for name, text in (trials.get("sha256") or {}).items()]
+    options = [(str(name), _option(value)) for name, value in (data.get("options") or {}).items()]
+    folded: list[Details] = []
+    for id, summary, titles, rows in (
+        ("options", "Options", ("option", "value"), options),
+        ("versions", "Versions", ("program", "version"), versions),
+        ("hashes", "Hashes of the trials", ("trial", "SHA-256"), hashes),
+    ):
+        if rows:
+            folded.append(Details(summary, (pairs(f"{id}-table", summary, titles, rows),)))
+    cited = tuple(clean(text) for text in data.get("citations") or ())
+    sources = (Prose(("To be cited with these results:",)), Prose(cited, listed=True)) if cited else ()
+    table = pairs("provenance-table", "How this run was made", ("what", "value"), known)
+    return Section("provenance", "Provenance", (table, *folded, *sources))
+
+
+def _option(value: Any) -> str:
+    if isinstance(value, list):
+        return ", ".join(map(str, value))
+    return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)

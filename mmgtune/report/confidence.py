@@ -1,0 +1,124 @@
+"""Sections on how far a fit can be trusted: whether it is the best in the box, and what the trials can tell."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from . import figures, findings, tables
+from .common import picture
+from .drawing import Drawn
+from .page import Block, Details, Prose, Section, Table
+from .wording import clean, count, number, short, shown
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    from .load import RunRecord
+
+
+def best_fit(record: RunRecord, drawings: dict[str, Drawn]) -> Section:
+    """Convergence, agreement of methods, and what the bounds cost."""
+    data, blocks = record.data, list[Block]()
+    certificate = data.get("certificate") or {}
+    said = [clean(text) for text in certificate.get("sentences") or ()]
+    blocks.append(Prose(tuple(said + findings.agreement(data)), listed=True))
+    active = certificate.get("active") or []
+    if active:
+        ordered = sorted(active, key=lambda row: -(number(row.get("gain_per_percent")) or 0.0))
+        blocks.append(
+            tables.pairs(
+                "bounds-table",
+                "What each touched bound costs: fall of J if it were 1 % of the pre-determined value wider",
+                ("coefficient and bound", "fall of J"),
+                (
+                    (f"{short(str(row['name']))}, {row.get('side')} bound", shown(row.get("gain_per_percent"), 3))
+                    for row in ordered
+                ),
+                numeric=True,
+            )
+        )
+    history = record.history
+    if history and len(history.get("J_best", ())):
+        evaluations = running(history)
+        least = number((data.get("agreement") or {}).get("J_least_squares"))
+        drawings["convergence"] = Drawn(
+            "convergence",
+            "J against the number of evaluations",
+            lambda: figures.draw_convergence(evaluations, history, least),
+        )
+        entries = data.get("restarts") or []
+        more = (tables.restarts(entries),) if entries else ()
+        blocks.append(picture(drawings["convergence"], "Convergence", findings.convergence(data), *more))
+    else:
+        blocks.append(Prose(("No evolution strategy ran, so there is no history of its generations.",)))
+    return Section("trust", "Is this the best fit in the box?", tuple(blocks))
+
+
+def running(history: Any) -> npt.NDArray[np.float64]:
+    """Evaluations counted through all restarts, also where each restart counts from its own beginning."""
+    import numpy as np
+
+    spent = np.asarray(history["evaluations"], dtype=np.float64)
+    falls = np.where(np.diff(spent, prepend=spent[:1]) < 0.0, np.roll(spent, 1), 0.0)
+    total: npt.NDArray[np.float64] = np.maximum(spent + np.cumsum(falls), 1.0)
+    return total
+
+
+def identifiability(record: RunRecord, drawings: dict[str, Drawn]) -> Section | None:
+    found = record.data.get("identifiability") or {}
+    blocks = list[Block]()
+    said = [clean(text) for text in found.get("sentences") or ()]
+    said += [clean(row["sentence"]) for row in found.get("null_directions") or () if row.get("sentence")]
+    if said:
+        blocks.append(Prose(tuple(said), listed=True))
+    combinations = found.get("combinations") or []
+    if combinations:
+        blocks.append(
+            tables.pairs(
+                "combinations-table",
+                "Combinations that the trials do determine",
+                ("combination", "value ± std. error"),
+                (
+                    (str(row.get("expression")), f"{shown(row.get('value'))} ± {shown(row.get('stderr'), 2)}")
+                    for row in combinations
+                ),
+                numeric=True,
+            )
+        )
+    correlation = found.get("correlation") or {}
+    names, matrix = correlation.get("names") or [], correlation.get("matrix") or []
+    if len(names) > 1 and len(matrix) == len(names):
+        drawings["correlation"] = Drawn(
+            "correlation",
+            "Correlation matrix of the coefficients' errors",
+            lambda: figures.draw_correlation(names, matrix),
+        )
+        blocks.append(
+            picture(
+                drawings["correlation"],
+                "Correlations",
+                findings.correlation(names, matrix),
+                tables.correlation(names, matrix),
+            )
+        )
+    numbers = _numbers(found)
+    if numbers:
+        blocks.append(Details("Singular values and autocorrelation", (numbers,)))
+    if not blocks:
+        return None
+    return Section("identifiability", "What the trials can and cannot tell", tuple(blocks))
+
+
+def _numbers(found: Any) -> Table | None:
+    """Singular values of the sensitivity, and how far residuals follow one another."""
+    values = found.get("singular_values") or []
+    rows = [(f"singular value {place}", shown(value, 3)) for place, value in enumerate(values, start=1)]
+    rows += [
+        (f"autocorrelation of the {name} residual, one sample apart", shown(value, 3))
+        for name, value in (found.get("autocorrelation") or {}).items()
+    ]
+    if not rows:
+        return None
+    caption = f"Sensitivity of the residuals to {count(len(found.get('names') or []), 'free coefficient')}"
+    return tables.pairs("sensitivity-table", caption, ("what", "value"), rows, numeric=True)

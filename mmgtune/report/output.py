@@ -1,0 +1,29 @@
+"""Writing a report's files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..files import atomic, write_text
+
+if TYPE_CHECKING:
+    from .page import Page
+
+
+def write(folder: Path, page: Page, html: str, markdown: str) -> list[Path]:
+    """Write the report and its figures, and remove figures that an earlier rendering left and this one has not."""
+    written = [write_text(folder / "report.html", html), write_text(folder / "report.md", markdown)]
+    for name, (svg, pdf) in page.figures.items():
+        written.append(write_text(folder / "figures" / f"{name}.svg", svg))
+        path = folder / "figures" / f"{name}.pdf"
+        with atomic(path) as part:
+            part.write_bytes(pdf)
+        written.append(path)
+    for name in _NAMES - set(page.figures):
+        for suffix in (".svg", ".pdf"):
+            (folder / "figures" / f"{name}{suffix}").unlink(missing_ok=True)
+    return written
+
+
+_NAMES = {"tracks", "distances", "histories", "coefficients", "convergence", "correlation", "misfit", "positions"}

@@ -1,0 +1,158 @@
+"""The report of a sweep over ranges a_r, put together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from . import advice, figures, misfit
+from .common import assumptions, generated_banner, misfit_tile, picture, provenance, warnings
+from .drawing import Drawn
+from .page import Cell, Commands, Page, Prose, Section, Table, Tile, cells
+from .wording import NONE, clean, listing, number, short, shown
+
+if TYPE_CHECKING:
+    from .load import SweepRecord
+
+
+def build(record: SweepRecord) -> Page:
+    """Everything the report of a sweep says."""
+    data, runs = record.data, record.runs
+    recommended = data.get("recommended") or {}
+    best = number(recommended.get("a_r"))
+    drawn = Drawn("misfit", "J on tuning and test trials against the range a_r", lambda: misfit.draw(record, best))
+    drawings = [drawn]
+    sections = [
+        Section(
+            "ranges",
+            "Which range?",
+            (picture(drawn, "Misfit", misfit.finding(data, runs)), *_overfitting(data), misfit.table(record)),
+        ),
+        _coefficients(runs, best, drawings),
+        Section("next", "What to do next", (Commands(advice.after_sweep(data)),)),
+        assumptions(data),
+        provenance(data),
+    ]
+    ship = clean(data["profile"].get("name") or data["profile"].get("id") or "the ship")
+    return Page(
+        title=f"{ship}: how far may MMG coefficients move?",
+        eyebrow=f"{ship} · fine-tuning in {len(runs)} ranges around the pre-determined values",
+        verdict=clean(
+            recommended.get("sentence")
+            or (f"Use a_r = {best:g}." if best is not None else "No range can be recommended.")
+        ),
+        banners=generated_banner(data["trials"]),
+        warnings=warnings(data),
+        tiles=_tiles(data, runs, best),
+        sections=tuple(section for section in sections if section is not None),
+        figures={drawn.name: (drawn.svg, drawn.pdf) for drawn in drawings},
+    )
+
+
+def _coefficients(runs: Sequence[Mapping[str, Any]], best: float | None, drawings: list[Drawn]) -> Section | None:
+    """Tuned values and places in the box, for every range."""
+    names = list(dict.fromkeys(str(row["name"]) for run in runs for row in run["coefficients"]))
+    if not names:
+        return None
+    places = Drawn(
+        "positions",
+        "Place of each coefficient in its box for every range",
+        lambda: figures.draw_box_positions(
+            [short(name) for name in names],
+            [f"{run['a_r']:g}" for run in runs],
+            [[_place(run, name) for run in runs] for name in names],
+        ),
+    )
+    drawings.append(places)
+    caption = _place_finding(names, runs)
+    caption += " −1 is the low bound (▼), 0 the pre-determined value, +1 the high bound (▲)."
+    blocks = (_values(names, runs, best), picture(places, "Place in the box", caption))
+    return Section("coefficients", "Tuned coefficients", blocks)
+
+
+def _tiles(data: Mapping[str, Any], runs: Sequence[Mapping[str, Any]], best: float | None) -> tuple[Tile, ...]:
+    by = clean((data.get("recommended") or {}).get("by") or "")
+    tiles = [
+        Tile("Recommended range", f"a_r = {best:g}" if best is not None else NONE, note=f"chosen by {by}" if by else "")
+    ]
+    run = next((run for run in runs if best is not None and number(run["a_r"]) == best), None)
+    if run is not None:
+        tiles.append(misfit_tile("Misfit J, trials tuned on", data.get("J_tune_before"), run.get("J_tune"), ""))
+        tiles.append(
+            misfit_tile(
+                "Misfit J, test trials",
+                data.get("J_test_before"),
+                run.get("J_test"),
+                "no test set: each trial was left out in turn" if data.get("leave_one_out") else "no test set",
+            )
+        )
+    found = (data.get("overfitting") or {}).get("found")
+    if found is not None:
+        tiles.append(
+            Tile(
+                "Over-fitting",
+                "found" if found else "not found",
+                tone="bad" if found else "good",
+                note="wider ranges do worse on trials not tuned on" if found else "in these ranges",
+            )
+        )
+    return tuple(tiles)
+
+
+def _overfitting(data: Mapping[str, Any]) -> tuple[Prose, ...]:
+    found = data.get("overfitting") or {}
+    if not found.get("sentence"):
+        return ()
+    sentence = clean(found["sentence"])
+    return (
+        Prose(
+            (f"Over-fitting: {sentence}" if found.get("found") else sentence,),
+            tone="warning" if found.get("found") else "",
+        ),
+    )
+
+
+def _find(run: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    return next((row for row in run["coefficients"] if row["name"] == name), {})
+
+
+def _place(run: Mapping[str, Any], name: str) -> float | None:
+    """-1 at the low bound, +1 at the high one."""
+    position = number(_find(run, name).get("position"))
+    return None if position is None else 2.0 * position - 1.0
+
+
+def _values(names: Sequence[str], runs: Sequence[Mapping[str, Any]], best: float | None) -> Table:
+    rows = []
+    for name in names:
+        first = next((row for run in runs if (row := _find(run, name))), {})
+        line: list[str | Cell] = [
+            short(clean(name)),
+            clean(first.get("label") or ""),
+            shown(first.get("pre_determined")),
+        ]
+        for run in runs:
+            row = _find(run, name)
+            bound = {"low": " ▼", "high": " ▲"}.get(str(row.get("at_bound")), "")
+            line.append(Cell(shown(row.get("value")) + bound, "note" if bound else ""))
+        rows.append(cells(*line))
+    titles = [f"a_r = {run['a_r']:g}" + (" ✓" if number(run["a_r"]) == best else "") for run in runs]
+    return Table(
+        "values-table",
+        "Tuned values for every range; ▼ at the low, ▲ at the high bound; ✓ recommended",
+        ("symbol", "meaning", "pre-determined", *titles),
+        tuple(rows),
+        numeric=range(2, 3 + len(runs)),
+    )
+
+
+def _place_finding(names: Sequence[str], runs: Sequence[Mapping[str, Any]]) -> str:
+    stuck = []
+    for name in names:
+        sides = {_find(run, name).get("at_bound") for run in runs}
+        if len(sides) == 1 and sides != {None}:
+            stuck.append(short(clean(name)))
+    if not stuck:
+        return "No coefficient ends on the same bound in every range."
+    verb = "ends" if len(stuck) == 1 else "end"
+    return f"{listing(stuck, 12)} {verb} on the same bound however wide the range."

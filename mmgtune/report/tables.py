@@ -1,0 +1,220 @@
+"""The tables of a fit's report."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from .findings import off_track
+from .page import Cell, Table, cells
+from .tracks import ROLES
+from .wording import (
+    CHANNELS,
+    NONE,
+    change,
+    clean,
+    fixed,
+    index_words,
+    is_index,
+    number,
+    percent,
+    short,
+    shown,
+    unit_words,
+)
+
+if TYPE_CHECKING:
+    from .load import RunRecord
+
+
+def tone(value: float | None, small: float = 0.05) -> str:
+    """Whether a relative change in percent of a misfit is good, bad or nothing."""
+    if value is None or abs(value) < small:
+        return ""
+    return "good" if value < 0.0 else "bad"
+
+
+def trials(record: RunRecord) -> Table:
+    """Every trial: role and J before and after."""
+    rows = []
+    for row in record.results:
+        moved = change(row.get("J_before"), row.get("J_after"))
+        ended = row.get("status_after", "ok")
+        rows.append(
+            cells(
+                clean(row["id"]),
+                clean(row.get("manoeuvre") or NONE),
+                ROLES.get(str(row.get("role")), "not used"),
+                clean(row.get("source") or "not stated"),
+                shown(row.get("n_samples"), 9),
+                f"{shown(off_track(row, 'before'), 3)} → {shown(off_track(row, 'after'), 3)}",
+                shown(row.get("J_before")),
+                Cell("diverged", "bad") if ended != "ok" else Cell(shown(row.get("J_after"))),
+                Cell(percent(moved), tone(moved)) if ended == "ok" else Cell(NONE),
+            )
+        )
+    return Table(
+        "trials-table",
+        "Misfit J of each trial with the pre-determined and with the tuned coefficients",
+        ("trial", "manoeuvre", "role", "data", "samples", "off track [m]", "J before", "J after", "change"),
+        tuple(rows),
+        numeric=range(4, 9),
+    )
+
+
+def errors(record: RunRecord) -> Table:
+    """Root-mean-square residuals of every trial and channel, before and after."""
+    used = [name for name in ("x", "y", "psi", "u", "v_m", "r") if any(name in _rms(row) for row in record.results)]
+    rows = []
+    for row in record.results:
+        line: list[str | Cell] = [clean(row["id"])]
+        for name in used:
+            channel, pair = CHANNELS[name], _rms(row).get(name) or {}
+            before, after = number(pair.get("before")), number(pair.get("after"))
+            decimals = max(1, channel.decimals - 1)
+            first = fixed(None if before is None else before * channel.factor, decimals)
+            last = fixed(None if after is None else after * channel.factor, decimals)
+            line.append(Cell(f"{first} → {last}", tone(change(before, after), 1.0)))
+        rows.append(cells(*line))
+    titles = tuple(CHANNELS[name].title for name in used)
+    return Table(
+        "errors-table",
+        "Root-mean-square error of the simulation, before → after tuning",
+        ("trial", *titles),
+        tuple(rows),
+        numeric=range(1, 1 + len(titles)),
+    )
+
+
+def _rms(row: Mapping[str, Any]) -> Mapping[str, Any]:
+    return row.get("rms") or {}
+
+
+def indices(record: RunRecord) -> Table | None:
+    """Indices of the manoeuvres: measured, before and after with their errors; None where there are none."""
+    rows = []
+    for row in record.results:
+        values = row.get("indices") or {}
+        measured, before, after = (values.get(which) or {} for which in ("measured", "before", "after"))
+        for key in filter(is_index, dict.fromkeys([*measured, *before, *after])):
+            true, first, last = number(measured.get(key)), number(before.get(key)), number(after.get(key))
+            if true is None and first is None and last is None:
+                continue
+            words, unit = index_words(key)
+            errors = [deviation(true, value, unit) for value in (first, last)]
+            better = tone(
+                None
+                if None in (true, first, last)
+                else change(abs((first or 0) - (true or 0)), abs((last or 0) - (true or 0))),
+                1.0,
+            )
+            rows.append(
+                cells(
+                    clean(row["id"]),
+                    f"{words} [{unit}]" if unit else words,
+                    shown(true),
+                    shown(first),
+                    errors[0],
+                    shown(last),
+                    Cell(errors[1], better),
+                )
+            )
+    if not rows:
+        return None
+    return Table(
+        "indices-table",
+        "Indices of the manoeuvres, and how far the simulation is off the measured ones",
+        ("trial", "index", "measured", "before", "error", "after", "error"),
+        tuple(rows),
+        numeric=range(2, 7),
+    )
+
+
+def deviation(true: float | None, value: float | None, unit: str) -> str:
+    """The error of an index: in percent, or for angles in degrees."""
+    if true is None or value is None:
+        return NONE
+    if unit == "deg":
+        return f"{'+' if value > true else ''}{fixed(value - true, 1)} deg"
+    return percent(change(true, value))
+
+
+def coefficients(rows: Iterable[Mapping[str, Any]]) -> Table:
+    """Tuned coefficients with their box, standard error and what is to be said of them."""
+    lines = []
+    for row in rows:
+        notes, flag = [], ""
+        if row.get("at_bound"):
+            notes.append(f"at its {clean(row['at_bound'])} bound")
+            flag = "note"
+        if row.get("determined") is False:
+            notes.append("not determined")
+            flag = "bad"
+        lines.append(
+            cells(
+                short(clean(row["name"])),
+                clean(row.get("label") or "") + (f" [{unit}]" if (unit := unit_words(row.get("unit"))) else ""),
+                shown(row["pre_determined"]),
+                f"{shown(row['low'])} … {shown(row['high'])}",
+                Cell(shown(row["value"])),
+                percent(change(row["pre_determined"], row["value"])),
+                shown(row.get("stderr"), 2),
+                Cell("; ".join(notes) or "inside", flag),
+            )
+        )
+    return Table(
+        "coefficients-table",
+        "Tuned coefficients",
+        ("symbol", "meaning", "pre-determined", "box", "tuned", "change", "std. error", "state"),
+        tuple(lines),
+        numeric=range(2, 7),
+    )
+
+
+def correlation(names: Sequence[str], matrix: Sequence[Sequence[Any]], limit: int = 20) -> Table:
+    """The strongest correlations between coefficients."""
+    pairs = [
+        (value, names[i], names[j])
+        for i in range(len(names))
+        for j in range(i)
+        if (value := number(matrix[i][j])) is not None
+    ]
+    pairs.sort(key=lambda pair: -abs(pair[0]))
+    rows = tuple(cells(short(clean(one)), short(clean(two)), fixed(value, 3)) for value, one, two in pairs[:limit])
+    return Table(
+        "correlation-table",
+        "Strongest correlations of the coefficients' errors",
+        ("coefficient", "with", "correlation"),
+        rows,
+        numeric=(2,),
+    )
+
+
+def restarts(entries: Sequence[Mapping[str, Any]]) -> Table:
+    """What each restart of the search reached."""
+    rows = tuple(
+        cells(
+            str(index),
+            shown(entry.get("lambda"), 9),
+            shown(entry.get("generations"), 9),
+            shown(entry.get("evaluations"), 9),
+            shown(entry.get("J"), 7),
+            clean(entry.get("stop") or NONE),
+        )
+        for index, entry in enumerate(entries, start=1)
+    )
+    return Table(
+        "restarts-table",
+        "Restarts of the search",
+        ("restart", "population", "generations", "evaluations", "J reached", "stopped by"),
+        rows,
+        numeric=range(1, 5),
+    )
+
+
+def pairs(
+    id: str, caption: str, titles: tuple[str, str], items: Iterable[tuple[str, str]], numeric: bool = False
+) -> Table:
+    """A two-column table of names and texts, or names and numbers."""
+    rows = tuple(cells(clean(name), clean(text)) for name, text in items)
+    return Table(id, caption, titles, rows, (1,) if numeric else ())

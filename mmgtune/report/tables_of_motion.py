@@ -1,0 +1,108 @@
+"""The numbers behind the figures of motions: where the ship was, and how far off the simulation is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from .page import Cell, Table, cells
+from .tables import tone
+from .tracks import distance_from, onto
+from .wording import NONE, change, clean, fixed, index_words, is_index, number, percent, shown
+
+if TYPE_CHECKING:
+    from .tracks import Motion
+
+_MOST = 400
+
+
+def positions(
+    results: Sequence[Mapping[str, Any]], motions: Mapping[str, Mapping[str, Motion]], spacing: float
+) -> Table:
+    """North and east of every trial at the marks of its track."""
+    import numpy as np
+
+    rows = []
+    for row in results:
+        found = motions.get(str(row["id"]), {})
+        t = found["measured"]["t"] if "measured" in found else np.empty(0)
+        t = t[np.isfinite(t)]
+        times = np.arange(t[0], t[-1] + 1e-9, spacing) if len(t) else t
+        columns = [
+            onto(found[which], name, times) if which in found else np.full_like(times, np.nan)
+            for which in ("measured", "before", "after")
+            for name in ("x", "y")
+        ]
+        for place, time in enumerate(times):
+            rows.append(cells(clean(row["id"]), shown(time), *(fixed(float(column[place]), 1) for column in columns)))
+    caption = f"North and east [m] every {spacing:.0f} s"
+    if len(rows) > _MOST:
+        rows, caption = rows[:_MOST], caption + f" (the first {_MOST} rows; all are in motions.parquet)"
+    titles = (
+        "trial",
+        "time [s]",
+        *(f"{when} {axis}" for when in ("measured", "before", "after") for axis in ("north", "east")),
+    )
+    return Table("positions-table", caption, titles, tuple(rows), numeric=range(1, 8))
+
+
+def distances(results: Sequence[Mapping[str, Any]], motions: Mapping[str, Mapping[str, Motion]]) -> Table:
+    """Greatest and final distance off track of every trial, before and after."""
+    import numpy as np
+
+    rows = []
+    for row in results:
+        found = motions.get(str(row["id"]), {})
+        line: list[str | Cell] = [clean(row["id"])]
+        for which in ("before", "after"):
+            gap = np.empty(0)
+            if which in found and "measured" in found:
+                _, gap = distance_from(found[which], found["measured"])
+            gap = gap[np.isfinite(gap)]
+            line += [fixed(float(gap.max()), 1), fixed(float(gap[-1]), 1)] if len(gap) else [NONE, NONE]
+        rows.append(cells(*line))
+    return Table(
+        "distances-table",
+        "Distance off track [m]",
+        ("trial", "greatest before", "last before", "greatest after", "last after"),
+        tuple(rows),
+        numeric=range(1, 5),
+    )
+
+
+def index_errors(results: Sequence[Mapping[str, Any]]) -> Table | None:
+    """The mean absolute error of every index over the trials, before and after; None where there are none."""
+    errors: dict[str, list[tuple[float, float]]] = {}
+    for row in results:
+        values = row.get("indices") or {}
+        measured, before, after = (values.get(which) or {} for which in ("measured", "before", "after"))
+        for key in filter(is_index, measured):
+            true, first, last = (number(part.get(key)) for part in (measured, before, after))
+            if true is not None and first is not None and last is not None:
+                relative = 1.0 if index_words(key)[1] == "deg" else 100.0 / abs(true) if true else None
+                if relative is not None:
+                    errors.setdefault(key, []).append((abs(first - true) * relative, abs(last - true) * relative))
+    rows = []
+    for key, pairs in errors.items():
+        words, unit = index_words(key)
+        first, last = (sum(pair[side] for pair in pairs) / len(pairs) for side in (0, 1))
+        mark = "\u00a0deg" if unit == "deg" else "\u00a0%"
+        moved = change(first, last)
+        rows.append(
+            cells(
+                words,
+                str(len(pairs)),
+                fixed(first, 1) + mark,
+                fixed(last, 1) + mark,
+                Cell(percent(moved), tone(moved, 1.0)),
+            )
+        )
+    if not rows:
+        return None
+    return Table(
+        "index-errors-table",
+        "Mean size of the error over the trials",
+        ("index", "trials", "before", "after", "change"),
+        tuple(rows),
+        numeric=range(1, 5),
+    )

@@ -1,0 +1,155 @@
+"""Numbers, units and names as a naval architect reads them."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+MINUS = "\u2212"
+NONE = "\u2013"
+_CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ud800-\udfff\ufffe\uffff]")
+
+
+@dataclass(frozen=True)
+class Channel:
+    """A measured or simulated quantity: words, the unit people read, the factor to it from SI, and its resolution."""
+
+    name: str
+    words: str
+    unit: str
+    factor: float
+    decimals: int
+
+    @property
+    def title(self) -> str:
+        """Words with the unit."""
+        return f"{self.words} [{self.unit}]"
+
+
+_DEG = 180.0 / math.pi
+CHANNELS: Mapping[str, Channel] = {
+    channel.name: channel
+    for channel in (
+        Channel("x", "position north", "m", 1.0, 2),
+        Channel("y", "position east", "m", 1.0, 2),
+        Channel("psi", "heading", "deg", _DEG, 2),
+        Channel("u", "surge velocity", "m/s", 1.0, 3),
+        Channel("v_m", "sway velocity", "m/s", 1.0, 3),
+        Channel("r", "yaw rate", "deg/s", _DEG, 3),
+        Channel("delta", "rudder angle", "deg", _DEG, 2),
+        Channel("n", "propeller speed", "rpm", 60.0, 1),
+    )
+}
+
+_SUFFIXES = (
+    ("_deg_per_s", "deg/s"), ("_m_per_s", "m/s"), ("_deg", "deg"), ("_kn", "kn"), ("_m", "m"), ("_s", "s"),
+)  # fmt: skip
+
+
+_CIRCUMSTANCES = re.compile(
+    r"L_pp|execute|rudder_|heading_angle|approach_|drift_|residual_rate|steady_heading|direction|.*_over_L$"
+)
+
+
+def is_index(key: str) -> bool:
+    """Whether an index says how the ship manoeuvres, rather than how the trial was run, or the same in lengths."""
+    return _CIRCUMSTANCES.match(key) is None
+
+
+def number(value: Any) -> float | None:
+    """The value as a finite float, or None where there is none."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        return None
+    return float(value)
+
+
+def shown(value: Any, digits: int = 4) -> str:
+    """A number with ``digits`` significant digits, a true minus and thin thousands; a dash where there is none."""
+    size = number(value)
+    if size is None:
+        return NONE
+    text = f"{size:.{digits}g}"
+    if "e" in text and 1.0 <= abs(size) < 1e9:
+        text = f"{float(text):.0f}"
+    elif "e" in text:
+        mantissa, exponent = text.split("e")
+        text = f"{mantissa}e{int(exponent)}"
+    elif float(text) != 0.0 and "." not in text and len(text.lstrip("-")) < digits:
+        text = f"{size:.{digits - len(text.lstrip('-'))}f}" if size != int(size) else text
+    if "e" not in text and "." not in text and len(text.lstrip("-")) > 4:
+        text = f"{int(text):,}".replace(",", "\u202f")
+    return text.replace("-", MINUS)
+
+
+def fixed(value: Any, decimals: int) -> str:
+    """A number with fixed decimals and a true minus; a dash where there is none."""
+    size = number(value)
+    if size is None:
+        return NONE
+    text = f"{size:.{decimals}f}"
+    return (text.lstrip("-") if float(text) == 0.0 else text).replace("-", MINUS)
+
+
+def change(before: Any, after: Any) -> float | None:
+    """The relative change in percent, or None where it makes no sense."""
+    first, last = number(before), number(after)
+    if first is None or last is None or first == 0.0:
+        return None
+    return 100.0 * (last - first) / abs(first)
+
+
+def percent(value: float | None) -> str:
+    """A signed percentage, or a dash."""
+    if value is None:
+        return NONE
+    magnitude = abs(value)
+    text = (
+        f"{magnitude:.2f}"
+        if 99.0 < magnitude < 100.0
+        else f"{magnitude:.1f}"
+        if magnitude < 100
+        else f"{magnitude:.0f}"
+    )
+    if float(text) == 0.0:
+        return "0\u00a0%"
+    return f"{'+' if value > 0 else MINUS}{text}\u00a0%"
+
+
+def clean(text: Any) -> str:
+    """Text from a file without control characters, which neither XML nor a terminal can hold."""
+    return _CONTROL.sub("\ufffd", str(text))
+
+
+def index_words(key: str) -> tuple[str, str]:
+    """Words and unit of an index of a manoeuvre, from its key: tactical_diameter_m is a tactical diameter in m."""
+    for suffix, unit in _SUFFIXES:
+        if key.endswith(suffix):
+            return clean(key.removesuffix(suffix)).replace("_", " "), unit
+    return clean(key).replace("_", " "), ""
+
+
+def unit_words(unit: Any) -> str:
+    """The unit of a coefficient, empty where it has none."""
+    return "" if unit in ("prime", "-", "1", "", None) else clean(unit)
+
+
+def listing(names: list[str], limit: int = 6) -> str:
+    """Names as a phrase: "a, b and c", or the first few "and 4 more"."""
+    if len(names) > limit:
+        names = [*names[: limit - 1], f"{len(names) - limit + 1} more"]
+    if not names:
+        return "none"
+    return names[0] if len(names) == 1 else ", ".join(names[:-1]) + " and " + names[-1]
+
+
+def count(amount: int, noun: str, plural: str = "") -> str:
+    """A number with its noun: "1 trial", "8 trials"."""
+    return f"{amount} {noun if amount == 1 else plural or noun + 's'}"
+
+
+def short(name: str) -> str:
+    """A coefficient's symbol without its component: hull.R_0 is R_0."""
+    return name.rsplit(".", 1)[-1]

@@ -1,0 +1,23 @@
+"""The ship profiles and sample trials that travel with the program, found by name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+_PACKAGE = Path(__file__).resolve().parent
+
+
+def folder(name: str) -> Path:
+    """The folder ``ship_profiles`` or ``trials``: package data where installed, the checkout's own otherwise."""
+    installed = _PACKAGE / "data" / name
+    return installed if installed.is_dir() else _PACKAGE.parent / name
+
+
+def profile_names() -> list[str]:
+    """Names of the bundled profiles."""
+    return sorted(path.stem for path in folder("ship_profiles").glob("*.toml"))
+
+
+def trial_set_names() -> list[str]:
+    """Names of the bundled data sets."""
+    return sorted(path.name for path in folder("trials").glob("*") if path.is_dir())

@@ -1,0 +1,35 @@
+"""What a trial holds, in numbers a person can check against the log book."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .checks import motion
+from .model import Trial
+
+_SHOWN = {"rad": (180.0 / np.pi, "deg"), "rad/s": (180.0 / np.pi, "deg/s"), "1/s": (60.0, "rpm")}
+
+
+def describe(trial: Trial) -> dict[str, Any]:
+    """Facts, length and ranges of the channels, angles in degrees and revolutions per minute."""
+    from .schema import COLUMNS
+
+    ranges = {}
+    for name, values in {**motion(trial), "n": trial.n, "delta": trial.delta, **trial.extra}.items():
+        unit = COLUMNS[name].unit if name in COLUMNS else "-"
+        factor, shown = _SHOWN.get(unit, (1.0, unit))
+        if np.isfinite(values).any():
+            ranges[name] = {"min": float(np.nanmin(values) * factor), "max": float(np.nanmax(values) * factor), "unit": shown}
+    return {
+        "id": trial.id,
+        "ship": trial.ship,
+        "manoeuvre": trial.manoeuvre,
+        "source": trial.source,
+        "note": trial.note,
+        "n_samples": trial.n_samples,
+        "duration_s": trial.duration,
+        "sha256": trial.sha256,
+        "ranges": ranges,
+    }

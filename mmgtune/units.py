@@ -1,0 +1,71 @@
+"""Numbers with units, as people write them in profiles and on the command line; SI inside the program.
+
+Degrees, knots and revolutions per minute appear here and in what people read, nowhere else.  A unit library
+would treat a revolution as 2 pi of nothing and turn 106 rpm into 11.1 1/s, so the few units are listed.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+
+DEG = math.pi / 180.0
+KNOT = 1852.0 / 3600.0
+
+_FACTORS: dict[str, dict[str, float]] = {
+    "m": {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "km": 1e3},
+    "m^2": {"m^2": 1.0, "cm^2": 1e-4},
+    "m/s": {"m/s": 1.0, "kn": KNOT, "km/h": 1.0 / 3.6},
+    "rad": {"rad": 1.0, "deg": DEG},
+    "deg": {"deg": 1.0, "rad": 1.0 / DEG},
+    "rad/s": {"rad/s": 1.0, "deg/s": DEG},
+    "1/s": {"1/s": 1.0, "rps": 1.0, "rpm": 1.0 / 60.0},
+    "s": {"s": 1.0, "min": 60.0},
+    "kg/m^3": {"kg/m^3": 1.0, "t/m^3": 1e3},
+    "1/deg": {"1/deg": 1.0, "1/rad": DEG},
+    "1/deg^2": {"1/deg^2": 1.0, "1/rad^2": DEG**2},
+    "1/deg^3": {"1/deg^3": 1.0, "1/rad^3": DEG**3},
+    "1/rad": {"1/rad": 1.0, "1/deg": 1.0 / DEG},
+    "1/rad^2": {"1/rad^2": 1.0, "1/deg^2": 1.0 / DEG**2},
+    "1/rad^3": {"1/rad^3": 1.0, "1/deg^3": 1.0 / DEG**3},
+}
+
+DIMENSIONLESS = ("-", "prime")
+
+_QUANTITY = re.compile(r"^\s*((?:[-+0-9.eE]+\s*,\s*)*[-+0-9.eE]+)\s*([^\s0-9].*?|1/.*?)?\s*$")
+
+
+def parse(text: str, unit: str) -> tuple[float, ...]:
+    """The numbers of "12 kn" or "0, 10, 18 deg" in ``unit``.
+
+    Raises ValueError with a sentence saying what was expected.
+    """
+    match = _QUANTITY.match(text)
+    if match is None:
+        raise ValueError(f"'{text}' is not a number with a unit, such as '{example(unit)}'")
+    written = (match.group(2) or "").strip()
+    known = _FACTORS.get(unit, {})
+    if unit in DIMENSIONLESS:
+        if written and written != "-":
+            raise ValueError(f"'{text}' has a unit where a pure number belongs")
+        factor = 1.0
+    elif not written:
+        raise ValueError(f"'{text}' has no unit; write for example '{example(unit)}'")
+    elif written not in known:
+        raise ValueError(f"unit '{written}' is not one of {', '.join(known)}")
+    else:
+        factor = known[written]
+    try:
+        return tuple(float(number) * factor for number in match.group(1).split(","))
+    except ValueError:
+        raise ValueError(f"'{text}' is not a number with a unit, such as '{example(unit)}'") from None
+
+
+def example(unit: str) -> str:
+    """How a quantity of this unit is written."""
+    return "1.5" if unit in DIMENSIONLESS else f"1.5 {unit}"
+
+
+def shown(value: float, unit: str) -> str:
+    """A quantity as profiles hold it: the shortest text that reads back to the same number."""
+    return f"{value!r} {unit}" if unit not in DIMENSIONLESS else repr(value)

@@ -1,0 +1,88 @@
+"""Compiled and NumPy lanes give the same motion for every component."""
+
+import numpy as np
+import pytest
+
+from mmgtune.backends import Integrator, get_backend, pad
+from mmgtune.components import COMPONENTS
+from mmgtune.model import Model
+from mmgtune.profile import load_profile
+from mmgtune.resources import profile_names
+from tests.runs import states, turn
+
+
+def zigzag_like(model, seconds=900):
+    """Rudder to and fro with revolutions changing: every branch of the components is visited."""
+    t = np.arange(seconds + 1.0)
+    approach = model.profile.approach
+    delta = np.radians(30.0) * np.sin(t / 25.0) * np.sign(np.sin(t / 140.0))
+    n = approach.n * (0.8 + 0.3 * np.cos(t / 60.0))
+    return pad([t], [np.column_stack([n, delta])], [np.array([0.0, 0.0, 1.0, approach.speed, 0.0, 0.0])])
+
+
+@pytest.mark.parametrize("integrator", [Integrator(), Integrator("rk4"), Integrator("euler", 3)])
+def test_900_steps_to_1e_9(any_model, integrator):
+    rng = np.random.default_rng(1)
+    names = ["hull.R_0", "rudder.eps", "wake.w_P0"]
+    values = np.array([[any_model.profile.value(name)] for name in names]) * rng.uniform(0.8, 1.2, (3, 11))
+    theta = any_model.matrix(names, values)
+    cases = zigzag_like(any_model)
+    compiled, reference = (states(any_model, cases, theta, backend, integrator) for backend in ("compiled", "numpy"))
+    assert np.max(np.abs(compiled - reference) / (1.0 + np.abs(reference))) < 1e-9
+
+
+def test_every_component_is_in_a_bundled_profile():
+    used = {tag for name in profile_names() for tag in Model(load_profile(name)).tags}
+    assert used == {f"{component.kind}:{component.tag}" for component in COMPONENTS}
+
+
+def test_costs_agree(suzaku):
+    cases = turn(suzaku, 20.0)
+    rng = np.random.default_rng(2)
+    cases.target[:] = rng.standard_normal(cases.target.shape)
+    cases.weight[:] = rng.uniform(0.0, 1.0, cases.weight.shape)
+    theta = suzaku.matrix(["hull.R_0"], np.linspace(0.01, 0.03, 5)[None])
+    a, b = (get_backend(name).run(suzaku, theta, cases).cost for name in ("compiled", "numpy"))
+    np.testing.assert_allclose(a, b, rtol=1e-9)
+
+
+@pytest.mark.parametrize("backend", ["compiled", "numpy"])
+def test_a_lane_equals_a_single_run(suzaku, backend):
+    names = ["hull.R_0", "rudder.eps"]
+    values = np.random.default_rng(3).uniform(0.9, 1.1, (2, 13)) * np.array([[0.017], [1.27]])
+    cases = turn(suzaku, -35.0)
+    together = states(suzaku, cases, suzaku.matrix(names, values), backend)
+    for k in (0, 7, 12):
+        alone = states(suzaku, cases, suzaku.matrix(names, values[:, [k]]), backend)
+        np.testing.assert_allclose(together[0, k], alone[0, 0], rtol=1e-13, atol=1e-13)
+
+
+def test_compiled_lanes_are_bit_equal_to_single_runs(suzaku):
+    values = np.linspace(0.01, 0.03, 21)[None]
+    cases = turn(suzaku, 10.0)
+    together = states(suzaku, cases, suzaku.matrix(["hull.R_0"], values))
+    alone = states(suzaku, cases, suzaku.matrix(["hull.R_0"], values[:, [17]]))
+    assert np.array_equal(together[0, 17], alone[0, 0])
+
+
+@pytest.mark.parametrize("backend", ["compiled", "numpy"])
+def test_cases_of_different_length_do_not_touch(suzaku, backend):
+    long, short = turn(suzaku, 35.0, 300.0), turn(suzaku, -20.0, 120.0)
+    both = pad(
+        [long.t[0], short.t[0]], [long.controls[0], short.controls[0]], [long.initial[0], short.initial[0]]
+    )
+    together = states(suzaku, both, backend=backend)
+    np.testing.assert_array_equal(together[0, 0], states(suzaku, long, backend=backend)[0, 0])
+    np.testing.assert_array_equal(together[1, 0, :121], states(suzaku, short, backend=backend)[0, 0])
+    assert np.all(together[1, 0, 121:] == together[1, 0, 120])
+
+
+@pytest.mark.parametrize("backend", ["compiled", "numpy"])
+def test_a_diverging_lane_is_a_status_and_leaves_the_others_alone(suzaku, backend):
+    cases = turn(suzaku, 35.0)
+    theta = suzaku.matrix(["hull.R_0"], [[0.017, 0.017]])
+    theta[suzaku.rows["hull.X_vvvv"], 1] = 1e9
+    result = get_backend(backend).run(suzaku, theta, cases)
+    assert result.diverged.tolist() == [[False, True]]
+    assert np.isfinite(result.cost[0, 0])
+    assert result.cost[0, 1] == np.inf
