@@ -3,7 +3,7 @@
     import mmgtune
     profile = mmgtune.load_profile("suzaku")
     trials = mmgtune.load_trials("suzaku")
-    result = mmgtune.fit(profile, trials, mmgtune.FitOptions(a_r=0.5))
+    result = mmgtune.fitting(profile, trials, mmgtune.FitOptions(a_r=0.5))
     print(result.verdict())
 
 Everything listed here is what the commands call; it is imported when first used.
@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .errors import MmgtuneError as MmgtuneError
-    from .fit import FitOptions as FitOptions
-    from .fit import FitResult as FitResult
-    from .fit import SweepResult as SweepResult
-    from .fit import fit as fit
-    from .fit import sweep as sweep
-    from .fit import write_run as write_run
+    from .fitting import FitOptions as FitOptions
+    from .fitting import FitResult as FitResult
+    from .fitting import SweepResult as SweepResult
+    from .fitting import fit as fit
+    from .fitting import sweep as sweep
+    from .fitting import write_run as write_run
     from .manoeuvres import Track as Track
     from .manoeuvres.summary import indices_of as indices_of
     from .model import Model as Model
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from .profile import ShipProfile as ShipProfile
     from .profile import load_profile as load_profile
     from .report import render as render
-    from .simulate import breakdown as breakdown
-    from .simulate import simulate as simulate
+    from .simulation import breakdown as breakdown
+    from .simulation import simulate as simulate
     from .trial import Trial as Trial
     from .trial import TrialSet as TrialSet
     from .trial import load_trials as load_trials
@@ -41,12 +41,12 @@ if TYPE_CHECKING:
 
 _WHERE = {
     "MmgtuneError": "errors",
-    "FitOptions": "fit",
-    "FitResult": "fit",
-    "SweepResult": "fit",
-    "fit": "fit",
-    "sweep": "fit",
-    "write_run": "fit",
+    "FitOptions": "fitting",
+    "FitResult": "fitting",
+    "SweepResult": "fitting",
+    "fit": "fitting",
+    "sweep": "fitting",
+    "write_run": "fitting",
     "Track": "manoeuvres",
     "indices_of": "manoeuvres.summary",
     "Model": "model",
@@ -56,8 +56,8 @@ _WHERE = {
     "ShipProfile": "profile",
     "load_profile": "profile",
     "render": "report",
-    "breakdown": "simulate",
-    "simulate": "simulate",
+    "breakdown": "simulation",
+    "simulate": "simulation",
     "Trial": "trial",
     "TrialSet": "trial",
     "load_trials": "trial",

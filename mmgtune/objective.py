@@ -74,11 +74,19 @@ def make_objective(
             weights[name] = -1.0
         if not (np.isfinite(weights[name]) and weights[name] > 0.0):
             raise OptionError(
-                Problem(f"weight '{written}' of channel '{name}' is not a positive number", "--channels", fix=f"write {name}:1")
+                Problem(
+                    f"weight '{written}' of channel '{name}' is not a positive number",
+                    "--channels",
+                    fix=f"write {name}:1",
+                )
             )
     if window is not None and not window[0] < window[1]:
         raise OptionError(
-            Problem(f"the time window {window[0]:g}..{window[1]:g} s is empty", "--window", fix="write --window FIRST:LAST in seconds")
+            Problem(
+                f"the time window {window[0]:g}..{window[1]:g} s is empty",
+                "--window",
+                fix="write --window FIRST:LAST in seconds",
+            )
         )
     return Objective(scales=default_scales(L_pp), weights=weights, window=window)
 

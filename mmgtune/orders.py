@@ -18,7 +18,7 @@ from .model import Model
 from .physics.mmg import derivatives
 from .physics.quantities import Control, State
 from .profile import ShipProfile, SteeringGear
-from .simulate import Motion
+from .simulation import Motion
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -40,7 +40,7 @@ class Helmsman(Protocol):
 
 @dataclass
 class TurningOrder:
-    """One rudder angle [rad], positive to starboard, from time ``at`` [s] until the heading has changed by ``until`` [rad]."""
+    """One rudder angle [rad], starboard positive, from time ``at`` [s] until the heading changed by ``until`` [rad]."""
 
     angle: float
     at: float = 20.0
@@ -128,7 +128,8 @@ def run_manoeuvre(
     delta, revolutions = 0.0, n_0
     steps = max(1, round(sample / FINE))
     h = sample / steps
-    rows, controls = [state], [(revolutions, delta)]
+    rows: list[FloatArray] = [state]
+    controls = [(revolutions, delta)]
     diverged = False
     for i in range(round(longest / sample)):
         for k in range(steps):
@@ -144,7 +145,7 @@ def run_manoeuvre(
         diverged = not bool(np.isfinite(state).all())
         if diverged or helmsman.finished(float(state[2] - heading)):
             break
-    return Motion(id, sample * np.arange(len(rows)), np.array(rows), np.array(controls), diverged)
+    return Motion(id, sample * np.arange(len(rows)), np.vstack(rows).astype(np.float64), np.array(controls), diverged)
 
 
 def _rk4(

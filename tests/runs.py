@@ -14,7 +14,12 @@ FloatArray = npt.NDArray[np.float64]
 
 
 def turn(
-    model: Model, degrees: float, seconds: float = 600.0, dt: float = 1.0, initial: Sequence[float] | None = None, n: float | None = None
+    model: Model,
+    degrees: float,
+    seconds: float = 600.0,
+    dt: float = 1.0,
+    initial: Sequence[float] | None = None,
+    n: float | None = None,
 ) -> Cases:
     """One case: constant rudder from the start at the profile's approach condition."""
     approach = model.profile.approach

@@ -19,7 +19,7 @@ import numpy as np
 from mmgtune.files import write_text
 from mmgtune.orders import Helmsman, TurningOrder, ZigzagOrder, run_manoeuvre
 from mmgtune.profile import load_profile, parse_profile, tuned_text
-from mmgtune.simulate import Motion
+from mmgtune.simulation import Motion
 from mmgtune.trial import Trial, write_trial
 
 SHIP = {

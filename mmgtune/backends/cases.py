@@ -145,7 +145,7 @@ class Backend(Protocol):
 
 
 def finish(cost: FloatArray, fastest2: FloatArray, last: FloatArray, states: FloatArray | None) -> LaneResult:
-    """The result, with lanes that left the world of ships marked; last (n_cases, n_candidates, 6), fastest2 [m^2/s^2]."""
+    """The result, with diverged lanes marked; last (n_cases, n_candidates, 6), fastest2 squared speed [m^2/s^2]."""
     with np.errstate(invalid="ignore"):
         sound = np.isfinite(last).all(axis=-1) & np.isfinite(cost) & (fastest2 < SPEED_LIMIT**2)
     return LaneResult(cost=np.where(sound, cost, np.inf), diverged=~sound, states=states)

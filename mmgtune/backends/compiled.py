@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 
@@ -84,7 +85,7 @@ class Compiled:
             cuts = np.linspace(0, tasks, min(tasks, 4 * cores()) + 1).astype(int)
             jobs = [
                 _pool().submit(kernel, *fixed, int(a), int(b), cost, fastest2, end, states)
-                for a, b in zip(cuts[:-1], cuts[1:], strict=True)
+                for a, b in pairwise(cuts)
             ]
             for job in jobs:
                 job.result()

@@ -22,7 +22,8 @@ from mmgtune.physics.quantities import Control, State
 
 @njit(error_model="numpy", nogil=True, cache=True)
 def kernel(
-    theta, initial, t, n_samples, controls, target, weight, position, share, substeps, first, last, cost, fastest, end, states
+    theta, initial, t, n_samples, controls, target, weight, position, share, substeps,
+    first, last, cost, fastest, end, states,
 ):
     p = carray(stack({n_rows} * {W}), ({n_rows} * {W},))
     s = carray(stack(6 * {W}), (6 * {W},))

@@ -110,7 +110,7 @@ def vector_cos(x: float) -> float:
 
 @njit(**OPTIONS)
 def vector_arctan2(y: float, x: float) -> float:
-    """Angle of the point (x, y), by a rational function on [-tan(pi/8), tan(pi/8)] and the symmetries of the octants."""
+    """Angle of the point (x, y): a rational function on [-tan(pi/8), tan(pi/8)] and the symmetries of octants."""
     a, b = abs(x), abs(y)
     larger = select(b > a, b, a)
     smaller = select(b > a, a, b)

@@ -13,20 +13,20 @@ import typer
 from ..errors import OptionError, Problem
 
 if TYPE_CHECKING:
-    from ..fit import FitOptions
+    from ..fitting import FitOptions
     from ..profile import ShipProfile
     from ..trial import TrialSet
 
 INPUT, SEARCH, OUTPUT, REPRODUCE = "Input", "Search", "Output", "Reproducibility"
 
 
-def _complete_profile(incomplete: str) -> list[str]:
+def complete_profile(incomplete: str) -> list[str]:
     from ..resources import profile_names
 
     return [name for name in profile_names() if name.startswith(incomplete)]
 
 
-def _complete_trials(incomplete: str) -> list[str]:
+def complete_trials(incomplete: str) -> list[str]:
     from ..resources import trial_set_names
 
     return [name for name in trial_set_names() if name.startswith(incomplete)]
@@ -35,20 +35,28 @@ def _complete_trials(incomplete: str) -> list[str]:
 Profile = Annotated[
     str,
     typer.Option(
-        "--profile", "-p", help="Ship profile: a TOML file or a bundled name.", rich_help_panel=INPUT, autocompletion=_complete_profile
+        "--profile",
+        "-p",
+        help="Ship profile: a TOML file or a bundled name.",
+        rich_help_panel=INPUT,
+        autocompletion=complete_profile,
     ),
 ]
 Trials = Annotated[
     str,
     typer.Option(
-        "--trials", "-t", help="Folder of trial files, one file, or a bundled name.", rich_help_panel=INPUT, autocompletion=_complete_trials
+        "--trials",
+        "-t",
+        help="Folder of trial files, one file, or a bundled name.",
+        rich_help_panel=INPUT,
+        autocompletion=complete_trials,
     ),
 ]
 Targets = Annotated[
     list[str] | None,
     typer.Option(
         "--targets",
-        help='Coefficients to tune: names or patterns such as "hull.Y_*", repeated or comma-separated. Default: the profile\'s list.',
+        help='Coefficients to tune: names or patterns as "hull.Y_*", comma-separated. Default: the profile\'s list.',
         rich_help_panel=SEARCH,
     ),
 ]
@@ -64,7 +72,11 @@ Identifiable = Annotated[
 ]
 Channels = Annotated[
     list[str] | None,
-    typer.Option("--channels", help="What J compares: x, y, psi, u, v, r, with weights as u:2. Default: x,y,psi.", rich_help_panel=SEARCH),
+    typer.Option(
+        "--channels",
+        help="What J compares: x, y, psi, u, v, r, with weights as u:2. Default: x,y,psi.",
+        rich_help_panel=SEARCH,
+    ),
 ]
 Window = Annotated[
     str | None, typer.Option("--window", help="Only samples between FIRST:LAST seconds count.", rich_help_panel=SEARCH)
@@ -74,10 +86,20 @@ Method = Annotated[
     typer.Option("--method", help="cma-es (then least squares) or least-squares alone.", rich_help_panel=SEARCH),
 ]
 Starts = Annotated[int, typer.Option("--starts", help="Starts of the least-squares solve.", rich_help_panel=SEARCH)]
+Initial = Annotated[
+    str,
+    typer.Option(
+        "--initial",
+        help="Start trials from the measured first sample, or estimated within its noise.",
+        rich_help_panel=SEARCH,
+    ),
+]
 IntegratorName = Annotated[
     str, typer.Option("--integrator", help="euler (as the paper) or rk4.", rich_help_panel=SEARCH)
 ]
-Substeps = Annotated[int, typer.Option("--substeps", help="Integration steps between two samples.", rich_help_panel=SEARCH)]
+Substeps = Annotated[
+    int, typer.Option("--substeps", help="Integration steps between two samples.", rich_help_panel=SEARCH)
+]
 BackendName = Annotated[str, typer.Option("--backend", help="compiled or numpy.", rich_help_panel=SEARCH)]
 Seed = Annotated[int, typer.Option("--seed", help="Seed of every random number, 1 or more.", rich_help_panel=REPRODUCE)]
 Out = Annotated[
@@ -85,7 +107,9 @@ Out = Annotated[
     typer.Option("--out", "-o", help="Folder for the results. Default: runs/<time>-<profile>.", rich_help_panel=OUTPUT),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Replace the results in --out.", rich_help_panel=OUTPUT)]
-Json = Annotated[bool, typer.Option("--json", help="Print the result as one JSON document on stdout.", rich_help_panel=OUTPUT)]
+Json = Annotated[
+    bool, typer.Option("--json", help="Print the result as one JSON document on stdout.", rich_help_panel=OUTPUT)
+]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress.", rich_help_panel=OUTPUT)]
 DryRun = Annotated[bool, typer.Option("--dry-run", help="Say what would be done, and stop.", rich_help_panel=OUTPUT)]
 NoReport = Annotated[bool, typer.Option("--no-report", help="Do not render the report.", rich_help_panel=OUTPUT)]
@@ -107,7 +131,9 @@ def window_of(text: str | None) -> tuple[float, float] | None:
         return (float(first) if first else float("-inf"), float(last) if last else float("inf"))
     except ValueError:
         raise OptionError(
-            Problem(f"'{text}' is not a time window", "--window", fix="write --window FIRST:LAST in seconds, such as 0:300")
+            Problem(
+                f"'{text}' is not a time window", "--window", fix="write --window FIRST:LAST in seconds, such as 0:300"
+            )
         ) from None
 
 
@@ -129,20 +155,22 @@ def default_out(profile: ShipProfile) -> Path:
 
 def plan(profile: ShipProfile, trials: TrialSet, options: FitOptions, out: Path) -> str:
     """What a fit would do, in words."""
-    from ..fit import make_problem
+    from ..fitting import make_problem
 
     problem = make_problem(profile, trials, options)
     lines = [
         f"profile   {profile.name} ({profile.path})",
         f"trials    tune: {', '.join(trials.tune)}; test: {', '.join(trials.test) or 'none'} ({trials.path})",
-        f"search    {options.method}, seed {options.seed}, {options.starts} least-squares starts, {problem.integrator.name}",
+        f"search    {options.method}, seed {options.seed}, {options.starts} least-squares starts, "
+        f"{options.integrator}, initial states {options.initial}",
         f"compares  {problem.n_residuals} differences over {problem.cases.steps} steps; back end {options.backend}",
-        f"writes    {out}: fit.json, profile.toml, history.parquet, motions.parquet, report.html, report.md, figures",
+        f"writes    {out}: fit.json, profile.toml, history.parquet, motions.parquet, report.html and .md, figures",
         f"targets   within +-{options.a_r:g} of their values:",
     ]
     box = problem.box
     lines += [
-        f"  {name:<22}{box.low[i]:>12.5g} .. {box.pre[i]:>10.5g} .. {box.high[i]:<10.5g}" for i, name in enumerate(box.names)
+        f"  {name:<22}{box.low[i]:>12.5g} .. {box.pre[i]:>10.5g} .. {box.high[i]:<10.5g}"
+        for i, name in enumerate(box.names)
     ]
     return "\n".join(lines)
 

@@ -12,12 +12,15 @@ from .exitcodes import ExitCode
 from .progress import Progress
 
 if TYPE_CHECKING:
-    from ..fit import FitResult
+    from ..fitting import FitResult
 
 
 def command(
     ar: Annotated[
-        float, typer.Option("--ar", help="Half width of the box, as a share of each pre-determined value.", rich_help_panel=c.SEARCH)
+        float,
+        typer.Option(
+            "--ar", help="Half width of the box, as a share of each pre-determined value.", rich_help_panel=c.SEARCH
+        ),
     ] = 0.5,
     profile: c.Profile = "suzaku",
     trials: c.Trials = "suzaku",
@@ -28,6 +31,7 @@ def command(
     window: c.Window = None,
     method: c.Method = "cma-es",
     starts: c.Starts = 20,
+    initial: c.Initial = "measured",
     integrator: c.IntegratorName = "euler",
     substeps: c.Substeps = 1,
     backend: c.BackendName = "compiled",
@@ -38,7 +42,8 @@ def command(
         bool, typer.Option("--resume", help="Continue the interrupted search in --out.", rich_help_panel=c.OUTPUT)
     ] = False,
     strict: Annotated[
-        bool, typer.Option("--strict", help="Exit 1 unless the searches agree on the optimum.", rich_help_panel=c.OUTPUT)
+        bool,
+        typer.Option("--strict", help="Exit 1 unless the searches agree on the optimum.", rich_help_panel=c.OUTPUT),
     ] = False,
     json: c.Json = False,
     quiet: c.Quiet = False,
@@ -55,7 +60,7 @@ def command(
 
       mmgtune fit --ar 0.5 --json --out runs/today | jq .J_test
     """
-    from ..fit import FitOptions, fit, prepare, write_run
+    from ..fitting import FitOptions, fit, prepare, write_run
 
     ship, data = c.load(profile, trials)
     options = FitOptions(
@@ -66,6 +71,7 @@ def command(
         fixed=c.split(fix),
         channels=c.split(channels),
         window=c.window_of(window),
+        initial=initial,
         integrator=integrator,
         substeps=substeps,
         backend=backend,
@@ -73,7 +79,9 @@ def command(
         identifiable=identifiable,
     )
     if resume and out is None:
-        raise OptionError(Problem("--resume needs the folder of the interrupted run", "--resume", fix="add --out FOLDER"))
+        raise OptionError(
+            Problem("--resume needs the folder of the interrupted run", "--resume", fix="add --out FOLDER")
+        )
     folder = out or c.default_out(ship)
     if dry_run:
         print(c.plan(ship, data, options, folder))
@@ -81,7 +89,13 @@ def command(
     prepare(folder, force=force, resume=resume)
     with Progress(quiet) as progress:
         result = fit(
-            ship, data, options, hooks=progress.hooks(), checkpoint_folder=folder, resume=resume, command=c.command_line()
+            ship,
+            data,
+            options,
+            hooks=progress.hooks(),
+            checkpoint_folder=folder,
+            resume=resume,
+            command=c.command_line(),
         )
         document = write_run(result, folder)
     if not no_report:
@@ -103,7 +117,9 @@ def summary(result: FitResult, folder: str, report: bool) -> str:
     lines = [f"{'coefficient':<24}{'before':>11}{'tuned':>11}{'std.err':>10}  place in box", ""]
     for row in result.coefficients():
         error = "" if row["stderr"] is None else f"{row['stderr']:.2g}"
-        mark = f"at {row['at_bound']}er bound" if row["at_bound"] == "low" else "at upper bound" if row["at_bound"] else ""
+        mark = (
+            f"at {row['at_bound']}er bound" if row["at_bound"] == "low" else "at upper bound" if row["at_bound"] else ""
+        )
         note = ", ".join(word for word in (mark, "" if row["determined"] else "not determined") if word)
         place = "".join("*" if round(row["position"] * 20) == k else "-" for k in range(21))
         lines.append(f"{row['name']:<24}{row['pre_determined']:>11.4g}{row['value']:>11.4g}{error:>10}  {place} {note}")

@@ -10,7 +10,7 @@ from . import common as c
 
 app = typer.Typer(help="Look at ship profiles.", no_args_is_help=True)
 
-Name = Annotated[str, typer.Argument(help="A TOML file or a bundled name.", autocompletion=c._complete_profile)]
+Name = Annotated[str, typer.Argument(help="A TOML file or a bundled name.", autocompletion=c.complete_profile)]
 
 
 @app.command("list")

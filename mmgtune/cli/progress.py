@@ -12,8 +12,8 @@ from ..errors import Interrupted, Problem
 from .common import say
 
 if TYPE_CHECKING:
-    from ..fit import Hooks
-    from ..fit.cmaes import Search
+    from ..fitting import Hooks
+    from ..fitting.cmaes import Search
 
 LINE_EVERY = 5.0
 """Seconds between two lines where stderr is no terminal."""
@@ -34,7 +34,7 @@ class Progress:
 
     def hooks(self) -> Hooks:
         """What to hand to the fit."""
-        from ..fit import Hooks
+        from ..fitting import Hooks
 
         return Hooks(on_phase=self._on_phase, on_generation=self._on_generation, stop=lambda: self.stopped)
 
@@ -56,7 +56,9 @@ class Progress:
 
     def _interrupt(self, _signal: int, _frame: FrameType | None) -> None:
         if self.stopped:
-            raise Interrupted(Problem("stopped at once", fix="the last checkpoint in --out can be continued with --resume"))
+            raise Interrupted(
+                Problem("stopped at once", fix="the last checkpoint in --out can be continued with --resume")
+            )
         self.stopped = True
         say("finishing this step, then saving the best so far; press Ctrl-C again to stop at once")
 
@@ -65,7 +67,7 @@ class Progress:
         self._show(words, line=True)
 
     def _on_generation(self, state: Search) -> None:
-        from ..fit.cmaes import LAMBDAS
+        from ..fitting.cmaes import LAMBDAS
 
         now = state.history[-1]
         # A restart's share of the work grows with its population; generations of restarts differ little.
@@ -73,8 +75,9 @@ class Progress:
         elapsed = time.monotonic() - self._began
         left = elapsed * (sum(LAMBDAS) / done - 1.0)
         self._show(
-            f"{self._phase}: restart {now.restart + 1} of {len(LAMBDAS)} (lambda {now.population}), generation {now.generation}, "
-            f"{now.evaluations} evaluations, J {state.J:.6g}, sigma {now.sigma:.1e}, lost {state.diverged}, about {left:.0f} s left"
+            f"{self._phase}: restart {now.restart + 1} of {len(LAMBDAS)} (lambda {now.population}), "
+            f"generation {now.generation}, {now.evaluations} evaluations, J {state.J:.6g}, sigma {now.sigma:.1e}, "
+            f"lost {state.diverged}, about {left:.0f} s left"
         )
 
     def _show(self, text: str, line: bool = False) -> None:

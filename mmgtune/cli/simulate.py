@@ -14,7 +14,7 @@ from . import common as c
 if TYPE_CHECKING:
     from ..orders import Helmsman
     from ..profile import ShipProfile
-    from ..simulate import Motion
+    from ..simulation import Motion
     from ..trial import Trial
 
 MANOEUVRE = "Manoeuvre"
@@ -23,28 +23,53 @@ MANOEUVRE = "Manoeuvre"
 def command(
     profile: c.Profile = "suzaku",
     turn: Annotated[
-        list[float] | None, typer.Option("--turn", help="Turning circle at this rudder angle [deg], starboard positive; repeatable.", rich_help_panel=MANOEUVRE)
+        list[float] | None,
+        typer.Option(
+            "--turn",
+            help="Turning circle at this rudder angle [deg], starboard positive; repeatable.",
+            rich_help_panel=MANOEUVRE,
+        ),
     ] = None,
     zigzag: Annotated[
-        list[str] | None, typer.Option("--zigzag", help="Zigzag RUDDER/HEADING [deg], such as 20/20 or -10/10; repeatable.", rich_help_panel=MANOEUVRE)
+        list[str] | None,
+        typer.Option(
+            "--zigzag",
+            help="Zigzag RUDDER/HEADING [deg], such as 20/20 or -10/10; repeatable.",
+            rich_help_panel=MANOEUVRE,
+        ),
     ] = None,
     speed: Annotated[
-        str | None, typer.Option("--speed", help='Approach speed, such as "12 kn". Default: the profile\'s.', rich_help_panel=MANOEUVRE)
+        str | None,
+        typer.Option(
+            "--speed", help='Approach speed, such as "12 kn". Default: the profile\'s.', rich_help_panel=MANOEUVRE
+        ),
     ] = None,
     rpm: Annotated[
-        float | None, typer.Option("--rpm", help="Propeller revolutions [1/min]. Default: the profile's.", rich_help_panel=MANOEUVRE)
+        float | None,
+        typer.Option("--rpm", help="Propeller revolutions [1/min]. Default: the profile's.", rich_help_panel=MANOEUVRE),
     ] = None,
     trials: Annotated[
-        str | None, typer.Option("--trials", "-t", help="Simulate these trials with their own inputs instead.", rich_help_panel=c.INPUT)
+        str | None,
+        typer.Option(
+            "--trials", "-t", help="Simulate these trials with their own inputs instead.", rich_help_panel=c.INPUT
+        ),
     ] = None,
     integrator: c.IntegratorName = "euler",
     substeps: c.Substeps = 1,
     backend: c.BackendName = "compiled",
     out: Annotated[
-        Path | None, typer.Option("--out", "-o", help="Folder to write the simulated runs to, as trial files.", rich_help_panel=c.OUTPUT)
+        Path | None,
+        typer.Option(
+            "--out", "-o", help="Folder to write the simulated runs to, as trial files.", rich_help_panel=c.OUTPUT
+        ),
     ] = None,
     forces: Annotated[
-        bool, typer.Option("--forces", help="Add forces and intermediates (hull_X, w_P, J, u_R, F_N, ...) to the files.", rich_help_panel=c.OUTPUT)
+        bool,
+        typer.Option(
+            "--forces",
+            help="Add forces and intermediates (hull_X, w_P, J, u_R, F_N, ...) to the files.",
+            rich_help_panel=c.OUTPUT,
+        ),
     ] = False,
     force: c.Force = False,
     json: c.Json = False,
@@ -66,14 +91,18 @@ def command(
     ship = load_profile(profile)
     if trials is not None:
         if turn or zigzag or speed or rpm:
-            raise OptionError(Problem("--trials has its own inputs", "--trials", fix="leave out --turn, --zigzag, --speed and --rpm"))
+            raise OptionError(
+                Problem("--trials has its own inputs", "--trials", fix="leave out --turn, --zigzag, --speed and --rpm")
+            )
         runs, measured = _on_trials(ship, trials, integrator, substeps, backend)
     else:
         runs, measured = _on_orders(ship, turn or ([] if zigzag else [35.0, -35.0]), zigzag or [], speed, rpm), {}
     results = [_described(ship, motion, measured.get(motion.id)) for motion in runs]
     files = _write(ship, runs, out, forces, force) if out is not None else []
     if json:
-        c.print_json({"schema": 1, "profile": ship.id, "sha256": ship.sha256, "runs": results, "files": [str(f) for f in files]})
+        c.print_json(
+            {"schema": 1, "profile": ship.id, "sha256": ship.sha256, "runs": results, "files": [str(f) for f in files]}
+        )
         return
     for result in results:
         print(_text(result))
@@ -91,25 +120,30 @@ def _on_orders(
     orders: list[tuple[str, Helmsman]] = []
     for angle in turns:
         if not 0.0 < abs(angle) <= 90.0:
-            raise OptionError(Problem(f"rudder angle {angle:g} deg", "--turn", fix="give an angle between -90 and 90 deg, not 0"))
+            raise OptionError(
+                Problem(f"rudder angle {angle:g} deg", "--turn", fix="give an angle between -90 and 90 deg, not 0")
+            )
         orders.append((f"turn_{_signed(angle)}", TurningOrder(math.radians(angle))))
     for text in zigzags:
         rudder, heading = _angles(text)
-        orders.append((f"zigzag_{_signed(rudder)}_{heading:g}", ZigzagOrder(math.radians(rudder), math.radians(heading))))
+        orders.append(
+            (f"zigzag_{_signed(rudder)}_{heading:g}", ZigzagOrder(math.radians(rudder), math.radians(heading)))
+        )
     L, V = ship.L_pp, U or (ship.approach.speed if ship.approach else 1.0)
     # Models are quicker than ships: sample ten times per ship length travelled, once a second at most.
     sample = min(1.0, round(L / V / 10.0, 1) or 0.1)
     longest = max(600.0, 150.0 * L / V)
     return [
-        run_manoeuvre(ship, helmsman, id=name, speed=U, n=n, longest=longest, sample=sample) for name, helmsman in orders
+        run_manoeuvre(ship, helmsman, id=name, speed=U, n=n, longest=longest, sample=sample)
+        for name, helmsman in orders
     ]
 
 
 def _on_trials(
     ship: ShipProfile, name: str, integrator: str, substeps: int, backend: str
 ) -> tuple[list[Motion], dict[str, Trial]]:
-    from ..fit import FitOptions
-    from ..simulate import simulate
+    from ..fitting import FitOptions
+    from ..simulation import simulate
     from ..trial import load_trials
 
     options = FitOptions(integrator=integrator, substeps=substeps, backend=backend)
@@ -120,7 +154,7 @@ def _on_trials(
 
 def _described(ship: ShipProfile, motion: Motion, trial: Trial | None) -> dict[str, Any]:
     from ..manoeuvres.summary import criteria_of, indices_of
-    from ..simulate import trial_indices
+    from ..simulation import trial_indices
 
     V = ship.approach.speed if ship.approach else float(motion.states[0, 3])
     track = None if motion.diverged else motion.track()
@@ -137,7 +171,7 @@ def _described(ship: ShipProfile, motion: Motion, trial: Trial | None) -> dict[s
 def _write(ship: ShipProfile, runs: list[Motion], out: Path, forces: bool, replace: bool) -> list[Path]:
     from ..errors import OutputError
     from ..files import exists
-    from ..simulate import as_trial
+    from ..simulation import as_trial
     from ..trial import write_trial
 
     paths = [out / f"{motion.id}.parquet" for motion in runs]

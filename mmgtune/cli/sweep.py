@@ -12,7 +12,7 @@ from .exitcodes import ExitCode
 from .progress import Progress
 
 if TYPE_CHECKING:
-    from ..fit import SweepResult
+    from ..fitting import SweepResult
 
 
 def command(
@@ -28,6 +28,7 @@ def command(
     window: c.Window = None,
     method: c.Method = "cma-es",
     starts: c.Starts = 20,
+    initial: c.Initial = "measured",
     integrator: c.IntegratorName = "euler",
     substeps: c.Substeps = 1,
     backend: c.BackendName = "compiled",
@@ -47,7 +48,7 @@ def command(
 
       mmgtune sweep --method least-squares --out runs/sweep
     """
-    from ..fit import FitOptions, prepare, sweep
+    from ..fitting import FitOptions, prepare, sweep
 
     ship, data = c.load(profile, trials)
     widths = _numbers(ar)
@@ -59,6 +60,7 @@ def command(
         fixed=c.split(fix),
         channels=c.split(channels),
         window=c.window_of(window),
+        initial=initial,
         integrator=integrator,
         substeps=substeps,
         backend=backend,

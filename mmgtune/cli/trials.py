@@ -11,11 +11,17 @@ from .exitcodes import ExitCode
 
 app = typer.Typer(help="Check and inspect trial files.", no_args_is_help=True)
 
-Name = Annotated[str, typer.Argument(help="Folder of trial files, one file, or a bundled name.", autocompletion=c._complete_trials)]
+Name = Annotated[
+    str, typer.Argument(help="Folder of trial files, one file, or a bundled name.", autocompletion=c.complete_trials)
+]
 
 
 @app.command("check")
-def check(trials: Name, json: c.Json = False, strict: Annotated[bool, typer.Option("--strict", help="Exit 1 on warnings.")] = False) -> None:
+def check(
+    trials: Name,
+    json: c.Json = False,
+    strict: Annotated[bool, typer.Option("--strict", help="Exit 1 on warnings.")] = False,
+) -> None:
     """Check trial files; exit 2 where they cannot be used, 1 on warnings with --strict.
 
     Example:
@@ -31,7 +37,11 @@ def check(trials: Name, json: c.Json = False, strict: Annotated[bool, typer.Opti
     else:
         for findings in found.values():
             for f in findings:
-                print(f"{f.severity}: {f.what} ({f.where})" + (f"\n  why: {f.why}" if f.why else "") + (f"\n  fix: {f.fix}" if f.fix else ""))
+                print(
+                    f"{f.severity}: {f.what} ({f.where})"
+                    + (f"\n  why: {f.why}" if f.why else "")
+                    + (f"\n  fix: {f.fix}" if f.fix else "")
+                )
         warnings = sum(f.severity == "warning" for findings in found.values() for f in findings)
         print(f"{len(found)} trials can be used, {warnings} warnings; tune {len(data.tune)}, test {len(data.test)}")
     if strict and any(f.severity == "warning" for findings in found.values() for f in findings):
@@ -47,7 +57,7 @@ def inspect(trials: Name, profile: c.Profile = "suzaku", json: c.Json = False) -
       mmgtune trials inspect suzaku
     """
     from ..profile import load_profile
-    from ..simulate import trial_indices
+    from ..simulation import trial_indices
     from ..trial import load_trials
     from ..trial.describe import describe
 
@@ -61,7 +71,10 @@ def inspect(trials: Name, profile: c.Profile = "suzaku", json: c.Json = False) -
         c.print_json({"schema": 1, "L_pp_m": L_pp, "trials": rows})
         return
     for row in rows:
-        print(f"{row['id']}  {row['ship']} {row['manoeuvre']} ({row['source'] or 'source not stated'}), {row['role']}, {row['n_samples']} samples, {row['duration_s']:g} s")
+        print(
+            f"{row['id']}  {row['ship']} {row['manoeuvre']} ({row['source'] or 'source not stated'}), "
+            f"{row['role']}, {row['n_samples']} samples, {row['duration_s']:g} s"
+        )
         for channel, span in row["ranges"].items():
             print(f"  {channel:<8}{span['min']:>12.4g} .. {span['max']:<12.4g} {span['unit']}")
         for index, value in row["indices"].items():

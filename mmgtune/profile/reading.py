@@ -30,7 +30,9 @@ def find_profile(name: str | Path) -> Path:
         return bundled
     what = "the profile is a folder, not a file" if path.is_dir() else "no such ship profile"
     raise ProfileError(
-        Problem(what, where=str(name), fix=f"give a path to a TOML file, or a bundled name: {', '.join(profile_names())}")
+        Problem(
+            what, where=str(name), fix=f"give a path to a TOML file, or a bundled name: {', '.join(profile_names())}"
+        )
     )
 
 
@@ -52,7 +54,9 @@ def parse_profile(text: str, path: Path | None = None) -> ShipProfile:
     try:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise ProfileError(Problem("the profile is not valid TOML", where, str(error), "correct the line named")) from error
+        raise ProfileError(
+            Problem("the profile is not valid TOML", where, str(error), "correct the line named")
+        ) from error
     reader = _Reader(data, text, where)
     profile = reader.read(path)
     if reader.problems:
@@ -80,7 +84,10 @@ class _Reader:
                 self.problem(f"unknown section [{name}]", name, fix=closest(name, SECTIONS))
         if self.data.get("schema") != SCHEMA:
             self.problem(
-                f"schema is {self.data.get('schema')!r}, not {SCHEMA}", "", "schema", fix=f"write 'schema = {SCHEMA}' on top"
+                f"schema is {self.data.get('schema')!r}, not {SCHEMA}",
+                "",
+                "schema",
+                fix=f"write 'schema = {SCHEMA}' on top",
             )
         ship = self.table("ship")
         self.unknown("ship", ship, ("name", "id", "source"))
@@ -90,7 +97,9 @@ class _Reader:
             if section is not None:
                 sections[kind] = section
         complete = len(sections) == len(KINDS) and not self.problems
-        gear = self.plain("steering_gear", {"max_angle": Field("", "rad", low=0.0, high=1.6), "rate": Field("", "rad/s", low=0.0)})
+        gear = self.plain(
+            "steering_gear", {"max_angle": Field("", "rad", low=0.0, high=1.6), "rate": Field("", "rad/s", low=0.0)}
+        )
         approach = self.plain("approach", {"speed": Field("", "m/s", low=0.0), "n": Field("", "1/s")})
         profile = ShipProfile(
             id=self.word("ship", ship, "id"),
@@ -200,7 +209,9 @@ class _Reader:
             ends = [self.numbers(kind, symbol, Field("", field.unit), end) for end in written]
             if ends[0] and ends[1] and ends[0][0] < ends[1][0]:
                 return ends[0][0], ends[1][0]
-        self.problem(f"bounds of '{kind}.{symbol}' are not two rising numbers", kind, symbol, fix="write bounds = [low, high]")
+        self.problem(
+            f"bounds of '{kind}.{symbol}' are not two rising numbers", kind, symbol, fix="write bounds = [low, high]"
+        )
         return None
 
     def numbers(self, kind: str, symbol: str, field: Field, written: Any) -> tuple[float, ...] | None:
@@ -225,7 +236,12 @@ class _Reader:
                 return None
             numbers = (float(written),)
         else:
-            self.problem(f"'{name}' is {written!r}, not a number", kind, symbol, fix=f"write {symbol} = {units.example(field.unit)}")
+            self.problem(
+                f"'{name}' is {written!r}, not a number",
+                kind,
+                symbol,
+                fix=f"write {symbol} = {units.example(field.unit)}",
+            )
             return None
         return numbers if self.possible(kind, symbol, field, numbers) else None
 
@@ -239,7 +255,7 @@ class _Reader:
             if not math.isfinite(number):
                 self.problem(f"'{name}' is {number}", kind, symbol, why="only finite numbers can be simulated")
                 return False
-            if field.low is not None and number <= field.low or field.high is not None and number >= field.high:
+            if (field.low is not None and number <= field.low) or (field.high is not None and number >= field.high):
                 low, high = ("" if end is None else f"{end:g}" for end in (field.low, field.high))
                 limits = f"above {low}" if not high else f"below {high}" if not low else f"between {low} and {high}"
                 self.problem(
@@ -261,7 +277,9 @@ class _Reader:
         values: dict[str, float] = {}
         for key, field in fields.items():
             if key not in table:
-                self.problem(f"'{section}.{key}' is missing", section, fix=f'write {key} = "{units.example(field.unit)}"')
+                self.problem(
+                    f"'{section}.{key}' is missing", section, fix=f'write {key} = "{units.example(field.unit)}"'
+                )
                 continue
             coefficient = self.coefficient(section, key, field, table[key], str(table.get("source", "")))
             if coefficient is not None and not isinstance(coefficient.value, tuple):

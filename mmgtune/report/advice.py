@@ -8,62 +8,61 @@ from typing import Any
 
 from .wording import clean, count, number, shown
 
+Advice = tuple[tuple[str, str], ...]
+
 
 def _inputs(data: Mapping[str, Any]) -> tuple[str, str]:
-    """The profile and the trials as words of a shell command."""
-    profile = shlex.quote(clean(data["profile"].get("path") or data["profile"].get("id") or "PROFILE"))
-    return profile, shlex.quote(clean(data["trials"].get("path") or "TRIALS"))
+    """The profile and the trials as options of a shell command."""
+    profile = clean(data["profile"].get("path") or data["profile"].get("id") or "PROFILE")
+    trials = clean(data["trials"].get("path") or "TRIALS")
+    return f"-p {shlex.quote(profile)}", f"-t {shlex.quote(trials)}"
 
 
-def after_fit(data: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
+def after_fit(data: Mapping[str, Any]) -> Advice:
     """(reason, command) pairs that follow from a fit."""
     profile, trials = _inputs(data)
     a_r = number(data["options"].get("a_r"))
-    out = clean(data.get("out") or "RUN").rstrip("/")
+    same = f" --ar {a_r:g}" if a_r is not None else ""
     items = []
     if data.get("at_bound"):
-        wider = f" (this run: {shown(a_r)})" if a_r is not None else ""
         bound = count(len(data["at_bound"]), "coefficient")
-        reason = f"{bound} at a bound: see what other ranges do on trials that were not tuned on{wider}"
+        this = f" (this run: a_r = {shown(a_r)})" if a_r is not None else ""
+        reason = f"{bound} at a bound: see what other ranges do on trials that were not tuned on{this}"
         items.append((reason, f"mmgtune sweep {profile} {trials}"))
-    if data.get("J_test") is None:
-        items.append(
-            (
-                "No test set: hold some trials back, or let a sweep leave each out in turn",
-                f"mmgtune sweep {profile} {trials}",
-            )
+    elif data.get("J_test") is None:
+        reason = "No test set: leave each trial out in turn, to see how the fit does on trials it was not tuned on"
+        items.append((reason, f"mmgtune sweep {profile} {trials}"))
+    loose = len(data.get("undetermined") or ())
+    if loose:
+        reason = (
+            f"{count(loose, 'coefficient')} not determined: hold what no trial can tell at its pre-determined value"
         )
-    items.append(
-        (
-            "Check the tuned profile against trials it has not seen, in this project's tests",
-            f"mmgtune check {shlex.quote(out + '/profile.toml')} {trials}",
-        )
-    )
+        items.append((reason, f"mmgtune fit {profile} {trials}{same} --identifiable"))
+    tuned = shlex.quote(clean(data.get("out") or "RUN").rstrip("/") + "/profile.toml")
+    reason = "Take the tuned ship through manoeuvres that were not measured, against the IMO criteria"
+    items.append((reason, f"mmgtune simulate -p {tuned} --turn 35 --turn -35 --zigzag 10/10 --zigzag 20/20"))
     if data.get("command"):
-        items.append(("Repeat this run exactly", clean(data["command"])))
-    seen: dict[str, str] = {}
-    for reason, command in items:
-        seen[command] = f"{seen[command]}; {reason[0].lower()}{reason[1:]}" if command in seen else reason
-    return tuple((reason, command) for command, reason in seen.items())
+        items.append(("Repeat this run", clean(data["command"])))
+    return tuple(items)
 
 
-def after_sweep(data: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
+def after_sweep(data: Mapping[str, Any]) -> Advice:
     """(reason, command) pairs that follow from a sweep."""
     profile, trials = _inputs(data)
     chosen = number((data.get("recommended") or {}).get("a_r"))
     items = []
-    if chosen is not None:
-        run = next((run for run in data["runs"] if number(run.get("a_r")) == chosen), None)
-        if run is not None and run.get("out"):
-            where = f"{clean(data.get('out') or 'SWEEP').rstrip('/')}/{clean(run['out'])}"
-            items.append(
-                (
-                    "Check the recommended run's profile in this project's tests",
-                    f"mmgtune check {shlex.quote(where + '/profile.toml')} {trials}",
-                )
-            )
-        else:
-            items.append(("Fit with the recommended range", f"mmgtune fit {profile} {trials} --ar {chosen:g}"))
+    run = next((run for run in data["runs"] if chosen is not None and number(run.get("a_r")) == chosen), None)
+    if run is not None and run.get("out"):
+        folder = f"{clean(data.get('out') or 'SWEEP').rstrip('/')}/{clean(run['out'])}"
+        reason = "Take the ship tuned with the recommended range through manoeuvres that were not measured"
+        tuned = shlex.quote(folder + "/profile.toml")
+        items.append((reason, f"mmgtune simulate -p {tuned} --turn 35 --turn -35 --zigzag 10/10 --zigzag 20/20"))
+    elif chosen is not None:
+        items.append(("Fit with the recommended range", f"mmgtune fit {profile} {trials} --ar {chosen:g}"))
+    widest = max((number(run.get("a_r")) or 0.0 for run in data["runs"]), default=0.0)
+    if chosen is not None and chosen == widest:
+        wider = ",".join(f"{chosen + step:.2g}" for step in (0.0, 0.1, 0.2))
+        items.append(("The widest range did best: try wider ones", f"mmgtune sweep {profile} {trials} --ar {wider}"))
     if data.get("command"):
-        items.append(("Repeat this sweep exactly", clean(data["command"])))
+        items.append(("Repeat this sweep", clean(data["command"])))
     return tuple(items)

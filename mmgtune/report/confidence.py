@@ -22,22 +22,21 @@ def best_fit(record: RunRecord, drawings: dict[str, Drawn]) -> Section:
     data, blocks = record.data, list[Block]()
     certificate = data.get("certificate") or {}
     said = [clean(text) for text in certificate.get("sentences") or ()]
-    blocks.append(Prose(tuple(said + findings.agreement(data)), listed=True))
+    blocks.append(Prose(tuple(said or findings.agreement(data)), listed=True))
     active = certificate.get("active") or []
     if active:
         ordered = sorted(active, key=lambda row: -(number(row.get("gain_per_percent")) or 0.0))
-        blocks.append(
-            tables.pairs(
-                "bounds-table",
-                "What each touched bound costs: fall of J if it were 1 % of the pre-determined value wider",
-                ("coefficient and bound", "fall of J"),
-                (
-                    (f"{short(str(row['name']))}, {row.get('side')} bound", shown(row.get("gain_per_percent"), 3))
-                    for row in ordered
-                ),
-                numeric=True,
-            )
+        bounds = tables.pairs(
+            "bounds-table",
+            "Fall of J if a touched bound were 1 % of the pre-determined value wider",
+            ("coefficient and bound", "fall of J"),
+            (
+                (f"{short(str(row['name']))}, {row.get('side')} bound", shown(row.get("gain_per_percent"), 3))
+                for row in ordered
+            ),
+            numeric=True,
         )
+        blocks.append(Details("What each touched bound costs", (bounds,)))
     history = record.history
     if history and len(history.get("J_best", ())):
         evaluations = running(history)
@@ -71,7 +70,7 @@ def identifiability(record: RunRecord, drawings: dict[str, Drawn]) -> Section | 
     said = [clean(text) for text in found.get("sentences") or ()]
     said += [clean(row["sentence"]) for row in found.get("null_directions") or () if row.get("sentence")]
     if said:
-        blocks.append(Prose(tuple(said), listed=True))
+        blocks.append(Prose(tuple(dict.fromkeys(said)), listed=True))
     combinations = found.get("combinations") or []
     if combinations:
         blocks.append(

@@ -59,6 +59,8 @@ class Drawn:
         with mpl.rc_context(style):
             figure = draw()
             FigureCanvasAgg(figure)
+            figure.draw_without_rendering()
+            figure.set_layout_engine("none")  # the layout is done; each format would do it again
             text, portable = io.StringIO(), io.BytesIO()
             figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
             figure.savefig(portable, format="pdf", metadata={"CreationDate": None, "Creator": None})

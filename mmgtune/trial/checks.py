@@ -28,11 +28,20 @@ def unusable(trial: Trial) -> list[Problem]:
     """Everything that forbids simulating a trial; empty where nothing does."""
     where = str(trial.path or trial.id)
     if trial.n_samples < 2:
-        return [Problem(f"the trial has {trial.n_samples} samples", where, "a motion needs two or more", "write the whole record")]
+        return [
+            Problem(
+                f"the trial has {trial.n_samples} samples",
+                where,
+                "a motion needs two or more",
+                "write the whole record",
+            )
+        ]
     problems: list[Problem] = []
     t = trial.t
     if not np.isfinite(t).all():
-        problems.append(Problem("time is not a number", f"{where}, row {_first(~np.isfinite(t))}", fix="drop rows without a time"))
+        problems.append(
+            Problem("time is not a number", f"{where}, row {_first(~np.isfinite(t))}", fix="drop rows without a time")
+        )
     elif (np.diff(t) <= 0.0).any():
         row = _first(np.diff(t) <= 0.0) + 1
         problems.append(
@@ -55,12 +64,19 @@ def unusable(trial: Trial) -> list[Problem]:
             )
     for name, values in motion(trial).items():
         if np.isinf(values).any():
-            problems.append(Problem(f"'{name}' is infinite", f"{where}, row {_first(np.isinf(values))}", fix="mark gaps as NaN"))
+            problems.append(
+                Problem(f"'{name}' is infinite", f"{where}, row {_first(np.isinf(values))}", fix="mark gaps as NaN")
+            )
         elif np.isnan(values).all():
             problems.append(Problem(f"'{name}' has no values", where, fix="measure it, or derive it from the others"))
         elif np.isnan(values[0]):
             problems.append(
-                Problem(f"'{name}' has no value in the first sample", where, "the simulation starts from it", "cut the trial to its first complete row")
+                Problem(
+                    f"'{name}' has no value in the first sample",
+                    where,
+                    "the simulation starts from it",
+                    "cut the trial to its first complete row",
+                )
             )
     problems += _units(trial, where)
     return problems
@@ -108,12 +124,23 @@ def check_trial(trial: Trial) -> list[Finding]:
         if missing.any():
             longest = max(len(part) for part in "".join("1" if m else " " for m in missing).split())
             found.append(
-                Finding("warning", f"'{name}' has gaps: {int(missing.sum())} samples, the longest {longest}", where, "they do not count in J")
+                Finding(
+                    "warning",
+                    f"'{name}' has gaps: {int(missing.sum())} samples, the longest {longest}",
+                    where,
+                    "they do not count in J",
+                )
             )
     jumps = np.abs(np.diff(trial.psi)) > 5.0
     if jumps.any():
         found.append(
-            Finding("warning", "the heading jumps by a full turn", f"{where}, row {_first(jumps) + 1}", "it must be unwrapped", "apply numpy.unwrap to 'psi'")
+            Finding(
+                "warning",
+                "the heading jumps by a full turn",
+                f"{where}, row {_first(jumps) + 1}",
+                "it must be unwrapped",
+                "apply numpy.unwrap to 'psi'",
+            )
         )
     found += _kinematics(trial, where) + _inputs(trial, where)
     if dt.max() > 1.01 * dt.min():
@@ -121,7 +148,11 @@ def check_trial(trial: Trial) -> list[Finding]:
     if trial.source == "generated":
         found.append(Finding("note", "generated, not measured", where))
     elif not trial.source:
-        found.append(Finding("note", "the file does not say whether it was measured", where, fix="write the metadata key 'source'"))
+        found.append(
+            Finding(
+                "note", "the file does not say whether it was measured", where, fix="write the metadata key 'source'"
+            )
+        )
     order = {"warning": 0, "note": 1}
     return sorted(found, key=lambda finding: order[finding.severity])
 
@@ -134,18 +165,36 @@ def _kinematics(trial: Trial, where: str) -> list[Finding]:
     span = max(np.ptp(turned), np.ptp(yawed))
     if span > 0.5 and np.abs(turned - yawed).max() > 0.1 * span:
         found.append(
-            Finding("warning", "the yaw rate does not integrate to the heading", where, f"they differ by up to {np.abs(turned - yawed).max() / DEG:.1f} deg", "check sign, scale and bias of 'r'")
+            Finding(
+                "warning",
+                "the yaw rate does not integrate to the heading",
+                where,
+                f"they differ by up to {np.abs(turned - yawed).max() / DEG:.1f} deg",
+                "check sign, scale and bias of 'r'",
+            )
         )
     psi, u, v = _middle(trial.psi), _middle(trial.u), _middle(trial.v_m)
     moved = np.column_stack([np.diff(trial.x), np.diff(trial.y)])
     ship = np.column_stack([u * np.cos(psi) - v * np.sin(psi), u * np.sin(psi) + v * np.cos(psi)]) * dt[:, None]
     earth = np.column_stack([u, v]) * dt[:, None]
     path = np.nansum(np.hypot(*ship.T))
-    error = {name: np.abs(np.nancumsum(moved - steps, axis=0)).max() for name, steps in (("ship", ship), ("earth", earth))}
+    error = {
+        name: np.abs(np.nancumsum(moved - steps, axis=0)).max() for name, steps in (("ship", ship), ("earth", earth))
+    }
     if path > 0.0 and error["ship"] > 0.1 * path + 5.0:
-        fits = "they fit if read in earth axes" if error["earth"] < 0.05 * path + 5.0 else "nor do they fit read in earth axes"
+        fits = (
+            "they fit if read in earth axes"
+            if error["earth"] < 0.05 * path + 5.0
+            else "nor do they fit read in earth axes"
+        )
         found.append(
-            Finding("warning", "u, v and heading do not integrate to the positions", where, f"off by up to {error['ship']:.1f} m over {path:.0f} m; {fits}", "check axes, units and the point they are measured at")
+            Finding(
+                "warning",
+                "u, v and heading do not integrate to the positions",
+                where,
+                f"off by up to {error['ship']:.1f} m over {path:.0f} m; {fits}",
+                "check axes, units and the point they are measured at",
+            )
         )
     return found
 
@@ -155,19 +204,38 @@ def _inputs(trial: Trial, where: str) -> list[Finding]:
     found: list[Finding] = []
     over = np.abs(trial.delta) > 3.0 * DEG
     if over.sum() > 20:
-        agreement = np.nanmean(np.sign(trial.delta[over]) * trial.r[over]) / max(np.nanmean(np.abs(trial.r[over])), 1e-12)
+        r, side = trial.r[over], np.sign(trial.delta[over])
+        agreement = float(np.nanmean(side * r)) / max(float(np.nanmean(np.abs(r))), 1e-12)
         if agreement < -0.3:
             found.append(
-                Finding("warning", "the ship turns away from its rudder", f"{where}, column 'delta'", "a positive angle must turn the ship to starboard", "change the sign of 'delta'")
+                Finding(
+                    "warning",
+                    "the ship turns away from its rudder",
+                    f"{where}, column 'delta'",
+                    "a positive angle must turn the ship to starboard",
+                    "change the sign of 'delta'",
+                )
             )
     rate = np.abs(np.diff(trial.delta)) / np.diff(trial.t)
     if rate.max() > 15.0 * DEG and np.abs(np.diff(trial.delta)).max() > 5.0 * DEG:
         found.append(
-            Finding("warning", f"the rudder moves at up to {rate.max() / DEG:.0f} deg/s", f"{where}, column 'delta'", "these may be orders, not positions", "use the measured rudder angle where there is one")
+            Finding(
+                "warning",
+                f"the rudder moves at up to {rate.max() / DEG:.0f} deg/s",
+                f"{where}, column 'delta'",
+                "these may be orders, not positions",
+                "use the measured rudder angle where there is one",
+            )
         )
     if np.nanmax(np.abs(trial.n)) > 30.0:
         found.append(
-            Finding("warning", f"{np.nanmax(np.abs(trial.n)):.0f} revolutions per second", f"{where}, column 'n'", "probably per minute", "divide 'n' by 60")
+            Finding(
+                "warning",
+                f"{np.nanmax(np.abs(trial.n)):.0f} revolutions per second",
+                f"{where}, column 'n'",
+                "probably per minute",
+                "divide 'n' by 60",
+            )
         )
     return found
 

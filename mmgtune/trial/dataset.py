@@ -41,7 +41,11 @@ def load_trials(name: str | Path) -> TrialSet:
         bundled = folder("trials") / str(name)
         if path.name != str(name) or not bundled.is_dir():
             raise TrialError(
-                Problem("no such trials", str(name), fix=f"give a folder or a Parquet file, or a bundled name: {', '.join(trial_set_names())}")
+                Problem(
+                    "no such trials",
+                    str(name),
+                    fix=f"give a folder or a Parquet file, or a bundled name: {', '.join(trial_set_names())}",
+                )
             )
         path = bundled
     files = [path] if path.is_file() else sorted(path.glob("*.parquet"))
@@ -57,11 +61,17 @@ def load_trials(name: str | Path) -> TrialSet:
             continue
         if trial.id in trials:
             problems.append(
-                Problem(f"two files are of trial '{trial.id}'", f"{trials[trial.id].path} and {file}", fix="give each its own id, or remove one")
+                Problem(
+                    f"two files are of trial '{trial.id}'",
+                    f"{trials[trial.id].path} and {file}",
+                    fix="give each its own id, or remove one",
+                )
             )
         trials[trial.id] = trial
     split = path / SPLIT
-    tune, test, ship = tuple(trials), (), ""
+    tune: tuple[str, ...] = tuple(trials)
+    test: tuple[str, ...] = ()
+    ship = ""
     if path.is_dir() and split.is_file():
         tune, test, ship, wrong = _split(split, trials, complete=not problems)
         problems += wrong
@@ -93,12 +103,22 @@ def _split(
         sets[key] = tuple(ids)
         for name, count in Counter(ids).items():
             if count > 1:
-                problems.append(Problem(f"trial '{name}' is named {count} times in '{key}'", str(path), fix="name it once"))
+                problems.append(
+                    Problem(f"trial '{name}' is named {count} times in '{key}'", str(path), fix="name it once")
+                )
             if complete and name not in trials:
-                problems.append(Problem(f"'{key}' names trial '{name}', which is not in the folder", str(path), fix=closest(name, list(trials))))
+                problems.append(
+                    Problem(
+                        f"'{key}' names trial '{name}', which is not in the folder",
+                        str(path),
+                        fix=closest(name, list(trials)),
+                    )
+                )
     for name in sorted(set(sets["tune"]) & set(sets["test"])):
         problems.append(
-            Problem(f"trial '{name}' is in both sets", str(path), "a trial that tunes cannot test", "name it in one of them")
+            Problem(
+                f"trial '{name}' is in both sets", str(path), "a trial that tunes cannot test", "name it in one of them"
+            )
         )
     if not sets["tune"]:
         problems.append(Problem("no trial tunes", str(path), "'tune' is empty or missing", 'write tune = ["id", ...]'))

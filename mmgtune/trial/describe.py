@@ -21,7 +21,11 @@ def describe(trial: Trial) -> dict[str, Any]:
         unit = COLUMNS[name].unit if name in COLUMNS else "-"
         factor, shown = _SHOWN.get(unit, (1.0, unit))
         if np.isfinite(values).any():
-            ranges[name] = {"min": float(np.nanmin(values) * factor), "max": float(np.nanmax(values) * factor), "unit": shown}
+            ranges[name] = {
+                "min": float(np.nanmin(values) * factor),
+                "max": float(np.nanmax(values) * factor),
+                "unit": shown,
+            }
     return {
         "id": trial.id,
         "ship": trial.ship,

@@ -42,7 +42,11 @@ def read_trial(path: Path | str) -> Trial:
             columns[name] = np.array(table.column(name).to_numpy(zero_copy_only=False), dtype=np.float64)
         elif name in COLUMNS:
             problems.append(
-                Problem(f"column '{name}' holds {kind}, not numbers", str(path), fix=f"write it as float64 in {COLUMNS[name].unit}")
+                Problem(
+                    f"column '{name}' holds {kind}, not numbers",
+                    str(path),
+                    fix=f"write it as float64 in {COLUMNS[name].unit}",
+                )
             )
     for name in REQUIRED:
         if name not in table.column_names:
@@ -84,7 +88,8 @@ def write_trial(trial: Trial, path: Path | str, *, overwrite: bool = False) -> P
     values = {name: getattr(trial, "v_m" if name == "v" else name) for name in REQUIRED}
     values.update(trial.extra)
     fields = [
-        pa.field(name, pa.float64(), metadata={"unit": COLUMNS[name].unit} if name in COLUMNS else None) for name in values
+        pa.field(name, pa.float64(), metadata={"unit": COLUMNS[name].unit} if name in COLUMNS else None)
+        for name in values
     ]
     facts = {
         "schema": SCHEMA,
@@ -113,9 +118,15 @@ def _metadata(raw: dict[bytes, bytes], path: Path) -> tuple[dict[str, Any], list
             raise ValueError("not an object")
     except ValueError as error:
         return {}, [Problem("the metadata is not a JSON object", where, str(error), "write it again, or leave it out")]
-    problems = [Problem(f"unknown key '{key}'", where, fix=closest(key, METADATA)) for key in facts if key not in METADATA]
+    problems = [
+        Problem(f"unknown key '{key}'", where, fix=closest(key, METADATA)) for key in facts if key not in METADATA
+    ]
     if facts.get("schema", SCHEMA) != SCHEMA:
-        problems.append(Problem(f"schema is {facts['schema']!r}, not {SCHEMA}", where, fix="update mmgtune, or write the file again"))
+        problems.append(
+            Problem(
+                f"schema is {facts['schema']!r}, not {SCHEMA}", where, fix="update mmgtune, or write the file again"
+            )
+        )
     for key in ("id", "ship", "manoeuvre", "source", "note"):
         if key in facts and not isinstance(facts[key], str):
             problems.append(Problem(f"'{key}' is {facts[key]!r}, not text", where))

@@ -68,9 +68,7 @@ def test_compiled_lanes_are_bit_equal_to_single_runs(suzaku):
 @pytest.mark.parametrize("backend", ["compiled", "numpy"])
 def test_cases_of_different_length_do_not_touch(suzaku, backend):
     long, short = turn(suzaku, 35.0, 300.0), turn(suzaku, -20.0, 120.0)
-    both = pad(
-        [long.t[0], short.t[0]], [long.controls[0], short.controls[0]], [long.initial[0], short.initial[0]]
-    )
+    both = pad([long.t[0], short.t[0]], [long.controls[0], short.controls[0]], [long.initial[0], short.initial[0]])
     together = states(suzaku, both, backend=backend)
     np.testing.assert_array_equal(together[0, 0], states(suzaku, long, backend=backend)[0, 0])
     np.testing.assert_array_equal(together[1, 0, :121], states(suzaku, short, backend=backend)[0, 0])

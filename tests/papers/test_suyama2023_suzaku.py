@@ -9,7 +9,9 @@ from tests.runs import states, turn
 def widths(model, theta=None):
     """Largest distance to the side [m] of the +35 and -35 deg turns of Fig. 3."""
     return [
-        np.abs(states(model, turn(model, side * 35.0, initial=[0, 0, 0, 3.086, 0, 0], n=106 / 60), theta)[0, 0, :, 1]).max()
+        np.abs(
+            states(model, turn(model, side * 35.0, initial=[0, 0, 0, 3.086, 0, 0], n=106 / 60), theta)[0, 0, :, 1]
+        ).max()
         for side in (1, -1)
     ]
 
@@ -25,9 +27,7 @@ def test_swapping_the_flow_straightening_reverses_figure_3(suzaku):
     assert port > 1.05 * starboard
 
 
-@pytest.mark.parametrize(
-    ("degrees", "advance", "transfer", "diameter"), [(35, 187, 64, 152), (-35, 169, 55, 127)]
-)
+@pytest.mark.parametrize(("degrees", "advance", "transfer", "diameter"), [(35, 187, 64, 152), (-35, 169, 55, 127)])
 def test_turn_with_the_shipped_flap_table(suzaku, degrees, advance, transfer, diameter):
     """Independent run of the same equations with the same readings: advance, transfer, tactical diameter [m]."""
     x, y, psi = states(suzaku, turn(suzaku, degrees, initial=[0, 0, 0, 3.086, 0, 0], n=106 / 60))[0, 0, :, :3].T

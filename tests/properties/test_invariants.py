@@ -51,7 +51,11 @@ def test_heading_rotation_and_shift(heading, north, east):
     rotated = states(model, turn(model, 35.0, 300.0, initial=[north, east, heading, speed, 0, 0]))[0, 0]
     c, s = np.cos(heading), np.sin(heading)
     expected = np.column_stack(
-        [north + c * straight[:, 0] - s * straight[:, 1], east + s * straight[:, 0] + c * straight[:, 1], heading + straight[:, 2]]
+        [
+            north + c * straight[:, 0] - s * straight[:, 1],
+            east + s * straight[:, 0] + c * straight[:, 1],
+            heading + straight[:, 2],
+        ]
     )
     np.testing.assert_allclose(rotated[:, :3], expected, atol=1e-8)
     np.testing.assert_allclose(rotated[:, 3:], straight[:, 3:], atol=1e-10)
@@ -112,7 +116,12 @@ def test_froude_scaling(any_model):
 
 @settings(max_examples=200, deadline=None)
 @given(
-    name=st.sampled_from(["suzaku", "kvlcc2", "kvlcc2_l7"]), u=finite, v=finite, r=finite, n=finite, delta=st.floats(-3.2, 3.2)
+    name=st.sampled_from(["suzaku", "kvlcc2", "kvlcc2_l7"]),
+    u=finite,
+    v=finite,
+    r=finite,
+    n=finite,
+    delta=st.floats(-3.2, 3.2),
 )
 def test_forces_are_finite_everywhere(name, u, v, r, n, delta):
     """Ahead, astern, sideways, at rest, with the propeller stopped or reversed, at any rudder angle."""
@@ -153,7 +162,12 @@ def test_resistance_opposes_the_motion_either_way(any_model):
 def test_derivatives_of_position_are_velocities_in_the_earth_frame(suzaku):
     p = suzaku.coefficients(suzaku.matrix())
     one = np.ones(1)
-    rate = derivatives(State(0 * one, 0 * one, 0.5 * np.pi * one, 3.0 * one, 0.5 * one, 0.01 * one), Control(one, 0 * one), suzaku.components, p)
+    rate = derivatives(
+        State(0 * one, 0 * one, 0.5 * np.pi * one, 3.0 * one, 0.5 * one, 0.01 * one),
+        Control(one, 0 * one),
+        suzaku.components,
+        p,
+    )
     assert float(rate.x[0]) == pytest.approx(-0.5)
     assert float(rate.y[0]) == pytest.approx(3.0)
     assert float(rate.psi[0]) == 0.01

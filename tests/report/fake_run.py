@@ -180,9 +180,7 @@ def fit_data(a_r: float = 0.5) -> tuple[dict[str, Any], pd.DataFrame, pd.DataFra
     return data, history, pd.concat(tables, ignore_index=True)
 
 
-def write_fit(
-    folder: Path, data: dict[str, Any], history: pd.DataFrame | None, motions: pd.DataFrame | None
-) -> Path:
+def write_fit(folder: Path, data: dict[str, Any], history: pd.DataFrame | None, motions: pd.DataFrame | None) -> Path:
     """Write a fit's folder."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "fit.json").write_text(json.dumps(data), encoding="utf-8")

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..elementary import arctan2, where
 from ..quantities import Force, Lanes, PropellerOut
+from .coefficients import advance_and_thrust
 
 
 class FourQuadrantPropeller(NamedTuple):
@@ -50,13 +51,5 @@ def four_quadrant_propeller(u_P, n, ship, p):
     force = Force(X=q * (1.0 - p.t_P) * C_T, Y=q * C_PY, N=q * ship.L_pp * C_PN)
     n_D = n * p.D_P
     jet = where(p.slipstream_kt > 0.5, (8.0 / np.pi) * C_T * n_D * n_D, C_T * V_r2)
-    turning = np.abs(n_D) > 0.0
-    n_D_safe = where(turning, n_D, 1.0)
-    return PropellerOut(
-        force=force,
-        J=where(turning, u_P / n_D_safe, 0.0),
-        K_T=where(turning, (np.pi / 8.0) * jet / (n_D_safe * n_D_safe), 0.0),
-        jet=jet,
-        D_P=p.D_P,
-        n=n,
-    )
+    J, K_T = advance_and_thrust(u_P, n, p.D_P, jet)
+    return PropellerOut(force=force, J=J, K_T=K_T, jet=jet, D_P=p.D_P, n=n)

@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..elementary import where
 from ..quantities import Force, Lanes, PropellerOut
+from .coefficients import advance_and_thrust
 
 
 class OpenWaterPropeller(NamedTuple):
@@ -30,13 +30,6 @@ def open_water_propeller(u_P, n, ship, p):
     n2_K_T = p.k_0 * n * np.abs(n) + p.k_1 * np.abs(n) * s + p.k_2 * s * s
     D2 = p.D_P * p.D_P
     X = (1.0 - p.t_P) * ship.rho * D2 * D2 * n2_K_T
-    turning = np.abs(n) > 0.0
-    n_safe = where(turning, n, 1.0)
-    return PropellerOut(
-        force=Force(X=X, Y=0.0 * X, N=0.0 * X),
-        J=where(turning, s / n_safe, 0.0),
-        K_T=where(turning, n2_K_T / (n_safe * n_safe), 0.0),
-        jet=(8.0 / np.pi) * n2_K_T * D2,
-        D_P=p.D_P,
-        n=n,
-    )
+    jet = (8.0 / np.pi) * n2_K_T * D2
+    J, K_T = advance_and_thrust(u_P, n, p.D_P, jet)
+    return PropellerOut(force=Force(X=X, Y=0.0 * X, N=0.0 * X), J=J, K_T=K_T, jet=jet, D_P=p.D_P, n=n)

@@ -56,11 +56,21 @@ def make_box(model: Model, targets: Sequence[str], a_r: float) -> Box:
     """
     if not (np.isfinite(a_r) and a_r > 0.0):
         raise OptionError(
-            Problem(f"a_r is {a_r:g}", "--ar", "the box would have no room", "give the half width as a share, such as --ar 0.5")
+            Problem(
+                f"a_r is {a_r:g}",
+                "--ar",
+                "the box would have no room",
+                "give the half width as a share, such as --ar 0.5",
+            )
         )
     if not targets:
         raise OptionError(
-            Problem("no coefficient to tune", "--targets", "the profile lists none", 'name some, such as --targets "hull.Y_*"')
+            Problem(
+                "no coefficient to tune",
+                "--targets",
+                "the profile lists none",
+                'name some, such as --targets "hull.Y_*"',
+            )
         )
     problems: list[Problem] = []
     bounds: list[tuple[float, float]] = []
@@ -76,7 +86,7 @@ def make_box(model: Model, targets: Sequence[str], a_r: float) -> Box:
                     f"target '{name}' is 0",
                     "--targets",
                     "a box of +- a_r times its value has no width",
-                    f"give it bounds in the profile, {name.partition('.')[2]} = {{ value = 0.0, bounds = [low, high] }}, or leave it out",
+                    "give it bounds in the profile, { value = 0.0, bounds = [low, high] }, or leave it out",
                 )
             )
         bounds.append((value - a_r * abs(value), value + a_r * abs(value)))
@@ -107,7 +117,11 @@ def choose_targets(model: Model, patterns: Sequence[str], fixed: Sequence[str] =
         found = [n for n in among if fnmatchcase(n, pattern) or fnmatchcase(n.partition(".")[2], pattern)]
         if not found:
             raise OptionError(
-                Problem(f"no coefficient is called '{pattern}'", option, fix=closest(pattern, [*names, *(n.partition(".")[2] for n in names)]))
+                Problem(
+                    f"no coefficient is called '{pattern}'",
+                    option,
+                    fix=closest(pattern, [*names, *(n.partition(".")[2] for n in names)]),
+                )
             )
         return found
 

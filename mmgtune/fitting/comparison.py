@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..backends import STATES, Backend, Integrator
+from ..backends import STATES
 from ..manoeuvres.summary import indices_of
-from ..model import Model
-from ..objective import Objective, cases_of
-from ..simulate import Motion, trial_indices
+from ..simulation import Motion, trial_indices
 from ..trial import Trial
+from .least_squares import fit_offsets
+from .problem import FitProblem
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -43,25 +43,32 @@ class TrialComparison:
             "status_before": "diverged" if self.motions["before"].diverged else "ok",
             "status_after": "diverged" if self.motions["after"].diverged else "ok",
             "rms": {
-                channel: {which: finite(value) for which, value in errors.items()} for channel, errors in self.rms.items()
+                channel: {which: finite(value) for which, value in errors.items()}
+                for channel, errors in self.rms.items()
             },
             "indices": self.indices,
         }
 
 
 def compare(
-    model: Model,
-    trials: Sequence[Trial],
-    roles: Mapping[str, str],
-    objective: Objective,
-    theta: Mapping[str, FloatArray],
-    backend: Backend,
-    integrator: Integrator,
+    problem: FitProblem, trials: Sequence[Trial], roles: Mapping[str, str], before: FloatArray, after: FloatArray
 ) -> list[TrialComparison]:
-    """Simulate every trial with each coefficient matrix of ``theta`` {"before", "after": (n_rows, 1)}."""
-    cases = cases_of(trials, objective)
-    stacked = np.hstack([theta["before"], theta["after"]])
-    result = backend.run(model, stacked, cases, integrator=integrator, keep_states=True)
+    """Simulate every trial with the coefficients at two positions (n_targets,) of the unit cube.
+
+    problem  over all of ``trials``, in their order; where it estimates initial states, each trial gets its own
+    """
+    unit = np.column_stack([before, after])
+    offsets = None
+    if problem.sigma is not None:
+        offsets = np.stack([fit_offsets(problem, before), fit_offsets(problem, after)], axis=1)
+    result = problem.backend.run(
+        problem.model,
+        problem.theta(unit),
+        problem.cases,
+        initial=problem.initial(2, offsets),
+        integrator=problem.integrator,
+        keep_states=True,
+    )
     assert result.states is not None  # asked for
     compared = []
     for i, trial in enumerate(trials):
@@ -75,7 +82,7 @@ def compare(
                 error = np.sqrt(np.nanmean((states - trial.motion) ** 2, axis=0))
             for channel, value in zip(STATES, error, strict=True):
                 rms[channel][which] = float(value) if not result.diverged[i, k] else float("nan")
-        L_pp = model.L_pp
+        L_pp = problem.model.L_pp
         indices = {"measured": trial_indices(trial, L_pp)}
         for which, motion in motions.items():
             indices[which] = {} if motion.diverged else indices_of(motion.track(), L_pp)

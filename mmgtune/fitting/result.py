@@ -29,6 +29,7 @@ class FitResult:
 
     unit         (n_targets,) position of the tuned values in the box
     provenance   what it was made from: profile, trials with their hashes, command, versions, time
+    J_free_start  J of the tuned values if each tune trial started from an estimated state; None where it does
     interrupted  stopped by the user; the values are the best so far
     """
 
@@ -38,6 +39,7 @@ class FitResult:
     unit: FloatArray
     J: float
     J_before: float
+    J_free_start: float | None
     compared: tuple[TrialComparison, ...]
     restarts: tuple[Restart, ...]
     starts: tuple[LeastSquaresResult, ...]
@@ -67,7 +69,9 @@ class FitResult:
     def converged(self) -> bool:
         """Whether the searches agree: CMA-ES (where used) and at least half of the starts end on the same J."""
         c = self.certificate
-        return not self.interrupted and 2 * c.starts_agreeing >= c.starts and (c.restarts == 0 or c.restarts_agreeing > 0)
+        return (
+            not self.interrupted and 2 * c.starts_agreeing >= c.starts and (c.restarts == 0 or c.restarts_agreeing > 0)
+        )
 
     def J_of(self, role: str, which: str) -> float | None:
         """J over the "tune" or "test" trials, "before" or "after"; None without such trials."""
@@ -79,15 +83,16 @@ class FitResult:
         tests = [c for c in self.compared if c.role == "test"]
         better = sum(c.J["after"] < c.J["before"] for c in tests)
         if before and after is not None:
-            change = after / before - 1.0
-            word = "better" if change < 0 else "worse"
+            change = 100.0 * (after / before - 1.0)
+            size = f"falls by {min(-change, 99.9):.1f} %" if change < 0 else f"rises by {change:.1f} %"
             return (
-                f"On {len(tests)} trials not used for tuning the tuned {self.profile.name} is {abs(change):.1%} {word} "
-                f"(J {before:.4g} to {after:.4g}); {better} of {len(tests)} of these trials improve."
+                f"On {len(tests)} trials not used for tuning, J of the tuned {self.profile.name} {size}, "
+                f"from {before:.4g} to {after:.4g}; {better} of {len(tests)} of these trials improve."
             )
         return (
-            f"On the {sum(c.role == 'tune' for c in self.compared)} trials it was tuned to, the tuned {self.profile.name} "
-            f"has J {self.J:.4g} instead of {self.J_before:.4g}; there are no test trials to confirm it."
+            f"On the {sum(c.role == 'tune' for c in self.compared)} trials it was tuned to, "
+            f"the tuned {self.profile.name} has J {self.J:.4g} instead of {self.J_before:.4g}; "
+            "there are no test trials to confirm it."
         )
 
     def warnings(self) -> list[str]:
@@ -100,6 +105,11 @@ class FitResult:
         generated = sorted({c.trial.id for c in self.compared if c.trial.source == "generated"})
         if generated:
             found.append(f"{len(generated)} of {len(self.compared)} trials are generated, not measured.")
+        if self.J_free_start is not None and self.J_free_start < 0.5 * self.J:
+            found.append(
+                f"Of J = {self.J:.4g} on the tune trials {self.J - self.J_free_start:.4g} comes from starting "
+                "each trial at its noisy first sample; --initial estimated removes that."
+            )
         gaps = [c.trial.id for c in self.compared if np.isnan(c.trial.motion).any()]
         if gaps:
             found.append(f"Gaps in these trials do not count: {', '.join(gaps)}.")
@@ -108,7 +118,9 @@ class FitResult:
             found.append(f"The tuned model diverges on: {', '.join(lost)}.")
         worse = [c.trial.id for c in self.compared if c.role == "test" and c.J["after"] > c.J["before"]]
         if worse:
-            found.append(f"Worse than before on test trials: {', '.join(worse)}: the tuning does not carry over to them.")
+            found.append(
+                f"Worse than before on test trials: {', '.join(worse)}: the tuning does not carry over to them."
+            )
         return found
 
     def coefficients(self) -> list[dict[str, Any]]:
@@ -190,10 +202,17 @@ class FitResult:
             },
             "coefficients": self.coefficients(),
             "trial_results": [c.to_dict() for c in self.compared],
+            "J_tune_free_start": finite(self.J_free_start),
             "evaluations": self.evaluations,
             "diverged": self.diverged,
             "restarts": [
-                {"lambda": r.population, "J": finite(r.J), "generations": r.generations, "evaluations": r.evaluations, "stop": r.stop}
+                {
+                    "lambda": r.population,
+                    "J": finite(r.J),
+                    "generations": r.generations,
+                    "evaluations": r.evaluations,
+                    "stop": r.stop,
+                }
                 for r in self.restarts
             ],
             "starts": [{"J": finite(s.J), "iterations": s.iterations, "converged": s.converged} for s in self.starts],

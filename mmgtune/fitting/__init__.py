@@ -4,7 +4,7 @@ from .folder import prepare, write_run
 from .options import METHODS, FitOptions
 from .result import FitResult
 from .run import Hooks, fit, make_problem
-from .sweep import SweepResult, sweep
+from .sweeping import SweepResult, sweep
 
 __all__ = [
     "METHODS",

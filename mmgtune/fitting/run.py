@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..backends import get_backend
+from ..backends import STATES, get_backend
 from ..model import Model
 from ..objective import cases_of, make_objective
 from ..profile import ShipProfile
@@ -25,7 +25,8 @@ from .checkpoint import EVERY, Checkpoint
 from .cmaes import Search, search
 from .comparison import compare
 from .identifiability import analyse
-from .least_squares import LeastSquaresResult, solve
+from .initial import deviations
+from .least_squares import LeastSquaresResult, fit_offsets, solve
 from .options import FitOptions
 from .problem import FitProblem
 from .result import FitResult
@@ -58,12 +59,15 @@ def make_problem(profile: ShipProfile, trials: TrialSet, options: FitOptions, id
     model = Model(profile)
     targets = choose_targets(model, options.targets, options.fixed)
     objective = make_objective(model.L_pp, options.channels, options.window)
+    chosen = [trials.trials[name] for name in ids or trials.tune]
+    scales = np.array([objective.scales[name] for name in STATES])
     return FitProblem(
         model=model,
-        cases=cases_of([trials.trials[name] for name in ids or trials.tune], objective),
+        cases=cases_of(chosen, objective),
         box=make_box(model, targets, options.a_r),
         backend=get_backend(options.backend),
         integrator=options.make_integrator(),
+        sigma=deviations(chosen, scales) if options.initial == "estimated" else None,
     )
 
 
@@ -90,72 +94,59 @@ def fit(
     if options.identifiable:
         options = hold_directions(profile, trials, options)
     problem = make_problem(profile, trials, options)
-    box = problem.box
-    provenance = _provenance(profile, trials, command)
-    identity = {
-        "profile": profile.sha256,
-        "trials": trials.hashes(),
-        "tune": list(trials.tune),
-        "options": {k: v for k, v in options.to_dict().items() if k not in ("starts",)},
-        "versions": provenance["environment"],
-    }
-    before = box.to_unit(box.pre)
-    rng = np.random.default_rng(options.seed)
+    provenance = make_provenance(profile, trials, command)
+    checkpoint = None
+    if checkpoint_folder is not None:
+        identity = {
+            "profile": profile.sha256,
+            "trials": trials.hashes(),
+            "tune": list(trials.tune),
+            "options": options.to_dict(),
+            "versions": provenance["environment"],
+        }
+        checkpoint = Checkpoint(checkpoint_folder, identity)
+    recorded = checkpoint.load() if checkpoint and resume else None
+    before = problem.box.to_unit(problem.box.pre)
     J_before = float(problem.costs(before[:, None])[0])
-    found: Search | None = None
-    starts = [np.clip(before, 0.0, 1.0)]
-    if options.method == "cma-es":
-        hooks.on_phase("CMA-ES")
-        found = _search(problem, options, starts[0], hooks, checkpoint_folder, identity, resume)
-        starts.append(found.unit)
-    interrupted = hooks.stop()
 
     hooks.on_phase("least squares")
-    starts += [
-        np.clip(box.to_unit([values.get(n, box.pre[i]) for i, n in enumerate(box.names)]), 0.0, 1.0) for values in more_starts
-    ]
-    starts += [rng.uniform(size=len(box)) for _ in range(max(0, options.starts - len(starts)))]
-    if interrupted:
-        starts = starts[:2]
-    ends = solve(problem, np.column_stack(starts), stop=lambda: interrupted or hooks.stop())
-    interrupted = interrupted or hooks.stop()
+    ends = solve(problem, _starts(problem, options, before, more_starts), stop=hooks.stop)
     best = min(ends, key=lambda end: end.J)
-    if not interrupted:
+    problem.offsets = best.offsets
+    found: Search | None = None
+    if options.method == "cma-es":
+        hooks.on_phase("CMA-ES")
+        found = _search(problem, options, np.clip(before, 0.0, 1.0), hooks, checkpoint, recorded)
+        if not hooks.stop():
+            ends += solve(problem, found.unit[:, None], stop=hooks.stop)
+            best = min(ends, key=lambda end: end.J)
+    if not hooks.stop():
         best = _nearest(problem, best, before)
     unit, J = best.unit, best.J
+    problem.offsets = best.offsets
     if found is not None and found.J < J:
         unit, J = found.unit, found.J
 
     hooks.on_phase("certificate and identifiability")
     restarts = found.restarts if found else []
     certificate = certify(problem, unit, J, J_before, ends, restarts, found.J if found else None)
-    held_by_bound = np.isin(box.names, [bound.name for bound in certificate.active])
-    identifiability = analyse(problem, unit, held_by_bound)
-
+    held_by_bound = np.isin(problem.box.names, [bound.name for bound in certificate.active])
+    everything = make_problem(profile, trials, options, tuple(trials.trials))
     objective = make_objective(problem.model.L_pp, options.channels, options.window)
-    roles = {name: "tune" if name in trials.tune else "test" if name in trials.test else "other" for name in trials.trials}
-    compared = compare(
-        problem.model,
-        list(trials.trials.values()),
-        roles,
-        objective,
-        {"before": problem.model.matrix(), "after": problem.theta(unit[:, None])},
-        problem.backend,
-        problem.integrator,
-    )
     return FitResult(
         profile=profile,
         options=options,
-        box=box,
+        box=problem.box,
         unit=unit,
         J=J,
         J_before=J_before,
-        compared=tuple(compared),
+        J_free_start=_free_start(profile, trials, options, unit),
+        compared=tuple(compare(everything, list(trials.trials.values()), _roles(trials), before, unit)),
         restarts=tuple(restarts),
         starts=tuple(ends),
         history=tuple(found.history if found else ()),
         certificate=certificate,
-        identifiability=identifiability,
+        identifiability=analyse(problem, unit, held_by_bound),
         evaluations=problem.evaluations,
         diverged=found.diverged if found else 0,
         wall_s=time.perf_counter() - began,
@@ -163,8 +154,35 @@ def fit(
         scales=objective.scales,
         channels=objective.channels,
         provenance=provenance,
-        interrupted=interrupted,
+        interrupted=hooks.stop(),
     )
+
+
+def _starts(
+    problem: FitProblem, options: FitOptions, before: FloatArray, more: tuple[Mapping[str, float], ...]
+) -> FloatArray:
+    """Where least squares starts, (n_targets, n_starts): pre-determined values, those given, the rest at random."""
+    box = problem.box
+    rng = np.random.default_rng(options.seed)
+    starts = [before]
+    starts += [box.to_unit([values.get(name, box.pre[i]) for i, name in enumerate(box.names)]) for values in more]
+    starts += [rng.uniform(size=len(box)) for _ in range(max(0, options.starts - len(starts)))]
+    return np.clip(np.column_stack(starts), 0.0, 1.0)
+
+
+def _roles(trials: TrialSet) -> dict[str, str]:
+    """Role of each trial: "tune", "test" or "other"."""
+    return {
+        name: "tune" if name in trials.tune else "test" if name in trials.test else "other" for name in trials.trials
+    }
+
+
+def _free_start(profile: ShipProfile, trials: TrialSet, options: FitOptions, unit: FloatArray) -> float | None:
+    """J of the same coefficients if each tune trial started from an estimated state; None where it does already."""
+    if options.initial == "estimated":
+        return None
+    problem = make_problem(profile, trials, FitOptions(**{**options.__dict__, "initial": "estimated"}))
+    return float(problem.costs(unit[:, None], fit_offsets(problem, unit)[:, None])[0])
 
 
 def hold_directions(profile: ShipProfile, trials: TrialSet, options: FitOptions) -> FitOptions:
@@ -181,13 +199,10 @@ def _search(
     options: FitOptions,
     start: FloatArray,
     hooks: Hooks,
-    folder: Path | None,
-    identity: dict[str, Any],
-    resume: bool,
+    checkpoint: Checkpoint | None,
+    recorded: list[FloatArray] | None,
 ) -> Search:
     """CMA-ES with checkpoints: every few generations, and when it ends for whatever reason."""
-    checkpoint = Checkpoint(folder, identity) if folder else None
-    recorded = checkpoint.load() if checkpoint and resume else None
 
     def on_generation(state: Search) -> None:
         if checkpoint and len(state.costs) % EVERY == 0:
@@ -209,7 +224,8 @@ def _nearest(problem: FitProblem, best: LeastSquaresResult, before: FloatArray) 
     return moved if moved.J <= best.J * (1.0 + 1e-7) else best
 
 
-def _provenance(profile: ShipProfile, trials: TrialSet, command: str) -> dict[str, Any]:
+def make_provenance(profile: ShipProfile, trials: TrialSet, command: str) -> dict[str, Any]:
+    """What a fit was made from, and with which versions."""
     versions = {"python": platform.python_version()}
     for package in ("numpy", "scipy", "numba", "cma"):
         try:

@@ -124,7 +124,9 @@ def certify(
 def _sentences(c: Certificate, others: list[str]) -> tuple[str, ...]:
     sentences = []
     if c.restarts:
-        sentences.append(f"{c.restarts_agreeing} of {c.restarts} CMA-ES restarts end within {TOLERANCE:g} of the best J.")
+        sentences.append(
+            f"{c.restarts_agreeing} of {c.restarts} CMA-ES restarts end within {TOLERANCE:g} of the best J."
+        )
     sentences.append(f"{c.starts_agreeing} of {c.starts} least-squares starts end within {TOLERANCE:g} of the best J.")
     if others:
         sentences.append(f"Other ends of starts, with a higher J: {', '.join(others[:5])}.")

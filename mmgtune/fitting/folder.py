@@ -18,7 +18,15 @@ from .comparison import TrialComparison
 from .result import FitResult
 
 RESULT = "fit.json"
-OWN_FILES = (RESULT, "sweep.json", "profile.toml", "history.parquet", "motions.parquet", "checkpoint.npz", "report.html")
+OWN_FILES = (
+    RESULT,
+    "sweep.json",
+    "profile.toml",
+    "history.parquet",
+    "motions.parquet",
+    "checkpoint.npz",
+    "report.html",
+)
 
 
 def prepare(folder: Path, *, force: bool = False, resume: bool = False) -> Path:
@@ -34,7 +42,12 @@ def prepare(folder: Path, *, force: bool = False, resume: bool = False) -> Path:
         raise OutputError(exists(folder))
     if taken and force and not any((folder / name).exists() for name in OWN_FILES):
         raise OutputError(
-            Problem("the folder holds files that are not a run of mmgtune", str(folder), "--force would mix them", "choose another --out")
+            Problem(
+                "the folder holds files that are not a run of mmgtune",
+                str(folder),
+                "--force would mix them",
+                "choose another --out",
+            )
         )
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -80,7 +80,8 @@ def breakdown(ship: ShipProfile | Model, states: FloatArray, controls: FloatArra
     """
     model = ship if isinstance(ship, Model) else Model(ship)
     p = model.coefficients(np.repeat(model.matrix(), len(states), axis=1))
-    return forces(State(*states.T), Control(*controls.T), model.components, p)
+    found: Breakdown = forces(State(*states.T), Control(*controls.T), model.components, p)
+    return found
 
 
 def track_of(trial: Trial) -> Track:
@@ -102,12 +103,23 @@ def as_trial(ship: ShipProfile, motion: Motion, *, with_forces: bool = False) ->
     extra: dict[str, FloatArray] = {}
     if with_forces:
         found = breakdown(ship, motion.states, motion.controls)
-        parts = {"hull": found.hull, "propeller": found.propeller.force, "rudder": found.rudder.force, "total": found.total}
+        parts = {
+            "hull": found.hull,
+            "propeller": found.propeller.force,
+            "rudder": found.rudder.force,
+            "total": found.total,
+        }
         for part, force in parts.items():
             extra.update({f"{part}_{axis}": np.asarray(value) for axis, value in force._asdict().items()})
-        for group, names in ((found.flow, ("U", "beta")), (found.wake, ("w_P", "u_P", "beta_P")), (found.propeller, ("J", "K_T"))):
+        for group, names in (
+            (found.flow, ("U", "beta")),
+            (found.wake, ("w_P", "u_P", "beta_P")),
+            (found.propeller, ("J", "K_T")),
+        ):
             extra.update({name: np.asarray(getattr(group, name)) for name in names})
-        extra.update({name: np.asarray(getattr(found.rudder, name)) for name in ("u_R", "v_R", "alpha_R", "beta_R", "F_N")})
+        extra.update(
+            {name: np.asarray(getattr(found.rudder, name)) for name in ("u_R", "v_R", "alpha_R", "beta_R", "F_N")}
+        )
     x, y, psi, u, v_m, r = motion.states.T
     return Trial(
         id=motion.id,

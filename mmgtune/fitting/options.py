@@ -9,6 +9,7 @@ from ..backends import BACKENDS, Integrator
 from ..errors import OptionError, Problem, closest
 
 METHODS = ("cma-es", "least-squares")
+INITIAL = ("measured", "estimated")
 INTEGRATORS = ("euler", "rk4")
 DEFAULT_STARTS = 20
 
@@ -24,7 +25,9 @@ class FitOptions:
     fixed       names or patterns to leave out of the targets
     channels    what J compares, "x", "y:2", ...; empty for position and heading
     window      first and last time that count [s]
-    starts      least-squares starts: the pre-determined values, the best of CMA-ES, the rest at random
+    initial     "measured": trials start from their first sample as in the paper; "estimated": from what fits best
+                within the noise of that sample
+    starts      least-squares starts: the pre-determined values, the rest at random
     identifiable  hold one coefficient of every direction that no trial can tell, so that the rest is unique
     """
 
@@ -35,6 +38,7 @@ class FitOptions:
     fixed: tuple[str, ...] = ()
     channels: tuple[str, ...] = ()
     window: tuple[float, float] | None = None
+    initial: str = "measured"
     integrator: str = "euler"
     substeps: int = 1
     backend: str = "compiled"
@@ -47,6 +51,7 @@ class FitOptions:
             Problem(f"unknown {what} '{value}'", option, fix=closest(value, known))
             for what, value, option, known in (
                 ("method", self.method, "--method", METHODS),
+                ("kind of initial state", self.initial, "--initial", INITIAL),
                 ("integrator", self.integrator, "--integrator", INTEGRATORS),
                 ("back end", self.backend, "--backend", BACKENDS),
             )

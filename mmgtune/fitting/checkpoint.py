@@ -63,7 +63,9 @@ class Checkpoint:
             parts = np.split(costs, np.cumsum(sizes)[:-1]) if len(sizes) else []
         except (OSError, ValueError, KeyError, EOFError) as error:
             raise OptionError(
-                Problem("the checkpoint cannot be read", str(self.path), str(error), "delete it, or run without --resume")
+                Problem(
+                    "the checkpoint cannot be read", str(self.path), str(error), "delete it, or run without --resume"
+                )
             ) from error
         changed = sorted(key for key in {*identity, *self.identity} if identity.get(key) != self.identity.get(key))
         if changed:

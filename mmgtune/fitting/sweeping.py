@@ -16,7 +16,7 @@ from ..files import write_text
 from ..profile import ShipProfile
 from ..trial import TrialSet
 from .folder import write_run
-from .least_squares import solve
+from .least_squares import fit_offsets, solve
 from .options import FitOptions
 from .result import FitResult
 from .run import Hooks, fit, make_problem
@@ -54,23 +54,37 @@ class SweepResult:
         a_r = self.widths[best]
         by = "leave-one-trial-out" if self.leave_one_out is not None else "test set"
         if not np.isfinite(judged[best]):
-            return {"a_r": None, "by": by, "sentence": "No a_r can be recommended: every simulation of the judging trials diverged."}
+            return {
+                "a_r": None,
+                "by": by,
+                "sentence": "No a_r can be recommended: every simulation of the judging trials diverged.",
+            }
         how = "trials left out one at a time" if self.leave_one_out is not None else "the test trials"
-        edge = " It is the widest tried; a wider box may do better." if best == len(judged) - 1 and len(judged) > 1 else ""
+        edge = (
+            " It is the widest tried; a wider box may do better." if best == len(judged) - 1 and len(judged) > 1 else ""
+        )
         return {"a_r": a_r, "by": by, "sentence": f"a_r = {a_r:g} has the least J on {how} ({judged[best]:.4g}).{edge}"}
 
     def overfitting(self) -> dict[str, Any]:
         """Whether J rises on trials not used while it falls on those tuned to."""
         judged = self.judged()
         best = int(np.argmin(judged))
-        worse = [i for i in range(best + 1, len(judged)) if judged[i] > judged[best] * 1.01 and self.runs[i].J < self.runs[best].J]
+        worse = [
+            i
+            for i in range(best + 1, len(judged))
+            if judged[i] > judged[best] * 1.01 and self.runs[i].J < self.runs[best].J
+        ]
         if not worse:
-            return {"found": False, "sentence": "No over-fitting: a wider box nowhere costs accuracy on trials not used."}
+            return {
+                "found": False,
+                "sentence": "No over-fitting: a wider box nowhere costs accuracy on trials not used.",
+            }
         i = max(worse, key=lambda k: judged[k])
         return {
             "found": True,
             "sentence": (
-                f"Over-fitting from a_r = {self.widths[worse[0]]:g}: at a_r = {self.widths[i]:g} J falls to {self.runs[i].J:.4g} "
+                f"Over-fitting from a_r = {self.widths[worse[0]]:g}: "
+                f"at a_r = {self.widths[i]:g} J falls to {self.runs[i].J:.4g} "
                 f"on the tune trials but rises to {judged[i]:.4g} on trials not used, from {judged[best]:.4g}."
             ),
         }
@@ -105,7 +119,9 @@ class SweepResult:
                 for run in self.runs
             ],
             "recommended": self.recommended(),
-            "leave_one_out": None if loo is None else [{"a_r": a, "J": J} for a, J in zip(self.widths, loo, strict=True)],
+            "leave_one_out": None
+            if loo is None
+            else [{"a_r": a, "J": J} for a, J in zip(self.widths, loo, strict=True)],
             "overfitting": self.overfitting(),
             "warnings": list(dict.fromkeys(warning for run in self.runs for warning in run.warnings())),
             "citations": first.profile.cites(),
@@ -159,10 +175,13 @@ def sweep(
     if not trials.test and len(trials.tune) > 1 and not hooks.stop():
         hooks.on_phase("leaving out one trial at a time")
         left_out = tuple(_leave_one_out(profile, trials, run) for run in runs)
-    result = SweepResult(tuple(runs), left_out, time.perf_counter() - began, interrupted=hooks.stop())
+    swept = SweepResult(tuple(runs), left_out, time.perf_counter() - began, interrupted=hooks.stop())
     if folder is not None:
-        write_text(folder / RESULT, json.dumps({**result.to_dict(), "out": str(folder)}, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
-    return result
+        write_text(
+            folder / RESULT,
+            json.dumps({**swept.to_dict(), "out": str(folder)}, indent=1, allow_nan=False, ensure_ascii=False) + "\n",
+        )
+    return swept
 
 
 def _leave_one_out(profile: ShipProfile, trials: TrialSet, run: FitResult) -> float:
@@ -172,5 +191,7 @@ def _leave_one_out(profile: ShipProfile, trials: TrialSet, run: FitResult) -> fl
     for name in trials.tune:
         others = tuple(other for other in trials.tune if other != name)
         fitted = min(solve(make_problem(profile, trials, run.options, others), start), key=lambda end: end.J)
-        total += float(make_problem(profile, trials, run.options, (name,)).costs(fitted.unit[:, None])[0])
+        alone = make_problem(profile, trials, run.options, (name,))
+        offsets = None if alone.sigma is None else fit_offsets(alone, fitted.unit)[:, None]
+        total += float(alone.costs(fitted.unit[:, None], offsets)[0])
     return total

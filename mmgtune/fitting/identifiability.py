@@ -17,6 +17,9 @@ FloatArray = npt.NDArray[np.float64]
 NULL_RATIO = 1e-6
 """Singular values below this share of the largest are zero but for the rounding of finite differences."""
 
+CHECKED = 1e-3
+"""Share of a step of 1 % over which a direction is checked by simulation: trading is exact along a curve, not a line."""
+
 PART = 0.02
 """Share of a direction's largest weight from which a coefficient counts as taking part in it."""
 
@@ -26,7 +29,7 @@ class NullDirection:
     """Coefficients that can be traded against each other without changing any simulated motion.
 
     weights  relative change of each member [%] for one step of 1 % of the first
-    largest_shift  largest change of any simulated position over that step [m]: second order, so near but not at zero
+    largest_shift  largest change of any simulated position [m] over a thousandth of that step
     """
 
     weights: dict[str, float]
@@ -38,7 +41,7 @@ class NullDirection:
         parts = ", ".join(f"{name} {weight:+.3g} %" for name, weight in self.weights.items())
         return (
             f"No trial can tell these coefficients apart: {parts} together leave every simulated motion unchanged "
-            f"(largest shift of a position at this step {self.largest_shift:.2g} m). "
+            f"(a thousandth of this step shifts no position by more than {self.largest_shift:.1e} m). "
             f"Only combinations of them are known; hold one with --fix {next(iter(self.weights))}."
         )
 
@@ -105,6 +108,9 @@ def analyse(problem: FitProblem, unit: FloatArray, active: npt.NDArray[np.bool_]
     whitening = estimate_whitening(problem, residuals)
     relative = np.abs(np.where(box.pre != 0.0, box.pre, box.width))
     sensitivity = whitening.apply(jacobian * (relative / box.width))
+    if problem.sigma is not None:
+        _, _, by_offset = problem.jacobians(unit[:, None])
+        sensitivity = _without_offsets(problem, sensitivity, whitening.apply(by_offset[0]))
     _, singular, vectors = np.linalg.svd(sensitivity, full_matrices=False)
     null = singular < NULL_RATIO * singular[0]
     directions = tuple(_direction(problem, unit, relative, v) for v in _sparse(vectors[null]))
@@ -135,10 +141,20 @@ def analyse(problem: FitProblem, unit: FloatArray, active: npt.NDArray[np.bool_]
     return Identifiability(**{**result.__dict__, "sentences": _sentences(problem, result, active)})
 
 
+def _without_offsets(problem: FitProblem, sensitivity: FloatArray, by_offset: FloatArray) -> FloatArray:
+    """Whitened derivatives less what estimated initial states, known within their noise, could explain of them."""
+    assert problem.sigma is not None  # asked for only then
+    left = sensitivity.copy()
+    for rows, sigma in zip(problem.rows_of_cases, problem.sigma, strict=True):
+        S = by_offset[rows]
+        left[rows] -= S @ np.linalg.solve(S.T @ S + np.diag(sigma**-2.0), S.T @ sensitivity[rows])
+    return left
+
+
 def _errors(
     sensitivity: FloatArray, free: npt.NDArray[np.bool_]
 ) -> tuple[FloatArray, FloatArray, npt.NDArray[np.bool_]]:
-    """Relative standard errors (inf where unknown), covariance, and which targets have one; null directions left out."""
+    """Relative standard errors (inf where unknown), covariance, which targets have one; null directions left out."""
     n = sensitivity.shape[1]
     covariance = np.zeros((n, n))
     error = np.full(n, np.inf)
@@ -170,10 +186,11 @@ def _direction(problem: FitProblem, unit: FloatArray, relative: FloatArray, vect
     members = np.flatnonzero(np.abs(vector) > PART * np.abs(vector).max())
     values = box.from_unit(unit)
     percent = 100.0 * vector * relative / np.abs(np.where(values != 0.0, values, relative))
-    by_size = sorted(members, key=lambda i: abs(percent[i]))
+    # Members that scale alike differ by rounding only: the order of the targets then decides.
+    by_size = sorted(members, key=lambda i: float(f"{abs(percent[i]):.3g}"))
     first = by_size[len(by_size) // 3] if len(by_size) > 2 else by_size[0]
     factor = 1.0 / percent[first]
-    step = 0.01 * vector * relative * factor * 100.0 / box.width
+    step = CHECKED * vector * relative * factor / box.width
     both = np.column_stack([unit, unit + step])
     result = problem.backend.run(
         problem.model, problem.theta(both), problem.cases, integrator=problem.integrator, keep_states=True

@@ -1,0 +1,54 @@
+"""The state a trial starts from is measured with noise, and a simulation from a noisy state drifts away for good.
+
+Where initial states are estimated, each trial has six unknowns more: offsets of its first measured state, which the
+noise of the sensors holds near zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from ..trial import Trial
+from ..trial.schema import MOTION
+
+FloatArray = npt.NDArray[np.float64]
+
+LARGEST = 5.0
+"""Offsets are kept within this many standard deviations."""
+
+
+def noise_of(trial: Trial) -> FloatArray:
+    """Standard deviation of white noise in x, y, psi, u, v_m, r: (6,), SI units.
+
+    What the file says, else from second differences, in which a smooth motion at the sampling rate hardly shows:
+    their median size is that of noise alone, times the root of six.
+    """
+    sigma = np.empty(6)
+    for k, name in enumerate(MOTION):
+        values = trial.motion[:, k]
+        bends = np.diff(values[~np.isnan(values)], n=2)
+        measured = 1.4826 * float(np.median(np.abs(bends))) / np.sqrt(6.0) if len(bends) else 0.0
+        sigma[k] = trial.noise.get(name, measured)
+    return sigma
+
+
+def deviations(trials: Sequence[Trial], scales: FloatArray) -> FloatArray:
+    """Deviations (n_trials, 6) of the initial states; never quite zero, so that they can be divided by.
+
+    scales  (6,) what the objective divides each channel by
+    """
+    return np.array([np.maximum(noise_of(trial), 1e-9 * scales) for trial in trials])
+
+
+def prior_weight(sigma: FloatArray, weight: FloatArray) -> FloatArray:
+    """Weight (n_cases, 6) of squared offsets in J, such that noise counts alike in the first state and in all others.
+
+    sigma   (n_cases, 6) deviations of the noise
+    weight  (n_cases, T, 6) weights of squared differences in J
+    """
+    counted = weight > 0.0
+    noise = np.sum(weight * sigma[:, None] ** 2, axis=(1, 2)) / np.maximum(counted.sum(axis=(1, 2)), 1)
+    return np.asarray(noise[:, None] / sigma**2)

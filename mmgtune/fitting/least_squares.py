@@ -1,0 +1,204 @@
+"""Bounded nonlinear least squares: projected Levenberg-Marquardt from many starts at once.
+
+J is a sum of squares, so its second derivatives are nearly known from the first; the Jacobians of all starts run as
+lanes.  An interior method stalls beside bounds, where the optima of narrow boxes lie; here a bound is reached exactly
+and left again when the gradient says so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from .initial import LARGEST
+from .problem import FitProblem
+
+FloatArray = npt.NDArray[np.float64]
+
+DAMPINGS = 10.0 ** np.array([-4.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 4.0])
+"""Multiples of the last damping tried side by side; as many as there are lanes in a block."""
+
+
+@dataclass(frozen=True, eq=False)
+class LeastSquaresResult:
+    """Where one start ended.
+
+    unit        (n_targets,) position in the unit cube
+    offsets     (n_cases, 6) of the initial states; zero where these are held
+    J           sum of squares there, without the prior of the offsets
+    converged   whether it stopped by itself
+    """
+
+    unit: FloatArray
+    offsets: FloatArray
+    J: float
+    iterations: int
+    converged: bool
+
+
+def solve(
+    problem: FitProblem,
+    starts: FloatArray,
+    max_iterations: int = 80,
+    ridge: float = 0.0,
+    anchor: FloatArray | None = None,
+    stop: Callable[[], bool] = lambda: False,
+) -> list[LeastSquaresResult]:
+    """Minimise J within the unit cube from every column of ``starts`` (n_targets, n_starts).
+
+    Where the problem estimates initial states, their offsets are eliminated from each step exactly: a case's six
+    touch its own residuals only.  What is minimised then is J plus the prior of the offsets.
+
+    ridge, anchor   adds ridge * |unit - anchor|^2 to what is minimised (not to the J reported): picks, among
+                    coefficient sets that fit equally well, the one nearest to ``anchor``
+    stop            asked before every iteration; True ends all starts where they are
+    Returns a result per start, never above what it began with.
+    """
+    n_starts = starts.shape[1]
+    z = np.clip(starts, 0.0, 1.0).astype(float)
+    d = np.repeat(problem.offsets[:, None], n_starts, axis=1)
+    centre = np.zeros(len(z)) if anchor is None else anchor
+    prior = problem.prior
+
+    def penalty(unit: FloatArray, offsets: FloatArray) -> FloatArray:
+        away = np.sum((unit - centre[:, None]) ** 2, axis=0)
+        return np.asarray(ridge * away + np.einsum("cps,cs->p", offsets**2, prior))
+
+    J = problem.costs(z, d)
+    value = J + penalty(z, d)
+    damping = np.full(n_starts, 1e-3)
+    iterations = np.zeros(n_starts, dtype=int)
+    quiet = np.zeros(n_starts, dtype=int)
+    converged = np.zeros(n_starts, dtype=bool)
+    running = np.isfinite(J)
+    for _ in range(max_iterations):
+        rows = np.flatnonzero(running)
+        if len(rows) == 0 or stop():
+            break
+        linear = [_Linear(problem, *parts) for parts in zip(*_jacobians(problem, z, d, rows), strict=True)]
+        tried = np.empty((len(z), len(rows), len(DAMPINGS)))
+        moved = np.empty((len(problem.cases), len(rows), len(DAMPINGS), 6))
+        for i, row in enumerate(rows):
+            hessian = linear[i].hessian + ridge * np.eye(len(z))
+            gradient = linear[i].gradient + ridge * (z[:, row] - centre)
+            scale = np.maximum(np.diag(hessian), 1e-12 * np.diag(hessian).max() + 1e-300)
+            for k, factor in enumerate(DAMPINGS):
+                damped = hessian + np.diag(damping[row] * factor * scale)
+                tried[:, i, k] = bounded_step(damped, gradient, z[:, row])
+                moved[:, i, k] = linear[i].offsets(tried[:, i, k] - z[:, row])
+        unit, offsets = tried.reshape(len(z), -1), moved.reshape(len(problem.cases), -1, 6)
+        costs = problem.costs(unit, offsets)
+        values = (costs + penalty(unit, offsets)).reshape(len(rows), -1)
+        costs = costs.reshape(len(rows), -1)
+        for i, row in enumerate(rows):
+            iterations[row] += 1
+            best = int(np.argmin(values[i]))
+            gain = value[row] - values[i, best]
+            if gain > 0.0:
+                z[:, row], d[:, row] = tried[:, i, best], moved[:, i, best]
+                J[row], value[row] = costs[i, best], values[i, best]
+                damping[row] = min(max(damping[row] * DAMPINGS[best], 1e-12), 1e6)
+            else:
+                damping[row] *= 1e3
+            small = 0.0 < gain <= 1e-12 * value[row]
+            quiet[row] = quiet[row] + 1 if small else 0
+            if quiet[row] >= 2 or damping[row] > 1e8 or value[row] < 1e-24:
+                converged[row], running[row] = True, False
+    return [
+        LeastSquaresResult(z[:, k].copy(), d[:, k].copy(), float(J[k]), int(iterations[k]), bool(converged[k]))
+        for k in range(n_starts)
+    ]
+
+
+def fit_offsets(problem: FitProblem, unit: FloatArray, max_iterations: int = 12) -> FloatArray:
+    """Offsets (n_cases, 6) of the initial states that fit best with the targets held at ``unit`` (n_targets,).
+
+    A case keeps the best offsets met, beginning with none, so J and prior together never rise.
+    """
+    point = unit[:, None]
+    best = np.zeros((len(problem.cases), 6))
+    value = problem.costs_by_case(point, best[:, None])[:, 0]
+    for _ in range(max_iterations):
+        parts = _jacobians(problem, point, best[:, None], np.array([0]))
+        linear = _Linear(problem, *(part[0] for part in parts))
+        tried = linear.offsets(np.zeros(len(unit)))
+        found = problem.costs_by_case(point, tried[:, None])[:, 0] + np.sum(problem.prior * tried**2, axis=1)
+        better = found < value * (1.0 - 1e-9)
+        best[better], value[better] = tried[better], found[better]
+        if not better.any():
+            break
+    return best
+
+
+def _jacobians(problem: FitProblem, z: FloatArray, d: FloatArray, rows: npt.NDArray[np.intp]) -> tuple[FloatArray, ...]:
+    """Offsets, residuals and derivatives of the running starts, first axis the start.
+
+    Where a neighbour diverged the derivative counts as flat.
+    """
+    residuals, jacobians, by_offset = problem.jacobians(z[:, rows], d[:, rows])
+    return (
+        d[:, rows].transpose(1, 0, 2),
+        residuals,
+        np.where(np.isfinite(jacobians), jacobians, 0.0),
+        np.where(np.isfinite(by_offset), by_offset, 0.0),
+    )
+
+
+class _Linear:
+    """The quadratic model of what is minimised around one point, with the offsets of initial states eliminated.
+
+    hessian, gradient  by target, halves of the second and first derivatives
+    """
+
+    def __init__(
+        self, problem: FitProblem, d: FloatArray, residuals: FloatArray, jacobian: FloatArray, by_offset: FloatArray
+    ):
+        self.hessian = jacobian.T @ jacobian
+        self.gradient = jacobian.T @ residuals
+        self._d = d
+        self._limit = None if problem.sigma is None else LARGEST * problem.sigma
+        self._from_step: list[tuple[FloatArray, FloatArray]] = []
+        if problem.sigma is None:
+            return
+        for case, rows in enumerate(problem.rows_of_cases):
+            S, J = by_offset[rows], jacobian[rows]
+            prior = problem.prior[case]
+            own = S.T @ S + np.diag(prior)
+            cross = S.T @ J
+            slope = S.T @ residuals[rows] + prior * d[case]
+            solved = np.linalg.solve(own, np.column_stack([slope, cross]))
+            self.hessian -= cross.T @ solved[:, 1:]
+            self.gradient -= cross.T @ solved[:, 0]
+            self._from_step.append((solved[:, 0], solved[:, 1:]))
+
+    def offsets(self, step: FloatArray) -> FloatArray:
+        """(n_cases, 6) best offsets after a step (n_targets,) of the targets, kept within their limit."""
+        if self._limit is None:
+            return self._d
+        moved = np.array([d - own - cross @ step for d, (own, cross) in zip(self._d, self._from_step, strict=True)])
+        return np.asarray(np.clip(moved, -self._limit, self._limit))
+
+
+def bounded_step(hessian: FloatArray, gradient: FloatArray, z: FloatArray) -> FloatArray:
+    """The point of the unit cube that minimises the quadratic model around z: bounds are added as steps cross them."""
+    n = len(z)
+    held = ((z <= 0.0) & (gradient > 0.0)) | ((z >= 1.0) & (gradient < 0.0))
+    step = np.zeros(n)
+    for _ in range(n):
+        free = ~held
+        if not free.any():
+            break
+        right = -(gradient[free] + hessian[np.ix_(free, held)] @ step[held])
+        try:
+            step[free] = np.linalg.solve(hessian[np.ix_(free, free)], right)
+        except np.linalg.LinAlgError:
+            step[free] = np.linalg.lstsq(hessian[np.ix_(free, free)], right, rcond=None)[0]
+        beyond = free & ((z + step < 0.0) | (z + step > 1.0))
+        if not beyond.any():
+            break
+        step[beyond] = np.where(z[beyond] + step[beyond] < 0.0, -z[beyond], 1.0 - z[beyond])
+        held = held | beyond
+    return np.clip(z + step, 0.0, 1.0)

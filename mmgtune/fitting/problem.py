@@ -1,0 +1,159 @@
+"""A calibration problem: candidates in the unit cube to J and residuals, all lanes in one call."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from ..backends import Backend, Cases, Integrator
+from ..model import Model
+from .box import Box
+from .initial import prior_weight
+
+FloatArray = npt.NDArray[np.float64]
+
+LANES_AT_ONCE = 4096
+"""Largest number of runs kept with their residuals at one time; bounds the memory a Jacobian takes."""
+
+
+@dataclass(eq=False)
+class FitProblem:
+    """Model, cases, targets and box; counts how often it simulated the whole set for one candidate.
+
+    sigma    (n_cases, 6) deviations of the measured initial states where these are estimated, None where they are held
+    offsets  (n_cases, 6) offsets of the initial states in use where a call gives none; zero at first
+    """
+
+    model: Model
+    cases: Cases
+    box: Box
+    backend: Backend
+    integrator: Integrator = field(default_factory=Integrator)
+    sigma: FloatArray | None = None
+    offsets: FloatArray = field(init=False)
+    evaluations: int = field(default=0, init=False)
+
+    def __post_init__(self) -> None:
+        self.mask: npt.NDArray[np.bool_] = self.cases.weight > 0.0
+        self.offsets = np.zeros((len(self.cases), 6))
+        self.prior = np.zeros((len(self.cases), 6))  # weight of squared offsets beside J
+        if self.sigma is not None:
+            self.prior = prior_weight(self.sigma, self.cases.weight)
+        self._root = np.sqrt(self.cases.weight[self.mask])
+        self._target = self.cases.target[self.mask]
+
+    @property
+    def n_residuals(self) -> int:
+        """Number of differences that count."""
+        return int(self.mask.sum())
+
+    @property
+    def rows_of_cases(self) -> list[slice]:
+        """Where the residuals of each case stand."""
+        ends = np.cumsum([int(part.sum()) for part in self.mask])
+        return [slice(int(end - part.sum()), int(end)) for end, part in zip(ends, self.mask, strict=True)]
+
+    def theta(self, unit: FloatArray) -> FloatArray:
+        """Coefficient matrix (n_rows, n_candidates) at positions (n_targets, n_candidates) in the unit cube."""
+        return self.model.matrix(self.box.names, self.box.from_unit(unit))
+
+    def initial(self, n_candidates: int, offsets: FloatArray | None) -> FloatArray:
+        """Initial states (n_cases, n_candidates, 6)."""
+        if offsets is None:
+            return np.repeat((self.cases.initial + self.offsets)[:, None], n_candidates, axis=1)
+        return self.cases.initial[:, None] + offsets
+
+    def costs(self, unit: FloatArray, offsets: FloatArray | None = None) -> FloatArray:
+        """J of candidates (n_targets, n_candidates) -> (n_candidates,); inf where a run diverged.
+
+        offsets  (n_cases, n_candidates, 6) of the initial states, the problem's own where None
+        """
+        return np.asarray(self.costs_by_case(unit, offsets).sum(axis=0))
+
+    def costs_by_case(self, unit: FloatArray, offsets: FloatArray | None = None) -> FloatArray:
+        """J of candidates by case, (n_cases, n_candidates); arguments as for ``costs``."""
+        n_candidates = unit.shape[1]
+        self.evaluations += n_candidates
+        result = self.backend.run(
+            self.model,
+            self.theta(unit),
+            self.cases,
+            initial=self.initial(n_candidates, offsets),
+            integrator=self.integrator,
+        )
+        return result.cost
+
+    def residuals(self, unit: FloatArray, offsets: FloatArray | None = None) -> FloatArray:
+        """Residuals of candidates (n_targets, n_candidates) -> (n_candidates, n_residuals); J is their sum of squares.
+
+        Ordered by case, sample and channel.  A candidate that diverged has inf everywhere.
+        """
+        n_candidates = unit.shape[1]
+        self.evaluations += n_candidates
+        initial = self.initial(n_candidates, offsets)
+        out = np.empty((n_candidates, self.n_residuals))
+        chunk = max(1, LANES_AT_ONCE // len(self.cases))
+        for first in range(0, n_candidates, chunk):
+            rows = slice(first, first + chunk)
+            part = unit[:, rows]
+            result = self.backend.run(
+                self.model,
+                self.theta(part),
+                self.cases,
+                initial=initial[:, rows],
+                integrator=self.integrator,
+                keep_states=True,
+            )
+            assert result.states is not None  # asked for
+            for k in range(part.shape[1]):
+                with np.errstate(invalid="ignore", over="ignore"):
+                    out[first + k] = (result.states[:, k][self.mask] - self._target) * self._root
+                if result.diverged[:, k].any():
+                    out[first + k] = np.inf
+        return out
+
+    def jacobians(
+        self, unit: FloatArray, offsets: FloatArray | None = None, step: float = 1e-6
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Residuals and their derivatives at points (n_targets, n_points) of the unit cube, by forward differences.
+
+        -> residuals (n_points, n_residuals), derivatives by target (n_points, n_residuals, n_targets), and by the six
+        initial offsets of the case a residual belongs to (n_points, n_residuals, 6; empty where they are held).
+        Steps go inwards where a point is on the upper bound.  All points and columns run as lanes of one call.
+        """
+        n_targets, n_points = unit.shape
+        extra = 0 if self.sigma is None else 6
+        n_columns = 1 + n_targets + extra
+        steps = np.where(unit + step > 1.0, -step, step)
+        columns = np.repeat(unit[:, :, None], n_columns, axis=2)
+        for k in range(n_targets):
+            columns[k, :, 1 + k] += steps[k]
+        base_offsets = np.repeat(self.offsets[:, None], n_points, axis=1) if offsets is None else offsets
+        moved = np.repeat(base_offsets[:, :, None], n_columns, axis=2)
+        if self.sigma is not None:
+            for k in range(6):
+                moved[:, :, 1 + n_targets + k, k] += step * self.sigma[:, None, k] * 1e3
+        values = self.residuals(columns.reshape(n_targets, -1), moved.reshape(len(self.cases), -1, 6))
+        values = values.reshape(n_points, n_columns, -1)
+        base = values[:, 0]
+        with np.errstate(invalid="ignore"):
+            slopes = (values[:, 1 : 1 + n_targets] - base[:, None]) / steps.T[:, :, None]
+            by_offset = values[:, 1 + n_targets :] - base[:, None]
+            if self.sigma is not None:
+                for case, rows in enumerate(self.rows_of_cases):
+                    by_offset[:, :, rows] /= (step * self.sigma[case] * 1e3)[None, :, None]
+        return base, slopes.transpose(0, 2, 1), by_offset.transpose(0, 2, 1)
+
+    def central_jacobian(self, unit: FloatArray, step: float = 1e-5) -> tuple[FloatArray, FloatArray]:
+        """Residuals (n_residuals,) and derivatives (n_residuals, n_targets) at one point, by central differences.
+
+        Looks a step beyond the bounds where the point is on one.
+        """
+        n = len(unit)
+        columns = np.repeat(unit[:, None], 2 * n + 1, axis=1)
+        columns[np.arange(n), 1 + np.arange(n)] += step
+        columns[np.arange(n), 1 + n + np.arange(n)] -= step
+        values = self.residuals(columns)
+        return values[0], (values[1 : n + 1] - values[n + 1 :]).T / (2.0 * step)

@@ -1,0 +1,41 @@
+"""Rendered reports, made once for all tests of this folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from mmgtune.report import render
+
+from . import fake_run
+
+
+@pytest.fixture(scope="session")
+def fit_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A rendered run folder of a good fit."""
+    folder = fake_run.make_fit(tmp_path_factory.mktemp("fit") / "run")
+    render(folder)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def sweep_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A rendered sweep whose runs have no folders of their own but one."""
+    folder = fake_run.make_sweep(tmp_path_factory.mktemp("sweep") / "run", runs=False)
+    fake_run.make_fit(folder / "ar_0.5", 0.5)
+    render(folder)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def page(fit_folder: Path) -> str:
+    """The HTML of the fit's report without the chart library, which would drown every search."""
+    return without_library((fit_folder / "report.html").read_text(encoding="utf-8"))
+
+
+def without_library(text: str) -> str:
+    """The page's own part of a report."""
+    from plotly.offline import get_plotlyjs
+
+    return text.replace(get_plotlyjs(), "")

@@ -1,0 +1,138 @@
+"""The report's small parts: numbers as words, thinning, headings."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from mmgtune.report import advice, charts, confidence, fit_page, tables, tracks, wording
+from mmgtune.report.html import embedded
+from mmgtune.report.markdown import escaped
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.017, "0.017"), (-2.0, "−2"), (14230.4, "14\u202f230"), (1234.5, "1234"), (250.04, "250.0"), (1e-6, "1e−6"),
+        (1.5e12, "1.5e12"), (123456789.0, "123\u202f500\u202f000"), (0.0, "0"), (None, "–"), (math.nan, "–"),
+        (math.inf, "–"), (True, "–"), ("x", "–"),
+    ],
+)  # fmt: skip
+def test_shown(value: object, text: str) -> None:
+    assert wording.shown(value) == text
+
+
+def test_percent() -> None:
+    assert wording.percent(wording.change(200.0, 1.0)) == "−99.50\u00a0%"
+    assert wording.percent(wording.change(100.0, 112.34)) == "+12.3\u00a0%"
+    assert wording.percent(wording.change(-2.0, -3.0)) == "−50.0\u00a0%"
+    assert wording.percent(wording.change(1.0, 1.0)) == "0\u00a0%"
+    assert wording.percent(wording.change(0.0, 1.0)) == "–"
+
+
+def test_fixed_has_no_negative_zero() -> None:
+    assert wording.fixed(-0.001, 2) == "0.00"
+    assert wording.fixed(-1.25, 1) == "−1.2"
+
+
+@pytest.mark.parametrize(
+    ("key", "words"),
+    [
+        ("advance_m", ("advance", "m")), ("steady_yaw_rate_deg_per_s", ("steady yaw rate", "deg/s")),
+        ("time_90_s", ("time 90", "s")), ("steady_speed_m_per_s", ("steady speed", "m/s")),
+        ("speed_ratio_90", ("speed ratio 90", "")), ("overshoot_1_deg", ("overshoot 1", "deg")),
+    ],
+)  # fmt: skip
+def test_index_words(key: str, words: tuple[str, str]) -> None:
+    assert wording.index_words(key) == words
+    assert wording.is_index(key)
+
+
+def test_circumstances_are_no_indices() -> None:
+    for key in ("L_pp_m", "execute_time_s", "rudder_angle_deg", "advance_over_L", "approach_speed_m_per_s"):
+        assert not wording.is_index(key)
+
+
+def test_thinning_keeps_peaks() -> None:
+    values = np.sin(np.arange(100_000) / 3000.0)
+    values[54_321] = 7.0
+    values[60_000:70_000] = np.nan
+    keep = charts.spread(values, 1000)
+    assert len(keep) <= 1002
+    assert np.nanmax(values[keep]) == 7.0
+    assert np.isnan(values[keep]).any()
+    assert charts.spread(values[:1000], 1000).tolist() == list(range(1000))
+
+
+def test_heading_residual_ignores_whole_turns() -> None:
+    t = np.arange(50.0)
+    measured = {"t": t, "psi": np.mod(0.3 * t, 2 * np.pi)}
+    simulated = {"t": t, "psi": 0.3 * t + 2 * np.pi + 0.1}
+    assert charts.residual(simulated, measured, "psi") == pytest.approx(0.1)
+    gappy = {"t": t, "psi": np.where((t > 20) & (t < 30), np.nan, measured["psi"])}
+    assert np.nanmax(np.abs(charts.residual(simulated, gappy, "psi") - 0.1)) < 1e-9
+
+
+def test_simulation_on_other_times_is_compared_where_both_are() -> None:
+    t = np.arange(0.0, 10.0)
+    measured = {"t": t, "x": 2.0 * t, "y": 0.0 * t}
+    simulated = {"t": np.arange(0.0, 5.0, 0.5), "x": 2.0 * np.arange(0.0, 5.0, 0.5) + 3.0, "y": np.zeros(10)}
+    _, gap = tracks.distance_from(simulated, measured)
+    assert gap[:5] == pytest.approx(3.0)
+    assert np.isnan(gap[5:]).all()
+
+
+def test_numbers_are_no_finer_than_a_sensor() -> None:
+    t = np.arange(3.0)
+    motion = {name: t + 0.123456789 for name in ("x", "y", "psi", "u", "v_m", "r", "n", "delta")} | {"t": t}
+    payload, thinned = charts.histories(["a"], {"a": {"measured": motion}})
+    assert not thinned
+    data = payload["trials"][0]["data"]
+    assert data[0] == {"y": [7.07, 64.37, 121.67], "x0": 0.0, "dx": 1.0}
+    assert len(data) == len(payload["traces"])
+
+
+def test_evaluations_count_on_through_restarts() -> None:
+    history = {"evaluations": np.array([12.0, 24.0, 24.0, 48.0])}
+    assert confidence.running(history).tolist() == [12.0, 24.0, 24.0, 48.0]
+    history = {"evaluations": np.array([12.0, 24.0, 12.0, 24.0, 12.0])}
+    assert confidence.running(history).tolist() == [12.0, 24.0, 36.0, 48.0, 60.0]
+
+
+def test_embedded_json_cannot_end_its_element() -> None:
+    value = ["</script>", "<!--", "&", "\u2028"]
+    text = embedded(value)
+    assert not set("<>&\u2028") & set(text)
+    assert json.loads(text) == value
+
+
+def test_markdown_escapes() -> None:
+    assert escaped("a|b <i> `c`\n# d & [e](f)") == r"a\|b &lt;i&gt; \`c\` \# d &amp; \[e\](f)"
+
+
+def test_commands_quote_what_they_are_given() -> None:
+    data = {
+        "profile": {"path": "my ship.toml"},
+        "trials": {"path": "a;b"},
+        "options": {},
+        "at_bound": ["x"],
+        "out": "r 1/",
+    }
+    commands = [command for _, command in advice.after_fit(data)]
+    assert commands == [
+        "mmgtune sweep -p 'my ship.toml' -t 'a;b'",
+        "mmgtune simulate -p 'r 1/profile.toml' --turn 35 --turn -35 --zigzag 10/10 --zigzag 20/20",
+    ]
+
+
+def test_deviation() -> None:
+    assert tables.deviation(200.0, 210.0, "m") == "+5.0\u00a0%"
+    assert tables.deviation(10.0, 8.5, "deg") == "−1.5 deg"
+    assert tables.deviation(None, 8.5, "deg") == "–"
+
+
+def test_worst_trial_is_the_diverged_one() -> None:
+    assert fit_page._misfit_of({"J_after": None}) == math.inf
