@@ -145,7 +145,8 @@ def run_manoeuvre(
         diverged = not bool(np.isfinite(state).all())
         if diverged or helmsman.finished(float(state[2] - heading)):
             break
-    return Motion(id, sample * np.arange(len(rows)), np.vstack(rows).astype(np.float64), np.array(controls), diverged)
+    times: FloatArray = sample * np.arange(len(rows), dtype=np.float64)
+    return Motion(id, times, np.vstack(rows), np.array(controls), diverged)
 
 
 def _rk4(

@@ -161,8 +161,8 @@ def plan(profile: ShipProfile, trials: TrialSet, options: FitOptions, out: Path)
     lines = [
         f"profile   {profile.name} ({profile.path})",
         f"trials    tune: {', '.join(trials.tune)}; test: {', '.join(trials.test) or 'none'} ({trials.path})",
-        f"search    {options.method}, seed {options.seed}, {options.starts} least-squares starts, "
-        f"{options.integrator}, initial states {options.initial}",
+        f"search    {options.method}, seed {options.seed}, {options.starts} least-squares starts",
+        f"runs      {options.integrator}, initial states {options.initial}",
         f"compares  {problem.n_residuals} differences over {problem.cases.steps} steps; back end {options.backend}",
         f"writes    {out}: fit.json, profile.toml, history.parquet, motions.parquet, report.html and .md, figures",
         f"targets   within +-{options.a_r:g} of their values:",

@@ -18,7 +18,7 @@ NULL_RATIO = 1e-6
 """Singular values below this share of the largest are zero but for the rounding of finite differences."""
 
 CHECKED = 1e-3
-"""Share of a step of 1 % over which a direction is checked by simulation: trading is exact along a curve, not a line."""
+"""Share of a step of 1 % over which a direction is checked by simulation: trading is exact along a curve only."""
 
 PART = 0.02
 """Share of a direction's largest weight from which a coefficient counts as taking part in it."""
@@ -185,7 +185,7 @@ def _direction(problem: FitProblem, unit: FloatArray, relative: FloatArray, vect
     box = problem.box
     members = np.flatnonzero(np.abs(vector) > PART * np.abs(vector).max())
     values = box.from_unit(unit)
-    percent = 100.0 * vector * relative / np.abs(np.where(values != 0.0, values, relative))
+    percent = 100.0 * vector * relative / np.where(values != 0.0, values, relative)
     # Members that scale alike differ by rounding only: the order of the targets then decides.
     by_size = sorted(members, key=lambda i: float(f"{abs(percent[i]):.3g}"))
     first = by_size[len(by_size) // 3] if len(by_size) > 2 else by_size[0]

@@ -183,22 +183,34 @@ class _Linear:
 
 
 def bounded_step(hessian: FloatArray, gradient: FloatArray, z: FloatArray) -> FloatArray:
-    """The point of the unit cube that minimises the quadratic model around z: bounds are added as steps cross them."""
+    """The point of the unit cube that minimises a convex quadratic around z, by an active-set method.
+
+    Moves towards the minimum over the free coordinates up to the first bound, holds what met it, and releases a held
+    coordinate once its slope points inwards.
+    """
     n = len(z)
+    point = z.copy()
     held = ((z <= 0.0) & (gradient > 0.0)) | ((z >= 1.0) & (gradient < 0.0))
-    step = np.zeros(n)
-    for _ in range(n):
-        free = ~held
-        if not free.any():
+    for _ in range(3 * n):
+        free = np.flatnonzero(~held)
+        slope = gradient + hessian @ (point - z)
+        if len(free):
+            try:
+                step = -np.linalg.solve(hessian[np.ix_(free, free)], slope[free])
+            except np.linalg.LinAlgError:
+                step = -np.linalg.lstsq(hessian[np.ix_(free, free)], slope[free], rcond=None)[0]
+            room = np.where(step > 0.0, 1.0 - point[free], point[free])
+            share = float(np.min(room / np.maximum(np.abs(step), 1e-300)))
+            if share < 1.0:
+                point[free] += share * step
+                met = free[room <= share * np.abs(step) * (1.0 + 1e-12)]
+                point[met] = np.where(point[met] > 0.5, 1.0, 0.0)
+                held[met] = True
+                continue
+            point[free] += step
+            slope = gradient + hessian @ (point - z)
+        inwards = np.where(held & (point <= 0.0), -slope, np.where(held, slope, 0.0))
+        if inwards.max() <= 1e-14 * np.abs(gradient).max():
             break
-        right = -(gradient[free] + hessian[np.ix_(free, held)] @ step[held])
-        try:
-            step[free] = np.linalg.solve(hessian[np.ix_(free, free)], right)
-        except np.linalg.LinAlgError:
-            step[free] = np.linalg.lstsq(hessian[np.ix_(free, free)], right, rcond=None)[0]
-        beyond = free & ((z + step < 0.0) | (z + step > 1.0))
-        if not beyond.any():
-            break
-        step[beyond] = np.where(z[beyond] + step[beyond] < 0.0, -z[beyond], 1.0 - z[beyond])
-        held = held | beyond
-    return np.clip(z + step, 0.0, 1.0)
+        held[int(np.argmax(inwards))] = False
+    return np.clip(point, 0.0, 1.0)

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
+from .. import resources
 from .wording import clean, count, number, shown
 
 Advice = tuple[tuple[str, str], ...]
@@ -13,9 +15,15 @@ Advice = tuple[tuple[str, str], ...]
 
 def _inputs(data: Mapping[str, Any]) -> tuple[str, str]:
     """The profile and the trials as options of a shell command."""
-    profile = clean(data["profile"].get("path") or data["profile"].get("id") or "PROFILE")
-    trials = clean(data["trials"].get("path") or "TRIALS")
+    profile = shortest(data["profile"].get("path") or data["profile"].get("id") or "PROFILE", "ship_profiles")
+    trials = shortest(data["trials"].get("path") or "TRIALS", "trials")
     return f"-p {shlex.quote(profile)}", f"-t {shlex.quote(trials)}"
+
+
+def shortest(path: str, kind: str) -> str:
+    """A path as it may be given on the command line: what comes with the program by its name alone."""
+    place = Path(path)
+    return clean(place.stem if place.parent == resources.folder(kind) else path)
 
 
 def after_fit(data: Mapping[str, Any]) -> Advice:

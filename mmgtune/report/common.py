@@ -6,6 +6,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
+from .advice import shortest
 from .drawing import Drawn
 from .page import Details, Picture, Prose, Section, Table, Tile
 from .tables import pairs, tone
@@ -81,10 +82,10 @@ def provenance(data: Mapping[str, Any]) -> Section:
         ("made", data.get("created")),
         ("mmgtune", data.get("mmgtune")),
         ("time taken", f"{shown(data.get('wall_s'), 3)} s" if number(data.get("wall_s")) is not None else None),
-        ("ship profile", profile.get("path")),
+        ("ship profile", shortest(profile.get("path") or "", "ship_profiles")),
         ("profile's hash (SHA-256)", profile.get("sha256")),
         ("profile's source", profile.get("source")),
-        ("trials", trials.get("path")),
+        ("trials", shortest(trials.get("path") or "", "trials")),
         ("tuned on", ", ".join(map(str, trials.get("tune") or [])) or "none"),
         ("tested on", ", ".join(map(str, trials.get("test") or [])) or "none"),
     ]

@@ -78,7 +78,7 @@ def _forest_legend() -> list[Any]:
     kinds = (
         ("inside, ± 2 standard errors", "o", AFTER, AFTER),
         ("at a bound", "D", FLAG, FLAG),
-        ("not determined by these trials", "o", AFTER, "none"),
+        ("hollow: not determined by these trials", "o", AFTER, "none"),
     )
     return [
         Line2D(

@@ -111,9 +111,8 @@ def correlation(names: Sequence[str], matrix: Sequence[Sequence[Any]]) -> str:
     value, one, two = best
     if abs(value) > 0.9:
         return f"{one} and {two} are hardly told apart (correlation {fixed(value, 2)}); trust their combination more."
-    return (
-        f"No two coefficients stand for each other: the strongest correlation is {fixed(value, 2)}, of {one} and {two}."
-    )
+    text = f"Among these {len(names)} coefficients the strongest correlation is {fixed(value, 2)}, of {one} and {two}"
+    return text + ": each has an effect of its own."
 
 
 def convergence(data: Mapping[str, Any]) -> str:

@@ -8,7 +8,7 @@ from . import advice, charts, confidence, figures, findings, tables, tables_of_m
 from .common import assumptions, generated_banner, misfit_tile, picture, provenance, warnings
 from .drawing import Drawn
 from .page import Commands, Details, Histories, Page, Prose, Section, Tile
-from .wording import change, clean, number, percent, shown
+from .wording import change, clean, count, number, percent, shown
 
 if TYPE_CHECKING:
     from .load import RunRecord
@@ -72,7 +72,7 @@ def _tiles(record: RunRecord) -> tuple[Tile, ...]:
                 "Distance off track",
                 f"{shown(before, 3)} → {shown(after, 3)} m",
                 percent(moved),
-                "",
+                f"root mean square, mean of {count(len(record.results), 'trial')}",
                 tables.tone(moved),
             )
         )
@@ -148,6 +148,7 @@ def _histories(record: RunRecord, drawings: dict[str, Drawn]) -> Section | None:
         payload,
         tuple(clean(name) for name in names),
         static,
+        names.index(str(worst["id"])),
         tuple(notes),
         (tables.errors(record),),
     )

@@ -52,7 +52,10 @@ class Picture:
 
 @dataclass(frozen=True)
 class Histories:
-    """The interactive time histories: a payload for the page's script, and ``static`` for paper or without script."""
+    """The interactive time histories: a payload for the page's script, and ``static`` for paper or without script.
+
+    selected  index of the trial shown first
+    """
 
     kind: ClassVar[str] = "histories"
     id: str
@@ -60,6 +63,7 @@ class Histories:
     payload: Mapping[str, Any]
     names: tuple[str, ...]
     static: Picture
+    selected: int = 0
     notes: tuple[str, ...] = ()
     data: tuple[Table, ...] = ()
 

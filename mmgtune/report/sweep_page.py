@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     from .load import SweepRecord
 
 
+_JUDGES = {"test set": "the test trials", "leave-one-trial-out": "leaving each trial out in turn"}
+
+
 def build(record: SweepRecord) -> Page:
     """Everything the report of a sweep says."""
     data, runs = record.data, record.runs
@@ -26,7 +29,7 @@ def build(record: SweepRecord) -> Page:
         Section(
             "ranges",
             "Which range?",
-            (picture(drawn, "Misfit", misfit.finding(data, runs)), *_overfitting(data), misfit.table(record)),
+            (picture(drawn, "Misfit", misfit.finding(record)), *_overfitting(data), misfit.table(record)),
         ),
         _coefficients(runs, best, drawings),
         Section("next", "What to do next", (Commands(advice.after_sweep(data)),)),
@@ -72,9 +75,9 @@ def _coefficients(runs: Sequence[Mapping[str, Any]], best: float | None, drawing
 
 def _tiles(data: Mapping[str, Any], runs: Sequence[Mapping[str, Any]], best: float | None) -> tuple[Tile, ...]:
     by = clean((data.get("recommended") or {}).get("by") or "")
-    tiles = [
-        Tile("Recommended range", f"a_r = {best:g}" if best is not None else NONE, note=f"chosen by {by}" if by else "")
-    ]
+    notes = [f"±{100.0 * best:g}\u00a0%"] if best is not None else []
+    notes += [f"chosen by {_JUDGES.get(by, by)}"] if by else []
+    tiles = [Tile("Recommended range", f"a_r = {best:g}" if best is not None else NONE, note=", ".join(notes))]
     run = next((run for run in runs if best is not None and number(run["a_r"]) == best), None)
     if run is not None:
         tiles.append(misfit_tile("Misfit J, trials tuned on", data.get("J_tune_before"), run.get("J_tune"), ""))
@@ -104,12 +107,9 @@ def _overfitting(data: Mapping[str, Any]) -> tuple[Prose, ...]:
     if not found.get("sentence"):
         return ()
     sentence = clean(found["sentence"])
-    return (
-        Prose(
-            (f"Over-fitting: {sentence}" if found.get("found") else sentence,),
-            tone="warning" if found.get("found") else "",
-        ),
-    )
+    if found.get("found") and not sentence.startswith("Over-fitting"):
+        sentence = f"Over-fitting: {sentence}"
+    return (Prose((sentence,), tone="warning" if found.get("found") else ""),)
 
 
 def _find(run: Mapping[str, Any], name: str) -> Mapping[str, Any]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from .page import Cell, Table, cells
 from .tables import tone
 from .tracks import distance_from, onto
-from .wording import NONE, change, clean, fixed, index_words, is_index, number, percent, shown
+from .wording import NONE, PRINCIPAL, change, clean, fixed, index_words, is_index, number, percent, shown
 
 if TYPE_CHECKING:
     from .tracks import Motion
@@ -84,6 +84,8 @@ def index_errors(results: Sequence[Mapping[str, Any]]) -> Table | None:
                     errors.setdefault(key, []).append((abs(first - true) * relative, abs(last - true) * relative))
     rows = []
     for key, pairs in errors.items():
+        if key not in PRINCIPAL and errors.keys() & set(PRINCIPAL):
+            continue
         words, unit = index_words(key)
         first, last = (sum(pair[side] for pair in pairs) / len(pairs) for side in (0, 1))
         mark = "\u00a0deg" if unit == "deg" else "\u00a0%"

@@ -54,6 +54,17 @@ _CIRCUMSTANCES = re.compile(
 )
 
 
+_AT_HEADING = (
+    (re.compile(r"time_(\d+)_s"), "time to {} deg", "s"),
+    (re.compile(r"speed_ratio_(\d+)"), "speed at {} deg over approach speed", ""),
+)
+PRINCIPAL = (
+    "advance_m", "transfer_m", "tactical_diameter_m", "steady_diameter_m", "steady_speed_m_per_s",
+    "steady_drift_angle_deg", "time_90_s", "overshoot_1_deg", "overshoot_2_deg", "initial_turning_time_s", "period_s",
+)  # fmt: skip
+"""The indices a manoeuvre is first judged by; the others stand in the table of every trial."""
+
+
 def is_index(key: str) -> bool:
     """Whether an index says how the ship manoeuvres, rather than how the trial was run, or the same in lengths."""
     return _CIRCUMSTANCES.match(key) is None
@@ -125,6 +136,9 @@ def clean(text: Any) -> str:
 
 def index_words(key: str) -> tuple[str, str]:
     """Words and unit of an index of a manoeuvre, from its key: tactical_diameter_m is a tactical diameter in m."""
+    for pattern, words, unit in _AT_HEADING:
+        if match := pattern.fullmatch(key):
+            return words.format(match.group(1)), unit
     for suffix, unit in _SUFFIXES:
         if key.endswith(suffix):
             return clean(key.removesuffix(suffix)).replace("_", " "), unit

@@ -31,11 +31,11 @@ def sweep_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="session")
 def page(fit_folder: Path) -> str:
     """The HTML of the fit's report without the chart library, which would drown every search."""
-    return without_library((fit_folder / "report.html").read_text(encoding="utf-8"))
+    return read(fit_folder)
 
 
-def without_library(text: str) -> str:
+def read(folder: Path) -> str:
     """The page's own part of a report."""
     from plotly.offline import get_plotlyjs
 
-    return text.replace(get_plotlyjs(), "")
+    return (folder / "report.html").read_text(encoding="utf-8").replace(get_plotlyjs(), "")

@@ -1,0 +1,192 @@
+"""Search: bounds reached exactly, seeds, replay, certificate, sweep."""
+
+import numpy as np
+import pytest
+
+from mmgtune.errors import OptionError
+from mmgtune.fitting import FitOptions, Hooks, fit, make_problem, sweep
+from mmgtune.fitting.cmaes import from_box, search, to_box
+from mmgtune.fitting.least_squares import bounded_step, solve
+from mmgtune.profile import load_profile
+from mmgtune.trial import load_trials
+from tests.fitting.conftest import make_set
+
+
+@pytest.fixture(scope="module")
+def problem(suzaku, noisy):
+    return make_problem(suzaku.profile, noisy, FitOptions(a_r=0.1))
+
+
+def test_cosine_map_reaches_the_bounds():
+    z = np.linspace(-3.0, 3.0, 2001)
+    unit = to_box(z)
+    assert unit.min() == 0.0
+    assert unit.max() == pytest.approx(1.0, abs=1e-15)
+    inside = np.linspace(0.0, 1.0, 101)
+    np.testing.assert_allclose(to_box(from_box(inside)), inside, atol=1e-15)
+
+
+def test_box_is_exact_at_its_ends(problem):
+    box = problem.box
+    assert np.array_equal(box.from_unit(np.zeros(12)), box.low)
+    assert np.array_equal(box.from_unit(np.ones(12)), box.high)
+    np.testing.assert_allclose(box.from_unit(box.to_unit(box.pre)), box.pre, rtol=1e-14)
+
+
+def test_same_seed_same_search_and_numpy_s_stream_is_left_alone(problem):
+    start = problem.box.to_unit(problem.box.pre)
+    np.random.seed(5)  # noqa: NPY002 - the global stream is what must not matter
+    one = search(problem, 3, start, populations=(12,))
+    before = np.random.get_state()[1].tolist()  # noqa: NPY002
+    np.random.seed(9)  # noqa: NPY002
+    two = search(problem, 3, start, populations=(12,))
+    np.random.seed(5)  # noqa: NPY002
+    assert np.random.get_state()[1].tolist() == before  # noqa: NPY002
+    other = search(problem, 4, start, populations=(12,))
+    assert np.array_equal(one.unit, two.unit)
+    assert not np.array_equal(one.unit, other.unit)
+
+
+def test_replay_is_bit_identical(problem):
+    start = problem.box.to_unit(problem.box.pre)
+    whole = search(problem, 3, start, populations=(12, 24))
+    asked = []
+
+    def stop():
+        asked.append(1)
+        return len(asked) >= 40
+
+    part = search(problem, 3, start, populations=(12, 24), stop=stop)
+    assert not part.finished
+    simulated = []
+    rest = search(
+        problem, 3, start, populations=(12, 24), recorded=part.costs, on_generation=lambda s: simulated.append(1)
+    )
+    assert np.array_equal(rest.unit, whole.unit)
+    assert rest.history == whole.history
+    assert len(simulated) == len(whole.history) - 40
+
+
+def test_no_files_are_left_behind(problem, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "cma_signals.in").write_text("{'timeout': 0}")
+    found = search(problem, 1, problem.box.to_unit(problem.box.pre), populations=(12,))
+    assert found.history[-1].generation > 20
+    assert [p.name for p in tmp_path.iterdir()] == ["cma_signals.in"]
+
+
+def test_least_squares_and_cma_es_agree_with_active_bounds(problem):
+    start = problem.box.to_unit(problem.box.pre)
+    by_squares = solve(problem, start[:, None])[0]
+    by_cma = search(problem, 1, start, populations=(12, 24))
+    assert ((by_squares.unit == 0.0) | (by_squares.unit == 1.0)).sum() >= 3
+    assert pytest.approx(by_squares.J, rel=1e-4) == by_cma.J
+
+
+def test_bounded_step_solves_the_bounded_quadratic():
+    from scipy.optimize import lsq_linear
+
+    rng = np.random.default_rng(0)
+    for _ in range(50):
+        A = rng.standard_normal((20, 6))
+        b = 3.0 * rng.standard_normal(20)
+        z = rng.uniform(size=6)
+        found = bounded_step(A.T @ A, A.T @ b, z)
+        best = lsq_linear(A, -b, bounds=(-z, 1.0 - z)).x + z
+        value, least = (np.sum((A @ (point - z) + b) ** 2) for point in (found, best))
+        assert value <= least * (1.0 + 1e-9)
+        assert found.min() >= 0.0
+        assert found.max() <= 1.0
+
+
+def test_least_squares_never_ends_above_its_start(problem):
+    starts = np.random.default_rng(1).uniform(size=(12, 6))
+    before = problem.costs(starts)
+    assert all(end.J <= J for end, J in zip(solve(problem, starts, max_iterations=2), before, strict=True))
+
+
+def test_certificate_of_a_bounded_optimum(suzaku, noisy):
+    result = fit(suzaku.profile, noisy, FitOptions(a_r=0.1, method="least-squares", starts=8))
+    certificate = result.certificate
+    assert certificate.starts_agreeing == certificate.starts == 8
+    assert certificate.projected_gradient < 1e-3
+    assert certificate.step_gain < 1e-7
+    assert {b.name for b in certificate.active} == set(result.at_bound)
+    assert all(b.gain_per_percent > 0.0 for b in certificate.active)
+
+
+def test_bound_multiplier_predicts_what_a_wider_bound_gains(suzaku, noisy):
+    result = fit(suzaku.profile, noisy, FitOptions(a_r=0.1, method="least-squares", starts=2))
+    bound = max(result.certificate.active, key=lambda b: b.gain_per_percent)
+    problem = make_problem(suzaku.profile, noisy, FitOptions(a_r=0.1))
+    i = problem.box.names.index(bound.name)
+    step = 0.001 * abs(problem.box.pre[i])
+    (problem.box.low if bound.side == "low" else problem.box.high)[i] += step * (-1 if bound.side == "low" else 1)
+    start = problem.box.to_unit(list(result.theta.values()))
+    wider = solve(problem, start[:, None])[0]
+    assert pytest.approx(0.1 * bound.gain_per_percent, rel=0.1) == result.J - wider.J
+
+
+def test_a_stop_keeps_the_best_so_far(suzaku, noisy):
+    calls = []
+
+    def stop():
+        calls.append(1)
+        return len(calls) > 30
+
+    result = fit(suzaku.profile, noisy, FitOptions(), hooks=Hooks(stop=stop))
+    assert result.interrupted
+    assert result.J_before > result.J
+
+
+@pytest.fixture(scope="module")
+def swept():
+    return sweep(
+        load_profile("suzaku"), load_trials("suzaku"), (0.6, 0.2, 0.4), FitOptions(method="least-squares", starts=4)
+    )
+
+
+def test_j_never_rises_with_a_r(swept):
+    assert swept.widths == [0.2, 0.4, 0.6]
+    J = [run.J for run in swept.runs]
+    assert J[0] >= J[1] >= J[2]
+
+
+def test_every_test_trial_improves_on_the_bundled_trials(swept):
+    for run in swept.runs:
+        for one in run.compared:
+            if one.role == "test":
+                assert one.J["after"] < one.J["before"], (run.options.a_r, one.trial.id)
+
+
+def test_recommendation_is_the_least_test_cost(swept):
+    judged = swept.judged()
+    assert swept.recommended()["a_r"] == swept.widths[int(np.argmin(judged))]
+    assert swept.recommended()["by"] == "test set"
+
+
+def test_without_test_trials_one_trial_is_left_out_at_a_time(suzaku):
+    trials = make_set(suzaku, noise=1.0, test=False)
+    swept = sweep(suzaku.profile, trials, (0.2, 0.4), FitOptions(method="least-squares", starts=2))
+    assert swept.recommended()["by"] == "leave-one-trial-out"
+    assert len(swept.leave_one_out) == 2
+    assert swept.recommended()["a_r"] == 0.4  # the truth lies beyond 0.2
+
+
+def test_over_fitting_is_named(swept):
+    """Doctored: a wider box that fits the tune trials better and the others worse."""
+
+    class Doctored(type(swept)):
+        def judged(self):
+            return [1.0, 2.0, 5.0]
+
+    doctored = Doctored(swept.runs, None, 1.0)
+    assert doctored.overfitting()["found"]
+    assert "a_r = 0.4" in doctored.overfitting()["sentence"]
+    assert doctored.recommended()["a_r"] == 0.2
+
+
+@pytest.mark.parametrize("widths", [(), (0.2, 0.2), (0.2, -0.1)])
+def test_impossible_widths_are_refused_before_any_work(suzaku, noisy, widths):
+    with pytest.raises(OptionError):
+        sweep(suzaku.profile, noisy, widths, FitOptions(method="least-squares"))

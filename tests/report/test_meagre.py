@@ -1,0 +1,163 @@
+"""Reports of runs that lack something, and folders no report can be made of."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mmgtune.errors import OptionError, OutputError
+from mmgtune.report import render
+
+from . import fake_run
+from .conftest import read
+
+
+def meagre(tmp_path: Path, **changes: object) -> str:
+    """The page of a fit with parts of its record replaced."""
+    folder = fake_run.write_fit(tmp_path / "run", *fake_run.edited(**changes))
+    render(folder)
+    return read(folder)
+
+
+def test_no_test_set(tmp_path: Path) -> None:
+    page = meagre(tmp_path, J_test=None, J_test_before=None, at_bound=[])
+    assert "no test set" in page
+    assert "leave each trial out in turn" in page
+
+
+def test_least_squares_only(tmp_path: Path) -> None:
+    data, history, motions = fake_run.edited(restarts=[])
+    data["agreement"] |= {"restarts": 0, "restarts_agreeing": 0, "J_cmaes": None, "relative_difference": None}
+    folder = fake_run.write_fit(tmp_path / "run", data, history.iloc[:0], motions)
+    render(folder)
+    assert "No evolution strategy ran" in read(folder)
+    assert not (folder / "figures" / "convergence.svg").exists()
+
+
+def test_no_history_file_and_a_figure_left_from_before(tmp_path: Path) -> None:
+    data, _, motions = fake_run.edited()
+    folder = fake_run.write_fit(tmp_path / "run", data, None, motions)
+    (folder / "figures").mkdir()
+    (folder / "figures" / "convergence.svg").write_text("old")
+    render(folder)
+    assert not (folder / "figures" / "convergence.svg").exists()
+
+
+def test_little_is_known(tmp_path: Path) -> None:
+    data, history, motions = fake_run.edited(
+        stderr={}, identifiability={}, certificate={}, agreement={}, restarts=[], starts=[], assumptions=[],
+        citations=[], warnings=[], environment={}, verdict="", J_tune_before=None,
+    )  # fmt: skip
+    for row in data["coefficients"]:
+        row |= {"stderr": None, "at_bound": None, "determined": True}
+    for row in data["trial_results"]:
+        row |= {"rms": {}, "indices": {}, "J_before": None}
+    folder = fake_run.write_fit(tmp_path / "run", data, history, motions)
+    render(folder)
+    page = read(folder)
+    assert '<section id="identifiability"' not in page
+    assert '<section id="indices"' not in page
+    assert "0 of 12 coefficients" in page
+
+
+def test_diverged_trial(tmp_path: Path) -> None:
+    data, history, motions = fake_run.edited()
+    data["trial_results"][0] |= {"status_after": "diverged", "J_after": None}
+    first = data["trial_results"][0]["id"]
+    late = (motions["trial"] == first) & (motions["which"] == "after") & (motions["t"] > 20)
+    motions.loc[late, ["x", "y", "psi", "u", "v_m", "r"]] = np.nan
+    folder = fake_run.write_fit(tmp_path / "run", data, history, motions)
+    render(folder)
+    page = read(folder)
+    assert ">diverged</td>" in page
+    assert f"fits worst after tuning: {first}" in page
+
+
+def test_one_sample_gaps_and_nothing_measured(tmp_path: Path) -> None:
+    data, history, motions = fake_run.edited()
+    names = [row["id"] for row in data["trial_results"]]
+    one = motions["trial"] == names[0]
+    motions = motions[~one | (motions["t"] == 0.0)].copy()
+    motions.loc[motions["trial"] == names[1], ["x", "y", "psi", "u", "v_m", "r", "n", "delta"]] = np.nan
+    motions = motions[(motions["trial"] != names[2]) | (motions["which"] != "measured")]
+    motions = motions[motions["trial"] != names[3]]
+    folder = fake_run.write_fit(tmp_path / "run", data, history, motions)
+    render(folder)
+    payload = json.loads(re.search(r'id="payload">(.*?)</script>', read(folder), re.S)[1])
+    assert len(payload["trials"]) == 7
+    assert payload["trials"][0]["data"][0]["mode"] == "markers"
+
+
+def test_no_trials_and_no_coefficients(tmp_path: Path) -> None:
+    data, history, motions = fake_run.edited(trial_results=[], coefficients=[], at_bound=[])
+    folder = fake_run.write_fit(tmp_path / "run", data, history, motions.iloc[:0])
+    render(folder)
+    assert '<section id="provenance"' in read(folder)
+
+
+def test_many_long_trials_are_thinned(tmp_path: Path) -> None:
+    import pandas as pd
+
+    data, history, _ = fake_run.edited()
+    row = data["trial_results"][0]
+    data["trial_results"] = [{**row, "id": f"trial {place:02d}", "J_after": float(place)} for place in range(50)]
+    motion = fake_run.motion(35.0, 4000, 130.0, 3.1, 20.0)
+    parts = [
+        pd.DataFrame({"trial": trial["id"], "which": which, **motion})
+        for trial in data["trial_results"]
+        for which in ("measured", "before", "after")
+    ]
+    folder = fake_run.write_fit(tmp_path / "run", data, history, pd.concat(parts))
+    render(folder)
+    page = read(folder)
+    assert len(page) < 20e6
+    assert "least and the greatest sample of every stretch" in page
+    assert "Shown are the 16 trials with the greatest J" in page
+
+
+def test_errors_name_place_and_remedy(tmp_path: Path) -> None:
+    folder = tmp_path / "run"
+    with pytest.raises(OptionError, match="no such run folder"):
+        render(folder)
+    folder.mkdir()
+    with pytest.raises(OptionError, match="not a run folder"):
+        render(folder)
+    (folder / "fit.json").write_text("{")
+    with pytest.raises(OptionError, match="cannot be read"):
+        render(folder)
+    (folder / "fit.json").write_text("[]")
+    with pytest.raises(OptionError, match="not the record of a fit"):
+        render(folder)
+    (folder / "fit.json").write_text('{"kind": "fit", "schema": 1}')
+    with pytest.raises(OptionError, match="lacks profile, trials"):
+        render(folder)
+    fake_run.write_fit(folder, *fake_run.edited(schema=2, mmgtune="9.9"))
+    with pytest.raises(OptionError, match=r"newer mmgtune") as caught:
+        render(folder)
+    problem = caught.value.problems[0]
+    assert problem.where.endswith("fit.json")
+    assert "9.9" in problem.fix
+
+
+def test_missing_or_broken_motions(tmp_path: Path) -> None:
+    data, history, motions = fake_run.fit_data()
+    folder = fake_run.write_fit(tmp_path / "run", data, history, None)
+    with pytest.raises(OptionError, match="not whole"):
+        render(folder)
+    (folder / "motions.parquet").write_text("no parquet")
+    with pytest.raises(OptionError, match="cannot be read"):
+        render(folder)
+    motions.drop(columns="psi").to_parquet(folder / "motions.parquet")
+    with pytest.raises(OptionError, match="psi"):
+        render(folder)
+
+
+def test_output_that_cannot_be_written(tmp_path: Path) -> None:
+    folder = fake_run.make_fit(tmp_path / "run")
+    (folder / "figures").write_text("a file where a folder is needed")
+    with pytest.raises(OutputError):
+        render(folder)
