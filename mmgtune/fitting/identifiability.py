@@ -186,9 +186,9 @@ def _direction(problem: FitProblem, unit: FloatArray, relative: FloatArray, vect
     members = np.flatnonzero(np.abs(vector) > PART * np.abs(vector).max())
     values = box.from_unit(unit)
     percent = 100.0 * vector * relative / np.where(values != 0.0, values, relative)
-    # Members that scale alike differ by rounding only: the order of the targets then decides.
-    by_size = sorted(members, key=lambda i: float(f"{abs(percent[i]):.3g}"))
-    first = by_size[len(by_size) // 3] if len(by_size) > 2 else by_size[0]
+    # The unit is a member of middling weight; of those that scale alike the first target, whatever the rounding.
+    sizes = [float(f"{abs(percent[i]):.3g}") for i in members]
+    first = members[sizes.index(sorted(sizes)[len(sizes) // 3])]
     factor = 1.0 / percent[first]
     step = CHECKED * vector * relative * factor / box.width
     both = np.column_stack([unit, unit + step])

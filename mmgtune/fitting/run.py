@@ -110,7 +110,12 @@ def fit(
     J_before = float(problem.costs(before[:, None])[0])
 
     hooks.on_phase("least squares")
-    ends = solve(problem, _starts(problem, options, before, more_starts), stop=hooks.stop)
+    starts = _starts(problem, options, before, more_starts)
+    if problem.sigma is not None:  # far from an optimum, free initial states only lead astray
+        held = make_problem(profile, trials, FitOptions(**{**options.__dict__, "initial": "measured"}))
+        starts = np.column_stack([end.unit for end in solve(held, starts, stop=hooks.stop)])
+        problem.evaluations += held.evaluations
+    ends = solve(problem, starts, stop=hooks.stop)
     best = min(ends, key=lambda end: end.J)
     problem.offsets = best.offsets
     found: Search | None = None

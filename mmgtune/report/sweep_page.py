@@ -9,6 +9,7 @@ from . import advice, figures, misfit
 from .common import assumptions, generated_banner, misfit_tile, picture, provenance, warnings
 from .drawing import Drawn
 from .page import Cell, Commands, Page, Prose, Section, Table, Tile, cells
+from .tables import described
 from .wording import NONE, clean, listing, number, short, shown
 
 if TYPE_CHECKING:
@@ -128,7 +129,7 @@ def _values(names: Sequence[str], runs: Sequence[Mapping[str, Any]], best: float
         first = next((row for run in runs if (row := _find(run, name))), {})
         line: list[str | Cell] = [
             short(clean(name)),
-            clean(first.get("label") or ""),
+            described(first),
             shown(first.get("pre_determined")),
         ]
         for run in runs:

@@ -139,6 +139,12 @@ def deviation(true: float | None, value: float | None, unit: str) -> str:
     return percent(change(true, value))
 
 
+def described(row: Mapping[str, Any]) -> str:
+    """What a coefficient means, with its unit where it has one."""
+    unit = unit_words(row.get("unit"))
+    return clean(row.get("label") or "") + (f" [{unit}]" if unit else "")
+
+
 def coefficients(rows: Iterable[Mapping[str, Any]]) -> Table:
     """Tuned coefficients with their box, standard error and what is to be said of them."""
     lines = []
@@ -153,7 +159,7 @@ def coefficients(rows: Iterable[Mapping[str, Any]]) -> Table:
         lines.append(
             cells(
                 short(clean(row["name"])),
-                clean(row.get("label") or "") + (f" [{unit}]" if (unit := unit_words(row.get("unit"))) else ""),
+                described(row),
                 shown(row["pre_determined"]),
                 f"{shown(row['low'])} … {shown(row['high'])}",
                 Cell(shown(row["value"])),

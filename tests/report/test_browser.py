@@ -101,7 +101,7 @@ def test_fit_opens_clean_and_draws(browser: Any, fit_folder: Path, scheme: str) 
             "paths => paths.filter(path => path.getAttribute('d').length > 100).length"
         )
         assert drawn >= 26  # one for each trace, more where there are gaps
-        titles = visit.page.locator("#chart .ytitle").all_text_contents()
+        titles = visit.page.locator("#chart .infolayer text[class^='y'][class$='title']").all_text_contents()
         assert len(titles) == 12
         assert all("[" in title for title in titles)
         assert visit.page.evaluate(OVERFLOW) == 0

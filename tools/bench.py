@@ -1,0 +1,179 @@
+"""Measure the speed of the simulators and of whole commands; write ``docs/benchmarks.json`` and ``docs/benchmarks.md``.
+
+    python tools/bench.py [FOLDER]
+
+Figures of one run belong together: compare their ratios, not their seconds, with another machine's.  Simulator times
+are the least of several repeats; commands run as processes of their own, cold with an empty cache of compiled kernels
+and warm with a filled one.  Nothing else should run meanwhile.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import subprocess
+import sys
+import tempfile
+import time
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmgtune.backends import get_backend, pad
+from mmgtune.backends.compiled import cores
+from mmgtune.files import write_text
+from mmgtune.fitting.cmaes import _strategy
+from mmgtune.model import Model
+from mmgtune.profile import load_profile
+
+STEPS = 600
+LANES = (1, 48, 512, 4096)
+COMMANDS = {
+    "fit --ar 0.5": ["fit", "--ar", "0.5", "--no-report"],
+    "fit --ar 0.5, with report": ["fit", "--ar", "0.5"],
+    "fit --ar 0.5 --method least-squares": ["fit", "--ar", "0.5", "--method", "least-squares", "--no-report"],
+    "sweep, five values": ["sweep", "--no-report"],
+    "sweep, five values, --method least-squares": ["sweep", "--method", "least-squares", "--no-report"],
+}
+
+
+def lane_steps() -> list[dict[str, Any]]:
+    """Nanoseconds per lane and step of SUZAKU in a 35 deg turn, Euler, costs only."""
+    model = Model(load_profile("suzaku"))
+    t = np.arange(STEPS + 1.0)
+    controls = np.column_stack([np.full(len(t), 106.0 / 60.0), np.full(len(t), np.radians(35.0))])
+    cases = pad([t], [controls], [np.array([0.0, 0.0, 0.0, 3.086, 0.0, 0.0])])
+    cases.weight[:, 1:, :3] = 1.0
+    rows = []
+    for lanes in LANES:
+        theta = model.matrix(["hull.R_0"], np.linspace(0.012, 0.02, lanes)[None])
+        row: dict[str, Any] = {"lanes": lanes}
+        for name, repeats in (("numpy", 3), ("compiled", 30)):
+            backend = get_backend(name)
+            backend.run(model, theta, cases)
+            best = min(timed(lambda b=backend, c=theta: b.run(model, c, cases)) for _ in range(repeats))
+            row[f"{name}_ns"] = round(best / (lanes * STEPS) * 1e9, 1)
+        row["ratio"] = round(row["numpy_ns"] / row["compiled_ns"], 1)
+        rows.append(row)
+    return rows
+
+
+def search_overhead() -> list[dict[str, Any]]:
+    """Microseconds per candidate that CMA-ES itself takes, 12 targets."""
+    rows = []
+    for population in (12, 48, 128):
+        strategy = _strategy(np.full(12, 0.5), population, np.random.RandomState(1), 1.0)
+        generations = 60
+
+        def loop(s: Any = strategy, n: int = generations) -> None:
+            for _ in range(n):
+                asked = s.ask()
+                s.tell(asked, [float(np.sum((x - 0.3) ** 2)) for x in asked])
+
+        rows.append({"lambda": population, "us_per_candidate": round(timed(loop) / generations / population * 1e6, 1)})
+    return rows
+
+
+def commands() -> list[dict[str, Any]]:
+    """Whole processes: seconds cold and warm, and peak memory."""
+    rows = []
+    with tempfile.TemporaryDirectory() as folder:
+        for title, arguments in COMMANDS.items():
+            cache = Path(folder) / title.replace(" ", "_").replace(",", "")
+            environment = {**os.environ, "MMGTUNE_CACHE": str(cache)}
+            line = [sys.executable, "-m", "mmgtune", *arguments, "--quiet", "--force", "--out", str(cache / "run")]
+            row: dict[str, Any] = {"command": f"mmgtune {' '.join(arguments)}", "title": title}
+            for kind in ("cold", "warm"):
+                row[f"{kind}_s"], row["peak_memory_mb"] = run(line, environment)
+            rows.append(row)
+    return rows
+
+
+def run(line: list[str], environment: dict[str, str]) -> tuple[float, int]:
+    """Seconds and peak memory [MB] of a process, which must succeed."""
+    began = time.perf_counter()
+    process = subprocess.Popen(line, env=environment, stdout=subprocess.DEVNULL)
+    _, status, usage = os.wait4(process.pid, 0)
+    if status:
+        raise SystemExit(f"failed: {' '.join(line)}")
+    return round(time.perf_counter() - began, 2), usage.ru_maxrss // 1024
+
+
+def timed(work: Any) -> float:
+    """Seconds that a call takes."""
+    began = time.perf_counter()
+    work()
+    return time.perf_counter() - began
+
+
+def machine() -> dict[str, Any]:
+    """What the figures were measured on."""
+    cpu = platform.processor()
+    if Path("/proc/cpuinfo").exists():
+        names = [line for line in Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name")]
+        cpu = names[0].partition(":")[2].strip() if names else cpu
+    import numba
+
+    return {
+        "cpu": cpu,
+        "cores": cores(),
+        "system": platform.system(),
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "numba": numba.__version__,
+        "date": f"{datetime.now(UTC):%Y-%m-%d}",
+    }
+
+
+def as_markdown(found: dict[str, Any]) -> str:
+    """The page for people."""
+    m = found["machine"]
+    lines = [
+        "# Benchmarks",
+        "",
+        "Measured by `make bench`, which writes this page and `benchmarks.json`. Ratios carry over between machines,",
+        f"seconds do not. This run: {m['cpu']}, {m['cores']} cores, Python {m['python']},",
+        f"NumPy {m['numpy']}, numba {m['numba']}, {m['date']}.",
+        "",
+        "## One step of one lane",
+        "",
+        f"SUZAKU, {STEPS} Euler steps of a 35 deg turn, cost only; nanoseconds per lane and step, overhead of the call included.",
+        "",
+        "| lanes | NumPy | compiled | ratio |",
+        "|---:|---:|---:|---:|",
+        *(f"| {r['lanes']} | {r['numpy_ns']:,} | {r['compiled_ns']:,} | {r['ratio']} |" for r in found["lane_steps"]),
+        "",
+        "## CMA-ES itself",
+        "",
+        "Asking and telling, without any simulation, 12 targets.",
+        "",
+        "| lambda | microseconds per candidate |",
+        "|---:|---:|",
+        *(f"| {r['lambda']} | {r['us_per_candidate']} |" for r in found["search_overhead"]),
+        "",
+        "## Whole commands",
+        "",
+        "On the bundled, generated trials of SUZAKU, as processes; cold compiles the kernel first.",
+        "",
+        "| command | cold [s] | warm [s] | peak memory [MB] |",
+        "|---|---:|---:|---:|",
+        *(f"| `{r['command']}` | {r['cold_s']} | {r['warm_s']} | {r['peak_memory_mb']} |" for r in found["commands"]),
+        "",
+    ]
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    target = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent.parent / "docs"
+    results = {
+        "machine": machine(),
+        "lane_steps": lane_steps(),
+        "search_overhead": search_overhead(),
+        "commands": commands(),
+    }
+    write_text(target / "benchmarks.json", json.dumps(results, indent=1) + "\n")
+    write_text(target / "benchmarks.md", as_markdown(results))
+    print(as_markdown(results))
