@@ -140,7 +140,7 @@ def as_markdown(found: dict[str, Any]) -> str:
         "",
         "## One step of one lane",
         "",
-        f"SUZAKU, {STEPS} Euler steps of a 35 deg turn, cost only; nanoseconds per lane and step, overhead of the call included.",
+        f"SUZAKU, {STEPS} Euler steps of a 35 deg turn, cost only; ns per lane and step, call overhead included.",
         "",
         "| lanes | NumPy | compiled | ratio |",
         "|---:|---:|---:|---:|",

@@ -78,8 +78,6 @@ def command(
         from ..report import render
 
         render(folder)
-        for run in result.to_dict()["runs"]:
-            render(folder / run["out"])
     if json:
         c.print_json({**result.to_dict(), "out": str(folder)})
     else:

@@ -63,7 +63,11 @@ class SweepResult:
         edge = (
             " It is the widest tried; a wider box may do better." if best == len(judged) - 1 and len(judged) > 1 else ""
         )
-        return {"a_r": a_r, "by": by, "sentence": f"a_r = {a_r:g} has the least J on {how} ({judged[best]:.4g}).{edge}"}
+        return {
+            "a_r": a_r,
+            "by": by,
+            "sentence": f"Use a_r = {a_r:g}: it has the least J on {how} ({judged[best]:.4g}).{edge}",
+        }
 
     def overfitting(self) -> dict[str, Any]:
         """Whether J rises on trials not used while it falls on those tuned to."""
