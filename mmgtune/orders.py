@@ -22,8 +22,11 @@ from .simulation import Motion
 
 FloatArray = npt.NDArray[np.float64]
 
-FINE = 0.1
-"""Step of the integration [s], fourth-order Runge-Kutta."""
+FINE = 0.01
+"""Step of the integration, fourth-order Runge-Kutta, as a share of the time the ship takes for its own length."""
+
+LONGEST_STEP = 0.25
+"""Longest step [s]; it is also how often the helmsman looks at the compass."""
 
 
 class Helmsman(Protocol):
@@ -97,6 +100,7 @@ def run_manoeuvre(
     heading: float = 0.0,
     longest: float = 1800.0,
     sample: float = 1.0,
+    step: float | None = None,
     engine: Callable[[float], float] | None = None,
 ) -> Motion:
     """Simulate a manoeuvre given as orders, sampled every ``sample`` seconds.
@@ -105,6 +109,7 @@ def run_manoeuvre(
     n        propeller revolutions [1/s], the profile's where None
     heading  approach heading [rad]
     longest  time [s] after which the run ends in any case
+    step     longest step of the integration and of the helmsman [s]; chosen from length and speed where None
     engine   revolutions as a share of ``n`` from the share of the approach speed left; constant where None
     Raises OptionError where the profile has no approach condition and none is given.
     """
@@ -126,7 +131,8 @@ def run_manoeuvre(
     p = model.coefficients(model.matrix())
     state = np.array([0.0, 0.0, heading, U_0, 0.0, 0.0])
     delta, revolutions = 0.0, n_0
-    steps = max(1, round(sample / FINE))
+    longest_step = step or min(LONGEST_STEP, FINE * model.L_pp / U_0)
+    steps = max(1, math.ceil(sample / longest_step - 1e-9))
     h = sample / steps
     rows: list[FloatArray] = [state]
     controls = [(revolutions, delta)]

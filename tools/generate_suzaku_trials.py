@@ -83,6 +83,7 @@ def generate(folder: Path) -> None:
             n=rng.uniform(100.0, 106.0) / 60.0,
             heading=rng.uniform(-np.pi, np.pi),
             longest=longest,
+            step=0.1,
             engine=lambda share: 1.0 - RPM_DROP * (1.0 - share),
         )
         write_trial(measured(motion, manoeuvre, seed, rng), folder / f"{name}.parquet", overwrite=True)

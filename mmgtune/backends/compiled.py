@@ -14,8 +14,8 @@ from ..model import Model
 from .cases import Cases, FloatArray, Integrator, LaneResult, finish
 from .kernel_source import WIDTH, kernel_source
 
-WORTH_A_THREAD = 200_000
-"""Lane-steps (about 8 ms of work) below which starting a second thread costs more than it saves."""
+WORTH_A_THREAD = 20_000
+"""Lane-steps (under a millisecond of work) below which starting a second thread costs more than it saves."""
 
 
 @lru_cache(maxsize=1)
@@ -66,7 +66,7 @@ class Compiled:
         cost = np.empty((n_cases, n_blocks, WIDTH))
         fastest2 = np.empty((n_cases, n_blocks, WIDTH))
         end = np.empty((n_cases, n_blocks, 6 * WIDTH))
-        states = np.empty((n_cases, n_blocks, T if keep_states else 1, 6 * WIDTH))
+        states = np.empty((n_cases, T if keep_states else 1, 6, n_blocks * WIDTH))
         position, share = integrator.tableau
         fixed = (
             np.ascontiguousarray(blocked),
@@ -84,8 +84,7 @@ class Compiled:
         else:
             cuts = np.linspace(0, tasks, min(tasks, 4 * cores()) + 1).astype(int)
             jobs = [
-                _pool().submit(kernel, *fixed, int(a), int(b), cost, fastest2, end, states)
-                for a, b in pairwise(cuts)
+                _pool().submit(kernel, *fixed, int(a), int(b), cost, fastest2, end, states) for a, b in pairwise(cuts)
             ]
             for job in jobs:
                 job.result()
@@ -94,8 +93,5 @@ class Compiled:
             return values.reshape(n_cases, n_blocks * WIDTH)[:, :n_candidates]
 
         last = end.reshape(n_cases, n_blocks, 6, WIDTH).transpose(0, 1, 3, 2).reshape(n_cases, -1, 6)[:, :n_candidates]
-        kept = None
-        if keep_states:
-            by_lane = states.reshape(n_cases, n_blocks, T, 6, WIDTH).transpose(0, 1, 4, 2, 3)
-            kept = by_lane.reshape(n_cases, n_blocks * WIDTH, T, 6)[:, :n_candidates]
+        kept = states[..., :n_candidates].transpose(0, 3, 1, 2) if keep_states else None
         return finish(per_candidate(cost), per_candidate(fastest2), last, kept)

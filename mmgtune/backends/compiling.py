@@ -82,18 +82,17 @@ def _source_hash() -> str:
 
 
 def cache_folder() -> Path:
-    """Where kernels are kept: MMGTUNE_CACHE, else the user's cache folder, else a temporary one that we may write."""
+    """Where kernels are kept: MMGTUNE_CACHE, else the user's cache folder, else a new temporary one."""
     from platformdirs import user_cache_path
 
     chosen = os.environ.get("MMGTUNE_CACHE")
-    folder = Path(chosen) if chosen else user_cache_path("mmgtune")
-    for candidate in (folder / "kernels", Path(tempfile.gettempdir()) / f"mmgtune-{os.getuid()}" / "kernels"):
-        try:
-            candidate.mkdir(parents=True, exist_ok=True, mode=0o700)
-            if candidate.stat().st_uid == os.getuid() and os.access(candidate, os.W_OK):
-                return candidate
-        except OSError:
-            continue
+    folder = (Path(chosen) if chosen else user_cache_path("mmgtune")) / "kernels"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        if os.access(folder, os.W_OK):
+            return folder
+    except OSError:
+        pass
     return Path(tempfile.mkdtemp(prefix="mmgtune-"))
 
 

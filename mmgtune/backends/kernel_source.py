@@ -33,7 +33,7 @@ def kernel(
     fastest2 = carray(stack({W}), ({W},))
     n_blocks = theta.shape[0]
     n_stages = position.shape[0]
-    keep = states.shape[2] > 1
+    keep = states.shape[1] > 1
     for task in range(first, last):
         case = task // n_blocks
         block = task % n_blocks
@@ -44,9 +44,11 @@ def kernel(
         for l in range({W}):
             J[l] = 0.0
             fastest2[l] = 0.0
+        lane = block * {W}
         if keep:
-            for k in range(6 * {W}):
-                states[case, block, 0, k] = s[k]
+            for channel in range(6):
+                for l in range({W}):
+                    states[case, 0, channel, lane + l] = s[channel * {W} + l]
         for i in range(1, n_samples[case]):
             h = (t[case, i] - t[case, i - 1]) / substeps
             for sub in range(substeps):
@@ -82,12 +84,14 @@ def kernel(
                         difference = s[channel * {W} + l] - goal
                         J[l] += w * difference * difference
             if keep:
-                for k in range(6 * {W}):
-                    states[case, block, i, k] = s[k]
+                for channel in range(6):
+                    for l in range({W}):
+                        states[case, i, channel, lane + l] = s[channel * {W} + l]
         if keep:
-            for i in range(n_samples[case], states.shape[2]):
-                for k in range(6 * {W}):
-                    states[case, block, i, k] = s[k]
+            for i in range(n_samples[case], states.shape[1]):
+                for channel in range(6):
+                    for l in range({W}):
+                        states[case, i, channel, lane + l] = s[channel * {W} + l]
         for l in range({W}):
             cost[case, block, l] = J[l]
             fastest[case, block, l] = fastest2[l]

@@ -83,8 +83,9 @@ def command(
             Problem("--resume needs the folder of the interrupted run", "--resume", fix="add --out FOLDER")
         )
     folder = out or c.default_out(ship)
+    plan = c.plan(ship, data, options, folder)  # also finds what is wrong before a folder is made
     if dry_run:
-        print(c.plan(ship, data, options, folder))
+        print(plan)
         return
     prepare(folder, force=force, resume=resume)
     with Progress(quiet) as progress:

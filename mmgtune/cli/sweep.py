@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -68,8 +69,9 @@ def command(
         identifiable=identifiable,
     )
     folder = out or c.default_out(ship)
+    plans = [c.plan(ship, data, replace(options, a_r=a_r), folder) for a_r in widths]
     if dry_run:
-        print(f"sweep over a_r = {ar}; the first:\n{c.plan(ship, data, options, folder)}")
+        print(f"sweep over a_r = {ar}; the first:\n{plans[0]}")
         return
     prepare(folder, force=force)
     with Progress(quiet, fits=len(widths)) as progress:

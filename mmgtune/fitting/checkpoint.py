@@ -10,6 +10,7 @@ import json
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+from zipfile import BadZipFile
 
 import numpy as np
 import numpy.typing as npt
@@ -61,7 +62,7 @@ class Checkpoint:
                 identity = json.loads(str(data["identity"]))
                 sizes, costs = data["sizes"], data["costs"]
             parts = np.split(costs, np.cumsum(sizes)[:-1]) if len(sizes) else []
-        except (OSError, ValueError, KeyError, EOFError) as error:
+        except (OSError, ValueError, KeyError, EOFError, BadZipFile) as error:
             raise OptionError(
                 Problem(
                     "the checkpoint cannot be read", str(self.path), str(error), "delete it, or run without --resume"

@@ -18,8 +18,11 @@ from .problem import FitProblem
 
 FloatArray = npt.NDArray[np.float64]
 
-DAMPINGS = 10.0 ** np.array([-4.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 4.0])
-"""Multiples of the last damping tried side by side; as many as there are lanes in a block."""
+QUIET = 1e-9
+"""Relative fall of what is minimised that counts as none; two such iterations in a row end a start."""
+
+DAMPINGS = 10.0 ** np.array([-3.0, -1.0, 0.5, 2.0])
+"""Multiples of the last damping tried side by side, as lanes of one call."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +106,7 @@ def solve(
                 damping[row] = min(max(damping[row] * DAMPINGS[best], 1e-12), 1e6)
             else:
                 damping[row] *= 1e3
-            small = 0.0 < gain <= 1e-12 * value[row]
+            small = 0.0 < gain <= QUIET * value[row]
             quiet[row] = quiet[row] + 1 if small else 0
             if quiet[row] >= 2 or damping[row] > 1e8 or value[row] < 1e-24:
                 converged[row], running[row] = True, False

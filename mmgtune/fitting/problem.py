@@ -14,7 +14,7 @@ from .initial import prior_weight
 
 FloatArray = npt.NDArray[np.float64]
 
-LANES_AT_ONCE = 4096
+LANES_AT_ONCE = 512
 """Largest number of runs kept with their residuals at one time; bounds the memory a Jacobian takes."""
 
 
@@ -93,7 +93,7 @@ class FitProblem:
         n_candidates = unit.shape[1]
         self.evaluations += n_candidates
         initial = self.initial(n_candidates, offsets)
-        out = np.empty((n_candidates, self.n_residuals))
+        out = np.empty((self.n_residuals, n_candidates))
         chunk = max(1, LANES_AT_ONCE // len(self.cases))
         for first in range(0, n_candidates, chunk):
             rows = slice(first, first + chunk)
@@ -107,12 +107,12 @@ class FitProblem:
                 keep_states=True,
             )
             assert result.states is not None  # asked for
-            for k in range(part.shape[1]):
-                with np.errstate(invalid="ignore", over="ignore"):
-                    out[first + k] = (result.states[:, k][self.mask] - self._target) * self._root
-                if result.diverged[:, k].any():
-                    out[first + k] = np.inf
-        return out
+            # Lanes last is how compiled states lie in memory: whole rows of lanes are picked at once.
+            picked = result.states.transpose(0, 2, 3, 1)[self.mask]
+            with np.errstate(invalid="ignore", over="ignore"):
+                np.multiply(picked - self._target[:, None], self._root[:, None], out=out[:, rows])
+            out[:, rows][:, result.diverged.any(axis=0)] = np.inf
+        return out.T
 
     def jacobians(
         self, unit: FloatArray, offsets: FloatArray | None = None, step: float = 1e-6
@@ -136,15 +136,15 @@ class FitProblem:
             for k in range(6):
                 moved[:, :, 1 + n_targets + k, k] += step * self.sigma[:, None, k] * 1e3
         values = self.residuals(columns.reshape(n_targets, -1), moved.reshape(len(self.cases), -1, 6))
-        values = values.reshape(n_points, n_columns, -1)
-        base = values[:, 0]
+        values = values.T.reshape(-1, n_points, n_columns).transpose(1, 0, 2)
+        base = values[:, :, :1]
         with np.errstate(invalid="ignore"):
-            slopes = (values[:, 1 : 1 + n_targets] - base[:, None]) / steps.T[:, :, None]
-            by_offset = values[:, 1 + n_targets :] - base[:, None]
+            slopes = (values[:, :, 1 : 1 + n_targets] - base) / steps.T[:, None, :]
+            by_offset = values[:, :, 1 + n_targets :] - base
             if self.sigma is not None:
                 for case, rows in enumerate(self.rows_of_cases):
-                    by_offset[:, :, rows] /= (step * self.sigma[case] * 1e3)[None, :, None]
-        return base, slopes.transpose(0, 2, 1), by_offset.transpose(0, 2, 1)
+                    by_offset[:, rows] /= step * self.sigma[case] * 1e3
+        return base[:, :, 0], slopes, by_offset
 
     def central_jacobian(self, unit: FloatArray, step: float = 1e-5) -> tuple[FloatArray, FloatArray]:
         """Residuals (n_residuals,) and derivatives (n_residuals, n_targets) at one point, by central differences.

@@ -24,7 +24,7 @@ def read_trial(path: Path | str) -> Trial:
     path = Path(path)
     try:
         content = path.read_bytes()
-        table = pq.read_table(pa.BufferReader(content))
+        table = pq.read_table(pa.BufferReader(content), use_threads=False)
     except (OSError, pa.ArrowException) as error:
         raise TrialError(
             Problem(

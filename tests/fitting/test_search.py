@@ -190,3 +190,12 @@ def test_over_fitting_is_named(swept):
 def test_impossible_widths_are_refused_before_any_work(suzaku, noisy, widths):
     with pytest.raises(OptionError):
         sweep(suzaku.profile, noisy, widths, FitOptions(method="least-squares"))
+
+
+@pytest.mark.parametrize("a_r", [0.2, 0.3, 0.4, 0.5, 0.6])
+def test_cma_es_and_least_squares_agree_on_the_bundled_trials(suzaku, a_r):
+    problem = make_problem(suzaku.profile, load_trials("suzaku"), FitOptions(a_r=a_r))
+    start = problem.box.to_unit(problem.box.pre)
+    by_squares = solve(problem, start[:, None])[0].J
+    by_cma = search(problem, 1, start, populations=(12, 24)).J
+    assert by_cma == pytest.approx(by_squares, rel=1e-4)

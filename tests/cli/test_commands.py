@@ -1,0 +1,119 @@
+"""The other commands, help, and the ways out."""
+
+import subprocess
+import sys
+
+import pytest
+
+from mmgtune.trial import read_trial
+from tests.command import run
+
+COMMANDS = [
+    ("fit",), ("sweep",), ("simulate",), ("report",), ("trials", "check"), ("trials", "inspect"), ("profile", "list"),
+    ("profile", "show"), ("profile", "validate"),
+]  # fmt: skip
+HEAVY = ("numpy", "scipy", "pandas", "numba", "cma", "matplotlib", "plotly", "pyarrow", "tomlkit", "jinja2")
+
+
+@pytest.mark.parametrize("command", COMMANDS, ids=" ".join)
+def test_help(command, tmp_path):
+    ended = run(*command, "--help", cwd=tmp_path)
+    assert ended.code == 0
+    assert "Usage: mmgtune" in ended.out.replace("python -m mmgtune", "mmgtune")
+    assert len(ended.out.splitlines()) > 5
+
+
+def test_help_imports_nothing_heavy():
+    code = (
+        "import sys\nsys.argv = ['mmgtune', '--help']\nfrom mmgtune.cli import main\n"
+        "try:\n    main()\nexcept SystemExit as end:\n    assert end.code == 0\n"
+        f"print([name for name in {HEAVY!r} if name in sys.modules], file=sys.stderr)"
+    )
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert ended.stderr.strip().endswith("[]")
+
+
+def test_a_mistyped_command_is_answered_with_the_nearest(tmp_path):
+    ended = run("fti", cwd=tmp_path)
+    assert ended.code == 2
+    assert "fit" in ended.err
+
+
+def test_a_bug_has_its_own_exit_code(monkeypatch, capsys):
+    from mmgtune import cli, profile
+
+    def broken(_name):
+        raise RuntimeError("something nobody thought of")
+
+    monkeypatch.setattr(profile, "load_profile", broken)
+    monkeypatch.setattr(sys, "argv", ["mmgtune", "profile", "validate", "suzaku"])
+    with pytest.raises(SystemExit) as end:
+        cli.main()
+    assert end.value.code == 3
+    err = capsys.readouterr().err
+    assert "nobody thought of" in err
+    path = err.split("full traceback is in ")[1].split(";")[0]
+    with open(path, encoding="utf-8") as file:
+        assert "RuntimeError" in file.read()
+
+
+def test_sweep(tmp_path):
+    arguments = ("--ar", "0.2,0.5", "--method", "least-squares", "--starts", "2", "--no-report", "--quiet")
+    ended = run("sweep", *arguments, "--json", "--out", "run", cwd=tmp_path)
+    assert ended.code == 0
+    document = ended.json()
+    assert document["a_r"] == [0.2, 0.5]
+    assert document["recommended"]["a_r"] == 0.5
+    assert (tmp_path / "run" / "sweep.json").exists()
+    assert (tmp_path / "run" / "ar_0.5" / "profile.toml").exists()
+
+
+def test_simulate_writes_trials_that_read_back(tmp_path):
+    ended = run("simulate", "--turn", "35", "--zigzag", "-10/10", "--out", "sim", "--forces", "--json", cwd=tmp_path)
+    assert ended.code == 0
+    document = ended.json()
+    assert [r["id"] for r in document["runs"]] == ["turn_p35", "zigzag_m10_10"]
+    assert document["runs"][0]["indices"]["tactical_diameter_over_L"] == pytest.approx(1.88, abs=0.02)
+    assert {c["name"] for c in document["runs"][0]["criteria"]} >= {"advance", "tactical diameter"}
+    assert all(c["passed"] for c in document["runs"][0]["criteria"])
+    trial = read_trial(tmp_path / "sim" / "turn_p35.parquet")
+    assert trial.source == "generated"
+    total = trial.extra["hull_X"] + trial.extra["propeller_X"] + trial.extra["rudder_X"]
+    assert total == pytest.approx(trial.extra["total_X"])
+    assert "w_P" in trial.extra
+    again = run("simulate", "--turn", "35", "--out", "sim", cwd=tmp_path)
+    assert again.code == 2
+    assert "exists already" in again.err
+
+
+def test_simulate_trials_beside_the_measured_indices(tmp_path):
+    ended = run("simulate", "--trials", "suzaku", "--json", cwd=tmp_path)
+    runs = {r["id"]: r for r in ended.json()["runs"]}
+    assert len(runs) == 10
+    assert runs["turn_p35"]["measured"]["advance_m"] > runs["turn_p35"]["indices"]["advance_m"]
+    assert runs["zigzag_20"]["measured"]["overshoot_1_deg"] > 0.0
+
+
+def test_trials_check_and_inspect(tmp_path):
+    assert run("trials", "check", "suzaku", "--strict", cwd=tmp_path).code == 0
+    ended = run("trials", "inspect", "suzaku", "--json", cwd=tmp_path)
+    rows = {row["id"]: row for row in ended.json()["trials"]}
+    assert rows["turn_p35"]["role"] == "tune"
+    assert rows["zigzag_10"]["role"] == "other"
+    assert rows["turn_p35"]["ranges"]["delta"]["max"] == pytest.approx(35.0, abs=0.5)
+    assert rows["turn_p35"]["source"] == "generated"
+
+
+def test_profile_commands(tmp_path):
+    listed = run("profile", "list", cwd=tmp_path).out
+    assert all(name in listed for name in ("suzaku", "kvlcc2", "kvlcc2_l7"))
+    shown = run("profile", "show", "suzaku", "--json", cwd=tmp_path).json()
+    assumed = {row["name"] for row in shown["coefficients"] if row["assumption"]}
+    assert assumed >= {"rudder.flap", "particulars.k_zz_", "rudder.x_R_", "propeller.slipstream_kt"}
+    assert run("profile", "validate", "kvlcc2", cwd=tmp_path).code == 0
+
+
+def test_report_of_no_run_is_refused(tmp_path):
+    ended = run("report", ".", cwd=tmp_path)
+    assert ended.code == 2
+    assert "fix" in ended.err

@@ -1,0 +1,62 @@
+"""The command line as a user runs it: a process with its own folder, its own output and its own exit code."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Ended:
+    """How a process ended."""
+
+    code: int
+    out: str
+    err: str
+
+    def json(self) -> Any:
+        """What it printed, which must be one JSON document and nothing else."""
+        return json.loads(self.out)
+
+
+def start(*arguments: str | Path, cwd: Path, env: dict[str, str] | None = None) -> subprocess.Popen[str]:
+    """Start ``mmgtune`` in a folder."""
+    return subprocess.Popen(
+        [sys.executable, "-m", "mmgtune", *map(str, arguments)],
+        cwd=cwd,
+        env={**os.environ, "COLUMNS": "200", "NO_COLOR": "1", **(env or {})},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def run(*arguments: str | Path, cwd: Path, env: dict[str, str] | None = None) -> Ended:
+    """Run ``mmgtune`` in a folder to its end."""
+    process = start(*arguments, cwd=cwd, env=env)
+    out, err = process.communicate(timeout=300)
+    return Ended(process.returncode, out, err)
+
+
+def run_until(ready: Callable[[], bool], sent: signal.Signals, *arguments: str | Path, cwd: Path) -> Ended:
+    """Run ``mmgtune``, send it a signal as soon as ``ready``, and wait for its end."""
+    process = start(*arguments, cwd=cwd)
+    limit = time.monotonic() + 120.0
+    while not ready():
+        assert process.poll() is None, process.communicate()
+        assert time.monotonic() < limit, "never got ready"
+        time.sleep(0.01)
+    process.send_signal(sent)
+    out, err = process.communicate(timeout=120)
+    return Ended(process.returncode, out, err)
+
+
+QUICK = ("--method", "least-squares", "--starts", "2", "--no-report", "--quiet")

@@ -1,0 +1,72 @@
+"""Bundled profiles and the reader."""
+
+from contextlib import suppress
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mmgtune import units
+from mmgtune.errors import ProfileError
+from mmgtune.profile import load_profile, parse_profile, tuned_text
+from mmgtune.resources import profile_names
+
+
+@pytest.mark.parametrize("name", profile_names())
+def test_every_number_has_a_source_and_every_assumption_is_marked(name):
+    profile = load_profile(name)
+    for section in profile.sections.values():
+        for symbol, coefficient in section.coefficients.items():
+            assert coefficient.source, symbol
+    assert profile.assumptions()
+    assert profile.approach is not None
+    assert profile.steering_gear is not None
+    assert set(profile.targets) <= set(profile.names())
+
+
+@pytest.mark.parametrize("name", profile_names())
+def test_tuned_text_round_trip(name):
+    profile = load_profile(name)
+    values = {target: 1.1 * profile.value(target) for target in profile.targets}
+    text = tuned_text(profile, values, dict.fromkeys(values, 0.01), {"a_r": 0.5})
+    tuned = parse_profile(text)
+    for target, value in values.items():
+        assert tuned.value(target) == value
+        assert tuned.coefficient(target).pre_determined == profile.value(target)
+        assert tuned.coefficient(target).stderr == 0.01
+    untouched = [n for n in profile.names() if n not in values]
+    assert [tuned.value(n) for n in untouched] == [profile.value(n) for n in untouched]
+
+
+@settings(max_examples=150, deadline=None)
+@given(data=st.data())
+def test_any_damage_to_a_profile_is_a_profile_error_or_none(data):
+    text = load_profile("suzaku").text
+    at = data.draw(st.integers(0, len(text) - 1))
+    length = data.draw(st.integers(0, 40))
+    rest = data.draw(st.text(max_size=12))
+    with suppress(ProfileError):  # any other exception fails the test
+        parse_profile(text[:at] + rest + text[at + length :])
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("12 kn", "m/s", 12 * 1852 / 3600),
+        ("35 deg", "rad", 0.6108652381980153),
+        ("106 rpm", "1/s", 106 / 60),
+        ("-2.60e-3 1/deg", "1/deg", -2.6e-3),
+        ("2 1/rad", "1/deg", 0.03490658503988659),
+        ("7.00 m", "m", 7.0),
+        ("0.5", "-", 0.5),
+        ("6.282 m^2", "m^2", 6.282),
+    ],
+)
+def test_units(text, unit, value):
+    assert units.parse(text, unit) == (pytest.approx(value),)
+
+
+@pytest.mark.parametrize("text", ["", "m", "1 2 m", "twelve kn", "12", "12 furlong"])
+def test_what_is_no_speed(text):
+    with pytest.raises(ValueError):
+        units.parse(text, "m/s")

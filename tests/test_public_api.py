@@ -1,0 +1,21 @@
+"""The library as a notebook user meets it."""
+
+import mmgtune
+
+
+def test_everything_listed_can_be_had_twice():
+    for name in mmgtune.__all__:
+        first, second = getattr(mmgtune, name), getattr(mmgtune, name)
+        assert first is second
+        assert callable(first)
+
+
+def test_from_profile_to_verdict(tmp_path):
+    profile = mmgtune.load_profile("suzaku")
+    trials = mmgtune.load_trials("suzaku")
+    result = mmgtune.fit(profile, trials, mmgtune.FitOptions(a_r=0.5, method="least-squares", starts=2))
+    assert "4 of 4 of these trials improve" in result.verdict()
+    motion = mmgtune.simulate(result.tuned_profile(), [trials.trials["turn_p35"]])[0]
+    assert not motion.diverged
+    mmgtune.write_run(result, tmp_path / "run")
+    assert mmgtune.render(tmp_path / "run")[0].name == "report.html"
