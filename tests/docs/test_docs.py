@@ -1,0 +1,107 @@
+"""Documents say what the program does."""
+
+import importlib.util
+import re
+import shlex
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from mmgtune.fitting import FitOptions, fit
+from mmgtune.profile import load_profile
+from mmgtune.trial import load_trials
+from tests.command import run
+
+ROOT = Path(__file__).parent.parent.parent
+PAGES = [
+    ROOT / "README.md",
+    *sorted((ROOT / "docs").glob("*.md")),
+    *ROOT.glob("*/*/README.md"),
+    *ROOT.glob("*/README.md"),
+]
+
+
+def code(page, language):
+    """Blocks of one language in a page."""
+    return re.findall(rf"^```{language}\n(.*?)^```", page.read_text(encoding="utf-8"), flags=re.M | re.S)
+
+
+def test_the_example_of_the_readme_runs(capsys):
+    (example,) = code(ROOT / "README.md", "python")
+    exec(compile(example, "README.md", "exec"), {})
+    assert "4 of 4 of these trials improve" in capsys.readouterr().out
+
+
+def test_every_command_shown_is_understood(tmp_path):
+    """Commands are run with --help behind them: options and arguments must exist, nothing is worked on."""
+    shown = {
+        line.split("#")[0].strip()
+        for page in PAGES
+        for block in code(page, "")
+        for line in block.splitlines()
+        if line.startswith("mmgtune ")
+    }
+    assert len(shown) > 5
+    for line in shown:
+        ended = run(*shlex.split(line)[1:], "--help", cwd=tmp_path)
+        assert ended.code == 0, (line, ended.err)
+
+
+def test_links_lead_somewhere():
+    for page in PAGES:
+        for target in re.findall(r"\]\(([^)#]+)\)", page.read_text(encoding="utf-8")):
+            if not target.startswith("http"):
+                assert (page.parent / target).exists(), (page.name, target)
+
+
+def test_nomenclature_is_current():
+    spec = importlib.util.spec_from_file_location("write_nomenclature", ROOT / "tools" / "write_nomenclature.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    assert (ROOT / "docs" / "nomenclature.md").read_text(encoding="utf-8") == module.nomenclature()
+
+
+def test_every_key_of_the_result_is_documented():
+    result = fit(load_profile("suzaku"), load_trials("suzaku"), FitOptions(method="least-squares", starts=1))
+    text = (ROOT / "docs" / "formats.md").read_text(encoding="utf-8")
+    missing = [key for key in result.to_dict() if f"`{key}`" not in text]
+    missing += [key for key in result.to_dict()["coefficients"][0] if f"`{key}`" not in text]
+    missing += [key for key in result.to_dict()["trial_results"][0] if f"`{key}`" not in text]
+    assert missing == []
+
+
+def test_numbers_of_the_readme_are_those_of_the_program():
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    result = fit(load_profile("suzaku"), load_trials("suzaku"), FitOptions(method="least-squares", starts=4))
+    assert result.verdict() in text
+    estimated = fit(
+        load_profile("suzaku"), load_trials("suzaku"), FitOptions(method="least-squares", starts=4, initial="estimated")
+    )
+    assert f"{estimated.J_of('test', 'after'):.2f} instead of {result.J_of('test', 'after'):.1f}" in text
+
+
+def test_the_sweep_table_is_current():
+    table = (ROOT / "docs" / "calibration.md").read_text(encoding="utf-8")
+    for a_r in (0.2, 0.6):
+        result = fit(
+            load_profile("suzaku"), load_trials("suzaku"), FitOptions(method="least-squares", starts=4, a_r=a_r)
+        )
+        assert f"{result.J:.4g} |" in table
+        assert f"{result.J_of('test', 'after'):.4g} |" in table
+
+
+def test_the_project_speaks_of_itself_alone():
+    listed = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True)
+    if listed.returncode:
+        pytest.skip("not a git checkout")
+    for name in listed.stdout.splitlines():
+        path = ROOT / name
+        if (
+            path.suffix in {".py", ".md", ".toml", ".j2", ".cff", ".css", ".js", ""}
+            and path != Path(__file__)
+            and path.is_file()
+        ):
+            text = path.read_text(encoding="utf-8", errors="replace")
+            for word in ("/work" + "/", "shared" + "/spec"):
+                assert word not in text, (name, word)

@@ -1,0 +1,48 @@
+"""Write ``docs/nomenclature.md``: every coefficient there is, from the list of components.
+
+python tools/write_nomenclature.py
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from mmgtune.components import COMPONENTS
+from mmgtune.files import write_text
+
+HEAD = """# Nomenclature
+
+Written by `tools/write_nomenclature.py` from `mmgtune/components.py`. Symbols are those of the papers in plain
+letters; a trailing `_` stands for the prime. "prime" means dimensionless in the prime system of the MMG standard
+method; a dash means a pure number. A profile names a coefficient by its section, a target by `section.symbol`.
+
+| quantity | symbol | unit | positive |
+|---|---|---|---|
+| position of midship | `x`, `y` | m | north, east |
+| heading | `psi` | rad | clockwise from north, unwrapped |
+| velocity in ship axes at midship | `u`, `v_m` (`v` in files) | m/s | forward, to starboard |
+| yaw rate | `r` | rad/s | to starboard |
+| drift angle atan2(-v_m, u) | `beta` | rad | bow to starboard of the path |
+| propeller revolutions | `n` | 1/s | ahead |
+| rudder angle | `delta` | rad | turns the ship to starboard |
+| half width of the box | `a_r` | - | share of the pre-determined value |
+"""
+
+
+def nomenclature() -> str:
+    """The page."""
+    parts = [HEAD]
+    for component in COMPONENTS:
+        parts.append(f"\n## {component.kind}, model `{component.tag}`: {component.title}\n\n")
+        parts.append(f"{'; '.join(component.cites)}\n\n")
+        parts.append("| symbol | unit | meaning | where a profile leaves it out |\n|---|---|---|---|\n")
+        for symbol, field in component.fields.items():
+            default = "must be given" if field.default is None else f"{field.default:g}"
+            if field.choices:
+                default = next(word for word, value in field.choices.items() if value == field.default)
+            parts.append(f"| `{symbol}` | {field.unit} | {field.label} | {default} |\n")
+    return "".join(parts)
+
+
+if __name__ == "__main__":
+    write_text(Path(__file__).parent.parent / "docs" / "nomenclature.md", nomenclature())
