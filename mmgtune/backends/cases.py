@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -46,6 +47,19 @@ class Cases:
     def steps(self) -> int:
         """Steps of all cases together."""
         return int(np.sum(self.n_samples - 1))
+
+    @cached_property
+    def rows(self) -> npt.NDArray[np.int64]:
+        """(n_cases, T, 6) place of each difference that counts among all residuals, -1 where none counts."""
+        counts = self.weight > 0.0
+        rows = np.full(counts.shape, -1, dtype=np.int64)
+        rows[counts] = np.arange(int(counts.sum()))
+        return rows
+
+    @property
+    def n_residuals(self) -> int:
+        """Number of differences that count."""
+        return int(self.rows.max(initial=-1)) + 1
 
     def subset(self, rows: Sequence[int]) -> Cases:
         """The cases at ``rows``, cut to the longest of them."""
@@ -114,11 +128,14 @@ class LaneResult:
     cost      (n_cases, n_candidates) sum of weight * (state - target)^2; inf where diverged
     diverged  (n_cases, n_candidates) bool
     states    (n_cases, n_candidates, T, 6), None unless asked for; after the end of a case the last state
+    residuals (n_residuals, n_candidates) root of weight * (state - target), None unless asked for; by case, sample
+              and channel; cost is the sum of their squares
     """
 
     cost: FloatArray
     diverged: npt.NDArray[np.bool_]
-    states: FloatArray | None
+    states: FloatArray | None = None
+    residuals: FloatArray | None = None
 
 
 class Backend(Protocol):
@@ -135,6 +152,7 @@ class Backend(Protocol):
         initial: FloatArray | None = None,
         integrator: Integrator = Integrator(),
         keep_states: bool = False,
+        keep_residuals: bool = False,
     ) -> LaneResult:
         """Simulate every case with every candidate.
 
@@ -144,8 +162,14 @@ class Backend(Protocol):
         ...
 
 
-def finish(cost: FloatArray, fastest2: FloatArray, last: FloatArray, states: FloatArray | None) -> LaneResult:
+def finish(
+    cost: FloatArray,
+    fastest2: FloatArray,
+    last: FloatArray,
+    states: FloatArray | None = None,
+    residuals: FloatArray | None = None,
+) -> LaneResult:
     """The result, with diverged lanes marked; last (n_cases, n_candidates, 6), fastest2 squared speed [m^2/s^2]."""
     with np.errstate(invalid="ignore"):
         sound = np.isfinite(last).all(axis=-1) & np.isfinite(cost) & (fastest2 < SPEED_LIMIT**2)
-    return LaneResult(cost=np.where(sound, cost, np.inf), diverged=~sound, states=states)
+    return LaneResult(np.where(sound, cost, np.inf), ~sound, states, residuals)

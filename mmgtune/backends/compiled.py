@@ -53,6 +53,7 @@ class Compiled:
         initial: FloatArray | None = None,
         integrator: Integrator = Integrator(),
         keep_states: bool = False,
+        keep_residuals: bool = False,
     ) -> LaneResult:
         """See ``Backend.run``.  Lanes are padded to whole blocks by repeating the last candidate."""
         n_cases, n_candidates = len(cases), theta.shape[1]
@@ -67,6 +68,7 @@ class Compiled:
         fastest2 = np.empty((n_cases, n_blocks, WIDTH))
         end = np.empty((n_cases, n_blocks, 6 * WIDTH))
         states = np.empty((n_cases, T if keep_states else 1, 6, n_blocks * WIDTH))
+        residuals = np.empty((cases.n_residuals if keep_residuals else 0, n_blocks * WIDTH))
         position, share = integrator.tableau
         fixed = (
             np.ascontiguousarray(blocked),
@@ -75,16 +77,18 @@ class Compiled:
             position,
             share,
             integrator.substeps,
+            cases.rows,
         )
         kernel = self.kernel(model)
         tasks = n_cases * n_blocks
         work = cases.steps * n_blocks * WIDTH * len(position) * integrator.substeps
         if work < WORTH_A_THREAD or tasks == 1 or cores() == 1:
-            kernel(*fixed, 0, tasks, cost, fastest2, end, states)
+            kernel(*fixed, 0, tasks, cost, fastest2, end, states, residuals)
         else:
             cuts = np.linspace(0, tasks, min(tasks, 4 * cores()) + 1).astype(int)
             jobs = [
-                _pool().submit(kernel, *fixed, int(a), int(b), cost, fastest2, end, states) for a, b in pairwise(cuts)
+                _pool().submit(kernel, *fixed, int(a), int(b), cost, fastest2, end, states, residuals)
+                for a, b in pairwise(cuts)
             ]
             for job in jobs:
                 job.result()
@@ -94,4 +98,5 @@ class Compiled:
 
         last = end.reshape(n_cases, n_blocks, 6, WIDTH).transpose(0, 1, 3, 2).reshape(n_cases, -1, 6)[:, :n_candidates]
         kept = states[..., :n_candidates].transpose(0, 3, 1, 2) if keep_states else None
-        return finish(per_candidate(cost), per_candidate(fastest2), last, kept)
+        listed = residuals[:, :n_candidates] if keep_residuals else None
+        return finish(per_candidate(cost), per_candidate(fastest2), last, kept, listed)

@@ -24,6 +24,7 @@ class NumpyLanes:
         initial: FloatArray | None = None,
         integrator: Integrator = Integrator(),
         keep_states: bool = False,
+        keep_residuals: bool = False,
     ) -> LaneResult:
         """See ``Backend.run``."""
         n_cases, n_candidates = len(cases), theta.shape[1]
@@ -37,6 +38,7 @@ class NumpyLanes:
         cost = np.zeros(shape)
         fastest2 = np.zeros(s.shape[1])
         states = np.empty((n_cases, n_candidates, T, 6)) if keep_states else None
+        residuals = np.empty((cases.n_residuals, n_candidates)) if keep_residuals else None
         if states is not None:
             states[:, :, 0] = initial
 
@@ -65,4 +67,8 @@ class NumpyLanes:
                 cost += np.sum(cases.weight[:, None, k] * difference * difference, axis=-1)
                 if states is not None:
                     states[:, :, k] = now_states
-        return finish(cost, fastest2.reshape(shape), s.T.reshape(n_cases, n_candidates, 6), states)
+                if residuals is not None:
+                    counts = cases.rows[:, k] >= 0
+                    scaled = np.sqrt(cases.weight[:, None, k]) * difference
+                    residuals[cases.rows[:, k][counts]] = scaled.transpose(0, 2, 1)[counts]
+        return finish(cost, fastest2.reshape(shape), s.T.reshape(n_cases, n_candidates, 6), states, residuals)

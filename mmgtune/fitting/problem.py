@@ -36,24 +36,22 @@ class FitProblem:
     evaluations: int = field(default=0, init=False)
 
     def __post_init__(self) -> None:
-        self.mask: npt.NDArray[np.bool_] = self.cases.weight > 0.0
         self.offsets = np.zeros((len(self.cases), 6))
         self.prior = np.zeros((len(self.cases), 6))  # weight of squared offsets beside J
         if self.sigma is not None:
             self.prior = prior_weight(self.sigma, self.cases.weight)
-        self._root = np.sqrt(self.cases.weight[self.mask])
-        self._target = self.cases.target[self.mask]
 
     @property
     def n_residuals(self) -> int:
         """Number of differences that count."""
-        return int(self.mask.sum())
+        return self.cases.n_residuals
 
     @property
     def rows_of_cases(self) -> list[slice]:
         """Where the residuals of each case stand."""
-        ends = np.cumsum([int(part.sum()) for part in self.mask])
-        return [slice(int(end - part.sum()), int(end)) for end, part in zip(ends, self.mask, strict=True)]
+        counts = (self.cases.rows >= 0).sum(axis=(1, 2))
+        ends = np.cumsum(counts)
+        return [slice(int(end - count), int(end)) for end, count in zip(ends, counts, strict=True)]
 
     def theta(self, unit: FloatArray) -> FloatArray:
         """Coefficient matrix (n_rows, n_candidates) at positions (n_targets, n_candidates) in the unit cube."""
@@ -97,20 +95,16 @@ class FitProblem:
         chunk = max(1, LANES_AT_ONCE // len(self.cases))
         for first in range(0, n_candidates, chunk):
             rows = slice(first, first + chunk)
-            part = unit[:, rows]
             result = self.backend.run(
                 self.model,
-                self.theta(part),
+                self.theta(unit[:, rows]),
                 self.cases,
                 initial=initial[:, rows],
                 integrator=self.integrator,
-                keep_states=True,
+                keep_residuals=True,
             )
-            assert result.states is not None  # asked for
-            # Lanes last is how compiled states lie in memory: whole rows of lanes are picked at once.
-            picked = result.states.transpose(0, 2, 3, 1)[self.mask]
-            with np.errstate(invalid="ignore", over="ignore"):
-                np.multiply(picked - self._target[:, None], self._root[:, None], out=out[:, rows])
+            assert result.residuals is not None  # asked for
+            out[:, rows] = result.residuals
             out[:, rows][:, result.diverged.any(axis=0)] = np.inf
         return out.T
 

@@ -47,10 +47,14 @@ class SweepResult:
             return list(self.leave_one_out)
         return [np.inf if (J := run.J_of("test", "after")) is None else J for run in self.runs]
 
+    @property
+    def best(self) -> int:
+        """Which run has the least J on trials not used."""
+        return int(np.argmin(self.judged()))
+
     def recommended(self) -> dict[str, Any]:
         """The a_r with the least J on trials not used."""
-        judged = self.judged()
-        best = int(np.argmin(judged))
+        judged, best = self.judged(), self.best
         a_r = self.widths[best]
         by = "leave-one-trial-out" if self.leave_one_out is not None else "test set"
         if not np.isfinite(judged[best]):
@@ -71,8 +75,7 @@ class SweepResult:
 
     def overfitting(self) -> dict[str, Any]:
         """Whether J rises on trials not used while it falls on those tuned to."""
-        judged = self.judged()
-        best = int(np.argmin(judged))
+        judged, best = self.judged(), self.best
         worse = [
             i
             for i in range(best + 1, len(judged))
@@ -127,7 +130,7 @@ class SweepResult:
             if loo is None
             else [{"a_r": a, "J": J} for a, J in zip(self.widths, loo, strict=True)],
             "overfitting": self.overfitting(),
-            "warnings": list(dict.fromkeys(warning for run in self.runs for warning in run.warnings())),
+            "warnings": self.runs[self.best].warnings(),
             "citations": first.profile.cites(),
             "wall_s": self.wall_s,
         }

@@ -40,12 +40,10 @@ class Whitening:
 
 def estimate_whitening(problem: FitProblem, residuals: FloatArray) -> Whitening:
     """Autocorrelation and deviation per channel from residuals (n_residuals,) at the optimum, pooled over trials."""
-    place = np.full(problem.mask.shape, -1, dtype=np.int64)
-    place[problem.mask] = np.arange(problem.n_residuals)
     series: list[tuple[str, npt.NDArray[np.int64]]] = []
     for case in range(len(problem.cases)):
         for k, channel in enumerate(STATES):
-            rows = place[case, :, k]
+            rows = problem.cases.rows[case, :, k]
             rows = rows[rows >= 0]
             if len(rows):
                 series.append((channel, rows))

@@ -1,7 +1,17 @@
-"""Trials: one Parquet file each, folders of them as data sets."""
+"""Trials: one Parquet file each, folders of them as data sets.
 
-from .checks import Finding, check_trial
+schema          columns of a file, their units and meaning
+model           a trial in memory
+parquet         reading and writing a file; metadata: the facts in it
+dataset         folders of files; split: which of them tune and which test
+unusable        what forbids using a trial
+checks          everything odd about one: motion_checks, control_checks; kinematics: what they measure
+describe        what a trial holds, in numbers
+"""
+
+from .checks import check_trial
 from .dataset import TrialSet, load_trials
+from .finding import Finding
 from .model import Trial
 from .parquet import read_trial, write_trial
 

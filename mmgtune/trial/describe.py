@@ -6,18 +6,18 @@ from typing import Any
 
 import numpy as np
 
-from .checks import motion
 from .model import Trial
+from .schema import COLUMNS
 
 _SHOWN = {"rad": (180.0 / np.pi, "deg"), "rad/s": (180.0 / np.pi, "deg/s"), "1/s": (60.0, "rpm")}
 
 
 def describe(trial: Trial) -> dict[str, Any]:
     """Facts, length and ranges of the channels, angles in degrees and revolutions per minute."""
-    from .schema import COLUMNS
-
     ranges = {}
-    for name, values in {**motion(trial), "n": trial.n, "delta": trial.delta, **trial.extra}.items():
+    for name, values in trial.columns.items():
+        if name == "t":
+            continue
         unit = COLUMNS[name].unit if name in COLUMNS else "-"
         factor, shown = _SHOWN.get(unit, (1.0, unit))
         if np.isfinite(values).any():

@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from .schema import ATTRIBUTES, CHANNELS
+
 FloatArray = npt.NDArray[np.float64]
 
 
@@ -20,11 +22,16 @@ class Trial:
     t          time [s], strictly increasing
     x, y       midship position, north and east [m]; NaN in gaps, as in all motion channels
     psi        heading [rad], unwrapped
-    u, v_m     velocity over ground in ship axes at midship [m/s]
+    u, v_m     velocity over ground in ship axes at midship [m/s]; v_m is the file's ``v``
     r          yaw rate [rad/s]
     n, delta   propeller revolutions [1/s], rudder angle [rad]
     extra      further columns by name
     noise      standard deviations of sensor noise by file column, where known
+    path       the file it was read from, None where it was made in memory
+    sha256     of that file, "" where there is none
+    ignored    columns of the file that hold no numbers and were left out
+
+    Raises ValueError where arrays differ in length or ``extra`` repeats a required column.
     """
 
     id: str
@@ -45,14 +52,17 @@ class Trial:
     note: str = ""
     path: Path | None = None
     sha256: str = ""
+    ignored: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        for name in ("t", "x", "y", "psi", "u", "v_m", "r", "n", "delta"):
-            column = np.array(getattr(self, name), dtype=np.float64)
-            if column.shape != (len(self.t),):
-                raise ValueError(f"{name} has shape {column.shape}, t has {len(self.t)} samples")
-            column.setflags(write=False)
-            object.__setattr__(self, name, column)
+        shape = (len(self.t),)
+        for name in ATTRIBUTES.values():
+            object.__setattr__(self, name, _frozen(name, getattr(self, name), shape))
+        repeated = sorted(set(self.extra) & {*ATTRIBUTES, *ATTRIBUTES.values()})
+        if repeated:
+            raise ValueError(f"extra columns repeat required ones: {', '.join(repeated)}")
+        extra = {name: _frozen(name, values, shape) for name, values in self.extra.items()}
+        object.__setattr__(self, "extra", extra)
 
     @property
     def n_samples(self) -> int:
@@ -61,10 +71,29 @@ class Trial:
 
     @property
     def duration(self) -> float:
-        """Time from the first sample to the last [s]."""
-        return float(self.t[-1] - self.t[0])
+        """Time from the first sample to the last [s]; 0 for a trial without samples."""
+        return float(self.t[-1] - self.t[0]) if len(self.t) else 0.0
 
     @property
     def motion(self) -> FloatArray:
         """(n_samples, 6) x, y, psi, u, v_m, r."""
-        return np.column_stack([self.x, self.y, self.psi, self.u, self.v_m, self.r])
+        return np.column_stack([getattr(self, name) for name in CHANNELS])
+
+    @property
+    def columns(self) -> dict[str, FloatArray]:
+        """Every column by its name in the file, required ones first."""
+        return {name: getattr(self, attribute) for name, attribute in ATTRIBUTES.items()} | self.extra
+
+    @property
+    def label(self) -> str:
+        """The trial's name for people: its id, and manoeuvre and ship where known."""
+        about = ", ".join(word for word in (self.manoeuvre, self.ship) if word)
+        return f"{self.id} ({about})" if about else self.id
+
+
+def _frozen(name: str, values: object, shape: tuple[int, ...]) -> FloatArray:
+    column = np.array(values, dtype=np.float64)
+    if column.shape != shape:
+        raise ValueError(f"{name} has shape {column.shape}, t has {shape[0]} samples")
+    column.setflags(write=False)
+    return column

@@ -4,89 +4,66 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..errors import Problem, TrialError, closest
+from ..errors import Problem, TrialError
 from ..files import atomic
-from .checks import unusable
+from .metadata import facts_of
 from .model import FloatArray, Trial
-from .schema import COLUMNS, METADATA, METADATA_KEY, REQUIRED, SCHEMA, SOURCES
+from .schema import ATTRIBUTES, COLUMNS, METADATA_KEY, REQUIRED, SCHEMA
+from .unusable import unusable
 
 
 def read_trial(path: Path | str) -> Trial:
-    """Read a trial and make sure it can be used.  Raises TrialError with everything that is wrong in it."""
-    import pyarrow as pa
-    import pyarrow.parquet as pq
+    """Read a trial and make sure it can be used.
 
+    Columns the program does not know are kept in ``extra`` where they hold numbers, and named in ``ignored`` where
+    they do not.  Raises TrialError with everything that is wrong in the file.
+    """
     path = Path(path)
-    try:
-        content = path.read_bytes()
-        table = pq.read_table(pa.BufferReader(content), use_threads=False)
-    except (OSError, pa.ArrowException) as error:
-        raise TrialError(
-            Problem(
-                "the file cannot be read as Parquet",
-                str(path),
-                str(error).splitlines()[0],
-                "copy it again from where it was made: it may be cut off",
-            )
-        ) from error
-    facts, problems = _metadata(table.schema.metadata or {}, path)
-    columns: dict[str, FloatArray] = {}
-    for name in table.column_names:
-        kind = table.schema.field(name).type
-        if pa.types.is_floating(kind) or pa.types.is_integer(kind):
-            columns[name] = np.array(table.column(name).to_numpy(zero_copy_only=False), dtype=np.float64)
-        elif name in COLUMNS:
-            problems.append(
-                Problem(
-                    f"column '{name}' holds {kind}, not numbers",
-                    str(path),
-                    fix=f"write it as float64 in {COLUMNS[name].unit}",
-                )
-            )
-    for name in REQUIRED:
-        if name not in table.column_names:
-            others = [other for other in table.column_names if other not in REQUIRED]
-            problems.append(
-                Problem(
-                    f"column '{name}' is missing",
-                    str(path),
-                    f"it is {COLUMNS[name].meaning} [{COLUMNS[name].unit}]",
-                    closest(name, others) if others else f"add it in {COLUMNS[name].unit}",
-                )
-            )
+    content, table = _table(path)
+    raw = table.schema.metadata or {}
+    columns, ignored, problems = _columns(table, path)
+    facts, wrong = facts_of(raw.get(METADATA_KEY), path, table.column_names)
+    problems = wrong + problems
+    # A column that holds no numbers has been reported; that it is missing as well would be the same news twice.
+    unreadable = [name for name in REQUIRED if name in table.column_names and name not in columns]
+    problems += [
+        problem
+        for problem in unusable(columns, str(path))
+        if not any(problem.what == f"column '{name}' is missing" for name in unreadable)
+    ]
     if problems:
         raise TrialError(*problems)
-    trial = Trial(
-        id=facts.get("id", path.stem),
+    return Trial(
+        id=facts.get("id") or path.stem,
         ship=facts.get("ship", ""),
         manoeuvre=facts.get("manoeuvre", ""),
         source=facts.get("source", ""),
-        **{"v_m" if name == "v" else name: columns[name] for name in REQUIRED},
+        **{attribute: columns[name] for name, attribute in ATTRIBUTES.items()},
         extra={name: values for name, values in columns.items() if name not in REQUIRED},
-        noise=facts.get("noise", {}),
+        noise={name: float(value) for name, value in facts.get("noise", {}).items()},
         note=facts.get("note", ""),
         path=path,
         sha256=hashlib.sha256(content).hexdigest(),
+        ignored=ignored,
     )
-    wrong = unusable(trial)
-    if wrong:
-        raise TrialError(*wrong)
-    return trial
 
 
-def write_trial(trial: Trial, path: Path | str, *, overwrite: bool = False) -> Path:
-    """Write a trial, whole or not at all.  Raises OutputError where the file exists and ``overwrite`` is false."""
+def write_trial(trial: Trial, path: Path | str, overwrite: bool = False) -> Path:
+    """Write a trial, whole or not at all; returns the path.
+
+    Raises OutputError where the file exists and ``overwrite`` is false, or the system refuses to write.
+    """
     import pyarrow as pa
     import pyarrow.parquet as pq
 
     path = Path(path)
-    values = {name: getattr(trial, "v_m" if name == "v" else name) for name in REQUIRED}
-    values.update(trial.extra)
+    values = trial.columns
     fields = [
         pa.field(name, pa.float64(), metadata={"unit": COLUMNS[name].unit} if name in COLUMNS else None)
         for name in values
@@ -97,7 +74,7 @@ def write_trial(trial: Trial, path: Path | str, *, overwrite: bool = False) -> P
         "id": trial.id,
         "manoeuvre": trial.manoeuvre,
         "source": trial.source,
-        "noise": trial.noise,
+        "noise": {name: float(value) for name, value in trial.noise.items()},
         "note": trial.note,
     }
     schema = pa.schema(fields, metadata={METADATA_KEY: json.dumps(facts).encode()})
@@ -107,32 +84,59 @@ def write_trial(trial: Trial, path: Path | str, *, overwrite: bool = False) -> P
     return path
 
 
-def _metadata(raw: dict[bytes, bytes], path: Path) -> tuple[dict[str, Any], list[Problem]]:
-    """Facts of the file; a file without any still loads."""
-    if METADATA_KEY not in raw:
-        return {}, []
-    where = f"{path}, metadata 'mmgtune'"
+def id_in(path: Path) -> str | None:
+    """Id of a trial file that may be unusable otherwise; None where even that cannot be read."""
     try:
-        facts = json.loads(raw[METADATA_KEY])
-        if not isinstance(facts, dict):
-            raise ValueError("not an object")
-    except ValueError as error:
-        return {}, [Problem("the metadata is not a JSON object", where, str(error), "write it again, or leave it out")]
-    problems = [
-        Problem(f"unknown key '{key}'", where, fix=closest(key, METADATA)) for key in facts if key not in METADATA
-    ]
-    if facts.get("schema", SCHEMA) != SCHEMA:
-        problems.append(
-            Problem(
-                f"schema is {facts['schema']!r}, not {SCHEMA}", where, fix="update mmgtune, or write the file again"
-            )
-        )
-    for key in ("id", "ship", "manoeuvre", "source", "note"):
-        if key in facts and not isinstance(facts[key], str):
-            problems.append(Problem(f"'{key}' is {facts[key]!r}, not text", where))
-    if facts.get("source", "") not in ("", *SOURCES):
-        problems.append(Problem(f"source is {facts['source']!r}", where, fix=f"one of: {', '.join(SOURCES)}"))
-    noise = facts.get("noise", {})
-    if not (isinstance(noise, dict) and all(isinstance(v, (int, float)) and v >= 0 for v in noise.values())):
-        problems.append(Problem("'noise' is not an object of standard deviations", where, fix='write {"x": 0.5, ...}'))
-    return facts, problems
+        raw = _table(path)[1].schema.metadata or {}
+    except TrialError:
+        return None
+    facts, _ = facts_of(raw.get(METADATA_KEY), path, ())
+    written = facts.get("id")
+    return written if isinstance(written, str) and written else path.stem
+
+
+def _table(path: Path) -> tuple[bytes, Any]:
+    """Content of the file and the table in it.  Raises TrialError."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        fix = "check the path, and that you may read the file"
+        raise TrialError(
+            Problem("the trial file cannot be opened", str(path), error.strerror or str(error), fix)
+        ) from error
+    try:
+        return content, pq.read_table(pa.BufferReader(content), use_threads=False)
+    except (OSError, ValueError, pa.ArrowException) as error:
+        if not content:
+            what, fix = "the file is empty", "copy it again from where it was made"
+        elif content.startswith(b"PAR1"):
+            what, fix = "the Parquet file is damaged", "copy it again from where it was made: it may be cut off"
+        else:
+            what, fix = "the file is not Parquet", "trials are Parquet files; convert it, for example with pandas"
+        why = (str(error).splitlines() or [""])[0]
+        raise TrialError(Problem(what, str(path), why, fix)) from error
+
+
+def _columns(table: Any, path: Path) -> tuple[dict[str, FloatArray], tuple[str, ...], list[Problem]]:
+    """Columns of numbers (n_samples,) by name, names of other columns, and problems."""
+    import pyarrow as pa
+
+    columns: dict[str, FloatArray] = {}
+    ignored: list[str] = []
+    problems: list[Problem] = []
+    twice = {name for name, count in Counter(table.column_names).items() if count > 1}
+    for name in sorted(twice):
+        problems.append(Problem(f"column '{name}' is there twice", str(path), fix="remove one of them"))
+    for k, name in enumerate(table.column_names):
+        kind = table.schema.field(k).type
+        if pa.types.is_floating(kind) or pa.types.is_integer(kind):
+            columns[name] = np.array(table.column(k).to_numpy(), dtype=np.float64)
+        elif name in COLUMNS:
+            fix = f"write it as float64, in {COLUMNS[name].unit}"
+            problems.append(Problem(f"column '{name}' holds {kind}, not numbers", str(path), fix=fix))
+        else:
+            ignored.append(name)
+    return columns, tuple(ignored), problems

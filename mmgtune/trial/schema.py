@@ -46,5 +46,20 @@ COLUMNS = {**REQUIRED, **OPTIONAL}
 METADATA = ("schema", "ship", "id", "manoeuvre", "source", "noise", "note")
 SOURCES = ("measured", "generated")
 
+ATTRIBUTES = {name: "v_m" if name == "v" else name for name in REQUIRED}
+"""Attribute of a ``Trial`` that holds each required column: sway is ``v`` in the file, ``v_m`` in the program."""
+
+CHANNELS = tuple(ATTRIBUTES[name] for name in MOTION)
+"""Motion channels in the order of ``Trial.motion``: x, y, psi, u, v_m, r."""
+
+CHANNEL_UNITS = tuple(column.unit for column in MOTION.values())
+"""Units of CHANNELS, in the same order."""
+
+RUDDERS = ("delta", "delta_port", "delta_stbd")
+DIRECTIONS = ("wind_dir", "wind_dir_app", "wave_dir")
+
 LARGEST_RUDDER = 1.6
 """Rudder angle [rad] beyond which a column must be in degrees."""
+
+LARGEST_YAW_RATE = 0.5
+"""Yaw rate [rad/s] that no ship and no model longer than a few metres reaches."""

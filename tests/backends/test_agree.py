@@ -84,3 +84,28 @@ def test_a_diverging_lane_is_a_status_and_leaves_the_others_alone(suzaku, backen
     assert result.diverged.tolist() == [[False, True]]
     assert np.isfinite(result.cost[0, 0])
     assert result.cost[0, 1] == np.inf
+
+
+@pytest.mark.parametrize("backend", ["compiled", "numpy"])
+def test_residuals_are_the_roots_of_the_cost(suzaku, backend):
+    long, short = turn(suzaku, 35.0, 120.0), turn(suzaku, -20.0, 60.0)
+    rng = np.random.default_rng(4)
+    weight = [rng.uniform(size=(n, 6)) * (rng.uniform(size=(n, 6)) > 0.3) for n in (121, 61)]
+    for w in weight:
+        w[0] = 0.0
+    target = [rng.standard_normal((n, 6)) for n in (121, 61)]
+    cases = pad(
+        [long.t[0], short.t[0]],
+        [long.controls[0], short.controls[0]],
+        [long.initial[0], short.initial[0]],
+        target,
+        weight,
+    )
+    theta = suzaku.matrix(["hull.R_0"], np.linspace(0.01, 0.03, 5)[None])
+    result = get_backend(backend).run(suzaku, theta, cases, keep_residuals=True, keep_states=True)
+    np.testing.assert_allclose(np.sum(result.residuals**2, axis=0), result.cost.sum(axis=0), rtol=1e-12)
+    for case, i, channel in ((0, 5, 0), (1, 60, 5), (0, 120, 2)):
+        row = cases.rows[case, i, channel]
+        expected = np.sqrt(weight[case][i, channel]) * (result.states[case, :, i, channel] - target[case][i, channel])
+        if row >= 0:
+            np.testing.assert_allclose(result.residuals[row], expected, atol=1e-12)

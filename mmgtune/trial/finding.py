@@ -1,0 +1,26 @@
+"""What a check has to say about a trial."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+SEVERITIES = ("error", "warning", "note")
+"""Worst first."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something about a trial a user should know.
+
+    severity  "error" (cannot be used), "warning" (probably wrong) or "note" (good to know)
+    what      what was found, in one sentence without the place
+    where     file and column or row
+    why       why it matters, or what speaks for it
+    fix       what to do about it
+    """
+
+    severity: str
+    what: str
+    where: str
+    why: str = ""
+    fix: str = ""

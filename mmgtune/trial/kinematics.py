@@ -1,0 +1,147 @@
+"""Whether the channels of a trial describe one and the same motion.
+
+Everything here works on increments between samples, so that gaps (NaN) drop out, and is meant to see through sensor
+noise of about 0.4 m, 0.2 deg, 0.02 m/s and 0.03 deg/s at 1 Hz.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from .model import FloatArray
+
+DEG = np.pi / 180.0
+IN_EARTH_AXES = "in earth axes, u north and v east"
+IN_DEGREES = "with the heading in degrees"
+FITS = 0.1
+"""Share of the distance run by which velocities may miss the positions."""
+
+
+@dataclass(frozen=True)
+class Turning:
+    """Turned angle since the first sample, once from the heading and once from the yaw rate, (n_intervals + 1,).
+
+    Both in the unit of their column: radians, if that is right.  Full-turn jumps of the heading are taken out.
+    """
+
+    heading: FloatArray
+    yaw: FloatArray
+
+    @property
+    def span(self) -> float:
+        """The larger range of the two."""
+        return float(max(np.ptp(self.heading), np.ptp(self.yaw)))
+
+    @property
+    def miss(self) -> float:
+        """Largest difference of the two."""
+        return float(np.abs(self.heading - self.yaw).max())
+
+    @property
+    def ratio(self) -> float:
+        """How many times larger the heading's turn is."""
+        return float(np.std(self.heading)) / max(float(np.std(self.yaw)), 1e-300)
+
+    @property
+    def correlation(self) -> float:
+        """Of the two turned angles; 0 where one of them is constant."""
+        if np.std(self.heading) == 0.0 or np.std(self.yaw) == 0.0:
+            return 0.0
+        return float(np.corrcoef(self.heading, self.yaw)[0, 1])
+
+    def in_degrees(self) -> str:
+        """The column in degrees, "psi" or "r", where reading it so makes the two agree; else ""."""
+        for column, heading, yaw in (("psi", self.heading * DEG, self.yaw), ("r", self.heading, self.yaw * DEG)):
+            span = max(np.ptp(heading), np.ptp(yaw))
+            # Of either sign: a channel may be in degrees and turned round at once.
+            miss = min(np.abs(heading - yaw).max(), np.abs(heading + yaw).max())
+            if span > 0.2 and miss < 0.15 * span + 0.03:
+                return column
+        return ""
+
+
+def turning(columns: Mapping[str, FloatArray]) -> Turning:
+    """Both records of the turn.  Needs t, psi and r, (n_samples,) each."""
+    heading = np.diff(columns["psi"])
+    usual = float(np.median(np.abs(heading[np.isfinite(heading)]))) if np.isfinite(heading).any() else 0.0
+    # A jump is a full turn, in whichever unit, among steps that are small beside it.
+    for period in (2.0 * np.pi, 360.0):
+        if usual < period / 6.0:
+            jumps = np.abs(np.abs(heading) - period) < period / 6.0
+            heading = np.where(jumps, heading - np.sign(heading) * period, heading)
+    yaw = middle(columns["r"]) * np.diff(columns["t"])
+    both = np.isfinite(heading) & np.isfinite(yaw)
+    return Turning(_summed(heading[both]), _summed(yaw[both]))
+
+
+def position_misfits(columns: Mapping[str, FloatArray]) -> dict[str, float]:
+    """How badly the velocities explain the positions, by the way they are read: 0 perfectly, 1 not at all.
+
+    The entry "" is the reading the format asks for.  A misfit is the median over windows of the distance between
+    measured and integrated displacement, over the displacement; windows are long enough for noise not to matter.
+    Empty where the ship hardly moves or nothing can be compared.  Needs t, x, y, psi, u and v, (n_samples,) each.
+    """
+    dt = np.diff(columns["t"])
+    moved = np.column_stack([np.diff(columns["x"]), np.diff(columns["y"])])
+    psi, u, v = (middle(columns[name]) for name in ("psi", "u", "v"))
+    # Halfway between two samples a wrapped heading is not between them.
+    psi = np.where(np.abs(np.diff(columns["psi"])) > 3.0, columns["psi"][1:], psi)
+    usable = np.isfinite(moved).all(axis=1) & np.isfinite(psi) & np.isfinite(u) & np.isfinite(v)
+    if usable.sum() < 10:
+        return {}
+    noise = max(white_noise(columns["x"]), white_noise(columns["y"]))
+    speed = np.hypot(u, v)
+    step = float(np.median(speed[usable] * dt[usable]))
+    shortest = max(5, len(dt) // 50)
+    longest = max(shortest, len(dt) // 4)
+    if step <= 0.0 or 40.0 * noise > step * longest:
+        return {}
+    window = int(np.clip(np.ceil(40.0 * noise / step), shortest, longest))
+
+    def rotated(angle: FloatArray, v: FloatArray, scale: float = 1.0) -> FloatArray:
+        east = u * np.sin(angle) + v * np.cos(angle)
+        return scale * np.column_stack([u * np.cos(angle) - v * np.sin(angle), east]) * dt[:, None]
+
+    readings = {
+        "": rotated(psi, v),
+        IN_EARTH_AXES: np.column_stack([u, v]) * dt[:, None],
+        "with v positive to port": rotated(psi, -v),
+        IN_DEGREES: rotated(psi * DEG, v),
+        "with x east and y north": rotated(psi, v)[:, ::-1],
+        "with velocities in knots": rotated(psi, v, 1852.0 / 3600.0),
+    }
+    return {name: _misfit(moved, steps, usable, window) for name, steps in readings.items()}
+
+
+def _misfit(moved: FloatArray, steps: FloatArray, usable: np.ndarray, window: int) -> float:
+    whole = _windows(usable.astype(np.float64), window) > window - 0.5
+    if not whole.any():
+        return 0.0
+    way = _windows(np.where(usable[:, None], moved, 0.0), window)[whole]
+    error = _windows(np.where(usable[:, None], moved - steps, 0.0), window)[whole]
+    length = np.maximum(np.hypot(*way.T), 1e-12)
+    return float(np.median(np.minimum(np.hypot(*error.T) / length, 1e6)))
+
+
+def _windows(values: FloatArray, window: int) -> FloatArray:
+    """Sums over every run of ``window`` intervals."""
+    summed = _summed(values)
+    return np.asarray(summed[window:] - summed[:-window])
+
+
+def white_noise(values: FloatArray) -> float:
+    """Standard deviation of white noise on a smooth channel, from second differences; NaN samples are left out."""
+    bends = np.diff(values[np.isfinite(values)], n=2)
+    return 1.4826 * float(np.median(np.abs(bends))) / np.sqrt(6.0) if len(bends) else 0.0
+
+
+def middle(values: FloatArray) -> FloatArray:
+    """(n_samples - 1,) means of neighbouring samples."""
+    return 0.5 * (values[1:] + values[:-1])
+
+
+def _summed(values: FloatArray) -> FloatArray:
+    return np.concatenate([np.zeros((1, *values.shape[1:])), np.cumsum(values, axis=0)])

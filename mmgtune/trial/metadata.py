@@ -1,0 +1,68 @@
+"""Facts about a trial in the metadata of its file, a JSON object."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from ..errors import Problem, closest
+from .schema import COLUMNS, METADATA, SCHEMA, SOURCES
+
+
+def facts_of(raw: bytes | None, path: Path, columns: Sequence[str]) -> tuple[dict[str, Any], list[Problem]]:
+    """The facts written in ``raw`` and what is wrong with them; no facts where there is no metadata.
+
+    columns  names in the file, which noise may be given for
+    """
+    if raw is None:
+        return {}, []
+    where = f"{path}, metadata 'mmgtune'"
+    try:
+        facts = json.loads(raw)
+        if not isinstance(facts, dict):
+            raise ValueError(f"it is a {type(facts).__name__}")
+    except (ValueError, RecursionError) as error:
+        fix = 'write an object such as {"schema": 1, "ship": "...", "id": "..."}, or leave the metadata out'
+        return {}, [Problem("the metadata is not a JSON object", where, str(error), fix)]
+    problems = [
+        Problem(f"unknown key '{key}'", where, fix=closest(key, METADATA)) for key in facts if key not in METADATA
+    ]
+    if facts.get("schema", SCHEMA) != SCHEMA:
+        fix = "update mmgtune, or write the file again"
+        problems.append(Problem(f"schema is {facts['schema']!r}, not {SCHEMA}", where, fix=fix))
+    for key in ("id", "ship", "manoeuvre", "source", "note"):
+        if key in facts and not isinstance(facts[key], str):
+            problems.append(Problem(f"'{key}' is {facts[key]!r}, not text", where, fix=f'write "{key}": "..."'))
+    name = facts.get("id", "")
+    if isinstance(name, str) and (name in (".", "..") or any(letter in "/\\" or letter < " " for letter in name)):
+        problems.append(
+            Problem(
+                f"id {name!r} cannot be the name of a file",
+                where,
+                "results of a trial are written to files named after it",
+                "use letters, digits, '_' and '-'",
+            )
+        )
+    source = facts.get("source", "")
+    if isinstance(source, str) and source not in ("", *SOURCES):
+        problems.append(Problem(f"source is {source!r}", where, fix=f"one of: {', '.join(SOURCES)}"))
+    return facts, problems + _noise(facts.get("noise", {}), where, columns)
+
+
+def _noise(noise: object, where: str, columns: Sequence[str]) -> list[Problem]:
+    if not isinstance(noise, dict):
+        fix = 'write {"x": 0.5, ...}, or leave it out'
+        return [Problem("'noise' is not an object of standard deviations", where, fix=fix)]
+    problems = []
+    known = list(dict.fromkeys([*COLUMNS, *columns]))
+    for name, value in noise.items():
+        if name not in known:
+            problems.append(Problem(f"noise of unknown column '{name}'", where, fix=closest(name, known)))
+        number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        if not number or not math.isfinite(value) or value < 0.0:
+            what = f"noise of '{name}' is {value!r}, not a standard deviation"
+            problems.append(Problem(what, where, fix="write a number, zero or more, in the column's unit"))
+    return problems

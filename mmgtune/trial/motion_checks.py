@@ -1,0 +1,152 @@
+"""What is odd about the measured motion: gaps, jumps, spikes, channels that contradict each other."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from .finding import Finding
+from .kinematics import DEG, FITS, IN_DEGREES, IN_EARTH_AXES, position_misfits, turning
+from .model import FloatArray, Trial
+from .schema import INPUTS, LARGEST_YAW_RATE, MOTION
+
+
+def motion_findings(trial: Trial, where: str) -> list[Finding]:
+    """Findings on the motion channels of a trial that can be used."""
+    return [
+        *_gaps(trial, where),
+        *_jumps(trial, where),
+        *_spikes(trial, where),
+        *_yaw(trial, where),
+        *_positions(trial, where),
+    ]
+
+
+def _gaps(trial: Trial, where: str) -> list[Finding]:
+    found = []
+    for name, values in trial.columns.items():
+        missing = np.isnan(values)
+        if name in MOTION and missing.any():
+            edges = np.flatnonzero(np.diff(np.concatenate([[0], missing.astype(int), [0]])))
+            begins, ends = edges[::2], edges[1::2]
+            k = int(np.argmax(ends - begins))
+            # A gap lasts from the last sample before it to the first one after it, if there is one.
+            lasts = trial.t[min(ends[k], trial.n_samples - 1)] - trial.t[begins[k] - 1]
+            found.append(
+                Finding(
+                    "warning",
+                    f"'{name}' has gaps: {missing.sum()} of {len(values)} samples; "
+                    f"the longest has {ends[k] - begins[k]} samples, {lasts:.3g} s",
+                    f"{where}, column '{name}', row {begins[k]}",
+                    "samples in gaps count in no comparison",
+                )
+            )
+    return found
+
+
+def _jumps(trial: Trial, where: str) -> list[Finding]:
+    """Heading that is not unwrapped; a gap hides how far the ship turned in it, so jumps across gaps do not count."""
+    jumps = np.abs(np.abs(np.diff(trial.psi)) - 2.0 * np.pi) < 1.0
+    if not jumps.any():
+        return []
+    row = int(np.flatnonzero(jumps)[0]) + 1
+    return [
+        Finding(
+            "warning",
+            f"the heading jumps by a full turn {jumps.sum()} times",
+            f"{where}, column 'psi', row {row}",
+            "it is not unwrapped; a jump would count as a miss of 360 deg",
+            "apply numpy.unwrap to 'psi'",
+        )
+    ]
+
+
+def _spikes(trial: Trial, where: str) -> list[Finding]:
+    found = []
+    for name, values in trial.columns.items():
+        if name not in MOTION and name not in INPUTS:
+            continue
+        rows = spikes(values, share=0.02 if name in MOTION else 0.2)
+        if len(rows):
+            found.append(
+                Finding(
+                    "warning",
+                    f"'{name}' has {len(rows)} spikes",
+                    f"{where}, column '{name}', row {rows[0]}",
+                    "single samples far off their neighbours",
+                    "mark them as NaN" if name in MOTION else "replace them by interpolation",
+                )
+            )
+    return found
+
+
+def spikes(values: FloatArray, share: float) -> npt.NDArray[np.intp]:
+    """Rows of single samples that continue neither what comes before nor what comes after.
+
+    A spike is off both by ten times the usual and by ``share`` of the channel's range; a step or a corner fits one
+    side.  The first and last two rows cannot be told.
+    """
+    if len(values) < 10 or np.isfinite(values).sum() < 10:
+        return np.zeros(0, dtype=np.intp)
+    here = values[2:-2]
+    before, after = 2.0 * values[1:-3] - values[:-4], 2.0 * values[3:-1] - values[4:]
+    off = np.minimum(np.abs(here - before), np.abs(here - after))
+    if not np.isfinite(off).any():
+        return np.zeros(0, dtype=np.intp)
+    low, high = np.nanpercentile(values, [1.0, 99.0])
+    least = max(14.8 * np.nanmedian(off), share * (high - low), 0.02 * (np.nanmax(values) - np.nanmin(values)))
+    # A sample between its neighbours is on the way from one to the other, however fast.
+    beyond = (here - values[1:-3]) * (here - values[3:-1]) > 0.0
+    return np.flatnonzero((off > least) & beyond) + 2
+
+
+def _yaw(trial: Trial, where: str) -> list[Finding]:
+    turned = turning(trial.columns)
+    place = f"{where}, columns 'psi' and 'r'"
+    if turned.span > 0.3 and turned.miss > 0.1 * turned.span + 0.1:
+        return [
+            Finding(
+                "warning",
+                "the yaw rate does not integrate to the heading",
+                place,
+                f"they come apart by {turned.miss / DEG:.3g} deg; the heading turns {turned.ratio:.3g} times as far, "
+                f"correlation {turned.correlation:.2f}",
+                "check sign, scale and bias of 'r' against 'psi'",
+            )
+        ]
+    yaw = np.abs(trial.r[np.isfinite(trial.r)])
+    misfits = position_misfits(trial.columns)
+    if np.percentile(yaw, 95.0) > LARGEST_YAW_RATE and misfits.get("", 1.0) > FITS:
+        return [
+            Finding(
+                "warning",
+                f"yaw rate up to {yaw.max():.3g} rad/s",
+                place,
+                "only models shorter than a few metres turn so fast; heading and yaw rate may both be in degrees",
+                "check the units of 'psi' and 'r'",
+            )
+        ]
+    return []
+
+
+def _positions(trial: Trial, where: str) -> list[Finding]:
+    misfits = position_misfits(trial.columns)
+    asked = misfits.pop("", 0.0)
+    if asked <= FITS:
+        return []
+    # Small angles in degrees read as earth axes do; headings surely in degrees make a trial unusable.
+    del misfits[IN_DEGREES]
+    fitting = sorted((miss, name) for name, miss in misfits.items() if miss < min(FITS, 0.5 * asked))
+    if fitting:
+        fits = "they fit if read " + " or ".join(name for _, name in fitting)
+    else:
+        fits = f"nor do they fit if read in earth axes ({100 * misfits[IN_EARTH_AXES]:.0f} %)"
+    return [
+        Finding(
+            "warning",
+            "u, v and heading do not integrate to the positions",
+            f"{where}, columns 'x', 'y', 'psi', 'u' and 'v'",
+            f"read in ship axes they miss by {100 * asked:.0f} % of the distance; {fits}",
+            "give velocities over ground (not through the water), in ship axes, at midship, in m/s",
+        )
+    ]

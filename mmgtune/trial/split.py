@@ -1,0 +1,91 @@
+"""Which trials of a data set tune and which test: its ``split.toml``."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ..errors import Problem, closest
+
+SPLIT = "split.toml"
+KEYS = ("ship", "tune", "test")
+
+
+@dataclass(frozen=True)
+class Split:
+    """What a split says; ids in the order they are written, ship "" where it names none."""
+
+    ship: str = ""
+    tune: tuple[str, ...] = ()
+    test: tuple[str, ...] = ()
+
+
+def read_split(path: Path, known: Iterable[str] | None) -> tuple[Split, list[Problem]]:
+    """The split and everything wrong with it.
+
+    known  ids of the trials there are; None where that is not known because a file cannot be read
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+        data: dict[str, Any] = tomllib.loads(text)
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        fix = "correct the line named; it must be UTF-8 text"
+        return Split(), [Problem("the split cannot be read", str(path), str(error), fix)]
+    problems = [
+        Problem(f"unknown key '{key}'", _place(path, text, key), fix=closest(key, KEYS))
+        for key in data
+        if key not in KEYS
+    ]
+    ship = data.get("ship", "")
+    if not isinstance(ship, str):
+        problems.append(Problem(f"'ship' is {ship!r}, not text", _place(path, text, "ship"), fix='write ship = "..."'))
+        ship = ""
+    sets: dict[str, tuple[str, ...]] = {}
+    for key in ("tune", "test"):
+        ids = data.get(key, [])
+        if not (isinstance(ids, list) and all(isinstance(one, str) for one in ids)):
+            fix = f'write {key} = ["id", ...]'
+            problems.append(Problem(f"'{key}' is not a list of trial ids", _place(path, text, key), fix=fix))
+            sets[key] = ()
+            continue
+        sets[key] = tuple(ids)
+        problems += _ids(key, ids, known, path, text)
+        if key == "tune" and not ids:
+            place = _place(path, text, "tune")
+            why = "'tune' is empty" if "tune" in data else "'tune' is missing"
+            problems.append(Problem("no trial tunes", place, why, 'write tune = ["id", ...]'))
+    for name in sorted(set(sets["tune"]) & set(sets["test"])):
+        what = f"trial '{name}' is both in 'tune' and in 'test'"
+        why = "a test on what was tuned shows nothing"
+        problems.append(Problem(what, _place(path, text, name), why, "name it in one of them"))
+    return Split(ship, sets["tune"], sets["test"]), problems
+
+
+def _ids(key: str, ids: list[str], known: Iterable[str] | None, path: Path, text: str) -> list[Problem]:
+    """Ids named more than once, and ids of no trial."""
+    there = None if known is None else list(known)
+    problems = []
+    for name, count in Counter(ids).items():
+        place = _place(path, text, name)
+        if count > 1:
+            why = "it would count that many times"
+            problems.append(Problem(f"trial '{name}' is named {count} times in '{key}'", place, why, "name it once"))
+        if there is not None and name not in there:
+            problems.append(
+                Problem(f"'{key}' names trial '{name}', which is not there", place, "", closest(name, there))
+            )
+    return problems
+
+
+def _place(path: Path, text: str, word: str) -> str:
+    """The file and the first line that has ``word`` in it as a key or between quotes, where one has."""
+    pattern = re.compile(rf"^\s*{re.escape(word)}\s*=|[\"']{re.escape(word)}[\"']")
+    for number, line in enumerate(text.splitlines(), start=1):
+        if not line.lstrip().startswith("#") and pattern.search(line):
+            return f"{path}, line {number}"
+    return str(path)

@@ -1,0 +1,160 @@
+"""What forbids using a trial; all of it at once.  Rows are counted from 0."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ..errors import Problem, closest
+from .kinematics import FITS, IN_DEGREES, position_misfits, turning
+from .model import FloatArray
+from .schema import COLUMNS, INPUTS, LARGEST_RUDDER, MOTION, REQUIRED, RUDDERS
+
+
+def unusable(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
+    """Every reason why a trial cannot be simulated, [] where there is none.
+
+    columns  arrays (n_samples,) by their name in the file; required ones may be missing, which is a problem
+    where    the file, for messages
+    """
+    problems = _missing(columns, where)
+    samples = max((len(values) for values in columns.values()), default=0)
+    if samples < 2:
+        what = "the trial has no samples" if samples == 0 else "the trial has one sample"
+        return [*problems, Problem(what, where, "a motion needs two or more", "write the whole record")]
+    with np.errstate(all="ignore"):
+        return (
+            problems
+            + _time(columns, where)
+            + _values(columns, where)
+            + _rudder(columns, where)
+            + _degrees(columns, where)
+        )
+
+
+def increasing(t: FloatArray) -> bool:
+    """Whether time is finite and each sample is later than the one before."""
+    return bool(np.isfinite(t).all() and (np.diff(t) > 0.0).all())
+
+
+def _missing(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
+    others = [name for name in columns if name not in REQUIRED]
+    return [
+        Problem(
+            f"column '{name}' is missing",
+            where,
+            f"it is {column.meaning} [{column.unit}]",
+            closest(name, others) if others else f"add it, in {column.unit}",
+        )
+        for name, column in REQUIRED.items()
+        if name not in columns
+    ]
+
+
+def _time(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
+    t = columns.get("t")
+    if t is None or increasing(t):
+        return []
+    if not np.isfinite(t).all():
+        bad = ~np.isfinite(t)
+        return [Problem(f"time is no number in {bad.sum()} rows", f"{where}, row {_first(bad)}", "", "drop these rows")]
+    bad = np.diff(t) <= 0.0
+    row = _first(bad) + 1
+    more = f", and in {bad.sum() - 1} rows more" if bad.sum() > 1 else ""
+    return [
+        Problem(
+            "time repeats" if t[row] == t[row - 1] else "time goes back",
+            f"{where}, row {row}: t = {t[row]:.10g} s after {t[row - 1]:.10g} s{more}",
+            "each step of the simulation goes from one sample to the next",
+            "sort the rows by time and drop repeated ones",
+        )
+    ]
+
+
+def _values(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
+    problems: list[Problem] = []
+
+    def say(what: str, name: str, row: int | None, why: str, fix: str) -> None:
+        place = f"{where}, column '{name}'" + ("" if row is None else f", row {row}")
+        problems.append(Problem(what, place, why, fix))
+
+    for name, values in columns.items():
+        infinite, missing = np.isinf(values), np.isnan(values)
+        if name == "t":
+            continue
+        if infinite.any():
+            say(f"'{name}' is infinite in {infinite.sum()} rows", name, _first(infinite), "", "mark gaps as NaN")
+        if name in INPUTS and missing.any():
+            say(
+                f"'{name}' is no number in {missing.sum()} rows",
+                name,
+                _first(missing),
+                "the simulation is driven by it at every sample",
+                "fill short gaps by interpolation, or cut the trial there",
+            )
+        elif name in MOTION and missing.all():
+            say(f"'{name}' has no values at all", name, None, "", "measure it, or derive it from the other channels")
+        elif name in MOTION and missing[0]:
+            say(
+                f"'{name}' has no value in the first sample",
+                name,
+                0,
+                "the simulation starts from it",
+                f"cut the trial to its first complete row; '{name}' begins in row {_first(~missing)}",
+            )
+    return problems
+
+
+def _rudder(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
+    problems = []
+    for name in RUDDERS:
+        angle = np.abs(columns.get(name, np.zeros(1)))
+        angle = angle[np.isfinite(angle)]
+        beyond = angle > LARGEST_RUDDER
+        if beyond.any():
+            few = beyond.mean() < 0.01
+            problems.append(
+                Problem(
+                    f"rudder angle up to {angle.max():.3g} rad",
+                    f"{where}, column '{name}'",
+                    f"a rudder beyond {LARGEST_RUDDER} rad is not physical; "
+                    + ("only some samples are" if few else "the column is probably in degrees"),
+                    "remove the wrong samples" if few else "multiply it by pi/180",
+                )
+            )
+    return problems
+
+
+def _degrees(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
+    """Heading or yaw rate in degrees, told by each other and by the positions."""
+    if not {"t", "psi"} <= set(columns) or not increasing(columns["t"]):
+        return []
+    if "r" in columns:
+        turned = turning(columns)
+        column = turned.in_degrees()
+        if column:
+            ratio = turned.ratio if column == "psi" else 1.0 / turned.ratio
+            return [_in_degrees(column, where, f"it turns {ratio:.3g} times as far as the other of 'psi' and 'r' says")]
+    psi = columns["psi"][np.isfinite(columns["psi"])]
+    if len(psi) == 0 or np.abs(psi).max() < 2.0 * np.pi or not {"x", "y", "u", "v"} <= set(columns):
+        return []
+    misfits = position_misfits(columns)
+    # Only so: angles of a few radians read in degrees are nearly no angles, as if velocities were in earth axes.
+    others = [misfit for name, misfit in misfits.items() if name != IN_DEGREES]
+    if not misfits or misfits[IN_DEGREES] > FITS or min(others) < 3.0 * FITS:
+        return []
+    problems = [_in_degrees("psi", where, "read in degrees, and only so, it leads u and v along the positions")]
+    if "r" in columns and turned.span > 6.0 and turned.miss < 0.15 * turned.span:
+        problems.append(_in_degrees("r", where, "it agrees with a heading that is in degrees"))
+    return problems
+
+
+def _in_degrees(column: str, where: str, why: str) -> Problem:
+    unit = "degrees" if column == "psi" else "degrees per second"
+    what = f"'{column}' is in {unit}, not {COLUMNS[column].unit}"
+    return Problem(what, f"{where}, column '{column}'", why, f"multiply '{column}' by pi/180")
+
+
+def _first(condition: np.ndarray) -> int:
+    return int(np.flatnonzero(condition)[0])

@@ -1,0 +1,137 @@
+"""Warnings: each is given for the mistake it is about, seen through noise, and for that alone."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mmgtune.resources import trial_set_names
+from mmgtune.trial import Trial, check_trial, load_trials
+
+from .made import DEG, changed, made, said, with_value
+
+SEEDS = pytest.mark.parametrize("seed", [None, 1, 2, 3])
+
+
+def only(trial: Trial, *expected: str) -> None:
+    """The trial has one warning for each text, and no errors."""
+    warnings = said(trial).splitlines()
+    assert said(trial, "error") == ""
+    assert len(warnings) == len(expected), warnings
+    for text in expected:
+        assert any(text in warning for warning in warnings), (text, warnings)
+
+
+def in_earth_axes(trial: Trial) -> Trial:
+    c, s = np.cos(trial.psi), np.sin(trial.psi)
+    return replace(trial, u=trial.u * c - trial.v_m * s, v_m=trial.u * s + trial.v_m * c)
+
+
+@pytest.mark.parametrize("name", trial_set_names())
+def test_the_bundled_trials_are_sound(name: str) -> None:
+    for trial in load_trials(name).trials.values():
+        assert [f.severity for f in check_trial(trial)] in ([], ["note"])
+
+
+@SEEDS
+def test_heading_that_is_not_unwrapped(seed: int | None) -> None:
+    trial = changed(made(seed=seed), "psi", lambda psi: (psi + np.pi) % (2 * np.pi) - np.pi)
+    only(trial, "the heading jumps by a full turn")
+    assert "numpy.unwrap" in said(trial)
+
+
+@SEEDS
+@pytest.mark.parametrize("zigzag", [True, False])
+@pytest.mark.parametrize("factor", [-1.0, 0.5, 2.0])
+def test_yaw_rate_against_heading(seed: int | None, zigzag: bool, factor: float) -> None:
+    trial = changed(made(seed=seed, zigzag=zigzag), "r", lambda r: factor * r)
+    warnings = said(trial)
+    assert "the yaw rate does not integrate to the heading" in warnings
+    ratio = re.search(r"turns ([\d.]+) times", warnings)
+    assert ratio is not None
+    assert float(ratio[1]) == pytest.approx(1.0 / abs(factor), rel=0.05)
+    if factor > 0:
+        only(trial, "the yaw rate does not integrate to the heading")
+
+
+@SEEDS
+@pytest.mark.parametrize(
+    ("change", "reading", "zigzag"),
+    [
+        (in_earth_axes, "if read in earth axes", False),
+        (in_earth_axes, "if read in earth axes", True),
+        (lambda trial: replace(trial, x=trial.y, y=trial.x), "with x east and y north", False),
+        (lambda trial: replace(trial, v_m=-trial.v_m), "with v positive to port", False),
+        (lambda trial: replace(trial, u=trial.u * 1.944, v_m=trial.v_m * 1.944), "with velocities in knots", False),
+        (lambda trial: replace(trial, u=trial.u * 1.944, v_m=trial.v_m * 1.944), "with velocities in knots", True),
+        (lambda trial: replace(trial, u=trial.u * 0.6), "nor do they fit if read in earth axes", False),
+        (lambda trial: replace(trial, u=trial.u * 0.6), "nor do they fit if read in earth axes", True),
+    ],
+)
+def test_velocities_against_positions(change: Any, reading: str, zigzag: bool, seed: int | None) -> None:
+    start = made(seed=seed, zigzag=zigzag)
+    # A zigzag about north could be read in earth axes; this one runs north-east.
+    c = np.sqrt(0.5)
+    start = replace(start, x=c * (start.x - start.y), y=c * (start.x + start.y), psi=start.psi + np.pi / 4)
+    only(change(start), reading)
+
+
+@SEEDS
+@pytest.mark.parametrize("kind", [{}, {"zigzag": True}, {"angle": -10 * DEG}])
+def test_rudder_of_the_other_sign(seed: int | None, kind: dict[str, Any]) -> None:
+    only(changed(made(seed=seed, **kind), "delta", np.negative), "the ship turns away from its rudder")
+
+
+@SEEDS
+@pytest.mark.parametrize("kind", [{}, {"zigzag": True}, {"angle": -10 * DEG}])
+def test_orders_instead_of_positions(seed: int | None, kind: dict[str, Any]) -> None:
+    only(made(seed=seed, rudder_rate=1e9, **kind), "these may be orders, not positions")
+
+
+def test_engine_orders_instead_of_revolutions() -> None:
+    only(with_value(made(), "n", slice(200, None), 0.9), "revolutions change by 48 rpm")
+
+
+def test_revolutions_per_minute() -> None:
+    only(made(n=102.0), "divide 'n' by 60")
+    only(made(n=12.0))
+
+
+@SEEDS
+@pytest.mark.parametrize(
+    ("name", "value"), [("x", 900.0), ("psi", 60.0), ("u", 9.0), ("r", 0.2), ("delta", -0.5), ("n", 0.0)]
+)
+def test_spikes(seed: int | None, name: str, value: float) -> None:
+    trial = with_value(made(seed=seed), name, 300, value)
+    warnings = said(trial)
+    assert f"'{name}' has 1 spikes" in warnings
+    assert f"column '{name}', row 300" in warnings
+    assert "orders" not in warnings
+
+
+def test_directions_in_degrees() -> None:
+    only(replace(made(), extra={"wind_dir": np.full(500, 270.0)}), "'wind_dir' is up to 270 rad")
+
+
+def test_notes() -> None:
+    uneven = replace(made(), extra={"wind_sped": np.ones(500)}, ignored=("helmsman",), source="")
+    every_other = np.r_[0:100, 100:500:2]
+    columns = {
+        name: getattr(uneven, name)[every_other] for name in ("t", "x", "y", "psi", "u", "v_m", "r", "n", "delta")
+    }
+    uneven = replace(uneven, **columns, extra={"wind_sped": np.ones(len(every_other))})
+    only(uneven)
+    notes = said(uneven, "note")
+    assert "the time step varies between 1 and 2 s" in notes
+    assert "meant to be 'wind_speed' [m/s]" in notes
+    assert "'helmsman' holds no numbers" in notes
+    assert "does not say whether it was measured" in notes
+
+
+def test_worst_first() -> None:
+    trial = with_value(made(source="generated"), "x", 40, np.nan)
+    assert [f.severity for f in check_trial(trial)] == ["warning", "note"]
