@@ -77,7 +77,9 @@ def test_options(tmp_path, arguments, words):
 def test_truncated_file(tmp_path, data):
     path = tmp_path / "data" / "turn_p35.parquet"
     path.write_bytes(path.read_bytes()[:5000])
-    refused(run("fit", *QUICK, "-t", "data", cwd=tmp_path), "cannot be read as Parquet", "turn_p35.parquet", "cut off")
+    refused(
+        run("fit", *QUICK, "-t", "data", cwd=tmp_path), "the Parquet file is damaged", "turn_p35.parquet", "cut off"
+    )
 
 
 def test_missing_column(tmp_path, data):
@@ -89,10 +91,12 @@ def test_missing_column(tmp_path, data):
     refused(run("fit", *QUICK, "-t", "data", cwd=tmp_path), "column 'psi' is missing", "heading", "[rad]")
 
 
-@pytest.mark.parametrize(("column", "word"), [("delta", "rudder angle up to 35"), ("psi", "'psi'"), ("r", "'r'")])
+@pytest.mark.parametrize(
+    ("column", "word"), [("delta", "'delta'"), ("psi", "'psi' is in degrees"), ("r", "'r' is in degrees")]
+)
 def test_degrees_where_radians_belong(tmp_path, data, column, word):
     data(**{column: np.degrees(getattr(data.trial, column))})
-    refused(run("fit", *QUICK, "-t", "data", cwd=tmp_path), word, "probably in degrees", "pi/180")
+    refused(run("fit", *QUICK, "-t", "data", cwd=tmp_path), word, "degrees", "multiply", "pi/180")
 
 
 @pytest.mark.parametrize("column", ["n", "delta", "t"])
@@ -112,7 +116,7 @@ def test_gap_in_the_motion_does_not_count_and_is_said(tmp_path, data):
     assert any("Gaps" in warning for warning in ended.json()["warnings"])
     checked = run("trials", "check", "data", "--strict", cwd=tmp_path)
     assert checked.code == 1
-    assert "'x' has gaps: 20 samples, the longest 20" in checked.out
+    assert "'x' has gaps: 20 of 481 samples; the longest has 20 samples" in checked.out
 
 
 def test_gap_in_the_first_sample(tmp_path, data):
@@ -122,12 +126,12 @@ def test_gap_in_the_first_sample(tmp_path, data):
     refused(run("fit", *QUICK, "-t", "data", cwd=tmp_path), "'u' has no value in the first sample")
 
 
-@pytest.mark.parametrize("step", [0.0, -3.0])
-def test_time_that_does_not_increase(tmp_path, data, step):
+@pytest.mark.parametrize(("step", "words"), [(0.0, "time repeats"), (-3.0, "time goes back")])
+def test_time_that_does_not_increase(tmp_path, data, step, words):
     t = data.trial.t.copy()
     t[50] = t[49] + step
     data(t=t)
-    refused(run("fit", *QUICK, "-t", "data", cwd=tmp_path), "time does not increase", "row 50", "sort")
+    refused(run("fit", *QUICK, "-t", "data", cwd=tmp_path), words, "row 50", "sort")
 
 
 @pytest.mark.parametrize(
@@ -136,8 +140,8 @@ def test_time_that_does_not_increase(tmp_path, data, step):
         ("tune = []", ("no trial tunes",)),
         ("", ("no trial tunes",)),
         ('tune = ["turn_p35", "turn_p35"]', ("named 2 times",)),
-        ('tune = ["turn_p35"]\ntest = ["turn_p35"]', ("in both sets",)),
-        ('tune = ["turn_p53"]', ("not in the folder", "did you mean 'turn_p35'")),
+        ('tune = ["turn_p35"]\ntest = ["turn_p35"]', ("is both in 'tune' and in 'test'",)),
+        ('tune = ["turn_p53"]', ("which is not there", "did you mean 'turn_p35'")),
         ('tunes = ["turn_p35"]', ("unknown key 'tunes'", "did you mean 'tune'")),
         ("tune = [", ("cannot be read",)),
         ('tune = ["turn_p35"]\nship = "kvlcc2"', ("of ship 'suzaku'",)),
