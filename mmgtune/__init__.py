@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from .fitting import write_run as write_run
     from .manoeuvres import Track as Track
     from .manoeuvres.summary import indices_of as indices_of
+    from .measures import distance_measures as distance_measures
     from .model import Model as Model
     from .orders import TurningOrder as TurningOrder
     from .orders import ZigzagOrder as ZigzagOrder
@@ -57,6 +58,7 @@ _WHERE = {
     "load_profile": "profile",
     "render": "report",
     "breakdown": "simulation",
+    "distance_measures": "measures",
     "simulate": "simulation",
     "Trial": "trial",
     "TrialSet": "trial",

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from .backends import STATES, Integrator, get_backend, pad
 from .manoeuvres import Track, manoeuvre_kind
 from .manoeuvres.summary import indices_of
+from .measures import distance_measures, reference_of
 from .model import Model
 from .physics.mmg import Breakdown, forces
 from .physics.quantities import Control, State
@@ -93,6 +94,14 @@ def track_of(trial: Trial) -> Track:
 def trial_indices(trial: Trial, L_pp: float) -> dict[str, Any]:
     """Manoeuvring indices of a measured trial; empty where gaps forbid them.  L_pp [m]."""
     return {} if np.isnan(trial.motion).any() else indices_of(track_of(trial), L_pp)
+
+
+def trial_measures(trial: Trial, motion: Motion) -> dict[str, float]:
+    """The seven distance measures between a measured trial and its simulation; empty where they do not exist."""
+    try:
+        return distance_measures(trial.motion, motion.states, reference_of(trial.motion))
+    except ValueError:  # a ship at rest, or never a complete sample
+        return {}
 
 
 def as_trial(ship: ShipProfile, motion: Motion, *, with_forces: bool = False) -> Trial:

@@ -154,7 +154,7 @@ def _on_trials(
 
 def _described(ship: ShipProfile, motion: Motion, trial: Trial | None) -> dict[str, Any]:
     from ..manoeuvres.summary import criteria_of, indices_of
-    from ..simulation import trial_indices
+    from ..simulation import trial_indices, trial_measures
 
     V = ship.approach.speed if ship.approach else float(motion.states[0, 3])
     track = None if motion.diverged else motion.track()
@@ -164,6 +164,7 @@ def _described(ship: ShipProfile, motion: Motion, trial: Trial | None) -> dict[s
         "duration_s": float(motion.t[-1]),
         "indices": indices_of(track, ship.L_pp) if track else {},
         "measured": trial_indices(trial, ship.L_pp) if trial is not None else None,
+        "measures": trial_measures(trial, motion) if trial is not None and not motion.diverged else None,
         "criteria": [criterion.to_dict() for criterion in criteria_of(track, ship.L_pp, V)] if track else [],
     }
 
@@ -184,12 +185,16 @@ def _write(ship: ShipProfile, runs: list[Motion], out: Path, forces: bool, repla
 
 
 def _text(result: dict[str, Any]) -> str:
+    from ..measures import UNITS
+
     lines = [f"{result['id']}  ({result['status']}, {result['duration_s']:.0f} s)"]
     measured = result["measured"] or {}
     for name, value in result["indices"].items():
         if value is not None and value != []:
             beside = f"   measured {_value(measured[name])}" if measured.get(name) is not None else ""
             lines.append(f"  {name:<34}{_value(value)}{beside}")
+    for name, value in (result["measures"] or {}).items():
+        lines.append(f"  {name:<34}{value:.4g} {UNITS[name]}")
     for criterion in result["criteria"]:
         passed = criterion["passed"]
         word = "not applicable: " + criterion["reason"] if passed is None else "pass" if passed else "FAIL"

@@ -92,6 +92,8 @@ def test_simulate_trials_beside_the_measured_indices(tmp_path):
     assert len(runs) == 10
     assert runs["turn_p35"]["measured"]["advance_m"] > runs["turn_p35"]["indices"]["advance_m"]
     assert runs["zigzag_20"]["measured"]["overshoot_1_deg"] > 0.0
+    assert runs["turn_m10"]["measures"]["MED"] > runs["turn_p40"]["measures"]["MED"] > 10.0
+    assert set(runs["turn_m10"]["measures"]) == {"MMD", "MED", "ASD", "MSD", "PMD", "PED", "cVDM"}
 
 
 def test_trials_check_and_inspect(tmp_path):
