@@ -220,13 +220,9 @@ class FitResult:
             "certificate": self.certificate.to_dict(),
             "identifiability": self.identifiability.to_dict(),
             "assumptions": [
-                {"name": name, "value": _text(coefficient.value), "note": coefficient.note}
+                {"name": name, "value": self.profile.written(name), "note": coefficient.note}
                 for name, coefficient in self.profile.assumptions()
             ],
             "citations": self.profile.cites(),
             "wall_s": self.wall_s,
         }
-
-
-def _text(value: float | tuple[float, ...]) -> str:
-    return ", ".join(f"{number:.4g}" for number in value) if isinstance(value, tuple) else f"{value:g}"

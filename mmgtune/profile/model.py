@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ..components import Component
+from ..units import DIMENSIONLESS
 
 
 @dataclass(frozen=True)
@@ -87,6 +88,17 @@ class ShipProfile:
         if isinstance(value, tuple):
             raise KeyError(f"{name} is a table")
         return value
+
+    def written(self, name: str) -> str:
+        """The value called 'section.symbol' as a person writes it: number with unit, list, or word."""
+        section, _, symbol = name.partition(".")
+        field = self.sections[section].component.fields[symbol]
+        value = self.coefficient(name).value
+        for word, number in field.choices.items():
+            if number == value:
+                return word
+        numbers = ", ".join(f"{number:.4g}" for number in (value if isinstance(value, tuple) else (value,)))
+        return numbers if field.unit in DIMENSIONLESS else f"{numbers} {field.unit}"
 
     @property
     def L_pp(self) -> float:

@@ -38,6 +38,15 @@ def test_tuned_text_round_trip(name):
     assert [tuned.value(n) for n in untouched] == [profile.value(n) for n in untouched]
 
 
+def test_values_are_shown_as_people_write_them():
+    profile = load_profile("suzaku")
+    assert profile.written("propeller.slipstream_kt") == "converted"
+    assert profile.written("particulars.L_pp") == "83 m"
+    assert profile.written("wake.w_P0") == "0.422"
+    assert profile.written("rudder.flap").startswith("0, 0.1745, ")
+    assert profile.written("rudder.flap").endswith(" rad")
+
+
 @settings(max_examples=150, deadline=None)
 @given(data=st.data())
 def test_any_damage_to_a_profile_is_a_profile_error_or_none(data):
