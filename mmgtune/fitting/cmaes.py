@@ -86,24 +86,27 @@ def search(
     start: FloatArray,
     *,
     populations: tuple[int, ...] = LAMBDAS,
+    tolerance: float | None = None,
     recorded: list[FloatArray] | None = None,
     on_generation: Callable[[Search], None] = lambda _: None,
     stop: Callable[[], bool] = lambda: False,
 ) -> Search:
     """Minimise J: the first restart from ``start`` (n_targets,) in the unit cube, the others from random points.
 
+    tolerance       a restart ends once J varies by less than this; a 1e-9th of J at the start where None
     recorded        costs of generations of an earlier, interrupted run with the same problem and seed; replayed
     on_generation   called after every generation that was simulated
     stop            asked after every generation; True ends the search with what it has
     """
     replay: Iterator[FloatArray] = iter(recorded or [])
     found = Search(unit=start.copy(), J=float(problem.costs(start[:, None])[0]))
-    scale = found.J if np.isfinite(found.J) else 1.0
+    if tolerance is None:
+        tolerance = 1e-9 * found.J if np.isfinite(found.J) else 1e-9
     evaluations = 0
     for index, population in enumerate(populations):
         rng = np.random.RandomState(np.random.SeedSequence([seed, index]).generate_state(4))
         origin = start if index == 0 else rng.uniform(size=len(start))
-        strategy = _strategy(from_box(origin), population, rng, scale)
+        strategy = _strategy(from_box(origin), population, rng, tolerance)
         best = math.inf
         generation = 0
         while not strategy.stop():
@@ -137,7 +140,7 @@ def search(
     return found
 
 
-def _strategy(z: FloatArray, population: int, rng: np.random.RandomState, scale: float) -> Any:
+def _strategy(z: FloatArray, population: int, rng: np.random.RandomState, tolerance: float) -> Any:
     """A strategy with a random stream of its own, which writes and reads no files."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -150,8 +153,8 @@ def _strategy(z: FloatArray, population: int, rng: np.random.RandomState, scale:
             "verbose": -9,
             "verb_log": 0,
             "signals_filename": None,
-            "tolfun": 1e-9 * scale,
-            "tolfunhist": 1e-12 * scale,
+            "tolfun": tolerance,
+            "tolfunhist": 1e-3 * tolerance,
             "tolx": 1e-9,
             "tolflatfitness": 20,
         }

@@ -121,7 +121,9 @@ def fit(
     found: Search | None = None
     if options.method == "cma-es":
         hooks.on_phase("CMA-ES")
-        found = _search(problem, options, np.clip(before, 0.0, 1.0), hooks, checkpoint, recorded)
+        # Far below the tolerance of the certificate; least squares goes on from where the search ends.
+        tolerance = max(1e-9 * J_before, 1e-5 * best.J)
+        found = _search(problem, options, np.clip(before, 0.0, 1.0), tolerance, hooks, checkpoint, recorded)
         if not hooks.stop():
             ends += solve(problem, found.unit[:, None], stop=hooks.stop)
             best = min(ends, key=lambda end: end.J)
@@ -203,6 +205,7 @@ def _search(
     problem: FitProblem,
     options: FitOptions,
     start: FloatArray,
+    tolerance: float,
     hooks: Hooks,
     checkpoint: Checkpoint | None,
     recorded: list[FloatArray] | None,
@@ -214,7 +217,15 @@ def _search(
             checkpoint.save(state.costs)
         hooks.on_generation(state)
 
-    found = search(problem, options.seed, start, recorded=recorded, on_generation=on_generation, stop=hooks.stop)
+    found = search(
+        problem,
+        options.seed,
+        start,
+        tolerance=tolerance,
+        recorded=recorded,
+        on_generation=on_generation,
+        stop=hooks.stop,
+    )
     if checkpoint:
         if found.finished:
             checkpoint.remove()

@@ -108,7 +108,9 @@ def _table(path: Path) -> tuple[bytes, Any]:
             Problem("the trial file cannot be opened", str(path), error.strerror or str(error), fix)
         ) from error
     try:
-        return content, pq.read_table(pa.BufferReader(content), use_threads=False)
+        # Without worker threads: one still starting when a command fails quickly would abort the process at its exit.
+        # ``read_table`` starts one whatever it is told.
+        return content, pq.ParquetFile(pa.BufferReader(content), pre_buffer=False).read(use_threads=False)
     except (OSError, ValueError, pa.ArrowException) as error:
         if not content:
             what, fix = "the file is empty", "copy it again from where it was made"

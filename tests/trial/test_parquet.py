@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -153,6 +154,23 @@ def test_columns_of_other_kinds(tmp_path: Path) -> None:
     columns["u"] = ["fast"] * 500
     (problem,) = problems_of(write_raw(tmp_path / "b.parquet", columns))
     assert "column 'u' holds string, not numbers" in problem
+
+
+def test_a_column_that_is_there_twice(tmp_path: Path) -> None:
+    columns = made().columns
+    table = pa.table([*columns.values(), columns["x"]], names=[*columns, "x"])
+    pq.write_table(table, tmp_path / "a.parquet")
+    (problem,) = problems_of(tmp_path / "a.parquet")
+    assert "column 'x' is there twice" in problem
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="threads are counted in /proc")
+def test_reading_leaves_no_threads_that_could_abort_a_quick_exit(tmp_path: Path) -> None:
+    path = write_trial(made(), tmp_path / "a.parquet")
+    code = "import os, sys, pyarrow.parquet; from mmgtune.trial import read_trial; "
+    code += "count = lambda: len(os.listdir('/proc/self/task')); before = count(); "
+    code += "read_trial(sys.argv[1]); sys.exit(count() - before)"
+    assert subprocess.run([sys.executable, "-c", code, path], check=False).returncode == 0
 
 
 @pytest.mark.parametrize(
