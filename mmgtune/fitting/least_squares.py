@@ -145,9 +145,18 @@ def _jacobians(problem: FitProblem, z: FloatArray, d: FloatArray, rows: npt.NDAr
     return (
         d[:, rows].transpose(1, 0, 2),
         residuals,
-        np.where(np.isfinite(jacobians), jacobians, 0.0),
-        np.where(np.isfinite(by_offset), by_offset, 0.0),
+        _flat_where_lost(jacobians),
+        _flat_where_lost(by_offset),
     )
+
+
+def _flat_where_lost(derivatives: FloatArray) -> FloatArray:
+    """Derivatives with 0 for those that are not finite; the usual case costs one pass and no copy."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        whole = bool(np.isfinite(derivatives.sum()))
+    if whole:
+        return derivatives
+    return np.where(np.isfinite(derivatives), derivatives, 0.0)
 
 
 class _Linear:

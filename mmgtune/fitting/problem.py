@@ -133,7 +133,8 @@ class FitProblem:
         values = values.T.reshape(-1, n_points, n_columns).transpose(1, 0, 2)
         base = values[:, :, :1]
         with np.errstate(invalid="ignore"):
-            slopes = (values[:, :, 1 : 1 + n_targets] - base) / steps.T[:, None, :]
+            slopes = values[:, :, 1 : 1 + n_targets] - base
+            slopes /= steps.T[:, None, :]
             by_offset = values[:, :, 1 + n_targets :] - base
             if self.sigma is not None:
                 for case, rows in enumerate(self.rows_of_cases):

@@ -199,3 +199,14 @@ def test_cma_es_and_least_squares_agree_on_the_bundled_trials(suzaku, a_r):
     by_squares = solve(problem, start[:, None])[0].J
     by_cma = search(problem, 1, start, populations=(12, 24)).J
     assert by_cma == pytest.approx(by_squares, rel=1e-4)
+
+
+def test_a_start_whose_neighbours_diverge_does_not_stop_the_others(suzaku, noisy):
+    """A box so wide that parts of it blow up: those starts are given up, the others reach an optimum."""
+    problem = make_problem(suzaku.profile, noisy, FitOptions(targets=("hull.X_vvvv", "hull.N_r"), a_r=400.0))
+    starts = np.array([[0.5, 0.0, 1.0, 0.75], [0.5, 1.0, 1.0, 0.3]])
+    before = problem.costs(starts)
+    assert not np.isfinite(before).all()
+    ends = solve(problem, starts)
+    assert np.isfinite(ends[0].J)
+    assert before[0] > ends[0].J
