@@ -22,9 +22,8 @@ LINE_EVERY = 5.0
 class Progress:
     """A context in which a fit reports what it does and can be interrupted."""
 
-    def __init__(self, quiet: bool, fits: int = 1):
+    def __init__(self, quiet: bool):
         self.quiet = quiet
-        self.fits = fits
         self.stopped = False
         self._phase = ""
         self._began = time.monotonic()
@@ -64,6 +63,7 @@ class Progress:
 
     def _on_phase(self, words: str) -> None:
         self._phase = words
+        self._began = time.monotonic()
         self._show(words, line=True)
 
     def _on_generation(self, state: Search) -> None:
@@ -77,7 +77,7 @@ class Progress:
         self._show(
             f"{self._phase}: restart {now.restart + 1} of {len(LAMBDAS)} (lambda {now.population}), "
             f"generation {now.generation}, {now.evaluations} evaluations, J {state.J:.6g}, sigma {now.sigma:.1e}, "
-            f"lost {state.diverged}, about {left:.0f} s left"
+            f"lost {state.diverged}, about {left:.0f} s left of it"
         )
 
     def _show(self, text: str, line: bool = False) -> None:

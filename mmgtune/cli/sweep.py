@@ -74,7 +74,7 @@ def command(
         print(f"sweep over a_r = {ar}; the first:\n{plans[0]}")
         return
     prepare(folder, force=force)
-    with Progress(quiet, fits=len(widths)) as progress:
+    with Progress(quiet) as progress:
         result = sweep(ship, data, widths, options, hooks=progress.hooks(), folder=folder, command=c.command_line())
     if not no_report:
         from ..report import render

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -67,7 +67,7 @@ class Certificate:
         return {
             "projected_gradient": self.projected_gradient,
             "step_gain": self.step_gain,
-            "active": [bound.__dict__ for bound in self.active],
+            "active": [asdict(bound) for bound in self.active],
             "sentences": list(self.sentences),
         }
 
@@ -118,7 +118,7 @@ def certify(
         sentences=(),
     )
     others = sorted({f"{value:.6g}" for value in J_starts if value - J > TOLERANCE * floor}, key=float)
-    return Certificate(**{**result.__dict__, "sentences": _sentences(result, others)})
+    return replace(result, sentences=_sentences(result, others))
 
 
 def _sentences(c: Certificate, others: list[str]) -> tuple[str, ...]:

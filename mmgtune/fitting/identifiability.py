@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -138,7 +138,7 @@ def analyse(problem: FitProblem, unit: FloatArray, active: npt.NDArray[np.bool_]
         combinations=_combinations(problem, unit, relative, singular, vectors, null),
         autocorrelation=whitening.phi,
     )
-    return Identifiability(**{**result.__dict__, "sentences": _sentences(problem, result, active)})
+    return replace(result, sentences=_sentences(problem, result, active))
 
 
 def _without_offsets(problem: FitProblem, sensitivity: FloatArray, by_offset: FloatArray) -> FloatArray:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import platform
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -112,7 +112,7 @@ def fit(
     hooks.on_phase("least squares")
     starts = _starts(problem, options, before, more_starts)
     if problem.sigma is not None:  # far from an optimum, free initial states only lead astray
-        held = make_problem(profile, trials, FitOptions(**{**options.__dict__, "initial": "measured"}))
+        held = make_problem(profile, trials, replace(options, initial="measured"))
         starts = np.column_stack([end.unit for end in solve(held, starts, stop=hooks.stop)])
         problem.evaluations += held.evaluations
     ends = solve(problem, starts, stop=hooks.stop)
@@ -188,7 +188,7 @@ def _free_start(profile: ShipProfile, trials: TrialSet, options: FitOptions, uni
     """J of the same coefficients if each tune trial started from an estimated state; None where it does already."""
     if options.initial == "estimated":
         return None
-    problem = make_problem(profile, trials, FitOptions(**{**options.__dict__, "initial": "estimated"}))
+    problem = make_problem(profile, trials, replace(options, initial="estimated"))
     return float(problem.costs(unit[:, None], fit_offsets(problem, unit)[:, None])[0])
 
 
@@ -198,7 +198,7 @@ def hold_directions(profile: ShipProfile, trials: TrialSet, options: FitOptions)
     free = np.zeros(len(problem.box), dtype=bool)
     directions = analyse(problem, problem.box.to_unit(problem.box.pre), free).null_directions
     held = tuple(next(iter(direction.weights)) for direction in directions)
-    return FitOptions(**{**options.__dict__, "fixed": (*options.fixed, *held), "identifiable": False})
+    return replace(options, fixed=(*options.fixed, *held), identifiable=False)
 
 
 def _search(

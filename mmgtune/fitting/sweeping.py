@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -161,15 +161,14 @@ def sweep(
         what = "a half width is given twice" if widths else "no half width to sweep over"
         raise OptionError(Problem(what, "--ar", fix="write --ar 0.2,0.3,0.4,0.5,0.6"))
     for a_r in widths:  # every width must be possible before the first is worked on
-        make_problem(profile, trials, FitOptions(**{**options.__dict__, "a_r": a_r}))
+        make_problem(profile, trials, replace(options, a_r=a_r))
     runs: list[FitResult] = []
     for a_r in sorted(widths):
-        hooks.on_phase(f"a_r = {a_r:g}")
         result = fit(
             profile,
             trials,
-            FitOptions(**{**options.__dict__, "a_r": a_r}),
-            hooks=hooks,
+            replace(options, a_r=a_r),
+            hooks=_named(hooks, a_r),
             more_starts=tuple(run.theta for run in runs[-1:]),
             command=command,
         )
@@ -189,6 +188,11 @@ def sweep(
             json.dumps({**swept.to_dict(), "out": str(folder)}, indent=1, allow_nan=False, ensure_ascii=False) + "\n",
         )
     return swept
+
+
+def _named(hooks: Hooks, a_r: float) -> Hooks:
+    """The same hooks, with the half width in front of every phase."""
+    return replace(hooks, on_phase=lambda words: hooks.on_phase(f"a_r = {a_r:g}, {words}"))
 
 
 def _leave_one_out(profile: ShipProfile, trials: TrialSet, run: FitResult) -> float:
