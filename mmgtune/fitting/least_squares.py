@@ -90,7 +90,8 @@ def solve(
             scale = np.maximum(np.diag(hessian), 1e-12 * np.diag(hessian).max() + 1e-300)
             for k, factor in enumerate(DAMPINGS):
                 damped = hessian + np.diag(damping[row] * factor * scale)
-                tried[:, i, k] = bounded_step(damped, gradient, z[:, row])
+                nearby = tried[:, i, k - 1] if k else None
+                tried[:, i, k] = bounded_step(damped, gradient, z[:, row], nearby)
                 moved[:, i, k] = linear[i].offsets(tried[:, i, k] - z[:, row])
         unit, offsets = tried.reshape(len(z), -1), moved.reshape(len(problem.cases), -1, 6)
         costs = problem.costs(unit, offsets)
@@ -194,15 +195,20 @@ class _Linear:
         return np.asarray(np.clip(moved, -self._limit, self._limit))
 
 
-def bounded_step(hessian: FloatArray, gradient: FloatArray, z: FloatArray) -> FloatArray:
+def bounded_step(
+    hessian: FloatArray, gradient: FloatArray, z: FloatArray, start: FloatArray | None = None
+) -> FloatArray:
     """The point of the unit cube that minimises a convex quadratic around z, by an active-set method.
 
     Moves towards the minimum over the free coordinates up to the first bound, holds what met it, and releases a held
     coordinate once its slope points inwards.
+
+    start  a point of the cube to begin at, such as the solution for another damping: most bounds are then known
     """
     n = len(z)
-    point = z.copy()
-    held = ((z <= 0.0) & (gradient > 0.0)) | ((z >= 1.0) & (gradient < 0.0))
+    point = z.copy() if start is None else start.copy()
+    slope = gradient + hessian @ (point - z)
+    held = ((point <= 0.0) & (slope > 0.0)) | ((point >= 1.0) & (slope < 0.0))
     for _ in range(3 * n):
         free = np.flatnonzero(~held)
         slope = gradient + hessian @ (point - z)

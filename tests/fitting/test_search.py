@@ -92,6 +92,8 @@ def test_bounded_step_solves_the_bounded_quadratic():
         b = 3.0 * rng.standard_normal(20)
         z = rng.uniform(size=6)
         found = bounded_step(A.T @ A, A.T @ b, z)
+        elsewhere = bounded_step(A.T @ A, A.T @ b, z, start=np.round(rng.uniform(size=6)))
+        np.testing.assert_allclose(elsewhere, found, atol=1e-9)
         best = lsq_linear(A, -b, bounds=(-z, 1.0 - z)).x + z
         value, least = (np.sum((A @ (point - z) + b) ** 2) for point in (found, best))
         assert value <= least * (1.0 + 1e-9)
