@@ -61,19 +61,6 @@ class Cases:
         """Number of differences that count."""
         return int(self.rows.max(initial=-1)) + 1
 
-    def subset(self, rows: Sequence[int]) -> Cases:
-        """The cases at ``rows``, cut to the longest of them."""
-        picked = list(rows)
-        T = int(self.n_samples[picked].max())
-        return Cases(
-            t=self.t[picked, :T],
-            n_samples=self.n_samples[picked],
-            controls=self.controls[picked, :T],
-            initial=self.initial[picked],
-            target=self.target[picked, :T],
-            weight=self.weight[picked, :T],
-        )
-
 
 def pad(
     times: Sequence[FloatArray],

@@ -65,8 +65,7 @@ def inspect(trials: Name, profile: c.Profile = "suzaku", json: c.Json = False) -
     data = load_trials(trials)
     rows = []
     for name, trial in data.trials.items():
-        role = "tune" if name in data.tune else "test" if name in data.test else "other"
-        rows.append({**describe(trial), "role": role, "indices": trial_indices(trial, L_pp)})
+        rows.append({**describe(trial), "role": data.role(name), "indices": trial_indices(trial, L_pp)})
     if json:
         c.print_json({"schema": 1, "L_pp_m": L_pp, "trials": rows})
         return

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..trial import Trial
+from ..trial.kinematics import white_noise
 from ..trial.schema import MOTION
 
 FloatArray = npt.NDArray[np.float64]
@@ -23,16 +24,10 @@ LARGEST = 5.0
 def noise_of(trial: Trial) -> FloatArray:
     """Standard deviation of white noise in x, y, psi, u, v_m, r: (6,), SI units.
 
-    What the file says, else from second differences, in which a smooth motion at the sampling rate hardly shows:
-    their median size is that of noise alone, times the root of six.
+    What the file says, else what second differences show, in which a smooth motion hardly does.
     """
-    sigma = np.empty(6)
-    for k, name in enumerate(MOTION):
-        values = trial.motion[:, k]
-        bends = np.diff(values[~np.isnan(values)], n=2)
-        measured = 1.4826 * float(np.median(np.abs(bends))) / np.sqrt(6.0) if len(bends) else 0.0
-        sigma[k] = trial.noise.get(name, measured)
-    return sigma
+    channels = zip(MOTION, trial.motion.T, strict=True)
+    return np.array([trial.noise.get(name, white_noise(values)) for name, values in channels])
 
 
 def deviations(trials: Sequence[Trial], scales: FloatArray) -> FloatArray:

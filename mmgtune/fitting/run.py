@@ -138,6 +138,7 @@ def fit(
     restarts = found.restarts if found else []
     certificate = certify(problem, unit, J, J_before, ends, restarts, found.J if found else None)
     held_by_bound = np.isin(problem.box.names, [bound.name for bound in certificate.active])
+    roles = {name: trials.role(name) for name in trials.trials}
     everything = make_problem(profile, trials, options, tuple(trials.trials))
     objective = make_objective(problem.model.L_pp, options.channels, options.window)
     return FitResult(
@@ -148,7 +149,7 @@ def fit(
         J=J,
         J_before=J_before,
         J_free_start=_free_start(profile, trials, options, unit),
-        compared=tuple(compare(everything, list(trials.trials.values()), _roles(trials), before, unit)),
+        compared=tuple(compare(everything, list(trials.trials.values()), roles, before, unit)),
         restarts=tuple(restarts),
         starts=tuple(ends),
         history=tuple(found.history if found else ()),
@@ -175,13 +176,6 @@ def _starts(
     starts += [box.to_unit([values.get(name, box.pre[i]) for i, name in enumerate(box.names)]) for values in more]
     starts += [rng.uniform(size=len(box)) for _ in range(max(0, options.starts - len(starts)))]
     return np.clip(np.column_stack(starts), 0.0, 1.0)
-
-
-def _roles(trials: TrialSet) -> dict[str, str]:
-    """Role of each trial: "tune", "test" or "other"."""
-    return {
-        name: "tune" if name in trials.tune else "test" if name in trials.test else "other" for name in trials.trials
-    }
 
 
 def _free_start(profile: ShipProfile, trials: TrialSet, options: FitOptions, unit: FloatArray) -> float | None:

@@ -33,6 +33,10 @@ class TrialSet:
         """Ids of the trials that neither tune nor test."""
         return tuple(name for name in self.trials if name not in self.tune and name not in self.test)
 
+    def role(self, name: str) -> str:
+        """What the trial of that id is for: "tune", "test" or "other"."""
+        return "tune" if name in self.tune else "test" if name in self.test else "other"
+
     def hashes(self) -> dict[str, str]:
         """SHA-256 of each trial's file, by id."""
         return {name: trial.sha256 for name, trial in self.trials.items()}
