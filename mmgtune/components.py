@@ -13,7 +13,7 @@ from typing import Any
 from .physics.hull.cubic import CubicHull, cubic_hull
 from .physics.propeller.four_quadrant import FourQuadrantPropeller, four_quadrant_propeller
 from .physics.propeller.open_water import OpenWaterPropeller, open_water_propeller
-from .physics.quantities import Ship
+from .physics.quantities import AboveWater, Ship
 from .physics.rudder.flapped import FlappedRudder, flapped_rudder
 from .physics.rudder.plain import PlainRudder, plain_rudder
 from .physics.wake.asymmetric import AsymmetricWake, asymmetric_wake
@@ -233,6 +233,24 @@ PLAIN_RUDDER = Component(
     },
 )
 
+ABOVE_WATER = Component(
+    kind="above_water",
+    tag="above_water",
+    title="geometry above the water",
+    params=AboveWater,
+    function=None,
+    cites=("Fujiwara, Ueno & Nimura 1998, J. Society of Naval Architects of Japan 183, 77-90",),
+    fields={
+        "A_T": Field("frontal area", "m^2", low=0.0, high=10000.0),
+        "A_L": Field("lateral area", "m^2", low=0.0, high=30000.0),
+        "A_OD": Field("lateral area of superstructure and deck cargo", "m^2", low=0.0, high=30000.0),
+        "C": Field("centroid of the lateral area, forward of midship", "m"),
+        "C_BR": Field("centroid of the superstructure, forward of midship", "m"),
+        "H_BR": Field("top of the bridge above the waterline", "m", low=0.0, high=150.0),
+        "H_C": Field("centroid of the lateral area above the waterline", "m", low=0.0, high=100.0),
+    },
+)
+
 COMPONENTS = (
     SHIP,
     CUBIC_HULL,
@@ -242,11 +260,21 @@ COMPONENTS = (
     OPEN_WATER_PROPELLER,
     FLAPPED_RUDDER,
     PLAIN_RUDDER,
+    ABOVE_WATER,
 )
 """Every component there is, in the order documentation lists them."""
 
 KINDS = ("particulars", "hull", "wake", "propeller", "rudder")
 """The kinds a model needs one of each, in the order of ``physics.mmg.Coefficients``."""
+
+UNTAGGED = {"particulars": SHIP, "above_water": ABOVE_WATER}
+"""Kinds of which there is only one component, so that a profile names no model."""
+
+
+def split_name(name: str) -> tuple[str, str]:
+    """Section and symbol of "hull.Y_v" or "effects.current.north"."""
+    section, _, symbol = name.rpartition(".")
+    return section, symbol
 
 
 def tags(kind: str) -> tuple[str, ...]:

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .components import KINDS, Component
+from .effects import PLACES, Effect
 from .physics.mmg import Coefficients, Components
 from .profile import ShipProfile
 
@@ -17,7 +18,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 class Model:
-    """The components of a profile and their coefficients as one column of numbers.
+    """The components and effects of a profile and their coefficients as one column of numbers.
 
     Simulators take a matrix with one row per number (a table has several) and one column per candidate, so that
     any coefficient can differ between lanes.
@@ -27,22 +28,23 @@ class Model:
         self.profile = profile
         self.parts: tuple[Component, ...] = tuple(profile.sections[kind].component for kind in KINDS)
         self.components = Components(*(part.function for part in self.parts[1:]))
-        self.rows: dict[str, int] = {}
-        numbers: list[float] = []
-        for kind in KINDS:
-            for symbol, coefficient in profile.sections[kind].coefficients.items():
-                value = coefficient.value
-                values = value if isinstance(value, tuple) else (value,)
-                for k, number in enumerate(values):
-                    name = f"{kind}.{symbol}[{k}]" if isinstance(value, tuple) else f"{kind}.{symbol}"
-                    self.rows[name] = len(numbers)
-                    numbers.append(number)
-        self.base: FloatArray = np.array(numbers)
+        present = [section.component for section in profile.sections.values()]
+        self.effects: tuple[Effect, ...] = tuple(part for part in present if isinstance(part, Effect))
+        numbers = {name: value for section in profile.sections.values() for name, value in section.numbers.items()}
+        self.rows: dict[str, int] = {name: row for row, name in enumerate(numbers)}
+        self.base: FloatArray = np.array(list(numbers.values()))
+
+    def acting(self, *places: str) -> tuple[Effect, ...]:
+        """The effects that act at these places of the data flow, in the order in which they act."""
+        unknown = set(places) - set(PLACES)
+        if unknown:
+            raise KeyError(f"no such place: {', '.join(unknown)}")
+        return tuple(effect for effect in self.effects if effect.place in places)
 
     @property
     def tags(self) -> tuple[str, ...]:
-        """The components in use, which is all a compiled simulator depends on."""
-        return tuple(f"{part.kind}:{part.tag}" for part in self.parts)
+        """The components and effects in use."""
+        return tuple(f"{part.kind}:{part.tag}" for part in (*self.parts, *self.effects))
 
     @cached_property
     def L_pp(self) -> float:
@@ -52,23 +54,43 @@ class Model:
     def matrix(self, names: Sequence[str] = (), values: npt.ArrayLike | None = None) -> FloatArray:
         """Coefficients of candidates: ``values`` (n_names, n_candidates) for ``names``, the profile's elsewhere.
 
+        Effects on coefficients have acted on what is returned.
         -> (n_rows, n_candidates); one column where there are no names.  Raises KeyError for an unknown name.
         """
         if values is None:
-            return self.base[:, None].copy()
-        changed = np.asarray(values, dtype=float)
-        theta = np.repeat(self.base[:, None], changed.shape[1], axis=1)
-        theta[[self.rows[name] for name in names]] = changed
+            theta = self.base[:, None].copy()
+        else:
+            changed = np.asarray(values, dtype=float)
+            theta = np.repeat(self.base[:, None], changed.shape[1], axis=1)
+            theta[[self.rows[name] for name in names]] = changed
+        for effect in self.acting("coefficients"):
+            assert effect.function is not None  # these have one
+            now = {name: theta[row] for name, row in self.rows.items()}
+            for name, value in effect.function(now, self.parameters(effect, theta)).items():
+                theta[self.rows[name]] = value
         return theta
+
+    def fields(self, component: Component) -> list[list[int]]:
+        """Rows of each field of a component's tuple of coefficients: one, or those of a table."""
+        borrowed = component.borrowed if isinstance(component, Effect) else {}
+        found = []
+        for symbol in component.params._fields:
+            name = borrowed.get(symbol, f"{component.kind}.{symbol}")
+            table = component.fields[symbol].table if symbol in component.fields else 0
+            found.append([self.rows[f"{name}[{k}]"] for k in range(table)] if table else [self.rows[name]])
+        return found
+
+    def parameters(self, component: Component, theta: FloatArray) -> Any:
+        """The tuple of a component's coefficients, lanes of shape (n_candidates,) out of (n_rows, n_candidates)."""
+        tables = [symbol in component.fields and component.fields[symbol].table for symbol in component.params._fields]
+        rows = self.fields(component)
+        return component.params(
+            *(
+                tuple(theta[row] for row in of) if table else theta[of[0]]
+                for of, table in zip(rows, tables, strict=True)
+            )
+        )
 
     def coefficients(self, theta: FloatArray) -> Coefficients:
         """The tuples the equations take, with lanes of shape (n_candidates,) out of a (n_rows, n_candidates) matrix."""
-        row = 0
-        tuples: list[Any] = []
-        for part in self.parts:
-            fields: list[Any] = []
-            for field in part.fields.values():
-                fields.append(tuple(theta[row : row + field.table]) if field.table else theta[row])
-                row += field.table or 1
-            tuples.append(part.params(*fields))
-        return Coefficients(*tuples)
+        return Coefficients(*(self.parameters(part, theta) for part in self.parts))

@@ -10,7 +10,7 @@ import numpy as np
 from .backends import STATES, Cases, pad
 from .backends.cases import FloatArray
 from .errors import OptionError, Problem, closest
-from .trial import Trial
+from .trial import Trial, measured_wind
 
 PAPER_CHANNELS = ("x", "y", "psi")
 """Position and heading: the channels of Suyama et al. 2023, eq. 39-40."""
@@ -113,4 +113,5 @@ def cases_of(trials: Sequence[Trial], objective: Objective) -> Cases:
         [trial.motion[0] for trial in trials],
         [np.nan_to_num(trial.motion, nan=0.0) for trial in trials],
         weight,
+        [measured_wind(trial) for trial in trials],
     )

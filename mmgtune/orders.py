@@ -13,9 +13,10 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
+from .backends import LaneModel
+from .backends.numpy_lanes import STILL
 from .errors import OptionError, Problem
 from .model import Model
-from .physics.mmg import derivatives
 from .physics.quantities import Control, State
 from .profile import ShipProfile, SteeringGear
 from .simulation import Motion
@@ -128,42 +129,53 @@ def run_manoeuvre(
     n_0 = n if n is not None else profile.approach.n  # type: ignore[union-attr]
     if not (U_0 > 0.0 and math.isfinite(U_0)):
         raise OptionError(Problem(f"the approach speed is {U_0:g} m/s", "--speed", fix="give a speed above 0"))
-    p = model.coefficients(model.matrix())
-    state = np.array([0.0, 0.0, heading, U_0, 0.0, 0.0])
+    ship_now = LaneModel(model, model.matrix())
+    start = State(*np.array([[0.0], [0.0], [heading], [U_0], [0.0], [0.0]]))
     delta, revolutions = 0.0, n_0
+    logged = Control(np.array([n_0]), np.array([0.0]))
+    chain = ship_now.moved([logged], [logged], None, np.zeros(1))
+    state = np.array([*start, *ship_now.lag_start(start, chain[-1])])
+
+    def shown() -> FloatArray:
+        """The six states as the sensors show them."""
+        return np.array(ship_now.sensed(State(*state[:6])))[:, 0]
+
     longest_step = step or min(LONGEST_STEP, FINE * model.L_pp / U_0)
     steps = max(1, math.ceil(sample / longest_step - 1e-9))
     h = sample / steps
-    rows: list[FloatArray] = [state]
+    rows: list[FloatArray] = [shown()]
     controls = [(revolutions, delta)]
     diverged = False
     for i in range(round(longest / sample)):
         for k in range(steps):
             t = i * sample + k * h
-            ordered = helmsman.order(t, float(state[2] - heading))
-            now = (revolutions, delta)
-            delta = move_rudder(delta, ordered, profile.steering_gear, h)
+            seen = shown()
+            delta = move_rudder(delta, helmsman.order(t, float(seen[2] - heading)), profile.steering_gear, h)
             if engine is not None:
-                revolutions = n_0 * engine(math.hypot(state[3], state[4]) / U_0)
-            state = _rk4(model, p, state, now, (revolutions, delta), h)
-        rows.append(state)
+                revolutions = n_0 * engine(math.hypot(state[3, 0], state[4, 0]) / U_0)
+            before = chain
+            with np.errstate(all="ignore"):
+                reached = Control(np.array([revolutions]), np.array([delta]))
+                chain = ship_now.moved(before, [reached], before, np.array([h]))
+                state = _rk4(ship_now, state, before[-1], chain[-1], h)
+        rows.append(shown())
         controls.append((revolutions, delta))
         diverged = not bool(np.isfinite(state).all())
-        if diverged or helmsman.finished(float(state[2] - heading)):
+        if diverged or helmsman.finished(float(rows[-1][2] - heading)):
             break
     times: FloatArray = sample * np.arange(len(rows), dtype=np.float64)
-    return Motion(id, times, np.vstack(rows), np.array(controls), diverged)
+    inputs = np.array(controls)
+    if ship_now.shift is not None:
+        inputs = np.column_stack([np.interp(times - ship_now.shift, times, column) for column in inputs.T])
+    return Motion(id, times, np.vstack(rows), inputs, diverged)
 
 
-def _rk4(
-    model: Model, p: object, state: FloatArray, now: tuple[float, float], then: tuple[float, float], h: float
-) -> FloatArray:
+def _rk4(ship: LaneModel, state: FloatArray, now: Control, then: Control, h: float) -> FloatArray:
     """One step of the classical Runge-Kutta method, inputs linear over the step."""
 
     def rate(f: float, s: FloatArray) -> FloatArray:
-        n, delta = (a + f * (b - a) for a, b in zip(now, then, strict=True))
-        with np.errstate(all="ignore"):
-            return np.array([np.ravel(q)[0] for q in derivatives(State(*s), Control(n, delta), model.components, p)])
+        control = Control(*(a + f * (b - a) for a, b in zip(now, then, strict=True)))
+        return ship.rates(s, control, STILL, h)
 
     k1 = rate(0.0, state)
     k2 = rate(0.5, state + 0.5 * h * k1)

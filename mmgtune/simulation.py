@@ -9,15 +9,15 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .backends import STATES, Integrator, get_backend, pad
+from .backends import STATES, Integrator, LaneModel, get_backend, pad
 from .manoeuvres import Track, manoeuvre_kind
 from .manoeuvres.summary import indices_of
 from .measures import distance_measures, reference_of
 from .model import Model
-from .physics.mmg import Breakdown, forces
+from .physics.mmg import Breakdown
 from .physics.quantities import Control, State
 from .profile import ShipProfile
-from .trial import Trial
+from .trial import Trial, measured_wind
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -65,7 +65,8 @@ def simulate(
     if not trials:
         return []
     controls = [np.column_stack([trial.n, trial.delta]) for trial in trials]
-    cases = pad([trial.t for trial in trials], controls, [trial.motion[0] for trial in trials])
+    wind = [measured_wind(trial) for trial in trials]
+    cases = pad([trial.t for trial in trials], controls, [trial.motion[0] for trial in trials], wind=wind)
     result = get_backend(backend).run(model, model.matrix(), cases, integrator=integrator, keep_states=True)
     assert result.states is not None  # asked for
     return [
@@ -78,11 +79,15 @@ def breakdown(ship: ShipProfile | Model, states: FloatArray, controls: FloatArra
     """Forces and intermediates along a run, by the very functions the simulation uses.
 
     states (n_samples, 6), controls (n_samples, 2) as in ``Motion`` -> Breakdown of arrays (n_samples,).
+
+    Effects of the profile have acted; forces they add are in the total only.  What depends on the past or on measured
+    wind is left out: lags count as settled.
     """
     model = ship if isinstance(ship, Model) else Model(ship)
-    p = model.coefficients(np.repeat(model.matrix(), len(states), axis=1))
-    found: Breakdown = forces(State(*states.T), Control(*controls.T), model.components, p)
-    return found
+    lanes = LaneModel(model, np.repeat(model.matrix(), len(states), axis=1))
+    logged = [Control(*controls.T)]
+    control = lanes.moved(logged, logged, None, np.zeros(len(states)))[-1]
+    return lanes.breakdown(lanes.unsensed(State(*states.T)), control)
 
 
 def track_of(trial: Trial) -> Track:

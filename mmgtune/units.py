@@ -20,6 +20,7 @@ _FACTORS: dict[str, dict[str, float]] = {
     "deg": {"deg": 1.0, "rad": 1.0 / DEG},
     "rad/s": {"rad/s": 1.0, "deg/s": DEG},
     "1/s": {"1/s": 1.0, "rps": 1.0, "rpm": 1.0 / 60.0},
+    "N": {"N": 1.0, "kN": 1e3},
     "s": {"s": 1.0, "min": 60.0},
     "kg/m^3": {"kg/m^3": 1.0, "t/m^3": 1e3},
     "1/deg": {"1/deg": 1.0, "1/rad": DEG},

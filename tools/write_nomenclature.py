@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from mmgtune.components import COMPONENTS
+from mmgtune.components import COMPONENTS, Component
+from mmgtune.effects import BUILT_IN
 from mmgtune.files import write_text
 
 HEAD = """# Nomenclature
@@ -29,19 +30,38 @@ method; a dash means a pure number. A profile names a coefficient by its section
 """
 
 
+EFFECTS = """
+# Effects
+
+What can differ between a ship and her model. A profile has them as tables `[effects.<tag>]`, a target names a
+parameter as `effects.<tag>.<symbol>`. They act in this order of the data flow.
+"""
+
+
 def nomenclature() -> str:
     """The page."""
     parts = [HEAD]
     for component in COMPONENTS:
         parts.append(f"\n## {component.kind}, model `{component.tag}`: {component.title}\n\n")
-        parts.append(f"{'; '.join(component.cites)}\n\n")
-        parts.append("| symbol | unit | meaning | where a profile leaves it out |\n|---|---|---|---|\n")
-        for symbol, field in component.fields.items():
-            default = "must be given" if field.default is None else f"{field.default:g}"
-            if field.choices:
-                default = next(word for word, value in field.choices.items() if value == field.default)
-            parts.append(f"| `{symbol}` | {field.unit} | {field.label} | {default} |\n")
+        parts += table(component)
+    parts.append(EFFECTS)
+    for effect in BUILT_IN:
+        parts.append(f"\n## effects.{effect.tag} ({effect.place}): {effect.title}\n\n")
+        parts += table(effect)
     return "".join(parts)
+
+
+def table(component: Component) -> list[str]:
+    """Sources and fields of a component or effect."""
+    parts = [f"{'; '.join(component.cites)}\n\n"] if component.cites else []
+    parts.append("| symbol | unit | meaning | where a profile leaves it out |\n|---|---|---|---|\n")
+    for symbol, field in component.fields.items():
+        default = "must be given" if field.default is None else f"{field.default:g}"
+        if field.choices:
+            default = next(word for word, value in field.choices.items() if value == field.default)
+        label = field.label.replace("|", "\\|")
+        parts.append(f"| `{symbol}` | {field.unit} | {label} | {default} |\n")
+    return parts
 
 
 if __name__ == "__main__":

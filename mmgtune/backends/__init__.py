@@ -7,11 +7,11 @@ from functools import lru_cache
 from ..errors import OptionError, Problem, closest
 from .cases import STATES, Backend, Cases, Integrator, LaneResult, pad
 from .compiled import Compiled
-from .numpy_lanes import NumpyLanes
+from .numpy_lanes import LaneModel, NumpyLanes
 
 BACKENDS = ("compiled", "numpy")
 
-__all__ = ["BACKENDS", "STATES", "Backend", "Cases", "Integrator", "LaneResult", "get_backend", "pad"]
+__all__ = ["BACKENDS", "STATES", "Backend", "Cases", "Integrator", "LaneModel", "LaneResult", "get_backend", "pad"]
 
 
 @lru_cache(maxsize=len(BACKENDS))

@@ -28,7 +28,8 @@ class Cases:
     t          (n_cases, T) time [s]; padding repeats the last
     n_samples  (n_cases,) samples that count
     controls   (n_cases, T, 2) propeller revolutions [1/s] and rudder angle [rad]
-    initial    (n_cases, 6) state at the first sample
+    wind       (n_cases, T, 3) air over ground, north and east [m/s], and 1 where it was measured, 0 where not
+    initial    (n_cases, 6) state at the first sample, as the sensors show it
     target     (n_cases, T, 6) what the motion is compared with; 0 where there is nothing
     weight     (n_cases, T, 6) weight of each squared difference in the cost; 0 where there is nothing
     """
@@ -36,6 +37,7 @@ class Cases:
     t: FloatArray
     n_samples: npt.NDArray[np.int64]
     controls: FloatArray
+    wind: FloatArray
     initial: FloatArray
     target: FloatArray
     weight: FloatArray
@@ -68,14 +70,16 @@ def pad(
     initial: Sequence[FloatArray],
     target: Sequence[FloatArray] | None = None,
     weight: Sequence[FloatArray] | None = None,
+    wind: Sequence[FloatArray] | None = None,
 ) -> Cases:
-    """Cases out of runs: times (n_i,), controls (n_i, 2), initial (6,), target and weight (n_i, 6) each."""
+    """Cases out of runs: times (n_i,), controls (n_i, 2), initial (6,), target and weight (n_i, 6), wind (n_i, 3)."""
     n_samples = np.array([len(t) for t in times], dtype=np.int64)
     T = int(n_samples.max())
     padded = Cases(
         t=np.zeros((len(times), T)),
         n_samples=n_samples,
         controls=np.zeros((len(times), T, 2)),
+        wind=np.zeros((len(times), T, 3)),
         initial=np.array(initial, dtype=float),
         target=np.zeros((len(times), T, 6)),
         weight=np.zeros((len(times), T, 6)),
@@ -83,6 +87,8 @@ def pad(
     for i, n in enumerate(n_samples):
         padded.t[i, :n], padded.t[i, n:] = times[i], times[i][-1]
         padded.controls[i, :n], padded.controls[i, n:] = controls[i], controls[i][-1]
+        if wind is not None:
+            padded.wind[i, :n], padded.wind[i, n:] = wind[i], wind[i][-1]
         if target is not None and weight is not None:
             padded.target[i, :n] = target[i]
             padded.weight[i, :n] = weight[i]
@@ -114,7 +120,8 @@ class LaneResult:
 
     cost      (n_cases, n_candidates) sum of weight * (state - target)^2; inf where diverged
     diverged  (n_cases, n_candidates) bool
-    states    (n_cases, n_candidates, T, 6), None unless asked for; after the end of a case the last state
+    states    (n_cases, n_candidates, T, 6) as the sensors show them, None unless asked for; after the end of a case
+              the last
     residuals (n_residuals, n_candidates) root of weight * (state - target), None unless asked for; by case, sample
               and channel; cost is the sum of their squares
     """

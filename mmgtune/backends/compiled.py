@@ -34,15 +34,16 @@ class Compiled:
     name = "compiled"
 
     def __init__(self) -> None:
-        self._kernels: dict[tuple[str, ...], Callable[..., None]] = {}
+        self._kernels: dict[str, Callable[..., None]] = {}
 
     def kernel(self, model: Model) -> Callable[..., None]:
         """The compiled simulator for the components of ``model``."""
-        if model.tags not in self._kernels:
+        text = kernel_source(model)
+        if text not in self._kernels:
             from .compiling import load_kernel
 
-            self._kernels[model.tags] = load_kernel(kernel_source(model))
-        return self._kernels[model.tags]
+            self._kernels[text] = load_kernel(text)
+        return self._kernels[text]
 
     def run(
         self,
@@ -73,7 +74,10 @@ class Compiled:
         fixed = (
             np.ascontiguousarray(blocked),
             np.ascontiguousarray(start).reshape(n_cases, n_blocks, 6 * WIDTH),
-            *map(np.ascontiguousarray, (cases.t, cases.n_samples, cases.controls, cases.target, cases.weight)),
+            *map(
+                np.ascontiguousarray,
+                (cases.t, cases.n_samples, cases.controls, cases.wind, cases.target, cases.weight),
+            ),
             position,
             share,
             integrator.substeps,

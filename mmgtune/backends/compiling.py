@@ -26,11 +26,12 @@ from numba.core import cgutils
 from numba.extending import intrinsic, overload, register_jitable
 
 from .. import physics
+from ..effects import effects
 from ..physics import elementary
 from . import vector_math
 from .vector_math import OPTIONS, select, vector_arctan2, vector_cos, vector_exp, vector_sin
 
-__all__ = ["carray", "load_kernel", "njit", "stack"]
+__all__ = ["carray", "load_kernel", "logged_control", "njit", "stack"]
 
 
 @intrinsic(prefer_literal=True)
@@ -45,9 +46,32 @@ def stack(context: Any, size: Any) -> Any:
     return types.CPointer(types.float64)(size), generate
 
 
+@njit(**OPTIONS)
+def logged_control(
+    controls: Any, t: Any, n_samples: Any, case: int, i: int, f: float, shift: float, column: int
+) -> float:
+    """A logged input at the share f of the step that ends at sample i, or ``shift`` [s] later, linear between samples.
+
+    Before the first sample and after the last the log is held.
+    """
+    j = i
+    if shift != 0.0:
+        time = t[case, i - 1] + f * (t[case, i] - t[case, i - 1]) + shift
+        while j > 1 and t[case, j - 1] > time:
+            j -= 1
+        while j < n_samples[case] - 1 and t[case, j] < time:
+            j += 1
+        f = min(max((time - t[case, j - 1]) / (t[case, j] - t[case, j - 1]), 0.0), 1.0)
+    value: float = controls[case, j - 1, column] + f * (controls[case, j, column] - controls[case, j - 1, column])
+    return value
+
+
 def _physics_modules() -> list[ModuleType]:
-    names = sorted(info.name for info in pkgutil.walk_packages(physics.__path__, physics.__name__ + "."))
-    return [importlib.import_module(name) for name in names]
+    """Modules whose functions kernels call: the physics, and those of every effect."""
+    names = {info.name for info in pkgutil.walk_packages(physics.__path__, physics.__name__ + ".")}
+    names |= {effect.params.__module__ for effect in effects()}
+    names |= {effect.function.__module__ for effect in effects() if effect.function is not None}
+    return [importlib.import_module(name) for name in sorted(names)]
 
 
 def _register() -> None:

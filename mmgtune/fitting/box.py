@@ -1,4 +1,8 @@
-"""The coefficients that are tuned and the box they may move in."""
+"""The coefficients that are tuned and the box they may move in.
+
+Most are searched for as they are.  A parameter whose null is at infinity is searched for by its reciprocal, and a size
+with a direction by its two components, so that the null is a point like any other.
+"""
 
 from __future__ import annotations
 
@@ -9,23 +13,32 @@ from fnmatch import fnmatchcase
 import numpy as np
 import numpy.typing as npt
 
+from ..components import split_name
+from ..effects import Parameter
 from ..errors import OptionError, Problem, closest
 from ..model import Model
+from ..profile import scale_of
 
 FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
 class Box:
-    """Targets by name with their pre-determined values and bounds, (n_targets,) each, in profile units.
+    """Targets by name with their pre-determined values, (n_targets,), in profile units, and bounds.
 
     Searches work in the unit cube: 0 at the lower bound, 1 at the upper.
+
+    low, high   (n_targets,) bounds in coordinates of the search: the value itself, its reciprocal, or a component
+    reciprocal  targets searched for by their reciprocal
+    polar       pairs of targets, a size and its direction [rad], searched for by their components
     """
 
     names: tuple[str, ...]
     pre: FloatArray
     low: FloatArray
     high: FloatArray
+    reciprocal: tuple[int, ...] = ()
+    polar: tuple[tuple[int, int], ...] = ()
 
     def __len__(self) -> int:
         return len(self.names)
@@ -37,7 +50,12 @@ class Box:
 
     def to_unit(self, values: npt.ArrayLike) -> FloatArray:
         """Positions in the unit cube of values (n_targets,) or (n_targets, n_candidates)."""
-        columns = np.asarray(values, dtype=float)
+        columns = np.array(values, dtype=float)
+        with np.errstate(divide="ignore"):
+            for i in self.reciprocal:
+                columns[i] = 1.0 / columns[i]
+        for i, j in self.polar:
+            columns[i], columns[j] = columns[i] * np.cos(columns[j]), columns[i] * np.sin(columns[j])
         low, width = (end if columns.ndim == 1 else end[:, None] for end in (self.low, self.width))
         return (columns - low) / width
 
@@ -45,7 +63,13 @@ class Box:
         """Values at positions in the unit cube; exactly the bounds at 0 and 1 (positions outside lie outside)."""
         z = np.asarray(unit, dtype=float)
         low, high = (end if z.ndim == 1 else end[:, None] for end in (self.low, self.high))
-        return np.where(z == 1.0, high, low + z * (high - low))
+        values = np.where(z == 1.0, high, low + z * (high - low))
+        with np.errstate(divide="ignore"):
+            for i in self.reciprocal:
+                values[i] = 1.0 / values[i]
+        for i, j in self.polar:
+            values[i], values[j] = np.hypot(values[i], values[j]), np.arctan2(values[j], values[i])
+        return values
 
 
 def make_box(model: Model, targets: Sequence[str], a_r: float) -> Box:
@@ -74,9 +98,24 @@ def make_box(model: Model, targets: Sequence[str], a_r: float) -> Box:
         )
     problems: list[Problem] = []
     bounds: list[tuple[float, float]] = []
-    for name in targets:
+    reciprocal: list[int] = []
+    polar: list[tuple[int, int]] = []
+    scale = scale_of(model.profile)
+    for i, name in enumerate(targets):
         coefficient = model.profile.coefficient(name)
         value = model.profile.value(name)
+        parameter = parameter_of(model, name)
+        if parameter is not None:
+            chart = parameter.chart
+            low, high = coefficient.bounds or parameter.bounds(scale)
+            if chart == "reciprocal":
+                reciprocal.append(i)
+                low, high = (1.0 / high, 1.0 / low) if coefficient.bounds else (low, high)
+            if chart == "polar" and _direction_of(model, name) in targets:
+                polar.append((i, list(targets).index(_direction_of(model, name))))
+                low = -high
+            bounds.append((low, high))
+            continue
         if coefficient.bounds is not None:
             bounds.append(coefficient.bounds)
             continue
@@ -92,35 +131,55 @@ def make_box(model: Model, targets: Sequence[str], a_r: float) -> Box:
         bounds.append((value - a_r * abs(value), value + a_r * abs(value)))
     if problems:
         raise OptionError(*problems)
+    for i, j in polar:
+        bounds[j] = bounds[i]
     low, high = np.array(bounds).T
     pre = np.array([model.profile.value(name) for name in targets])
     for i, name in enumerate(targets):
-        section, _, symbol = name.partition(".")
+        if i in reciprocal or any(i in pair for pair in polar):
+            continue
+        section, symbol = split_name(name)
         field = model.profile.sections[section].component.fields[symbol]
         if field.low is not None:
             low[i] = max(low[i], field.low + 1e-6 * abs(pre[i]))
         if field.high is not None:
             high[i] = min(high[i], field.high - 1e-6 * abs(pre[i]))
-    return Box(tuple(targets), pre, low, high)
+    return Box(tuple(targets), pre, low, high, tuple(reciprocal), tuple(polar))
+
+
+def parameter_of(model: Model, name: str) -> Parameter | None:
+    """The parameter of an effect called that, None for a coefficient of a component."""
+    section, symbol = split_name(name)
+    found = model.profile.sections[section].component.fields[symbol]
+    return found if isinstance(found, Parameter) else None
+
+
+def _direction_of(model: Model, name: str) -> str:
+    """The direction that belongs to a size: the parameter after it."""
+    section, symbol = split_name(name)
+    symbols = list(model.profile.sections[section].component.fields)
+    return f"{section}.{symbols[symbols.index(symbol) + 1]}"
 
 
 def choose_targets(model: Model, patterns: Sequence[str], fixed: Sequence[str] = ()) -> tuple[str, ...]:
     """Names of the coefficients to tune: those the patterns match, the profile's own list where there are none.
 
-    A pattern is a name, "R_0" for any section, or has wildcards: "hull.Y_*".  A pattern skips coefficients that are
-    0 without bounds of their own.  Raises OptionError for a pattern or a ``fixed`` name that matches nothing.
+    A pattern is a name, "R_0" for any section, or has wildcards: "hull.Y_*".  A pattern with wildcards skips
+    coefficients that are 0 without bounds of their own.
+
+    Raises OptionError for a pattern or a ``fixed`` name that matches nothing.
     """
     profile = model.profile
     names = [name for name in profile.names() if not _is_choice(model, name)]
 
     def matching(pattern: str, among: Sequence[str], option: str) -> list[str]:
-        found = [n for n in among if fnmatchcase(n, pattern) or fnmatchcase(n.partition(".")[2], pattern)]
+        found = [n for n in among if fnmatchcase(n, pattern) or fnmatchcase(split_name(n)[1], pattern)]
         if not found:
             raise OptionError(
                 Problem(
                     f"no coefficient is called '{pattern}'",
                     option,
-                    fix=closest(pattern, [*names, *(n.partition(".")[2] for n in names)]),
+                    fix=closest(pattern, [*names, *(split_name(n)[1] for n in names)]),
                 )
             )
         return found
@@ -138,5 +197,5 @@ def choose_targets(model: Model, patterns: Sequence[str], fixed: Sequence[str] =
 
 
 def _is_choice(model: Model, name: str) -> bool:
-    section, _, symbol = name.partition(".")
+    section, symbol = split_name(name)
     return bool(model.profile.sections[section].component.fields[symbol].choices)

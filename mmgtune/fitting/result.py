@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..components import split_name
 from ..profile import ShipProfile, parse_profile, tuned_text
 from .box import Box
 from .certificate import Certificate
@@ -128,7 +129,7 @@ class FitResult:
         rows = []
         stderr, undetermined = self.identifiability.stderr, self.identifiability.undetermined
         for i, (name, value) in enumerate(self.theta.items()):
-            section, _, symbol = name.partition(".")
+            section, symbol = split_name(name)
             field = self.profile.sections[section].component.fields[symbol]
             z = float(self.unit[i])
             rows.append(

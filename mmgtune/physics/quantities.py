@@ -87,3 +87,23 @@ class RudderOut(NamedTuple):
     alpha_R: Lanes  # effective inflow angle [rad]
     beta_R: Lanes  # effective drift angle at the rudder [rad]
     F_N: Lanes  # normal force [N]
+
+
+class Air(NamedTuple):
+    """Wind measured on board or nearby, at one instant."""
+
+    north: Lanes  # velocity of the air over ground, north [m/s]
+    east: Lanes  # and east [m/s]
+    known: Lanes  # 1 where it was measured, 0 where not
+
+
+class AboveWater(NamedTuple):
+    """The part of a ship above the water, as wind sees it."""
+
+    A_T: Lanes  # frontal area [m^2]
+    A_L: Lanes  # lateral area [m^2]
+    A_OD: Lanes  # lateral area of superstructure and deck cargo [m^2]
+    C: Lanes  # centroid of A_L, forward of midship [m]
+    C_BR: Lanes  # centroid of the superstructure, forward of midship [m]
+    H_BR: Lanes  # top of the bridge above the waterline [m]
+    H_C: Lanes  # centroid of A_L above the waterline [m]

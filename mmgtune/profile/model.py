@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ..components import Component
+from ..components import Component, split_name
 from ..units import DIMENSIONLESS
 
 
@@ -30,6 +30,18 @@ class Section:
     component: Component
     coefficients: dict[str, Coefficient]
     source: str
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """Every number as "section.symbol", those of a table as "section.symbol[0]", "[1]", ..."""
+        found: dict[str, float] = {}
+        for symbol, coefficient in self.coefficients.items():
+            name, value = f"{self.component.kind}.{symbol}", coefficient.value
+            if isinstance(value, tuple):
+                found.update({f"{name}[{k}]": number for k, number in enumerate(value)})
+            else:
+                found[name] = value
+        return found
 
 
 @dataclass(frozen=True)
@@ -70,7 +82,7 @@ class ShipProfile:
 
     def coefficient(self, name: str) -> Coefficient:
         """The coefficient called 'section.symbol'; KeyError if there is none."""
-        section, _, symbol = name.partition(".")
+        section, symbol = split_name(name)
         return self.sections[section].coefficients[symbol]
 
     def names(self) -> list[str]:
@@ -91,7 +103,7 @@ class ShipProfile:
 
     def written(self, name: str) -> str:
         """The value called 'section.symbol' as a person writes it: number with unit, list, or word."""
-        section, _, symbol = name.partition(".")
+        section, symbol = split_name(name)
         field = self.sections[section].component.fields[symbol]
         value = self.coefficient(name).value
         for word, number in field.choices.items():

@@ -10,13 +10,15 @@ from pathlib import Path
 from typing import Any
 
 from .. import units
-from ..components import KINDS, SHIP, Component, Field, find, tags
+from ..components import KINDS, UNTAGGED, Component, Field, find, tags
+from ..effects import Effect, effect_tags, find_effect
 from ..errors import Problem, ProfileError, closest
 from ..resources import folder, profile_names
+from .extending import missing_for
 from .model import Approach, Coefficient, Section, ShipProfile, SteeringGear
 
 SCHEMA = 1
-SECTIONS = ("schema", "ship", *KINDS, "steering_gear", "approach", "tuning", "provenance")
+SECTIONS = ("schema", "ship", *KINDS, "above_water", "effects", "steering_gear", "approach", "tuning", "provenance")
 VALUE_KEYS = ("value", "source", "assumption", "note", "bounds", "pre_determined", "stderr")
 
 
@@ -91,12 +93,10 @@ class _Reader:
             )
         ship = self.table("ship")
         self.unknown("ship", ship, ("name", "id", "source"))
-        sections: dict[str, Section] = {}
-        for kind in KINDS:
-            section = self.component(kind)
-            if section is not None:
-                sections[kind] = section
-        complete = len(sections) == len(KINDS) and not self.problems
+        present = (*KINDS, *(["above_water"] if "above_water" in self.data else []), *self.effects())
+        found = {kind: self.component(kind) for kind in present}
+        sections = {kind: section for kind, section in found.items() if section is not None}
+        complete = len(sections) == len(present) and not self.problems
         gear = self.plain(
             "steering_gear", {"max_angle": Field("", "rad", low=0.0, high=1.6), "rate": Field("", "rad/s", low=0.0)}
         )
@@ -118,8 +118,20 @@ class _Reader:
             self.together(profile)
         return profile
 
+    def effects(self) -> list[str]:
+        """Sections "effects.<tag>" of the profile, in the order in which they act."""
+        tables = self.data.get("effects", {})
+        if not isinstance(tables, dict):
+            self.problem("'effects' is not a table", "", "effects", fix="write [effects.current], for example")
+            return []
+        for tag in tables:
+            if find_effect(tag) is None:
+                self.problem(f"unknown effect '{tag}'", f"effects.{tag}", fix=closest(tag, effect_tags()))
+        return [f"effects.{tag}" for tag in effect_tags() if tag in tables]
+
     def table(self, name: str) -> dict[str, Any]:
-        value = self.data.get(name)
+        parent, _, tag = name.partition(".")
+        value = self.data[parent].get(tag) if tag else self.data.get(name)
         if isinstance(value, dict):
             return value
         self.problem(f"section [{name}] is missing", fix=f"add [{name}]; see the bundled profiles for an example")
@@ -139,21 +151,23 @@ class _Reader:
                 self.problem(f"unknown key '{section}.{key}'", section, key, fix=closest(key, known))
 
     def component(self, kind: str) -> Section | None:
-        if kind not in self.data:
+        if kind.partition(".")[0] not in self.data:
             self.table(kind)
             return None
         table = self.table(kind)
-        component: Component | None = SHIP
-        if kind != "particulars":
-            tag = table.get("model")
-            component = find(kind, tag) if isinstance(tag, str) else None
+        tag = kind.partition(".")[2]
+        component: Component | None = find_effect(tag) if tag else UNTAGGED.get(kind)
+        tagged = component is None
+        if component is None:
+            model = table.get("model")
+            component = find(kind, model) if isinstance(model, str) else None
             if component is None:
-                what = f"unknown {kind} model '{tag}'" if tag else f"[{kind}] names no model"
+                what = f"unknown {kind} model '{model}'" if model else f"[{kind}] names no model"
                 self.problem(what, kind, "model", fix=f"{kind} models: {', '.join(tags(kind))}")
                 return None
-        assert component is not None  # for the type checker: both branches have set it
-        source = self.word(kind, table, "source")
-        known = ("source", *(("model",) if kind != "particulars" else ()), *component.fields)
+        # Effects are often tried out by hand, so a source is welcome there but not asked for.
+        source = str(table.get("source", "not stated")) if "." in kind else self.word(kind, table, "source")
+        known = ("source", *(("model",) if tagged else ()), *component.fields)
         self.unknown(kind, table, known)
         coefficients: dict[str, Coefficient] = {}
         for symbol, field in component.fields.items():
@@ -303,6 +317,15 @@ class _Reader:
             self.problem("'particulars.B' is not below L_pp", "particulars", "B", fix="check the units of both")
         if abs(profile.value("particulars.x_G")) > 0.25 * L_pp:
             self.problem("'particulars.x_G' is more than a quarter of L_pp from midship", "particulars", "x_G")
+        for kind, section in profile.sections.items():
+            missing = missing_for(section.component, profile) if isinstance(section.component, Effect) else []
+            if missing:
+                self.problem(
+                    f"the effect '{section.component.tag}' does not apply to this ship",
+                    kind,
+                    why=f"it needs {', '.join(missing)}, which this profile does not have",
+                    fix="remove the table, or add what is missing",
+                )
         propeller = profile.sections["propeller"].coefficients
         if "phi_min" in propeller and profile.value("propeller.phi_min") >= profile.value("propeller.phi_max"):
             self.problem("'propeller.phi_min' is not below phi_max", "propeller", "phi_min")

@@ -7,7 +7,9 @@ from typing import Any
 
 import tomlkit
 
-from ..units import shown
+from ..components import split_name
+from ..effects import find_effect
+from ..units import DIMENSIONLESS, shown
 from .model import ShipProfile
 
 
@@ -24,7 +26,7 @@ def tuned_text(
     """
     document = tomlkit.parse(profile.text)
     for name, value in values.items():
-        section, _, symbol = name.partition(".")
+        section, symbol = split_name(name)
         unit = profile.sections[section].component.fields[symbol].unit
         before = profile.coefficient(name)
         entry = tomlkit.inline_table()
@@ -47,9 +49,38 @@ def tuned_text(
     return tomlkit.dumps(document)
 
 
+def extended_text(
+    profile: ShipProfile, effects: Mapping[str, Mapping[str, tuple[float, float | None]]], source: str
+) -> str:
+    """TOML text of ``profile`` with tables [effects.<tag>] of {parameter: (value, standard error or None)} put in."""
+    document = tomlkit.parse(profile.text)
+    if "effects" not in document:
+        document["effects"] = tomlkit.table(is_super_table=True)
+    for tag, parameters in effects.items():
+        effect = find_effect(tag)
+        if effect is None:
+            raise KeyError(tag)
+        table = _section(document, "effects").get(tag)
+        if table is None:
+            table = tomlkit.table()
+            table["source"] = source
+            _section(document, "effects")[tag] = table
+        for name, (value, stderr) in parameters.items():
+            entry = tomlkit.inline_table()
+            entry["value"] = _written(value, effect.fields[name].unit)
+            if stderr is not None:
+                entry["stderr"] = _written(stderr, effect.fields[name].unit)
+            entry["source"] = source
+            table[name] = entry
+    return tomlkit.dumps(document)
+
+
 def _section(document: tomlkit.TOMLDocument, name: str) -> Any:
-    return document[name]
+    found: Any = document
+    for part in name.split("."):
+        found = found[part]
+    return found
 
 
 def _written(value: float, unit: str) -> float | str:
-    return float(value) if unit in ("-", "prime") else shown(float(value), unit)
+    return float(value) if unit in DIMENSIONLESS else shown(float(value), unit)

@@ -1,0 +1,92 @@
+"""Effects: what can differ between a ship and her model, one small file each.
+
+The list is explicit.  A new effect is one file like its neighbours and one line here; a package of one's own names its
+effects through entry points of the group "mmgtune.effects", each an ``Effect``.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from importlib.metadata import entry_points
+
+from . import (
+    antenna,
+    clock_offset,
+    current,
+    flap,
+    gyro_bias,
+    gyro_scale,
+    heading_bias,
+    hull_term,
+    loading,
+    memory,
+    propeller_side_force,
+    resistance,
+    rpm_scale,
+    rudder_gain,
+    rudder_offset,
+    rudder_stall,
+    shallow_water,
+    speed_scale,
+    steering_lag,
+    wave_drift,
+    wind,
+)
+from .effect import PLACES, Effect, Parameter, Scale
+
+__all__ = ["PLACES", "Effect", "Parameter", "Scale", "effect_tags", "effects", "find_effect"]
+
+BUILT_IN: tuple[Effect, ...] = tuple(
+    module.EFFECT
+    for module in (
+        clock_offset,
+        steering_lag,
+        rudder_gain,
+        rudder_offset,
+        rpm_scale,
+        current,
+        flap,
+        propeller_side_force,
+        shallow_water,
+        loading,
+        resistance,
+        wind,
+        wave_drift,
+        rudder_stall,
+        hull_term,
+        memory,
+        antenna,
+        heading_bias,
+        speed_scale,
+        gyro_scale,
+        gyro_bias,
+    )
+)
+"""Every effect of this program, in the order of the data flow; those of one place act in this order."""
+
+
+@lru_cache(maxsize=1)
+def effects() -> tuple[Effect, ...]:
+    """Every effect there is: the program's own, then those of installed packages by name.
+
+    Raises TypeError where an entry point is not an ``Effect`` or takes a tag that is in use.
+    """
+    found = list(BUILT_IN)
+    for entry in sorted(entry_points(group="mmgtune.effects"), key=lambda entry: entry.name):
+        effect = entry.load()
+        if not isinstance(effect, Effect):
+            raise TypeError(f"entry point '{entry.name}' of group mmgtune.effects is {effect!r}, not an Effect")
+        if effect.tag in {other.tag for other in found}:
+            raise TypeError(f"entry point '{entry.name}' of group mmgtune.effects: tag '{effect.tag}' is in use")
+        found.append(effect)
+    return tuple(found)
+
+
+def effect_tags() -> tuple[str, ...]:
+    """The tags a profile may name as [effects.<tag>]."""
+    return tuple(effect.tag for effect in effects())
+
+
+def find_effect(tag: str) -> Effect | None:
+    """The effect of that tag, None if there is none."""
+    return next((effect for effect in effects() if effect.tag == tag), None)

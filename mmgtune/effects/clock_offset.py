@@ -1,0 +1,34 @@
+"""Two loggers with different clocks: controls and motion are not of the same instant."""
+
+from typing import NamedTuple
+
+from ..physics.quantities import Lanes
+from .effect import Effect, Parameter
+
+
+class ClockOffset(NamedTuple):
+    """See the parameters below."""
+
+    seconds: Lanes
+
+
+EFFECT = Effect(
+    kind="effects.clock-offset",
+    tag="clock-offset",
+    title="clocks of control log and motion log apart",
+    place="clock",
+    params=ClockOffset,
+    function=None,
+    cites=(),
+    fields={
+        "seconds": Parameter(
+            "how late the control log is: what acted at t is logged at t + seconds",
+            "s",
+            bounds=lambda ship: (-0.5 * ship.L / ship.U, 0.5 * ship.L / ship.U),
+            typical=lambda ship: 0.05 * ship.L / ship.U,
+            bounds_source="half the time of a ship length",
+        )
+    },
+    variants=(("seconds",),),
+    sentence=lambda v: f"The control log ran {v['seconds']} behind the motion log (negative: ahead of it)",
+)

@@ -1,0 +1,47 @@
+"""The rate gyro shows too much or too little; the heading does not come from it."""
+
+from typing import NamedTuple
+
+from ..physics.quantities import Lanes, State
+from .effect import Effect, Parameter
+
+
+class GyroScale(NamedTuple):
+    """See the parameters below."""
+
+    factor: Lanes
+
+
+def gyro_scale(state, e):
+    """Yaw rate shown = factor [-] times yaw rate."""
+    return State(x=state.x, y=state.y, psi=state.psi, u=state.u, v_m=state.v_m, r=state.r * e.factor)
+
+
+def gyro_scale_inverse(logged, e):
+    """Yaw rate from the one shown."""
+    return State(x=logged.x, y=logged.y, psi=logged.psi, u=logged.u, v_m=logged.v_m, r=logged.r / e.factor)
+
+
+EFFECT = Effect(
+    kind="effects.gyro-scale",
+    tag="gyro-scale",
+    title="scale error of the rate gyro",
+    place="sensor",
+    params=GyroScale,
+    function=gyro_scale,
+    inverse=gyro_scale_inverse,
+    cites=(),
+    fields={
+        "factor": Parameter(
+            "yaw rate shown over yaw rate",
+            low=0.0,
+            high=3.0,
+            null=1.0,
+            bounds=lambda _: (0.7, 1.3),
+            typical=lambda _: 0.02,
+            bounds_source="three tenths either way",
+        )
+    },
+    variants=(("factor",),),
+    sentence=lambda v: f"The rate gyro showed {v['factor']} times the yaw rate",
+)

@@ -1,0 +1,86 @@
+"""A term that the hull polynomial of the profile does not have, or has with the wrong coefficient."""
+
+from collections import namedtuple
+
+import numpy as np
+
+from ..physics.prime import force_unit, moment_unit
+from ..physics.quantities import Force
+from .effect import Effect, Parameter
+
+_X = ("vv", "vr", "rr", "absv", "absr", "vvvv", "vvrr", "rrrr")
+_ODD = ("v", "r", "uv", "ur", "vabsv", "rabsr", "vabsr", "rabsv", "vvv", "vvr", "vrr", "rrr")
+_EVEN = ("one", "absr", "vv", "rr", "rrabsr")
+TERMS = (*(f"X_{t}" for t in _X), *(f"{f}_{t}" for f in "YN" for t in (*_ODD, *_EVEN)))
+"""Terms of X' (even in v', r': the same to port and starboard), of Y' and N' (odd, then those that favour one side)."""
+
+HullTerm = namedtuple("HullTerm", TERMS)  # type: ignore[misc]
+
+
+def hull_term(state, air, found, components, p, e):
+    """Force of each coefficient times its monomial in u' = u/U, v', r', |v'|, |r'|, in the prime system."""
+    u = found.flow.u / found.flow.U
+    v = found.flow.v_
+    r = found.flow.r_
+    av = np.abs(v)
+    ar = np.abs(r)
+    vv = v * v
+    rr = r * r
+    X_ = (
+        e.X_vv * vv
+        + e.X_vr * (v * r)
+        + e.X_rr * rr
+        + e.X_absv * av
+        + e.X_absr * ar
+        + e.X_vvvv * (vv * vv)
+        + e.X_vvrr * (vv * rr)
+        + e.X_rrrr * (rr * rr)
+    )
+    Y_ = (
+        v * (e.Y_v + e.Y_uv * u + e.Y_vabsv * av + e.Y_vabsr * ar + e.Y_vvv * vv + e.Y_vvr * (v * r) + e.Y_vrr * rr)
+        + r * (e.Y_r + e.Y_ur * u + e.Y_rabsr * ar + e.Y_rabsv * av + e.Y_rrr * rr)
+        + (e.Y_one + e.Y_absr * ar + e.Y_vv * vv + e.Y_rr * rr + e.Y_rrabsr * (rr * ar))
+    )
+    N_ = (
+        v * (e.N_v + e.N_uv * u + e.N_vabsv * av + e.N_vabsr * ar + e.N_vvv * vv + e.N_vvr * (v * r) + e.N_vrr * rr)
+        + r * (e.N_r + e.N_ur * u + e.N_rabsr * ar + e.N_rabsv * av + e.N_rrr * rr)
+        + (e.N_one + e.N_absr * ar + e.N_vv * vv + e.N_rr * rr + e.N_rrabsr * (rr * ar))
+    )
+    force = force_unit(p.ship.rho, p.ship.L_pp, p.ship.d, found.flow.U)
+    moment = moment_unit(p.ship.rho, p.ship.L_pp, p.ship.d, found.flow.U)
+    return Force(X=force * X_, Y=force * Y_, N=moment * N_)
+
+
+def symbol(term: str) -> str:
+    """The term as papers write it: N_rabsr is N_r|r|."""
+    return term.replace("absr", "|r|").replace("absv", "|v|").replace("_one", "_0")
+
+
+def _coefficient(term: str) -> Parameter:
+    size = 0.02 if term[0] == "N" else 0.05 if term[0] == "X" else 0.1
+    if term.endswith("_one"):
+        size *= 0.05
+    return Parameter(
+        f"coefficient of the term {symbol(term)}",
+        "prime",
+        bounds=lambda _: (-8.0 * size, 8.0 * size),
+        typical=lambda _: size,
+        bounds_source="well beyond the derivatives of published hulls",
+    )
+
+
+EFFECT = Effect(
+    kind="effects.hull-term",
+    tag="hull-term",
+    title="one more term of the hull force",
+    place="force",
+    params=HullTerm,
+    function=hull_term,
+    cites=(),
+    fields={term: _coefficient(term) for term in TERMS},
+    variants=tuple((term,) for term in TERMS),
+    absorbed={term: f"hull.{term}" for term in TERMS},
+    sentence=lambda v: (
+        "The hull force lacks " + " and ".join(f"a term {symbol(name)} of {value}" for name, value in v.items())
+    ),
+)

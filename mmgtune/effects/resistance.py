@@ -1,0 +1,65 @@
+"""Resistance going straight differs from the model's, by a factor or in how it grows with speed."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..physics.kinematics import flow
+from ..physics.quantities import Force, Lanes
+from .effect import Effect, Parameter
+
+GRAVITY = 9.81
+
+
+class Resistance(NamedTuple):
+    """See the parameters below."""
+
+    factor: Lanes
+    slope: Lanes
+
+
+def resistance(state, air, found, components, p, e):
+    """Surge force [N] that makes the model's resistance coefficient R_0' into R_0' (factor + slope Fn).
+
+    The model's own resistance is asked of its hull at zero drift and yaw rate, so that any hull will do.
+    """
+    straight = flow(found.flow.u, 0.0 * found.flow.u, 0.0 * found.flow.u, p.ship.L_pp)
+    Fn = found.flow.U / np.sqrt(GRAVITY * p.ship.L_pp)
+    zero = 0.0 * Fn
+    X = (e.factor - 1.0 + e.slope * Fn) * components.hull(straight, p.ship, p.hull).X
+    return Force(X=X, Y=zero, N=zero)
+
+
+EFFECT = Effect(
+    kind="effects.resistance",
+    tag="resistance",
+    title="resistance",
+    place="force",
+    params=Resistance,
+    function=resistance,
+    cites=(),
+    fields={
+        "factor": Parameter(
+            "factor on R_0'",
+            low=-1.0,
+            high=10.0,
+            null=1.0,
+            bounds=lambda _: (0.3, 3.0),
+            typical=lambda _: 0.1,
+            bounds_source="from a third to three times, heavy fouling",
+        ),
+        "slope": Parameter(
+            "change of that factor per unit of Froude number",
+            bounds=lambda _: (-10.0, 20.0),
+            typical=lambda _: 1.0,
+            bounds_source="resistance coefficient three times as large at Fn 0.1",
+        ),
+    },
+    variants=(("factor",), ("slope",)),
+    absorbed={"factor": "hull.R_0"},
+    sentence=lambda v: (
+        f"The resistance was {v['factor']} times the model's"
+        if "factor" in v
+        else f"The resistance coefficient changed with speed, by a factor of 1 + {v['slope']} times Froude number"
+    ),
+)

@@ -1,0 +1,51 @@
+"""The rudder stalls: beyond an inflow angle its force grows no more."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..physics.elementary import sin, where
+from ..physics.quantities import Force, Lanes
+from ..units import DEG
+from .effect import Effect, Parameter
+
+
+class RudderStall(NamedTuple):
+    """See the parameters below."""
+
+    angle: Lanes
+
+
+def rudder_stall(state, air, found, components, p, e):
+    """Force that reduces the rudder's by sin(angle) / sin|alpha_R| where |alpha_R| is larger than the angle."""
+    limit = np.minimum(e.angle, np.pi)
+    alpha = np.abs(found.rudder.alpha_R)
+    lost = where(alpha > limit, sin(limit) / np.maximum(np.abs(sin(alpha)), 1e-12) - 1.0, 0.0)
+    lost = np.minimum(lost, 0.0)
+    force = found.rudder.force
+    return Force(X=lost * force.X, Y=lost * force.Y, N=lost * force.N)
+
+
+EFFECT = Effect(
+    kind="effects.rudder-stall",
+    tag="rudder-stall",
+    title="stall of the rudder",
+    place="force",
+    params=RudderStall,
+    function=rudder_stall,
+    cites=(),
+    fields={
+        "angle": Parameter(
+            "effective inflow angle at which the rudder stalls",
+            "rad",
+            null=float("inf"),
+            low=0.0,
+            chart="reciprocal",
+            bounds=lambda _: (1.0 / (60.0 * DEG), 1.0 / (8.0 * DEG)),
+            typical=lambda _: 1.0 / (25.0 * DEG) - 1.0 / (60.0 * DEG),
+            bounds_source="from 8 deg to an angle no rudder reaches",
+        )
+    },
+    variants=(("angle",),),
+    sentence=lambda v: f"The rudder stalled at an inflow angle of {v['angle']}",
+)

@@ -1,0 +1,74 @@
+"""The log holds the rudder ordered; the blade follows with a delay or at a limited rate."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..physics.elementary import exp, where
+from ..physics.quantities import Control, Lanes
+from .effect import Effect, Parameter
+
+INSTANT = 1e-3
+"""Time constant [s] up to which the blade counts as following at once."""
+
+
+class SteeringLag(NamedTuple):
+    """See the parameters below."""
+
+    time_constant: Lanes
+    rate_limit: Lanes
+
+
+def steering_lag(start, end, before, h, e):
+    """Blade angle after a step of h [s], for an order that changes linearly over the step.
+
+    Exact for a first-order lag of time constant T: once transients have gone, the blade trails an order of slope a
+    by a T.  The rate limit then cuts the change.
+    """
+    slow = e.time_constant > INSTANT
+    T = np.maximum(e.time_constant, INSTANT)
+    step = np.maximum(h, INSTANT)
+    left = where(slow, exp(-h / T), 0.0)
+    trail = where(slow, (end.delta - start.delta) / step * T, 0.0)
+    goal = end.delta - trail + (before.delta - start.delta + trail) * left
+    most = e.rate_limit * step
+    change = goal - before.delta
+    limited = before.delta + np.minimum(np.maximum(change, -most), most)
+    return Control(n=end.n, delta=where(np.abs(change) > most, limited, goal))
+
+
+EFFECT = Effect(
+    kind="effects.steering-lag",
+    tag="steering-lag",
+    title="rudder trailing its order",
+    place="actuator",
+    params=SteeringLag,
+    function=steering_lag,
+    cites=(),
+    fields={
+        "time_constant": Parameter(
+            "time constant of the steering gear behind the logged angle",
+            "s",
+            low=-1e-12,
+            bounds=lambda ship: (0.0, 0.6 * ship.L / ship.U),
+            typical=lambda ship: 0.075 * ship.L / ship.U,
+            bounds_source="the time the ship takes for six tenths of her length",
+        ),
+        "rate_limit": Parameter(
+            "largest rate of the rudder",
+            "rad/s",
+            null=float("inf"),
+            low=0.0,
+            chart="reciprocal",
+            bounds=lambda ship: (0.0, 2.0 * ship.L / ship.U),
+            typical=lambda ship: 0.9 * ship.L / ship.U,
+            bounds_source="a rudder that takes half the time of a ship length for 15 deg",
+        ),
+    },
+    variants=(("time_constant",), ("rate_limit",)),
+    sentence=lambda v: (
+        f"The rudder followed the logged angle with a time constant of {v['time_constant']}"
+        if "time_constant" in v
+        else f"The rudder moved at {v['rate_limit']} at most behind the logged order"
+    ),
+)

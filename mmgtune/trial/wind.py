@@ -1,0 +1,30 @@
+"""The wind a trial was measured in."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .model import FloatArray, Trial
+
+
+def measured_wind(trial: Trial) -> FloatArray:
+    """(n_samples, 3) velocity of the air over ground, north and east [m/s], and 1 where the trial has wind, else 0.
+
+    Apparent wind becomes true wind by the measured motion.  Short gaps are bridged linearly.
+    """
+    extra = trial.extra
+    if "wind_speed" in extra and "wind_dir" in extra:
+        north = -extra["wind_speed"] * np.cos(extra["wind_dir"])
+        east = -extra["wind_speed"] * np.sin(extra["wind_dir"])
+    elif "wind_speed_app" in extra and "wind_dir_app" in extra:
+        ahead = trial.u - extra["wind_speed_app"] * np.cos(extra["wind_dir_app"])
+        abeam = trial.v_m - extra["wind_speed_app"] * np.sin(extra["wind_dir_app"])
+        north = ahead * np.cos(trial.psi) - abeam * np.sin(trial.psi)
+        east = ahead * np.sin(trial.psi) + abeam * np.cos(trial.psi)
+    else:
+        return np.zeros((trial.n_samples, 3))
+    whole = np.isfinite(north) & np.isfinite(east)
+    if not whole.any():
+        return np.zeros((trial.n_samples, 3))
+    bridged = [np.interp(trial.t, trial.t[whole], values[whole]) for values in (north, east)]
+    return np.column_stack([*bridged, np.ones(trial.n_samples)])

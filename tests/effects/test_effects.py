@@ -1,0 +1,266 @@
+"""Effects: absent at their null bit for bit, alike in both back ends, and each does what it says."""
+
+import sys
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from mmgtune.backends import Integrator, get_backend, pad
+from mmgtune.effects import effects, find_effect
+from mmgtune.errors import ProfileError
+from mmgtune.fitting.box import make_box
+from mmgtune.model import Model
+from mmgtune.orders import TurningOrder, run_manoeuvre
+from mmgtune.profile import extended_text, load_profile, missing_for, parse_profile, with_all_effects, with_effects
+from tests.backends.test_agree import zigzag_like
+from tests.runs import states, turn
+
+STRONG = {
+    "clock-offset": {"seconds": 1.3},
+    "steering-lag": {"time_constant": 2.5, "rate_limit": 0.05},
+    "rudder-gain": {"factor": 0.9},
+    "rudder-offset": {"angle": 0.02},
+    "rpm-scale": {"factor": 1.03},
+    "current": {"north": 0.2, "east": -0.1},
+    "flap": {"factor": 0.9},
+    "propeller-side-force": {"force": 1.4, "moment": 0.7},
+    "shallow-water": {"depth": 10.0},
+    "loading": {"draught": 1.05, "trim": 0.1, "displacement": 0.97},
+    "resistance": {"factor": 1.1, "slope": 1.0},
+    "wind": {"speed": 8.0, "direction": 1.0},
+    "wave-drift": {"force": 5000.0, "direction": 2.0},
+    "rudder-stall": {"angle": 0.3},
+    "hull-term": {"N_rabsr": -0.01, "Y_vvv": 0.1, "X_absr": 0.01},
+    "memory": {"time_constant": 6.0},
+    "antenna": {"x": 10.0, "y": 3.0},
+    "heading-bias": {"angle": 0.03},
+    "speed-scale": {"factor": 1.02},
+    "gyro-scale": {"factor": 1.03},
+    "gyro-bias": {"rate": 0.001},
+}
+TAGS = [effect.tag for effect in effects()]
+
+
+@pytest.fixture(scope="module")
+def ship():
+    return load_profile("suzaku")
+
+
+def test_every_effect_has_a_strong_value():
+    assert list(STRONG) == TAGS
+
+
+@pytest.mark.parametrize("tag", TAGS)
+def test_null_is_the_base_run_bit_for_bit_on_numpy(ship, tag):
+    cases = zigzag_like(Model(ship), 120)
+    base, null = (states(Model(p), cases, backend="numpy") for p in (ship, with_effects(ship, {tag: {}}, "test")))
+    assert np.array_equal(base, null)
+
+
+@pytest.mark.parametrize("integrator", [Integrator(), Integrator("rk4"), Integrator("rk4", 3)])
+def test_null_is_the_base_run_bit_for_bit_compiled(ship, integrator):
+    cases = zigzag_like(Model(ship))
+    base, null = (states(Model(p), cases, integrator=integrator) for p in (ship, with_all_effects(ship)))
+    assert np.array_equal(base, null)
+
+
+@pytest.mark.parametrize("tag", TAGS)
+def test_each_changes_the_run_and_can_be_written_and_read(ship, tag):
+    values = {name: (value, 0.1 * abs(value)) for name, value in STRONG[tag].items()}
+    text = extended_text(ship, {tag: values}, "a test")
+    read = parse_profile(text)
+    for name, value in STRONG[tag].items():
+        assert read.value(f"effects.{tag}.{name}") == pytest.approx(value, rel=1e-12)
+        assert read.coefficient(f"effects.{tag}.{name}").stderr == pytest.approx(0.1 * abs(value), rel=1e-12)
+    cases = zigzag_like(Model(ship), 200)
+    base, changed = (states(Model(p), cases, backend="numpy") for p in (ship, read))
+    assert np.abs(changed - base).max() > 3e-4
+
+
+@pytest.mark.parametrize("integrator", [Integrator(), Integrator("rk4"), Integrator("rk4", 2)])
+def test_back_ends_agree_with_every_effect_at_once(ship, integrator):
+    model = Model(with_effects(ship, STRONG, "test"))
+    cases = zigzag_like(model)
+    compiled, reference = (states(model, cases, backend=name, integrator=integrator) for name in ("compiled", "numpy"))
+    assert np.max(np.abs(compiled - reference) / (1.0 + np.abs(reference))) < 1e-9
+
+
+def test_lanes_with_different_effects_do_not_touch_each_other(ship):
+    model = Model(with_all_effects(ship))
+    names = ["effects.current.north", "effects.memory.time_constant", "effects.clock-offset.seconds"]
+    values = np.array([[0.0, 0.3, 0.0, 0.0], [0.0, 0.0, 7.0, 0.0], [0.0, 0.0, 0.0, -2.0]])
+    cases = zigzag_like(model, 300)
+    together = states(model, cases, model.matrix(names, values))
+    for lane in range(4):
+        alone = states(model, cases, model.matrix(names, values[:, lane : lane + 1]))
+        assert np.array_equal(together[:, lane], alone[:, 0])
+
+
+def test_current_moves_a_circle_and_leaves_the_ship_in_the_water_alone(ship):
+    """With the same velocity through water the positions differ by current times time, and nothing else does."""
+    north, east = 0.3, -0.2
+    moved = Model(with_effects(ship, {"current": {"north": north, "east": east}}, "test"))
+    cases = turn(moved, 20.0, 400.0)
+    start = cases.initial[0] + np.array([0, 0, 0, north, east, 0])  # heading north
+    drifting = pad([cases.t[0]], [cases.controls[0]], [start])
+    still = states(Model(ship), cases, integrator=Integrator("rk4"))[0, 0]
+    flown = states(moved, drifting, integrator=Integrator("rk4"))[0, 0]
+    t = cases.t[0]
+    assert np.allclose(flown[:, 0] - still[:, 0], north * t, atol=1e-3)
+    assert np.allclose(flown[:, 1] - still[:, 1], east * t, atol=1e-3)
+    assert np.allclose(flown[:, [2, 5]], still[:, [2, 5]], atol=1e-6)
+
+
+def test_steering_lag_is_the_exact_first_order_response(ship):
+    T = 4.0
+    function = find_effect("steering-lag").function
+    from mmgtune.physics.quantities import Control
+
+    e = find_effect("steering-lag").params(T, np.inf)
+    order = [min(max(0.0, t - 3.0), 10.0) for t in range(41)]  # a ramp
+    blade = Control(0.0, 0.0)
+    for before, after in pairwise(order):
+        blade = function(Control(0.0, before), Control(0.0, after), blade, 1.0, e)
+    fine, y = 1e-3, 0.0
+    for k in range(40000):
+        t = k * fine
+        y += fine * (np.interp(t + 0.5 * fine, np.arange(41), order) - y) / T
+    assert float(blade.delta) == pytest.approx(y, abs=1e-3)
+
+
+def test_clock_offset_is_the_shift_of_the_log(ship):
+    late = Model(with_effects(ship, {"clock-offset": {"seconds": 3.0}}, "test"))
+    cases = zigzag_like(late, 200)
+    acted = cases.controls.copy()
+    acted[0, :-3] = cases.controls[0, 3:]
+    shifted = pad([cases.t[0]], [acted[0]], [cases.initial[0]])
+    assert np.allclose(states(late, cases)[0, 0, :190], states(Model(ship), shifted)[0, 0, :190], atol=1e-9)
+
+
+def test_sensors_undo_what_they_do(ship):
+    rng = np.random.default_rng(1)
+    from mmgtune.backends import LaneModel
+    from mmgtune.physics.quantities import State
+
+    model = Model(with_effects(ship, {tag: STRONG[tag] for tag in TAGS if find_effect(tag).place == "sensor"}, "test"))
+    lanes = LaneModel(model, np.repeat(model.matrix(), 50, axis=1))
+    true = State(*rng.normal(size=(6, 50)))
+    assert np.allclose(lanes.unsensed(lanes.sensed(true)), true, atol=1e-12)
+
+
+def test_the_first_sample_is_what_the_sensors_showed(ship):
+    """The measured state begins a simulation as the sensors show it, also where they are wrong."""
+    model = Model(with_effects(ship, {"antenna": {"x": 20.0}, "heading-bias": {"angle": 0.05}}, "test"))
+    cases = turn(model, 20.0, 100.0)
+    for backend in ("compiled", "numpy"):
+        assert np.allclose(states(model, cases, backend=backend)[0, 0, 0], cases.initial[0])
+        assert np.allclose(states(model, cases, backend=backend)[0, 0, 1], cases.initial[0], atol=4.0)
+
+
+def test_measured_wind_counts_where_there_is_some(ship):
+    steady = Model(with_effects(ship, {"wind": {"speed": 9.0, "direction": 0.7}}, "test"))
+    measured = Model(with_effects(ship, {"wind": {"measured": 1.0}}, "test"))
+    cases = turn(steady, 20.0, 200.0)
+    t, controls, start = cases.t[0], cases.controls[0], cases.initial[0]
+    wind = np.column_stack([np.full(len(t), -9.0 * np.cos(0.7)), np.full(len(t), -9.0 * np.sin(0.7)), np.ones(len(t))])
+    logged = pad([t], [controls], [start], wind=[wind])
+    for backend in ("compiled", "numpy"):
+        assert np.allclose(states(measured, logged, backend=backend), states(steady, cases, backend=backend), atol=1e-9)
+    without = states(measured, cases)
+    assert np.array_equal(without, states(Model(ship), cases))
+
+
+def test_ordered_manoeuvres_have_the_effects_too(ship):
+    still = run_manoeuvre(ship, TurningOrder(0.5), longest=300.0)
+    lagging = with_effects(ship, {"steering-lag": {"time_constant": 10.0}, "memory": {"time_constant": 8.0}}, "test")
+    slow = run_manoeuvre(lagging, TurningOrder(0.5), longest=300.0)
+    assert slow.channel("x")[:250].max() > still.channel("x")[:250].max() + 5.0
+    drifting = run_manoeuvre(with_effects(ship, {"current": {"east": 0.5}}, "test"), TurningOrder(0.5), longest=300.0)
+    assert drifting.channel("y")[200] > still.channel("y")[200] + 50.0
+
+
+def test_parameters_are_targets_with_boxes_of_their_own(ship):
+    model = Model(with_all_effects(ship))
+    names = ("effects.current.north", "effects.shallow-water.depth", "effects.wind.speed", "effects.wind.direction")
+    box = make_box(model, names, 0.5)
+    rng = np.random.default_rng(1)
+    unit = rng.uniform(0.05, 0.95, (4, 20))
+    values = box.from_unit(unit)
+    assert np.allclose(box.to_unit(values), unit)
+    null = box.to_unit([0.0, np.inf, 0.0, 0.0])
+    assert np.allclose(null, [0.5, 0.0, 0.5, 0.5])
+    assert np.isinf(box.from_unit(null)[1])
+
+
+def test_what_a_profile_gets_wrong_is_said(ship):
+    with pytest.raises(ProfileError, match="unknown effect 'curent'"):
+        parse_profile(ship.text + '\n[effects.curent]\nnorth = "1 m/s"\n')
+    with pytest.raises(ProfileError, match=r"effects\.current\.north"):
+        parse_profile(ship.text + "\n[effects.current]\nnorth = 1.0\n")
+    with pytest.raises(ProfileError, match=r"unknown key 'effects\.current\.up'"):
+        parse_profile(ship.text + '\n[effects.current]\nup = "1 m/s"\n')
+    plain = load_profile("kvlcc2")
+    assert missing_for(find_effect("flap"), plain) == ["rudder.flap[0]"]
+    with pytest.raises(ProfileError, match="'wind' does not apply"):
+        parse_profile(plain.text + '\n[effects.wind]\nspeed = "8 m/s"\ndirection = "10 deg"\n')
+
+
+PLUGIN = """
+from typing import NamedTuple
+from mmgtune.effects import Effect, Parameter
+from mmgtune.physics.quantities import Force, Lanes
+
+class Tug(NamedTuple):
+    pull: Lanes
+
+def tug(state, air, found, components, p, e):
+    return Force(X=e.pull, Y=0.0 * e.pull, N=0.0 * e.pull)
+
+EFFECT = Effect(kind="effects.tug", tag="tug", title="a tug ahead", place="force", params=Tug, function=tug, cites=(),
+                fields={"pull": Parameter("pull of the tug", "N")}, variants=(("pull",),))
+"""
+
+USE = """
+import numpy as np
+from mmgtune.model import Model
+from mmgtune.profile import load_profile, parse_profile
+from tests.runs import states, turn
+ship = load_profile("suzaku")
+pulled = Model(parse_profile(ship.text + '\\n[effects.tug]\\npull = "30 kN"\\n'))
+cases = turn(pulled, 0.0, 100.0)
+a, b = (states(pulled, cases, backend=name)[0, 0] for name in ("compiled", "numpy"))
+assert np.allclose(a, b), "back ends differ"
+assert a[-1, 3] > states(Model(ship), cases)[0, 0, -1, 3] + 0.3, "no pull"
+print("pulled")
+"""
+
+
+def test_an_effect_of_ones_own_needs_an_entry_point_only(tmp_path):
+    import os
+    import subprocess
+
+    (tmp_path / "tugs.py").write_text(PLUGIN)
+    info = tmp_path / "tugs-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: tugs\nVersion: 1.0\n")
+    (info / "entry_points.txt").write_text("[mmgtune.effects]\ntug = tugs:EFFECT\n")
+    path = os.pathsep.join([str(tmp_path), os.getcwd()])
+    done = subprocess.run(
+        [sys.executable, "-c", USE], env={**os.environ, "PYTHONPATH": path}, capture_output=True, text=True
+    )
+    assert done.stdout.strip() == "pulled", done.stderr
+
+
+def test_costs_of_all_lanes_stay_finite_at_the_corners_of_every_box(ship):
+    """No value a search may try makes the simulator fail."""
+    model = Model(with_all_effects(ship))
+    names = [f"effects.{e.tag}.{name}" for e in effects() for name in e.parameters]
+    box = make_box(model, names, 0.5)
+    corners = np.repeat(box.to_unit(box.pre)[:, None], 2 * len(names), axis=1)
+    for k in range(len(names)):
+        corners[k, 2 * k], corners[k, 2 * k + 1] = 0.0, 1.0
+    cases = zigzag_like(model, 200)
+    found = get_backend().run(model, model.matrix(names, box.from_unit(corners)), cases, keep_states=True)
+    assert np.isfinite(found.states[~found.diverged]).all()
+    assert found.diverged.mean() < 0.2
