@@ -1,0 +1,194 @@
+"""Cases for a diagnosis: a ship drawn at random with one effect, two, none, or one no registry holds."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .plant import WHITE, Noise
+from .suzaku import HULL_TERMS, PROFILE, TARGETS
+from .unknown import UNKNOWN
+
+Draw = Callable[[int, np.random.Generator], dict[str, float]]
+"""Parameters of an effect at a level 0 to 4; signs and directions are drawn."""
+
+SPREAD = 0.22
+"""Largest share by which a tuning target of a drawn ship differs from the profile's value."""
+
+TYPICAL = 3
+"""The level any engineer would call visible."""
+
+Sizes = tuple[float, float, float, float, float]
+
+
+@dataclass(frozen=True)
+class Case:
+    """One ship, what is hidden in her, and how she is measured: the arguments of ``plant.simulate`` with a name."""
+
+    name: str
+    ship: dict[str, float]
+    effects: dict[str, dict[str, float]]
+    seed: int
+    noise: Noise
+
+
+def _motion(typical: float) -> Sizes:
+    """Levels of what changes the motion: about a tenth of the noise, twice, fifteen times it, typical, twice that.
+
+    Root mean square over the motion channels of turns; refitted targets take up a good part of it.
+    """
+    return (0.002 * typical, 0.04 * typical, 0.3 * typical, typical, 2.0 * typical)
+
+
+def _sensor(typical: float) -> Sizes:
+    """Levels of what only shows in the log: from well below the noise on."""
+    return (0.02 * typical, 0.1 * typical, 0.4 * typical, typical, 2.0 * typical)
+
+
+def _sign(rng: np.random.Generator) -> float:
+    return float(rng.choice((-1.0, 1.0)))
+
+
+def _turn(rng: np.random.Generator) -> float:
+    """A direction [rad]."""
+    return float(rng.uniform(0.0, 2.0 * np.pi))
+
+
+def _plain(name: str, sizes: Sizes) -> Draw:
+    return lambda k, rng: {name: sizes[k]}
+
+
+def _signed(name: str, sizes: Sizes) -> Draw:
+    return lambda k, rng: {name: _sign(rng) * sizes[k]}
+
+
+def _factor(name: str, shares: Sizes) -> Draw:
+    """1 - share, or 1 + share."""
+    return lambda k, rng: {name: 1.0 + _sign(rng) * shares[k]}
+
+
+def _vector(names: tuple[str, str], sizes: Sizes) -> Draw:
+    """Two components of a vector of that size in any direction."""
+
+    def draw(k: int, rng: np.random.Generator) -> dict[str, float]:
+        towards = _turn(rng)
+        return dict(zip(names, (sizes[k] * float(np.cos(towards)), sizes[k] * float(np.sin(towards))), strict=True))
+
+    return draw
+
+
+def _from(name: str, sizes: Sizes) -> Draw:
+    """A size and the direction it comes from."""
+    return lambda k, rng: {name: sizes[k], "direction": _turn(rng)}
+
+
+def _one_of(*draws: Draw) -> Draw:
+    return lambda k, rng: draws[int(rng.integers(len(draws)))](k, rng)
+
+
+def _degrees(draw: Draw) -> Draw:
+    """The same with sizes in degrees."""
+    return lambda k, rng: {name: float(np.radians(size)) for name, size in draw(k, rng).items()}
+
+
+def _side_force(k: int, rng: np.random.Generator) -> dict[str, float]:
+    """Force and moment grow together, as the propeller pushes where it is."""
+    factor = (1.002, 1.03, 1.2, 1.6, 2.2)[k]
+    return {"force": factor, "moment": factor}
+
+
+TERM_SIZES: dict[str, float] = {
+    "N_rabsr": 0.015,
+    "Y_vabsv": 0.15,
+    "Y_rabsr": 0.06,
+    "N_vabsv": 0.05,
+    "N_vvv": 0.10,
+    "N_rrr": 0.005,
+    "Y_vvv": 0.4,
+    "Y_vvr": 0.3,
+    "X_vv": 0.06,
+    "X_rr": 0.015,
+    "N_rrabsr": 0.003,
+}
+"""Typical coefficients [prime] of the terms the hull may lack; r' comes to 2 in the tightest turns."""
+
+
+def hull_term(term: str) -> Draw:
+    """The ladder of one term of the hull; the last level leaves the ship able to turn without spinning."""
+    size = TERM_SIZES[term]
+    return _signed(term, (0.002 * size, 0.04 * size, 0.3 * size, size, 1.5 * size))
+
+
+LADDER: dict[str, Draw] = {
+    "rudder-offset": _degrees(_signed("angle", _motion(1.5))),
+    "rudder-gain": _factor("factor", _motion(0.12)),
+    "steering-lag": _one_of(
+        _plain("time_constant", (0.1, 0.3, 1.2, 4.0, 8.0)),
+        _degrees(_plain("rate_limit", (100.0, 30.0, 8.0, 3.5, 2.0))),
+    ),
+    "rpm-scale": _factor("factor", _motion(0.05)),
+    "flap": _factor("factor", _motion(0.2)),
+    "clock-offset": _signed("seconds", _motion(3.0)),
+    "current": _vector(("north", "east"), _motion(0.15)),
+    "resistance": _signed("slope", _motion(3.0)),
+    "shallow-water": _plain("depth", (2000.0, 200.0, 20.0, 9.0, 6.5)),
+    "loading": _one_of(
+        _factor("draught", _motion(0.1)),
+        _signed("trim", _motion(0.15)),
+        _factor("displacement", _motion(0.1)),
+    ),
+    "wind": _from("speed", (0.2, 1.0, 4.0, 8.0, 12.0)),
+    "wave-drift": _from("force", _motion(6000.0)),
+    "propeller-side-force": _side_force,
+    "memory": _plain("time_constant", (0.1, 0.4, 2.0, 8.0, 16.0)),
+    "rudder-stall": _degrees(_plain("angle", (38.0, 35.0, 32.0, 28.0, 22.0))),
+    "hull-term": _one_of(*(hull_term(term) for term in HULL_TERMS)),
+    "antenna": _vector(("x", "y"), _sensor(12.0)),
+    "heading-bias": _degrees(_signed("angle", _sensor(1.5))),
+    "gyro-scale": _factor("factor", _sensor(0.05)),
+    "gyro-bias": _degrees(_signed("rate", _sensor(0.05))),
+    "speed-scale": _factor("factor", _sensor(0.04)),
+}
+"""By tag, the effect at five levels: below visible, hardly, small, typical, and well above."""
+
+
+def draw_ship(rng: np.random.Generator) -> dict[str, float]:
+    """A ship whose tuning targets differ from the profile's by up to SPREAD, each on its own."""
+    return {name: PROFILE[name] * float(rng.uniform(1.0 - SPREAD, 1.0 + SPREAD)) for name in TARGETS}
+
+
+def single(tag: str, level: int, seed: int, noise: Noise = WHITE) -> Case:
+    """One effect; ship, signs and directions depend on tag and seed, not on the level (0 to 4)."""
+    return Case(f"{tag}-{level}-{seed}", _ship(seed), {tag: LADDER[tag](level, _rng(tag, seed))}, seed, noise)
+
+
+def null(seed: int, noise: Noise = WHITE) -> Case:
+    """Nothing hidden: the drawn ship herself."""
+    return Case(f"null-{seed}", _ship(seed), {}, seed, noise)
+
+
+def pair(seed: int, noise: Noise = WHITE) -> Case:
+    """Two different effects, each at the typical level."""
+    rng = _rng("pair", seed)
+    tags = [str(tag) for tag in rng.choice(list(LADDER), size=2, replace=False)]
+    hidden = {tag: LADDER[tag](TYPICAL, rng) for tag in tags}
+    return Case(f"pair-{'-and-'.join(tags)}-{seed}", _ship(seed), hidden, seed, noise)
+
+
+def unknown(k: int, seed: int, noise: Noise = WHITE) -> Case:
+    """The k-th effect no registry holds, with one of its magnitudes."""
+    tag = list(UNKNOWN)[k]
+    magnitude = float(_rng(tag, seed).choice(UNKNOWN[tag].magnitudes))
+    return Case(f"{tag}-{seed}", _ship(seed), {tag: {"magnitude": magnitude}}, seed, noise)
+
+
+def _ship(seed: int) -> dict[str, float]:
+    return draw_ship(_rng("ship", seed))
+
+
+def _rng(what: str, seed: int) -> np.random.Generator:
+    """Draws that depend on the seed and on what they are for."""
+    return np.random.default_rng([seed, zlib.crc32(what.encode())])
