@@ -106,6 +106,11 @@ class Integrator:
     name: str = "euler"
     substeps: int = 1
 
+    def __post_init__(self) -> None:
+        """Raises ValueError for an unknown name or a count of substeps that is none."""
+        if self.name not in ("euler", "rk4") or self.substeps != int(self.substeps) or self.substeps < 1:
+            raise ValueError(f"no integrator '{self.name}' with {self.substeps} substeps")
+
     @property
     def tableau(self) -> tuple[FloatArray, FloatArray]:
         """Position of each stage within the step, and its share in the result: (n_stages,) each."""

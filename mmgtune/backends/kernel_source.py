@@ -49,6 +49,7 @@ def kernel(
         block = task % n_blocks
         for k in range({n_rows} * {W}):
             p[k] = theta[block, k]
+{any_shifted}
         for l in range({W}):
             state = State({from_initial})
 {unsense}
@@ -136,8 +137,17 @@ n = controls[case, i - 1, 0] + f * (controls[case, i, 0] - controls[case, i - 1,
 delta = controls[case, i - 1, 1] + f * (controls[case, i, 1] - controls[case, i - 1, 1])"""
 
 _SHIFTED = """\
-n = logged_control(controls, t, n_samples, case, i, f, {shift}, 0)
-delta = logged_control(controls, t, n_samples, case, i, f, {shift}, 1)"""
+if shifted:
+    n = logged_control(controls, t, n_samples, case, i, f, {shift}, 0)
+    delta = logged_control(controls, t, n_samples, case, i, f, {shift}, 1)
+else:
+    n = controls[case, i - 1, 0] + f * (controls[case, i, 0] - controls[case, i - 1, 0])
+    delta = controls[case, i - 1, 1] + f * (controls[case, i, 1] - controls[case, i - 1, 1])"""
+
+_ANY_SHIFTED = """\
+shifted = False
+for l in range({W}):
+    shifted = shifted or {shift} != 0.0"""
 
 _AIR = """\
 f = (sub + at) / substeps
@@ -168,6 +178,7 @@ def kernel_source(model: Model) -> str:
         n_states=n_states,
         n_control=2 * (1 + len(actuators)),
         W=WIDTH,
+        any_shifted=_lines(8, _ANY_SHIFTED.format(W=WIDTH, shift=shift).splitlines()) if clock else "",
         from_initial=", ".join(f"initial[case, block, {k * WIDTH} + l]" for k in range(6)),
         unsense=_lines(12, [f"state = {_name(e)}_inverse(state, {_tuple(model, e)})" for e in reversed(sensors)]),
         store_state=_lines(12, [f"s[{k * WIDTH} + l] = state.{name}" for k, name in enumerate(STATES)]),

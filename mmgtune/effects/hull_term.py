@@ -56,16 +56,26 @@ def symbol(term: str) -> str:
     return term.replace("absr", "|r|").replace("absv", "|v|").replace("_one", "_0")
 
 
+_SIZE = {"X": 0.006, "Y": 0.02, "N": 0.004}
+"""A force worth finding in a tight turn [prime]."""
+
+_DRIFT, _YAW = 0.3, 1.5
+"""v' and r' of a tight turn."""
+
+
 def _coefficient(term: str) -> Parameter:
-    size = 0.02 if term[0] == "N" else 0.05 if term[0] == "X" else 0.1
-    if term.endswith("_one"):
-        size *= 0.05
+    monomial = term[2:].replace("abs", "")
+    size = _SIZE[term[0]]
+    if monomial == "one":  # acts on straight courses too, where very little is enough
+        size *= 0.1
+    else:
+        size /= _DRIFT ** monomial.count("v") * _YAW ** monomial.count("r")
     return Parameter(
         f"coefficient of the term {symbol(term)}",
         "prime",
-        bounds=lambda _: (-8.0 * size, 8.0 * size),
+        bounds=lambda _: (-20.0 * size, 20.0 * size),
         typical=lambda _: size,
-        bounds_source="well beyond the derivatives of published hulls",
+        bounds_source="twenty times what a tight turn would show",
     )
 
 

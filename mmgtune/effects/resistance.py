@@ -4,8 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..physics.kinematics import flow
-from ..physics.quantities import Force, Lanes
+from ..physics.quantities import Flow, Force, Lanes
 from .effect import Effect, Parameter
 
 GRAVITY = 9.81
@@ -21,11 +20,11 @@ class Resistance(NamedTuple):
 def resistance(state, air, found, components, p, e):
     """Surge force [N] that makes the model's resistance coefficient R_0' into R_0' (factor + slope Fn).
 
-    The model's own resistance is asked of its hull at zero drift and yaw rate, so that any hull will do.
+    The model's own resistance is asked of its hull at the same speed without drift and yaw, so that any hull will do.
     """
-    straight = flow(found.flow.u, 0.0 * found.flow.u, 0.0 * found.flow.u, p.ship.L_pp)
     Fn = found.flow.U / np.sqrt(GRAVITY * p.ship.L_pp)
     zero = 0.0 * Fn
+    straight = Flow(u=found.flow.u, v_m=zero, r=zero, U=found.flow.U, beta=zero, v_=zero, r_=zero)
     X = (e.factor - 1.0 + e.slope * Fn) * components.hull(straight, p.ship, p.hull).X
     return Force(X=X, Y=zero, N=zero)
 

@@ -49,6 +49,8 @@ def solve(
     ridge: float = 0.0,
     anchor: FloatArray | None = None,
     stop: Callable[[], bool] = lambda: False,
+    whiten: Callable[[FloatArray], FloatArray] | None = None,
+    tolerance: float = 0.0,
 ) -> list[LeastSquaresResult]:
     """Minimise J within the unit cube from every column of ``starts`` (n_targets, n_starts).
 
@@ -58,6 +60,9 @@ def solve(
     ridge, anchor   adds ridge * |unit - anchor|^2 to what is minimised (not to the J reported): picks, among
                     coefficient sets that fit equally well, the one nearest to ``anchor``
     stop            asked before every iteration; True ends all starts where they are
+    whiten          linear map of residuals (n_residuals, ...) within each case, such as ``Whitening.apply``; J is then
+                    the sum of squares of what it makes of them
+    tolerance       fall of what is minimised that counts as none, if larger than a share of QUIET
     Returns a result per start, never above what it began with.
     """
     n_starts = starts.shape[1]
@@ -70,7 +75,12 @@ def solve(
         away = np.sum((unit - centre[:, None]) ** 2, axis=0)
         return np.asarray(ridge * away + np.einsum("cps,cs->p", offsets**2, prior))
 
-    J = problem.costs(z, d)
+    def cost(unit: FloatArray, offsets: FloatArray) -> FloatArray:
+        if whiten is None:
+            return problem.costs(unit, offsets)
+        return _squares(whiten(problem.residuals(unit, offsets).T))
+
+    J = cost(z, d)
     value = J + penalty(z, d)
     damping = np.full(n_starts, 1e-3)
     iterations = np.zeros(n_starts, dtype=int)
@@ -81,7 +91,7 @@ def solve(
         rows = np.flatnonzero(running)
         if len(rows) == 0 or stop():
             break
-        linear = [_Linear(problem, *parts) for parts in zip(*_jacobians(problem, z, d, rows), strict=True)]
+        linear = [_Linear(problem, *parts) for parts in zip(*_jacobians(problem, z, d, rows, whiten), strict=True)]
         tried = np.empty((len(z), len(rows), len(DAMPINGS)))
         moved = np.empty((len(problem.cases), len(rows), len(DAMPINGS), 6))
         for i, row in enumerate(rows):
@@ -94,7 +104,7 @@ def solve(
                 tried[:, i, k] = bounded_step(damped, gradient, z[:, row], nearby)
                 moved[:, i, k] = linear[i].offsets(tried[:, i, k] - z[:, row])
         unit, offsets = tried.reshape(len(z), -1), moved.reshape(len(problem.cases), -1, 6)
-        costs = problem.costs(unit, offsets)
+        costs = cost(unit, offsets)
         values = (costs + penalty(unit, offsets)).reshape(len(rows), -1)
         costs = costs.reshape(len(rows), -1)
         for i, row in enumerate(rows):
@@ -107,7 +117,7 @@ def solve(
                 damping[row] = min(max(damping[row] * DAMPINGS[best], 1e-12), 1e6)
             else:
                 damping[row] *= 1e3
-            small = 0.0 < gain <= QUIET * value[row]
+            small = 0.0 < gain <= max(QUIET * value[row], tolerance)
             quiet[row] = quiet[row] + 1 if small else 0
             if quiet[row] >= 2 or damping[row] > 1e8 or value[row] < 1e-24:
                 converged[row], running[row] = True, False
@@ -137,21 +147,34 @@ def fit_offsets(problem: FitProblem, unit: FloatArray, max_iterations: int = 12)
     return best
 
 
-def _jacobians(problem: FitProblem, z: FloatArray, d: FloatArray, rows: npt.NDArray[np.intp]) -> tuple[FloatArray, ...]:
+def _jacobians(
+    problem: FitProblem,
+    z: FloatArray,
+    d: FloatArray,
+    rows: npt.NDArray[np.intp],
+    whiten: Callable[[FloatArray], FloatArray] | None = None,
+) -> tuple[FloatArray, ...]:
     """Offsets, residuals and derivatives of the running starts, first axis the start.
 
     Where a neighbour diverged the derivative counts as flat.
     """
     residuals, jacobians, by_offset = problem.jacobians(z[:, rows], d[:, rows])
-    return (
-        d[:, rows].transpose(1, 0, 2),
-        residuals,
-        _flat_where_lost(jacobians),
-        _flat_where_lost(by_offset),
-    )
+    jacobians, by_offset = flat_where_lost(jacobians), flat_where_lost(by_offset)
+    if whiten is not None:
+        residuals, jacobians, by_offset = (
+            np.moveaxis(whiten(np.moveaxis(values, 1, 0)), 0, 1) for values in (residuals, jacobians, by_offset)
+        )
+    return d[:, rows].transpose(1, 0, 2), residuals, jacobians, by_offset
 
 
-def _flat_where_lost(derivatives: FloatArray) -> FloatArray:
+def _squares(residuals: FloatArray) -> FloatArray:
+    """Sums over the first axis; inf where a run diverged."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        found = np.einsum("ij,ij->j", residuals, residuals)
+    return np.where(np.isfinite(found), found, np.inf)
+
+
+def flat_where_lost(derivatives: FloatArray) -> FloatArray:
     """Derivatives with 0 for those that are not finite; the usual case costs one pass and no copy."""
     with np.errstate(invalid="ignore", over="ignore"):
         whole = bool(np.isfinite(derivatives.sum()))

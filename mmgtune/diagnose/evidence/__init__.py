@@ -1,0 +1,21 @@
+"""What a fitted model gets wrong, before any cause is considered.
+
+smoothing      measured motion without its noise
+forces         residual forces by inverse dynamics
+short_horizon  residuals of simulations restarted every window
+explained      the share of a residual that one variable alone explains, and the share that is noise
+"""
+
+from .explained import explain_forces, noise_share, share_explained
+from .forces import ResidualForces, residual_forces
+from .short_horizon import ShortHorizon, short_horizon
+
+__all__ = [
+    "ResidualForces",
+    "ShortHorizon",
+    "explain_forces",
+    "noise_share",
+    "residual_forces",
+    "share_explained",
+    "short_horizon",
+]

@@ -1,0 +1,144 @@
+"""Short-horizon residuals: the simulation restarted again and again, so that drift does not hide where it is wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from ...backends import Integrator, get_backend, pad
+from ...model import Model
+from ...trial import Trial, measured_wind
+from .smoothing import BoolArray, Smoothed, smooth
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class ShortHorizon:
+    """Simulated less measured motion, never longer than a window after a restart from the measurement.
+
+    ids        of the trials
+    t          (n_samples,) time [s], by trial
+    residuals  (n_samples, 6) in x, y [m], psi [rad], u, v_m [m/s], r [rad/s], by trial; NaN in gaps, at samples that
+               no window reaches, and in windows that diverged
+    since      (n_samples,) time since the restart [s], by trial; NaN where no window reaches
+    noise      (n_trials, 6) deviation of the sensors' noise
+    window     longest time since a restart [s]
+    diverged   number of windows whose simulation left the world of ships
+    """
+
+    ids: tuple[str, ...]
+    t: tuple[FloatArray, ...]
+    residuals: tuple[FloatArray, ...]
+    since: tuple[FloatArray, ...]
+    noise: FloatArray
+    window: float
+    diverged: int
+
+    @property
+    def rms(self) -> FloatArray:
+        """(n_trials, 6) root mean square by trial and channel, in the units of ``residuals``; NaN without samples."""
+        return np.array([_rms(values) for values in self.residuals])
+
+    @property
+    def rms_in_noise(self) -> FloatArray:
+        """(n_trials, 6) the same in deviations of the noise; NaN where there is no noise."""
+        return np.array([_rms(values) for values in self._in_noise])
+
+    @property
+    def pooled_rms(self) -> FloatArray:
+        """(6,) root mean square over all trials, in the units of ``residuals``; NaN without samples."""
+        return _rms(np.concatenate(self.residuals))
+
+    @property
+    def pooled_rms_in_noise(self) -> FloatArray:
+        """(6,) the same in deviations of each trial's noise; NaN where there is none."""
+        return _rms(np.concatenate(self._in_noise))
+
+    @property
+    def _in_noise(self) -> list[FloatArray]:
+        unit = np.where(self.noise > 0.0, self.noise, np.nan)
+        return [values / one for values, one in zip(self.residuals, unit, strict=True)]
+
+
+def short_horizon(
+    model: Model,
+    trials: Sequence[Trial],
+    *,
+    window: float = 60.0,
+    integrator: Integrator = Integrator(),
+    backend: str = "compiled",
+) -> ShortHorizon:
+    """Restart the simulation from smoothed measured states every ``window`` [s]: all windows of all trials at once.
+
+    A sample at which one window ends and the next begins belongs to the one that ends.  Windows begin anew after a gap
+    too long to be bridged.  Lags of the model count as settled at each restart.
+
+    Restarts carry on what noise the smoothing left: the true model's residuals are one to two deviations of the noise,
+    most in the heading.
+
+    Raises ValueError for no trials, a window that is not positive or no longer than every step, and a trial that has
+    too few samples to smooth; OptionError for an unknown back end.
+    """
+    if not trials:
+        raise ValueError("there are no trials")
+    if not window > 0.0:
+        raise ValueError(f"a window of {window:g} s is not positive")
+    motions = [smooth(trial) for trial in trials]
+    windows = [(i, part) for i, motion in enumerate(motions) for part in _windows(motion, window)]
+    if not windows:
+        raise ValueError(f"no window of {window:g} s holds two samples with a measured state")
+    controls = [np.column_stack([trial.n, trial.delta]) for trial in trials]
+    wind = [measured_wind(trial) for trial in trials]
+    cases = pad(
+        [trials[i].t[part] for i, part in windows],
+        [controls[i][part] for i, part in windows],
+        [motions[i].states[part.start] for i, part in windows],
+        wind=[wind[i][part] for i, part in windows],
+    )
+    result = get_backend(backend).run(model, model.matrix(), cases, integrator=integrator, keep_states=True)
+    assert result.states is not None  # asked for
+    residuals = [np.full((trial.n_samples, 6), np.nan) for trial in trials]
+    since = [np.full(trial.n_samples, np.nan) for trial in trials]
+    for k, (i, part) in enumerate(windows):
+        t, after = trials[i].t, slice(part.start + 1, part.stop)
+        since[i][after] = t[after] - t[part.start]
+        if not result.diverged[k, 0]:
+            residuals[i][after] = result.states[k, 0, 1 : part.stop - part.start] - trials[i].motion[after]
+    return ShortHorizon(
+        ids=tuple(trial.id for trial in trials),
+        t=tuple(trial.t for trial in trials),
+        residuals=tuple(residuals),
+        since=tuple(since),
+        noise=np.array([motion.noise for motion in motions]),
+        window=window,
+        diverged=int(result.diverged.sum()),
+    )
+
+
+def _windows(motion: Smoothed, window: float) -> list[slice]:
+    """Samples of each window; neighbours share the sample at which the next begins."""
+    usable: BoolArray = motion.present & np.isfinite(motion.states).all(axis=1)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], usable, [False]]).astype(int)))
+    found = []
+    for first, stop in edges.reshape(-1, 2):
+        start = int(first)
+        while start + 1 < stop:
+            end = int(np.searchsorted(motion.t[:stop], motion.t[start] + window * (1.0 + 1e-9), side="right"))
+            if end - start < 2:  # a step longer than the window
+                start += 1
+                continue
+            found.append(slice(start, end))
+            start = end - 1
+    return found
+
+
+def _rms(values: FloatArray) -> FloatArray:
+    """(6,) of (n, 6), NaN left out."""
+    known = np.isfinite(values)
+    squares = np.sum(np.where(known, values, 0.0) ** 2, axis=0)
+    count = known.sum(axis=0)
+    return np.sqrt(np.where(count > 0, squares / np.maximum(count, 1), np.nan))

@@ -1,0 +1,137 @@
+"""Measured motion without its noise: one smoothing spline per channel, all with the same time scale.
+
+A cubic smoothing spline passes a motion of angular frequency w by 1 / (1 + (tau w)^4), without delay.  All channels and
+the inputs share one tau: a rudder angle and the yaw it causes are then blunted alike, and the difference between the
+two sides of an equation of motion is not an artefact of having smoothed one more than the other.
+
+tau is what makes Mallows' C_L of the velocities smallest: the sum over u, v_m and r of (residual sum of squares) /
+(noise variance) + 2 (effective number of parameters).  The noise is what the trial's file says, or what second
+differences show; the number of parameters follows from tau.  Noise that is not white is taken for motion.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.interpolate import make_smoothing_spline
+
+from ...fitting.initial import noise_of
+from ...trial import Trial
+
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+
+FEWEST = 10
+"""Samples with u, v_m and r below which there is nothing to smooth."""
+
+REACH = 2.5
+"""Time scales from an end or a long gap within which slopes of the spline are not relied on."""
+
+VARIANCE_OF_VALUE = 3.0 * np.sqrt(2.0) / 16.0
+"""Variance of the spline, over that of the noise and dt / tau: the integral of the filter's gain squared over pi."""
+
+VARIANCE_OF_SLOPE = np.sqrt(2.0) / 16.0
+"""Variance of its slope, over that of the noise and dt / tau^3."""
+
+
+@dataclass(frozen=True, eq=False)
+class Smoothed:
+    """A trial's motion and inputs, smoothed.
+
+    t         (n_samples,) time [s]
+    states    (n_samples, 6) x, y [m], psi [rad], u, v_m [m/s], r [rad/s]; NaN before the first and after the last
+              measured sample, and throughout a channel with fewer than FEWEST measured samples
+    controls  (n_samples, 2) propeller revolutions [1/s], rudder angle [rad]
+    tau       time scale of the splines [s]
+    dt        usual time between samples [s]
+    noise     (6,) deviation of the sensors' noise, SI units
+    present   (n_samples,) whether u, v_m and r are all measured nearby: not outside the record, not in a long gap
+    inner     (n_samples,) whether slopes can be relied on too: not near an end or a long gap either
+    """
+
+    t: FloatArray
+    states: FloatArray
+    controls: FloatArray
+    tau: float
+    dt: float
+    noise: FloatArray
+    present: BoolArray
+    inner: BoolArray
+
+    @property
+    def value_noise(self) -> FloatArray:
+        """(6,) deviation of the smoothed states from the sensors' noise, well inside the record, SI units."""
+        return np.asarray(self.noise * np.sqrt(min(1.0, VARIANCE_OF_VALUE * self.dt / self.tau)))
+
+    @property
+    def slope_noise(self) -> FloatArray:
+        """(6,) deviation of their time derivatives, well inside the record, SI units per second."""
+        return np.asarray(self.noise * np.sqrt(VARIANCE_OF_SLOPE * self.dt / self.tau**3))
+
+
+def smooth(trial: Trial) -> Smoothed:
+    """Smooth a trial; gaps (NaN) up to twice the time scale are bridged, longer ones split the record.
+
+    Raises ValueError where fewer than FEWEST samples have all of u, v_m and r.
+    """
+    t, motion = np.asarray(trial.t), trial.motion
+    whole: BoolArray = np.asarray(np.isfinite(motion[:, 3:]).all(axis=1))
+    if whole.sum() < FEWEST:
+        raise ValueError(f"trial '{trial.id}' has {whole.sum()} samples with u, v_m and r; {FEWEST} are needed")
+    dt = float(np.median(np.diff(t)))
+    noise = _noise(trial)
+    tau = _time_scale(t[whole], motion[whole, 3:], noise[3:], dt)
+    states = np.column_stack([_smoothed(t, values, tau, dt) for values in motion.T])
+    controls = np.column_stack([_smoothed(t, values, tau, dt) for values in (trial.n, trial.delta)])
+    present, inner = _reliable(t, whole, tau, dt)
+    return Smoothed(t, states, controls, tau, dt, noise, present, inner)
+
+
+def _noise(trial: Trial) -> FloatArray:
+    """Deviation of the noise by channel; that of rounding where most neighbours are equal."""
+    found = np.array(noise_of(trial), dtype=float)
+    for k, values in enumerate(trial.motion.T):
+        steps = np.abs(np.diff(values[np.isfinite(values)]))
+        found[k] = (
+            max(found[k], float(np.min(steps[steps > 0.0], initial=np.inf)) / np.sqrt(12.0)) if steps.any() else 0.0
+        )
+    return found
+
+
+def _time_scale(t: FloatArray, velocities: FloatArray, noise: FloatArray, dt: float) -> float:
+    """The tau [s] with the smallest C_L, out of half a sample's time to a tenth of the record; see above."""
+    span = float(t[-1] - t[0])
+    scale = np.maximum(noise, 1e-6 * np.maximum(np.ptp(velocities, axis=0), 1e-6))
+    scaled = (velocities - velocities.mean(axis=0)) / scale
+    frequency = (np.arange(200) + 0.5) / 200.0 * np.pi / dt
+    candidates = np.geomspace(0.5 * dt, max(dt, 0.1 * span), 24)
+    criterion = []
+    for tau in candidates:
+        misfit = make_smoothing_spline(t, scaled, lam=tau**4 / dt)(t) - scaled
+        parameters = len(t) * float(np.mean(1.0 / (1.0 + (tau * frequency) ** 4)))
+        criterion.append(float(np.sum(misfit * misfit)) + 2.0 * scaled.shape[1] * parameters)
+    return float(candidates[int(np.argmin(criterion))])
+
+
+def _smoothed(t: FloatArray, values: FloatArray, tau: float, dt: float) -> FloatArray:
+    known = np.isfinite(values)
+    out = np.full(len(t), np.nan)
+    if known.sum() >= FEWEST:
+        first, last = np.flatnonzero(known)[[0, -1]]
+        inside = slice(int(first), int(last) + 1)
+        out[inside] = make_smoothing_spline(t[known], values[known], lam=tau**4 / dt)(t[inside])
+    return out
+
+
+def _reliable(t: FloatArray, whole: BoolArray, tau: float, dt: float) -> tuple[BoolArray, BoolArray]:
+    """Samples with measurements nearby, and those among them that are far from where measurements cease."""
+    measured = t[whole]
+    ends = np.diff(measured) > max(2.0 * tau, 1.5 * dt)
+    starts = measured[np.concatenate([[True], ends])]
+    stops = measured[np.concatenate([ends, [True]])]
+    piece = np.clip(np.searchsorted(starts, t, side="right") - 1, 0, None)
+    since, left = t - starts[piece], stops[piece] - t
+    nearest = np.minimum(since, left)
+    return nearest >= 0.0, nearest >= REACH * tau

@@ -1,0 +1,61 @@
+"""What may be the cause: every set of parameters of every effect that could be told from the tuned coefficients."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ..effects import Effect
+from ..model import Model
+
+HULL_TERM = "hull-term"
+INTEGRATION_STEP = "integration-step"
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """One effect with the parameters that are fitted together.
+
+    names  of the parameters as targets, "effects.<tag>.<parameter>"
+    """
+
+    effect: Effect
+    variant: tuple[str, ...]
+
+    @property
+    def tag(self) -> str:
+        """Tag of the effect."""
+        return self.effect.tag
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Parameters as targets."""
+        return tuple(f"{self.effect.kind}.{name}" for name in self.variant)
+
+    @property
+    def label(self) -> str:
+        """Effect, and its parameters where it could have others."""
+        return self.tag if len(self.effect.variants) == 1 else f"{self.tag} ({', '.join(self.variant)})"
+
+
+def hypotheses(
+    model: Model, targets: Sequence[str], tags: Sequence[str], wind_measured: bool, present: Sequence[str]
+) -> list[Hypothesis]:
+    """Hypotheses for a model that holds every effect that applies.
+
+    targets        coefficients that are tuned: what does the same as one of them cannot be told from it
+    tags           effects asked for; empty for all
+    wind_measured  whether any trial has wind; its factor is a hypothesis only then
+    present        parameters that the profile itself has already
+    """
+    found = []
+    for effect in model.effects:
+        if tags and effect.tag not in tags:
+            continue
+        for variant in effect.variants:
+            taken = any(effect.absorbed.get(name) in targets for name in variant)
+            idle = effect.tag == "wind" and ("measured" in variant) != wind_measured
+            hypothesis = Hypothesis(effect, variant)
+            if not taken and not idle and not set(hypothesis.names) & {*targets, *present}:
+                found.append(hypothesis)
+    return found

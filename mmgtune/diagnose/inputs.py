@@ -1,0 +1,64 @@
+"""What the logged inputs do not say: a simulation driven by a noisy rudder angle wanders off a little, and for good.
+
+Besides noise, a log of one sample a second does not say when in that second the rudder began to move.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from ..trial.kinematics import white_noise
+from .workbench import Point, Workbench
+
+FloatArray = npt.NDArray[np.float64]
+
+DRAWS = 16
+"""Simulated realisations per trial."""
+
+BETWEEN = 0.2
+"""Deviation of an input at a bend of its log, as a share of the bend: the bend may be anywhere between two samples."""
+
+CLEAR = 8.0
+"""Second differences beyond this many deviations of the noise are bends."""
+
+
+def wander(bench: Workbench, point: Point) -> FloatArray:
+    """Change of the residuals (n_residuals, DRAWS) by other inputs that the log does not tell from these.
+
+    The noise of revolutions and rudder angle is what second differences of the logs show; those far above it are bends.
+    """
+    rng = np.random.default_rng(bench.options.seed)
+    cases = bench.problem.cases
+    problem = bench.problem_of(point.names, point.integrator)
+    level = np.array([[white_noise(trial.n), white_noise(trial.delta)] for trial in bench.trials])[:, None]
+    bend = np.zeros_like(cases.controls)
+    bend[:, 1:-1] = np.abs(np.diff(cases.controls, n=2, axis=1))
+    deviation = np.where(bend > CLEAR * level, np.hypot(level, BETWEEN * bend), level)
+    noise = deviation[:, None] * rng.standard_normal((len(cases), DRAWS, *cases.controls.shape[1:]))
+    controls = np.concatenate([cases.controls[:, None], cases.controls[:, None] + noise], axis=1)
+    copies = DRAWS + 1
+    many = replace(
+        cases,
+        t=np.repeat(cases.t, copies, axis=0),
+        n_samples=np.repeat(cases.n_samples, copies),
+        controls=controls.reshape(-1, *cases.controls.shape[1:]),
+        wind=np.repeat(cases.wind, copies, axis=0),
+        initial=np.repeat(cases.initial + point.offsets, copies, axis=0),
+        target=np.zeros_like(np.repeat(cases.target, copies, axis=0)),
+        weight=np.repeat(cases.weight, copies, axis=0),
+    )
+    result = problem.backend.run(
+        problem.model, problem.theta(point.unit[:, None]), many, integrator=problem.integrator, keep_residuals=True
+    )
+    assert result.residuals is not None  # asked for
+    changed = np.empty((problem.n_residuals, DRAWS))
+    at = 0
+    for rows in problem.rows_of_cases:
+        n = rows.stop - rows.start
+        runs = result.residuals[at : at + n * copies, 0].reshape(copies, n)
+        changed[rows] = (runs[1:] - runs[0]).T
+        at += n * copies
+    return bench.noise.apply(np.where(np.isfinite(changed), changed, 0.0))

@@ -1,0 +1,384 @@
+"""The search for causes: screen, refit, decide, add, and look again.
+
+A hypothesis is believed only where all of this holds: refitted together with the targets it explains far more than
+chance would bring anywhere in the search, its size is worth speaking of, and no other hypothesis does nearly as well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import numpy.typing as npt
+from scipy.stats import chi2
+
+from ..backends import Integrator
+from ..fitting.least_squares import solve
+from . import noise as noises
+from .hypotheses import HULL_TERM, INTEGRATION_STEP, Hypothesis
+from .linear import Linear, linearise, typical
+from .screening import ChanceScores, Score, scores
+from .workbench import TOLERANCE, Point, Workbench
+
+FloatArray = npt.NDArray[np.float64]
+
+STARTS = 6
+"""Starts of the base fit."""
+
+STRONG = 1.2
+"""Chi-squared per residual beyond which every named hypothesis is refitted."""
+
+AGAIN = 8
+"""Times the base fit may begin again where it ended."""
+
+PRECISE = 0.02
+"""Fall of chi-squared that counts as none where parameters are reported."""
+
+REFITTED = 9
+TERMS_REFITTED = 4
+"""Named hypotheses and hull terms that are refitted each time: those of the best scores."""
+
+ROUGH = 4
+"""Steps of a refit before it is compared with the others."""
+
+WORTH_GOING_ON = 0.2
+"""Share of the best gain from which a refit is continued to its end."""
+
+ENOUGH = 10.0
+"""A hypothesis must beat none by this much of chi-squared beyond its share by the information criterion (BIC), and
+another hypothesis by as much to be told from it; in units of the noise along it."""
+
+WORTH = 0.1
+"""Smallest size worth speaking of, as a share of the typical one."""
+
+FINER = 4
+"""The integration step as a cause: a Runge-Kutta step this many times finer."""
+
+
+@dataclass(frozen=True, eq=False)
+class Refit:
+    """A hypothesis fitted together with all that is known so far.
+
+    gain      fall of chi-squared
+    cost      what its parameters would bring by chance, by BIC (and for a hull term, one of many, the choice)
+    evidence  the gain over its inflation, less the cost
+    size      largest of its parameters' distances from their null, in typical sizes
+    p_value   probability of such a fall anywhere in the search, were there nothing to find
+    """
+
+    hypothesis: Hypothesis
+    score: Score
+    point: Point
+    gain: float
+    cost: float
+    evidence: float
+    size: float
+    p_value: float
+
+    def beats(self, other: Refit) -> bool:
+        """Whether this explains so much more that the other is out of the question."""
+        inflation = max(self.score.inflation, other.score.inflation)
+        return (self.gain - other.gain) / inflation - self.cost + other.cost >= ENOUGH
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """One look at what is left.
+
+    base     what was known before
+    refits   best first
+    scores   of every hypothesis
+    rivals   of the best: hypotheses of other effects that do nearly as well
+    accepted whether the best is believed
+    reason   why not, where it is not
+    finer    fall of chi-squared by a finer integration step, None where not tried
+    """
+
+    base: Point
+    linear: Linear
+    scores: list[Score]
+    refits: list[Refit]
+    rivals: list[Refit]
+    accepted: bool
+    reason: str
+    finer: float | None = None
+
+
+@dataclass(eq=False)
+class Found:
+    """The outcome of a search.
+
+    base    the model re-tuned without any cause
+    final   with all that were accepted
+    causes  accepted hypotheses, in the order found, after those that others made superfluous were dropped
+    steps   every look, the last one in vain
+    rivals  for each cause, the other hypotheses that would do nearly as well in its place
+    """
+
+    base: Point
+    final: Point
+    causes: list[Hypothesis] = field(default_factory=list)
+    steps: list[Step] = field(default_factory=list)
+    rivals: list[list[Refit]] = field(default_factory=list)
+    finer_step: float | None = None
+
+
+def base_fit(bench: Workbench) -> Point:
+    """The targets re-tuned without any effect: from several starts with held initial states, then with free ones."""
+    names = bench.targets
+    rng = np.random.default_rng(bench.options.seed)
+    starts = np.column_stack([bench.null(names), *rng.uniform(size=(STARTS - 1, len(names)))])
+    held = replace(bench.problem_of(names), sigma=None, integrator=Integrator())
+    ends = sorted(solve(held, starts, max_iterations=40, tolerance=1.0), key=lambda end: end.J)
+    point = bench.refit(names, np.column_stack([end.unit for end in ends[:3]]), np.zeros_like(bench.problem.offsets))
+    for _ in range(AGAIN):  # initial states at the end of their range make a bad start; from there it is a new one
+        again = bench.refit(names, point.unit[:, None], point.offsets, tolerance=PRECISE)
+        better = point.chi2 - again.chi2
+        point = min(again, point, key=lambda one: one.chi2)
+        if better < 1e-3 * point.chi2:
+            break
+    return point
+
+
+def search(
+    bench: Workbench,
+    hypotheses: Sequence[Hypothesis],
+    say: Callable[[str], None] = lambda _: None,
+    stop: Callable[[], bool] = lambda: False,
+) -> Found:
+    """Forward search with a backward look after each addition."""
+    say("re-tuning the model without any cause")
+    base = base_fit(bench)
+    found = Found(base, base)
+    left = list(hypotheses)
+    while not stop():
+        say("looking for a cause" if not found.causes else f"looking for cause {len(found.causes) + 1}")
+        step = look(bench, found.final, left, first=not found.steps)
+        found.steps.append(step)
+        if step.finer is not None and step.finer > 2.0 * ENOUGH and step.finer > 2.0 * _gain(step):
+            say("the integration step is a cause")
+            found.finer_step = step.finer
+            bench.problem.integrator = finer(bench.problem.integrator)
+            found.final = bench.refit(step.base.names, step.base.unit[:, None], step.base.offsets)
+            continue
+        if not step.accepted:
+            found.final = step.base
+            break
+        best = step.refits[0]
+        found.causes.append(best.hypothesis)
+        found.final = best.point
+        left = [h for h in left if not set(h.names) & set(best.hypothesis.names)]
+        if len(found.causes) >= bench.options.most:
+            break
+    if found.steps:
+        first = found.steps[0].base
+        found.base = bench.refit(first.names, first.unit[:, None], first.offsets)
+        found.final = bench.refit(
+            found.final.names, found.final.unit[:, None], found.final.offsets, tolerance=PRECISE
+        )
+    if len(found.causes) > 1:
+        _drop_superfluous(bench, found)
+    say("comparing the causes with their rivals")
+    found.rivals = [_rivals_of(bench, found, k) for k in range(len(found.causes))]
+    return found
+
+
+def _gain(step: Step) -> float:
+    return step.refits[0].gain if step.refits else 0.0
+
+
+def finer(integrator: Integrator) -> Integrator:
+    """A Runge-Kutta step that is fine enough for any ship."""
+    return Integrator("rk4", FINER * integrator.substeps)
+
+
+def look(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis], first: bool) -> Step:
+    """Scores of all hypotheses at a point, refits of the best, and whether the best of those is to be believed.
+
+    Noise is estimated anew from what the best refit and all other signatures together leave: any less, and a cause
+    would pass for noise with a memory.
+    """
+    names = [name for h in hypotheses for name in h.names]
+    linear = linearise(bench, point, names)
+    ranked = scores(linear, hypotheses)
+    best = _refit_best(bench, point, ranked, linear, quick=True)
+    richest = best[0].point if best and best[0].gain > 2.0 * ENOUGH else point
+    at_best = linear if richest is point else linearise(bench, richest, [n for n in names if n not in richest.names])
+    known = _noise_at(bench, at_best)
+    if _differs(bench.noise, known):
+        bench.know(known)
+        point = bench.refit(point.names, point.unit[:, None], point.offsets)
+        linear = linearise(bench, point, names)
+        ranked = scores(linear, hypotheses)
+    refits = _refit_best(bench, point, ranked, linear, quick=False)
+    finer_gain = None
+    if first:
+        other = bench.refit(point.names, point.unit[:, None], point.offsets, integrator=finer(point.integrator))
+        finer_gain = point.chi2 - other.chi2
+    accepted, reason = _decide(bench, refits)
+    rivals = _rivals(refits) if refits else []
+    return Step(point, linear, ranked, refits, rivals, accepted, reason, finer_gain)
+
+
+def _noise_at(bench: Workbench, linear: Linear) -> noises.NoiseModel:
+    """Noise from the residual less all signatures, in the units residuals had before any whitening."""
+    rows = np.ones(len(linear.noise), dtype=bool)
+    ends = np.append(linear.cases[1:], len(linear.noise))
+    for end in ends:
+        rows[end - 6 : end] = False  # the offsets
+    left = bench.noise.restore(linear.noise[rows])
+    return noises.estimate(bench.problem.cases, left)
+
+
+def _differs(a: noises.NoiseModel, b: noises.NoiseModel) -> bool:
+    """Whether two noise models give noticeably different weights."""
+    for channel, one in a.channels.items():
+        other = b.channels[channel]
+        if abs(np.log(one.filter[2] / other.filter[2])) > 0.02 or abs(one.phi - other.phi) > 0.05:
+            return True
+    return False
+
+
+def _refit_best(
+    bench: Workbench, point: Point, ranked: Sequence[Score], linear: Linear, *, quick: bool
+) -> list[Refit]:
+    """The most promising hypotheses refitted, best first."""
+    order = sorted(ranked, key=lambda score: -score.score)
+    named = [s for s in order if s.hypothesis.tag != HULL_TERM]
+    terms = [s for s in order if s.hypothesis.tag == HULL_TERM]
+    strong = point.chi2 > STRONG * bench.problem.n_residuals  # too far away for a linear score to choose
+    if quick:
+        chosen = named[:3] + terms[:1]
+    else:
+        chosen = named[: None if strong else REFITTED] + terms[: (2 if strong else 1) * TERMS_REFITTED]
+    chosen = [s for s in chosen if s.power > 0.0]
+    rough = [_rough(bench, point, score) for score in chosen]
+    most = max((point.chi2 - end.chi2 for end in rough), default=0.0)
+    chance = ChanceScores(linear, [s.hypothesis for s in ranked], bench.options.seed)
+    refits = []
+    for score, end in zip(chosen, rough, strict=True):
+        gain = point.chi2 - end.chi2
+        if gain >= WORTH_GOING_ON * most and gain > 0.5 * ENOUGH * score.inflation:
+            end = _polished(bench, point, score, end)
+        refits.append(_judged(bench, point, score, end, chance, n_terms=max(1, len(terms))))
+    return sorted(refits, key=lambda refit: refit.cost - refit.gain)
+
+
+def _rough(bench: Workbench, point: Point, score: Score) -> Point:
+    """A few steps towards the best fit with a hypothesis, from where its score says it lies."""
+    names = score.hypothesis.names
+    null = bench.null(names)
+    size = np.array([typical(bench, name) for name in names])
+    place = np.clip(null + np.clip(score.step, -4.0, 4.0) * size, 0.0, 1.0)
+    excess = max(point.chi2 - bench.problem.n_residuals, 0.0)
+    return bench.refit(
+        (*point.names, *names),
+        np.concatenate([point.unit, place])[:, None],
+        point.offsets,
+        max_iterations=ROUGH,
+        tolerance=max(TOLERANCE, 1e-3 * excess),
+    )
+
+
+def _polished(bench: Workbench, point: Point, score: Score, rough: Point) -> Point:
+    """The best fit with a hypothesis, from where a few steps led and from a typical size."""
+    names = score.hypothesis.names
+    null = bench.null(names)
+    size = np.array([typical(bench, name) for name in names])
+    sign = np.where(score.step < 0.0, -1.0, 1.0)
+    sign = np.where((sign < 0.0) & (null <= 0.0), 1.0, np.where((sign > 0.0) & (null >= 1.0), -1.0, sign))
+    end = bench.refit(rough.names, rough.unit[:, None], rough.offsets)
+    one_sided = bool(((null <= 0.0) | (null >= 1.0)).any())
+    if one_sided and point.chi2 - end.chi2 < 0.9 * score.score:  # its slope at the null may mislead
+        start = np.concatenate([point.unit, np.clip(null + sign * size, 0.0, 1.0)])
+        other = bench.refit(rough.names, start[:, None], point.offsets)
+        end = min(end, other, key=lambda one: one.chi2)
+    return end
+
+
+def _judged(bench: Workbench, point: Point, score: Score, end: Point, chance: ChanceScores, n_terms: int) -> Refit:
+    hypothesis = score.hypothesis
+    null = bench.null(hypothesis.names)
+    size = np.array([typical(bench, name) for name in hypothesis.names])
+    if end.chi2 > point.chi2:  # a wind of nearly nothing is not quite nothing; the null itself is always open
+        unit = np.concatenate([point.unit, null])
+        end = Point(end.names, unit, point.offsets, point.chi2, point.integrator)
+    gain = point.chi2 - end.chi2
+    assert gain >= 0.0, "a nested refit ended above the model it extends"
+    k = len(hypothesis.names)
+    cost = k * np.log(bench.problem.n_residuals) + (2.0 * np.log(n_terms) if hypothesis.tag == HULL_TERM else 0.0)
+    return Refit(
+        hypothesis,
+        score,
+        end,
+        gain,
+        cost,
+        gain / score.inflation - cost,
+        float(np.max(np.abs(end.unit[len(point.names) :] - null) / size)),
+        chance.p_value(-float(chi2.logsf(gain / score.inflation, k))),
+    )
+
+
+def _decide(bench: Workbench, refits: Sequence[Refit]) -> tuple[bool, str]:
+    if not refits:
+        return False, "no effect applies"
+    best = refits[0]
+    if best.p_value > bench.options.level:
+        return False, f"chance brings as much in {best.p_value:.2g} of all searches"
+    if best.evidence < ENOUGH:
+        return False, "it explains too little for one more parameter"
+    if best.size < WORTH:
+        return False, f"its size is below a {1.0 / WORTH:.0f}th of what is worth speaking of"
+    return True, ""
+
+
+def _rivals(refits: Sequence[Refit]) -> list[Refit]:
+    """Refits of other effects than the best that explain nearly as much."""
+    best = refits[0]
+    found: dict[str, Refit] = {}
+    for refit in refits[1:]:
+        if not best.beats(refit) and refit.hypothesis.tag != best.hypothesis.tag:
+            found.setdefault(refit.hypothesis.tag, refit)
+    return list(found.values())
+
+
+def _without(bench: Workbench, point: Point, hypothesis: Hypothesis) -> Point:
+    """The point refitted without one of its hypotheses."""
+    kept = [i for i, name in enumerate(point.names) if name not in hypothesis.names]
+    return bench.refit([point.names[i] for i in kept], point.unit[kept][:, None], point.offsets)
+
+
+def _drop_superfluous(bench: Workbench, found: Found) -> None:
+    """Drop causes that those found later explain."""
+    for hypothesis in list(found.causes[:-1]):
+        fewer = _without(bench, found.final, hypothesis)
+        share = len(hypothesis.names) * np.log(bench.problem.n_residuals)
+        if fewer.chi2 - found.final.chi2 < share + ENOUGH:
+            found.causes.remove(hypothesis)
+            found.final = fewer
+
+
+def _rivals_of(bench: Workbench, found: Found, k: int) -> list[Refit]:
+    """Rivals of one cause with all others in place, among those that were near when it was found."""
+    cause = found.causes[k]
+    step = next((s for s in found.steps if s.refits and s.refits[0].hypothesis == cause), None)
+    if step is None:
+        return []
+    near = [r for r in step.refits[1:] if r.hypothesis.tag != cause.tag and r.gain > 0.5 * step.refits[0].gain]
+    if len(found.causes) == 1:
+        return _rivals(step.refits)
+    without = _without(bench, found.final, cause)
+    best = replace(step.refits[0], point=found.final, gain=without.chi2 - found.final.chi2)
+    rivals = {}
+    for rival in near:
+        if set(rival.hypothesis.names) & set(without.names):
+            continue
+        start = rival.point.unit[len(step.base.names) :]
+        other = bench.refit(
+            (*without.names, *rival.hypothesis.names), np.concatenate([without.unit, start])[:, None], without.offsets
+        )
+        rival = replace(rival, point=other, gain=without.chi2 - other.chi2)
+        if not best.beats(rival):
+            rivals.setdefault(rival.hypothesis.tag, rival)
+    return list(rivals.values())

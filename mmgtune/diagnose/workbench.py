@@ -1,0 +1,189 @@
+"""The trials, the model with every effect, and refits of any hypothesis on them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from ..backends import STATES, Integrator, get_backend
+from ..fitting.box import Box, choose_targets, make_box
+from ..fitting.least_squares import LeastSquaresResult, solve
+from ..fitting.problem import FitProblem
+from ..model import Model
+from ..objective import Objective, cases_of
+from ..profile import ShipProfile, with_all_effects
+from ..trial import Trial
+from ..trial.kinematics import white_noise
+from .noise import NoiseModel, white
+from .options import CHANNELS, DiagnoseOptions
+
+FloatArray = npt.NDArray[np.float64]
+
+TOLERANCE = 0.2
+"""Fall of chi-squared that counts as none while searching; a fiftieth of what matters."""
+
+ON_DEMAND = ("wind", "hull-term", "wave-drift", "memory", "resistance")
+"""Effects that cost simulation time where they are absent; a model has them only where they are asked for."""
+
+LOOSE = 3.0
+"""Initial states may leave their first sample by this many deviations of white noise before noise is known better."""
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """A fitted model.
+
+    names    what was free: targets, then parameters of effects
+    unit     (n_names,) position in the box
+    offsets  (n_cases, 6) of the initial states
+    chi2     sum of squared whitened residuals, and of offsets over their deviations
+    """
+
+    names: tuple[str, ...]
+    unit: FloatArray
+    offsets: FloatArray
+    chi2: float
+    integrator: Integrator
+
+
+@dataclass(eq=False)
+class Workbench:
+    """What every part of a diagnosis works with.
+
+    model     with every effect at its null or at the profile's own value
+    sigma     (6,) white noise of each channel, from the trials' own columns
+    targets   coefficients that may be re-tuned
+    box       of the targets and of every parameter of every hypothesis
+    noise     as known so far
+    own_effects  tags of effects the profile itself has
+    """
+
+    model: Model
+    trials: list[Trial]
+    options: DiagnoseOptions
+    sigma: FloatArray
+    targets: tuple[str, ...]
+    box: Box
+    problem: FitProblem
+    noise: NoiseModel
+    own_effects: tuple[str, ...] = ()
+    refits: int = field(default=0)
+    _models: dict[frozenset[str], Model] = field(default_factory=dict)
+
+    def model_of(self, names: Sequence[str]) -> Model:
+        """The model that holds these parameters, what the profile has, and the effects that cost nothing."""
+        left_out = frozenset(
+            tag
+            for tag in ON_DEMAND
+            if not any(name.startswith(f"effects.{tag}.") for name in names) and tag not in self.own_effects
+        )
+        if left_out not in self._models:
+            sections = {kind: s for kind, s in self.model.profile.sections.items() if kind[8:] not in left_out}
+            self._models[left_out] = Model(replace(self.model.profile, sections=sections))
+        return self._models[left_out]
+
+    def sub_box(self, names: Sequence[str]) -> Box:
+        """The box of some of its names, in their order."""
+        at = [self.box.names.index(name) for name in names]
+        place = {old: new for new, old in enumerate(at)}
+        return Box(
+            tuple(names),
+            self.box.pre[at],
+            self.box.low[at],
+            self.box.high[at],
+            tuple(place[i] for i in self.box.reciprocal if i in place),
+            tuple((place[i], place[j]) for i, j in self.box.polar if i in place and j in place),
+        )
+
+    def problem_of(self, names: Sequence[str], integrator: Integrator | None = None) -> FitProblem:
+        """The problem of fitting ``names``, everything else at its value in the profile."""
+        problem = replace(
+            self.problem,
+            model=self.model_of(names),
+            box=self.sub_box(names),
+            integrator=integrator or self.problem.integrator,
+        )
+        problem.prior = self.problem.prior
+        return problem
+
+    def null(self, names: Sequence[str]) -> FloatArray:
+        """(n_names,) position of the profile's values: targets at theirs, effects absent."""
+        box = self.sub_box(names)
+        return np.clip(box.to_unit(box.pre), 0.0, 1.0)
+
+    def refit(
+        self,
+        names: Sequence[str],
+        starts: FloatArray,
+        offsets: FloatArray,
+        *,
+        integrator: Integrator | None = None,
+        max_iterations: int = 30,
+        tolerance: float = TOLERANCE,
+    ) -> Point:
+        """The best fit of ``names`` from starts (n_names, n_starts), initial states beginning at ``offsets``."""
+        problem = self.problem_of(names, integrator)
+        problem.offsets = offsets
+        whiten = self.noise.apply if self.noise_known else None
+        ends = solve(problem, starts, max_iterations=max_iterations, whiten=whiten, tolerance=tolerance)
+        self.refits += len(ends)
+        best = min(ends, key=lambda end: self._total(end))
+        return Point(tuple(names), best.unit, best.offsets, self._total(best), problem.integrator)
+
+    def _total(self, end: LeastSquaresResult) -> float:
+        return float(end.J + np.sum(self.problem.prior * end.offsets**2))
+
+    @property
+    def noise_known(self) -> bool:
+        """Whether noise is other than white with the deviations residuals are divided by."""
+        return self.noise.coloured or any(noise.white != 1.0 for noise in self.noise.channels.values())
+
+    def know(self, noise: NoiseModel) -> None:
+        """Take another noise model for all that follows."""
+        self.noise = noise
+        deviation = np.array([np.sqrt(noise.channels[c].variance) if c in noise.channels else LOOSE for c in STATES])
+        self.problem.prior = np.repeat(1.0 / (self.sigma * deviation)[None] ** 2, len(self.trials), axis=0)
+        self.problem.sigma = np.repeat((self.sigma * np.maximum(deviation, LOOSE))[None], len(self.trials), axis=0)
+
+    def values(self, point: Point) -> dict[str, float]:
+        """What was free, by name, in profile units."""
+        return dict(zip(point.names, self.sub_box(point.names).from_unit(point.unit).tolist(), strict=True))
+
+
+def noise_levels(trials: Sequence[Trial]) -> FloatArray:
+    """(6,) deviation of white noise by channel: the median over trials of what second differences show."""
+    found = np.median([[white_noise(values) for values in trial.motion.T] for trial in trials], axis=0)
+    floor = 1e-6 * np.nanmax([np.nanmax(np.abs(trial.motion), axis=0) for trial in trials], axis=0)
+    return np.maximum(found, np.maximum(floor, 1e-12))
+
+
+def make_workbench(
+    profile: ShipProfile, trials: Sequence[Trial], options: DiagnoseOptions, names: Sequence[str] = ()
+) -> Workbench:
+    """The workbench of a profile and the trials causes are looked for on.
+
+    names  parameters of effects that will be fitted, besides the targets
+    Raises OptionError for targets, box or channels that make no sense.
+    """
+    model = Model(with_all_effects(profile))
+    own = Model(profile)
+    targets = choose_targets(own, options.targets, options.fixed)
+    sigma = noise_levels(trials)
+    channels = [
+        c for c in CHANNELS if not options.channels or c in {"v_m" if o == "v" else o for o in options.channels}
+    ]
+    objective = Objective(dict(zip(STATES, sigma, strict=True)), dict.fromkeys(channels, 1.0))
+    cases = cases_of(list(trials), objective)
+    box = make_box(model, (*targets, *(name for name in names if name not in targets)), options.a_r)
+    problem = FitProblem(
+        model=model,
+        cases=cases,
+        box=box,
+        backend=get_backend(options.backend),
+        integrator=Integrator(options.integrator, options.substeps),
+        sigma=np.repeat(LOOSE * sigma[None], len(trials), axis=0),
+    )
+    return Workbench(model, list(trials), options, sigma, targets, box, problem, white(cases), tuple(effect.tag for effect in own.effects))
