@@ -42,6 +42,9 @@ TERMS_REFITTED = 4
 ROUGH = 4
 """Steps of a refit before it is compared with the others."""
 
+SIZES = (1.0, 0.5, 2.0)
+"""Sizes of effects with one side only at which refits start, in typical sizes."""
+
 WORTH_GOING_ON = 0.2
 """Share of the best gain from which a refit is continued to its end."""
 
@@ -253,48 +256,41 @@ def _refit_best(
     else:
         chosen = named[: None if strong else REFITTED] + terms[: (2 if strong else 1) * TERMS_REFITTED]
     chosen = [s for s in chosen if s.power > 0.0]
-    rough = [_rough(bench, point, score) for score in chosen]
+    rough = [_rough(bench, point, score, strong) for score in chosen]
     most = max((point.chi2 - end.chi2 for end in rough), default=0.0)
     chance = ChanceScores(linear, [s.hypothesis for s in ranked], bench.options.seed)
     refits = []
     for score, end in zip(chosen, rough, strict=True):
         gain = point.chi2 - end.chi2
         if gain >= WORTH_GOING_ON * most and gain > 0.5 * ENOUGH * score.inflation:
-            end = _polished(bench, point, score, end)
+            end = bench.refit(end.names, end.unit[:, None], end.offsets)
         refits.append(_judged(bench, point, score, end, chance, n_terms=max(1, len(terms))))
     return sorted(refits, key=lambda refit: refit.cost - refit.gain)
 
 
-def _rough(bench: Workbench, point: Point, score: Score) -> Point:
-    """A few steps towards the best fit with a hypothesis, from where its score says it lies."""
+def _starts(bench: Workbench, point: Point, score: Score, strong: bool) -> FloatArray:
+    """Where the refit of a hypothesis starts, (n_names, n_starts): where its score says, and for an effect with one
+    side only, whose slope at the null misleads, at sizes around the typical."""
     names = score.hypothesis.names
     null = bench.null(names)
     size = np.array([typical(bench, name) for name in names])
-    place = np.clip(null + np.clip(score.step, -4.0, 4.0) * size, 0.0, 1.0)
+    places = [null + np.clip(score.step, -4.0, 4.0) * size]
+    inwards = np.where(null <= 0.0, 1.0, np.where(null >= 1.0, -1.0, 0.0))
+    if inwards.any():
+        places += [null + inwards * size * factor for factor in (SIZES if strong else SIZES[:1])]
+    return np.column_stack([np.concatenate([point.unit, np.clip(place, 0.0, 1.0)]) for place in places])
+
+
+def _rough(bench: Workbench, point: Point, score: Score, strong: bool) -> Point:
+    """A few steps towards the best fit with a hypothesis."""
     excess = max(point.chi2 - bench.problem.n_residuals, 0.0)
     return bench.refit(
-        (*point.names, *names),
-        np.concatenate([point.unit, place])[:, None],
+        (*point.names, *score.hypothesis.names),
+        _starts(bench, point, score, strong),
         point.offsets,
         max_iterations=ROUGH,
         tolerance=max(TOLERANCE, 1e-3 * excess),
     )
-
-
-def _polished(bench: Workbench, point: Point, score: Score, rough: Point) -> Point:
-    """The best fit with a hypothesis, from where a few steps led and from a typical size."""
-    names = score.hypothesis.names
-    null = bench.null(names)
-    size = np.array([typical(bench, name) for name in names])
-    sign = np.where(score.step < 0.0, -1.0, 1.0)
-    sign = np.where((sign < 0.0) & (null <= 0.0), 1.0, np.where((sign > 0.0) & (null >= 1.0), -1.0, sign))
-    end = bench.refit(rough.names, rough.unit[:, None], rough.offsets)
-    one_sided = bool(((null <= 0.0) | (null >= 1.0)).any())
-    if one_sided and point.chi2 - end.chi2 < 0.9 * score.score:  # its slope at the null may mislead
-        start = np.concatenate([point.unit, np.clip(null + sign * size, 0.0, 1.0)])
-        other = bench.refit(rough.names, start[:, None], point.offsets)
-        end = min(end, other, key=lambda one: one.chi2)
-    return end
 
 
 def _judged(bench: Workbench, point: Point, score: Score, end: Point, chance: ChanceScores, n_terms: int) -> Refit:

@@ -24,6 +24,9 @@ QUIET = 1e-9
 DAMPINGS = 10.0 ** np.array([-3.0, -1.0, 0.5, 2.0])
 """Multiples of the last damping tried side by side, as lanes of one call."""
 
+AHEAD = 0.1
+"""Share of a step at which its second derivative is taken."""
+
 
 @dataclass(frozen=True, eq=False)
 class LeastSquaresResult:
@@ -75,16 +78,19 @@ def solve(
         away = np.sum((unit - centre[:, None]) ** 2, axis=0)
         return np.asarray(ridge * away + np.einsum("cps,cs->p", offsets**2, prior))
 
+    def residuals_of(unit: FloatArray, offsets: FloatArray) -> FloatArray:
+        found = problem.residuals(unit, offsets).T
+        return found if whiten is None else whiten(found)
+
     def cost(unit: FloatArray, offsets: FloatArray) -> FloatArray:
-        if whiten is None:
-            return problem.costs(unit, offsets)
-        return _squares(whiten(problem.residuals(unit, offsets).T))
+        return problem.costs(unit, offsets) if whiten is None else _squares(residuals_of(unit, offsets))
 
     J = cost(z, d)
     value = J + penalty(z, d)
     damping = np.full(n_starts, 1e-3)
     iterations = np.zeros(n_starts, dtype=int)
     quiet = np.zeros(n_starts, dtype=int)
+    last_stop = np.full(n_starts, np.inf)
     converged = np.zeros(n_starts, dtype=bool)
     running = np.isfinite(J)
     for _ in range(max_iterations):
@@ -92,17 +98,18 @@ def solve(
         if len(rows) == 0 or stop():
             break
         linear = [_Linear(problem, *parts) for parts in zip(*_jacobians(problem, z, d, rows, whiten), strict=True)]
-        tried = np.empty((len(z), len(rows), len(DAMPINGS)))
-        moved = np.empty((len(problem.cases), len(rows), len(DAMPINGS), 6))
+        tried = np.empty((len(z), len(rows), 2, len(DAMPINGS)))
+        moved = np.empty((len(problem.cases), len(rows), 2, len(DAMPINGS), 6))
         for i, row in enumerate(rows):
             hessian = linear[i].hessian + ridge * np.eye(len(z))
             gradient = linear[i].gradient + ridge * (z[:, row] - centre)
             scale = np.maximum(np.diag(hessian), 1e-12 * np.diag(hessian).max() + 1e-300)
             for k, factor in enumerate(DAMPINGS):
                 damped = hessian + np.diag(damping[row] * factor * scale)
-                nearby = tried[:, i, k - 1] if k else None
-                tried[:, i, k] = bounded_step(damped, gradient, z[:, row], nearby)
-                moved[:, i, k] = linear[i].offsets(tried[:, i, k] - z[:, row])
+                nearby = tried[:, i, 0, k - 1] if k else None
+                tried[:, i, 0, k] = bounded_step(damped, gradient, z[:, row], nearby)
+                moved[:, i, 0, k] = linear[i].offsets(tried[:, i, 0, k] - z[:, row])
+        _accelerate(residuals_of, linear, z[:, rows], d[:, rows], damping[rows], tried, moved)
         unit, offsets = tried.reshape(len(z), -1), moved.reshape(len(problem.cases), -1, 6)
         costs = cost(unit, offsets)
         values = (costs + penalty(unit, offsets)).reshape(len(rows), -1)
@@ -112,15 +119,20 @@ def solve(
             best = int(np.argmin(values[i]))
             gain = value[row] - values[i, best]
             if gain > 0.0:
-                z[:, row], d[:, row] = tried[:, i, best], moved[:, i, best]
+                bent, k = divmod(best, len(DAMPINGS))
+                z[:, row], d[:, row] = tried[:, i, bent, k], moved[:, i, bent, k]
                 J[row], value[row] = costs[i, best], values[i, best]
-                damping[row] = min(max(damping[row] * DAMPINGS[best], 1e-12), 1e6)
+                damping[row] = min(max(damping[row] * DAMPINGS[k], 1e-12), 1e6)
             else:
                 damping[row] *= 1e3
             small = 0.0 < gain <= max(QUIET * value[row], tolerance)
             quiet[row] = quiet[row] + 1 if small else 0
             if quiet[row] >= 2 or damping[row] > 1e8 or value[row] < 1e-24:
-                converged[row], running[row] = True, False
+                if value[row] < last_stop[row] - max(QUIET * value[row], tolerance):
+                    # It may have been slow only because its damping was high: once more with a low one.
+                    last_stop[row], damping[row], quiet[row] = value[row], 1e-3, 0
+                else:
+                    converged[row], running[row] = True, False
     return [
         LeastSquaresResult(z[:, k].copy(), d[:, k].copy(), float(J[k]), int(iterations[k]), bool(converged[k]))
         for k in range(n_starts)
@@ -183,6 +195,37 @@ def flat_where_lost(derivatives: FloatArray) -> FloatArray:
     return np.where(np.isfinite(derivatives), derivatives, 0.0)
 
 
+def _accelerate(
+    residuals_of: Callable[[FloatArray, FloatArray], FloatArray],
+    linear: list[_Linear],
+    z: FloatArray,
+    d: FloatArray,
+    damping: FloatArray,
+    tried: FloatArray,
+    moved: FloatArray,
+) -> None:
+    """Bend each straight step tried[:, :, 0], moved[:, :, 0] along the valley it starts in, into [:, :, 1].
+
+    Coefficients that nearly trade against each other make valleys long, narrow and curved.  The second derivative of
+    the residuals along a step, from one more run at a tenth of it, gives the bend (geodesic acceleration: Transtrum &
+    Sethna 2012, arXiv:1201.5885).  A bend that is no smaller than the step is not to be trusted and left out.
+    """
+    step, shift = tried[:, :, 0] - z[:, :, None], moved[:, :, 0] - d[:, :, None]
+    near = (z[:, :, None] + AHEAD * step).reshape(len(z), -1)
+    runs = residuals_of(near, (d[:, :, None] + AHEAD * shift).reshape(len(d), -1, 6))
+    runs = runs.reshape(len(runs), *step.shape[1:])
+    for i, at in enumerate(linear):
+        for k, factor in enumerate(DAMPINGS):
+            tried[:, i, 1, k], moved[:, i, 1, k] = tried[:, i, 0, k], moved[:, i, 0, k]
+            if not np.isfinite(runs[:, i, k]).all():
+                continue
+            curved = (2.0 / AHEAD) * ((runs[:, i, k] - at.residuals) / AHEAD - at.slope(step[:, i, k], shift[:, i, k]))
+            bend, bend_shift = at.bend(curved, damping[i] * factor, step[:, i, k] != 0.0)
+            if np.linalg.norm(bend * at.scale) <= np.linalg.norm(2.0 * step[:, i, k] * at.scale):
+                tried[:, i, 1, k] = np.clip(tried[:, i, 0, k] + 0.5 * bend, 0.0, 1.0)
+                moved[:, i, 1, k] = at.limited(moved[:, i, 0, k] + 0.5 * bend_shift)
+
+
 class _Linear:
     """The quadratic model of what is minimised around one point, with the offsets of initial states eliminated.
 
@@ -192,8 +235,11 @@ class _Linear:
     def __init__(
         self, problem: FitProblem, d: FloatArray, residuals: FloatArray, jacobian: FloatArray, by_offset: FloatArray
     ):
+        self.residuals = residuals
+        self._jacobian, self._by_offset, self._rows = jacobian, by_offset, problem.rows_of_cases
         self.hessian = jacobian.T @ jacobian
         self.gradient = jacobian.T @ residuals
+        self._own: list[FloatArray] = []
         self._d = d
         self._limit = None if problem.sigma is None else LARGEST * problem.sigma
         self._from_step: list[tuple[FloatArray, FloatArray]] = []
@@ -209,13 +255,50 @@ class _Linear:
             self.hessian -= cross.T @ solved[:, 1:]
             self.gradient -= cross.T @ solved[:, 0]
             self._from_step.append((solved[:, 0], solved[:, 1:]))
+            self._own.append(own)
 
     def offsets(self, step: FloatArray) -> FloatArray:
         """(n_cases, 6) best offsets after a step (n_targets,) of the targets, kept within their limit."""
         if self._limit is None:
             return self._d
         moved = np.array([d - own - cross @ step for d, (own, cross) in zip(self._d, self._from_step, strict=True)])
-        return np.asarray(np.clip(moved, -self._limit, self._limit))
+        return self.limited(moved)
+
+    def limited(self, offsets: FloatArray) -> FloatArray:
+        """Offsets kept within their limit."""
+        return offsets if self._limit is None else np.clip(offsets, -self._limit, self._limit)
+
+    @property
+    def scale(self) -> FloatArray:
+        """(n_targets,) what steps are measured in: the residual each target changes."""
+        return np.sqrt(np.maximum(np.diag(self.hessian), 0.0))
+
+    def slope(self, step: FloatArray, shift: FloatArray) -> FloatArray:
+        """First-order change of the residuals by a step (n_targets,) and a shift of the offsets (n_cases, 6)."""
+        change = self._jacobian @ step
+        if self._limit is not None:
+            for rows, own in zip(self._rows, shift, strict=True):
+                change[rows] += self._by_offset[rows] @ own
+        return change
+
+    def bend(
+        self, curved: FloatArray, damping: float, free: npt.NDArray[np.bool_]
+    ) -> tuple[FloatArray, FloatArray]:
+        """Step and shift that undo a second derivative of the residuals, by least squares over the free targets."""
+        gradient = self._jacobian.T @ curved
+        pulls = []
+        for rows, own, (_, cross) in zip(self._rows, self._own, self._from_step, strict=False):
+            pull = self._by_offset[rows].T @ curved[rows]
+            gradient -= cross.T @ pull
+            pulls.append(np.linalg.solve(own, pull))
+        hessian = self.hessian[np.ix_(free, free)]
+        damped = hessian + damping * np.diag(np.maximum(np.diag(hessian), 1e-300))
+        step = np.zeros(len(gradient))
+        step[free] = -np.linalg.lstsq(damped, gradient[free], rcond=1e-14)[0]
+        if self._limit is None:
+            return step, np.zeros_like(self._d)
+        shift = [-pull - cross @ step for pull, (_, cross) in zip(pulls, self._from_step, strict=True)]
+        return step, np.array(shift)
 
 
 def bounded_step(
