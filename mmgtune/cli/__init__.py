@@ -14,7 +14,7 @@ from typing import Any
 import typer
 
 from ..errors import Interrupted, MmgtuneError, OutputError, Problem, cannot_write_reason
-from . import fit, profiles, report, simulate, sweep, trials
+from . import diagnose, fit, profiles, report, simulate, sweep, trials
 from .exitcodes import ExitCode
 
 EPILOG = "Exit codes: 0 good; 1 the answer is no; 2 could not run; 3 bug; 130 interrupted, best so far saved."
@@ -48,6 +48,7 @@ def _options(
 
 app.command("fit", epilog=EPILOG)(fit.command)
 app.command("sweep", epilog=EPILOG)(sweep.command)
+app.command("diagnose", epilog=EPILOG)(diagnose.command)
 app.command("simulate", epilog=EPILOG)(simulate.command)
 app.command("report", epilog=EPILOG)(report.command)
 app.add_typer(trials.app, name="trials", epilog=EPILOG)

@@ -56,7 +56,7 @@ class Linear:
 
     def columns(self, names: Sequence[str]) -> FloatArray:
         """Signatures of some parameters, (n_rows, n_parameters)."""
-        return self.signature[:, [self.names.index(name) for name in names]]
+        return np.asarray(self.signature[:, [self.names.index(name) for name in names]])
 
     def chance(self, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
         """What noise has along orthonormal directions Q (n_rows, k): by block (n_blocks, k), by trial and draw of the
@@ -69,8 +69,8 @@ class Linear:
     def inflation(self, Q: FloatArray) -> float:
         """Variance of noise along directions Q over that of independent noise of variance 1; at least 1."""
         by_block, by_trial = self.chance(Q)
-        memory = max(1.0, float(np.sum(by_block**2)) / Q.shape[1])
-        return memory + float(np.sum(np.mean(by_trial**2, axis=1))) / Q.shape[1]
+        memory = max(1.0, float(np.sum(by_block**2)) / int(Q.shape[1]))
+        return memory + float(np.sum(np.mean(by_trial**2, axis=1))) / int(Q.shape[1])
 
 
 def typical(bench: Workbench, name: str) -> float:
@@ -106,7 +106,7 @@ def linearise(bench: Workbench, point: Point, absent: Sequence[str] = (), apart:
     columns[np.arange(len(names)), 1 + np.arange(len(names))] += plus
     columns[np.arange(len(names)), 1 + len(names) + np.arange(len(names))] -= minus
     runs = problem.residuals(columns).T
-    lost = ~np.isfinite(runs).all(axis=0)
+    lost = np.asarray(~np.isfinite(runs).all(axis=0))
     runs[:, lost] = runs[:, :1]  # a run that diverged says nothing: its side of the difference is left out
     plus[lost[1 : 1 + len(names)]] = 0.0
     minus[lost[1 + len(names) :]] = 0.0
@@ -145,7 +145,7 @@ def _offset_derivatives(bench: Workbench, point: Point) -> FloatArray:
     """Derivatives of the residuals by the initial offsets of their own case, (n_residuals, 6)."""
     problem = bench.problem_of(point.names, point.integrator)
     _, _, by_offset = problem.jacobians(point.unit[:, None], point.offsets[:, None])
-    return by_offset[0]
+    return np.asarray(by_offset[0])
 
 
 def without_offsets(problem: FitProblem, values: FloatArray, S: FloatArray, offsets: FloatArray) -> FloatArray:
@@ -173,7 +173,7 @@ def basis(columns: FloatArray) -> FloatArray:
     shown = shown / np.linalg.norm(shown, axis=0)
     square, vectors = np.linalg.eigh(shown.T @ shown)
     kept = square > SAME**2 * square[-1]
-    return shown @ (vectors[:, kept] / np.sqrt(square[kept]))
+    return np.asarray(shown @ (vectors[:, kept] / np.sqrt(square[kept])))
 
 
 def _rows(problem: FitProblem) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:

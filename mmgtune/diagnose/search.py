@@ -16,7 +16,7 @@ from scipy.stats import chi2
 from ..backends import Integrator
 from ..fitting.least_squares import solve
 from . import noise as noises
-from .hypotheses import HULL_TERM, INTEGRATION_STEP, Hypothesis
+from .hypotheses import HULL_TERM, Hypothesis
 from .linear import Linear, linearise, typical
 from .screening import ChanceScores, Score, scores
 from .workbench import TOLERANCE, Point, Workbench
@@ -177,9 +177,7 @@ def search(
     if found.steps:
         first = found.steps[0].base
         found.base = bench.refit(first.names, first.unit[:, None], first.offsets)
-        found.final = bench.refit(
-            found.final.names, found.final.unit[:, None], found.final.offsets, tolerance=PRECISE
-        )
+        found.final = bench.refit(found.final.names, found.final.unit[:, None], found.final.offsets, tolerance=PRECISE)
     if len(found.causes) > 1:
         _drop_superfluous(bench, found)
     say("comparing the causes with their rivals")
@@ -243,9 +241,7 @@ def _differs(a: noises.NoiseModel, b: noises.NoiseModel) -> bool:
     return False
 
 
-def _refit_best(
-    bench: Workbench, point: Point, ranked: Sequence[Score], linear: Linear, *, quick: bool
-) -> list[Refit]:
+def _refit_best(bench: Workbench, point: Point, ranked: Sequence[Score], linear: Linear, *, quick: bool) -> list[Refit]:
     """The most promising hypotheses refitted, best first."""
     order = sorted(ranked, key=lambda score: -score.score)
     named = [s for s in order if s.hypothesis.tag != HULL_TERM]
@@ -366,7 +362,7 @@ def _rivals_of(bench: Workbench, found: Found, k: int) -> list[Refit]:
         return _rivals(step.refits)
     without = _without(bench, found.final, cause)
     best = replace(step.refits[0], point=found.final, gain=without.chi2 - found.final.chi2)
-    rivals = {}
+    rivals: dict[str, Refit] = {}
     for rival in near:
         if set(rival.hypothesis.names) & set(without.names):
             continue

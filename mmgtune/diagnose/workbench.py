@@ -73,6 +73,11 @@ class Workbench:
     refits: int = field(default=0)
     _models: dict[frozenset[str], Model] = field(default_factory=dict)
 
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Motion channels that count."""
+        return tuple(self.noise.channels)
+
     def model_of(self, names: Sequence[str]) -> Model:
         """The model that holds these parameters, what the profile has, and the effects that cost nothing."""
         left_out = frozenset(
@@ -157,7 +162,7 @@ def noise_levels(trials: Sequence[Trial]) -> FloatArray:
     """(6,) deviation of white noise by channel: the median over trials of what second differences show."""
     found = np.median([[white_noise(values) for values in trial.motion.T] for trial in trials], axis=0)
     floor = 1e-6 * np.nanmax([np.nanmax(np.abs(trial.motion), axis=0) for trial in trials], axis=0)
-    return np.maximum(found, np.maximum(floor, 1e-12))
+    return np.asarray(np.maximum(found, np.maximum(floor, 1e-12)))
 
 
 def make_workbench(
@@ -186,4 +191,5 @@ def make_workbench(
         integrator=Integrator(options.integrator, options.substeps),
         sigma=np.repeat(LOOSE * sigma[None], len(trials), axis=0),
     )
-    return Workbench(model, list(trials), options, sigma, targets, box, problem, white(cases), tuple(effect.tag for effect in own.effects))
+    own_effects = tuple(effect.tag for effect in own.effects)
+    return Workbench(model, list(trials), options, sigma, targets, box, problem, white(cases), own_effects)

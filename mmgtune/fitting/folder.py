@@ -21,6 +21,7 @@ RESULT = "fit.json"
 OWN_FILES = (
     RESULT,
     "sweep.json",
+    "diagnosis.json",
     "profile.toml",
     "history.parquet",
     "motions.parquet",
@@ -64,8 +65,8 @@ def prepare(folder: Path, *, force: bool = False, resume: bool = False) -> Path:
 def write_run(result: FitResult, folder: Path) -> dict[str, Any]:
     """Write a run folder; the result last, so that its presence means the rest is there.  Returns its document."""
     write_text(folder / "profile.toml", result.tuned_text())
-    _write_table(folder / "history.parquet", _history(result.history))
-    _write_table(folder / "motions.parquet", _motions(result.compared))
+    write_table(folder / "history.parquet", _history(result.history))
+    write_table(folder / "motions.parquet", motions_table(result.compared))
     document = {**result.to_dict(), "out": str(folder)}
     write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
     return document
@@ -80,7 +81,8 @@ def _history(history: Iterable[Generation]) -> dict[str, Any]:
     return columns
 
 
-def _motions(compared: Iterable[TrialComparison]) -> dict[str, Any]:
+def motions_table(compared: Iterable[TrialComparison]) -> dict[str, Any]:
+    """Columns of motions.parquet: every trial measured, before and after."""
     parts: dict[str, list[Any]] = {name: [] for name in ("trial", "which", "t", *STATES, "n", "delta")}
     for one in compared:
         trial = one.trial
@@ -95,7 +97,8 @@ def _motions(compared: Iterable[TrialComparison]) -> dict[str, Any]:
     return {name: np.concatenate(values) for name, values in parts.items()}
 
 
-def _write_table(path: Path, columns: dict[str, Any]) -> None:
+def write_table(path: Path, columns: dict[str, Any]) -> None:
+    """Columns to a Parquet file, whole or not at all."""
     import pyarrow as pa
     import pyarrow.parquet as pq
 

@@ -281,9 +281,7 @@ class _Linear:
                 change[rows] += self._by_offset[rows] @ own
         return change
 
-    def bend(
-        self, curved: FloatArray, damping: float, free: npt.NDArray[np.bool_]
-    ) -> tuple[FloatArray, FloatArray]:
+    def bend(self, curved: FloatArray, damping: float, free: npt.NDArray[np.bool_]) -> tuple[FloatArray, FloatArray]:
         """Step and shift that undo a second derivative of the residuals, by least squares over the free targets."""
         gradient = self._jacobian.T @ curved
         pulls = []

@@ -1,4 +1,4 @@
-"""Reports of a fit or a sweep: one HTML file, the same as Markdown, and the figures as files."""
+"""Reports of a fit, a sweep or a diagnosis: one HTML file, the same as Markdown, and the figures as files."""
 
 from __future__ import annotations
 
@@ -15,12 +15,15 @@ def render(folder: Path) -> list[Path]:
 
     Raises OptionError for a folder that is no run folder or cannot be read, OutputError where it cannot be written.
     """
-    from . import fit_page, html, load, markdown, misfit, sweep_page
+    from . import diagnosis_page, fit_page, html, load, markdown, misfit, sweep_page
     from .output import write
 
     record = load.load(folder)
     if isinstance(record, load.RunRecord):
         page = fit_page.build(record)
+        return write(folder, page, html.render(page), markdown.render(page))
+    if isinstance(record, load.DiagnosisRecord):
+        page = diagnosis_page.build(record)
         return write(folder, page, html.render(page), markdown.render(page))
     page = sweep_page.build(record)
     written = write(folder, page, html.render(page), markdown.render(page))

@@ -22,6 +22,7 @@ _COLUMNS = ("t", "x", "y", "psi", "u", "v_m", "r", "n", "delta")
 _NEEDED = {
     "fit": ("profile", "trials", "options", "J_tune", "coefficients", "trial_results"),
     "sweep": ("profile", "trials", "runs", "recommended"),
+    "diagnosis": ("profile", "trials", "verdict", "sentence", "causes", "candidates", "gain", "trial_results"),
 }
 
 
@@ -63,7 +64,21 @@ class SweepRecord:
         return sorted(self.data["runs"], key=lambda run: float(run["a_r"]))
 
 
-def load(folder: Path) -> RunRecord | SweepRecord:
+@dataclass(frozen=True)
+class DiagnosisRecord:
+    """A diagnosis as its folder holds it: diagnosis.json, and the held-out motions as in ``RunRecord``."""
+
+    folder: Path
+    data: Mapping[str, Any]
+    motions: Mapping[str, Mapping[str, Motion]]
+
+    @property
+    def results(self) -> list[dict[str, Any]]:
+        """The held-out trials' results."""
+        return list(self.data["trial_results"])
+
+
+def load(folder: Path) -> RunRecord | SweepRecord | DiagnosisRecord:
     """The record in a run folder, told apart by the file it holds.
 
     Raises OptionError for a folder that is missing, unreadable, not a run folder, or from a newer program.
@@ -72,15 +87,17 @@ def load(folder: Path) -> RunRecord | SweepRecord:
         raise _problem(
             "there is no such run folder", folder, "", "give the folder that --out of a fit or a sweep named"
         )
-    for kind in ("sweep", "fit"):
+    for kind in ("diagnosis", "sweep", "fit"):
         path = folder / f"{kind}.json"
         if path.is_file():
             data = _read(path, kind)
+            if kind == "diagnosis":
+                return DiagnosisRecord(folder, data, _motions(folder))
             return SweepRecord(folder, data) if kind == "sweep" else _run(folder, data)
     raise _problem(
         "this is not a run folder",
         folder,
-        "it holds neither fit.json nor sweep.json",
+        "it holds neither fit.json nor sweep.json nor diagnosis.json",
         "give the folder that --out of a fit or a sweep named; an interrupted run may have written neither",
     )
 
@@ -121,6 +138,13 @@ def _run(folder: Path, data: Mapping[str, Any]) -> RunRecord:
     if (folder / "history.parquet").is_file():
         frame = _parquet(folder / "history.parquet")
         history = {str(name): frame[name].to_numpy(dtype=np.float64) for name in frame.columns} if len(frame) else {}
+    return RunRecord(folder, data, history, _motions(folder))
+
+
+def _motions(folder: Path) -> dict[str, dict[str, Motion]]:
+    """The motions of a run folder by trial and which."""
+    import numpy as np
+
     path = folder / "motions.parquet"
     if not path.is_file():
         raise _problem(
@@ -134,7 +158,7 @@ def _run(folder: Path, data: Mapping[str, Any]) -> RunRecord:
     for (trial, which), rows in frame.groupby(["trial", "which"], sort=False, observed=True):
         columns = {name: rows[name].to_numpy(dtype=np.float64) for name in _COLUMNS}
         motions.setdefault(str(trial), {})[str(which)] = columns
-    return RunRecord(folder, data, history, motions)
+    return motions
 
 
 def _parquet(path: Path) -> Any:

@@ -26,4 +26,14 @@ def write(folder: Path, page: Page, html: str, markdown: str) -> list[Path]:
     return written
 
 
-_NAMES = {"tracks", "distances", "histories", "coefficients", "convergence", "correlation", "misfit", "positions"}
+_NAMES = {
+    "tracks",
+    "distances",
+    "histories",
+    "coefficients",
+    "convergence",
+    "correlation",
+    "misfit",
+    "positions",
+    "candidates",
+}

@@ -1,0 +1,22 @@
+"""The run folder of a diagnosis: each file whole or not there."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from ..files import write_text
+from ..fitting.folder import motions_table, write_table
+from .result import Diagnosis
+
+RESULT = "diagnosis.json"
+
+
+def write_diagnosis(result: Diagnosis, folder: Path) -> dict[str, Any]:
+    """Write the extended profile, the held-out motions and, last, the result.  Returns its document."""
+    write_text(folder / "profile.toml", result.extended_text())
+    write_table(folder / "motions.parquet", motions_table(result.gain.compared))
+    document = {**result.to_dict(), "out": str(folder)}
+    write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+    return document

@@ -1,0 +1,198 @@
+"""What the causes gain on trials they were not found on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..backends import STATES
+from ..fitting.comparison import TrialComparison, compare, finite
+from ..fitting.least_squares import fit_offsets
+from ..fitting.problem import FitProblem
+from ..objective import Objective, cases_of, make_objective
+from ..simulation import trial_measures
+from ..trial import Trial
+from .search import Found
+from .workbench import Point, Workbench, make_workbench
+
+FloatArray = npt.NDArray[np.float64]
+
+RESAMPLES = 2000
+"""Resamples of the trials an interval is made from."""
+
+RELEVANT = 0.05
+"""Error beyond noise that is worth speaking of, as a share of the noise."""
+
+MOST = 0.9
+"""Share of the error above noise on held-out trials that the right causes remove at least."""
+
+INDICES = ("tactical_diameter_m", "advance_m", "overshoot_1_deg", "overshoot_2_deg")
+"""Indices whose errors are reported."""
+
+
+@dataclass(frozen=True, eq=False)
+class Gain:
+    """Before and after the causes, on held-out trials with their initial states estimated.
+
+    held_out    "test trials", or "each trial in turn" where there are none
+    compared    every held-out trial, "before" and "after"
+    excess      (n_trials, 2) chi-squared beyond the noise of the sensors, before and after
+    floor       chi-squared that noise brings to all of them
+    chance      deviation of that
+    """
+
+    held_out: str
+    compared: tuple[TrialComparison, ...]
+    excess: FloatArray
+    floor: float
+    chance: float
+
+    @property
+    def remains(self) -> bool:
+        """Whether the causes leave on held-out trials more than noise, and not much less than there was."""
+        after = float(self.excess[:, 1].sum())
+        left = after > RELEVANT * self.floor + 3.0 * self.chance
+        return left and self.share_removed[0] < MOST
+
+    @property
+    def J(self) -> tuple[float | None, float | None]:
+        """J before and after over all held-out trials (Suyama et al. 2023, eq. 40)."""
+        before = sum(one.J["before"] for one in self.compared)
+        after = sum(one.J["after"] for one in self.compared)
+        return finite(before), finite(after)
+
+    @property
+    def share_removed(self) -> tuple[float, float, float]:
+        """Share of the error above noise that the causes remove, with a 95 % interval over trials."""
+        rng = np.random.default_rng(0)
+        picks = rng.integers(len(self.excess), size=(RESAMPLES, len(self.excess)))
+        low, high = np.quantile([_share(self.excess[pick]) for pick in picks], [0.025, 0.975])
+        return _share(self.excess), float(low), float(high)
+
+    def measures(self, which: str) -> dict[str, float]:
+        """Means over trials of the seven distance measures, "before" or "after"."""
+        found = [trial_measures(one.trial, one.motions[which]) for one in self.compared]
+        names = dict.fromkeys(name for one in found for name in one)
+        return {name: float(np.mean([one[name] for one in found if name in one])) for name in names}
+
+    def index_errors(self, which: str) -> dict[str, float]:
+        """Mean absolute errors of manoeuvring indices, "before" or "after"."""
+        errors: dict[str, list[float]] = {}
+        for one in self.compared:
+            for name in INDICES:
+                measured, simulated = one.indices["measured"].get(name), one.indices[which].get(name)
+                if measured is not None and simulated is not None:
+                    errors.setdefault(name, []).append(abs(simulated - measured))
+        return {name: float(np.mean(values)) for name, values in errors.items()}
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        share, low, high = self.share_removed
+        return {
+            "held_out": self.held_out,
+            "trials": [one.trial.id for one in self.compared],
+            "J_test_before": self.J[0],
+            "J_test_after": self.J[1],
+            "share_above_noise_removed": share,
+            "share_ci95": [low, high],
+            "measures_before": self.measures("before"),
+            "measures_after": self.measures("after"),
+            "index_errors_before": self.index_errors("before"),
+            "index_errors_after": self.index_errors("after"),
+            "by_trial": [
+                {"trial": one.trial.id, "J_before": finite(one.J["before"]), "J_after": finite(one.J["after"])}
+                for one in self.compared
+            ],
+        }
+
+
+def _share(excess: FloatArray) -> float:
+    before, after = np.maximum(excess.sum(axis=0), 0.0)
+    return float(1.0 - after / before) if before > 0.0 else 0.0
+
+
+def held_out(bench: Workbench, found: Found, test: Sequence[Trial]) -> Gain:
+    """The gain on test trials; where there are none, on each trial with everything refitted without it."""
+    if test:
+        compared, excess = _on(bench, found.base, found.final, test)
+        return Gain("test trials", tuple(compared), excess, *_chance(bench, test))
+    every: list[TrialComparison] = []
+    rows = []
+    for left_out in bench.trials if len(bench.trials) > 1 else []:
+        others = [trial for trial in bench.trials if trial is not left_out]
+        names = [name for name in bench.box.names if name not in bench.targets]
+        rest = make_workbench(bench.model.profile, others, bench.options, names)
+        rest.targets = bench.targets
+        rest.know(replace(bench.noise, cases=rest.problem.cases))
+        keep = [i for i, trial in enumerate(bench.trials) if trial is not left_out]
+        before, after = (
+            rest.refit(p.names, p.unit[:, None], p.offsets[keep], integrator=p.integrator)
+            for p in (found.base, found.final)
+        )
+        compared, excess = _on(bench, before, after, [left_out])
+        every += compared
+        rows.append(excess)
+    if not rows:
+        every, whole = _on(bench, found.base, found.final, bench.trials)
+        return Gain("the trials themselves: there is only one", tuple(every), whole, *_chance(bench, bench.trials))
+    return Gain("each trial in turn", tuple(every), np.concatenate(rows), *_chance(bench, bench.trials))
+
+
+def _chance(bench: Workbench, trials: Sequence[Trial]) -> tuple[float, float]:
+    """Expectation and deviation of chi-squared by noise alone; noise with a memory has few independent samples."""
+    n = sum(trial.n_samples for trial in trials)
+    expected = n * sum(noise.variance for noise in bench.noise.channels.values())
+    variance = 0.0
+    for noise in bench.noise.channels.values():
+        longer = (1.0 + noise.phi**2) / (1.0 - noise.phi**2)
+        variance += 2.0 * n * (noise.white**2 + 2.0 * noise.white * noise.fading + longer * noise.fading**2)
+    return float(expected), float(np.sqrt(variance))
+
+
+def J_of(bench: Workbench, point: Point, test: Sequence[Trial]) -> float | None:
+    """J of a point over test trials, their initial states estimated; None without such trials."""
+    if not test:
+        return None
+    problem = _problem(bench, point, test, make_objective(bench.model.L_pp))
+    offsets = fit_offsets(problem, point.unit)
+    return finite(float(problem.costs(point.unit[:, None], offsets[:, None])[0]))
+
+
+def _problem(bench: Workbench, point: Point, trials: Sequence[Trial], objective: Objective) -> FitProblem:
+    own = bench.problem_of(point.names, point.integrator)
+    sigma = np.repeat(bench.sigma[None], len(trials), axis=0)
+    return FitProblem(own.model, cases_of(list(trials), objective), own.box, own.backend, own.integrator, sigma)
+
+
+def _on(
+    bench: Workbench, before: Point, after: Point, trials: Sequence[Trial]
+) -> tuple[list[TrialComparison], FloatArray]:
+    """Comparisons and chi-squared above noise (n_trials, 2) on trials."""
+    names = (*before.names, *(name for name in after.names if name not in before.names))
+    wide = Point(names, bench.null(names), after.offsets, after.chi2, after.integrator)
+    units = []
+    for point in (before, after):
+        unit = wide.unit.copy()
+        unit[[names.index(name) for name in point.names]] = point.unit
+        units.append(unit)
+    roles = dict.fromkeys((trial.id for trial in trials), "test")
+    paper = _problem(bench, wide, trials, make_objective(bench.model.L_pp))
+    compared = compare(paper, trials, roles, *units)
+    objective = Objective(dict(zip(STATES, bench.sigma, strict=True)), dict.fromkeys(bench.channels, 1.0))
+    scaled = _problem(bench, wide, trials, objective)
+    floor = np.array([_floor(bench, scaled, case) for case in range(len(trials))])
+    excess = np.empty((len(trials), 2))
+    for k, unit in enumerate(units):
+        offsets = fit_offsets(scaled, unit)
+        excess[:, k] = scaled.costs_by_case(unit[:, None], offsets[:, None])[:, 0] - floor
+    return compared, np.where(np.isfinite(excess), excess, 1e12)
+
+
+def _floor(bench: Workbench, problem: FitProblem, case: int) -> float:
+    """Chi-squared that noise alone brings to a case."""
+    counts = (problem.cases.weight[case] > 0.0).sum(axis=0)
+    return float(sum(counts[STATES.index(name)] * noise.variance for name, noise in bench.noise.channels.items()))

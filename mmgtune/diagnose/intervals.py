@@ -1,0 +1,77 @@
+"""How well the sizes of the causes are known."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from .linear import linearise, typical
+from .workbench import Point, Workbench
+
+FloatArray = npt.NDArray[np.float64]
+
+NORMAL = 1.96
+"""Deviations either side of a 95 % interval."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A parameter of a cause: value and 95 % interval in its unit; an end is None where it is infinite."""
+
+    name: str
+    value: float
+    low: float | None
+    high: float | None
+    stderr: float | None
+
+
+def estimates(bench: Workbench, point: Point) -> dict[str, Estimate]:
+    """Values and 95 % intervals of the parameters of effects that are free in a point, by name.
+
+    From the problem made linear, with targets and initial states re-tuned alongside.  Wider than independent noise
+    would have it by what the residuals' own blocks and the inputs' noise show; the form of the model is taken as right.
+    """
+    names = tuple(name for name in point.names if name.startswith("effects."))
+    if not names:
+        return {}
+    linear = linearise(bench, point, apart=names)
+    Q, R = np.linalg.qr(linear.columns(names))
+    by_block, by_trial = linear.chance(Q)
+    memory = max(1.0, float(np.sum(by_block**2)) / len(names))
+    noise = memory * np.eye(len(names)) + np.einsum("cdk,cdl->kl", by_trial, by_trial) / by_trial.shape[1]
+    back = np.linalg.pinv(R, rcond=1e-10)
+    size = np.array([typical(bench, name) for name in names])
+    covariance = (back @ noise @ back.T) * np.outer(size, size)
+    return _in_units(bench, point, names, covariance)
+
+
+def _in_units(bench: Workbench, point: Point, names: Sequence[str], covariance: FloatArray) -> dict[str, Estimate]:
+    """Estimates in profile units from a covariance in the unit cube."""
+    box = bench.sub_box(names)
+    unit = np.array([point.unit[point.names.index(name)] for name in names])
+    deviation = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    values = box.from_unit(unit)
+    found: dict[str, Estimate] = {}
+    for i, j in box.polar:
+        north, east = box.low[[i, j]] + unit[[i, j]] * box.width[[i, j]]
+        spread = covariance[np.ix_([i, j], [i, j])] * np.outer(box.width[[i, j]], box.width[[i, j]])
+        length = float(np.hypot(north, east))
+        along = np.array([north, east]) / max(length, 1e-300)
+        across = np.array([-along[1], along[0]])
+        sd = float(np.sqrt(along @ spread @ along))
+        turn = float(np.sqrt(across @ spread @ across)) / max(length, 1e-300)
+        towards = float(values[j]) % (2.0 * np.pi)
+        found[names[i]] = Estimate(names[i], length, max(0.0, length - NORMAL * sd), length + NORMAL * sd, sd)
+        found[names[j]] = Estimate(names[j], towards, towards - NORMAL * turn, towards + NORMAL * turn, turn)
+    for i, name in enumerate(names):
+        if name in found:
+            continue
+        ends = np.repeat(unit[:, None], 2, axis=1)
+        ends[i] = np.clip([unit[i] - NORMAL * deviation[i], unit[i] + NORMAL * deviation[i]], 0.0, 1.0)
+        low, high = sorted(float(end) for end in box.from_unit(ends)[i])
+        stderr = 0.5 * (high - low) / NORMAL if np.isfinite(high) else None
+        found[name] = Estimate(name, float(values[i]), low, high if np.isfinite(high) else None, stderr)
+    return found

@@ -1,0 +1,169 @@
+"""What no cause explains: is there more than noise left, and does it look like something that happened?
+
+Slow noise of a sensor and an error of the model look alike in one channel.  They differ in two ways: what really
+moved the ship shows in heading and yaw rate, or in position and velocity, alike; and what depends on the state of the
+ship can be predicted from it on parts of the record it was not learnt from.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from ..backends import STATES
+from ..trial import Trial
+from .evidence import share_explained
+from .workbench import Point, Workbench
+
+FloatArray = npt.NDArray[np.float64]
+
+NOTICED = 0.05
+"""Variance beyond the white noise of the sensors, as a share of it, that is worth speaking of."""
+
+ALIKE = 0.5
+"""Share explained by the ship's state from which what is left is an error of the model."""
+
+CERTAIN = 4.0
+"""Standard errors of that correlation from which chance is out of the question."""
+
+WINDOWS = (20.0, 60.0)
+"""Times [s] over which channels are compared; slow errors stand out over long ones."""
+
+
+PAIRS = ("heading and yaw rate", "position and velocity")
+"""Channels that the same motion shows in."""
+
+BLOCK = 20.0
+"""Time [s] residuals are averaged over before asking what explains them."""
+
+
+@dataclass(frozen=True)
+class Leftover:
+    """What is left at a point.
+
+    excess     variance of all residuals beyond the white noise of the sensors, as a share of it
+    channels   the same by channel
+    alike      correlation of what heading and yaw rate say, and of what position and velocity say, over the window
+               where it is clearest
+    certainty  the same in standard errors
+    explained  by channel, the largest share one quantity explains, and which
+    """
+
+    excess: float
+    channels: dict[str, float]
+    alike: dict[str, float]
+    certainty: dict[str, float]
+    explained: dict[str, tuple[str, float]]
+
+    @property
+    def structured(self) -> bool:
+        """Whether more is left than noise of the sensors could be."""
+        if self.excess < NOTICED:
+            return False
+        strong = [share for name, (_, share) in self.explained.items() if self.channels[name] > NOTICED]
+        return max(strong, default=0.0) > ALIKE or max(self.certainty.values(), default=0.0) > CERTAIN
+
+
+def leftover(bench: Workbench, point: Point) -> Leftover:
+    """What is left at a point, on the trials of the workbench."""
+    residuals = _residuals(bench, point)
+    level = _white(residuals)
+    excess = {
+        name: float(np.nanmean(np.concatenate([r[1:, k] for r in residuals]) ** 2) / level[k] ** 2 - 1.0)
+        for k, name in enumerate(STATES)
+        if np.isfinite(level[k]) and level[k] > 0.0
+    }
+    alike = {window: _alike(bench.trials, residuals, window) for window in WINDOWS}
+    clearest = {pair: max((alike[window][pair] for window in WINDOWS), key=lambda one: one[1]) for pair in PAIRS}
+    return Leftover(
+        excess=float(np.mean(list(excess.values()))),
+        channels=excess,
+        alike={pair: correlation for pair, (correlation, _) in clearest.items()},
+        certainty={pair: certainty for pair, (_, certainty) in clearest.items()},
+        explained=_explained(bench, residuals, [name for name, value in excess.items() if value > NOTICED]),
+    )
+
+
+def _residuals(bench: Workbench, point: Point) -> list[FloatArray]:
+    """Simulated less measured by trial, (n_samples, 6), in SI units; NaN in gaps."""
+    problem = bench.problem_of(point.names, point.integrator)
+    result = problem.backend.run(
+        problem.model,
+        problem.theta(point.unit[:, None]),
+        problem.cases,
+        initial=problem.initial(1, point.offsets[:, None]),
+        integrator=problem.integrator,
+        keep_states=True,
+    )
+    assert result.states is not None  # asked for
+    return [result.states[i, 0, : trial.n_samples] - trial.motion for i, trial in enumerate(bench.trials)]
+
+
+def _white(residuals: Sequence[FloatArray]) -> FloatArray:
+    """(6,) white noise of each channel, from second differences of the residuals."""
+    second = np.concatenate([np.diff(r, n=2, axis=0) for r in residuals])
+    return np.asarray(np.sqrt(np.nanmean(second**2, axis=0) / 6.0))
+
+
+def _alike(
+    trials: Sequence[Trial], residuals: Sequence[FloatArray], window: float
+) -> dict[str, tuple[float, float]]:
+    """Correlation over windows of what a level's residual gains with what its rate's adds up to, and that in standard
+    errors (Fisher's transformation)."""
+    pairs: dict[str, list[FloatArray]] = {pair: [] for pair in PAIRS}
+    for trial, r in zip(trials, residuals, strict=True):
+        dt = np.diff(trial.t)
+        n = max(2, round(window / float(np.median(dt))))
+        cos, sin = np.cos(trial.psi), np.sin(trial.psi)
+        e_psi = r[:, 2]
+        north = r[:, 3] * cos - r[:, 4] * sin - e_psi * (trial.u * sin + trial.v_m * cos)
+        east = r[:, 3] * sin + r[:, 4] * cos + e_psi * (trial.u * cos - trial.v_m * sin)
+        for pair, level, rate in (
+            (PAIRS[0], e_psi, r[:, 5]),
+            (PAIRS[1], r[:, 0], north),
+            (PAIRS[1], r[:, 1], east),
+        ):
+            summed = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * dt)])
+            pairs[pair].append(np.column_stack([level[n::n] - level[:-n:n], summed[n::n] - summed[:-n:n]]))
+    found = {}
+    for pair, parts in pairs.items():
+        both = np.concatenate(parts)
+        both = both[np.isfinite(both).all(axis=1)]
+        moving = len(both) > 10 and bool(np.all(np.std(both, axis=0) > 0.0))
+        correlation = float(np.corrcoef(both.T)[0, 1]) if moving else 0.0
+        certainty = float(np.arctanh(min(correlation, 0.999999)) * np.sqrt(max(len(both) - 3, 1)))
+        found[pair] = (correlation, certainty)
+    return found
+
+
+def _explained(
+    bench: Workbench, residuals: Sequence[FloatArray], channels: Sequence[str]
+) -> dict[str, tuple[str, float]]:
+    """By channel, the quantity that explains most of the slow part of its residual."""
+    lengths = [max(2, round(BLOCK / float(np.median(np.diff(trial.t))))) for trial in bench.trials]
+
+    def means(values: Sequence[FloatArray]) -> FloatArray:
+        return np.concatenate(
+            [np.nanmean(v[: len(v) // n * n].reshape(-1, n), axis=1) for v, n in zip(values, lengths, strict=True)]
+        )
+
+    states = {
+        "heading": means([np.mod(trial.psi, 2.0 * np.pi) for trial in bench.trials]),
+        "speed": means([np.hypot(trial.u, trial.v_m) for trial in bench.trials]),
+        "drift": means([np.arctan2(-trial.v_m, trial.u) for trial in bench.trials]),
+        "yaw rate": means([trial.r for trial in bench.trials]),
+        "rudder angle": means([trial.delta for trial in bench.trials]),
+        "time": means([trial.t for trial in bench.trials]),
+    }
+    whole = enumerate(zip(bench.trials, lengths, strict=True))
+    blocks = np.concatenate([np.arange(trial.n_samples // n) // 3 + 1000 * i for i, (trial, n) in whole])
+    found = {}
+    for name in channels:
+        y = means([r[:, STATES.index(name)] for r in residuals])
+        shares = share_explained(y, states, blocks=blocks)
+        best = max(shares, key=lambda one: shares[one])
+        found[name] = (best, float(shares[best]))
+    return found

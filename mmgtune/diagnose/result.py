@@ -1,0 +1,260 @@
+"""What a diagnosis returns."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..effects import Effect
+from ..fitting.comparison import finite
+from ..profile import ShipProfile, extended_text, parse_profile, tuned_text
+from .gain import Gain
+from .intervals import Estimate
+from .leftover import Leftover
+from .options import DiagnoseOptions
+from .separate import Suggestion
+from .wording import parameters_in_words
+
+FloatArray = npt.NDArray[np.float64]
+
+SCHEMA = 1
+VERDICTS = ("none", "found", "not-separable", "unexplained")
+
+MOSTLY = 0.95
+"""Share of the error above noise on the trials it was found on that a cause must remove to be named alone, where
+something of a shape is left besides."""
+
+
+@dataclass(frozen=True, eq=False)
+class Cause:
+    """An effect that was found, with the sizes of its parameters; ``effect`` None for the integration step."""
+
+    tag: str
+    effect: Effect | None
+    estimates: Mapping[str, Estimate]
+    p_value: float
+    gain_test: float | None
+
+    @property
+    def sentence(self) -> str:
+        """The cause in words."""
+        if self.effect is None:
+            return "The integration step of the simulation is too coarse"
+        return self.effect.sentence(parameters_in_words(self.effect, self.estimates))
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON; values in the unit named, interval ends null where infinite."""
+        fields = self.effect.parameters if self.effect else {}
+        return {
+            "effect": self.tag,
+            "parameters": {
+                name: {"value": finite(e.value), "ci95": [e.low, e.high], "unit": fields[name].unit}
+                for full, e in self.estimates.items()
+                for name in [full.rpartition(".")[2]]
+            },
+            "p_value": self.p_value,
+            "gain_test": self.gain_test,
+            "sentence": self.sentence,
+        }
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A hypothesis that was looked at: score and refit at the first look; J on the test trials."""
+
+    effect: str
+    parameters: tuple[str, ...]
+    score: float
+    gain: float
+    p_value: float
+    J_test: float | None
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "effect": self.effect,
+            "parameters": list(self.parameters),
+            "score": self.score,
+            "gain": self.gain,
+            "p_value": self.p_value,
+            "J_test": self.J_test,
+        }
+
+
+@dataclass(frozen=True)
+class Detectability:
+    """What these trials could tell of a hypothesis, before looking at what they do tell.
+
+    share    of its signature that re-tuning does not imitate
+    power    length of that, in deviations of the noise, for a typical size
+    limit    size from which it would be found, by parameter, in the parameter's unit
+    twins    effects its signature is closest to, with the angle between [deg]
+    """
+
+    effect: str
+    parameters: tuple[str, ...]
+    share: float
+    power: float
+    limit: dict[str, float | None]
+    units: dict[str, str]
+    twins: tuple[tuple[str, float], ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "effect": self.effect,
+            "parameters": list(self.parameters),
+            "share_surviving": self.share,
+            "power": self.power,
+            "detection_limit": self.limit,
+            "units": self.units,
+            "twins": [{"effect": tag, "angle_deg": angle} for tag, angle in self.twins],
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosis:
+    """A finished diagnosis.
+
+    theta     tuned targets with all causes in place
+    groups    causes that cannot be told apart, each a list of tags
+    chi2      of the trials it looked at per residual: before, after
+    evidence  residuals, residual forces and what explains them, for the report
+    """
+
+    profile: ShipProfile
+    options: DiagnoseOptions
+    causes: tuple[Cause, ...]
+    groups: tuple[tuple[str, ...], ...]
+    candidates: tuple[Candidate, ...]
+    detectability: tuple[Detectability, ...]
+    suggestion: Suggestion | None
+    gain: Gain
+    leftover: Leftover
+    explained_share: float
+    theta: Mapping[str, float]
+    noise: Mapping[str, Mapping[str, float]]
+    chi2: tuple[float, float]
+    evidence: Mapping[str, Any]
+    provenance: Mapping[str, Any]
+    wall_s: float
+    interrupted: bool = False
+
+    @property
+    def verdict(self) -> str:
+        """One of ``VERDICTS``."""
+        if self.causes and (self.gain.remains or (self.leftover.structured and self.explained_share < MOSTLY)):
+            return "unexplained"
+        if not self.causes and self.leftover.structured:
+            return "unexplained"
+        if self.groups:
+            return "not-separable"
+        return "found" if self.causes else "none"
+
+    @property
+    def named(self) -> tuple[Cause, ...]:
+        """The causes a reader may rely on: none where something unknown is at work too."""
+        return () if self.verdict == "unexplained" else self.causes
+
+    def sentence(self) -> str:
+        """The answer in words a captain understands."""
+        if self.verdict == "none":
+            return (
+                "Nothing is wrong beyond the noise of the sensors: the re-tuned model fits these trials, and no cause "
+                "that was looked for shows."
+            )
+        share = self.gain.share_removed[0]
+        where = "on trials not used" if self.gain.held_out == "test trials" else f"on {self.gain.held_out}"
+        if self.verdict == "unexplained":
+            told = (
+                f"the best of what is known would remove {_percent(self.explained_share)} of it"
+                if self.causes
+                else ("no known cause accounts for it")
+            )
+            return (
+                f"Something is wrong that this program does not know: {self.leftover.excess:.0%} beyond the noise of "
+                f"the sensors is left, and {told}."
+            )
+        parts = [cause.sentence for cause in self.causes]
+        text = ". ".join(parts) + "."
+        if self.groups:
+            groups = "; ".join(" or ".join(group) for group in self.groups)
+            text = f"These trials cannot tell which it was: {groups}. If the first: {text}"
+        them = "it" if len(self.causes) == 1 else "them"
+        return f"{text} Adding {them} removes {_percent(share)} of the error {where}."
+
+    def citations(self) -> list[str]:
+        """The papers behind the profile's components and the causes."""
+        causes = [cite for cause in self.causes if cause.effect for cite in cause.effect.cites]
+        return list(dict.fromkeys([*self.profile.cites(), *causes]))
+
+    def extended_text(self) -> str:
+        """TOML of the profile with re-tuned targets and the causes, each in its own table."""
+        source = f"diagnosed by mmgtune {self.provenance['mmgtune']}"
+        facts = {
+            "made_by": f"mmgtune {self.provenance['mmgtune']}",
+            "command": self.provenance["command"],
+            "created": self.provenance["created"],
+            "profile_sha256": self.profile.sha256,
+            "trials": self.provenance["trials"]["sha256"],
+            "verdict": self.verdict,
+            "causes": [cause.tag for cause in self.causes],
+        }
+        tuned = parse_profile(tuned_text(self.profile, self.theta, {}, facts, "extended"))
+        tables: dict[str, dict[str, tuple[float, float | None]]] = {}
+        for cause in self.causes:
+            if cause.effect is not None:
+                table = tables.setdefault(cause.tag, {})
+                for full, estimate in cause.estimates.items():
+                    if np.isfinite(estimate.value):
+                        table[full.rpartition(".")[2]] = (estimate.value, estimate.stderr)
+        return extended_text(tuned, tables, source) if tables else tuned.text
+
+    def to_dict(self) -> dict[str, Any]:
+        """The document of ``diagnosis.json``, schema 1 (docs/formats.md)."""
+        return {
+            "schema": SCHEMA,
+            "kind": "diagnosis",
+            **self.provenance,
+            "interrupted": self.interrupted,
+            "verdict": self.verdict,
+            "sentence": self.sentence(),
+            "causes": [cause.to_dict() for cause in self.named],
+            "groups": [list(group) for group in self.groups] if self.verdict == "not-separable" else [],
+            "candidates": [candidate.to_dict() for candidate in self.candidates],
+            "suggested_trial": self.suggestion.to_dict() if self.suggestion else None,
+            "gain": self.gain.to_dict(),
+            "unexplained": {
+                "structured": self.leftover.structured,
+                "share_of_noise_variance": self.leftover.excess,
+                "by_channel": self.leftover.channels,
+                "share_explained_by_causes": self.explained_share,
+                "correlation": self.leftover.alike,
+                "largest_share_by_one_quantity": {
+                    name: {"quantity": what, "share": share} for name, (what, share) in self.leftover.explained.items()
+                },
+                "best_known": [cause.to_dict() for cause in self.causes] if self.verdict == "unexplained" else [],
+            },
+            "detectability": [one.to_dict() for one in self.detectability],
+            "noise": {name: dict(values) for name, values in self.noise.items()},
+            "chi2_per_residual": {"before": self.chi2[0], "after": self.chi2[1]},
+            "theta": dict(self.theta),
+            "trial_results": [one.to_dict() for one in self.gain.compared],
+            "assumptions": [
+                {"name": name, "value": self.profile.written(name), "note": coefficient.note}
+                for name, coefficient in self.profile.assumptions()
+            ],
+            "citations": self.citations(),
+            "options": self.options.to_dict(),
+            "evidence": dict(self.evidence),
+            "wall_s": self.wall_s,
+        }
+
+
+def _percent(share: float) -> str:
+    """A share for a sentence; never quite all."""
+    return f"{100.0 * min(share, 0.999):.{0 if share < 0.995 else 1}f} %"

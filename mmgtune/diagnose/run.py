@@ -1,0 +1,253 @@
+"""A diagnosis from beginning to end."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..backends import STATES
+from ..fitting.box import parameter_of
+from ..fitting.run import Hooks, make_provenance
+from ..model import Model
+from ..profile import ShipProfile, with_all_effects
+from ..trial import Trial, TrialSet
+from .evidence import explain_forces, noise_share, residual_forces, short_horizon
+from .gain import Gain, J_of, held_out
+from .hypotheses import HULL_TERM, INTEGRATION_STEP, Hypothesis, hypotheses
+from .intervals import Estimate, estimates
+from .leftover import Leftover, leftover
+from .linear import typical
+from .options import DiagnoseOptions
+from .result import Candidate, Cause, Detectability, Diagnosis
+from .screening import angles
+from .search import ENOUGH, Found, Refit, Step, search
+from .separate import Suggestion, suggest
+from .workbench import Point, Workbench, make_workbench
+
+TWINS = 3
+"""Most similar effects listed for each."""
+
+
+def diagnose(
+    profile: ShipProfile,
+    trials: TrialSet,
+    options: DiagnoseOptions = DiagnoseOptions(),
+    *,
+    hooks: Hooks = Hooks(),
+    command: str = "",
+) -> Diagnosis:
+    """Show what the model gets wrong on the trials, name the cause, extend the model, measure the gain.
+
+    Causes are looked for on every trial that the split does not keep for testing; the gain is that on the test trials,
+    or on each trial in turn where there are none.  Nothing is read but the profile, the columns and the split.
+    Raises OptionError for choices that make no sense.
+    """
+    began = time.perf_counter()
+    seen = _in_order([trial for name, trial in trials.trials.items() if name not in trials.test])
+    test = _in_order([trials.trials[name] for name in trials.test])
+    own = Model(profile)
+    known = hypotheses(
+        Model(with_all_effects(profile)),
+        options.targets or profile.targets,
+        options.effects,
+        any("wind_speed" in trial.extra or "wind_speed_app" in trial.extra for trial in seen),
+        [f"{effect.kind}.{name}" for effect in own.effects for name in effect.parameters],
+    )
+    bench = make_workbench(profile, seen, options, [name for h in known for name in h.names])
+    known = [h for h in known if not set(h.names) & set(bench.targets)]
+    known = [h for h in known if not {h.effect.absorbed.get(v) for v in h.variant} & set(bench.targets)]
+    found = search(bench, known, hooks.on_phase, hooks.stop)
+    hooks.on_phase("measuring the gain")
+    sizes = estimates(bench, found.final)
+    gain = held_out(bench, found, test)
+    left = leftover(bench, found.final)
+    groups = tuple(
+        (cause.tag, *(rival.hypothesis.tag for rival in rivals))
+        for cause, rivals in zip(found.causes, found.rivals, strict=True)
+        if rivals
+    )
+    suggestion = _suggestion(bench, found)
+    hooks.on_phase("gathering the evidence")
+    values = bench.values(found.final)
+    return Diagnosis(
+        profile=profile,
+        options=options,
+        causes=tuple(_causes(bench, found, sizes, test)),
+        groups=groups,
+        candidates=tuple(_candidates(bench, found, test)),
+        detectability=tuple(_detectability(bench, found.steps[0], known)) if found.steps else (),
+        suggestion=suggestion,
+        gain=gain,
+        leftover=left,
+        explained_share=_explained(bench, found, left),
+        theta={name: values[name] for name in bench.targets},
+        noise=_noise(bench),
+        chi2=(
+            found.base.chi2 / max(1, bench.problem.n_residuals),
+            found.final.chi2 / max(1, bench.problem.n_residuals),
+        ),
+        evidence=_evidence(bench, found, left, gain),
+        provenance=make_provenance(profile, trials, command),
+        wall_s=time.perf_counter() - began,
+        interrupted=hooks.stop(),
+    )
+
+
+def _in_order(trials: Sequence[Trial]) -> list[Trial]:
+    """Trials in an order that depends on what was measured alone, so that names change nothing."""
+    return sorted(trials, key=lambda trial: (trial.n_samples, trial.motion[0].tolist(), trial.delta.tobytes()))
+
+
+def _causes(bench: Workbench, found: Found, sizes: Mapping[str, Estimate], test: Sequence[Trial]) -> list[Cause]:
+    """Causes by tag, those of several parameters together."""
+    causes: list[Cause] = []
+    if found.finer_step is not None:
+        causes.append(Cause(INTEGRATION_STEP, None, {}, 0.0, None))
+    J_before = J_of(bench, found.base, test)
+    for tag in dict.fromkeys(h.tag for h in found.causes):
+        own = [h for h in found.causes if h.tag == tag]
+        names = [name for h in own for name in h.names]
+        steps = [s for s in found.steps if s.refits and s.refits[0].hypothesis in own]
+        J_after = J_of(bench, steps[0].refits[0].point, test) if steps else None
+        gain = 1.0 - J_after / J_before if J_before and J_after is not None else None
+        p_value = max((s.refits[0].p_value for s in steps), default=0.0)
+        causes.append(Cause(tag, own[0].effect, {name: sizes[name] for name in names}, p_value, gain))
+    return causes
+
+
+def _candidates(bench: Workbench, found: Found, test: Sequence[Trial]) -> list[Candidate]:
+    """Every hypothesis of the first look that was refitted, best first; then scores of the others."""
+    if not found.steps:
+        return []
+    first = found.steps[0]
+    listed = [
+        Candidate(
+            r.hypothesis.tag,
+            tuple(r.hypothesis.variant),
+            r.score.score,
+            r.gain,
+            r.p_value,
+            J_of(bench, r.point, test) if _promising(r, first) else None,
+        )
+        for r in first.refits
+    ]
+    refitted = [r.hypothesis for r in first.refits]
+    others = sorted((s for s in first.scores if s.hypothesis not in refitted), key=lambda s: -s.score)
+    return listed + [Candidate(s.hypothesis.tag, s.hypothesis.variant, s.score, 0.0, 1.0, None) for s in others]
+
+
+def _promising(refit: Refit, step: Step) -> bool:
+    return refit.gain >= 0.05 * step.refits[0].gain
+
+
+def _detectability(bench: Workbench, step: Step, known: Sequence[Hypothesis]) -> list[Detectability]:
+    """The table for every named hypothesis, from the first look."""
+    named = [s for s in step.scores if s.hypothesis.tag != HULL_TERM]
+    cosine = angles(step.linear, [s.hypothesis for s in named])
+    found = []
+    for i, score in enumerate(named):
+        h = score.hypothesis
+        needed = ENOUGH + len(h.names) * math.log(bench.problem.n_residuals)
+        sizes = math.sqrt(needed * score.inflation) / score.power if score.power > 0.0 else math.inf
+        order = [j for j in np.argsort(-cosine[i]) if named[j].hypothesis.tag != h.tag][:TWINS]
+        found.append(
+            Detectability(
+                h.tag,
+                tuple(h.variant),
+                score.share,
+                score.power,
+                {name.rpartition(".")[2]: _limit(bench, name, sizes) for name in h.names},
+                {name: h.effect.parameters[name].unit for name in h.variant},
+                tuple((named[j].hypothesis.tag, math.degrees(math.acos(min(1.0, cosine[i, j])))) for j in order),
+            )
+        )
+    return found
+
+
+def _limit(bench: Workbench, name: str, sizes: float) -> float | None:
+    """Value of a parameter that many typical sizes from its null; None where no value of its range is enough."""
+    parameter = parameter_of(bench.model, name)
+    assert parameter is not None  # asked of parameters of effects only
+    i = bench.box.names.index(name)
+    if any(i == direction for _, direction in bench.box.polar):
+        return None
+    step = sizes * typical(bench, name) * float(bench.box.width[i])
+    if any(i == size for size, _ in bench.box.polar):
+        return step if step <= bench.box.high[i] else None
+    null = 0.0 if parameter.chart == "reciprocal" else parameter.null
+    value = null + step
+    if parameter.chart == "reciprocal":
+        return 1.0 / value if bench.box.low[i] < value <= bench.box.high[i] else None
+    return value if value <= bench.box.high[i] else None
+
+
+def _explained(bench: Workbench, found: Found, left: Leftover) -> float:
+    """Share of the error above white noise on the trials looked at that the causes remove."""
+    if not found.causes:
+        return 0.0
+    before = leftover(bench, found.base).excess
+    return 1.0 - max(left.excess, 0.0) / before if before > 0.0 else 0.0
+
+
+def _suggestion(bench: Workbench, found: Found) -> Suggestion | None:
+    """The trial that would separate the first cause that has rivals."""
+    for cause, rivals in zip(found.causes, found.rivals, strict=True):
+        if rivals:
+            best = [(cause.tag, found.final), *((r.hypothesis.tag, r.point) for r in rivals[:3])]
+            return suggest(bench, best)
+    return None
+
+
+def _noise(bench: Workbench) -> dict[str, dict[str, float]]:
+    """Noise by channel in SI units: white part, fading part and its autocorrelation."""
+    return {
+        name: {
+            "white": float(bench.sigma[STATES.index(name)] * np.sqrt(noise.white)),
+            "fading": float(bench.sigma[STATES.index(name)] * np.sqrt(noise.fading)),
+            "autocorrelation": noise.phi,
+        }
+        for name, noise in bench.noise.channels.items()
+    }
+
+
+def _evidence(bench: Workbench, found: Found, left: Leftover, gain: Gain) -> dict[str, Any]:
+    """Residuals before and after by trial and channel, short horizons, and residual forces with what explains them."""
+    before = leftover(bench, found.base) if found.causes else left
+    shown: dict[str, Any] = {"excess_before": before.channels, "excess_after": left.channels}
+    for which, point in (("before", found.base), ("after", found.final)):
+        profile = _tuned(bench, point)
+        model = Model(profile)
+        short = short_horizon(model, bench.trials, integrator=point.integrator)
+        shown[f"short_horizon_{which}"] = dict(zip(STATES, map(float, short.pooled_rms_in_noise), strict=True))
+        forces = []
+        for trial in bench.trials:
+            try:
+                forces.append(residual_forces(model, trial))
+            except ValueError:  # too short or too full of gaps for inverse dynamics
+                continue
+        if forces:
+            shown[f"forces_{which}"] = {
+                "explained": {axis: dict(shares) for axis, shares in explain_forces(forces).items()},
+                "noise": dict(noise_share(forces)),
+            }
+    return shown
+
+
+def _tuned(bench: Workbench, point: Point) -> ShipProfile:
+    """The profile with the values of a point."""
+    from dataclasses import replace
+
+    from ..components import split_name
+
+    profile = bench.model_of(point.names).profile
+    sections = dict(profile.sections)
+    for name, value in bench.values(point).items():
+        kind, symbol = split_name(name)
+        coefficients = dict(sections[kind].coefficients)
+        coefficients[symbol] = replace(coefficients[symbol], value=value)
+        sections[kind] = replace(sections[kind], coefficients=coefficients)
+    return replace(profile, sections=sections)

@@ -1,0 +1,44 @@
+"""Numbers of causes in words: units people use, with intervals."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from ..effects import Effect
+from ..units import DEG
+from .intervals import Estimate
+
+_SHOWN = {"rad": (1.0 / DEG, "°"), "rad/s": (1.0 / DEG, "°/s"), "N": (1e-3, " kN")}
+
+
+def quantity(value: float, error: float | None, unit: str) -> str:
+    """A value with its 95 % half width: "0.47 ± 0.03 m/s"."""
+    factor, word = _SHOWN.get(unit, (1.0, "" if unit in ("-", "prime") else f" {unit}"))
+    value *= factor
+    if not math.isfinite(value):
+        return "infinite"
+    if error is None or not math.isfinite(error) or error <= 0.0:
+        return f"{value:.3g}{word}"
+    error *= factor
+    digits = max(0, min(6, 1 - math.floor(math.log10(error))))
+    return f"{value:.{digits}f} ± {error:.{digits}f}{word}"
+
+
+def parameters_in_words(effect: Effect, estimates: Mapping[str, Estimate]) -> dict[str, str]:
+    """Each estimated parameter of an effect as text; for a current also its speed and where it sets."""
+    found = {}
+    for name, parameter in effect.parameters.items():
+        estimate = estimates.get(f"{effect.kind}.{name}")
+        if estimate is not None:
+            half = None if estimate.low is None or estimate.high is None else 0.5 * (estimate.high - estimate.low)
+            found[name] = quantity(estimate.value, half, parameter.unit)
+    if effect.tag == "current" and {"north", "east"} <= set(found):
+        north, east = (estimates[f"{effect.kind}.{name}"] for name in ("north", "east"))
+        speed = math.hypot(north.value, east.value)
+        error = math.hypot(
+            *(e.value / max(speed, 1e-12) * 0.5 * ((e.high or e.value) - (e.low or e.value)) for e in (north, east))
+        )
+        found["speed"] = quantity(speed, error, "m/s")
+        found["towards"] = f"{math.degrees(math.atan2(east.value, north.value)) % 360.0:.0f}°"
+    return found

@@ -1,0 +1,365 @@
+"""The report of a diagnosis, put together: the answer first, then why, then what the data could have told at all."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from . import findings, tracks
+from .advice import shortest
+from .common import assumptions, generated_banner, picture, provenance
+from .drawing import AFTER, MUTED, Drawn, log_ticks, new_figure
+from .page import Block, Cell, Commands, Details, Page, Prose, Section, Table, Tile, cells
+from .tables import tone
+from .wording import CHANNELS, NONE, change, clean, number, percent, shown
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from .load import DiagnosisRecord
+
+_WORDS = {
+    "none": "nothing found",
+    "found": "cause found",
+    "not-separable": "causes that cannot be told apart",
+    "unexplained": "something unknown",
+}
+_BARS = 12
+_VARIABLES = {
+    "heading": "heading",
+    "drift": "drift angle",
+    "yaw_rate": "yaw rate",
+    "rudder": "rudder angle",
+    "ordered": "time since rudder order",
+    "speed": "speed",
+    "time": "time",
+}
+
+
+def build(record: DiagnosisRecord) -> Page:
+    """Everything the report of a diagnosis says."""
+    data = record.data
+    drawings: dict[str, Drawn] = {}
+    sections = [
+        _causes(data),
+        _why(data, drawings),
+        _gain(record, drawings),
+        _evidence(data),
+        _left(data),
+        _could_tell(data),
+        Section("next", "What to do next", (Commands(_advice(data)),)),
+        assumptions(data),
+        provenance(data),
+    ]
+    ship = clean(data["profile"].get("name") or data["profile"].get("id") or "the ship")
+    return Page(
+        title=f"{ship}: diagnosis",
+        eyebrow=f"{ship} · {_WORDS.get(data['verdict'], clean(data['verdict']))}",
+        verdict=clean(data["sentence"]),
+        banners=generated_banner(data["trials"]),
+        warnings=("The search was interrupted; this is what was known by then.",) if data.get("interrupted") else (),
+        tiles=_tiles(data),
+        sections=tuple(section for section in sections if section is not None),
+        figures={name: (drawn.svg, drawn.pdf) for name, drawn in drawings.items()},
+    )
+
+
+def _tiles(data: Mapping[str, Any]) -> tuple[Tile, ...]:
+    gain = data["gain"]
+    moved = change(gain.get("J_test_before"), gain.get("J_test_after"))
+    tiles = [Tile("Verdict", _WORDS.get(data["verdict"], data["verdict"]))]
+    if data["causes"]:
+        tiles.append(Tile("Causes", ", ".join(clean(cause["effect"]) for cause in data["causes"])))
+    before, after = shown(gain.get("J_test_before")), shown(gain.get("J_test_after"))
+    if data["causes"]:
+        tiles.append(Tile("Misfit J, held out", f"{before} → {after}", percent(moved), gain["held_out"], tone(moved)))
+        low, high = gain["share_ci95"]
+        tiles.append(
+            Tile(
+                "Error above noise removed",
+                f"{100.0 * gain['share_above_noise_removed']:.1f} %",
+                note=f"95 % interval over trials {100.0 * low:.1f} to {100.0 * high:.1f} %",
+            )
+        )
+    else:
+        tiles.append(Tile("Misfit J, held out", before, note=f"re-tuned model, {gain['held_out']}"))
+        left = data["unexplained"]["share_of_noise_variance"]
+        tiles.append(Tile("Left beyond sensor noise", f"{100.0 * left:.1f} %", note="of the noise's variance"))
+    return tuple(tiles)
+
+
+def _causes(data: Mapping[str, Any]) -> Section | None:
+    listed = data["causes"] or data["unexplained"]["best_known"]
+    if not listed:
+        return None
+    blocks: list[Block] = []
+    if not data["causes"]:
+        blocks.append(
+            Prose(("None of these can be relied on while something unknown is at work besides.",), tone="warning")
+        )
+    rows = []
+    for cause in listed:
+        for name, value in cause["parameters"].items():
+            low, high = value["ci95"]
+            interval = f"{_end(low)} … {_end(high)}"
+            effect, unit = clean(cause["effect"]), clean(value["unit"])
+            rows.append(cells(effect, clean(name), shown(value["value"]), interval, unit, _p(cause["p_value"])))
+        if not cause["parameters"]:
+            rows.append(cells(clean(cause["effect"]), NONE, NONE, NONE, NONE, _p(cause["p_value"])))
+    blocks.append(
+        Table(
+            "causes-table",
+            "Each parameter with its 95 % interval, and the probability that chance brings as much in any search",
+            ("effect", "parameter", "value", "95 % interval", "unit", "by chance"),
+            tuple(rows),
+            (2, 3),
+        )
+    )
+    if data["groups"]:
+        for group in data["groups"]:
+            blocks.append(Prose((f"These trials do not tell apart: {', '.join(map(clean, group))}.",)))
+    suggestion = data["suggested_trial"]
+    if suggestion:
+        apart = shown(suggestion["largest_position_difference_m"], 3)
+        in_all = shown(suggestion["distance_in_noise_deviations"], 3)
+        sentence = f"The trial that would: {clean(suggestion['manoeuvre'])}."
+        sentence += f" There the explanations differ by up to {apart} m, in all {in_all} deviations of the noise."
+        blocks.append(Prose((sentence,)))
+    return Section("causes", "Causes", tuple(blocks))
+
+
+def _why(data: Mapping[str, Any], drawings: dict[str, Drawn]) -> Section:
+    fitted = [row for row in data["candidates"] if row["gain"] > 0.0]
+    table = Table(
+        "candidates-table",
+        "Hypotheses at the first look: what the linear score promised, what the refit gained, and J on the test trials",
+        ("effect", "parameters", "score", "gain of chi-squared", "by chance", "J test"),
+        tuple(
+            cells(
+                clean(row["effect"]),
+                clean(", ".join(row["parameters"])),
+                shown(row["score"], 3),
+                shown(row["gain"], 3) if row["gain"] > 0.0 else "not refitted",
+                _p(row["p_value"]) if row["gain"] > 0.0 else NONE,
+                shown(row["J_test"]),
+            )
+            for row in data["candidates"]
+        ),
+        (2, 3, 4, 5),
+    )
+    blocks: list[Block] = []
+    if fitted:
+        drawings["candidates"] = Drawn(
+            "candidates", "What each hypothesis alone would explain", lambda: _draw_candidates(fitted)
+        )
+        best = fitted[0]
+        blocks.append(
+            picture(
+                drawings["candidates"],
+                "What each hypothesis alone would explain",
+                f"{clean(best['effect'])} explains most: chi-squared falls by {shown(best['gain'], 3)}.",
+            )
+        )
+    blocks.append(Details(f"All {len(data['candidates'])} hypotheses", (table,)) if fitted else table)
+    return Section("why", "Why this and not another", tuple(blocks))
+
+
+def _draw_candidates(rows: Sequence[Mapping[str, Any]]) -> Figure:
+    rows = rows[:_BARS]
+    figure = new_figure(7.6, 0.3 * len(rows) + 0.8)
+    ax = figure.subplots()
+    gains = [max(float(row["gain"]), 0.1) for row in rows]
+    ax.barh(range(len(rows)), gains, height=0.62, color=[AFTER, *[MUTED] * (len(rows) - 1)])
+    ax.set_yticks(range(len(rows)), [f"{clean(row['effect'])} ({', '.join(row['parameters'])})"[:44] for row in rows])
+    ax.set_ylim(len(rows) - 0.4, -0.6)
+    if max(gains) > 30.0 * min(gains):
+        ax.set_xscale("log")
+        log_ticks(ax.xaxis)
+    ax.set_xlabel("fall of chi-squared when refitted")
+    ax.grid(axis="y", visible=False)
+    return figure
+
+
+def _gain(record: DiagnosisRecord, drawings: dict[str, Drawn]) -> Section:
+    data, gain = record.data, record.data["gain"]
+    rows = [row for row in record.results if str(row["id"]) in record.motions]
+    blocks: list[Block] = []
+    if rows and data["causes"]:
+        chosen = tracks.chosen(rows)
+        drawings["tracks"] = Drawn(
+            "tracks",
+            "Measured and simulated tracks of each held-out trial, north up",
+            lambda: tracks.draw_tracks(chosen, record.motions),
+        )
+        drawings["distances"] = Drawn(
+            "distances",
+            "Distance of the simulated from the measured position over time",
+            lambda: tracks.draw_distances(chosen, record.motions),
+        )
+        note = " Before: re-tuned without a cause; after: with the causes."
+        blocks += [
+            picture(drawings["tracks"], "Held-out tracks", findings.tracks(chosen) + note),
+            picture(drawings["distances"], "Distance off track", findings.distances(chosen)),
+        ]
+    listed = [
+        (words + name, gain[f"{kind}_before"].get(name), gain[f"{kind}_after"].get(name))
+        for kind, words in (("measures", ""), ("index_errors", "error of "))
+        for name in gain[f"{kind}_before"]
+    ]
+    blocks.append(
+        Table(
+            "gain-table",
+            f"Held out: {gain['held_out']}. Means over trials of the seven distance measures, and mean absolute errors "
+            "of manoeuvring indices",
+            ("measure", "before", "after", "change"),
+            tuple(
+                cells(clean(name), shown(a), shown(b), Cell(percent(change(a, b)), tone(change(a, b))))
+                for name, a, b in listed
+            ),
+            (1, 2, 3),
+        )
+    )
+    blocks.append(
+        Table(
+            "gain-by-trial",
+            "J by trial",
+            ("trial", "before", "after"),
+            tuple(
+                cells(clean(row["trial"]), shown(row["J_before"]), shown(row["J_after"])) for row in gain["by_trial"]
+            ),
+            (1, 2),
+        )
+    )
+    return Section("gain", "The gain on trials not used", tuple(blocks))
+
+
+def _evidence(data: Mapping[str, Any]) -> Section | None:
+    evidence = data.get("evidence") or {}
+    if "excess_before" not in evidence:
+        return None
+    rows = []
+    for name in evidence["excess_before"]:
+        words = CHANNELS[name].words if name in CHANNELS and hasattr(CHANNELS[name], "words") else name
+        rows.append(
+            cells(
+                clean(words),
+                _share(evidence["excess_before"].get(name)),
+                _share(evidence["excess_after"].get(name)),
+                shown(evidence["short_horizon_before"].get(name), 3),
+                shown(evidence["short_horizon_after"].get(name), 3),
+            )
+        )
+    blocks: list[Block] = [
+        Table(
+            "residuals-table",
+            "Variance of the residuals beyond white noise as a share of it, and root mean square of simulations "
+            "restarted every minute in deviations of the noise",
+            ("channel", "beyond noise, before", "after", "restarted, before", "after"),
+            tuple(rows),
+            (1, 2, 3, 4),
+        )
+    ]
+    for which, words in (("before", "without a cause"), ("after", "with the causes")):
+        forces = evidence.get(f"forces_{which}")
+        if forces:
+            blocks.append(_forces(forces, which, words))
+    return Section("evidence", "What does not match", tuple(blocks))
+
+
+def _forces(forces: Mapping[str, Any], which: str, words: str) -> Table:
+    variables = list(dict.fromkeys(name for shares in forces["explained"].values() for name in shares))
+    return Table(
+        f"forces-{which}",
+        f"Residual forces by inverse dynamics {words}: share of their variance each quantity alone predicts",
+        ("force", *(_VARIABLES.get(name, name) for name in variables), "noise"),
+        tuple(
+            cells(
+                clean(axis),
+                *(_bold(shares.get(name), shares.values()) for name in variables),
+                _share(forces["noise"].get(axis)),
+            )
+            for axis, shares in forces["explained"].items()
+        ),
+        tuple(range(1, len(variables) + 2)),
+    )
+
+
+def _bold(value: Any, others: Iterable[Any]) -> Cell:
+    """The largest share of a row stands out."""
+    best = max((number(other) or 0.0 for other in others), default=0.0)
+    share = number(value)
+    return Cell(_share(value), "note" if share is not None and share == best and share > 0.2 else "")
+
+
+def _left(data: Mapping[str, Any]) -> Section:
+    left = data["unexplained"]
+    words = "looks like something that happened" if left["structured"] else "looks like noise"
+    share = 100.0 * left["share_of_noise_variance"]
+    sentences = [f"What is left is {share:.1f} % of the sensors' noise variance beyond that noise, and {words}."]
+    for pair, value in left["correlation"].items():
+        sentences.append(f"Correlation of what {pair} say of it: {value:.2f}.")
+    for channel, best in left["largest_share_by_one_quantity"].items():
+        sentences.append(f"Of {channel}, {clean(best['quantity'])} predicts {100.0 * max(best['share'], 0.0):.0f} %.")
+    return Section("left", "What is left", (Prose(tuple(sentences), listed=True),))
+
+
+def _could_tell(data: Mapping[str, Any]) -> Section | None:
+    rows = data.get("detectability") or []
+    if not rows:
+        return None
+    return Section(
+        "detectability",
+        "What these trials could tell",
+        (
+            Table(
+                "detectability-table",
+                "Share of each effect's signature that re-tuning cannot imitate, the size from which it would be "
+                "found, and the effects it is closest to with the angle between their signatures",
+                ("effect", "share", "found from", "closest"),
+                tuple(
+                    cells(
+                        clean(f"{row['effect']} ({', '.join(row['parameters'])})"),
+                        _share(row["share_surviving"]),
+                        clean(
+                            ", ".join(
+                                f"{name} {shown(limit, 3)} {row['units'].get(name, '').replace('-', '')}".strip()
+                                for name, limit in row["detection_limit"].items()
+                                if limit is not None
+                            )
+                            or "not within its range"
+                        ),
+                        clean(", ".join(f"{twin['effect']} {twin['angle_deg']:.0f}°" for twin in row["twins"])),
+                    )
+                    for row in sorted(rows, key=lambda row: -row["share_surviving"])
+                ),
+                (1,),
+            ),
+        ),
+    )
+
+
+def _advice(data: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
+    trials = shortest(data["trials"].get("path") or "", "trials")
+    extended = f"{data.get('out', 'RUN')}/profile.toml"
+    items = []
+    if data["causes"]:
+        items.append((f"mmgtune simulate -p {extended} --trials {trials}", "see the extended model on every trial"))
+        items.append((f"mmgtune fit -p {extended} -t {trials} --initial estimated", "re-tune the extended model"))
+    if data["verdict"] == "unexplained":
+        items.append((f"mmgtune trials check {trials}", "look for faults of the measurement itself"))
+    items.append((f"mmgtune diagnose -p {extended} -t {trials}", "look again from the extended profile"))
+    return tuple(items)
+
+
+def _end(value: Any) -> str:
+    return "∞" if value is None else shown(value)
+
+
+def _p(value: Any) -> str:
+    found = number(value)
+    return NONE if found is None else "< 0.0001" if found < 1e-4 else shown(found, 2)
+
+
+def _share(value: Any) -> str:
+    found = number(value)
+    return NONE if found is None else f"{100.0 * found:.1f} %" if abs(found) < 10.0 else f"{100.0 * found:.0f} %"
