@@ -9,7 +9,7 @@ DEMO := runs/demo
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo test lint types arch check bench trials browser clean
+.PHONY: help demo test lint types arch check bench hidden trials browser clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -37,6 +37,9 @@ check: ## lint, types, arch and test
 	@$(MAKE) --no-print-directory types
 	@$(MAKE) --no-print-directory arch
 	@$(MAKE) --no-print-directory test
+
+hidden: $(RUNTIME) ## the full study of hidden effects, some hours; goes on where it was stopped
+	$(BIN)/python -m tests.hidden.study
 
 bench: $(RUNTIME) ## time the simulation and the fit
 	$(BIN)/python tools/bench.py

@@ -108,9 +108,7 @@ def _white(residuals: Sequence[FloatArray]) -> FloatArray:
     return np.asarray(np.sqrt(np.nanmean(second**2, axis=0) / 6.0))
 
 
-def _alike(
-    trials: Sequence[Trial], residuals: Sequence[FloatArray], window: float
-) -> dict[str, tuple[float, float]]:
+def _alike(trials: Sequence[Trial], residuals: Sequence[FloatArray], window: float) -> dict[str, tuple[float, float]]:
     """Correlation over windows of what a level's residual gains with what its rate's adds up to, and that in standard
     errors (Fisher's transformation)."""
     pairs: dict[str, list[FloatArray]] = {pair: [] for pair in PAIRS}
@@ -131,9 +129,9 @@ def _alike(
     found = {}
     for pair, parts in pairs.items():
         both = np.concatenate(parts)
-        both = both[np.isfinite(both).all(axis=1)]
+        both = np.asarray(both[np.isfinite(both).all(axis=1)])
         moving = len(both) > 10 and bool(np.all(np.std(both, axis=0) > 0.0))
-        correlation = float(np.corrcoef(both.T)[0, 1]) if moving else 0.0
+        correlation = float(np.asarray(np.corrcoef(both.T))[0, 1]) if moving else 0.0
         certainty = float(np.arctanh(min(correlation, 0.999999)) * np.sqrt(max(len(both) - 3, 1)))
         found[pair] = (correlation, certainty)
     return found

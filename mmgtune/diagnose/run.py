@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from ..backends import STATES
+from ..components import split_name
 from ..fitting.box import parameter_of
 from ..fitting.run import Hooks, make_provenance
 from ..model import Model
@@ -98,8 +100,9 @@ def diagnose(
 
 
 def _in_order(trials: Sequence[Trial]) -> list[Trial]:
-    """Trials in an order that depends on what was measured alone, so that names change nothing."""
-    return sorted(trials, key=lambda trial: (trial.n_samples, trial.motion[0].tolist(), trial.delta.tobytes()))
+    """Trials without what their files say about them, in an order that depends on what was measured alone."""
+    bare = [replace(trial, noise={}) for trial in trials]
+    return sorted(bare, key=lambda trial: (trial.n_samples, trial.motion[0].tolist(), trial.delta.tobytes()))
 
 
 def _causes(bench: Workbench, found: Found, sizes: Mapping[str, Estimate], test: Sequence[Trial]) -> list[Cause]:
@@ -239,10 +242,6 @@ def _evidence(bench: Workbench, found: Found, left: Leftover, gain: Gain) -> dic
 
 def _tuned(bench: Workbench, point: Point) -> ShipProfile:
     """The profile with the values of a point."""
-    from dataclasses import replace
-
-    from ..components import split_name
-
     profile = bench.model_of(point.names).profile
     sections = dict(profile.sections)
     for name, value in bench.values(point).items():

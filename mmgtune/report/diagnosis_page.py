@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -25,6 +26,11 @@ _WORDS = {
     "unexplained": "something unknown",
 }
 _BARS = 12
+"""Hypotheses drawn."""
+
+_READ = {"rad": (180.0 / math.pi, "°"), "rad/s": (180.0 / math.pi, "°/s"), "N": (1e-3, "kN")}
+"""Factor and unit in which people read a quantity."""
+
 _VARIABLES = {
     "heading": "heading",
     "drift": "drift angle",
@@ -77,7 +83,7 @@ def _tiles(data: Mapping[str, Any]) -> tuple[Tile, ...]:
         tiles.append(
             Tile(
                 "Error above noise removed",
-                f"{100.0 * gain['share_above_noise_removed']:.1f} %",
+                f"{min(100.0 * gain['share_above_noise_removed'], 99.9):.1f} %",
                 note=f"95 % interval over trials {100.0 * low:.1f} to {100.0 * high:.1f} %",
             )
         )
@@ -101,9 +107,10 @@ def _causes(data: Mapping[str, Any]) -> Section | None:
     for cause in listed:
         for name, value in cause["parameters"].items():
             low, high = value["ci95"]
-            interval = f"{_end(low)} … {_end(high)}"
-            effect, unit = clean(cause["effect"]), clean(value["unit"])
-            rows.append(cells(effect, clean(name), shown(value["value"]), interval, unit, _p(cause["p_value"])))
+            factor, unit = _READ.get(value["unit"], (1.0, clean(value["unit"])))
+            interval = f"{_end(low, factor)} … {_end(high, factor)}"
+            size = shown(factor * value["value"]) if number(value["value"]) is not None else "∞"
+            rows.append(cells(clean(cause["effect"]), clean(name), size, interval, unit, _p(cause["p_value"])))
         if not cause["parameters"]:
             rows.append(cells(clean(cause["effect"]), NONE, NONE, NONE, NONE, _p(cause["p_value"])))
     blocks.append(
@@ -129,7 +136,7 @@ def _causes(data: Mapping[str, Any]) -> Section | None:
 
 
 def _why(data: Mapping[str, Any], drawings: dict[str, Drawn]) -> Section:
-    fitted = [row for row in data["candidates"] if row["gain"] > 0.0]
+    fitted = [row for row in data["candidates"] if row["gain"] >= 1.0]
     table = Table(
         "candidates-table",
         "Hypotheses at the first look: what the linear score promised, what the refit gained, and J on the test trials",
@@ -139,8 +146,8 @@ def _why(data: Mapping[str, Any], drawings: dict[str, Drawn]) -> Section:
                 clean(row["effect"]),
                 clean(", ".join(row["parameters"])),
                 shown(row["score"], 3),
-                shown(row["gain"], 3) if row["gain"] > 0.0 else "not refitted",
-                _p(row["p_value"]) if row["gain"] > 0.0 else NONE,
+                shown(row["gain"], 3) if row["gain"] >= 1.0 else "none",
+                _p(row["p_value"]) if row["gain"] >= 1.0 else NONE,
                 shown(row["J_test"]),
             )
             for row in data["candidates"]
@@ -239,7 +246,7 @@ def _evidence(data: Mapping[str, Any]) -> Section | None:
         return None
     rows = []
     for name in evidence["excess_before"]:
-        words = CHANNELS[name].words if name in CHANNELS and hasattr(CHANNELS[name], "words") else name
+        words = CHANNELS[name].words if name in CHANNELS else name
         rows.append(
             cells(
                 clean(words),
@@ -299,7 +306,10 @@ def _left(data: Mapping[str, Any]) -> Section:
     for pair, value in left["correlation"].items():
         sentences.append(f"Correlation of what {pair} say of it: {value:.2f}.")
     for channel, best in left["largest_share_by_one_quantity"].items():
-        sentences.append(f"Of {channel}, {clean(best['quantity'])} predicts {100.0 * max(best['share'], 0.0):.0f} %.")
+        words = CHANNELS[channel].words if channel in CHANNELS else channel
+        sentences.append(
+            f"Of the residual of {words}, {clean(best['quantity'])} predicts {100.0 * max(best['share'], 0.0):.0f} %."
+        )
     return Section("left", "What is left", (Prose(tuple(sentences), listed=True),))
 
 
@@ -320,14 +330,7 @@ def _could_tell(data: Mapping[str, Any]) -> Section | None:
                     cells(
                         clean(f"{row['effect']} ({', '.join(row['parameters'])})"),
                         _share(row["share_surviving"]),
-                        clean(
-                            ", ".join(
-                                f"{name} {shown(limit, 3)} {row['units'].get(name, '').replace('-', '')}".strip()
-                                for name, limit in row["detection_limit"].items()
-                                if limit is not None
-                            )
-                            or "not within its range"
-                        ),
+                        clean(_limits(row)),
                         clean(", ".join(f"{twin['effect']} {twin['angle_deg']:.0f}°" for twin in row["twins"])),
                     )
                     for row in sorted(rows, key=lambda row: -row["share_surviving"])
@@ -351,8 +354,18 @@ def _advice(data: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
     return tuple(items)
 
 
-def _end(value: Any) -> str:
-    return "∞" if value is None else shown(value)
+def _end(value: Any, factor: float) -> str:
+    return "∞" if value is None else shown(factor * value)
+
+
+def _limits(row: Mapping[str, Any]) -> str:
+    """Sizes from which an effect would be found, in units people read."""
+    found = []
+    for name, limit in row["detection_limit"].items():
+        if limit is not None:
+            factor, unit = _READ.get(row["units"].get(name), (1.0, row["units"].get(name, "")))
+            found.append(f"{name} {shown(factor * limit, 3)} {'' if unit in ('-', 'prime') else unit}".strip())
+    return ", ".join(found) or "not within its range"
 
 
 def _p(value: Any) -> str:

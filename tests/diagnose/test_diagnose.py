@@ -1,0 +1,185 @@
+"""Diagnosis on ships with something hidden in them: the answer is in the plant, the program gets the files."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+from mmgtune.diagnose import VERDICTS, DiagnoseOptions, diagnose
+from mmgtune.diagnose.noise import NoiseModel, estimate
+from mmgtune.errors import OptionError
+from mmgtune.profile import load_profile, parse_profile
+from mmgtune.trial import load_trials
+from tests.command import run
+from tests.hidden.cases import Case, null, pair, single
+from tests.hidden.plant import AUTOCORRELATED, simulate, write
+from tests.hidden.study import covered, outcome
+
+
+def files(case: Case, folder):
+    """The files of a case, which is all the program gets to see."""
+    write(simulate(case.ship, case.effects, case.seed, case.noise), folder)
+    return folder
+
+
+def said_of(case: Case, folder, **options):
+    """The diagnosis of a case."""
+    return diagnose(load_profile("suzaku"), load_trials(files(case, folder)), DiagnoseOptions(**options))
+
+
+TYPICAL = ["current", "steering-lag", "shallow-water"]
+"""One of the flow, of the actuators, of the coefficients; sensors and others below.  The full study has them all."""
+
+
+@pytest.mark.parametrize("tag", TYPICAL)
+def test_a_typical_effect_is_named(tag, tmp_path):
+    case = single(tag, 3, seed=1)
+    result = said_of(case, tmp_path)
+    document = result.to_dict()
+    json.dumps(document, allow_nan=False)
+    assert outcome(case.effects, document) == "right", (result.verdict, document["causes"])
+    assert document["gain"]["J_test_after"] < 0.1 * document["gain"]["J_test_before"]
+    assert document["gain"]["share_above_noise_removed"] > 0.95
+    first = document["causes"][0]
+    assert first["p_value"] < 0.01
+    assert first["gain_test"] > 0.9
+    for name, value in first["parameters"].items():
+        low, high = value["ci95"]
+        assert low is None or low <= value["value"] <= (np.inf if high is None else high), name
+
+
+@pytest.mark.parametrize("noise", ["white", "autocorrelated"])
+def test_nothing_hidden_nothing_found(noise, tmp_path):
+    case = null(5) if noise == "white" else null(5, AUTOCORRELATED)
+    result = said_of(case, tmp_path)
+    assert result.verdict == "none"
+    assert result.to_dict()["causes"] == []
+    assert result.to_dict()["suggested_trial"] is None
+
+
+def test_two_effects_are_both_found(tmp_path):
+    case = pair(1)
+    document = said_of(case, tmp_path).to_dict()
+    assert outcome(case.effects, document) in ("right", "grouped")
+
+
+def test_the_extended_profile_is_a_profile_like_any_other(tmp_path):
+    case = single("current", 3, seed=2)
+    result = said_of(case, tmp_path)
+    extended = parse_profile(result.extended_text())
+    truth = case.effects["current"]
+    for name in ("north", "east"):
+        coefficient = extended.coefficient(f"effects.current.{name}")
+        assert coefficient.value == pytest.approx(truth[name], abs=0.01)
+        assert coefficient.stderr > 0.0
+    again = diagnose(extended, load_trials(tmp_path))
+    assert again.verdict == "none", [cause.tag for cause in again.causes]
+
+
+def test_names_order_and_metadata_of_the_files_do_not_matter(tmp_path):
+    (tmp_path / "told").mkdir()
+    case = single("heading-bias", 3, seed=3)
+    told = said_of(case, tmp_path / "told")
+    bare = tmp_path / "bare"
+    bare.mkdir()
+    names = {path.stem: f"log_{k:02d}" for k, path in enumerate(sorted((tmp_path / "told").glob("*.parquet"))[::-1])}
+    for old, new in names.items():
+        table = pq.ParquetFile(tmp_path / "told" / f"{old}.parquet", pre_buffer=False).read(use_threads=False)
+        pq.write_table(pa.Table.from_arrays(table.columns, names=table.column_names), bare / f"{new}.parquet")
+    split = load_trials(tmp_path / "told")
+    lists = {role: json.dumps([names[name] for name in getattr(split, role)]) for role in ("tune", "test")}
+    (bare / "split.toml").write_text("".join(f"{role} = {text}\n" for role, text in lists.items()))
+    untold = diagnose(load_profile("suzaku"), load_trials(bare))
+    a, b = told.to_dict(), untold.to_dict()
+    assert a["verdict"] == b["verdict"] == "found"
+    assert a["causes"] == b["causes"]
+    assert a["theta"] == b["theta"]
+
+
+def test_a_coarse_integration_step_is_a_cause(tmp_path):
+    case = null(3)
+    result = said_of(case, tmp_path, integrator="euler")
+    assert [cause.tag for cause in result.causes] == ["integration-step"]
+    assert "integration step" in result.sentence()
+
+
+def test_without_test_trials_each_trial_is_left_out_in_turn(tmp_path):
+    case = single("gyro-bias", 3, seed=1)
+    files(case, tmp_path)
+    trials = load_trials(tmp_path)
+    kept = ("turn_p10", "turn_m20", "zigzag_20")
+    alone = replace(trials, trials={name: trials.trials[name] for name in kept}, tune=kept, test=())
+    result = diagnose(load_profile("suzaku"), alone)
+    assert result.gain.held_out == "each trial in turn"
+    assert len(result.gain.compared) == 3
+    assert [cause.tag for cause in result.causes] == ["gyro-bias"]
+    assert covered(case.effects, result.to_dict()) == [True]
+
+
+def test_noise_with_a_memory_is_told_from_white_noise_and_whitened():
+    rng = np.random.default_rng(1)
+
+    class Cases:
+        rows = np.arange(6 * 4000).reshape(2, 2000, 6)
+
+        def __len__(self):
+            return 2
+
+    n = 2000
+    values = np.empty((2, n, 6))
+    for case in range(2):
+        for k in range(6):
+            slow = np.zeros(n)
+            drive = rng.standard_normal(n)
+            for i in range(1, n):
+                slow[i] = 0.95 * slow[i - 1] + np.sqrt(1 - 0.95**2) * drive[i]
+            values[case, :, k] = rng.standard_normal(n) + (slow if k < 3 else 0.0)
+    flat = values.reshape(-1)
+    model = estimate(Cases(), flat)
+    assert isinstance(model, NoiseModel)
+    for name, noise in model.channels.items():
+        if name in ("x", "y", "psi"):
+            assert noise.phi == pytest.approx(0.95, abs=0.03)
+            assert noise.fading == pytest.approx(1.0, abs=0.35)
+        else:
+            assert noise.fading == 0.0
+    white = model.apply(flat)
+    by_channel = white.reshape(2, n, 6)
+    for k in range(6):
+        x = by_channel[0, :, k]
+        assert x.var() == pytest.approx(1.0, abs=0.15)
+        assert abs(np.corrcoef(x[1:], x[:-1])[0, 1]) < 0.08
+    assert np.allclose(model.restore(white), flat, atol=1e-8)
+
+
+def test_options_that_make_no_sense_are_said():
+    with pytest.raises(OptionError, match="unknown effect 'curent'"):
+        DiagnoseOptions(effects=("curent",))
+    with pytest.raises(OptionError, match="at most 0 causes"):
+        DiagnoseOptions(most=0)
+    with pytest.raises(OptionError, match="unknown integrator"):
+        DiagnoseOptions(integrator="eulr")
+
+
+def test_the_command_writes_a_folder_and_tells_ci(tmp_path):
+    files(single("speed-scale", 3, seed=1), tmp_path / "trials")
+    said = run("diagnose", "-t", "trials", "--out", "run", "--json", "--quiet", "--fail-on", "found", cwd=tmp_path)
+    assert said.code == 1, said.err
+    document = said.json()
+    assert document["verdict"] == "found"
+    assert document["verdict"] in VERDICTS
+    assert [cause["effect"] for cause in document["causes"]] == ["speed-scale"]
+    for name in ("diagnosis.json", "profile.toml", "motions.parquet", "report.html", "report.md"):
+        assert (tmp_path / "run" / name).is_file()
+    page = (tmp_path / "run" / "report.html").read_text()
+    assert "speed log" in page
+    extended = run("simulate", "-p", "run/profile.toml", "--trials", "trials", "--json", cwd=tmp_path)
+    assert extended.code == 0, extended.err
+    wrong = run("diagnose", "--fail-on", "fnd", cwd=tmp_path)
+    assert wrong.code == 2
+    assert "unknown verdict" in wrong.err
+    taken = run("diagnose", "-t", "trials", "--out", "run", cwd=tmp_path)
+    assert taken.code == 2

@@ -1,0 +1,150 @@
+"""The study of hidden effects: every case drawn, sailed, diagnosed from its files alone, and scored.
+
+    python -m tests.hidden.study [--out runs/hidden] [--jobs 2] [--only TEXT] [--minutes 200]
+
+One line of JSON per case goes to results.jsonl as it is done; a run that was stopped goes on with what is missing.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import os
+import tempfile
+import time
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from pathlib import Path
+from typing import Any
+
+from .cases import LADDER, Case, null, pair, single, unknown
+from .plant import AUTOCORRELATED, simulate, write
+from .unknown import UNKNOWN
+
+SEEDS = 10
+NULLS, COLOURED_NULLS, PAIRS = 80, 20, 50
+
+
+def cases() -> Iterator[tuple[str, Case]]:
+    """Every case with the set it belongs to; early seeds of every set come first."""
+    for seed in range(1, SEEDS + 1):
+        for tag in LADDER:
+            for level in range(5):
+                yield f"{tag}:{level}", single(tag, level, seed)
+        for k in range(NULLS // SEEDS):
+            yield "null", null(1000 + k * SEEDS + seed)
+        for k in range(COLOURED_NULLS // SEEDS):
+            case = null(2000 + k * SEEDS + seed, AUTOCORRELATED)
+            yield "null-autocorrelated", Case(f"{case.name}-autocorrelated", *_rest(case))
+        for k in range(PAIRS // SEEDS):
+            yield "pair", pair(3000 + k * SEEDS + seed)
+        if seed == 1:
+            for k in range(len(UNKNOWN)):
+                yield "unknown", unknown(k, seed)
+
+
+def _rest(case: Case) -> tuple[Any, ...]:
+    return case.ship, case.effects, case.seed, case.noise
+
+
+def diagnosed(case: Case) -> dict[str, Any]:
+    """What the program says of a case, from its files alone."""
+    from mmgtune.diagnose import diagnose
+    from mmgtune.profile import load_profile
+    from mmgtune.trial import load_trials
+
+    with tempfile.TemporaryDirectory() as folder:
+        write(simulate(case.ship, case.effects, case.seed, case.noise), Path(folder))
+        began = time.perf_counter()
+        document = diagnose(load_profile("suzaku"), load_trials(folder)).to_dict()
+    kept = ("verdict", "causes", "groups", "chi2_per_residual", "unexplained", "detectability")
+    gain = {key: document["gain"][key] for key in ("J_test_before", "J_test_after", "share_above_noise_removed")}
+    best = [row for row in document["candidates"] if row["gain"] > 0.0][:6]
+    seconds = time.perf_counter() - began
+    return {**{key: document[key] for key in kept}, "gain": gain, "candidates": best, "seconds": seconds}
+
+
+def outcome(hidden: dict[str, dict[str, float]], said: dict[str, Any]) -> str:
+    """right, grouped, partly (one of two), missed, unexplained or wrong; "clear" or "alarm" where nothing is hidden."""
+    named = {cause["effect"] for cause in said["causes"]}
+    groups = [set(group) for group in said["groups"]]
+    if not hidden:
+        return "clear" if said["verdict"] == "none" else "alarm"
+    if any(tag.startswith("unknown") for tag in hidden):
+        fine = said["verdict"] == "unexplained" or (named and named <= {"hull-term"})
+        return "right" if fine else "missed" if said["verdict"] == "none" else "wrong"
+    if said["verdict"] == "unexplained":
+        return "unexplained"
+    if not named:
+        return "missed"
+    excused = {tag for group in groups if group & set(hidden) for tag in group}
+    if named - set(hidden) - excused:
+        return "wrong"
+    told = {tag for tag in hidden if tag in named or any(tag in group for group in groups)}
+    if told != set(hidden):
+        return "partly"
+    return "right" if not any(group & set(hidden) for group in groups) else "grouped"
+
+
+def covered(hidden: dict[str, dict[str, float]], said: dict[str, Any]) -> list[bool]:
+    """For each parameter that was hidden and estimated, whether its 95 % interval holds the truth."""
+    found = []
+    for cause in said["causes"]:
+        truth = hidden.get(cause["effect"], {})
+        for name, estimate in cause["parameters"].items():
+            if name not in truth:
+                continue
+            low, high = (math.inf if end is None else end for end in estimate["ci95"])
+            value = truth[name]
+            if name == "direction":
+                middle = 0.5 * (low + high)
+                value = middle + math.remainder(value - middle, 2.0 * math.pi)
+            found.append(low <= value <= high)
+    return found
+
+
+def work(kind: str, case: Case) -> dict[str, Any]:
+    """One case done and scored."""
+    said = diagnosed(case)
+    return {
+        "set": kind,
+        "case": case.name,
+        "hidden": case.effects,
+        "outcome": outcome(case.effects, said),
+        "covered": covered(case.effects, said),
+        **said,
+    }
+
+
+def main() -> None:
+    """Do what is missing."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=Path, default=Path("runs/hidden"))
+    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--only", default="", help="only cases whose name holds this")
+    parser.add_argument("--minutes", type=float, default=math.inf, help="begin no case after this long")
+    options = parser.parse_args()
+    options.out.mkdir(parents=True, exist_ok=True)
+    path = options.out / "results.jsonl"
+    done = {json.loads(line)["case"] for line in path.read_text().splitlines()} if path.exists() else set()
+    left = [(kind, case) for kind, case in cases() if case.name not in done and options.only in case.name]
+    print(f"{len(done)} done, {len(left)} to do", flush=True)
+    ends = time.monotonic() + 60.0 * options.minutes
+    with ProcessPoolExecutor(max_workers=options.jobs) as pool, path.open("a", encoding="utf-8") as file:
+        waiting = iter(left)
+        running = {pool.submit(work, *one) for _, one in zip(range(options.jobs), waiting, strict=False)}
+        while running:
+            finished = next(as_completed(running))
+            running.remove(finished)
+            row = finished.result()
+            file.write(json.dumps(row) + "\n")
+            file.flush()
+            print(f"{row['case']}: {row['outcome']} ({row['seconds']:.0f} s)", flush=True)
+            following = next(waiting, None) if time.monotonic() < ends else None
+            if following is not None:
+                running.add(pool.submit(work, *following))
+
+
+if __name__ == "__main__":
+    main()
