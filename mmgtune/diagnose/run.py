@@ -26,7 +26,7 @@ from .linear import typical
 from .options import DiagnoseOptions
 from .result import Candidate, Cause, Detectability, Diagnosis
 from .screening import angles
-from .search import ENOUGH, Found, Refit, Step, search
+from .search import ENOUGH, WORTH, Found, Refit, Step, search
 from .separate import Suggestion, suggest
 from .workbench import Point, Workbench, make_workbench
 
@@ -156,6 +156,7 @@ def _detectability(bench: Workbench, step: Step, known: Sequence[Hypothesis]) ->
         h = score.hypothesis
         needed = ENOUGH + len(h.names) * math.log(bench.problem.n_residuals)
         sizes = math.sqrt(needed * score.inflation) / score.power if score.power > 0.0 else math.inf
+        sizes = max(sizes, WORTH)
         order = [j for j in np.argsort(-cosine[i]) if named[j].hypothesis.tag != h.tag][:TWINS]
         found.append(
             Detectability(

@@ -364,7 +364,8 @@ def _limits(row: Mapping[str, Any]) -> str:
     for name, limit in row["detection_limit"].items():
         if limit is not None:
             factor, unit = _READ.get(row["units"].get(name), (1.0, row["units"].get(name, "")))
-            found.append(f"{name} {shown(factor * limit, 3)} {'' if unit in ('-', 'prime') else unit}".strip())
+            pure = unit in ("-", "prime")
+            found.append(f"{name} {shown(factor * limit, 4 if pure else 2)} {'' if pure else unit}".strip())
     return ", ".join(found) or "not within its range"
 
 

@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
@@ -17,6 +18,8 @@ from tests.command import run
 from tests.hidden.cases import Case, null, pair, single
 from tests.hidden.plant import AUTOCORRELATED, simulate, write
 from tests.hidden.study import covered, outcome
+
+ROOT = Path(__file__).parent.parent.parent
 
 
 def files(case: Case, folder):
@@ -174,6 +177,8 @@ def test_the_command_writes_a_folder_and_tells_ci(tmp_path):
     assert [cause["effect"] for cause in document["causes"]] == ["speed-scale"]
     for name in ("diagnosis.json", "profile.toml", "motions.parquet", "report.html", "report.md"):
         assert (tmp_path / "run" / name).is_file()
+    formats = (ROOT / "docs" / "formats.md").read_text(encoding="utf-8")
+    assert [key for key in document if f"`{key}`" not in formats] == []
     page = (tmp_path / "run" / "report.html").read_text()
     assert "speed log" in page
     extended = run("simulate", "-p", "run/profile.toml", "--trials", "trials", "--json", cwd=tmp_path)
