@@ -8,6 +8,7 @@ in stack arrays, which is the form LLVM vectorises without run-time alias checks
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 from ..components import Component
 from ..effects import Effect
@@ -160,6 +161,7 @@ air = Air(
 STATES = ("x", "y", "psi", "u", "v_m", "r")
 
 
+@lru_cache(maxsize=64)
 def kernel_source(model: Model) -> str:
     """Python text of the simulator for the components and effects of ``model``."""
     used: set[int] = set()

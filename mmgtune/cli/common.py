@@ -168,9 +168,9 @@ def plan(profile: ShipProfile, trials: TrialSet, options: FitOptions, out: Path)
         f"targets   within +-{options.a_r:g} of their values:",
     ]
     box = problem.box
+    low, high = box.limits
     lines += [
-        f"  {name:<22}{box.low[i]:>12.5g} .. {box.pre[i]:>10.5g} .. {box.high[i]:<10.5g}"
-        for i, name in enumerate(box.names)
+        f"  {name:<22}{low[i]:>12.5g} .. {box.pre[i]:>10.5g} .. {high[i]:<10.5g}" for i, name in enumerate(box.names)
     ]
     return "\n".join(lines)
 

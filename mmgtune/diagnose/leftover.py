@@ -59,9 +59,14 @@ class Leftover:
     explained: dict[str, tuple[str, float]]
 
     @property
+    def noticed(self) -> bool:
+        """Whether there is anything left to speak of."""
+        return self.excess >= NOTICED
+
+    @property
     def structured(self) -> bool:
         """Whether more is left than noise of the sensors could be."""
-        if self.excess < NOTICED:
+        if not self.noticed:
             return False
         strong = [share for name, (_, share) in self.explained.items() if self.channels[name] > NOTICED]
         return max(strong, default=0.0) > ALIKE or max(self.certainty.values(), default=0.0) > CERTAIN

@@ -171,6 +171,8 @@ def basis(columns: FloatArray) -> FloatArray:
     if shown.shape[1] == 0:
         return shown
     shown = shown / np.linalg.norm(shown, axis=0)
+    if shown.shape[1] == 1:
+        return np.asarray(shown)
     square, vectors = np.linalg.eigh(shown.T @ shown)
     kept = square > SAME**2 * square[-1]
     return np.asarray(shown @ (vectors[:, kept] / np.sqrt(square[kept])))

@@ -147,13 +147,18 @@ class Diagnosis:
     @property
     def verdict(self) -> str:
         """One of ``VERDICTS``."""
-        if self.causes and (self.gain.remains or (self.leftover.structured and self.explained_share < MOSTLY)):
-            return "unexplained"
-        if not self.causes and self.leftover.structured:
+        # Held-out error alone does not tell: with few trials the targets themselves are known too badly for that.
+        fails = self.gain.remains and self.leftover.noticed
+        if self.leftover.structured if not self.causes else fails or self._mostly_left:
             return "unexplained"
         if self.groups:
             return "not-separable"
         return "found" if self.causes else "none"
+
+    @property
+    def _mostly_left(self) -> bool:
+        """Whether what is left has a shape and is too much beside what the causes explain."""
+        return self.leftover.structured and self.explained_share < MOSTLY
 
     @property
     def named(self) -> tuple[Cause, ...]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.stats import chi2
+from scipy.special import gammaincc
 
 from .hypotheses import Hypothesis
 from .linear import Linear, basis
@@ -16,6 +16,9 @@ FloatArray = npt.NDArray[np.float64]
 
 DRAWS = 4000
 """Simulated data sets without any effect."""
+
+UNDERFLOW = 1200.0
+"""Chi-squared whose tail probability is still a number."""
 
 NEVER = 1e-6
 """Length of a signature that no trial shows."""
@@ -42,7 +45,18 @@ class Score:
     @property
     def evidence(self) -> float:
         """The score less its expectation by chance, comparable between hypotheses: -ln of its tail probability."""
-        return -float(chi2.logsf(self.score / self.inflation, max(1, len(self.step))))
+        return evidence(self.score / self.inflation, max(1, len(self.step)))
+
+
+def evidence(score: float, parameters: int) -> float:
+    """-ln of the probability of a larger chi-squared of that many degrees of freedom."""
+    return float(_evidence(np.array(score), parameters))
+
+
+def _evidence(scores: FloatArray, parameters: int) -> FloatArray:
+    """``evidence`` of many scores; beyond where the probability underflows it goes on as the exponential does."""
+    half = 0.5 * np.minimum(scores, UNDERFLOW)
+    return np.asarray(-np.log(gammaincc(0.5 * parameters, half)) + 0.5 * np.maximum(scores - UNDERFLOW, 0.0))
 
 
 def scores(linear: Linear, hypotheses: Sequence[Hypothesis]) -> list[Score]:
@@ -95,7 +109,7 @@ class ChanceScores:
             for trial, picked in enumerate(pick):
                 drawn += by_trial[trial][picked].T
             score = np.sum(drawn**2, axis=0) / linear.inflation(Q)
-            self.largest = np.maximum(self.largest, -chi2.logsf(score, Q.shape[1]))
+            self.largest = np.maximum(self.largest, _evidence(score, Q.shape[1]))
         self.largest.sort()
 
     def p_value(self, evidence: float) -> float:

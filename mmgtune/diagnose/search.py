@@ -11,14 +11,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
-from scipy.stats import chi2
 
 from ..backends import Integrator
 from ..fitting.least_squares import solve
 from . import noise as noises
 from .hypotheses import HULL_TERM, Hypothesis
 from .linear import Linear, linearise, typical
-from .screening import ChanceScores, Score, scores
+from .screening import ChanceScores, Score, evidence, scores
 from .workbench import TOLERANCE, Point, Workbench
 
 FloatArray = npt.NDArray[np.float64]
@@ -54,6 +53,9 @@ another hypothesis by as much to be told from it; in units of the noise along it
 
 WORTH = 0.1
 """Smallest size worth speaking of, as a share of the typical one."""
+
+ALMOST = 0.9
+"""Share of the best gain from which a finer integration step, which has no parameter, is believed before any effect."""
 
 FINER = 4
 """The integration step as a cause: a Runge-Kutta step this many times finer."""
@@ -159,7 +161,7 @@ def search(
         say("looking for a cause" if not found.causes else f"looking for cause {len(found.causes) + 1}")
         step = look(bench, found.final, left, first=not found.steps)
         found.steps.append(step)
-        if step.finer is not None and step.finer > 2.0 * ENOUGH and step.finer > 2.0 * _gain(step):
+        if step.finer is not None and step.finer > max(2.0 * ENOUGH, ALMOST * _gain(step)):
             say("the integration step is a cause")
             found.finer_step = step.finer
             bench.problem.integrator = finer(bench.problem.integrator)
@@ -254,7 +256,7 @@ def _refit_best(bench: Workbench, point: Point, ranked: Sequence[Score], linear:
     chosen = [s for s in chosen if s.power > 0.0]
     rough = [_rough(bench, point, score, strong) for score in chosen]
     most = max((point.chi2 - end.chi2 for end in rough), default=0.0)
-    chance = ChanceScores(linear, [s.hypothesis for s in ranked], bench.options.seed)
+    chance = None if quick else ChanceScores(linear, [s.hypothesis for s in ranked], bench.options.seed)
     refits = []
     for score, end in zip(chosen, rough, strict=True):
         gain = point.chi2 - end.chi2
@@ -289,7 +291,9 @@ def _rough(bench: Workbench, point: Point, score: Score, strong: bool) -> Point:
     )
 
 
-def _judged(bench: Workbench, point: Point, score: Score, end: Point, chance: ChanceScores, n_terms: int) -> Refit:
+def _judged(
+    bench: Workbench, point: Point, score: Score, end: Point, chance: ChanceScores | None, n_terms: int
+) -> Refit:
     hypothesis = score.hypothesis
     null = bench.null(hypothesis.names)
     size = np.array([typical(bench, name) for name in hypothesis.names])
@@ -308,7 +312,7 @@ def _judged(bench: Workbench, point: Point, score: Score, end: Point, chance: Ch
         cost,
         gain / score.inflation - cost,
         float(np.max(np.abs(end.unit[len(point.names) :] - null) / size)),
-        chance.p_value(-float(chi2.logsf(gain / score.inflation, k))),
+        chance.p_value(evidence(gain / score.inflation, k)) if chance else 1.0,
     )
 
 

@@ -48,6 +48,22 @@ class Box:
         """Distance between the bounds."""
         return self.high - self.low
 
+    @property
+    def charted(self) -> set[int]:
+        """Targets that are not searched for as they are."""
+        return {*self.reciprocal, *(i for pair in self.polar for i in pair)}
+
+    @property
+    def limits(self) -> tuple[FloatArray, FloatArray]:
+        """Lowest and highest value of each target, in profile units."""
+        low, high = self.low.copy(), self.high.copy()
+        for i in self.reciprocal:
+            with np.errstate(divide="ignore"):
+                low[i], high[i] = 1.0 / self.high[i], 1.0 / self.low[i]
+        for i, j in self.polar:
+            low[i], low[j], high[j] = 0.0, -np.pi, np.pi
+        return low, high
+
     def to_unit(self, values: npt.ArrayLike) -> FloatArray:
         """Positions in the unit cube of values (n_targets,) or (n_targets, n_candidates)."""
         columns = np.array(values, dtype=float)

@@ -106,7 +106,7 @@ def analyse(problem: FitProblem, unit: FloatArray, active: npt.NDArray[np.bool_]
     box = problem.box
     residuals, jacobian = problem.central_jacobian(unit)
     whitening = estimate_whitening(problem, residuals)
-    relative = np.abs(np.where(box.pre != 0.0, box.pre, box.width))
+    relative = np.abs(np.where((box.pre != 0.0) & np.isfinite(box.pre), box.pre, box.width))
     sensitivity = whitening.apply(jacobian * (relative / box.width))
     if problem.sigma is not None:
         _, _, by_offset = problem.jacobians(unit[:, None])
@@ -130,7 +130,11 @@ def analyse(problem: FitProblem, unit: FloatArray, active: npt.NDArray[np.bool_]
     result = Identifiability(
         names=box.names,
         singular_values=singular,
-        stderr={name: float(stderr[i] * relative[i]) if i in usable else None for i, name in enumerate(box.names)},
+        # A size with a direction, or a reciprocal, has no error of its own in these coordinates.
+        stderr={
+            name: float(stderr[i] * relative[i]) if i in usable and i not in box.charted else None
+            for i, name in enumerate(box.names)
+        },
         correlation_names=tuple(box.names[i] for i in usable),
         correlation=correlation,
         null_directions=directions,

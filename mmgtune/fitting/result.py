@@ -127,6 +127,7 @@ class FitResult:
     def coefficients(self) -> list[dict[str, Any]]:
         """Each target with its box, value and what is known of it."""
         rows = []
+        low, high = self.box.limits
         stderr, undetermined = self.identifiability.stderr, self.identifiability.undetermined
         for i, (name, value) in enumerate(self.theta.items()):
             section, symbol = split_name(name)
@@ -138,8 +139,8 @@ class FitResult:
                     "label": field.label,
                     "unit": field.unit,
                     "pre_determined": float(self.box.pre[i]),
-                    "low": float(self.box.low[i]),
-                    "high": float(self.box.high[i]),
+                    "low": finite(float(low[i])),
+                    "high": finite(float(high[i])),
                     "value": value,
                     "position": z,
                     "stderr": stderr.get(name),

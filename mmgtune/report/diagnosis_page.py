@@ -25,6 +25,8 @@ _WORDS = {
     "not-separable": "causes that cannot be told apart",
     "unexplained": "something unknown",
 }
+_RUNS = {"measured": "measured", "before": "without a cause", "after": "with the causes"}
+
 _BARS = 12
 """Hypotheses drawn."""
 
@@ -84,7 +86,7 @@ def _tiles(data: Mapping[str, Any]) -> tuple[Tile, ...]:
             Tile(
                 "Error above noise removed",
                 f"{min(100.0 * gain['share_above_noise_removed'], 99.9):.1f} %",
-                note=f"95 % interval over trials {100.0 * low:.1f} to {100.0 * high:.1f} %",
+                note=f"95 % interval over trials {min(100.0 * low, 99.9):.1f} to {min(100.0 * high, 99.9):.1f} %",
             )
         )
     else:
@@ -196,17 +198,18 @@ def _gain(record: DiagnosisRecord, drawings: dict[str, Drawn]) -> Section:
         drawings["tracks"] = Drawn(
             "tracks",
             "Measured and simulated tracks of each held-out trial, north up",
-            lambda: tracks.draw_tracks(chosen, record.motions),
+            lambda: tracks.draw_tracks(chosen, record.motions, _RUNS),
         )
         drawings["distances"] = Drawn(
             "distances",
             "Distance of the simulated from the measured position over time",
-            lambda: tracks.draw_distances(chosen, record.motions),
+            lambda: tracks.draw_distances(chosen, record.motions, _RUNS),
         )
-        note = " Before: re-tuned without a cause; after: with the causes."
+        before, after = (shown(findings.mean_off_track(chosen, when), 3) for when in ("before", "after"))
+        gap = f"Mean distance off track: {before} m re-tuned without a cause, {after} m with the causes."
         blocks += [
-            picture(drawings["tracks"], "Held-out tracks", findings.tracks(chosen) + note),
-            picture(drawings["distances"], "Distance off track", findings.distances(chosen)),
+            picture(drawings["tracks"], "Held-out tracks", gap),
+            picture(drawings["distances"], "Distance off track", "The same over time."),
         ]
     listed = [
         (words + name, gain[f"{kind}_before"].get(name), gain[f"{kind}_after"].get(name))

@@ -36,7 +36,7 @@ def draw_forest(rows: Sequence[Mapping[str, Any]]) -> Figure:
 
 
 def _forest_row(ax: Axes, place: int, row: Mapping[str, Any]) -> None:
-    low, high = float(row["low"]), float(row["high"])
+    low, high = (number(row[end]) or 0.0 for end in ("low", "high"))
     position = number(row.get("position"))
     if position is None:
         position = (float(row["value"]) - low) / (high - low) if high > low else 0.5

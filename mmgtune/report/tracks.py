@@ -36,7 +36,11 @@ def tick_spacing(results: Sequence[Mapping[str, Any]], motions: Mapping[str, Map
     return next((step for step in (60.0, 120.0, 300.0, 600.0, 1800.0) if longest / step <= 25.0), 3600.0)
 
 
-def draw_tracks(results: Sequence[Mapping[str, Any]], motions: Mapping[str, Mapping[str, Motion]]) -> Figure:
+def draw_tracks(
+    results: Sequence[Mapping[str, Any]],
+    motions: Mapping[str, Mapping[str, Motion]],
+    words: Mapping[str, str] = WORDS,
+) -> Figure:
     """Tracks of every trial, north up and east to the right, with marks at equal times."""
     figure, axes = grid_of(len(results), (3.0, 3.1))
     spacing = tick_spacing(results, motions)
@@ -45,11 +49,15 @@ def draw_tracks(results: Sequence[Mapping[str, Any]], motions: Mapping[str, Mapp
         ax.set_title(_title(row), wrap=True)
     figure.supxlabel("east [m]", fontsize=9)
     figure.supylabel("north [m]", fontsize=9)
-    legend_above(figure, WORDS)
+    legend_above(figure, dict(words))
     return figure
 
 
-def draw_distances(results: Sequence[Mapping[str, Any]], motions: Mapping[str, Mapping[str, Motion]]) -> Figure:
+def draw_distances(
+    results: Sequence[Mapping[str, Any]],
+    motions: Mapping[str, Mapping[str, Motion]],
+    words: Mapping[str, str] = WORDS,
+) -> Figure:
     """Distance between the simulated and the measured position over time, for every trial."""
     import numpy as np
 
@@ -70,7 +78,7 @@ def draw_distances(results: Sequence[Mapping[str, Any]], motions: Mapping[str, M
             ax.margins(x=0.02)
     figure.supxlabel("time [s]", fontsize=9)
     figure.supylabel("distance off [m]", fontsize=9)
-    legend_above(figure, {"before": WORDS["before"], "after": WORDS["after"]})
+    legend_above(figure, {"before": words["before"], "after": words["after"]})
     return figure
 
 

@@ -264,3 +264,27 @@ def test_costs_of_all_lanes_stay_finite_at_the_corners_of_every_box(ship):
     found = get_backend().run(model, model.matrix(names, box.from_unit(corners)), cases, keep_states=True)
     assert np.isfinite(found.states[~found.diverged]).all()
     assert found.diverged.mean() < 0.2
+
+
+def test_a_current_is_fitted_like_any_coefficient(ship, tmp_path):
+    """`fit` and `sweep` take parameters of effects as targets."""
+    from mmgtune.fitting import FitOptions, fit
+    from mmgtune.trial import load_trials
+    from tests.hidden.cases import single
+    from tests.hidden.plant import simulate, write
+
+    case = single("current", 3, 2)
+    write(simulate({}, case.effects, case.seed, case.noise), tmp_path)
+    start = parse_profile(ship.text + '\n[effects.current]\nnorth = "0 m/s"\neast = "0 m/s"\n')
+    options = FitOptions(
+        method="least-squares",
+        starts=2,
+        initial="estimated",
+        integrator="rk4",
+        targets=("effects.current.north", "effects.current.east", "hull.R_0", "wake.w_P0"),
+    )
+    result = fit(start, load_trials(tmp_path), options)
+    for name, value in case.effects["current"].items():
+        assert result.theta[f"effects.current.{name}"] == pytest.approx(value, abs=0.01)
+    tuned = parse_profile(result.tuned_text())
+    assert tuned.value("effects.current.north") == result.theta["effects.current.north"]

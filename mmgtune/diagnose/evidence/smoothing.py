@@ -12,6 +12,7 @@ differences show; the number of parameters follows from tau.  Noise that is not 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -71,6 +72,7 @@ class Smoothed:
         return np.asarray(self.noise * np.sqrt(VARIANCE_OF_SLOPE * self.dt / self.tau**3))
 
 
+@lru_cache(maxsize=64)
 def smooth(trial: Trial) -> Smoothed:
     """Smooth a trial; gaps (NaN) up to twice the time scale are bridged, longer ones split the record.
 
