@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .plant import WHITE, Noise
+from .plant import WHITE, Noise, sail
 from .suzaku import HULL_TERMS, PROFILE, TARGETS
 from .unknown import UNKNOWN
 
@@ -17,6 +17,9 @@ Draw = Callable[[int, np.random.Generator], dict[str, float]]
 
 SPREAD = 0.22
 """Largest share by which a tuning target of a drawn ship differs from the profile's value."""
+
+SPINNING = 4.0
+"""r' beyond which a ship turns on the spot: the model's reference speed is another there (r' of 5)."""
 
 TYPICAL = 3
 """The level any engineer would call visible."""
@@ -186,7 +189,21 @@ def unknown(k: int, seed: int, noise: Noise = WHITE) -> Case:
 
 
 def _ship(seed: int) -> dict[str, float]:
-    return draw_ship(_rng("ship", seed))
+    """The first ship drawn that can be steered: some spin to a standstill, where the model is not valid."""
+    rng = _rng("ship", seed)
+    while True:
+        ship = draw_ship(rng)
+        if fastest_turn(ship, seed) < SPINNING:
+            return ship
+
+
+def fastest_turn(ship: dict[str, float], seed: int) -> float:
+    """Largest r' in any trial of a ship with nothing hidden [-]."""
+    largest = 0.0
+    for rows in sail(ship, {}, seed).values():
+        u, v, r = rows[:, 4], rows[:, 5], rows[:, 6]
+        largest = max(largest, float(np.max(np.abs(r) * PROFILE["particulars.L_pp"] / np.hypot(u, v))))
+    return largest
 
 
 def _rng(what: str, seed: int) -> np.random.Generator:
