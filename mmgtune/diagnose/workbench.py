@@ -79,12 +79,15 @@ class Workbench:
         return tuple(self.noise.channels)
 
     def model_of(self, names: Sequence[str]) -> Model:
-        """The model that holds these parameters, what the profile has, and the effects that cost nothing."""
-        left_out = frozenset(
+        """A model that holds these parameters, what the profile has, and the effects that cost nothing."""
+        asked = [
             tag
             for tag in ON_DEMAND
-            if not any(name.startswith(f"effects.{tag}.") for name in names) and tag not in self.own_effects
-        )
+            if tag in self.own_effects or any(name.startswith(f"effects.{tag}.") for name in names)
+        ]
+        left_out = frozenset(ON_DEMAND) - frozenset(asked)
+        if len(asked) > 1:  # one model for every combination: compiling another takes longer than running this one
+            left_out = frozenset()
         if left_out not in self._models:
             sections = {kind: s for kind, s in self.model.profile.sections.items() if kind[8:] not in left_out}
             self._models[left_out] = Model(replace(self.model.profile, sections=sections))

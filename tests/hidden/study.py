@@ -10,11 +10,13 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import multiprocessing
 import os
 import tempfile
 import time
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from multiprocessing.sharedctypes import Synchronized
 from pathlib import Path
 from typing import Any
 
@@ -117,6 +119,15 @@ def work(kind: str, case: Case) -> dict[str, Any]:
     }
 
 
+def on_one_core(count: Synchronized[int]) -> None:
+    """Keep a worker on a core of its own: cases side by side are faster than threads within one."""
+    if hasattr(os, "sched_getaffinity"):
+        cores = sorted(os.sched_getaffinity(0))
+        with count.get_lock():
+            count.value += 1
+            os.sched_setaffinity(0, {cores[count.value % len(cores)]})
+
+
 def main() -> None:
     """Do what is missing."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -131,7 +142,8 @@ def main() -> None:
     left = [(kind, case) for kind, case in cases() if case.name not in done and options.only in case.name]
     print(f"{len(done)} done, {len(left)} to do", flush=True)
     ends = time.monotonic() + 60.0 * options.minutes
-    with ProcessPoolExecutor(max_workers=options.jobs) as pool, path.open("a", encoding="utf-8") as file:
+    pool = ProcessPoolExecutor(options.jobs, initializer=on_one_core, initargs=(multiprocessing.Value("i", 0),))
+    with pool, path.open("a", encoding="utf-8") as file:
         waiting = iter(left)
         running = {pool.submit(work, *one) for _, one in zip(range(options.jobs), waiting, strict=False)}
         while running:
