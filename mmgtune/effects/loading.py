@@ -37,6 +37,12 @@ def loading(values, e):
     }
 
 
+_WORDS = {
+    "draught": "{} times the draught",
+    "trim": "a trim by the stern of {} of the draught",
+    "displacement": "{} times the displacement",
+}
+
 EFFECT = Effect(
     kind="effects.loading",
     tag="loading",
@@ -76,15 +82,7 @@ EFFECT = Effect(
     variants=(("draught",), ("trim",), ("displacement",)),
     sentence=lambda v: (
         "The ship was loaded otherwise than the profile says: "
-        + ", ".join(
-            {
-                "draught": f"{v['draught']} times the draught",
-                "trim": f"a trim by the stern of {v['trim']} of the draught",
-                "displacement": f"{v['displacement']} times the displacement",
-            }[name]
-            for name in ("draught", "trim", "displacement")
-            if name in v
-        )
+        + ", ".join(_WORDS[name].format(v[name]) for name in _WORDS if name in v)
     ),
     needs=("hull.Y_v", "hull.Y_r", "hull.N_v", "hull.N_r"),
 )

@@ -29,6 +29,8 @@ def resistance(state, air, found, components, p, e):
     return Force(X=X, Y=zero, N=zero)
 
 
+_WORDS = {"factor": "it was {} times as large", "slope": "its coefficient grew by {} per unit of Froude number"}
+
 EFFECT = Effect(
     kind="effects.resistance",
     tag="resistance",
@@ -57,8 +59,7 @@ EFFECT = Effect(
     variants=(("factor",), ("slope",)),
     absorbed={"factor": "hull.R_0"},
     sentence=lambda v: (
-        f"The resistance was {v['factor']} times the model's"
-        if "factor" in v
-        else f"The resistance coefficient changed with speed, by a factor of 1 + {v['slope']} times Froude number"
+        "The resistance differed from the model's: "
+        + " and ".join(_WORDS[name].format(v[name]) for name in _WORDS if name in v)
     ),
 )

@@ -37,6 +37,8 @@ def steering_lag(start, end, before, h, e):
     return Control(n=end.n, delta=where(np.abs(change) > most, limited, goal))
 
 
+_WORDS = {"time_constant": "with a time constant of {}", "rate_limit": "at {} at most"}
+
 EFFECT = Effect(
     kind="effects.steering-lag",
     tag="steering-lag",
@@ -67,8 +69,7 @@ EFFECT = Effect(
     },
     variants=(("time_constant",), ("rate_limit",)),
     sentence=lambda v: (
-        f"The rudder followed the logged angle with a time constant of {v['time_constant']}"
-        if "time_constant" in v
-        else f"The rudder moved at {v['rate_limit']} at most behind the logged order"
+        "The rudder followed the logged angle "
+        + " and ".join(_WORDS[name].format(v[name]) for name in _WORDS if name in v)
     ),
 )

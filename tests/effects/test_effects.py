@@ -193,6 +193,20 @@ def test_parameters_are_targets_with_boxes_of_their_own(ship):
     assert np.isinf(box.from_unit(null)[1])
 
 
+@pytest.mark.parametrize("effect", effects(), ids=lambda effect: effect.tag)
+def test_every_cause_can_be_said_whichever_parameters_were_found(effect):
+    """Alone, and all together as where one was found after another."""
+    together = {name for variant in effect.variants for name in variant}
+    for found in (*effect.variants, together):
+        shown = {name: f"<{name}>" for name in found}
+        if effect.tag == "current":
+            shown = {"speed": "<north>", "towards": "<east>"}
+        sentence = effect.sentence(shown)
+        for variant in effect.variants:
+            if set(variant) <= set(found) and (effect.tag, variant) != ("wind", ("speed", "direction")):
+                assert all(f"<{name}>" in sentence for name in variant), sentence
+
+
 def test_what_a_profile_gets_wrong_is_said(ship):
     with pytest.raises(ProfileError, match="unknown effect 'curent'"):
         parse_profile(ship.text + '\n[effects.curent]\nnorth = "1 m/s"\n')
