@@ -52,7 +52,7 @@ ENOUGH = 10.0
 another hypothesis by as much to be told from it; in units of the noise along it."""
 
 WORTH = 0.1
-"""Smallest size worth speaking of, as a share of the typical one."""
+"""Smallest size worth speaking of where another effect would do as well, as a share of the typical one."""
 
 ALMOST = 0.9
 """Share of the best gain from which a finer integration step, which has no parameter, is believed before any effect."""
@@ -219,8 +219,8 @@ def look(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis], first
     if first:
         other = bench.refit(point.names, point.unit[:, None], point.offsets, integrator=finer(point.integrator))
         finer_gain = point.chi2 - other.chi2
-    accepted, reason = _decide(bench, refits)
     rivals = _rivals(refits) if refits else []
+    accepted, reason = _decide(bench, refits, rivals)
     return Step(point, linear, ranked, refits, rivals, accepted, reason, finer_gain)
 
 
@@ -316,7 +316,7 @@ def _judged(
     )
 
 
-def _decide(bench: Workbench, refits: Sequence[Refit]) -> tuple[bool, str]:
+def _decide(bench: Workbench, refits: Sequence[Refit], rivals: Sequence[Refit]) -> tuple[bool, str]:
     if not refits:
         return False, "no effect applies"
     best = refits[0]
@@ -324,7 +324,7 @@ def _decide(bench: Workbench, refits: Sequence[Refit]) -> tuple[bool, str]:
         return False, f"chance brings as much in {best.p_value:.2g} of all searches"
     if best.evidence < ENOUGH:
         return False, "it explains too little for one more parameter"
-    if best.size < WORTH:
+    if best.size < WORTH and rivals:  # so little, and not even told apart
         return False, f"its size is below a {1.0 / WORTH:.0f}th of what is worth speaking of"
     return True, ""
 

@@ -20,6 +20,8 @@ from multiprocessing.sharedctypes import Synchronized
 from pathlib import Path
 from typing import Any
 
+from mmgtune.effects import find_effect
+
 from .cases import LADDER, Case, null, pair, single, unknown
 from .plant import AUTOCORRELATED, simulate, write
 from .unknown import UNKNOWN
@@ -60,11 +62,50 @@ def diagnosed(case: Case) -> dict[str, Any]:
         write(simulate(case.ship, case.effects, case.seed, case.noise), Path(folder))
         began = time.perf_counter()
         document = diagnose(load_profile("suzaku"), load_trials(folder)).to_dict()
-    kept = ("verdict", "causes", "groups", "chi2_per_residual", "unexplained", "detectability")
-    gain = {key: document["gain"][key] for key in ("J_test_before", "J_test_after", "share_above_noise_removed")}
-    best = [row for row in document["candidates"] if row["gain"] > 0.0][:6]
-    seconds = time.perf_counter() - began
-    return {**{key: document[key] for key in kept}, "gain": gain, "candidates": best, "seconds": seconds}
+    return {**document, "seconds": time.perf_counter() - began}
+
+
+def kept(hidden: dict[str, dict[str, float]], said: dict[str, Any]) -> dict[str, Any]:
+    """What of a diagnosis is worth keeping: a line of a kilobyte."""
+    return {
+        "verdict": said["verdict"],
+        "causes": [{key: cause[key] for key in ("effect", "parameters", "p_value")} for cause in said["causes"]],
+        "groups": said["groups"],
+        "best": [
+            {"effect": row["effect"], "parameters": row["parameters"], "gain": round(row["gain"], 1)}
+            for row in said["candidates"][:3]
+        ],
+        "limits": [row for row in said["detectability"] if row["effect"] in hidden],
+        "chi2_per_residual": said["chi2_per_residual"],
+        "share_above_noise_removed": said["gain"]["share_above_noise_removed"],
+        "seconds": round(said["seconds"], 1),
+    }
+
+
+def above_limit(hidden: dict[str, dict[str, float]], said: dict[str, Any]) -> bool | None:
+    """Whether everything hidden is larger than the detection limit the program states; None where it states none."""
+    found: list[bool] = []
+    for tag, truth in hidden.items():
+        for row in said["detectability"]:
+            limits = {name: limit for name, limit in row["detection_limit"].items() if name in truth}
+            if row["effect"] == tag and limits:
+                found.append(_is_above(tag, truth, limits))
+    return all(found) if found else None
+
+
+def _is_above(tag: str, truth: dict[str, float], limits: dict[str, float | None]) -> bool:
+    effect = find_effect(tag)
+    assert effect is not None  # it is in the ladder
+    sizes = []
+    for name, limit in limits.items():
+        parameter = effect.parameters[name]
+        if limit is None:
+            sizes.append(0.0)
+        elif parameter.chart == "reciprocal":
+            sizes.append(limit / truth[name])
+        else:
+            sizes.append(abs(truth[name] - parameter.null) / abs(limit - parameter.null))
+    return math.hypot(*sizes) >= 1.0
 
 
 def outcome(hidden: dict[str, dict[str, float]], said: dict[str, Any]) -> str:
@@ -115,7 +156,8 @@ def work(kind: str, case: Case) -> dict[str, Any]:
         "hidden": case.effects,
         "outcome": outcome(case.effects, said),
         "covered": covered(case.effects, said),
-        **said,
+        "above_limit": above_limit(case.effects, said),
+        **kept(case.effects, said),
     }
 
 
