@@ -11,13 +11,18 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from .physics.hull.cubic import CubicHull, cubic_hull
+from .physics.hull.unified import UnifiedHull, unified_hull
 from .physics.propeller.four_quadrant import FourQuadrantPropeller, four_quadrant_propeller
 from .physics.propeller.open_water import OpenWaterPropeller, open_water_propeller
+from .physics.propeller.reversible import ReversiblePropeller, reversible_propeller
 from .physics.quantities import AboveWater, Ship
 from .physics.rudder.flapped import FlappedRudder, flapped_rudder
 from .physics.rudder.plain import PlainRudder, plain_rudder
+from .physics.rudder.reversible import ReversibleRudder, reversible_rudder
 from .physics.wake.asymmetric import AsymmetricWake, asymmetric_wake
 from .physics.wake.exponential import ExponentialWake, exponential_wake
+from .physics.wake.quadratic import QuadraticWake, quadratic_wake
+from .physics.wind import WindCoefficients
 
 
 @dataclass(frozen=True)
@@ -30,6 +35,7 @@ class Field:
     low, high  impossible at or beyond these (exclusive), None where anything goes
     choices  words a profile may write instead of the number each stands for
     table    0 for a number; else the number of values of a table
+    derived  computed from other numbers of the profile where it is left out
     """
 
     label: str
@@ -39,6 +45,7 @@ class Field:
     high: float | None = None
     choices: dict[str, float] = field(default_factory=dict)
     table: int = 0
+    derived: bool = False
 
 
 @dataclass(frozen=True)
@@ -61,6 +68,10 @@ class Component:
 SUYAMA = "Suyama et al. 2023, arXiv:2312.04224"
 OKUDA = "Okuda et al. 2023, Applied Ocean Research 135, 103567"
 YASUKAWA = "Yasukawa & Yoshimura 2015, J. Marine Science and Technology 20, 37-52"
+YOSHIMURA = (
+    "Yoshimura, Nakao & Ishibashi 2009, unified mathematical model for ocean and harbour manoeuvring, MARSIM 2009"
+)
+MIYAUCHI = "Miyauchi et al. 2022, J. Marine Science and Technology, doi 10.1007/s00773-022-00889-3"
 
 SHIP = Component(
     kind="particulars",
@@ -105,6 +116,27 @@ CUBIC_HULL = Component(
     },
 )
 
+UNIFIED_HULL = Component(
+    kind="hull",
+    tag="unified",
+    title="cross-flow drag and linear lift, for any drift angle",
+    params=UnifiedHull,
+    function=unified_hull,
+    cites=(YOSHIMURA, MIYAUCHI),
+    fields={
+        "X_0F": Field("surge force going straight ahead", "prime", high=0.0),
+        "X_0A": Field("surge force going straight astern", "prime", high=0.0),
+        "X_vr": Field("surge force, vr term", "prime", default=0.0),
+        "Y_v": Field("sway force, v term", "prime"),
+        "Y_r": Field("sway force, r term", "prime"),
+        "N_v": Field("yaw moment, v term", "prime"),
+        "N_r": Field("yaw moment, r term", "prime"),
+        "C_D": Field("cross-flow drag coefficient", low=-1e-12),
+        "C_rY": Field("weight of the yaw rate in the cross flow, for the sway force", low=-1e-12),
+        "C_rN": Field("weight of the yaw rate in the cross flow, for the yaw moment", low=-1e-12),
+    },
+)
+
 EXPONENTIAL_WAKE = Component(
     kind="wake",
     tag="exponential",
@@ -131,6 +163,21 @@ ASYMMETRIC_WAKE = Component(
         "C_1": Field("rate of change of the wake with the inflow angle", "1/rad", low=-1e-12),
         "C_2p": Field("end value of (1-w_P)/(1-w_P0), inflow angle positive", low=0.0),
         "C_2n": Field("end value of (1-w_P)/(1-w_P0), inflow angle negative", low=0.0),
+        "x_P_": Field("longitudinal position of the propeller, over L_pp", low=-1.0, high=1.0),
+    },
+)
+
+QUADRATIC_WAKE = Component(
+    kind="wake",
+    tag="quadratic",
+    title="wake of the lateral velocity and its square, none astern",
+    params=QuadraticWake,
+    function=quadratic_wake,
+    cites=(MIYAUCHI,),
+    fields={
+        "w_P0": Field("wake fraction at zero lateral velocity", low=-1.0, high=1.0),
+        "tau": Field("change of 1 - w_P with the size of the lateral velocity at the propeller"),
+        "C_P": Field("change of 1 - w_P with the square of the lateral velocity at the propeller"),
         "x_P_": Field("longitudinal position of the propeller, over L_pp", low=-1.0, high=1.0),
     },
 )
@@ -180,6 +227,45 @@ OPEN_WATER_PROPELLER = Component(
         "k_0": Field("thrust coefficient at J = 0"),
         "k_1": Field("thrust coefficient, J term"),
         "k_2": Field("thrust coefficient, J^2 term"),
+    },
+)
+
+_SIDEWAYS = (
+    "revolutions astern, J_S from -0.35 to -0.06, constant term",
+    "revolutions astern, J_S from -0.35 to -0.06, J_S term",
+    "revolutions astern, J_S below -0.35, constant term",
+    "revolutions astern, J_S below -0.35, J_S term",
+    "revolutions astern, J_S above -0.06",
+    "ship astern and revolutions ahead, J_S^2 term",
+    "ship astern and revolutions ahead, J_S term",
+    "ship astern and revolutions ahead, constant term",
+)
+
+REVERSIBLE_PROPELLER = Component(
+    kind="propeller",
+    tag="reversible",
+    title="either way of turning on a ship that moves either way, with side force",
+    params=ReversiblePropeller,
+    function=reversible_propeller,
+    cites=(
+        MIYAUCHI,
+        "Hachii 2004, cited there for revolutions astern",
+        "Ueno, Nimura & Miyazaki 2001, cited there for the ship astern with revolutions ahead",
+    ),
+    fields={
+        "D_P": Field("diameter", "m", low=0.0, high=20.0),
+        "pitch_": Field("pitch over diameter", low=0.0, high=5.0),
+        "t_P": Field("thrust deduction fraction, revolutions ahead", low=-1.0, high=1.0),
+        "k_0": Field("thrust coefficient at J = 0, revolutions ahead"),
+        "k_1": Field("thrust coefficient, J term, revolutions ahead"),
+        "k_2": Field("thrust coefficient, J^2 term, revolutions ahead"),
+        "J_max": Field("largest size of an advance ratio", default=1.5, low=0.0),
+        **{f"A_{i}": Field(f"side force, {where}", default=0.0) for i, where in enumerate(_SIDEWAYS, start=1)},
+        **{f"B_{i}": Field(f"yaw moment, {where}", default=0.0) for i, where in enumerate(_SIDEWAYS, start=1)},
+        "C_3": Field("surge force, revolutions astern, J_S below C_10"),
+        "C_6": Field("surge force, revolutions astern, J_S from C_10 on, constant term"),
+        "C_7": Field("surge force, revolutions astern, J_S from C_10 on, J_S term"),
+        "C_10": Field("advance ratio between the two, revolutions astern"),
     },
 )
 
@@ -233,6 +319,32 @@ PLAIN_RUDDER = Component(
     },
 )
 
+REVERSIBLE_RUDDER = Component(
+    kind="rudder",
+    tag="reversible",
+    title="rudder without a flap, inflow from either direction",
+    params=ReversibleRudder,
+    function=reversible_rudder,
+    cites=(YASUKAWA, MIYAUCHI, "Kitagawa et al. 2015, cited there for the inflow behind a braking propeller"),
+    fields={
+        **_RUDDER_GEOMETRY,
+        **_RUDDER_INFLOW,
+        "k_reverse": Field("propeller race against the motion of the ship", default=0.0, low=-1e-12),
+        "C_PR": Field("loss of inflow behind a braking propeller", default=0.0),
+        "f_alpha": Field("normal force gradient", "1/rad", low=0.0),
+    },
+)
+
+WIND_FORCES = {"X": "surge force", "Y": "sway force", "N": "yaw moment"}
+HARMONICS = (
+    "mean over the angle of the wind",
+    "first harmonic",
+    "second harmonic",
+    "third harmonic",
+    "fourth harmonic",
+    "fifth harmonic",
+)
+
 ABOVE_WATER = Component(
     kind="above_water",
     tag="above_water",
@@ -248,18 +360,26 @@ ABOVE_WATER = Component(
         "C_BR": Field("centroid of the superstructure, forward of midship", "m"),
         "H_BR": Field("top of the bridge above the waterline", "m", low=0.0, high=150.0),
         "H_C": Field("centroid of the lateral area above the waterline", "m", low=0.0, high=100.0),
+        **{
+            name: Field(f"wind {WIND_FORCES[name[0]]}, {HARMONICS[int(name[2])]}", derived=True)
+            for name in WindCoefficients._fields
+        },
     },
 )
 
 COMPONENTS = (
     SHIP,
     CUBIC_HULL,
+    UNIFIED_HULL,
     EXPONENTIAL_WAKE,
     ASYMMETRIC_WAKE,
+    QUADRATIC_WAKE,
     FOUR_QUADRANT_PROPELLER,
     OPEN_WATER_PROPELLER,
+    REVERSIBLE_PROPELLER,
     FLAPPED_RUDDER,
     PLAIN_RUDDER,
+    REVERSIBLE_RUDDER,
     ABOVE_WATER,
 )
 """Every component there is, in the order documentation lists them."""

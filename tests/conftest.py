@@ -24,3 +24,9 @@ def any_model(request: pytest.FixtureRequest) -> Model:
 def suzaku() -> Model:
     """SUZAKU with its pre-determined coefficients."""
     return Model(load_profile("suzaku"))
+
+
+@pytest.fixture(scope="session")
+def esso_osaka() -> Model:
+    """The 3 m Esso Osaka with captive-test coefficients."""
+    return Model(load_profile("esso_osaka_3m"))

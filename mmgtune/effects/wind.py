@@ -6,7 +6,7 @@ import numpy as np
 
 from ..physics.elementary import cos, sin, where
 from ..physics.quantities import Force, Lanes
-from ..physics.wind import wind_coefficients
+from ..physics.wind import WindCoefficients, wind_shape
 from .effect import Effect, Parameter
 
 RHO_AIR = 1.225
@@ -21,11 +21,16 @@ class Wind(NamedTuple):
     measured: Lanes
     A_T: Lanes
     A_L: Lanes
-    A_OD: Lanes
-    C: Lanes
-    C_BR: Lanes
-    H_BR: Lanes
-    H_C: Lanes
+    X_0: Lanes
+    X_1: Lanes
+    X_3: Lanes
+    X_5: Lanes
+    Y_1: Lanes
+    Y_3: Lanes
+    Y_5: Lanes
+    N_1: Lanes
+    N_2: Lanes
+    N_3: Lanes
 
 
 def wind(state, air, found, components, p, e):
@@ -44,7 +49,7 @@ def wind(state, air, found, components, p, e):
     v_A = cos_psi * east - sin_psi * north - state.v_m
     U_A2 = u_A * u_A + v_A * v_A
     U_A = np.sqrt(np.maximum(U_A2, 1e-12))
-    C_X, C_Y, C_N = wind_coefficients(-u_A / U_A, -v_A / U_A, p.ship.L_pp, p.ship.B, e)
+    C_X, C_Y, C_N = wind_shape(-u_A / U_A, -v_A / U_A, e)
     q = blows * 0.5 * RHO_AIR * U_A2
     return Force(X=q * e.A_T * C_X, Y=q * e.A_L * C_Y, N=q * e.A_L * p.ship.L_pp * C_N)
 
@@ -84,7 +89,7 @@ EFFECT = Effect(
             bounds_source="from no wind to twice the measured",
         ),
     },
-    borrowed={name: f"above_water.{name}" for name in ("A_T", "A_L", "A_OD", "C", "C_BR", "H_BR", "H_C")},
+    borrowed={name: f"above_water.{name}" for name in ("A_T", "A_L", *WindCoefficients._fields)},
     variants=(("speed", "direction"), ("measured",)),
     sentence=lambda v: (
         f"The wind measured in the trials acts on the ship, with {v['measured']} times its measured speed"

@@ -45,7 +45,7 @@ def forces(state, control, components, p):
     water = flow(state.u, state.v_m, state.r, p.ship.L_pp)
     hull = components.hull(water, p.ship, p.hull)
     wake = components.wake(water, p.wake)
-    propeller = components.propeller(wake.u_P, control.n, p.ship, p.propeller)
+    propeller = components.propeller(water, wake, control.n, p.ship, p.propeller)
     rudder = components.rudder(water, p.ship, wake, propeller, control.delta, p.rudder)
     total = Force(
         X=hull.X + propeller.force.X + rudder.force.X,

@@ -107,3 +107,13 @@ class AboveWater(NamedTuple):
     C_BR: Lanes  # centroid of the superstructure, forward of midship [m]
     H_BR: Lanes  # top of the bridge above the waterline [m]
     H_C: Lanes  # centroid of A_L above the waterline [m]
+    X_0: Lanes  # harmonics of the wind force over the angle of the apparent wind [-]
+    X_1: Lanes
+    X_3: Lanes
+    X_5: Lanes
+    Y_1: Lanes
+    Y_3: Lanes
+    Y_5: Lanes
+    N_1: Lanes
+    N_2: Lanes
+    N_3: Lanes

@@ -1,14 +1,31 @@
 """Wind force coefficients of the part of a ship above the water."""
 
+from typing import NamedTuple
 
-def wind_coefficients(ahead, starboard, L, B, above):
-    """Coefficients of wind force on frontal area, lateral area, and lateral area times L: (C_X, C_Y, C_N) [-].
+from .quantities import Lanes
 
-    ahead, starboard  unit vector [-] towards where the apparent wind comes from, in the ship's axes
-    L, B              length and breadth [m]
-    above             has A_T, A_L, A_OD [m^2], C, C_BR, H_BR, H_C [m] (see the profile's section above_water)
-    Floats or (n_lanes,).  Fujiwara, Ueno & Nimura 1998, regression over models of merchant ships, with L_pp for the
-    length over all.  Head wind gives C_X < 0, wind from starboard C_Y < 0.
+
+class WindCoefficients(NamedTuple):
+    """Harmonics of the wind force over the angle of the apparent wind, all [-]."""
+
+    X_0: Lanes
+    X_1: Lanes
+    X_3: Lanes
+    X_5: Lanes
+    Y_1: Lanes
+    Y_3: Lanes
+    Y_5: Lanes
+    N_1: Lanes
+    N_2: Lanes
+    N_3: Lanes
+
+
+def wind_regression(L, B, above):
+    """Harmonics of the wind force: Fujiwara, Ueno & Nimura 1998, regression over models of merchant ships.
+
+    L, B   length and breadth [m]; L_pp stands for the length over all
+    above  has A_T, A_L, A_OD [m^2], C, C_BR, H_BR, H_C [m] (see the profile's section above_water)
+    Floats or (n_lanes,) -> WindCoefficients.
     """
     A_T, A_L, A_OD = above.A_T, above.A_L, above.A_OD
     C, C_BR, H_BR, H_C = above.C, above.C_BR, above.H_BR, above.H_C
@@ -78,12 +95,22 @@ def wind_coefficients(ahead, starboard, L, B, above):
         - 1.06 * A_L / (L * L)
     )
     N_3 = 0.0230 + 0.0385 * C_BR / L - 0.0339 * front + 0.0023 * A_L / A_T
+    return WindCoefficients(X_0, X_1, X_3, X_5, Y_1, Y_3, Y_5, N_1, N_2, N_3)
+
+
+def wind_shape(ahead, starboard, c):
+    """Coefficients of wind force on frontal area, lateral area, and lateral area times L: (C_X, C_Y, C_N) [-].
+
+    ahead, starboard  unit vector [-] towards where the apparent wind comes from, in the ship's axes
+    c                 has the fields of WindCoefficients
+    Floats or (n_lanes,).  Fujiwara, Ueno & Nimura 1998: head wind gives C_X < 0, wind from starboard C_Y < 0.
+    """
     # The regression counts the angle a counterclockwise from the bow: cos a = ahead, sin a = -starboard.
     c_1, s_1 = ahead, -starboard
     c_2, s_2 = c_1 * c_1 - s_1 * s_1, 2.0 * s_1 * c_1
     c_3, s_3 = c_2 * c_1 - s_2 * s_1, s_2 * c_1 + c_2 * s_1
     c_5, s_5 = c_3 * c_2 - s_3 * s_2, s_3 * c_2 + c_3 * s_2
-    C_X = X_0 + X_1 * c_1 + X_3 * c_3 + X_5 * c_5
-    C_Y = Y_1 * s_1 + Y_3 * s_3 + Y_5 * s_5
-    C_N = N_1 * s_1 + N_2 * s_2 + N_3 * s_3
+    C_X = c.X_0 + c.X_1 * c_1 + c.X_3 * c_3 + c.X_5 * c_5
+    C_Y = c.Y_1 * s_1 + c.Y_3 * s_3 + c.Y_5 * s_5
+    C_N = c.N_1 * s_1 + c.N_2 * s_2 + c.N_3 * s_3
     return C_X, C_Y, C_N

@@ -6,19 +6,23 @@ import hashlib
 import math
 import re
 import tomllib
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 from .. import units
 from ..components import KINDS, UNTAGGED, Component, Field, find, tags
 from ..effects import Effect, effect_tags, find_effect
 from ..errors import Problem, ProfileError, closest
+from ..physics.wind import wind_regression
 from ..resources import folder, profile_names
 from .extending import missing_for
 from .model import Approach, Coefficient, Section, ShipProfile, SteeringGear
 
 SCHEMA = 1
 SECTIONS = ("schema", "ship", *KINDS, "above_water", "effects", "steering_gear", "approach", "tuning", "provenance")
+REGRESSION = "Fujiwara, Ueno & Nimura 1998, regression on the geometry"
 VALUE_KEYS = ("value", "source", "assumption", "note", "bounds", "pre_determined", "stderr")
 
 
@@ -97,6 +101,8 @@ class _Reader:
         found = {kind: self.component(kind) for kind in present}
         sections = {kind: section for kind, section in found.items() if section is not None}
         complete = len(sections) == len(present) and not self.problems
+        if complete and "above_water" in sections:
+            sections["above_water"] = with_wind_coefficients(sections)
         gear = self.plain(
             "steering_gear", {"max_angle": Field("", "rad", low=0.0, high=1.6), "rate": Field("", "rad/s", low=0.0)}
         )
@@ -175,6 +181,8 @@ class _Reader:
                 coefficient = self.coefficient(kind, symbol, field, table[symbol], source)
             elif field.default is not None:
                 coefficient = Coefficient(field.default, source="default of the program")
+            elif field.derived:
+                coefficient = None
             else:
                 self.problem(
                     f"'{kind}.{symbol}' is missing ({field.label} [{field.unit}])",
@@ -329,6 +337,19 @@ class _Reader:
         propeller = profile.sections["propeller"].coefficients
         if "phi_min" in propeller and profile.value("propeller.phi_min") >= profile.value("propeller.phi_max"):
             self.problem("'propeller.phi_min' is not below phi_max", "propeller", "phi_min")
+
+
+def with_wind_coefficients(sections: dict[str, Section]) -> Section:
+    """The section above_water with the harmonics of the wind force that it leaves out, by regression."""
+    section, ship = sections["above_water"], sections["particulars"].numbers
+    given = {symbol: section.coefficients[symbol].value for symbol in section.coefficients}
+    geometry = SimpleNamespace(**given)
+    by_regression = wind_regression(ship["particulars.L_pp"], ship["particulars.B"], geometry)._asdict()
+    coefficients = {
+        symbol: section.coefficients.get(symbol) or Coefficient(by_regression[symbol], source=REGRESSION)
+        for symbol in section.component.fields
+    }
+    return replace(section, coefficients=coefficients)
 
 
 def _line_index(text: str) -> dict[tuple[str, str], int]:

@@ -7,7 +7,7 @@ from mmgtune.components import COMPONENTS
 from mmgtune.physics.kinematics import R_PRIME_MAX, flow
 from mmgtune.physics.mmg import forces
 from mmgtune.physics.propeller.four_quadrant import four_quadrant_propeller
-from mmgtune.physics.quantities import Control, State
+from mmgtune.physics.quantities import Control, State, WakeOut
 from mmgtune.physics.rigid_body import accelerations
 from mmgtune.physics.rudder.flapped import flap_angle
 
@@ -40,7 +40,7 @@ def test_converted_thrust_coefficient(suzaku):
     n, D = 106 / 60, 2.80
     J = np.arange(0.0, 0.75, 0.1)
     lanes = type(p.propeller)(*(np.repeat(v, len(J)) for v in p.propeller))
-    found = four_quadrant_propeller(J * n * D, np.full(len(J), n), p.ship, lanes)
+    found = four_quadrant_propeller(None, WakeOut(0 * J, J * n * D, 0 * J), np.full(len(J), n), p.ship, lanes)
     np.testing.assert_allclose(found.K_T, [0.317, 0.300, 0.276, 0.244, 0.205, 0.159, 0.107, 0.049], atol=1e-3)
     np.testing.assert_allclose(found.J, J, atol=1e-12)
     np.testing.assert_allclose(found.jet, 8 / np.pi * found.K_T * (n * D) ** 2)

@@ -14,6 +14,7 @@ from mmgtune.profile import load_profile
 from tests.runs import states, turn
 
 PROPELLER_SIDE = ["C_PY0", "C_PY1", "C_PY2", "C_PN0_low", "C_PN1_low", "C_PN0_high", "C_PN1_high"]
+PROPELLER_SIDE += [f"{letter}_{i}" for letter in "AB" for i in range(1, 9)]
 finite = st.floats(-1.0, 1.0)
 
 

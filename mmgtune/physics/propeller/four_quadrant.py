@@ -31,15 +31,16 @@ class FourQuadrantPropeller(NamedTuple):
     slipstream_kt: Lanes  # 0: K_T of eq. 30 converted from eq. 16; 1: the printed polynomial taken literally
 
 
-def four_quadrant_propeller(u_P, n, ship, p):
+def four_quadrant_propeller(flow, wake, n, ship, p):
     """Propeller force: Suyama et al. 2023, eq. 16-22.
 
-    u_P inflow [m/s], n [1/s], ship Ship, p FourQuadrantPropeller: floats or (n_lanes,) -> PropellerOut.
+    flow Flow, wake WakeOut, n [1/s], ship Ship, p FourQuadrantPropeller: floats or (n_lanes,) -> PropellerOut.
 
     In eq. 16 K_T multiplies V_r^2, so it is the four-quadrant coefficient C_T*; the K_T of eq. 30 follows from
     it as (pi/8) C_T* (J^2 + (0.7 pi)^2), which makes 8 K_T n^2 D_P^2 / pi simply C_T* V_r^2: finite as u_P -> 0.
     Outside phi_min..phi_max the coefficients keep their end values (assumption; the source covers ahead only).
     """
+    u_P = wake.u_P
     v_tip = 0.7 * np.pi * n * p.D_P
     V_r2 = u_P * u_P + v_tip * v_tip
     phi = np.minimum(np.maximum(arctan2(u_P, v_tip) * (180.0 / np.pi), p.phi_min), p.phi_max)

@@ -18,14 +18,15 @@ class OpenWaterPropeller(NamedTuple):
     k_2: Lanes
 
 
-def open_water_propeller(u_P, n, ship, p):
+def open_water_propeller(flow, wake, n, ship, p):
     """Propeller force: Yasukawa & Yoshimura 2015, X_P = (1 - t_P) rho n^2 D_P^4 K_T(J); no side force.
 
-    u_P inflow [m/s], n [1/s], ship Ship, p OpenWaterPropeller: floats or (n_lanes,) -> PropellerOut.
+    flow Flow, wake WakeOut, n [1/s], ship Ship, p OpenWaterPropeller: floats or (n_lanes,) -> PropellerOut.
 
     n^2 K_T is written out in n and u_P / D_P, so that nothing is divided by n.  With n < 0 the bollard thrust
     changes sign (assumption; the source covers ahead only).
     """
+    u_P = wake.u_P
     s = u_P / p.D_P
     n2_K_T = p.k_0 * n * np.abs(n) + p.k_1 * np.abs(n) * s + p.k_2 * s * s
     D2 = p.D_P * p.D_P
