@@ -33,11 +33,13 @@ class Objective:
     scales   what each channel is divided by, in its SI unit
     weights  channels that count, and how much (1 unless told)
     window   first and last time [s] that count, None for the whole trial
+    every    time between samples that count [s], None for all: neighbours of a densely sampled trial say the same
     """
 
     scales: Mapping[str, float]
     weights: Mapping[str, float] = field(default_factory=lambda: dict.fromkeys(PAPER_CHANNELS, 1.0))
     window: tuple[float, float] | None = None
+    every: float | None = None
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -52,18 +54,38 @@ class Objective:
         if self.window is not None:
             outside = (trial.t < self.window[0]) | (trial.t > self.window[1])
             weight[outside] = 0.0
+        if self.every is not None:
+            count = np.floor((trial.t - trial.t[0]) / self.every + 1e-6)
+            weight[1:][np.diff(count) < 1.0] = 0.0
         return weight
 
 
+def spread(trials: Sequence[Trial]) -> dict[str, float]:
+    """Standard deviation of each state over all samples of the trials [SI]; the heading wrapped to one turn.
+
+    What the standardised error of Wakita et al. 2022, eq. 26, divides differences by.
+    """
+    motion = np.concatenate([trial.motion for trial in trials])
+    motion[:, 2] = np.arctan2(np.sin(motion[:, 2]), np.cos(motion[:, 2]))
+    return dict(zip(STATES, np.nanstd(motion, axis=0).tolist(), strict=True))
+
+
 def make_objective(
-    L_pp: float, channels: Sequence[str] | None = None, window: tuple[float, float] | None = None
+    L_pp: float,
+    channels: Sequence[str] | None = None,
+    window: tuple[float, float] | None = None,
+    *,
+    scales: Mapping[str, float] | None = None,
+    every: float | None = None,
 ) -> Objective:
     """The paper's objective, or one over other channels: "x", "y", ... or "u:2" for a weight of 2.
 
+    scales  other than the paper's; all six channels count then unless ``channels`` says otherwise
+    every   time between samples that count [s]
     Raises OptionError for an unknown channel, a weight that is not positive, or an empty window.
     """
     weights: dict[str, float] = {}
-    for entry in channels or PAPER_CHANNELS:
+    for entry in channels or (PAPER_CHANNELS if scales is None else STATES):
         name, _, written = entry.partition(":")
         name = "v_m" if name == "v" else name
         if name not in STATES:
@@ -88,7 +110,7 @@ def make_objective(
                 fix="write --window FIRST:LAST in seconds",
             )
         )
-    return Objective(scales=default_scales(L_pp), weights=weights, window=window)
+    return Objective(scales=scales or default_scales(L_pp), weights=weights, window=window, every=every)
 
 
 def cases_of(trials: Sequence[Trial], objective: Objective) -> Cases:

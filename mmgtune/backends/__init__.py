@@ -7,11 +7,23 @@ from functools import lru_cache
 from ..errors import OptionError, Problem, closest
 from .cases import STATES, Backend, Cases, Integrator, LaneResult, pad
 from .compiled import Compiled
+from .kernel_source import WIDTH
 from .numpy_lanes import LaneModel, NumpyLanes
 
 BACKENDS = ("compiled", "numpy")
 
-__all__ = ["BACKENDS", "STATES", "Backend", "Cases", "Integrator", "LaneModel", "LaneResult", "get_backend", "pad"]
+__all__ = [
+    "BACKENDS",
+    "STATES",
+    "WIDTH",
+    "Backend",
+    "Cases",
+    "Integrator",
+    "LaneModel",
+    "LaneResult",
+    "get_backend",
+    "pad",
+]
 
 
 @lru_cache(maxsize=len(BACKENDS))

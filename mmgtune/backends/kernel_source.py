@@ -189,7 +189,7 @@ def kernel_source(model: Model) -> str:
         start_lags=_start_lags(model),
         sample_inner=_lines(20, sample.splitlines()),
         actuators=_lines(20, _actuate(model, "then", first=False)),
-        air=_lines(20, _AIR.splitlines()) if model.acting("force") else "",
+        air=_lines(20, _AIR.splitlines()) if model.acting("force", "flow") else "",
         last_n=2 * len(actuators) * WIDTH,
         last_delta=(2 * len(actuators) + 1) * WIDTH,
         z=_state("z"),
@@ -266,7 +266,7 @@ def _forces(model: Model) -> list[str]:
     """Velocity of the water, then the forces of the components, of lane l in ``state``."""
     lines = ["u_c, v_c = 0.0, 0.0"]
     for k, effect in enumerate(model.acting("flow")):
-        lines += [f"u_c{k}, v_c{k} = {_name(effect)}(state, {_tuple(model, effect)})"]
+        lines += [f"u_c{k}, v_c{k} = {_name(effect)}(state, air, {_tuple(model, effect)})"]
         lines += [f"u_c, v_c = u_c + u_c{k}, v_c + v_c{k}" if k else f"u_c, v_c = u_c{k}, v_c{k}"]
     functions = ", ".join(_name(part) for part in model.parts if part.function is not None)
     lines += [
@@ -315,6 +315,7 @@ def _start_lags(model: Model) -> str:
     lines = [
         f"n, delta = now[{last * WIDTH} + l], now[{(last + 1) * WIDTH} + l]",
         f"state = State({_state('s')})",
+        "air = Air(wind_log[case, 0, 0], wind_log[case, 0, 1], wind_log[case, 0, 2])",
         *_forces(model),
     ]
     for k in range(len(lags)):

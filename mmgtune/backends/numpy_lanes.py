@@ -56,7 +56,8 @@ class NumpyLanes:
             fastest2 = np.zeros(n_cases * n_candidates)
             here = logged(1, 0.0)
             chain = ship.moved([here], [here], None, per_lane(np.zeros(n_cases)))
-            s = np.array([*start, *ship.lag_start(start, chain[-1])])
+            air = Air(*(per_lane(cases.wind[:, 0, j]) for j in range(3)))
+            s = np.array([*start, *ship.lag_start(start, chain[-1], air)])
             for k in range(1, T):
                 h = per_lane((cases.t[:, k] - cases.t[:, k - 1]) / integrator.substeps)
                 for sub in range(integrator.substeps):
@@ -116,28 +117,28 @@ class LaneModel:
             chain.append(effect.function(first, chain[k], first if before is None else before[k + 1], h, e))
         return chain
 
-    def water(self, state: State) -> tuple[Any, Any]:
+    def water(self, state: State, air: Air) -> tuple[Any, Any]:
         """Velocity of the water in the ship's axes."""
         u_c: Any = 0.0
         v_c: Any = 0.0
         for effect, e in self.flows:
-            du, dv = effect.function(state, e)
+            du, dv = effect.function(state, air, e)
             u_c, v_c = u_c + du, v_c + dv
         return u_c, v_c
 
     def breakdown(self, state: State, control: Control, air: Air = STILL) -> Breakdown:
         """Forces of the components, and in the total those that effects add."""
-        found: Breakdown = forces(through_water(state, *self.water(state)), control, self.components, self.p)
+        found: Breakdown = forces(through_water(state, *self.water(state, air)), control, self.components, self.p)
         total = found.total
         for effect, e in self.forces:
             total = _sum(total, effect.function(state, air, found, self.components, self.p, e))
         return found._replace(total=total)
 
-    def lag_start(self, state: State, control: Control) -> list[FloatArray]:
+    def lag_start(self, state: State, control: Control, air: Air = STILL) -> list[FloatArray]:
         """Lagging forces at the first state."""
         if not self.lags:
             return []
-        hull = self.breakdown(state, control).hull
+        hull = self.breakdown(state, control, air).hull
         return [hull.Y, hull.N] * len(self.lags)
 
     def rates(self, s: FloatArray, control: Control, air: Air, h: Any) -> FloatArray:
@@ -150,7 +151,7 @@ class LaneModel:
             more, Y_dot, N_dot = effect.function(found.hull, s[6 + 2 * k], s[7 + 2 * k], h, e)
             total = _sum(total, more)
             slopes += [Y_dot, N_dot]
-        return np.array([*rates(state, *self.water(state), total, self.p.ship), *slopes])
+        return np.array([*rates(state, *self.water(state, air), total, self.p.ship), *slopes])
 
     def sensed(self, state: State) -> State:
         """The state as the sensors show it."""

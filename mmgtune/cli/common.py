@@ -81,6 +81,40 @@ Channels = Annotated[
 Window = Annotated[
     str | None, typer.Option("--window", help="Only samples between FIRST:LAST seconds count.", rich_help_panel=SEARCH)
 ]
+Objective = Annotated[
+    str,
+    typer.Option(
+        "--objective",
+        help="paper: position and heading over L_pp and pi/4; standardised: all states over their spread (L_MSE).",
+        rich_help_panel=SEARCH,
+    ),
+]
+Restart = Annotated[
+    float | None,
+    typer.Option(
+        "--restart",
+        help="Cut trials into windows this long [s], each begun anew from a measured state.",
+        rich_help_panel=SEARCH,
+    ),
+]
+Every = Annotated[
+    float | None,
+    typer.Option("--every", help="Compare samples this far apart [s]; default all.", rich_help_panel=SEARCH),
+]
+Loss = Annotated[
+    str,
+    typer.Option(
+        "--loss", help="squares, or huber: outliers count by size; with least-squares.", rich_help_panel=SEARCH
+    ),
+]
+Regularise = Annotated[
+    float,
+    typer.Option(
+        "--regularise",
+        help="Cost of moving one coefficient to the edge of its box, as a share of J before; with least-squares.",
+        rich_help_panel=SEARCH,
+    ),
+]
 Method = Annotated[
     str,
     typer.Option("--method", help="cma-es (then least squares) or least-squares alone.", rich_help_panel=SEARCH),
@@ -155,8 +189,9 @@ def default_out(profile: ShipProfile) -> Path:
 
 def plan(profile: ShipProfile, trials: TrialSet, options: FitOptions, out: Path) -> str:
     """What a fit would do, in words."""
-    from ..fitting import make_problem
+    from ..fitting import in_pieces, make_problem
 
+    trials = in_pieces(trials, options)
     problem = make_problem(profile, trials, options)
     lines = [
         f"profile   {profile.name} ({profile.path})",

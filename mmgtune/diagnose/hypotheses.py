@@ -45,7 +45,7 @@ def hypotheses(
 
     targets        coefficients that are tuned: what does the same as one of them cannot be told from it
     tags           effects asked for; empty for all
-    wind_measured  whether any trial has wind; its factor is a hypothesis only then
+    wind_measured  whether any trial has wind; only then do parameters act that take it from there
     present        parameters that the profile itself has already
     """
     found = []
@@ -54,7 +54,8 @@ def hypotheses(
             continue
         for variant in effect.variants:
             taken = any(effect.absorbed.get(name) in targets for name in variant)
-            idle = effect.tag == "wind" and ("measured" in variant) != wind_measured
+            of_log = bool(set(variant) & set(effect.of_measured_wind))
+            idle = of_log != wind_measured if effect.of_measured_wind else False
             hypothesis = Hypothesis(effect, variant)
             if not taken and not idle and not set(hypothesis.names) & {*targets, *present}:
                 found.append(hypothesis)

@@ -25,7 +25,7 @@ FloatArray = npt.NDArray[np.float64]
 TOLERANCE = 0.2
 """Fall of chi-squared that counts as none while searching; a fiftieth of what matters."""
 
-ON_DEMAND = ("wind", "hull-term", "wave-drift", "memory", "resistance")
+ON_DEMAND = ("wind", "wind-drift", "hull-term", "wave-drift", "memory", "resistance")
 """Effects that cost simulation time where they are absent; a model has them only where they are asked for."""
 
 LOOSE = 3.0

@@ -31,6 +31,7 @@ from . import (
     steering_lag,
     wave_drift,
     wind,
+    wind_drift,
 )
 from .effect import PLACES, Effect, Parameter, Scale
 
@@ -45,6 +46,7 @@ BUILT_IN: tuple[Effect, ...] = tuple(
         rudder_offset,
         rpm_scale,
         current,
+        wind_drift,
         flap,
         propeller_side_force,
         shallow_water,

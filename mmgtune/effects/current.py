@@ -14,7 +14,7 @@ class Current(NamedTuple):
     east: Lanes
 
 
-def current(state, e):
+def current(state, air, e):
     """Velocity of the water in the ship's axes: surge and sway [m/s].
 
     With velocities through water, and for a current that is constant in the earth frame, the equations of motion hold

@@ -14,7 +14,7 @@ PLACES = ("clock", "actuator", "flow", "coefficients", "force", "lag", "sensor")
 clock         when the logged inputs acted; the simulators sample the log accordingly, no function
 actuator      f(start, end, before, h [s], e) -> Control that leaves it at the end of a step of h; start and end are
               what reaches it at the ends of the step, before is what left it at the beginning (Control each)
-flow          f(State, e) -> surge and sway velocity of the water itself in ship axes [m/s]
+flow          f(State, Air, e) -> surge and sway velocity of the water itself in ship axes [m/s]
 coefficients  f(values {section.symbol: number or array}, e) -> those that change, {section.symbol: new value}
 force         f(State, Air, Breakdown, Components, Coefficients, e) -> Force that is added
 lag           f(hull Force, lagging Y [N], lagging N [N m], h [s], e) -> Force that is added, rates of the two; h is
@@ -64,6 +64,7 @@ class Effect(Component):
                is tuned, the parameter is not searched for
     needs      coefficients the effect changes; it does not apply to a profile without them
     inverse    of a sensor
+    of_measured_wind  parameters that act on measured wind; others of the same effect stand in where there is none
     """
 
     place: str = "force"
@@ -73,6 +74,7 @@ class Effect(Component):
     absorbed: Mapping[str, str] = field(default_factory=dict)
     needs: tuple[str, ...] = ()
     inverse: Callable[..., Any] | None = None
+    of_measured_wind: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if (*self.fields, *self.borrowed) != self.params._fields:

@@ -97,4 +97,5 @@ EFFECT = Effect(
         else f"A wind of {v['speed']} blew from {v['direction']}"
     ),
     needs=("above_water.A_T",),
+    of_measured_wind=("measured",),
 )

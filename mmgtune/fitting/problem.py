@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from ..backends import Backend, Cases, Integrator
+from ..backends import WIDTH, Backend, Cases, Integrator
 from ..model import Model
 from .box import Box
 from .initial import prior_weight
@@ -15,7 +15,7 @@ from .initial import prior_weight
 FloatArray = npt.NDArray[np.float64]
 
 LANES_AT_ONCE = 512
-"""Largest number of runs kept with their residuals at one time; bounds the memory a Jacobian takes."""
+"""Largest number of runs kept with their residuals at one time, but for the lanes of one block; bounds the memory."""
 
 
 @dataclass(eq=False)
@@ -92,7 +92,7 @@ class FitProblem:
         self.evaluations += n_candidates
         initial = self.initial(n_candidates, offsets)
         out = np.empty((self.n_residuals, n_candidates))
-        chunk = max(1, LANES_AT_ONCE // len(self.cases))
+        chunk = max(WIDTH, LANES_AT_ONCE // len(self.cases))
         for first in range(0, n_candidates, chunk):
             rows = slice(first, first + chunk)
             result = self.backend.run(

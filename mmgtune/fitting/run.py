@@ -16,22 +16,26 @@ import numpy.typing as npt
 
 from ..backends import STATES, get_backend
 from ..model import Model
-from ..objective import cases_of, make_objective
+from ..objective import Objective, cases_of, make_objective, spread
 from ..profile import ShipProfile
 from ..trial import TrialSet
 from .box import choose_targets, make_box
 from .certificate import certify
 from .checkpoint import EVERY, Checkpoint
 from .cmaes import Search, search
-from .comparison import compare
+from .comparison import compare, total
 from .identifiability import analyse
 from .initial import deviations
 from .least_squares import LeastSquaresResult, fit_offsets, solve
 from .options import FitOptions
 from .problem import FitProblem
 from .result import FitResult
+from .robust import weigh_down
 
 FloatArray = npt.NDArray[np.float64]
+
+EDGE = 0.5
+"""Distance from the middle of the box to its edge, in the unit cube."""
 
 RIDGE = 1e-8
 """Weight, as a share of J, of the distance to the pre-determined values: chooses among sets that fit equally well."""
@@ -51,6 +55,19 @@ class Hooks:
     stop: Callable[[], bool] = lambda: False
 
 
+def in_pieces(trials: TrialSet, options: FitOptions) -> TrialSet:
+    """The trials cut into windows where the options ask for that; unchanged where they are windows already."""
+    if options.restart is None or any(trial.part_of for trial in trials.trials.values()):
+        return trials
+    return trials.in_windows(options.restart)
+
+
+def objective_of(model: Model, trials: TrialSet, options: FitOptions) -> Objective:
+    """What the options ask to make small; its scales come from all tune trials."""
+    scales = spread([trials.trials[name] for name in trials.tune]) if options.objective == "standardised" else None
+    return make_objective(model.L_pp, options.channels, options.window, scales=scales, every=options.every)
+
+
 def make_problem(profile: ShipProfile, trials: TrialSet, options: FitOptions, ids: tuple[str, ...] = ()) -> FitProblem:
     """The problem of fitting ``profile`` to the tune trials, or to the trials ``ids``.
 
@@ -58,7 +75,7 @@ def make_problem(profile: ShipProfile, trials: TrialSet, options: FitOptions, id
     """
     model = Model(profile)
     targets = choose_targets(model, options.targets, options.fixed)
-    objective = make_objective(model.L_pp, options.channels, options.window)
+    objective = objective_of(model, trials, options)
     chosen = [trials.trials[name] for name in ids or trials.tune]
     scales = np.array([objective.scales[name] for name in STATES])
     return FitProblem(
@@ -91,6 +108,7 @@ def fit(
     Raises OptionError for choices that make no sense, OutputError where the checkpoint cannot be written.
     """
     began = time.perf_counter()
+    trials = in_pieces(trials, options)
     if options.identifiable:
         options = hold_directions(profile, trials, options)
     problem = make_problem(profile, trials, options)
@@ -110,14 +128,19 @@ def fit(
     J_before = float(problem.costs(before[:, None])[0])
 
     hooks.on_phase("least squares")
-    starts = _starts(problem, options, before, more_starts)
+    starts = random_starts(problem, options, before, more_starts)
     if problem.sigma is not None:  # far from an optimum, free initial states only lead astray
         held = make_problem(profile, trials, replace(options, initial="measured"))
         starts = np.column_stack([end.unit for end in solve(held, starts, stop=hooks.stop)])
         problem.evaluations += held.evaluations
-    ends = solve(problem, starts, stop=hooks.stop)
-    best = min(ends, key=lambda end: end.J)
+    ridge = edge_ridge(problem, options, before)
+    ends = solve(problem, starts, ridge=ridge, anchor=before, stop=hooks.stop)
+    best = min(ends, key=lambda end: end.J + ridge * float(np.sum((end.unit - before) ** 2)))
     problem.offsets = best.offsets
+    if options.loss == "huber" and not hooks.stop():
+        hooks.on_phase("weighing outliers down")
+        problem, best = weigh_down(problem, best, ridge, before)
+        ends = [best]
     found: Search | None = None
     if options.method == "cma-es":
         hooks.on_phase("CMA-ES")
@@ -127,7 +150,7 @@ def fit(
         if not hooks.stop():
             ends += solve(problem, found.unit[:, None], stop=hooks.stop)
             best = min(ends, key=lambda end: end.J)
-    if not hooks.stop():
+    if not hooks.stop() and ridge == 0.0:
         best = _nearest(problem, best, before)
     unit, J = best.unit, best.J
     problem.offsets = best.offsets
@@ -140,16 +163,17 @@ def fit(
     held_by_bound = np.isin(problem.box.names, [bound.name for bound in certificate.active])
     roles = {name: trials.role(name) for name in trials.trials}
     everything = make_problem(profile, trials, options, tuple(trials.trials))
-    objective = make_objective(problem.model.L_pp, options.channels, options.window)
+    objective = objective_of(problem.model, trials, options)
+    compared = tuple(compare(everything, list(trials.trials.values()), roles, before, unit))
     return FitResult(
         profile=profile,
         options=options,
         box=problem.box,
         unit=unit,
-        J=J,
+        J=J if options.loss == "squares" else float(total(compared, "tune", "after") or J),
         J_before=J_before,
         J_free_start=_free_start(profile, trials, options, unit),
-        compared=tuple(compare(everything, list(trials.trials.values()), roles, before, unit)),
+        compared=compared,
         restarts=tuple(restarts),
         starts=tuple(ends),
         history=tuple(found.history if found else ()),
@@ -166,7 +190,12 @@ def fit(
     )
 
 
-def _starts(
+def edge_ridge(problem: FitProblem, options: FitOptions, before: FloatArray) -> float:
+    """Weight of squared distances from the pre-determined values (n_targets,) in the unit cube."""
+    return options.regularise * float(problem.costs(before[:, None])[0]) / EDGE**2 if options.regularise else 0.0
+
+
+def random_starts(
     problem: FitProblem, options: FitOptions, before: FloatArray, more: tuple[Mapping[str, float], ...]
 ) -> FloatArray:
     """Where least squares starts, (n_targets, n_starts): pre-determined values, those given, the rest at random."""

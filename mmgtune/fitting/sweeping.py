@@ -17,9 +17,10 @@ from ..profile import ShipProfile
 from ..trial import TrialSet
 from .folder import write_run
 from .least_squares import fit_offsets, solve
+from .leaving_out import leaving_out
 from .options import FitOptions
 from .result import FitResult
-from .run import Hooks, fit, make_problem
+from .run import Hooks, fit, in_pieces, make_problem
 
 RESULT = "sweep.json"
 
@@ -157,6 +158,7 @@ def sweep(
     Raises OptionError for no width, or one given twice.
     """
     began = time.perf_counter()
+    trials = in_pieces(trials, options)
     if not widths or len(set(widths)) < len(widths):
         what = "a half width is given twice" if widths else "no half width to sweep over"
         raise OptionError(Problem(what, "--ar", fix="write --ar 0.2,0.3,0.4,0.5,0.6"))
@@ -178,7 +180,7 @@ def sweep(
         if hooks.stop():
             break
     left_out = None
-    if not trials.test and len(trials.tune) > 1 and not hooks.stop():
+    if not trials.test and len({trials.trials[name].run for name in trials.tune}) > 1 and not hooks.stop():
         hooks.on_phase("leaving out one trial at a time")
         left_out = tuple(_leave_one_out(profile, trials, run) for run in runs)
     swept = SweepResult(tuple(runs), left_out, time.perf_counter() - began, interrupted=hooks.stop())
@@ -199,10 +201,9 @@ def _leave_one_out(profile: ShipProfile, trials: TrialSet, run: FitResult) -> fl
     """J summed over the tune trials, each simulated with coefficients fitted to the others."""
     total = 0.0
     start = run.unit[:, None]
-    for name in trials.tune:
-        others = tuple(other for other in trials.tune if other != name)
+    for left_out, others in leaving_out(trials):
         fitted = min(solve(make_problem(profile, trials, run.options, others), start), key=lambda end: end.J)
-        alone = make_problem(profile, trials, run.options, (name,))
+        alone = make_problem(profile, trials, run.options, left_out)
         offsets = None if alone.sigma is None else fit_offsets(alone, fitted.unit)[:, None]
         total += float(alone.costs(fitted.unit[:, None], offsets)[0])
     return total

@@ -6,6 +6,7 @@ parquet         reading and writing a file; metadata: the facts in it
 dataset         folders of files; split: which of them tune and which test
 unusable        what forbids using a trial
 checks          everything odd about one: motion_checks, control_checks; kinematics: what they measure
+pieces          long trials cut into windows
 wind            the wind it was measured in
 describe        what a trial holds, in numbers
 """
@@ -15,6 +16,17 @@ from .dataset import TrialSet, load_trials
 from .finding import Finding
 from .model import Trial
 from .parquet import read_trial, write_trial
+from .pieces import windows
 from .wind import measured_wind
 
-__all__ = ["Finding", "Trial", "TrialSet", "check_trial", "load_trials", "measured_wind", "read_trial", "write_trial"]
+__all__ = [
+    "Finding",
+    "Trial",
+    "TrialSet",
+    "check_trial",
+    "load_trials",
+    "measured_wind",
+    "read_trial",
+    "windows",
+    "write_trial",
+]

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..errors import Problem, TrialError, closest
 from ..resources import folder, trial_set_names
 from .model import Trial
 from .parquet import id_in, read_trial
+from .pieces import windows
 from .split import SPLIT, Split, read_split
 
 
@@ -36,6 +37,16 @@ class TrialSet:
     def role(self, name: str) -> str:
         """What the trial of that id is for: "tune", "test" or "other"."""
         return "tune" if name in self.tune else "test" if name in self.test else "other"
+
+    def in_windows(self, length: float) -> TrialSet:
+        """The same set with every trial cut into windows of ``length`` [s]; each has the role of its trial."""
+        pieces = {name: windows(trial, length) for name, trial in self.trials.items()}
+
+        def ids(names: tuple[str, ...]) -> tuple[str, ...]:
+            return tuple(piece.id for name in names for piece in pieces[name])
+
+        cut = {piece.id: piece for of_one in pieces.values() for piece in of_one}
+        return replace(self, trials=cut, tune=ids(self.tune), test=ids(self.test))
 
     def hashes(self) -> dict[str, str]:
         """SHA-256 of each trial's file, by id."""

@@ -30,6 +30,7 @@ class Trial:
     path       the file it was read from, None where it was made in memory
     sha256     of that file, "" where there is none
     ignored    columns of the file that hold no numbers and were left out
+    part_of    id of the trial this is a window of, "" for a whole trial
 
     Raises ValueError where arrays differ in length or ``extra`` repeats a required column.
     """
@@ -53,6 +54,7 @@ class Trial:
     path: Path | None = None
     sha256: str = ""
     ignored: tuple[str, ...] = ()
+    part_of: str = ""
 
     def __post_init__(self) -> None:
         shape = (len(self.t),)
@@ -68,6 +70,11 @@ class Trial:
     def n_samples(self) -> int:
         """Number of samples."""
         return len(self.t)
+
+    @property
+    def run(self) -> str:
+        """Id of the trial as it was run: its own, or that of the trial this is a window of."""
+        return self.part_of or self.id
 
     @property
     def duration(self) -> float:

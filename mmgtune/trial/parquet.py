@@ -39,12 +39,13 @@ def read_trial(path: Path | str) -> Trial:
     ]
     if problems:
         raise TrialError(*problems)
+    motion: dict[str, Any] = {attribute: columns[name] for name, attribute in ATTRIBUTES.items()}
     return Trial(
         id=facts.get("id") or path.stem,
         ship=facts.get("ship", ""),
         manoeuvre=facts.get("manoeuvre", ""),
         source=facts.get("source", ""),
-        **{attribute: columns[name] for name, attribute in ATTRIBUTES.items()},
+        **motion,
         extra={name: values for name, values in columns.items() if name not in REQUIRED},
         noise={name: float(value) for name, value in facts.get("noise", {}).items()},
         note=facts.get("note", ""),

@@ -1,0 +1,52 @@
+"""The uppermost water goes with the wind, and the ship with the water."""
+
+from typing import NamedTuple
+
+from ..physics.elementary import cos, sin
+from ..physics.quantities import Lanes
+from .effect import Effect, Parameter
+
+
+class WindDrift(NamedTuple):
+    """See the parameters below."""
+
+    along: Lanes
+    across: Lanes
+
+
+def wind_drift(state, air, e):
+    """Velocity of the water in the ship's axes: a share of the wind measured in the trial, turned to its right.
+
+    Wind-driven surface currents are a few hundredths of the wind's speed; in a basin the water returns below.
+    """
+    north = air.known * (e.along * air.north - e.across * air.east)
+    east = air.known * (e.along * air.east + e.across * air.north)
+    cos_psi = cos(state.psi)
+    sin_psi = sin(state.psi)
+    return cos_psi * north + sin_psi * east, cos_psi * east - sin_psi * north
+
+
+def _share(direction: str) -> Parameter:
+    return Parameter(
+        f"velocity of the water over that of the measured wind, {direction}",
+        bounds=lambda _: (-0.2, 0.2),
+        typical=lambda _: 0.02,
+        bounds_source="several times what wind drives on open water",
+    )
+
+
+EFFECT = Effect(
+    kind="effects.wind-drift",
+    tag="wind-drift",
+    title="water driven by the wind",
+    place="flow",
+    params=WindDrift,
+    function=wind_drift,
+    cites=("Wu 1983, Journal of Physical Oceanography 13, 1441-1451",),
+    fields={"along": _share("along it"), "across": _share("to the right of it")},
+    variants=(("along", "across"),),
+    of_measured_wind=("along", "across"),
+    sentence=lambda v: (
+        f"The water moved with {v['along']} of the measured wind along it and {v['across']} to the right of it"
+    ),
+)

@@ -1,0 +1,143 @@
+"""What a tuning is worth on runs it has not seen: runs left out in turn, or in folds, and scored."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ..objective import spread
+from ..profile import ShipProfile
+from ..trial import TrialSet
+from ..validation import L_MSE, TrialScore, by_manoeuvre, improvement, score
+from .comparison import finite
+from .least_squares import solve
+from .options import FitOptions
+from .run import Hooks, edge_ridge, in_pieces, make_problem, make_provenance, random_starts
+
+
+def leaving_out(trials: TrialSet, folds: int = 0) -> Iterator[tuple[tuple[str, ...], tuple[str, ...]]]:
+    """Ids of the tune trials left out and of the others, in turn; windows of a run go together.
+
+    folds  number of parts the runs are dealt out to; 0 for a part of its own for each run
+    """
+    runs = list(dict.fromkeys(trials.trials[name].run for name in trials.tune))
+    n_parts = min(folds or len(runs), len(runs))
+    for k in range(n_parts):
+        part = set(runs[k::n_parts])
+        out = tuple(name for name in trials.tune if trials.trials[name].run in part)
+        yield out, tuple(name for name in trials.tune if name not in out)
+
+
+@dataclass(frozen=True, eq=False)
+class LeftOut:
+    """Every tune trial scored by coefficients that were fitted without its run.
+
+    thetas   for each part of the runs, values by name in profile units
+    parts    ids of the runs of each part
+    before, after  scores of all tune trials with the profile's values, and with those fitted without them
+    """
+
+    thetas: tuple[dict[str, float], ...]
+    parts: tuple[tuple[str, ...], ...]
+    before: tuple[TrialScore, ...]
+    after: tuple[TrialScore, ...]
+    options: FitOptions
+    sigma: dict[str, float]
+    provenance: dict[str, Any]
+    wall_s: float
+
+    def rows(self) -> list[dict[str, Any]]:
+        """L_MSE and J before and after by kind of manoeuvre, and over all, with the share removed and its interval."""
+        groups = {"": (self.before, self.after)}
+        after = by_manoeuvre(self.after)
+        groups |= {kind: (tuple(of), tuple(after[kind])) for kind, of in by_manoeuvre(self.before).items() if kind}
+        return [_row(kind, old, new) for kind, (old, new) in groups.items()]
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "schema": 1,
+            "kind": "leave-out",
+            **self.provenance,
+            "options": self.options.to_dict(),
+            "sigma": self.sigma,
+            "scores": self.rows(),
+            "parts": [
+                {"left_out": list(runs), "theta": theta} for runs, theta in zip(self.parts, self.thetas, strict=True)
+            ],
+            "wall_s": self.wall_s,
+        }
+
+
+def _row(kind: str, before: Sequence[TrialScore], after: Sequence[TrialScore]) -> dict[str, Any]:
+    share, interval = improvement(before, after)
+    return {
+        "manoeuvre": kind or "all",
+        "runs": len({one.run for one in before}),
+        "L_MSE_before": finite(L_MSE(before)),
+        "L_MSE_after": finite(L_MSE(after)),
+        "J_before": finite(sum(one.J for one in before)),
+        "J_after": finite(sum(one.J for one in after)),
+        "share_removed": finite(share),
+        "share_removed_ci95": list(interval) if interval and np.isfinite(interval).all() else None,
+    }
+
+
+def fit_leaving_out(
+    profile: ShipProfile,
+    trials: TrialSet,
+    options: FitOptions,
+    folds: int = 0,
+    *,
+    hooks: Hooks = Hooks(),
+    command: str = "",
+) -> LeftOut:
+    """Fit by least squares without each part of the runs in turn, and score the runs left out.
+
+    Every fit starts from the fit to all runs and from the pre-determined values; the fit to all runs takes the starts
+    of the options.  Raises OptionError for choices that make no sense.
+    """
+    began = time.perf_counter()
+    options = replace(options, method="least-squares")
+    trials = in_pieces(trials, options)
+    problem = make_problem(profile, trials, options)
+    box, model = problem.box, problem.model
+    before = np.clip(box.to_unit(box.pre), 0.0, 1.0)
+    hooks.on_phase("fitting all runs")
+    ridge = edge_ridge(problem, options, before)
+    ends = solve(problem, random_starts(problem, options, before, ()), ridge=ridge, anchor=before, stop=hooks.stop)
+    best = min(ends, key=lambda end: end.J)
+    starts = np.column_stack([best.unit, before])
+    chosen = [trials.trials[name] for name in trials.tune]
+    sigma = spread(chosen)
+    integrator = options.make_integrator()
+    scores: dict[str, TrialScore] = {}
+    thetas, parts = [], []
+    for out, others in leaving_out(trials, folds):
+        if hooks.stop():
+            break
+        runs = tuple(dict.fromkeys(trials.trials[name].run for name in out))
+        hooks.on_phase(f"leaving out {', '.join(runs)}")
+        part = make_problem(profile, trials, options, others)
+        fitted = min(solve(part, starts, ridge=ridge, anchor=before, stop=hooks.stop), key=lambda end: end.J)
+        thetas.append(dict(zip(box.names, box.from_unit(fitted.unit).tolist(), strict=True)))
+        parts.append(runs)
+        theta = part.theta(fitted.unit[:, None])
+        left_out = [trials.trials[name] for name in out]
+        for one in score(model, left_out, sigma, theta=theta, integrator=integrator, backend=options.backend):
+            scores[one.id] = one
+    seen = [trial for trial in chosen if trial.id in scores]
+    return LeftOut(
+        tuple(thetas),
+        tuple(parts),
+        tuple(score(model, seen, sigma, integrator=integrator, backend=options.backend)),
+        tuple(scores[trial.id] for trial in seen),
+        options,
+        sigma,
+        make_provenance(profile, trials, command),
+        time.perf_counter() - began,
+    )

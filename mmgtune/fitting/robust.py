@@ -1,0 +1,63 @@
+"""Outliers weighed down: least squares repeated with weights taken from its own residuals."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from ..backends import Cases
+from .least_squares import LeastSquaresResult, solve
+from .problem import FitProblem
+
+FloatArray = npt.NDArray[np.float64]
+
+ROUNDS = 6
+"""Times outliers are weighed anew."""
+
+USUAL = 3.0
+"""Robust standard deviations within which a residual counts by its square, beyond which by its size."""
+
+SETTLED = 1e-4
+"""Move within the unit cube that counts as none."""
+
+
+def huber_weights(cases: Cases, residuals: FloatArray) -> FloatArray:
+    """Factors (n_cases, T, 6) on the weights of squares, 1 but for outliers of their channel.
+
+    residuals  (n_residuals,) as the cases weigh them without such factors
+    """
+    counted = cases.rows >= 0
+    size = np.zeros(cases.rows.shape)
+    size[counted] = np.abs(residuals[cases.rows[counted]])
+    factors = np.ones(cases.rows.shape)
+    for channel in range(counted.shape[2]):
+        here = counted[:, :, channel]
+        if not here.any():
+            continue
+        usual = USUAL * 1.4826 * float(np.median(size[:, :, channel][here]))
+        if usual > 0.0:
+            factors[:, :, channel] = np.minimum(1.0, usual / np.maximum(size[:, :, channel], usual))
+    return factors
+
+
+def weigh_down(
+    problem: FitProblem, best: LeastSquaresResult, ridge: float, anchor: FloatArray
+) -> tuple[FitProblem, LeastSquaresResult]:
+    """The problem with outliers weighed down, and its solution from ``best``, that of the plain one.
+
+    Iteratively reweighted least squares with Huber's weights; ridge and anchor as for ``solve``.
+    """
+    plain = problem.cases
+    problem.offsets = best.offsets
+    for _ in range(ROUNDS):
+        problem.cases = plain
+        weights = huber_weights(plain, problem.residuals(best.unit[:, None])[0])
+        problem.cases = replace(plain, weight=plain.weight * weights)
+        better = solve(problem, best.unit[:, None], ridge=ridge, anchor=anchor)[0]
+        moved = float(np.max(np.abs(better.unit - best.unit)))
+        best, problem.offsets = better, better.offsets
+        if moved < SETTLED:
+            break
+    return problem, best

@@ -1,0 +1,104 @@
+"""Scores of a model on trials, by hand and as a user asks for them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mmgtune.backends import STATES, Integrator
+from mmgtune.objective import default_scales, spread
+from mmgtune.simulation import simulate
+from mmgtune.trial import write_trial
+from mmgtune.validation import L_MSE, TrialScore, by_manoeuvre, by_run, improvement, score
+from tests.command import run
+from tests.fitting.conftest import make_set
+
+
+def _score(run: str, squares: float, n: int = 10, manoeuvre: str = "turning") -> TrialScore:
+    return TrialScore(run, run, manoeuvre, 0.0, {"x": squares}, n)
+
+
+def test_spread_wraps_the_heading(suzaku):
+    trial = next(iter(make_set(suzaku).trials.values()))
+    turned = replace(trial, psi=trial.psi + 20.0 * np.pi)
+    assert spread([turned])["psi"] == pytest.approx(spread([trial])["psi"])
+    assert spread([trial])["psi"] < np.pi
+    assert spread([trial])["x"] == pytest.approx(np.std(trial.x))
+
+
+def test_both_measures_by_hand(suzaku):
+    """Equation 26 of Wakita et al. 2022, and J of Suyama et al. 2023, over all samples after the first."""
+    trials = list(make_set(suzaku, noise=1.0).trials.values())[:2]
+    sigma = spread(trials)
+    euler = Integrator()
+    found = score(suzaku, trials, sigma, integrator=euler)
+    for trial, motion, one in zip(trials, simulate(suzaku, trials), found, strict=True):
+        difference = dict(zip(STATES, (motion.states - trial.motion)[1:].T, strict=True))
+        squares = sum((difference[name] / sigma[name]) ** 2 for name in STATES)
+        assert pytest.approx(np.mean(squares), rel=1e-9) == one.L_MSE
+        scales = default_scales(83.0)
+        assert pytest.approx(sum(np.sum((difference[c] / scales[c]) ** 2) for c in ("x", "y", "psi"))) == one.J
+
+
+def test_gaps_are_not_scored(suzaku):
+    trial = next(iter(make_set(suzaku).trials.values()))
+    x = np.array(trial.x)
+    x[50:60] = np.nan
+    (found,) = score(suzaku, [replace(trial, x=x)], spread([trial]), integrator=Integrator())
+    assert found.n_samples == trial.n_samples - 1 - 10
+
+
+def test_samples_count_alike_over_trials_of_any_length():
+    assert L_MSE([_score("a", 10.0, 10), _score("b", 0.0, 30)]) == pytest.approx(0.25)
+    assert np.isnan(L_MSE([]))
+
+
+def test_groups():
+    scores = [_score("a", 1.0), _score("b", 1.0, manoeuvre="zigzag"), replace(_score("a", 1.0), id="a@100")]
+    assert {kind: len(of) for kind, of in by_manoeuvre(scores).items()} == {"turning": 2, "zigzag": 1}
+    assert {name: len(of) for name, of in by_run(scores).items()} == {"a": 2, "b": 1}
+
+
+def test_improvement_and_its_interval():
+    before = [_score(str(k), 10.0) for k in range(12)]
+    same = improvement(before, [_score(str(k), 4.0) for k in range(12)])
+    assert same[0] == pytest.approx(0.6)
+    assert same[1] == pytest.approx((0.6, 0.6))
+    share, interval = improvement(before, [_score(str(k), 8.0 * (k % 2)) for k in range(12)])
+    assert interval is not None
+    assert interval[0] < share < interval[1]
+    assert improvement(before[:2], before[:2])[1] is None
+
+
+def test_the_command(tmp_path, suzaku):
+    data = make_set(suzaku, noise=1.0)
+    (tmp_path / "log").mkdir()
+    for trial in data.trials.values():
+        write_trial(trial, tmp_path / "log" / f"{trial.id}.parquet")
+    ended = run("validate", "suzaku", "kvlcc2", "log", "--window", "100", "--json", cwd=tmp_path)
+    assert ended.code == 0, ended.err
+    document = ended.json()
+    good, other = document["profiles"]
+    assert good["L_MSE"] < other["L_MSE"]
+    assert good["by_manoeuvre"]["turning"]["runs"] == 8
+    assert {row["id"] for row in good["trials"]} == set(data.trials)
+    assert sum(row["windows"] for row in good["trials"]) > 2 * len(data.trials)
+    shown = run("validate", "suzaku", "log", cwd=tmp_path)
+    assert "L_MSE" in shown.out
+    assert "turn_p10" in shown.out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("suzaku",), "missing"),
+        (("suzaku", "suzaku", "--window", "0"), "--window"),
+        (("suzaku", "suzaku", "--integrator", "leapfrog"), "leapfrog"),
+        (("suzaku", "nowhere"), "no such trials"),
+    ],
+)
+def test_wrong_arguments(arguments, said, tmp_path):
+    ended = run("validate", *arguments, cwd=tmp_path)
+    assert ended.code == 2
+    assert said in ended.err
+    assert "Traceback" not in ended.err
