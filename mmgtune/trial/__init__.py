@@ -7,6 +7,7 @@ dataset         folders of files; split: which of them tune and which test
 unusable        what forbids using a trial
 checks          everything odd about one: motion_checks, control_checks; kinematics: what they measure
 wind            the wind it was measured in
+smoothing       channels without their noise
 describe        what a trial holds, in numbers
 """
 
