@@ -3,7 +3,8 @@
 mapping         the map of a log; reading_map: from TOML; quantities: what there is; headers: names and units in logs
 table           columns of a log; text, parquet_log: reading them; clock: time put right
 record          quantities in the program's units, each with its own time; nmea: reading sentences
-geodesy         latitude and longitude to metres; cleaning: spikes and digits; gridding: one uniform time
+digits          made up for where too few are printed; cleaning: spikes
+geodesy         latitude and longitude to metres; gridding: one uniform time
 motion          midship, ship axes, and velocities that were not measured
 conventions     signs and axes a map does not state
 quality         what the result is worth

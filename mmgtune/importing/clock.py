@@ -176,6 +176,15 @@ def uniform(t: FloatArray, source: TimeSource) -> tuple[FloatArray, str] | None:
     if step <= 0.0:
         return None
     off = np.abs(t - start - step * k)
+    if source.step is None:
+        # Loggers run at round steps: the roundest that fits as well is the likelier one.
+        for digits in range(1, 6):
+            round_step = float(f"{step:.{digits - 1}e}")
+            round_start = float(np.average(t - round_step * k, weights=weight**2))
+            round_off = np.abs(t - round_start - round_step * k)
+            if round_off.max() <= 1.02 * off.max():
+                start, step, off = round_start, round_step, round_off
+                break
     allowed = np.where(spacing > 2.0 * step, 0.75 * spacing, np.maximum(spacing, step))
     if (off > allowed).any():
         return None

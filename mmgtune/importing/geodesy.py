@@ -74,3 +74,28 @@ def _near(record: Record, t: FloatArray, x: FloatArray, y: FloatArray) -> None:
         x[wild] = y[wild] = np.nan
         record.spikes["x"] = record.spikes.get("x", 0) + int(wild.sum())
         record.notes.append(f"{wild.sum()} positions on another part of the earth were left out")
+
+
+def not_mirrored(columns: dict[str, FloatArray], where: str) -> None:
+    """Raise LogError where a ship moves along her heading only if north and east are exchanged.
+
+    columns  x, y [m] and psi [rad] on a uniform time, (n_samples,)
+    """
+    stride = max(1, len(columns["x"]) // 100)
+    x, y = np.diff(columns["x"][::stride]), np.diff(columns["y"][::stride])
+    psi = columns["psi"][::stride]
+    psi = 0.5 * (psi[1:] + psi[:-1])
+    known = np.isfinite(x) & np.isfinite(y) & np.isfinite(psi)
+    way = float(np.sum(np.hypot(x[known], y[known])))
+    if known.sum() < 10 or way == 0.0:
+        return
+    cos, sin = np.cos(psi[known]), np.sin(psi[known])
+    along = float(np.sum(x[known] * cos + y[known] * sin)) / way
+    mirrored = float(np.sum(y[known] * cos + x[known] * sin)) / way
+    if along < 0.5 and mirrored > 0.8:
+        why = (
+            f"{100 * along:.0f} % of the way is made good along the heading, {100 * mirrored:.0f} % with them exchanged"
+        )
+        raise LogError(
+            Problem("latitude and longitude are swapped?", where, why, "exchange the two columns in the map")
+        )

@@ -21,15 +21,16 @@ from ..trial.model import FloatArray
 from ..trial.schema import ATTRIBUTES, COLUMNS, DIRECTIONS, REQUIRED
 from ..trial.unusable import unusable
 from . import conventions, motion
-from .cleaning import with_printed_digits, without_spikes
+from .cleaning import without_spikes
 from .clock import put_right
-from .geodesy import with_local_positions
+from .geodesy import not_mirrored, with_local_positions
 from .gridding import FEWEST, Grid, on_grid, stretches
 from .mapping import LogMap
 from .nmea import read_nmea
 from .parquet_log import read_parquet
 from .quality import quality_of, quality_text, same_units_throughout
 from .record import Record, record_of, time_in_seconds
+from .table import Table
 from .text import binary, read_text, start_of
 
 REPORT = "import-report.json"
@@ -138,7 +139,7 @@ def _trials(log: Path, log_map: LogMap, step: float | None) -> list[tuple[Trial,
             made += _of_record(record, log_map, step)
         except LogError:
             # A few seconds between two settings of a clock are no trial; a whole log that is none is an error.
-            if len(records) == 1 or len(record.series["psi"].t) > FEWEST:
+            if len(records) == 1 or max(len(one.t) for one in record.series.values()) > FEWEST:
                 raise
             short += 1
     name = _name(log_map.id, log)
@@ -170,6 +171,7 @@ def _records(log: Path, log_map: LogMap) -> list[Record]:
         fix = "convert it to CSV, Parquet or NMEA 0183 with its logger's own software; or say the right encoding"
         raise LogError(Problem(f"the log is {kind}, not text", str(log), "it has zero bytes in it", fix))
     table = (read_parquet if form == "parquet" else read_text)(log, log_map)
+    _drop_duplicates(table)
     line = put_right(time_in_seconds(table, log_map), log_map.time, table.place)
     table.columns = {name: values[line.keep] for name, values in table.columns.items()}
     t = line.t[line.keep]
@@ -182,12 +184,28 @@ def _records(log: Path, log_map: LogMap) -> list[Record]:
     return records
 
 
+def _drop_duplicates(table: Table) -> None:
+    """Leave out rows that were written twice, in place; stamps that repeat over different rows are left alone."""
+    again = np.diff(table.t) == 0.0
+    same = again & np.all(
+        [(np.diff(values) == 0.0) | np.isnan(values[1:]) & np.isnan(values[:-1]) for values in table.columns.values()],
+        axis=0,
+    )
+    if not same.any() or same.sum() < 0.8 * again.sum():
+        return
+    kept = np.concatenate([[True], ~same])
+    row = int(np.flatnonzero(~kept)[0])
+    table.notes.append(f"{same.sum()} rows are written twice and were dropped, the first in {table.place(row)}")
+    table.t, table.rows = table.t[kept], table.rows[kept]
+    table.columns = {name: values[kept] for name, values in table.columns.items()}
+
+
 def _of_record(
     record: Record, log_map: LogMap, step: float | None
 ) -> list[tuple[dict[str, FloatArray], Record, Grid, float, list[str]]]:
     """Columns of each trial in a record, in the trial format; where they begin; what was done."""
     where = str(record.path)
-    record = without_spikes(with_printed_digits(with_local_positions(record, log_map), log_map))
+    record = without_spikes(with_local_positions(record, log_map))
     grid = on_grid(record, log_map, step)
     columns = dict(grid.columns)
     measured = {name for name in record.series if name in ("u", "v", "r", "delta")}
@@ -196,6 +214,8 @@ def _of_record(
         columns["north"], columns["east"] = sog * np.cos(cog), sog * np.sin(cog)
     if "u" in measured or "north" not in columns:
         same_units_throughout(grid.t, columns, where)
+    if "latitude" in log_map.sources or log_map.format == "nmea":
+        not_mirrored(columns, where)
     notes = list(record.notes)
     if grid.bridged:
         notes.append(f"holes of up to {log_map.gap:g} steps in controls were bridged linearly")

@@ -41,6 +41,14 @@ TABLES = {
     "cut": ("start", "end", "from", "lead"),
 }
 COLUMN_KEYS = ("column", "value", "unit", "positive", "zero", "direction", "scale", "offset", "recover")
+CONSTANT = (*CONTROLS, "delta_port", "delta_stbd", "n_bow", "n_stern", *[
+    name for name in QUANTITIES if name.startswith(("wind", "wave", "depth"))
+])  # fmt: skip
+"""What a map may give as a constant."""
+IN_SENTENCES = (
+    "psi", "r", "n", "delta", "delta_port", "delta_stbd", "wind_speed", "wind_dir", "wind_speed_app", "wind_dir_app",
+)  # fmt: skip
+"""What a map may give a sign, a factor and an offset to where the log is NMEA 0183."""
 DELIMITERS = {",": ",", ";": ";", "|": "|", "tab": "\t", "\t": "\t", "space": " ", " ": " "}
 
 
@@ -352,12 +360,15 @@ class _Reader:
             if name and name != "columns" and isinstance(self.data.get(name), dict):
                 self.unknown(name, self.data[name])
         sources = made.sources
+        for name, source in sources.items():
+            if source.value is not None and name not in CONSTANT:
+                what = f"'{name}', {MEANING[name]}, is given as a constant"
+                self.problem(what, f"columns.{name}", "value", "it is what a trial measures", "name its column")
         if made.format == "nmea":
-            for name, source in sources.items():
-                if source.column is not None:
-                    fix = "leave 'column' out: sentences say what they hold"
-                    self.problem(f"'{name}' names a column, and NMEA has none", f"columns.{name}", fix=fix)
+            self.sentences(made)
             return
+        if made.format == "parquet":
+            self.meaningless("log", ("delimiter", "encoding", "decimal", "skip", "header"), "Parquet")
         if made.time.column is None:
             self.problem("no column is named for time", "time", fix='write [time] with column = "..." and unit = "s"')
         for name, source in sources.items():
@@ -397,6 +408,30 @@ class _Reader:
                 self.problem(
                     f"'{name}' is positive to the {positive}: earth axes?", f"columns.{name}", fix=f"say {fix}"
                 )
+
+    def meaningless(self, table: str, keys: tuple[str, ...], form: str) -> None:
+        for key in keys:
+            if key in self.table(table):
+                self.problem(f"'{table}.{key}' has no meaning for {form}", table, key, fix="remove it")
+
+    def sentences(self, made: LogMap) -> None:
+        """What a map of NMEA 0183 cannot say: sentences have columns, units, axes and times of their own."""
+        self.meaningless("log", ("delimiter", "encoding", "decimal", "skip", "header", "missing"), "NMEA 0183")
+        self.meaningless("time", TABLES["time"], "NMEA 0183")
+        self.meaningless("velocity", ("axes",), "NMEA 0183")
+        for name, source in made.sources.items():
+            where = f"columns.{name}"
+            if name not in IN_SENTENCES and source.value is None:
+                fix = closest(name, IN_SENTENCES)
+                self.problem(f"no sentence holds '{name}'", where, fix=f"{fix}; or give it as a constant")
+            self.meaningless_of(where, ("column", "unit", "zero", "direction", "recover"))
+
+    def meaningless_of(self, where: str, keys: tuple[str, ...]) -> None:
+        written = self.data["columns"][where.removeprefix("columns.")]
+        for key in keys:
+            if isinstance(written, dict) and key in written:
+                fix = "remove it: the standard says what sentences hold"
+                self.problem(f"'{where}.{key}' has no meaning for NMEA 0183", where, key, fix=fix)
 
 
 def _lines(text: str) -> dict[tuple[str, str], int]:

@@ -10,6 +10,7 @@ import numpy as np
 from .. import units
 from ..errors import LogError, Problem
 from ..trial.model import FloatArray
+from .digits import within_digits
 from .headers import unit_in
 from .mapping import LogMap, Source
 from .quantities import AGAINST, MEANING, QUANTITIES
@@ -95,6 +96,7 @@ def record_of(table: Table, log_map: LogMap, t: FloatArray, rows: slice) -> Reco
     """
     problems: list[Problem] = []
     series = {}
+    notes: list[str] = []
     for name, values in table.columns.items():
         source = log_map.sources[name]
         if not np.isfinite(values).any():
@@ -108,10 +110,20 @@ def record_of(table: Table, log_map: LogMap, t: FloatArray, rows: slice) -> Reco
         except LogError as error:
             problems += error.problems
             continue
-        series[name] = Series(t[rows], converted(name, values[rows], source, unit))
+        printed = values[rows]
+        if source.recover:
+            # In the log's own unit: that is where the digits are.
+            printed, digits, coarsest = within_digits(t[rows], printed)
+            notes.append(
+                f"{name} is printed with {digits} significant digits, in steps of up to {coarsest:.3g} {unit}; "
+                "it was smoothed within half a step"
+                if digits
+                else f"{name} is printed with more than 6 digits: nothing to recover"
+            )
+        series[name] = Series(t[rows], converted(name, printed, source, unit))
     if problems:
         raise LogError(*problems)
-    return Record(table.path, series)
+    return Record(table.path, series, notes=notes)
 
 
 def converted(name: str, values: FloatArray, source: Source, unit: str) -> FloatArray:

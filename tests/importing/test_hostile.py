@@ -82,7 +82,7 @@ def test_degrees_called_radians(log, columns):
 
 
 def test_latitude_and_longitude_swapped(log, columns):
-    columns["lat"], columns["lon"] = 139.0 + columns["north"] * 9e-6, 35.0 + columns["east"] * 1.1e-5
+    columns["lat"], columns["lon"] = 139.0 + columns["east"] * 1.1e-5, 35.0 + columns["north"] * 9e-6
     text = MAP.replace('x = { column = "north", unit = "m" }', 'latitude = { column = "lat", unit = "deg" }')
     text = text.replace('y = { column = "east", unit = "m" }', 'longitude = { column = "lon", unit = "deg" }')
     refused(write_csv(log, columns), "latitude and longitude are swapped?", "beyond a pole", text=text)
@@ -94,6 +94,10 @@ def test_latitude_and_longitude_swapped(log, columns):
         write_csv(log, {**columns, "lat": lat, "lon": lon}),
         "jumps to another part of the earth", "swapped", text=text,
     )  # fmt: skip
+    swapped = text.replace('"lat"', '"_"').replace('"lon"', '"lat"').replace('"_"', '"lon"')
+    moved = {**columns, "lat": columns["lat"] - 0.0, "lon": columns["lon"] - 100.0}
+    moved["north"] = moved["east"] = np.zeros(400)
+    refused(write_csv(log, moved), "swapped?", "along the heading", text=swapped)
     columns["lat"][100] = 0.0
     columns["lon"][100] = 0.0
     assert "gap       x: 1 samples from 100 to 100 s" in said(write_csv(log, columns), text)
@@ -168,9 +172,30 @@ def test_wraps_of_the_heading(log):
 def test_repeated_time_stamps(log, columns):
     doubled = {name: np.insert(values, 100, values[99]) for name, values in columns.items()}
     report = said(write_csv(log, doubled))
+    assert "1 rows are written twice" in report
+    assert "line 102" in report
+    close(imported(log), turn())
+    doubled["north"][100] += 0.1
+    report = said(write_csv(log, doubled))
     assert "1 rows repeat a time stamp" in report
     assert "line 102" in report
     close(imported(log), turn())
+
+
+def test_rows_written_twice_throughout_are_not_taken_for_coarse_stamps(log, columns):
+    rows = np.arange(0, 400, 4)
+    doubled = {name: np.insert(values, rows + 1, values[rows]) for name, values in columns.items()}
+    assert "100 rows are written twice" in said(write_csv(log, doubled))
+    close(imported(log), turn())
+
+
+def test_stamps_of_whole_seconds_over_a_faster_log(log, columns):
+    columns["time"] = np.floor(0.5 * columns["time"])
+    for name in ("ahead", "abeam", "rate"):
+        columns[name] *= 2.0
+    report = said(write_csv(log, columns))
+    assert "put back on a uniform step of 0.5 s" in report
+    assert np.diff(imported(log).t) == pytest.approx(0.5)
 
 
 def test_single_stamps_off_the_others(log, columns):

@@ -44,6 +44,10 @@ def test_everything_wrong_at_once():
         ("[columns]", "[resample]\ngap = 0.5\n[columns]", "at least 1"),
         ('axes = "ship"', 'axes = "ship"\nframe = 1', "unknown key 'velocity.frame'"),
         ("[columns]", '[columns.sog]\ncolumn = "s"\n[columns]', "speed over ground"),
+        ('psi = { column = "heading", unit = "deg" }', 'psi = { value = "3 deg" }', "is given as a constant"),
+        ("[columns]", '[log]\nformat = "parquet"\nskip = 3\n[columns]', "'log.skip' has no meaning for Parquet"),
+        ("[columns]", '[log]\nformat = "nmea"\n[columns]', "'columns.psi.column' has no meaning for NMEA 0183"),
+        ("[columns]", '[log]\nformat = "nmea"\n[columns]', "no sentence holds 'u'"),
         ('y = { column = "east", unit = "m" }', "", "no columns are named for the position"),
     ],
 )
