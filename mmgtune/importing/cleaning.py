@@ -18,6 +18,12 @@ def without_spikes(record: Record) -> Record:
         # Wind is gusty and speeds near rest are noise: only what a trial is simulated or compared with is cleaned.
         if not name.startswith(("wind", "wave")):
             rows = spikes(values, share=0.2 if controls else 0.02)
+            if len(rows):
+                # Where few digits are printed, one step of the last of them looks like a spike.
+                steps = np.abs(np.diff(values[np.isfinite(values)]))
+                usual = float(np.median(steps[steps > 0.0]))
+                off = np.minimum(np.abs(values[rows] - values[rows - 1]), np.abs(values[rows] - values[rows + 1]))
+                rows = rows[off > 3.0 * usual]
             values[rows] = np.nan
             if len(rows):
                 counts[name] = counts.get(name, 0) + len(rows)

@@ -81,7 +81,16 @@ def settle(t: FloatArray, columns: dict[str, FloatArray], log_map: LogMap, measu
     Raises LogError with every question the motion does not answer.
     """
     problems: list[Problem] = []
-    said = _yaw(t, columns, log_map, measured, where, problems)
+    said = []
+    assumed = [
+        f"{what} taken as {how}"
+        for name, what, how in (("y", "y", "east of x"), ("psi", "the heading", "clockwise from north"))
+        if name in log_map.sources and log_map.sources[name].column and log_map.sources[name].positive is None
+    ]
+    if assumed:
+        # Both the other way round is a mirror image, which no motion can tell from the ship herself.
+        said.append(f"{' and '.join(assumed)}, as the map says nothing else")
+    said += _yaw(t, columns, log_map, measured, where, problems)
     if {"u", "v"} <= measured:
         said += _axes(t, columns, log_map, where, problems)
     if problems:

@@ -11,6 +11,8 @@ from ..trial.model import FloatArray
 def within_digits(t: FloatArray, values: FloatArray) -> tuple[FloatArray, int, float]:
     """The smoothest curve (n_samples,) that rounds to what was printed, the digits printed, and the coarsest step.
 
+    One sample in 200 may lie beyond half a step: holding it there would bend the curve.
+
     t       (n_samples,) time [s], strictly increasing
     values  (n_samples,) as printed, in any unit
 
@@ -34,8 +36,6 @@ def within_digits(t: FloatArray, values: FloatArray) -> tuple[FloatArray, int, f
             low, best = middle, curve
         else:
             high = middle
-    # The few that are left over are held to what was printed.
-    best = np.clip(best, values[known] - 0.5 * step, values[known] + 0.5 * step)
     out = np.array(values)
     out[known] = best
     return out, digits, float(step.max())
