@@ -95,4 +95,4 @@ def _rates(t: FloatArray, channels: list[FloatArray]) -> tuple[list[FloatArray],
     middle = whole[max(0, (len(whole) - LONGEST) // 2) :][:LONGEST]
     noise = np.array([white_noise(channel[middle]) for channel in channels])
     tau = time_scale(t[middle], stacked[middle], noise, dt)
-    return [smoothed(t, channel, tau, dt, derivative=1) for channel in channels], tau
+    return list(smoothed(t, stacked, tau, dt, derivative=1).T), tau

@@ -9,8 +9,6 @@ from __future__ import annotations
 import re
 from array import array
 from collections import Counter
-from functools import reduce
-from operator import xor
 from pathlib import Path
 
 import numpy as np
@@ -30,6 +28,18 @@ SENTENCES = {
 POSITIONS = ("GGA", "RMC", "GLL")
 _SPEED = {"K": 1.0 / 3.6, "M": 1.0, "N": KNOT}
 _LINE = re.compile(rb"[$!]([A-Z]{2}|P[A-Z]*)([A-Z]{3}),([^*\r\n]*)(?:\*([0-9A-Fa-f]{2}))?\s*$")
+
+
+def checksum(body: bytes) -> int:
+    """Exclusive or of all bytes between "$" and "*", 0 to 255."""
+    # Folded in halves as one long number: several times quicker than byte by byte.
+    value, bits = int.from_bytes(body, "little"), 8
+    while bits < 8 * len(body):
+        bits *= 2
+    while bits > 8:
+        bits //= 2
+        value ^= value >> bits
+    return value & 0xFF
 
 
 class _Channel:
@@ -77,7 +87,7 @@ class _Parser:
             return
         if match.group(4) is None:
             self.unsigned += 1
-        elif reduce(xor, raw[match.start() + 1 : match.end(3)]) != int(match.group(4), 16):
+        elif checksum(raw[match.start() + 1 : match.end(3)]) != int(match.group(4), 16):
             self.bad += 1
             self.first_bad = self.first_bad or number
             return

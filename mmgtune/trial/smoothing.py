@@ -40,11 +40,12 @@ def time_scale(t: FloatArray, channels: FloatArray, noise: FloatArray, dt: float
 def smoothed(t: FloatArray, values: FloatArray, tau: float, dt: float, derivative: int = 0) -> FloatArray:
     """A channel (n_samples,), or its time derivative of that order, from its smoothing spline.
 
+    Several channels (n_samples, n_channels) are smoothed together: a sample counts where all of them are measured.
     Gaps (NaN) are bridged.  NaN before the first and after the last measured sample, and throughout where fewer than
     FEWEST samples are measured.
     """
-    known = np.isfinite(values)
-    out = np.full(len(t), np.nan)
+    known = np.isfinite(values) if values.ndim == 1 else np.isfinite(values).all(axis=1)
+    out = np.full(values.shape, np.nan)
     if known.sum() >= FEWEST:
         first, last = np.flatnonzero(known)[[0, -1]]
         inside = slice(int(first), int(last) + 1)

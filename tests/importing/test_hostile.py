@@ -1,10 +1,14 @@
 """Hostile logs: each is refused with what, where, why and the fix, or its faults are marked; all logs are generated."""
 
+from functools import reduce
+from operator import xor
+
 import numpy as np
 import pytest
 
 from mmgtune.errors import OutputError
 from mmgtune.importing import import_logs, load_map, parse_map
+from mmgtune.importing.nmea import checksum
 from mmgtune.trial import read_trial
 from mmgtune.units import DEG
 from tests.importing.made import MAP, close, imported, logged, nmea, refusal, said, sentence, suzaku, turn, write_csv
@@ -301,6 +305,12 @@ def test_nmea_faults(tmp_path):
     log.write_text("\n".join(line for line in lines if "RPM" not in line))
     text = 'schema = 1\n[log]\nformat = "nmea"\n[columns.n]\nvalue = "102 rpm"\n'
     assert imported(log, text).n[0] == pytest.approx(1.7)
+
+
+def test_checksums():
+    for length in range(0, 130):
+        body = bytes(33 + (7 * k + length) % 90 for k in range(length))
+        assert checksum(body) == reduce(xor, body, 0)
 
 
 def test_nothing_is_replaced_silently(log, columns):
