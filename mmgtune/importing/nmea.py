@@ -6,6 +6,7 @@ once an epoch the epoch's own time, where it comes more often they are spread ev
 
 from __future__ import annotations
 
+import math
 import re
 from array import array
 from collections import Counter
@@ -72,9 +73,9 @@ class _Parser:
         self.unsigned = 0
         self.no_fix = 0
         self.malformed = 0
-        self.epoch = np.nan
+        self.epoch = math.nan
         self.day = 0.0
-        self.of_day = np.nan
+        self.of_day = math.nan
         self.date = ""
 
     def line(self, number: int, raw: bytes) -> None:
@@ -122,16 +123,18 @@ class _Parser:
             self.date = f"{f[3]}-{f[2]}-{f[1]}"
 
     def position(self, kind: str, f: list[str]) -> None:
-        time, at, good = {
-            "GGA": (f[0], 1, len(f) > 5 and f[5] not in ("", "0")),
-            "RMC": (f[0], 2, f[1] == "A"),
-            "GLL": (f[4], 0, f[5] == "A"),
-        }[kind]
+        if kind == "GGA":
+            time, at, good = f[0], 1, f[5] not in ("", "0")
+        elif kind == "RMC":
+            time, at, good = f[0], 2, f[1] == "A"
+        else:
+            # Receivers of before 1992 write no status.
+            time, at, good = f[4], 0, len(f) < 6 or f[5] == "A"
         if kind == self.primary and time:
             self.begin(3600.0 * int(time[:2]) + 60.0 * int(time[2:4]) + float(time[4:]))
             self.no_fix += not good
-            self.add("latitude", self.epoch, _degrees(f[at], f[at + 1]) if good else np.nan)
-            self.add("longitude", self.epoch, _degrees(f[at + 2], f[at + 3]) if good else np.nan)
+            self.add("latitude", self.epoch, _degrees(f[at], f[at + 1]) if good else math.nan)
+            self.add("longitude", self.epoch, _degrees(f[at + 2], f[at + 3]) if good else math.nan)
         if kind == "RMC":
             if not self.date and len(f) > 8 and len(f[8]) == 6:
                 self.date = f"20{f[8][4:]}-{f[8][2:4]}-{f[8][:2]}"
@@ -140,7 +143,7 @@ class _Parser:
 
     def begin(self, of_day: float) -> None:
         """A new epoch: what was waiting belongs to the one before."""
-        if np.isfinite(self.of_day):
+        if not math.isnan(self.of_day):
             if of_day - self.of_day < -DAY / 2.0:
                 self.day += DAY
             elif of_day - self.of_day > DAY / 2.0:
@@ -152,21 +155,21 @@ class _Parser:
 
     def spread(self, now: float) -> None:
         """Give the waiting sentences their times, up to the next epoch."""
-        if np.isfinite(self.epoch):
+        if not math.isnan(self.epoch):
             for name, values in self.waiting.items():
                 for i, value in enumerate(values):
                     self.add(name, self.epoch + (now - self.epoch) * i / len(values), value)
         self.waiting = {}
 
     def velocity(self, speed: float, course: float) -> None:
-        self.wait("north", speed * np.cos(course))
-        self.wait("east", speed * np.sin(course))
+        self.wait("north", speed * math.cos(course))
+        self.wait("east", speed * math.sin(course))
 
     def rudder(self, f: list[str]) -> None:
         """The single or starboard sensor, and the port one where there is one."""
         angles = [float(f[k]) * DEG for k in (0, 2) if len(f) > k + 1 and f[k] and f[k + 1] == "A"]
         if angles:
-            self.wait("delta", float(np.mean(angles)))
+            self.wait("delta", sum(angles) / len(angles))
         if len(angles) == 2:
             self.wait("delta_stbd", angles[0])
             self.wait("delta_port", angles[1])
@@ -175,7 +178,10 @@ class _Parser:
         self.waiting.setdefault(name, []).append(value)
 
     def add(self, name: str, t: float, value: float) -> None:
-        self.channels.setdefault(name, _Channel()).add(t, value)
+        channel = self.channels.get(name)
+        if channel is None:
+            channel = self.channels[name] = _Channel()
+        channel.add(t, value)
 
 
 def read_nmea(path: Path, log_map: LogMap) -> Record:
