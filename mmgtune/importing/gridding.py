@@ -9,7 +9,7 @@ import numpy as np
 from ..errors import LogError, Problem
 from ..trial.model import FloatArray
 from .mapping import LogMap
-from .quantities import CONTROLS, MEASURED
+from .quantities import CONTROLS, MEANING, MEASURED
 from .record import Record, Series
 
 FEWEST = 20
@@ -42,6 +42,13 @@ def on_grid(record: Record, log_map: LogMap, step: float | None) -> Grid:
     Raises LogError where there is no time that all controls cover.
     """
     series = record.series
+    constant = {name for name, source in log_map.sources.items() if source.value is not None}
+    absent = [name for name in ("x", "y", "psi", *CONTROLS) if name not in series and name not in constant]
+    if absent:
+        what = f"the log has fewer than two valid samples of {', '.join(MEANING[name] for name in absent)}"
+        raise LogError(
+            Problem(what, str(record.path), "a trial needs them", "log them, or give n and delta as constants")
+        )
     lead = series["x"]
     finite = np.isfinite(lead.values)
     own = float(np.median(np.diff(lead.t))) if len(lead.t) > 1 else 0.0

@@ -165,7 +165,7 @@ def _records(log: Path, log_map: LogMap) -> list[Record]:
             raise LogError(
                 Problem("the log is binary, not NMEA 0183", str(log), fix="convert it with its logger's software")
             )
-        return [read_nmea(log, log_map)]
+        return read_nmea(log, log_map)
     if form == "csv" and binary(content):
         kind = "a Parquet file" if content.startswith(b"PAR1") else "binary"
         fix = "convert it to CSV, Parquet or NMEA 0183 with its logger's own software; or say the right encoding"

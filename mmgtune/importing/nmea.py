@@ -10,6 +10,7 @@ import math
 import re
 from array import array
 from collections import Counter
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -74,6 +75,7 @@ class _Parser:
         self.no_fix = 0
         self.malformed = 0
         self.epoch = math.nan
+        self.lasting = 0.0
         self.day = 0.0
         self.of_day = math.nan
         self.date = ""
@@ -156,9 +158,12 @@ class _Parser:
     def spread(self, now: float) -> None:
         """Give the waiting sentences their times, up to the next epoch."""
         if not math.isnan(self.epoch):
+            if 0.0 < now - self.epoch < (10.0 * self.lasting or math.inf):
+                self.lasting = now - self.epoch
+            # Over a hole, or where the clock was set, an epoch lasts as long as the one before.
             for name, values in self.waiting.items():
                 for i, value in enumerate(values):
-                    self.add(name, self.epoch + (now - self.epoch) * i / len(values), value)
+                    self.add(name, self.epoch + self.lasting * i / len(values), value)
         self.waiting = {}
 
     def velocity(self, speed: float, course: float) -> None:
@@ -184,8 +189,10 @@ class _Parser:
         channel.add(t, value)
 
 
-def read_nmea(path: Path, log_map: LogMap) -> Record:
-    """A log of NMEA 0183 sentences as a record: ``north`` and ``east`` are the velocity over ground in earth axes.
+def read_nmea(path: Path, log_map: LogMap) -> list[Record]:
+    """A log of NMEA 0183 sentences as records, more than one where its clock was set back.
+
+    ``north`` and ``east`` are the velocity over ground in earth axes [m/s].
 
     Raises LogError naming the sentences that are missing.
     """
@@ -218,7 +225,7 @@ def read_nmea(path: Path, log_map: LogMap) -> Record:
         raise LogError(Problem("the log has no position with a good checksum", str(path), f"{parser.bad} are bad"))
     usual = np.diff(np.array(parser.channels["latitude"].t))
     parser.spread(parser.epoch + (float(np.median(usual)) if len(usual) else 1.0))
-    return _record(parser, path, log_map)
+    return _records(parser, path, log_map)
 
 
 def _kinds(path: Path) -> Counter[str]:
@@ -232,7 +239,8 @@ def _kinds(path: Path) -> Counter[str]:
     return Counter({kind: count for kind, count in found.items() if kind in SENTENCES})
 
 
-def _record(parser: _Parser, path: Path, log_map: LogMap) -> Record:
+def _records(parser: _Parser, path: Path, log_map: LogMap) -> list[Record]:
+    """What was parsed in the program's units, in parts where the clock was set back."""
     start = parser.channels["latitude"].t[0]
     notes = [
         f"NMEA 0183: {', '.join(f'{count} {kind}' for kind, count in parser.counts.most_common())}; "
@@ -257,7 +265,7 @@ def _record(parser: _Parser, path: Path, log_map: LogMap) -> Record:
             )
         if len(used) > 1:
             notes.append(f"{len(used)} shafts are logged; n is that of number {used[0][3:]}")
-    series = {}
+    pieces: dict[str, list[Series]] = {}
     for name, channel in channels.items():
         if name.startswith("n "):
             continue
@@ -265,10 +273,8 @@ def _record(parser: _Parser, path: Path, log_map: LogMap) -> Record:
         if len(t) < 2:
             continue
         line = put_right(t, TimeSource(recover="never"), lambda row: f"{path}, sample {row + 1}")
-        if line.parts:
-            why = "the times of the positions fall back and go on from there"
-            raise LogError(Problem("the clock was set back within the log", str(path), why, "cut the log there"))
-        notes += [f"{name}: {note}" for note in line.notes]
+        if name == "latitude":
+            notes += line.notes
         values = values[line.keep]
         source = log_map.sources.get(name)
         if source is not None and source.value is None:
@@ -276,8 +282,14 @@ def _record(parser: _Parser, path: Path, log_map: LogMap) -> Record:
         quantity = QUANTITIES.get(name)
         if quantity is not None and quantity.angle:
             values = unwrapped(values, 360.0 if quantity.unit == "deg" else 2.0 * np.pi)
-        series[name] = Series(t[line.keep], values)
-    return Record(path, series, notes=notes)
+        t = t[line.keep]
+        bounds = [0, *line.parts, len(t)]
+        pieces[name] = [Series(t[first:last], values[first:last]) for first, last in pairwise(bounds)]
+    parts = len(pieces.get("latitude", [0]))
+    if any(len(found) != parts for found in pieces.values()):
+        why = "the times of the positions fall back and go on from there, and not all sentences are on both sides"
+        raise LogError(Problem("the clock was set back within the log", str(path), why, "cut the log there"))
+    return [Record(path, {name: found[k] for name, found in pieces.items()}, notes=list(notes)) for k in range(parts)]
 
 
 def _degrees(text: str, side: str) -> float:

@@ -307,6 +307,26 @@ def test_nmea_faults(tmp_path):
     assert imported(log, text).n[0] == pytest.approx(1.7)
 
 
+def test_nmea_whose_clock_is_set_back(tmp_path):
+    trial = turn()
+    per = len(nmea(trial)) // trial.n_samples
+    late, early = nmea(trial, start=40000.0, fast=1), nmea(trial, start=39800.0, fast=1)
+    log = tmp_path / "log.nmea"
+    log.write_text("\n".join([*late[: 250 * per], *early[250 * per :]]))
+    result = import_logs([log], load_map("nmea-0183", preset=True), tmp_path / "out")
+    assert [one.n_samples for one in result.trials] == [250, 150]
+    assert "the clock was set back by 199 s" in result.text()
+
+
+def test_nmea_whose_rudder_is_never_valid(tmp_path):
+    log = tmp_path / "log.nmea"
+    log.write_text("\n".join(sentence("IIRSA,0.0,V,,") if "RSA" in line else line for line in nmea(turn())))
+    preset = load_map("nmea-0183", preset=True)
+    assert "fewer than two valid samples of rudder angle" in refusal(lambda: import_logs([log], preset, tmp_path))
+    log.write_text("\n".join(nmea(turn())[:7]))
+    assert "fewer than two" in refusal(lambda: import_logs([log], preset, tmp_path))
+
+
 def test_checksums():
     for length in range(0, 130):
         body = bytes(33 + (7 * k + length) % 90 for k in range(length))
