@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from .fitting import fit as fit
     from .fitting import sweep as sweep
     from .fitting import write_run as write_run
+    from .importing import import_logs as import_logs
+    from .importing import load_map as load_map
     from .manoeuvres import Track as Track
     from .manoeuvres.summary import indices_of as indices_of
     from .measures import distance_measures as distance_measures
@@ -48,6 +50,8 @@ _WHERE = {
     "fit": "fitting",
     "sweep": "fitting",
     "write_run": "fitting",
+    "import_logs": "importing",
+    "load_map": "importing",
     "Track": "manoeuvres",
     "indices_of": "manoeuvres.summary",
     "Model": "model",

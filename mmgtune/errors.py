@@ -49,6 +49,10 @@ class TrialError(MmgtuneError):
     """A trial file or a data set cannot be used."""
 
 
+class LogError(MmgtuneError):
+    """A log of a trial, or the map that says how to read it, cannot be used."""
+
+
 class OptionError(MmgtuneError):
     """An option or argument makes no sense, alone or with the others."""
 

@@ -1,4 +1,4 @@
-"""The ship profiles and sample trials that travel with the program, found by name."""
+"""The ship profiles, sample trials and maps for logs that travel with the program, found by name."""
 
 from __future__ import annotations
 
@@ -21,3 +21,13 @@ def profile_names() -> list[str]:
 def trial_set_names() -> list[str]:
     """Names of the bundled data sets."""
     return sorted(path.name for path in folder("trials").glob("*") if path.is_dir())
+
+
+def import_map_names() -> list[str]:
+    """Names of the bundled maps for logs."""
+    return sorted(path.stem for path in import_maps().glob("*.toml"))
+
+
+def import_maps() -> Path:
+    """The folder of the bundled maps for logs; it lies inside the package."""
+    return _PACKAGE / "importing" / "presets"

@@ -13,15 +13,15 @@ DEG = math.pi / 180.0
 KNOT = 1852.0 / 3600.0
 
 _FACTORS: dict[str, dict[str, float]] = {
-    "m": {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "km": 1e3},
+    "m": {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "km": 1e3, "ft": 0.3048, "NM": 1852.0},
     "m^2": {"m^2": 1.0, "cm^2": 1e-4},
-    "m/s": {"m/s": 1.0, "kn": KNOT, "km/h": 1.0 / 3.6},
+    "m/s": {"m/s": 1.0, "kn": KNOT, "km/h": 1.0 / 3.6, "cm/s": 1e-2, "mm/s": 1e-3, "ft/s": 0.3048},
     "rad": {"rad": 1.0, "deg": DEG},
     "deg": {"deg": 1.0, "rad": 1.0 / DEG},
-    "rad/s": {"rad/s": 1.0, "deg/s": DEG},
+    "rad/s": {"rad/s": 1.0, "deg/s": DEG, "deg/min": DEG / 60.0},
     "1/s": {"1/s": 1.0, "rps": 1.0, "rpm": 1.0 / 60.0},
     "N": {"N": 1.0, "kN": 1e3},
-    "s": {"s": 1.0, "min": 60.0},
+    "s": {"s": 1.0, "min": 60.0, "h": 3600.0, "ms": 1e-3, "us": 1e-6},
     "kg/m^3": {"kg/m^3": 1.0, "t/m^3": 1e3},
     "1/deg": {"1/deg": 1.0, "1/rad": DEG},
     "1/deg^2": {"1/deg^2": 1.0, "1/rad^2": DEG**2},
@@ -60,6 +60,11 @@ def parse(text: str, unit: str) -> tuple[float, ...]:
         return tuple(float(number) * factor for number in match.group(1).split(","))
     except ValueError:
         raise ValueError(f"'{text}' is not a number with a unit, such as '{example(unit)}'") from None
+
+
+def factors(unit: str) -> dict[str, float]:
+    """Units a quantity in ``unit`` may be written in, and what a number in each is multiplied by."""
+    return dict(_FACTORS.get(unit, {}))
 
 
 def example(unit: str) -> str:

@@ -1,15 +1,17 @@
-"""``mmgtune trials``: check and inspect trial files."""
+"""``mmgtune trials``: make, check and inspect trial files."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from ..errors import OptionError, Problem
 from . import common as c
 from .exitcodes import ExitCode
 
-app = typer.Typer(help="Check and inspect trial files.", no_args_is_help=True)
+app = typer.Typer(help="Make trial files from logs, check and inspect them.", no_args_is_help=True)
 
 Name = Annotated[
     str, typer.Argument(help="Folder of trial files, one file, or a bundled name.", autocompletion=c.complete_trials)
@@ -81,3 +83,68 @@ def inspect(trials: Name, profile: c.Profile = "suzaku", json: c.Json = False) -
                 print(f"  {index:<34}{value:.4g}")
         if row["note"]:
             print(f"  {row['note']}")
+
+
+def _complete_map(incomplete: str) -> list[str]:
+    from ..resources import import_map_names
+
+    return [name for name in import_map_names() if name.startswith(incomplete)]
+
+
+@app.command("import")
+def import_(
+    logs: Annotated[list[str], typer.Argument(help="Logs: CSV or other text, Parquet, NMEA 0183.", metavar="LOG...")],
+    map_: Annotated[
+        str | None,
+        typer.Option("--map", help="TOML file saying what the columns are.", rich_help_panel=c.INPUT),
+    ] = None,
+    preset: Annotated[
+        str | None,
+        typer.Option("--preset", help="A bundled map by name.", rich_help_panel=c.INPUT, autocompletion=_complete_map),
+    ] = None,
+    step: Annotated[
+        str | None,
+        typer.Option("--step", help="Time step of the trials, such as \"1 s\". Default: the map's, else the log's."),
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="Folder for the trial files.", rich_help_panel=c.OUTPUT)
+    ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Replace trial files of the same name.", rich_help_panel=c.OUTPUT)
+    ] = False,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Print the quality report, write nothing.", rich_help_panel=c.OUTPUT)
+    ] = False,
+    json: c.Json = False,
+) -> None:
+    """Turn logs into trial files, one a log, and say what they are worth.
+
+    What a log does not say and its motion does not show is asked for, never guessed.
+
+    Example:
+
+      mmgtune trials import logs/*.csv --map logger.toml -o my_trials
+    """
+    from .. import units
+    from ..importing import import_logs, load_map
+
+    if (map_ is None) == (preset is None):
+        raise OptionError(Problem("give either --map or --preset", "--map, --preset", fix="--map FILE.toml"))
+    if out is None and not dry_run:
+        raise OptionError(Problem("no folder is given for the trials", "--out", fix="add -o FOLDER, or --dry-run"))
+    seconds = None
+    if step is not None:
+        try:
+            (seconds,) = units.parse(step, "s")
+        except ValueError as error:
+            raise OptionError(Problem(str(error), "--step")) from error
+        if not 0.0 < seconds < float("inf"):
+            raise OptionError(Problem(f"the step is {step}", "--step", fix="give a time above 0 s"))
+    log_map = load_map(map_) if map_ is not None else load_map(str(preset), preset=True)
+    imported = import_logs(logs, log_map, out or ".", seconds, force, dry_run)
+    if json:
+        c.print_json(imported.to_dict())
+        return
+    print(imported.text())
+    done = "would be written" if dry_run else f"written to {out}"
+    print(f"{len(imported.trials)} trials {done}")

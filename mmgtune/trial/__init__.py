@@ -8,6 +8,7 @@ unusable        what forbids using a trial
 checks          everything odd about one: motion_checks, control_checks; kinematics: what they measure
 pieces          long trials cut into windows
 wind            the wind it was measured in
+smoothing       channels without their noise
 describe        what a trial holds, in numbers
 """
 

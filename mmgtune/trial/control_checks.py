@@ -46,7 +46,7 @@ def _rudder_sign(trial: Trial, where: str) -> list[Finding]:
 
 def _rudder_speed(trial: Trial, where: str) -> list[Finding]:
     """Orders jump in one sample.  Steering gears follow the size of a ship as its yaw rate does, so that tells them."""
-    step, rate = _fastest(trial.t, trial.delta)
+    step, rate = fastest_change(trial.t, trial.delta)
     yaw = np.abs(trial.r[np.isfinite(trial.r)])
     if step < 4.9 * DEG or rate < 8.0 * DEG or rate < 8.0 * np.percentile(yaw, 95.0):
         return []
@@ -63,7 +63,7 @@ def _rudder_speed(trial: Trial, where: str) -> list[Finding]:
 
 def _shaft_speed(trial: Trial, where: str) -> list[Finding]:
     """Only for shafts as slow as those of ships: a model's motor can do anything."""
-    step, rate = _fastest(trial.t, trial.n)
+    step, rate = fastest_change(trial.t, trial.n)
     largest = float(np.percentile(np.abs(trial.n), 99.0))
     if largest > 5.0 or step < 0.25 * largest or rate < 0.3:
         return []
@@ -111,7 +111,7 @@ def _directions(trial: Trial, where: str) -> list[Finding]:
     return found
 
 
-def _fastest(t: FloatArray, values: FloatArray) -> tuple[float, float]:
+def fastest_change(t: FloatArray, values: FloatArray) -> tuple[float, float]:
     """Largest change between neighbouring samples, and its rate per second; spikes do not count."""
     kept = np.ones(len(values), dtype=bool)
     kept[spikes(values, share=0.2)] = False

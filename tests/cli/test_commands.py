@@ -9,9 +9,8 @@ from mmgtune.trial import read_trial
 from tests.command import run
 
 COMMANDS = [
-    ("fit",), ("sweep",), ("leave-out",), ("validate",), ("simulate",), ("report",), ("trials", "check"),
-    ("trials", "inspect"), ("profile", "list"),
-    ("profile", "show"), ("profile", "validate"),
+    ("fit",), ("sweep",), ("leave-out",), ("validate",), ("simulate",), ("report",), ("trials", "import"),
+    ("trials", "check"), ("trials", "inspect"), ("profile", "list"), ("profile", "show"), ("profile", "validate"),
 ]  # fmt: skip
 HEAVY = ("numpy", "scipy", "pandas", "numba", "cma", "matplotlib", "plotly", "pyarrow", "tomlkit", "jinja2")
 

@@ -1,12 +1,9 @@
 """Measured motion without its noise: one smoothing spline per channel, all with the same time scale.
 
-A cubic smoothing spline passes a motion of angular frequency w by 1 / (1 + (tau w)^4), without delay.  All channels and
-the inputs share one tau: a rudder angle and the yaw it causes are then blunted alike, and the difference between the
-two sides of an equation of motion is not an artefact of having smoothed one more than the other.
-
-tau is what makes Mallows' C_L of the velocities smallest: the sum over u, v_m and r of (residual sum of squares) /
-(noise variance) + 2 (effective number of parameters).  The noise is what the trial's file says, or what second
-differences show; the number of parameters follows from tau.  Noise that is not white is taken for motion.
+All channels and the inputs share one tau (``mmgtune.trial.smoothing``): a rudder angle and the yaw it causes are then
+blunted alike, and the difference between the two sides of an equation of motion is not an artefact of having smoothed
+one more than the other.  tau is chosen on u, v_m and r; the noise is what the trial's file says, or what second
+differences show.
 """
 
 from __future__ import annotations
@@ -16,16 +13,13 @@ from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import make_smoothing_spline
 
 from ...fitting.initial import noise_of
 from ...trial import Trial
+from ...trial.smoothing import FEWEST, smoothed, time_scale
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
-
-FEWEST = 10
-"""Samples with u, v_m and r below which there is nothing to smooth."""
 
 REACH = 2.5
 """Time scales from an end or a long gap within which slopes of the spline are not relied on."""
@@ -84,9 +78,9 @@ def smooth(trial: Trial) -> Smoothed:
         raise ValueError(f"trial '{trial.id}' has {whole.sum()} samples with u, v_m and r; {FEWEST} are needed")
     dt = float(np.median(np.diff(t)))
     noise = _noise(trial)
-    tau = _time_scale(t[whole], motion[whole, 3:], noise[3:], dt)
-    states = np.column_stack([_smoothed(t, values, tau, dt) for values in motion.T])
-    controls = np.column_stack([_smoothed(t, values, tau, dt) for values in (trial.n, trial.delta)])
+    tau = time_scale(t[whole], motion[whole, 3:], noise[3:], dt)
+    states = np.column_stack([smoothed(t, values, tau, dt) for values in motion.T])
+    controls = np.column_stack([smoothed(t, values, tau, dt) for values in (trial.n, trial.delta)])
     present, inner = _reliable(t, whole, tau, dt)
     return Smoothed(t, states, controls, tau, dt, noise, present, inner)
 
@@ -100,31 +94,6 @@ def _noise(trial: Trial) -> FloatArray:
             max(found[k], float(np.min(steps[steps > 0.0], initial=np.inf)) / np.sqrt(12.0)) if steps.any() else 0.0
         )
     return found
-
-
-def _time_scale(t: FloatArray, velocities: FloatArray, noise: FloatArray, dt: float) -> float:
-    """The tau [s] with the smallest C_L, out of half a sample's time to a tenth of the record; see above."""
-    span = float(t[-1] - t[0])
-    scale = np.maximum(noise, 1e-6 * np.maximum(np.ptp(velocities, axis=0), 1e-6))
-    scaled = (velocities - velocities.mean(axis=0)) / scale
-    frequency = (np.arange(200) + 0.5) / 200.0 * np.pi / dt
-    candidates = np.geomspace(0.5 * dt, max(dt, 0.1 * span), 24)
-    criterion = []
-    for tau in candidates:
-        misfit = make_smoothing_spline(t, scaled, lam=tau**4 / dt)(t) - scaled
-        parameters = len(t) * float(np.mean(1.0 / (1.0 + (tau * frequency) ** 4)))
-        criterion.append(float(np.sum(misfit * misfit)) + 2.0 * scaled.shape[1] * parameters)
-    return float(candidates[int(np.argmin(criterion))])
-
-
-def _smoothed(t: FloatArray, values: FloatArray, tau: float, dt: float) -> FloatArray:
-    known = np.isfinite(values)
-    out = np.full(len(t), np.nan)
-    if known.sum() >= FEWEST:
-        first, last = np.flatnonzero(known)[[0, -1]]
-        inside = slice(int(first), int(last) + 1)
-        out[inside] = make_smoothing_spline(t[known], values[known], lam=tau**4 / dt)(t[inside])
-    return out
 
 
 def _reliable(t: FloatArray, whole: BoolArray, tau: float, dt: float) -> tuple[BoolArray, BoolArray]:

@@ -1,0 +1,18 @@
+"""Logs of trials (CSV, Parquet, NMEA 0183) to trial files.
+
+mapping         the map of a log; reading_map: from TOML; quantities: what there is; headers: names and units in logs
+table           columns of a log; text, parquet_log: reading them; clock: time put right
+record          quantities in the program's units, each with its own time; nmea: reading sentences
+digits          made up for where too few are printed; cleaning: spikes
+geodesy         latitude and longitude to metres; gridding: one uniform time
+motion          midship, ship axes, and velocities that were not measured
+conventions     signs and axes a map does not state
+quality         what the result is worth
+importer        all of it
+"""
+
+from .importer import Imported, import_logs
+from .mapping import LogMap
+from .reading_map import load_map, parse_map
+
+__all__ = ["Imported", "LogMap", "import_logs", "load_map", "parse_map"]

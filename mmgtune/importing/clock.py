@@ -1,0 +1,247 @@
+"""Time of a log: reading stamps, and putting right what clocks and printing do to them."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import LogError, Problem
+from ..trial.model import FloatArray
+from .mapping import TimeSource
+
+DAY = 86400.0
+OUTLIERS = 3
+"""Rows in a row whose stamps may be off while the clock as a whole is right."""
+
+
+class Stamps:
+    """Turns time cells into numbers, block by block."""
+
+    def __init__(self, source: TimeSource, path: Path):
+        self.source, self.path = source, path
+        self.format = source.format
+        self.notes: list[str] = []
+        self.origin: Any = None
+        self.day = 0.0
+        self.last = np.nan
+
+    @property
+    def clock(self) -> bool:
+        """Whether stamps are dates or clocks, so that what is returned is in s."""
+        return self.format in ("iso", "clock")
+
+    def of(self, values: Any, rows: npt.NDArray[np.int64]) -> FloatArray:
+        """Time (n_rows,) of a pandas column: as printed, or in s from the first stamp; NaN where there is none.
+
+        Raises LogError where the first stamps are neither numbers nor dates nor clocks.
+        """
+        import pandas as pd
+
+        if pd.api.types.is_datetime64_any_dtype(values.dtype):
+            self.format = "iso"
+            return self._since(pd.to_datetime(values, utc=True))
+        if pd.api.types.is_numeric_dtype(values.dtype) and self.format in (None, "number"):
+            self.format = "number"
+            return np.asarray(values.to_numpy(dtype=np.float64, na_value=np.nan))
+        text = values.astype("string").str.strip()
+        if self.format is None:
+            self.format = self._seen(text)
+        if self.format == "number":
+            return np.asarray(pd.to_numeric(text, errors="coerce").to_numpy(dtype=np.float64, na_value=np.nan))
+        if self.format == "clock":
+            return self._clock(text)
+        stamps = pd.to_datetime(text.str.replace(",", ".", regex=False), errors="coerce", utc=True, format="ISO8601")
+        if stamps.isna().all():
+            self._unreadable(text, rows, "as ISO 8601 dates, such as 2024-05-01T10:00:00.5")
+        return self._since(stamps)
+
+    def _seen(self, text: Any) -> str:
+        known = text.dropna()
+        first = known[known != ""]
+        if len(first) and first.str.fullmatch(r"\d{1,2}:\d{2}(:\d{2}([.,]\d*)?)?").mean() > 0.5:
+            return "clock"
+        if len(first) and first.str.match(r"\d{4}-?\d{2}-?\d{2}[T ]").mean() > 0.5:
+            return "iso"
+        return "number"
+
+    def _since(self, stamps: Any) -> FloatArray:
+        if self.origin is None and stamps.notna().any():
+            self.origin = stamps[stamps.notna()].iloc[0]
+        if self.origin is None:
+            return np.full(len(stamps), np.nan)
+        return np.asarray((stamps - self.origin).dt.total_seconds().to_numpy(dtype=np.float64))
+
+    def _clock(self, text: Any) -> FloatArray:
+        parts = text.str.extract(r"^(\d{1,2}):(\d{2})(?::(\d{2}(?:[.,]\d*)?))?$")
+        parts = parts.apply(lambda one: one.str.replace(",", ".", regex=False)).fillna({2: "0"})
+        h, m, s = (parts[k].astype("Float64").to_numpy(dtype=np.float64, na_value=np.nan) for k in range(3))
+        return self.over_midnight(3600.0 * h + 60.0 * m + s)
+
+    def over_midnight(self, seconds: FloatArray) -> FloatArray:
+        """Seconds of the day (n_rows,) without the fall at midnight; blocks follow each other."""
+        out = np.array(seconds)
+        known = np.flatnonzero(np.isfinite(seconds))
+        if len(known):
+            values = seconds[known]
+            before = np.concatenate([[values[0] if np.isnan(self.last) else self.last], values[:-1]])
+            turns = np.where(values - before < -DAY / 2.0, 1.0, 0.0) - np.where(values - before > DAY / 2.0, 1.0, 0.0)
+            days = self.day + np.cumsum(turns)
+            out[known] = values + DAY * days
+            self.day, self.last = float(days[-1]), float(values[-1])
+        return out
+
+    def _unreadable(self, text: Any, rows: npt.NDArray[np.int64], how: str) -> None:
+        shown = text.iloc[0] if len(text) else ""
+        fix = 'say format = "number", "iso" or "clock" in [time]'
+        place = f"{self.path}, line {rows[0] if len(rows) else 0}"
+        raise LogError(Problem(f"time cannot be read {how}", place, f"the first stamp is '{shown}'", fix))
+
+
+@dataclass
+class Timeline:
+    """Time put right.
+
+    keep    (n_rows,) rows that have a time of their own
+    t       (n_rows,) time [s]; of rows not kept without meaning
+    parts   rows, among those kept, at which the clock was set back: the record is cut there
+    notes   what was done, in sentences
+    """
+
+    keep: npt.NDArray[np.bool_]
+    t: FloatArray
+    parts: list[int] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+
+def put_right(t: FloatArray, source: TimeSource, place: Any) -> Timeline:
+    """A strictly increasing time axis from stamps (n_rows,) [s].
+
+    place  function from a row to where it is in the file, for messages
+
+    Raises LogError where fewer than 2 rows have a stamp, or stamps are in no order.
+    """
+    known = np.isfinite(t)
+    if known.sum() < 2:
+        raise LogError(Problem("fewer than two rows have a time", place(0) if len(t) else "", fix="check [time]"))
+    line = Timeline(known.copy(), np.array(t))
+    if (~known).any():
+        row = int(np.flatnonzero(~known)[0])
+        line.notes.append(f"{(~known).sum()} rows without a time were dropped, the first in {place(row)}")
+    if source.recover != "never":
+        rows = np.flatnonzero(known)
+        even = uniform(t[rows], source)
+        if even is not None:
+            line.t[rows], said = even
+            line.notes.append(said)
+            return line
+    if source.recover == "uniform":
+        what = "the time stamps do not fit a uniform step"
+        fix = 'leave out recover, or give the true step in [time], such as step = "0.135 s"'
+        raise LogError(Problem(what, place(0), "they are further off it than their printed digits allow", fix))
+    _order(line, place)
+    return line
+
+
+def uniform(t: FloatArray, source: TimeSource) -> tuple[FloatArray, str] | None:
+    """Stamps (n_rows,) printed with too few digits put back on the uniform step they come from, and what was done.
+
+    None where they are not such: where they neither repeat nor jitter by their digits, or are further off a uniform
+    step than the distance to the next printable stamp.
+    """
+    steps = np.diff(t)
+    if len(t) < 10 or (steps < 0.0).any():
+        return None
+    repeats = int((steps == 0.0).sum())
+    if repeats < 0.05 * len(steps) and source.recover != "uniform" and source.step is None:
+        return None
+    distinct, index = np.unique(t, return_inverse=True)
+    if len(distinct) < 3:
+        return None
+    apart = np.diff(distinct)
+    # The last distance holds for the last stamp too; where digits run out it is the coarser of both sides.
+    spacing = np.maximum(np.concatenate([apart[:1], apart]), np.concatenate([apart, apart[-1:]]))[index]
+    k = np.arange(len(t), dtype=np.float64)
+    weight = 1.0 / spacing
+    if source.step is None:
+        matrix = np.column_stack([np.ones_like(k), k]) * weight[:, None]
+        (start, step), *_ = np.linalg.lstsq(matrix, t * weight, rcond=None)
+    else:
+        step = source.step
+        start = float(np.average(t - step * k, weights=weight**2))
+    if step <= 0.0:
+        return None
+    off = np.abs(t - start - step * k)
+    if source.step is None:
+        # Loggers run at round steps: the roundest that fits as well is the likelier one.
+        for digits in range(1, 6):
+            round_step = float(f"{step:.{digits - 1}e}")
+            round_start = float(np.average(t - round_step * k, weights=weight**2))
+            round_off = np.abs(t - round_start - round_step * k)
+            if round_off.max() <= 1.02 * off.max():
+                start, step, off = round_start, round_step, round_off
+                break
+    allowed = np.where(spacing > 2.0 * step, 0.75 * spacing, np.maximum(spacing, step))
+    if (off > allowed).any():
+        return None
+    said = (
+        f"time stamps repeat in {repeats} of {len(t)} rows, as if printed with too few digits; "
+        f"put back on a uniform step of {step:.6g} s, which moves none by more than {off.max():.3g} s"
+    )
+    return start + step * k, said
+
+
+def _order(line: Timeline, place: Any) -> None:
+    """Drop stamps that repeat or are off, and find where the clock was set back."""
+    rows = np.flatnonzero(line.keep)
+    t = line.t[rows]
+    back = np.flatnonzero(np.diff(t) < 0.0) + 1
+    if len(back) > max(20, 0.02 * len(t)):
+        why = f"time goes back {len(back)} times"
+        raise LogError(Problem("the rows are not in the order of time", place(int(rows[back[0]])), why, "sort them"))
+    off: list[int] = []
+    cuts: list[int] = []
+    for k in back.tolist():
+        ahead = next((j for j in range(1, OUTLIERS + 1) if k - 1 - j >= 0 and t[k] > t[k - 1 - j]), None)
+        behind = next((j for j in range(1, OUTLIERS + 1) if k + j < len(t) and t[k + j] > t[k - 1]), None)
+        # A stamp far ahead leaves a gap before it; one far behind leaves none.
+        if ahead is not None and (behind is None or ahead <= behind):
+            off += range(k - ahead, k)
+        elif behind is not None:
+            off += range(k, k + behind)
+        else:
+            cuts.append(k)
+    if off:
+        line.keep[rows[off]] = False
+        line.notes.append(
+            f"{len(set(off))} rows have a time stamp off the others and were dropped, "
+            f"the first in {place(int(rows[off[0]]))}"
+        )
+    for k in cuts:
+        line.notes.append(
+            f"the clock was set back by {t[k - 1] - t[k]:.6g} s in {place(int(rows[k]))}: the record is cut there"
+        )
+    kept = np.setdiff1d(np.arange(len(t)), off)
+    bounds = [0, *cuts, len(t)]
+    repeated: list[int] = []
+    for first, last in itertools.pairwise(bounds):
+        inside = kept[(kept >= first) & (kept < last)]
+        if len(inside):
+            highest = np.maximum.accumulate(t[inside])
+            late = inside[1:][t[inside[1:]] <= highest[:-1]]
+            repeated += late.tolist()
+    if repeated:
+        line.keep[rows[repeated]] = False
+        line.notes.append(
+            f"{len(repeated)} rows repeat a time stamp and were dropped, the first in {place(int(rows[min(repeated)]))}"
+        )
+        if len(repeated) > 0.5 * len(t):
+            fix = 'give the true step in [time], such as step = "0.1 s", or write stamps with more digits'
+            why = f"{len(repeated)} of {len(t)} rows have the stamp of the row before, unevenly"
+            raise LogError(Problem("time stamps are too coarse", place(int(rows[min(repeated)])), why, fix))
+    left = np.cumsum(line.keep[rows])
+    line.parts = [int(left[k - 1]) for k in cuts]

@@ -1,0 +1,200 @@
+"""Signs and axes a map does not state: told from the motion where it leaves no doubt, asked for otherwise."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import LogError, Problem
+from ..trial.kinematics import DEG, FITS, IN_EARTH_AXES, position_misfits, turning
+from ..trial.model import FloatArray
+from .mapping import LogMap
+from .motion import in_ship_axes, moved
+
+TO_PORT = "with v positive to port"
+CLEAR = 4.0
+"""How many times worse every other reading must fit."""
+
+
+@dataclass(frozen=True)
+class RudderEvidence:
+    """How a ship answers her rudder.
+
+    agreement  mean yaw rate towards the side of the rudder over mean size of yaw rate: 1 always towards it, -1 away
+    gain       yaw acceleration per rudder angle over its standard error, from the best line through both
+    samples    number of samples under way with the rudder over
+    """
+
+    agreement: float
+    gain: float
+    samples: int
+
+    @property
+    def side(self) -> int:
+        """1 where she turns towards positive rudder to starboard, -1 to port, 0 where that is in doubt."""
+        sure = (abs(self.gain) >= 8.0 and abs(self.agreement) >= 0.3) or (
+            abs(self.gain) >= 4.0 and abs(self.agreement) >= 0.9
+        )
+        if self.samples < 50 or not sure:
+            return 0
+        return int(np.sign(self.gain)) if np.sign(self.gain) == np.sign(self.agreement) else 0
+
+    def __str__(self) -> str:
+        return (
+            f"agreement of sides {self.agreement:+.2f}, yaw acceleration per rudder angle {self.gain:+.0f} standard "
+            f"errors, {self.samples} samples"
+        )
+
+
+def rudder_evidence(t: FloatArray, columns: dict[str, FloatArray]) -> RudderEvidence:
+    """What a motion says about the sign of the rudder; columns u, r, delta, n, (n_samples,)."""
+    delta, r = columns["delta"], columns["r"]
+    ahead = np.isfinite(r) & np.isfinite(delta) & (columns["u"] > 0.0) & (columns["n"] > 0.0)
+    over = ahead & (np.abs(delta) > 2.0 * DEG)
+    size = float(np.mean(np.abs(r[over]))) if over.any() else 0.0
+    if over.sum() < 50 or size == 0.0:
+        return RudderEvidence(0.0, 0.0, int(over.sum()))
+    agreement = float(np.mean(np.sign(delta[over]) * r[over])) / size
+    # First order: r grows with the rudder and dies away with itself.  Over strides long enough to see through noise.
+    stride = max(1, len(t) // 400)
+    rows = np.arange(0, len(t) - stride, stride)
+    sums = [np.concatenate([[0.0], np.cumsum(np.where(ahead, values, 0.0))]) for values in (delta, r, ahead)]
+    mean = [(one[rows + stride] - one[rows]) / stride for one in sums]
+    whole = ahead[rows] & ahead[rows + stride] & (mean[2] > 0.999)
+    if whole.sum() < 20:
+        return RudderEvidence(agreement, 0.0, int(over.sum()))
+    change = (r[rows + stride] - r[rows])[whole]
+    matrix = np.column_stack([mean[0][whole], mean[1][whole], np.ones(int(whole.sum()))])
+    solution, *_ = np.linalg.lstsq(matrix, change, rcond=None)
+    rest = change - matrix @ solution
+    variance = float(rest @ rest) / max(1, len(rest) - 3) * np.linalg.pinv(matrix.T @ matrix)[0, 0]
+    return RudderEvidence(agreement, float(solution[0] / max(np.sqrt(variance), 1e-300)), int(over.sum()))
+
+
+def settle(t: FloatArray, columns: dict[str, FloatArray], log_map: LogMap, measured: set[str], where: str) -> list[str]:
+    """Bring r, u, v and delta to the trial format's signs and axes, in place; what was found, in sentences.
+
+    columns   x, y, psi, r, n, delta and, where measured, u and v, (n_samples,)
+    measured  quantities that come from columns of the log, with signs it may not have stated
+
+    Raises LogError with every question the motion does not answer.
+    """
+    problems: list[Problem] = []
+    said = []
+    assumed = [
+        f"{what} taken as {how}"
+        for name, what, how in (("y", "y", "east of x"), ("psi", "the heading", "clockwise from north"))
+        if name in log_map.sources and log_map.sources[name].column and log_map.sources[name].positive is None
+    ]
+    if assumed:
+        # Both the other way round is a mirror image, which no motion can tell from the ship herself.
+        said.append(f"{' and '.join(assumed)}, as the map says nothing else")
+    said += _yaw(t, columns, log_map, measured, where, problems)
+    if {"u", "v"} <= measured:
+        said += _axes(t, columns, log_map, where, problems)
+    if problems:
+        raise LogError(*problems)
+    return said
+
+
+def settle_rudder(t: FloatArray, columns: dict[str, FloatArray], log_map: LogMap, where: str) -> list[str]:
+    """Turn delta to starboard, in place, where the map does not say how it counts; u and r must be settled.
+
+    Raises LogError where the motion does not tell.
+    """
+    source = log_map.sources.get("delta")
+    if source is None or source.column is None or source.positive is not None:
+        return []
+    evidence = rudder_evidence(t, columns)
+    if evidence.side == 0:
+        raise LogError(
+            Problem(
+                "does a positive rudder angle turn the ship to starboard or to port?",
+                f"{where}, map {log_map.place('delta')}",
+                f"the map does not say, and this motion does not show it: {evidence}",
+                'say positive = "starboard" or positive = "port" in [columns.delta]',
+            )
+        )
+    if evidence.side < 0:
+        for name in ("delta", "delta_port", "delta_stbd"):
+            if name in columns and log_map.sources.get(name) is not None and log_map.sources[name].positive is None:
+                columns[name] = -columns[name]
+    side = "starboard" if evidence.side > 0 else "port"
+    return [f"rudder: a positive angle of the log turns the ship to {side}, as the motion shows ({evidence})"]
+
+
+def _yaw(
+    t: FloatArray,
+    columns: dict[str, FloatArray],
+    log_map: LogMap,
+    measured: set[str],
+    where: str,
+    problems: list[Problem],
+) -> list[str]:
+    source = log_map.sources.get("r")
+    if "r" not in measured or source is None or source.column is None or source.positive is not None:
+        return []
+    turned = turning({"t": t, "psi": columns["psi"], "r": columns["r"]})
+    if turned.span < 0.1 or abs(turned.correlation) < 0.9:
+        problems.append(
+            Problem(
+                "is the yaw rate positive to starboard or to port?",
+                f"{where}, map {log_map.place('r')}",
+                f"the map does not say; its integral and the heading have a correlation of {turned.correlation:.2f} "
+                f"over {turned.span / DEG:.3g} deg",
+                'say positive = "starboard" or positive = "port" in [columns.r]',
+            )
+        )
+        return []
+    if turned.correlation < 0.0:
+        columns["r"] = -columns["r"]
+    side = "starboard" if turned.correlation > 0.0 else "port"
+    return [f"yaw rate: positive to {side} in the log, as the heading shows (correlation {turned.correlation:+.3f})"]
+
+
+def _axes(
+    t: FloatArray, columns: dict[str, FloatArray], log_map: LogMap, where: str, problems: list[Problem]
+) -> list[str]:
+    """Velocities into ship axes, with v to starboard."""
+    stated = log_map.sources["v"].positive
+    point = log_map.point or "midship"
+    if log_map.axes == "earth":
+        columns["u"], columns["v"] = in_ship_axes(columns["u"], columns["v"], columns["psi"])
+        return ["velocities: earth axes, as the map says", *moved(columns, log_map, point)]
+    if log_map.axes == "ship" and stated is not None:
+        return ["velocities: ship axes, as the map says", *moved(columns, log_map, point)]
+    tried = dict(columns)
+    moved(tried, log_map, point)
+    misfits = position_misfits({name: tried[name] for name in ("x", "y", "psi", "u", "v")} | {"t": t})
+    readings = {"ship axes, v to starboard": misfits.get(""), "ship axes, v to port": misfits.get(TO_PORT)}
+    if log_map.axes is None:
+        readings["earth axes"] = misfits.get(IN_EARTH_AXES)
+    if stated is not None:
+        readings.pop("ship axes, v to port")
+    known = sorted((miss, name) for name, miss in readings.items() if miss is not None)
+    shown = ", ".join(f"{name}: {100.0 * miss:.1f} %" for miss, name in known)
+    if not known or known[0][0] > FITS or (len(known) > 1 and known[1][0] < CLEAR * known[0][0]):
+        asks = (
+            "are u and v in ship axes or in earth axes?"
+            if log_map.axes is None
+            else "is v positive to starboard or to port?"
+        )
+        problems.append(
+            Problem(
+                asks,
+                f"{where}, map {log_map.place('v')}",
+                "the map does not say, and the positions do not tell; misses of the distance run: " + (shown or "none"),
+                'say axes = "ship" or "earth" in [velocity], and positive = "starboard" or "port" in [columns.v]',
+            )
+        )
+        return []
+    best = known[0][1]
+    if best == "earth axes":
+        columns["u"], columns["v"] = in_ship_axes(columns["u"], columns["v"], columns["psi"])
+    elif best.endswith("port"):
+        columns["v"] = -columns["v"]
+    return [
+        f"velocities: {best}, as the positions show (misses of the distance run: {shown})",
+        *moved(columns, log_map, point),
+    ]

@@ -1,0 +1,141 @@
+"""Every quantity on one uniform time axis; holes stay holes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import LogError, Problem
+from ..trial.model import FloatArray
+from .mapping import LogMap
+from .quantities import CONTROLS, MEANING, MEASURED
+from .record import Record, Series
+
+FEWEST = 20
+"""Samples below which a stretch is no trial."""
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """Quantities on a uniform time axis.
+
+    t        (n_samples,) [s], on the log's clock
+    columns  (n_samples,) by quantity; NaN in holes
+    step     [s]
+    bridged  number of samples interpolated over short holes of controls, by quantity
+    """
+
+    t: FloatArray
+    columns: dict[str, FloatArray]
+    step: float
+    bridged: dict[str, int]
+
+
+def on_grid(record: Record, log_map: LogMap, step: float | None) -> Grid:
+    """A record on a uniform time axis, that of its positions unless a step is asked for.
+
+    Holes longer than ``log_map.gap`` steps (of the series or of the grid, whichever are longer) become NaN, as do
+    spikes of the motion; shorter ones are bridged linearly.  Where the grid is coarser than the series,
+    samples are averaged.  Constants of the map are added.  The heading begins within half a turn of north.
+
+    Raises LogError where there is no time that all controls cover.
+    """
+    series = record.series
+    constant = {name for name, source in log_map.sources.items() if source.value is not None}
+    absent = [name for name in ("x", "y", "psi", *CONTROLS) if name not in series and name not in constant]
+    if absent:
+        what = f"the log has fewer than two valid samples of {', '.join(MEANING[name] for name in absent)}"
+        raise LogError(
+            Problem(what, str(record.path), "a trial needs them", "log them, or give n and delta as constants")
+        )
+    lead = series["x"]
+    finite = np.isfinite(lead.values)
+    own = float(np.median(np.diff(lead.t))) if len(lead.t) > 1 else 0.0
+    chosen = step or log_map.step or own
+    motion = [series[name] for name in MEASURED if name in series]
+    controls = [series[name] for name in CONTROLS if name in series]
+    begins = max(_ends(one)[0] for one in [*motion, *controls])
+    ends = min([max(_ends(one)[1] for one in motion), *(_ends(one)[1] for one in controls)])
+    if finite.sum() < FEWEST or chosen <= 0.0 or ends - begins < FEWEST * chosen:
+        spans = ", ".join(
+            f"{name} {_ends(series[name])[0]:.6g} to {_ends(series[name])[1]:.6g} s"
+            for name in (*MEASURED, *CONTROLS)
+            if name in series
+        )
+        why = f"positions, heading and controls have {max(0.0, ends - begins):.4g} s in common: {spans}"
+        raise LogError(Problem(f"fewer than {FEWEST} samples to make a trial of", str(record.path), why))
+    first = float(lead.t[np.searchsorted(lead.t, begins - 1e-9)])
+    count = int(np.floor((ends - first) / chosen + 1e-6)) + 1
+    t: FloatArray = first + chosen * np.arange(count, dtype=np.float64)
+    # A log that is uniform already keeps its own stamps, to the last bit.
+    k = int(np.searchsorted(lead.t, first))
+    if k + count <= len(lead.t) and np.abs(lead.t[k : k + count] - t).max() < 0.01 * chosen and chosen == own:
+        t = np.array(lead.t[k : k + count])
+    columns, bridged = {}, {}
+    for name, one in series.items():
+        control = name in CONTROLS
+        columns[name], filled = resampled(one, t, chosen, log_map.gap, keep_spikes=not control)
+        if control and filled:
+            bridged[name] = filled
+    start = columns["psi"][np.isfinite(columns["psi"])][:1]
+    if len(start) and abs(start[0]) > np.pi:
+        columns["psi"] = columns["psi"] - 2.0 * np.pi * np.round(start[0] / (2.0 * np.pi))
+    for name, source in log_map.sources.items():
+        if source.value is not None:
+            columns[name] = np.full(len(t), source.value)
+    return Grid(t, columns, chosen, bridged)
+
+
+def resampled(one: Series, t: FloatArray, step: float, gap: float, keep_spikes: bool) -> tuple[FloatArray, int]:
+    """A series at times ``t`` (n_samples,), uniform by ``step`` [s], and how many samples were bridged.
+
+    gap          holes longer than this many steps become NaN
+    keep_spikes  whether single missing samples stay NaN rather than being bridged
+    """
+    known = np.isfinite(one.values)
+    times, values = one.t[known], one.values[known]
+    own = one.step
+    if len(times) < 2:
+        return np.full(len(t), np.nan), 0
+    if step > 1.5 * own:
+        bins = np.round((times - t[0]) / step).astype(np.int64)
+        inside = (bins >= 0) & (bins < len(t))
+        number = np.bincount(bins[inside], minlength=len(t))
+        total = np.bincount(bins[inside], weights=values[inside], minlength=len(t))
+        moment = np.bincount(bins[inside], weights=times[inside], minlength=len(t))
+        there = number > 0
+        # A mean belongs to the mean time of its samples.
+        times, values = moment[there] / number[there], total[there] / number[there]
+    out = np.interp(t, times, values)
+    right = np.clip(np.searchsorted(times, t - 1e-6 * step), 0, len(times) - 1)
+    left = np.clip(right - 1, 0, None)
+    on_sample = np.abs(times[right] - t) < 0.01 * step
+    hole = (times[right] - times[left] > gap * max(own, step) * (1.0 + 1e-6)) & ~on_sample
+    hole |= (t < times[0] - 0.51 * max(own, step)) | (t > times[-1] + 0.51 * max(own, step))
+    if keep_spikes and not known.all() and step <= 1.5 * own:
+        missing = one.t[~known]
+        nearest = np.clip(np.round((missing - t[0]) / step).astype(np.int64), 0, len(t) - 1)
+        hole[nearest[np.abs(t[nearest] - missing) <= 0.5 * step]] = True
+    out[hole] = np.nan
+    bridged = int((~on_sample & ~hole & (times[right] - times[left] > 1.5 * max(own, step))).sum())
+    return out, bridged
+
+
+def stretches(columns: dict[str, FloatArray], fewest: int = FEWEST) -> list[slice]:
+    """Parts of a grid in which every control is known, each from its first complete sample; short ones left out."""
+    good = np.all([np.isfinite(columns[name]) for name in CONTROLS], axis=0)
+    complete = good & np.all([np.isfinite(columns[name]) for name in MEASURED], axis=0)
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], good.astype(np.int8), [0]])))
+    found = []
+    for first, last in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+        rows = np.flatnonzero(complete[first:last])
+        if len(rows) >= fewest:
+            found.append(slice(first + int(rows[0]), first + int(rows[-1]) + 1))
+    return found
+
+
+def _ends(one: Series) -> tuple[float, float]:
+    """First and last time [s] with a value."""
+    t = one.t[np.isfinite(one.values)]
+    return (float(t[0]), float(t[-1])) if len(t) else (float("inf"), float("-inf"))

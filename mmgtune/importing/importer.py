@@ -1,0 +1,314 @@
+"""Logs to trial files."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import re
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import LogError, OutputError, Problem, TrialError
+from ..files import exists, write_text
+from ..manoeuvres.track import Track, find_execute
+from ..trial import Trial, write_trial
+from ..trial.model import FloatArray
+from ..trial.schema import ATTRIBUTES, COLUMNS, DIRECTIONS, REQUIRED
+from ..trial.unusable import unusable
+from . import conventions, motion
+from .cleaning import without_spikes
+from .clock import put_right
+from .geodesy import not_mirrored, with_local_positions
+from .gridding import FEWEST, Grid, on_grid, stretches
+from .mapping import LogMap
+from .nmea import read_nmea
+from .parquet_log import read_parquet
+from .quality import quality_of, quality_text, same_units_throughout
+from .record import Record, record_of, time_in_seconds
+from .table import Table
+from .text import binary, read_text, start_of
+
+REPORT = "import-report.json"
+
+
+@dataclass(frozen=True, eq=False)
+class Imported:
+    """Trials made from logs.
+
+    trials   in the order of the logs
+    quality  one entry per trial (``quality.quality_of``)
+    files    what was written, () after a dry run
+    map      name of the map
+    """
+
+    trials: tuple[Trial, ...]
+    quality: tuple[dict[str, Any], ...]
+    files: tuple[Path, ...]
+    map: str
+
+    def to_dict(self) -> dict[str, Any]:
+        """The report as written to ``import-report.json``."""
+        return {
+            "schema": 1,
+            "kind": "import",
+            "map": self.map,
+            "trials": list(self.quality),
+            "files": [str(path) for path in self.files],
+        }
+
+    def text(self) -> str:
+        """The report for people."""
+        return "\n".join(quality_text(one) for one in self.quality)
+
+
+def import_logs(
+    logs: Sequence[Path | str],
+    log_map: LogMap,
+    out: Path | str,
+    step: float | None = None,
+    overwrite: bool = False,
+    dry_run: bool = False,
+) -> Imported:
+    """Write each log as one trial file in the folder ``out``, or several where it has to be cut, and a report beside.
+
+    step     time step of the trials [s]; None: what the map says, else the log's own median
+    dry_run  write nothing
+
+    Raises LogError with everything wrong in any of the logs, and OutputError where a file exists already and
+    ``overwrite`` is false; nothing is written then.
+    """
+    out = Path(out)
+    if not dry_run and not overwrite:
+        # Known before the work is done; parts of a log that is cut are found out later.
+        _refuse_existing([out / REPORT, *(out / f"{_name(log_map.id, Path(log))}.parquet" for log in logs)])
+    trials: list[Trial] = []
+    quality: list[dict[str, Any]] = []
+    problems: list[Problem] = []
+    for log in dict.fromkeys(Path(one) for one in logs):
+        try:
+            made = _trials(log, log_map, step)
+        except LogError as error:
+            problems += error.problems
+            continue
+        trials += [trial for trial, _ in made]
+        quality += [one for _, one in made]
+    twice = [name for name, count in Counter(trial.id for trial in trials).items() if count > 1]
+    problems += [
+        Problem(f"several logs would become trial '{name}'", str(out), fix='say id = "{parent}-{stem}" in [trial]')
+        for name in twice
+    ]
+    if problems:
+        raise LogError(*dict.fromkeys(problems))
+    if dry_run:
+        return Imported(tuple(trials), tuple(quality), (), log_map.name)
+    files = [out / f"{trial.id}.parquet" for trial in trials]
+    if not overwrite:
+        _refuse_existing(files)
+    for trial, path in zip(trials, files, strict=True):
+        write_trial(trial, path, overwrite)
+    imported = Imported(tuple(trials), tuple(quality), tuple(files), log_map.name)
+    write_text(
+        out / REPORT, json.dumps(imported.to_dict(), indent=1, ensure_ascii=False, allow_nan=False) + "\n", overwrite
+    )
+    return imported
+
+
+def _refuse_existing(paths: Sequence[Path]) -> None:
+    found = [exists(path) for path in dict.fromkeys(paths) if path.exists()]
+    if found:
+        raise OutputError(*found)
+
+
+def _name(template: str, log: Path) -> str:
+    written = template.replace("{stem}", log.stem).replace("{parent}", log.resolve().parent.name)
+    return re.sub(r"[^\w.-]+", "_", written).strip("._") or "trial"
+
+
+def _trials(log: Path, log_map: LogMap, step: float | None) -> list[tuple[Trial, dict[str, Any]]]:
+    """The trials of one log with their quality.  Raises LogError."""
+    records = _records(log, log_map)
+    made = []
+    short = 0
+    for record in records:
+        try:
+            made += _of_record(record, log_map, step)
+        except LogError:
+            # A few seconds between two settings of a clock are no trial; a whole log that is none is an error.
+            if len(records) == 1 or max(len(one.t) for one in record.series.values()) > FEWEST:
+                raise
+            short += 1
+    name = _name(log_map.id, log)
+    found = []
+    for number, (columns, record, grid, began, notes) in enumerate(made, start=1):
+        id = name if len(made) == 1 else f"{name}_{number}"
+        if len(made) > 1:
+            notes = [f"part {number} of {len(made)} of the log", *notes]
+        if short:
+            notes = [*notes, f"{short} parts with fewer than {FEWEST} rows were left out"]
+        found.append(_trial(id, columns, record, grid, began, notes, log_map))
+    return found
+
+
+def _records(log: Path, log_map: LogMap) -> list[Record]:
+    """A log in the program's units, in parts where its clock was set back."""
+    content = start_of(log)
+    form = log_map.format or (
+        "parquet" if content.startswith(b"PAR1") else "nmea" if re.match(rb"\s*[$!][A-Z]{4,},", content) else "csv"
+    )
+    if form == "nmea":
+        if binary(content):
+            raise LogError(
+                Problem("the log is binary, not NMEA 0183", str(log), fix="convert it with its logger's software")
+            )
+        return read_nmea(log, log_map)
+    if form == "csv" and binary(content):
+        kind = "a Parquet file" if content.startswith(b"PAR1") else "binary"
+        fix = "convert it to CSV, Parquet or NMEA 0183 with its logger's own software; or say the right encoding"
+        raise LogError(Problem(f"the log is {kind}, not text", str(log), "it has zero bytes in it", fix))
+    table = (read_parquet if form == "parquet" else read_text)(log, log_map)
+    _drop_duplicates(table)
+    line = put_right(time_in_seconds(table, log_map), log_map.time, table.place)
+    table.columns = {name: values[line.keep] for name, values in table.columns.items()}
+    t = line.t[line.keep]
+    bounds = [0, *line.parts, len(t)]
+    records = []
+    for first, last in itertools.pairwise(bounds):
+        record = record_of(table, log_map, t, slice(first, last))
+        record.notes += [*table.notes, *line.notes]
+        records.append(record)
+    return records
+
+
+def _drop_duplicates(table: Table) -> None:
+    """Leave out rows that were written twice, in place; stamps that repeat over different rows are left alone."""
+    again = np.diff(table.t) == 0.0
+    same = again & np.all(
+        [(np.diff(values) == 0.0) | np.isnan(values[1:]) & np.isnan(values[:-1]) for values in table.columns.values()],
+        axis=0,
+    )
+    if not same.any() or same.sum() < 0.8 * again.sum():
+        return
+    kept = np.concatenate([[True], ~same])
+    row = int(np.flatnonzero(~kept)[0])
+    table.notes.append(f"{same.sum()} rows are written twice and were dropped, the first in {table.place(row)}")
+    table.t, table.rows = table.t[kept], table.rows[kept]
+    table.columns = {name: values[kept] for name, values in table.columns.items()}
+
+
+def _of_record(
+    record: Record, log_map: LogMap, step: float | None
+) -> list[tuple[dict[str, FloatArray], Record, Grid, float, list[str]]]:
+    """Columns of each trial in a record, in the trial format; where they begin; what was done."""
+    where = str(record.path)
+    record = without_spikes(with_local_positions(record, log_map))
+    grid = on_grid(record, log_map, step)
+    columns = dict(grid.columns)
+    measured = {name for name in record.series if name in ("u", "v", "r", "delta")}
+    if {"sog", "cog"} <= set(columns):
+        sog, cog = columns.pop("sog"), columns.pop("cog")
+        columns["north"], columns["east"] = sog * np.cos(cog), sog * np.sin(cog)
+    if "u" in measured or "north" not in columns:
+        same_units_throughout(grid.t, columns, where)
+    if "latitude" in log_map.sources or log_map.format == "nmea":
+        not_mirrored(columns, where)
+    notes = list(record.notes)
+    if grid.bridged:
+        notes.append(f"holes of up to {log_map.gap:g} steps in controls were bridged linearly")
+    notes += motion.at_midship(columns, log_map)
+    notes += motion.with_yaw_rate(grid.t, columns)
+    notes += conventions.settle(grid.t, columns, log_map, measured, where)
+    notes += motion.over_ground(columns, log_map)
+    notes += motion.with_velocities(grid.t, columns)
+    notes += conventions.settle_rudder(grid.t, columns, log_map, where)
+    found = []
+    for part in stretches(columns):
+        cut = {name: values[part] for name, values in columns.items()}
+        t = grid.t[part]
+        inside = _cut(t, cut, log_map, where)
+        cut = {name: values[inside] for name, values in cut.items()}
+        # What a cut begins with must be complete as well.
+        rest = stretches(cut, 1)
+        if rest and len(t[inside][rest[0]]) >= FEWEST:
+            begun = t[inside][rest[0]]
+            cut = {name: values[rest[0]] for name, values in cut.items()}
+            found.append(({"t": begun - begun[0], **cut}, record, grid, float(begun[0]), notes))
+    if not found:
+        missing = [name for name in REQUIRED if name != "t" and not np.isfinite(columns[name]).any()]
+        why = (
+            f"no sample has {', '.join(missing)}"
+            if missing
+            else "positions, heading, velocities and controls are never all there"
+        )
+        raise LogError(
+            Problem(
+                f"no stretch of {FEWEST} samples or more is left to make a trial of",
+                where,
+                why,
+                "check the map, [cut], and the gaps of the log",
+            )
+        )
+    return found
+
+
+def _cut(t: FloatArray, columns: dict[str, FloatArray], log_map: LogMap, where: str) -> slice:
+    """The part of a stretch that a map keeps.  Raises LogError where nothing is left, or no rudder order is found."""
+    cut = log_map.cut
+    since = t - t[0]
+    first = 0.0
+    if cut.begin:
+        filled = {name: _filled(t, columns[name]) for name in ("x", "y", "psi", "u", "v", "delta")}
+        try:
+            execute = find_execute(Track(t=t, v_m=filled.pop("v"), **filled))
+        except TrialError as error:
+            why = "; ".join(problem.what for problem in error.problems)
+            fix = "give [cut] start and end instead"
+            raise LogError(Problem("the record cannot be cut at the first rudder order", where, why, fix)) from error
+        first = max(0.0, float(since[execute.index]) - cut.lead)
+    if cut.start is not None:
+        first = max(first, cut.start)
+    last = cut.end if cut.end is not None else float(since[-1])
+    low, high = np.searchsorted(since, [first - 1e-9, last + 1e-9])
+    return slice(int(low), int(high))
+
+
+def _filled(t: FloatArray, values: FloatArray) -> FloatArray:
+    known = np.isfinite(values)
+    return np.interp(t, t[known], values[known])
+
+
+def _trial(
+    id: str,
+    columns: dict[str, FloatArray],
+    record: Record,
+    grid: Grid,
+    began: float,
+    notes: list[str],
+    log_map: LogMap,
+) -> tuple[Trial, dict[str, Any]]:
+    """A trial and its quality.  Raises LogError where it could not be used."""
+    # Whoever reads the trial elsewhere has no use for a folder of this machine.
+    notes = [note.replace(str(record.path), record.path.name) for note in notes]
+    problems = unusable(columns, str(record.path))
+    if problems:
+        raise LogError(*problems)
+    kept = {ATTRIBUTES.get(name, name): values for name, values in columns.items()}
+    required: Any = {name: kept.pop(name) for name in ATTRIBUTES.values()}
+    for name in DIRECTIONS:
+        if name in kept:
+            kept[name] = np.mod(kept[name], 2.0 * np.pi)
+    trial = Trial(
+        id=id,
+        ship=log_map.ship,
+        manoeuvre=log_map.manoeuvre.replace("{parent}", record.path.resolve().parent.name),
+        source=log_map.source,
+        **required,
+        extra={name: values for name, values in kept.items() if name in COLUMNS},
+        noise=log_map.noise,
+        note="; ".join([*([log_map.note] if log_map.note else []), f"imported with the map {log_map.name}", *notes]),
+    )
+    return trial, quality_of(trial, record, grid, began, notes)

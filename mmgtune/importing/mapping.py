@@ -1,0 +1,116 @@
+"""The map of a log: which of its columns is which quantity, in which unit and counted which way."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+FORMATS = ("csv", "parquet", "nmea")
+PROJECTIONS = ("transverse-mercator", "azimuthal-equidistant")
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where one quantity comes from.
+
+    column     name of the log's column, or its number counted from 1; None where ``value`` is given
+    value      constant in the program's unit, None where a column is given
+    unit       unit of the column, None where the log's header has to say it
+    positive   direction the log counts as positive, None where the map does not say
+    zero       "north" or "east": where angles are counted from
+    direction  "from" or "to", of wind and waves; None for other quantities
+    scale      factor on the log's numbers, before the unit
+    offset     added after unit and sign, in the program's unit
+    recover    "print-resolution": smoothed within the digits it is printed with; or None
+    line       line of the map, 0 where unknown
+    """
+
+    column: str | int | None = None
+    value: float | None = None
+    unit: str | None = None
+    positive: str | None = None
+    zero: str = "north"
+    direction: str | None = None
+    scale: float = 1.0
+    offset: float = 0.0
+    recover: str | None = None
+    line: int = 0
+
+
+@dataclass(frozen=True)
+class TimeSource:
+    """Where time comes from.
+
+    column   name or number, as of a Source
+    format   "number", "iso" or "clock"; None where the log's cells have to show it
+    unit     of numbers; None where the header has to say it
+    scale    factor on the log's time
+    recover  "auto" (where stamps are found to be printed with too few digits), "uniform" (always) or "never"
+    step     true time between samples [s], None where it is to be estimated
+    """
+
+    column: str | int | None = None
+    format: str | None = None
+    unit: str | None = None
+    scale: float = 1.0
+    recover: str = "auto"
+    step: float | None = None
+
+
+@dataclass(frozen=True)
+class Cut:
+    """The part of the record to keep: seconds from its start, and what to begin with.
+
+    start, end  [s], None for the record's own
+    begin       "first-rudder-order", or None
+    lead        seconds kept before that order
+    """
+
+    start: float | None = None
+    end: float | None = None
+    begin: str | None = None
+    lead: float = 0.0
+
+
+@dataclass(frozen=True)
+class LogMap:
+    """Everything needed to read a kind of log; lengths in m, times in s.
+
+    name        file or preset it was read from
+    axes        "ship" or "earth": of u and v; None where the map does not say
+    point       "midship" or "antenna": what u and v, or speed and course over ground, are of; None if not said
+    antenna     (2,) position of the antenna from midship, forward and to starboard; None where positions are of midship
+    projection  of latitude and longitude; origin: (2,) its centre, latitude and longitude [deg], None: the first fix
+    step        time step of the trials, None: the log's own median; gap: steps beyond which a hole is not bridged
+    """
+
+    name: str
+    path: Path
+    format: str | None = None
+    delimiter: str | None = None
+    encoding: str = "utf-8"
+    decimal: str = "."
+    skip: int = 0
+    header: bool = True
+    missing: tuple[str, ...] = ()
+    time: TimeSource = field(default_factory=TimeSource)
+    sources: dict[str, Source] = field(default_factory=dict)
+    axes: str | None = None
+    point: str | None = None
+    antenna: tuple[float, float] | None = None
+    projection: str = "transverse-mercator"
+    origin: tuple[float, float] | None = None
+    step: float | None = None
+    gap: float = 5.0
+    cut: Cut = field(default_factory=Cut)
+    ship: str = ""
+    id: str = "{stem}"
+    manoeuvre: str = ""
+    source: str = "measured"
+    note: str = ""
+    noise: dict[str, float] = field(default_factory=dict)
+
+    def place(self, quantity: str) -> str:
+        """Where the map speaks of a quantity, for messages."""
+        line = self.sources[quantity].line if quantity in self.sources else 0
+        return f"{self.path}, line {line}" if line else str(self.path)

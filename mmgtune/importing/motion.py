@@ -1,0 +1,98 @@
+"""Motion of the midship point in ship axes, from what was measured."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..trial.kinematics import white_noise
+from ..trial.model import FloatArray
+from ..trial.smoothing import FEWEST, smoothed, time_scale
+from .mapping import LogMap
+
+LONGEST = 5000
+"""Samples the time scale of a smoothing is chosen on."""
+
+
+def at_midship(columns: dict[str, FloatArray], log_map: LogMap) -> list[str]:
+    """Move positions from the antenna to midship, in place; what was done, in sentences.
+
+    columns  x, y [m] and psi [rad], (n_samples,)
+    """
+    if log_map.antenna is None:
+        return []
+    ahead, abeam = log_map.antenna
+    cos, sin = np.cos(columns["psi"]), np.sin(columns["psi"])
+    columns["x"] = columns["x"] - (ahead * cos - abeam * sin)
+    columns["y"] = columns["y"] - (ahead * sin + abeam * cos)
+    return [f"positions moved from the antenna, {ahead:g} m forward and {abeam:g} m to starboard of midship"]
+
+
+def with_yaw_rate(t: FloatArray, columns: dict[str, FloatArray]) -> list[str]:
+    """Add r where it was not measured, from the heading; what was done, in sentences."""
+    if "r" in columns:
+        return []
+    (rate,), tau = _rates(t, [columns["psi"]])
+    columns["r"] = np.where(np.isfinite(columns["psi"]), rate, np.nan)
+    return [f"r was not measured: it is the slope of the heading, smoothed with a time scale of {tau:.3g} s"]
+
+
+def over_ground(columns: dict[str, FloatArray], log_map: LogMap) -> list[str]:
+    """Turn velocity over ground, ``north`` and ``east``, into u and v of midship, in place.
+
+    They are of the antenna where the map says where that is, unless it says otherwise.
+    """
+    if not {"north", "east"} <= set(columns):
+        return []
+    north, east = columns.pop("north"), columns.pop("east")
+    if "u" in columns and "v" in columns:
+        return []
+    columns["u"], columns["v"] = in_ship_axes(north, east, columns["psi"])
+    said = ["u and v are speed over ground along the course, turned by the heading"]
+    return said + moved(columns, log_map, log_map.point or "antenna")
+
+
+def in_ship_axes(north: FloatArray, east: FloatArray, psi: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Velocity ahead and to starboard from that north and east, (n_samples,) [m/s]."""
+    return north * np.cos(psi) + east * np.sin(psi), east * np.cos(psi) - north * np.sin(psi)
+
+
+def moved(columns: dict[str, FloatArray], log_map: LogMap, point: str) -> list[str]:
+    """Move velocities u and v [m/s] from the antenna to midship, in place, where they are of the antenna."""
+    if log_map.antenna is None or point != "antenna":
+        return []
+    ahead, abeam = log_map.antenna
+    columns["u"] = columns["u"] + abeam * columns["r"]
+    columns["v"] = columns["v"] - ahead * columns["r"]
+    return ["velocities moved from the antenna to midship"]
+
+
+def with_velocities(t: FloatArray, columns: dict[str, FloatArray]) -> list[str]:
+    """Add u and v where they were not measured, from positions and heading; what was done, in sentences."""
+    missing = [name for name in ("u", "v") if name not in columns]
+    if not missing:
+        return []
+    (north, east), tau = _rates(t, [columns["x"], columns["y"]])
+    known = np.isfinite(columns["x"]) & np.isfinite(columns["y"])
+    found = dict(zip(("u", "v"), in_ship_axes(north, east, columns["psi"]), strict=True))
+    for name in missing:
+        columns[name] = np.where(known, found[name], np.nan)
+    verb = "was" if len(missing) == 1 else "were"
+    return [
+        (
+            f"{' and '.join(missing)} {verb} not measured: from the slope of the positions, smoothed with a time scale "
+            f"of {tau:.3g} s, and the heading"
+        )
+    ]
+
+
+def _rates(t: FloatArray, channels: list[FloatArray]) -> tuple[list[FloatArray], float]:
+    """Time derivatives of channels (n_samples,) that share one time scale, and that scale [s]."""
+    stacked = np.column_stack(channels)
+    whole = np.flatnonzero(np.isfinite(stacked).all(axis=1))
+    dt = float(np.median(np.diff(t)))
+    if len(whole) < FEWEST:
+        return [np.full(len(t), np.nan) for _ in channels], dt
+    middle = whole[max(0, (len(whole) - LONGEST) // 2) :][:LONGEST]
+    noise = np.array([white_noise(channel[middle]) for channel in channels])
+    tau = time_scale(t[middle], stacked[middle], noise, dt)
+    return list(smoothed(t, stacked, tau, dt, derivative=1).T), tau

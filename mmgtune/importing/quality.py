@@ -1,0 +1,181 @@
+"""What an imported trial is worth: rates, gaps, spikes, and whether its channels tell of one and the same motion."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import Any
+
+import numpy as np
+
+from ..errors import LogError, Problem
+from ..trial import Trial, check_trial
+from ..trial.control_checks import fastest_change
+from ..trial.kinematics import DEG, IN_EARTH_AXES, position_misfits, turning
+from ..trial.model import FloatArray
+from .conventions import rudder_evidence
+from .gridding import Grid
+from .quantities import MEASURED
+from .record import Record
+
+WINDOWS = 16
+"""Parts of a record in which units are compared."""
+
+
+def quality_of(trial: Trial, record: Record, grid: Grid, began: float, notes: list[str]) -> dict[str, Any]:
+    """The quality of one trial, for people and as JSON; numbers that do not exist are None.
+
+    began  time of the trial's first sample on the log's clock [s]
+    """
+    columns = trial.columns
+    turned = turning(columns)
+    misfits = position_misfits(columns)
+    findings = check_trial(trial)
+    evidence = rudder_evidence(trial.t, columns)
+    rudder_step, rudder_rate = fastest_change(trial.t, trial.delta)
+    shaft_step, shaft_rate = fastest_change(trial.t, trial.n)
+    return {
+        "id": trial.id,
+        "log": str(record.path),
+        "n_samples": trial.n_samples,
+        "step_s": grid.step,
+        "duration_s": trial.duration,
+        "began_s": began,
+        "rates": {
+            name: {"median_step_s": one.step, "longest_step_s": _longest(one.t, one.values), "n_samples": len(one.t)}
+            for name, one in record.series.items()
+        },
+        "gaps": [gap for name in MEASURED for gap in _gaps(trial.t, columns[name], name)],
+        "spikes": dict(record.spikes),
+        "bridged": dict(grid.bridged),
+        "yaw": {
+            "heading_turns_deg": float(np.ptp(turned.heading)) / DEG,
+            "largest_difference_deg": turned.miss / DEG,
+            "ratio": turned.ratio if np.std(turned.yaw) > 0.0 else None,
+            "correlation": turned.correlation,
+        },
+        "positions": {"ship_axes": _or_none(misfits.get("")), "earth_axes": _or_none(misfits.get(IN_EARTH_AXES))},
+        "rudder": {
+            "agreement": evidence.agreement,
+            "gain_standard_errors": evidence.gain,
+            "n_samples": evidence.samples,
+            "side": {1: "starboard", -1: "port", 0: "in doubt"}[evidence.side],
+        },
+        "controls": {
+            "delta": {
+                "fastest_deg_per_s": rudder_rate / DEG,
+                "largest_step_deg": rudder_step / DEG,
+                "orders": any("the rudder moves" in one.what for one in findings),
+            },
+            "n": {
+                "fastest_rpm_per_s": 60.0 * shaft_rate,
+                "largest_step_rpm": 60.0 * shaft_step,
+                "orders": any("the revolutions change" in one.what for one in findings),
+            },
+        },
+        "notes": notes,
+        "findings": [vars(one) for one in findings],
+    }
+
+
+def quality_text(quality: dict[str, Any]) -> str:
+    """The same for people."""
+    q = quality
+    lines = [
+        (
+            f"{q['id']}: {q['n_samples']} samples, {q['duration_s']:.6g} s from {q['began_s']:.6g} s of the log, "
+            f"step {q['step_s']:.6g} s ({q['log']})"
+        )
+    ]
+    by_step: dict[tuple[float, float], list[str]] = {}
+    for name, rate in q["rates"].items():
+        by_step.setdefault((rate["median_step_s"], rate["longest_step_s"]), []).append(name)
+    for (median, longest), names in by_step.items():
+        lines.append(f"  rate      every {median:.4g} s, longest {longest:.4g} s: {', '.join(names)}")
+    shown = q["gaps"][:6]
+    lines += [
+        f"  gap       {g['channel']}: {g['n_samples']} samples from {g['from_s']:.6g} to {g['to_s']:.6g} s"
+        for g in shown
+    ]
+    if len(q["gaps"]) > len(shown):
+        lines.append(f"  gap       and {len(q['gaps']) - len(shown)} more")
+    if q["spikes"]:
+        lines.append("  spikes    " + ", ".join(f"{name}: {count}" for name, count in q["spikes"].items()))
+    if q["bridged"]:
+        lines.append("  bridged   " + ", ".join(f"{name}: {count} samples" for name, count in q["bridged"].items()))
+    yaw, positions, rudder = q["yaw"], q["positions"], q["rudder"]
+    lines.append(
+        f"  yaw       integral of r and heading differ by up to {yaw['largest_difference_deg']:.3g} deg "
+        f"in {yaw['heading_turns_deg']:.4g} deg"
+    )
+    if positions["ship_axes"] is None:
+        lines.append("  positions cannot be compared with velocities: the ship hardly moves")
+    else:
+        lines.append(
+            f"  positions missed by u, v, psi by {100 * positions['ship_axes']:.2g} % of the distance; "
+            f"read in earth axes by {100 * positions['earth_axes']:.2g} %"
+        )
+    lines.append(f"  rudder    turns the ship to its side: {rudder['side']}, agreement {rudder['agreement']:+.2f}")
+    delta, n = q["controls"]["delta"], q["controls"]["n"]
+    lines.append(
+        f"  controls  rudder {'ORDERS? ' if delta['orders'] else ''}up to {delta['fastest_deg_per_s']:.3g} deg/s, "
+        f"revolutions {'ORDERS? ' if n['orders'] else ''}up to {n['fastest_rpm_per_s']:.3g} rpm/s"
+    )
+    lines += [f"  note      {note}" for note in q["notes"]]
+    lines += [
+        f"  {f['severity']}   {f['what']}"
+        + (f"; {f['why']}" if f["why"] else "")
+        + (f"; fix: {f['fix']}" if f["fix"] else "")
+        for f in q["findings"]
+        if f["severity"] != "note"
+    ]
+    return "\n".join(lines)
+
+
+def same_units_throughout(t: FloatArray, columns: dict[str, FloatArray], where: str) -> None:
+    """Raise LogError where a unit changes within a record: heading against yaw rate, velocities against positions."""
+    edges = np.linspace(0, len(t) - 1, WINDOWS + 1).astype(np.intp)
+    ratios: dict[str, list[tuple[float, float]]] = {"turn": [], "way": []}
+    for first, last in itertools.pairwise(edges):
+        part = slice(int(first), int(last) + 1)
+        dt = np.diff(t[part])
+        if len(dt) < 4:
+            return
+        if {"psi", "r"} <= set(columns):
+            turned = float(np.nansum(np.abs(np.diff(columns["psi"][part]))))
+            yawed = float(np.nansum(np.abs(columns["r"][part][1:]) * dt))
+            if min(turned, yawed) > 0.0 and max(turned, yawed) > 0.05:
+                ratios["turn"].append((float(t[first]), yawed / turned))
+        if {"u", "v", "x", "y"} <= set(columns):
+            run = float(np.hypot(*(columns[name][part][-1] - columns[name][part][0] for name in ("x", "y"))))
+            logged = float(np.nansum(np.hypot(columns["u"][part], columns["v"][part])[1:] * dt))
+            if math.isfinite(run) and run > 0.0 and logged > 0.0:
+                ratios["way"].append((float(t[first]), logged / run))
+    for name, factor, what in (
+        ("turn", 1.0 / DEG, "the unit of heading or yaw rate changes within the log"),
+        ("way", 3600.0 / 1852.0, "the unit of velocities or positions changes within the log"),
+    ):
+        right = [at for at, ratio in ratios[name] if abs(ratio - 1.0) < 0.1]
+        for other in (factor, 1.0 / factor):
+            wrong = [at for at, ratio in ratios[name] if abs(ratio / other - 1.0) < 0.1]
+            if len(right) >= 2 and len(wrong) >= 2 and len(right) + len(wrong) > 0.7 * len(ratios[name]):
+                why = f"they agree at {right[0]:.6g} s and differ by a factor of {other:.4g} at {wrong[0]:.6g} s"
+                fix = "write the log in one unit, or cut it with [cut] where the unit changes"
+                raise LogError(Problem(what, where, why, fix))
+
+
+def _gaps(t: FloatArray, values: FloatArray, name: str) -> list[dict[str, Any]]:
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], np.isnan(values).astype(np.int8), [0]])))
+    return [
+        {"channel": name, "from_s": float(t[a]), "to_s": float(t[b - 1]), "n_samples": int(b - a)}
+        for a, b in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
+    ]
+
+
+def _longest(t: FloatArray, values: FloatArray) -> float:
+    times = t[np.isfinite(values)]
+    return float(np.diff(times).max()) if len(times) > 1 else 0.0
+
+
+def _or_none(value: float | None) -> float | None:
+    return None if value is None or not math.isfinite(value) else float(value)

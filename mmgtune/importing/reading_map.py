@@ -1,0 +1,449 @@
+"""Reading the map of a log from TOML; every problem of a map is reported at once."""
+
+from __future__ import annotations
+
+import math
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from .. import units
+from ..errors import LogError, Problem, closest
+from ..resources import import_map_names, import_maps
+from ..trial.schema import COLUMNS, SOURCES
+from .headers import canonical
+from .mapping import FORMATS, PROJECTIONS, Cut, LogMap, Source, TimeSource
+from .quantities import CONTROLS, MEANING, QUANTITIES
+
+SCHEMA = 1
+TABLES = {
+    "": (
+        "schema",
+        "description",
+        "log",
+        "trial",
+        "time",
+        "columns",
+        "velocity",
+        "antenna",
+        "position",
+        "resample",
+        "cut",
+    ),
+    "log": ("format", "delimiter", "encoding", "decimal", "skip", "header", "missing"),
+    "trial": ("ship", "id", "manoeuvre", "source", "note", "noise"),
+    "time": ("column", "format", "unit", "scale", "recover", "step"),
+    "velocity": ("axes", "point"),
+    "antenna": ("x", "y"),
+    "position": ("projection", "origin"),
+    "resample": ("step", "gap"),
+    "cut": ("start", "end", "from", "lead"),
+}
+COLUMN_KEYS = ("column", "value", "unit", "positive", "zero", "direction", "scale", "offset", "recover")
+CONSTANT = (*CONTROLS, "delta_port", "delta_stbd", "n_bow", "n_stern", *[
+    name for name in QUANTITIES if name.startswith(("wind", "wave", "depth"))
+])  # fmt: skip
+"""What a map may give as a constant."""
+IN_SENTENCES = (
+    "psi", "r", "n", "delta", "delta_port", "delta_stbd", "wind_speed", "wind_dir", "wind_speed_app", "wind_dir_app",
+)  # fmt: skip
+"""What a map may give a sign, a factor and an offset to where the log is NMEA 0183."""
+DELIMITERS = {",": ",", ";": ";", "|": "|", "tab": "\t", "\t": "\t", "space": " ", " ": " "}
+
+
+def load_map(name: str | Path, preset: bool = False) -> LogMap:
+    """Read and validate a map: a TOML file, or a bundled one by name.
+
+    Raises LogError with everything wrong in it.
+    """
+    path = import_maps() / f"{name}.toml" if preset else Path(name)
+    if preset and str(name) not in import_map_names():
+        raise LogError(Problem(f"no preset is called '{name}'", "--preset", fix=closest(str(name), import_map_names())))
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        fix = f"give a TOML file in UTF-8, or --preset with one of: {', '.join(import_map_names())}"
+        raise LogError(Problem("cannot read the map", str(path), str(error), fix)) from error
+    return parse_map(text, path)
+
+
+def parse_map(text: str, path: Path = Path("map")) -> LogMap:
+    """The map written in ``text``; ``path`` is for messages.  Raises LogError with everything wrong in it."""
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise LogError(Problem("the map is not valid TOML", str(path), str(error), "correct the line named")) from error
+    reader = _Reader(data, text, path)
+    made = reader.read()
+    if reader.problems:
+        raise LogError(*reader.problems)
+    return made
+
+
+class _Reader:
+    """One pass over a parsed map, collecting problems as it goes."""
+
+    def __init__(self, data: dict[str, Any], text: str, path: Path):
+        self.data, self.path = data, path
+        self.problems: list[Problem] = []
+        self.lines = _lines(text)
+
+    def line(self, table: str, key: str = "") -> int:
+        return self.lines.get((table, key)) or self.lines.get((table, "")) or 0
+
+    def problem(self, what: str, table: str, key: str = "", why: str = "", fix: str = "") -> None:
+        line = self.line(table, key)
+        where = f"{self.path}, line {line}" if line else str(self.path)
+        self.problems.append(Problem(what, where, why, fix))
+
+    def read(self) -> LogMap:
+        self.unknown("", self.data)
+        if self.data.get("schema") != SCHEMA:
+            self.problem(f"schema is {self.data.get('schema')!r}, not {SCHEMA}", "", "schema", fix="write schema = 1")
+        log = self.table("log")
+        trial = self.table("trial")
+        position = self.table("position")
+        form = self.choice("log", log, "format", FORMATS)
+        sources = self.sources()
+        made = LogMap(
+            name=self.path.stem,
+            path=self.path,
+            format=form,
+            delimiter=DELIMITERS.get(self.choice("log", log, "delimiter", tuple(DELIMITERS)) or ""),
+            encoding=self.encoding(log),
+            decimal=self.choice("log", log, "decimal", (".", ",")) or ".",
+            skip=self.count(log, "skip"),
+            header=self.flag(log, "header"),
+            missing=self.texts(log, "missing"),
+            time=self.time(),
+            sources=sources,
+            axes=self.choice("velocity", self.table("velocity"), "axes", ("ship", "earth")),
+            point=self.choice("velocity", self.table("velocity"), "point", ("midship", "antenna")),
+            antenna=self.antenna(),
+            projection=self.choice("position", position, "projection", PROJECTIONS) or PROJECTIONS[0],
+            origin=self.origin(position),
+            step=self.quantity("resample", "step", "s", least=0.0),
+            gap=self.number("resample", self.table("resample"), "gap", 5.0, least=1.0),
+            cut=self.cut(),
+            ship=self.text("trial", trial, "ship"),
+            id=self.text("trial", trial, "id") or "{stem}",
+            manoeuvre=self.text("trial", trial, "manoeuvre"),
+            source=self.choice("trial", trial, "source", SOURCES) or "measured",
+            note=self.text("trial", trial, "note"),
+            noise=self.noise(trial),
+        )
+        self.together(made)
+        return made
+
+    # tables and single values
+
+    def table(self, name: str) -> dict[str, Any]:
+        table = self.data.get(name, {})
+        if not isinstance(table, dict):
+            if not any(f"'{name}' is not a table" in problem.what for problem in self.problems):
+                self.problem(f"'{name}' is not a table", "", name, fix=f"write [{name}]")
+            return {}
+        return table
+
+    def unknown(self, name: str, table: dict[str, Any], known: tuple[str, ...] | None = None) -> None:
+        known = known or TABLES[name.split(".")[0]]
+        for key in table:
+            if key not in known:
+                shown = f"{name}.{key}" if name else key
+                self.problem(f"unknown key '{shown}'", name, key, fix=closest(key, known))
+
+    def choice(self, name: str, table: dict[str, Any], key: str, allowed: tuple[str, ...]) -> str | None:
+        if key not in table:
+            return None
+        if not isinstance(table[key], str) or table[key] not in allowed:
+            shown = ", ".join(repr(one) for one in dict.fromkeys(allowed))
+            self.problem(f"'{name}.{key}' is {table[key]!r}", name, key, fix=f"one of: {shown}")
+            return None
+        return str(table[key])
+
+    def text(self, name: str, table: dict[str, Any], key: str) -> str:
+        value = table.get(key, "")
+        if not isinstance(value, str):
+            self.problem(f"'{name}.{key}' is {value!r}, not text", name, key, fix=f'write {key} = "..."')
+            return ""
+        return value
+
+    def texts(self, table: dict[str, Any], key: str) -> tuple[str, ...]:
+        value = table.get(key, [])
+        if not isinstance(value, list):
+            self.problem(f"'log.{key}' is not a list of texts", "log", key, fix=f'write {key} = ["-999", "n/a"]')
+            return ()
+        return tuple(str(one) for one in value)
+
+    def count(self, table: dict[str, Any], key: str) -> int:
+        value = table.get(key, 0)
+        if isinstance(value, bool) or not isinstance(value, int) or value < 0:
+            self.problem(f"'log.{key}' is {value!r}, not a number of lines", "log", key, fix=f"write {key} = 3")
+            return 0
+        return value
+
+    def flag(self, table: dict[str, Any], key: str) -> bool:
+        value = table.get(key, True)
+        if not isinstance(value, bool):
+            self.problem(f"'log.{key}' is {value!r}", "log", key, fix=f"write {key} = true or {key} = false")
+            return True
+        return value
+
+    def number(self, name: str, table: dict[str, Any], key: str, default: float, least: float | None = None) -> float:
+        value = table.get(key, default)
+        good = isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+        if not good or value == 0.0 or (least is not None and value < least):
+            bound = "" if least is None else f" of at least {least:g}"
+            self.problem(f"'{name}.{key}' is {value!r}", name, key, fix=f"write a number{bound}, not 0")
+            return default
+        return float(value)
+
+    def quantity(self, name: str, key: str, unit: str, least: float | None = None) -> float | None:
+        table = self.table(name)
+        return self.parsed(name, key, table[key], unit, least) if key in table else None
+
+    def parsed(self, name: str, key: str, written: Any, unit: str, least: float | None = None) -> float | None:
+        try:
+            if not isinstance(written, str):
+                raise ValueError(f'{written!r} has no unit; write for example "{units.example(unit)}"')
+            (value,) = units.parse(written, unit)
+        except ValueError as error:
+            self.problem(f"'{name}.{key}': {error}", name, key)
+            return None
+        if not math.isfinite(value) or (least is not None and value <= least):
+            self.problem(f"'{name}.{key}' is {written}", name, key, fix=f"it must be above {least or 0:g} {unit}")
+            return None
+        return value
+
+    def encoding(self, table: dict[str, Any]) -> str:
+        import codecs
+
+        name = table.get("encoding", "utf-8")
+        try:
+            codecs.lookup(name)
+        except (LookupError, TypeError):
+            self.problem(f"unknown encoding {name!r}", "log", "encoding", fix='such as "utf-8", "cp1252", "utf-16"')
+            return "utf-8"
+        return str(name)
+
+    # what the tables mean
+
+    def time(self) -> TimeSource:
+        table = self.table("time")
+        unit = table.get("unit")
+        if unit is not None and canonical(str(unit)) not in units.factors("s"):
+            self.problem(f"unit of time is {unit!r}", "time", "unit", fix=f"one of: {', '.join(units.factors('s'))}")
+        recover = self.choice("time", table, "recover", ("auto", "uniform", "never")) or "auto"
+        return TimeSource(
+            column=self.column("time", table),
+            format=self.choice("time", table, "format", ("number", "iso", "clock")),
+            unit=None if unit is None else canonical(str(unit)),
+            scale=self.number("time", table, "scale", 1.0),
+            recover=recover,
+            step=self.quantity("time", "step", "s", least=0.0),
+        )
+
+    def column(self, name: str, table: dict[str, Any]) -> str | int | None:
+        value = table.get("column")
+        if value is None or (isinstance(value, str) and value.strip()):
+            return value
+        if isinstance(value, int) and not isinstance(value, bool) and value >= 1:
+            return value
+        what = f"'{name}.column' is {value!r}"
+        self.problem(what, name, "column", fix="write the column's name, or its number counted from 1")
+        return None
+
+    def sources(self) -> dict[str, Source]:
+        found = {}
+        for name, table in self.table("columns").items():
+            where = f"columns.{name}"
+            if name not in QUANTITIES:
+                fix = "[time] says where time is" if name in ("t", "time") else closest(name, tuple(QUANTITIES))
+                self.problem(f"unknown column '{name}'", where, fix=fix)
+            elif not isinstance(table, dict):
+                fix = f'write [columns.{name}] with column = "..." and unit = "..."'
+                self.problem(f"'{where}' is {table!r}, not a table", "columns", name, fix=fix)
+            else:
+                found[name] = self.one(name, where, table)
+        return found
+
+    def one(self, name: str, where: str, table: dict[str, Any]) -> Source:
+        quantity = QUANTITIES[name]
+        self.unknown(where, table, COLUMN_KEYS)
+        known = units.factors(quantity.unit)
+        unit = table.get("unit")
+        if unit is not None:
+            unit = canonical(str(unit))
+            if unit not in known:
+                self.problem(f"unit of '{name}' is {table['unit']!r}", where, "unit", fix=f"one of: {', '.join(known)}")
+                unit = None
+        for key, can in (("positive", quantity.positive), ("zero", quantity.origin), ("direction", quantity.wind)):
+            if key in table and not can:
+                self.problem(f"'{where}.{key}' has no meaning for {MEANING[name]}", where, key, fix="remove it")
+        value = self.parsed(where, "value", table["value"], quantity.unit) if "value" in table else None
+        if "value" in table and set(table) & {"column", "unit", "scale", "positive", "zero", "offset", "recover"}:
+            fix = "a constant is its value with a unit, in the trial format's conventions; nothing else"
+            self.problem(f"'{where}' has a value and keys of a column", where, "value", fix=fix)
+        offset = self.parsed(where, "offset", table["offset"], quantity.unit) if "offset" in table else 0.0
+        if "recover" in table and name not in ("x", "y"):
+            self.problem(f"'{where}.recover' is for positions x and y", where, "recover", fix="remove it")
+        direction = self.choice(where, table, "direction", ("from", "to")) if quantity.wind else None
+        if quantity.wind and "direction" not in table and "value" not in table and "column" in table:
+            self.problem(
+                f"is '{name}' the direction it comes from or goes to?",
+                where,
+                why="both are in use",
+                fix='say direction = "from" or direction = "to"',
+            )
+        return Source(
+            column=self.column(where, table),
+            value=value,
+            unit=unit,
+            positive=self.choice(where, table, "positive", quantity.positive) if quantity.positive else None,
+            zero=(self.choice(where, table, "zero", ("north", "east")) if quantity.origin else None) or "north",
+            direction=direction,
+            scale=self.number(where, table, "scale", 1.0),
+            offset=offset or 0.0,
+            recover=self.choice(where, table, "recover", ("print-resolution",)),
+            line=self.line(where),
+        )
+
+    def antenna(self) -> tuple[float, float] | None:
+        if "antenna" not in self.data:
+            return None
+        ends = [self.quantity("antenna", key, "m") for key in ("x", "y")]
+        for key in ("x", "y"):
+            if key not in self.table("antenna"):
+                self.problem(f"'antenna.{key}' is missing", "antenna", fix='write x = "12 m" (forward), y = "0 m"')
+        return None if ends[0] is None or ends[1] is None else (ends[0], ends[1])
+
+    def origin(self, table: dict[str, Any]) -> tuple[float, float] | None:
+        value = table.get("origin")
+        if value is None:
+            return None
+        numbers = isinstance(value, list) and len(value) == 2 and all(isinstance(one, (int, float)) for one in value)
+        if not numbers or abs(value[0]) > 90.0 or abs(value[1]) > 360.0:
+            fix = "write origin = [latitude, longitude] in degrees"
+            self.problem(f"'position.origin' is {value!r}", "position", "origin", fix=fix)
+            return None
+        return float(value[0]), float(value[1])
+
+    def cut(self) -> Cut:
+        table = self.table("cut")
+        begin = self.choice("cut", table, "from", ("first-rudder-order",))
+        start, end = self.quantity("cut", "start", "s"), self.quantity("cut", "end", "s")
+        if start is not None and end is not None and start >= end:
+            self.problem("'cut.start' is not before 'cut.end'", "cut", "start")
+        if "lead" in table and begin is None:
+            self.problem("'cut.lead' is given without 'cut.from'", "cut", "lead", fix='add from = "first-rudder-order"')
+        return Cut(start, end, begin, self.quantity("cut", "lead", "s") or 0.0)
+
+    def noise(self, trial: dict[str, Any]) -> dict[str, float]:
+        noise = trial.get("noise", {})
+        if not isinstance(noise, dict):
+            self.problem("'trial.noise' is not a table", "trial", "noise", fix='write noise = { x = "0.5 m" }')
+            return {}
+        found = {}
+        for name, written in noise.items():
+            if name not in COLUMNS:
+                self.problem(f"noise of unknown column '{name}'", "trial", "noise", fix=closest(name, tuple(COLUMNS)))
+                continue
+            value = self.parsed("trial", f"noise.{name}", written, COLUMNS[name].unit, least=0.0)
+            if value is not None:
+                found[name] = value
+        return found
+
+    def together(self, made: LogMap) -> None:
+        """What is wrong about entries that are right one by one."""
+        for name in TABLES:
+            if name and name != "columns" and isinstance(self.data.get(name), dict):
+                self.unknown(name, self.data[name])
+        sources = made.sources
+        for name, source in sources.items():
+            if source.value is not None and name not in CONSTANT:
+                what = f"'{name}', {MEANING[name]}, is given as a constant"
+                self.problem(what, f"columns.{name}", "value", "it is what a trial measures", "name its column")
+        if made.format == "nmea":
+            self.sentences(made)
+            return
+        if made.format == "parquet":
+            self.meaningless("log", ("delimiter", "encoding", "decimal", "skip", "header"), "Parquet")
+        if made.time.column is None:
+            self.problem("no column is named for time", "time", fix='write [time] with column = "..." and unit = "s"')
+        for name, source in sources.items():
+            if source.column is None and source.value is None:
+                fix = 'write column = "..." or value = "..."'
+                self.problem(f"'{name}' has neither a column nor a value", f"columns.{name}", fix=fix)
+        for name in ("psi", *CONTROLS):
+            if name not in sources:
+                fix = f'write [columns.{name}] with column = "..." and unit, or value = "..." where it is constant'
+                self.problem(f"no column is named for '{name}', {MEANING[name]}", "columns", fix=fix)
+        if not ({"x", "y"} <= set(sources) or {"latitude", "longitude"} <= set(sources)):
+            fix = "write [columns.x] and [columns.y], or [columns.latitude] and [columns.longitude]"
+            self.problem("no columns are named for the position", "columns", fix=fix)
+        if {"x", "latitude"} <= set(sources):
+            self.problem(
+                "the map has both local and geographic positions", "columns.latitude", fix="remove one of them"
+            )
+        if {"u", "sog"} <= set(sources):
+            self.problem("the map has both u and speed over ground", "columns.sog", fix="remove one of them")
+        if len({"sog", "cog"} & set(sources)) == 1:
+            self.problem("speed and course over ground are of use only together", "columns", fix="name both")
+        if made.axes == "earth" and len({"u", "v"} & set(sources)) == 1:
+            self.problem("velocities in earth axes are of use only together", "velocity", "axes", fix="name u and v")
+        if made.antenna and {"u", "v"} & set(sources) and made.point is None:
+            self.problem(
+                "are the velocities u and v of midship or of the antenna?",
+                "antenna",
+                why="a ship's ends move sideways when she turns",
+                fix='say [velocity] point = "midship" or point = "antenna"',
+            )
+        if made.point == "antenna" and made.antenna is None:
+            self.problem("velocities are of the antenna, but no [antenna] says where it is", "velocity", "point")
+        for name, words, axes in (("u", ("north", "south"), "earth"), ("v", ("east", "west"), "earth")):
+            positive = sources[name].positive if name in sources else None
+            if positive in words and made.axes != axes:
+                fix = '[velocity] axes = "earth"'
+                self.problem(
+                    f"'{name}' is positive to the {positive}: earth axes?", f"columns.{name}", fix=f"say {fix}"
+                )
+
+    def meaningless(self, table: str, keys: tuple[str, ...], form: str) -> None:
+        for key in keys:
+            if key in self.table(table):
+                self.problem(f"'{table}.{key}' has no meaning for {form}", table, key, fix="remove it")
+
+    def sentences(self, made: LogMap) -> None:
+        """What a map of NMEA 0183 cannot say: sentences have columns, units, axes and times of their own."""
+        self.meaningless("log", ("delimiter", "encoding", "decimal", "skip", "header", "missing"), "NMEA 0183")
+        self.meaningless("time", TABLES["time"], "NMEA 0183")
+        self.meaningless("velocity", ("axes",), "NMEA 0183")
+        for name, source in made.sources.items():
+            where = f"columns.{name}"
+            if name not in IN_SENTENCES and source.value is None:
+                fix = closest(name, IN_SENTENCES)
+                self.problem(f"no sentence holds '{name}'", where, fix=f"{fix}; or give it as a constant")
+            self.meaningless_of(where, ("column", "unit", "zero", "direction", "recover"))
+
+    def meaningless_of(self, where: str, keys: tuple[str, ...]) -> None:
+        written = self.data["columns"][where.removeprefix("columns.")]
+        for key in keys:
+            if isinstance(written, dict) and key in written:
+                fix = "remove it: the standard says what sentences hold"
+                self.problem(f"'{where}.{key}' has no meaning for NMEA 0183", where, key, fix=fix)
+
+
+def _lines(text: str) -> dict[tuple[str, str], int]:
+    """Line numbers of tables, under (table, ""), and of keys, under (table, key)."""
+    index: dict[tuple[str, str], int] = {}
+    table = ""
+    for number, line in enumerate(text.splitlines(), start=1):
+        if header := re.match(r"\s*\[([\w.-]+)\]", line):
+            table = header.group(1)
+            index.setdefault((table, ""), number)
+        elif key := re.match(r"\s*([\w.-]+)\s*=", line):
+            index.setdefault((table, key.group(1)), number)
+            # An inline table is a table of its own name too: [columns] x = { ... }.
+            index.setdefault((f"{table}.{key.group(1)}" if table else key.group(1), ""), number)
+    return index

@@ -1,0 +1,156 @@
+"""One record in the program's units: every quantity with its own time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from .. import units
+from ..errors import LogError, Problem
+from ..trial.model import FloatArray
+from .digits import within_digits
+from .headers import unit_in
+from .mapping import LogMap, Source
+from .quantities import AGAINST, MEANING, QUANTITIES
+from .table import TIME, Table
+
+
+@dataclass(frozen=True, eq=False)
+class Series:
+    """Samples of one quantity: time [s], strictly increasing, and values in the program's unit, both (n_samples,)."""
+
+    t: FloatArray
+    values: FloatArray
+
+    @property
+    def step(self) -> float:
+        """Median time between samples that have a value [s]; 0 where there are fewer than two."""
+        t = self.t[np.isfinite(self.values)]
+        return float(np.median(np.diff(t))) if len(t) > 1 else 0.0
+
+
+@dataclass(eq=False)
+class Record:
+    """What a log holds, or a part of one between two settings of its clock.
+
+    series   by quantity (``quantities.QUANTITIES``), angles unwrapped
+    spikes   number of samples taken out, by quantity
+    notes    what was done, in sentences
+    """
+
+    path: Path
+    series: dict[str, Series]
+    spikes: dict[str, int] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+
+
+def time_in_seconds(table: Table, log_map: LogMap) -> FloatArray:
+    """The log's time (n_rows,) in s.  Raises LogError where nothing says its unit."""
+    source = log_map.time
+    if table.clock:
+        return table.t * source.scale
+    unit = unit_of(TIME, table, source.unit, "s", table.t, f"{log_map.path}, [time]")
+    return table.t * (units.factors("s")[unit] * source.scale)
+
+
+def unit_of(name: str, table: Table, stated: str | None, target: str, values: FloatArray, place: str) -> str:
+    """The unit a column is written in, from the map or the log's header.
+
+    Raises LogError where neither says it, with the question to answer, and where they contradict each other.
+    """
+    header = table.headers[name]
+    known = units.factors(target)
+    printed = unit_in(header)
+    printed = printed if printed in known else None
+    if stated and printed and stated != printed:
+        what = f"the map says '{header}' is in {stated}, its header says {printed}"
+        raise LogError(Problem(what, place, "one of them is wrong", "correct the map's unit, or remove it"))
+    if stated or printed:
+        return str(stated or printed)
+    finite = values[np.isfinite(values)]
+    span = f"its values run from {finite.min():.6g} to {finite.max():.6g}" if len(finite) else "it has no values"
+    short = [
+        unit
+        for unit in known
+        if unit in ("deg", "rad", "m/s", "kn", "s", "ms", "m", "ft", "rpm", "1/s", "deg/s", "rad/s", "deg/min")
+    ]
+    first = "deg" if "deg" in short else short[-1]
+    raise LogError(
+        Problem(
+            f"is '{header}' in {' or '.join(short)}?",
+            place,
+            f"neither the map nor the header says the unit of {MEANING.get(name, 'time')}; {span}",
+            f'say its unit, such as unit = "{first}"',
+        )
+    )
+
+
+def record_of(table: Table, log_map: LogMap, t: FloatArray, rows: slice) -> Record:
+    """A part of a table in the program's units and directions.
+
+    t     (n_kept,) time put right [s]; rows: the part of it
+
+    Raises LogError with every column that has no values, or no unit.
+    """
+    problems: list[Problem] = []
+    series = {}
+    notes: list[str] = []
+    for name, values in table.columns.items():
+        source = log_map.sources[name]
+        if not np.isfinite(values).any():
+            place = f"{table.path}, column '{table.headers[name]}'"
+            why = f"the map says it holds {MEANING[name]}"
+            fix = "name another column, or leave it out of the map where it is not needed"
+            problems.append(Problem("the column has no numbers at all", place, why, fix))
+            continue
+        try:
+            unit = unit_of(name, table, source.unit, QUANTITIES[name].unit, values, log_map.place(name))
+        except LogError as error:
+            problems += error.problems
+            continue
+        printed = values[rows]
+        if source.recover:
+            # In the log's own unit: that is where the digits are.
+            printed, digits, coarsest = within_digits(t[rows], printed)
+            notes.append(
+                f"{name} is printed with {digits} significant digits, in steps of up to {coarsest:.3g} {unit}; "
+                "it was smoothed within half a step"
+                if digits
+                else f"{name} is printed with more than 6 digits: nothing to recover"
+            )
+        series[name] = Series(t[rows], converted(name, printed, source, unit))
+    if problems:
+        raise LogError(*problems)
+    return Record(table.path, series, notes=notes)
+
+
+def converted(name: str, values: FloatArray, source: Source, unit: str) -> FloatArray:
+    """Numbers of a log (n_samples,) in the program's unit and directions, angles unwrapped."""
+    quantity = QUANTITIES[name]
+    turn = 360.0 if quantity.unit == "deg" else 2.0 * np.pi
+    # A factor of exactly 1 leaves every bit as it is.
+    factor = units.factors(quantity.unit)[unit] * source.scale
+    out = values * factor if factor != 1.0 else np.array(values)
+    if source.positive in AGAINST:
+        out = -out
+    if quantity.origin and source.zero == "east":
+        # Counted from east, north lies a quarter turn back, whichever way angles grow.
+        out = out + turn / 4.0
+    if source.direction == "to":
+        out = out + turn / 2.0
+    if source.offset:
+        out = out + source.offset
+    return unwrapped(out, turn) if quantity.angle else out
+
+
+def unwrapped(values: FloatArray, turn: float) -> FloatArray:
+    """Angles (n_samples,) without jumps of a full turn; NaN stays where it is and does not count."""
+    known = np.isfinite(values)
+    out = np.array(values)
+    if known.any():
+        steps = np.diff(out[known])
+        jumps = np.round(steps / turn)
+        out[known] -= turn * np.concatenate([[0.0], np.cumsum(jumps)])
+    return out

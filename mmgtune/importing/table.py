@@ -1,0 +1,149 @@
+"""A log read into memory: the needed columns as they are printed, and nothing else."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import LogError, Problem
+from ..trial.model import FloatArray
+from .mapping import LogMap
+
+MOST_ROWS = 1_000_000
+"""Rows kept of one log; of longer ones every second, fourth, ... row, so that memory stays bounded."""
+
+TIME = "t"
+
+
+@dataclass(eq=False)
+class Table:
+    """Columns of a log by quantity, (n_rows,) each, in the log's own units and signs.
+
+    t        time [s] where it was printed as a date or clock, else in the log's unit
+    rows     number of each row in the file, counted from 1: of lines in text
+    headers  the log's name of each quantity's column
+    clock    whether ``t`` was printed as a date or clock, so that it is in s already
+    notes    what was done or dropped while reading, in sentences
+    """
+
+    path: Path
+    t: FloatArray
+    columns: dict[str, FloatArray]
+    rows: npt.NDArray[np.int64]
+    headers: dict[str, str]
+    clock: bool = False
+    unit: str = "line"
+    notes: list[str] = field(default_factory=list)
+
+    def place(self, row: int) -> str:
+        """Where a row is in the file."""
+        return f"{self.path}, {self.unit} {self.rows[row]}"
+
+
+class Collector:
+    """Gathers blocks of rows and keeps no more than MOST_ROWS of them."""
+
+    def __init__(self, names: list[str]):
+        self.blocks: list[npt.NDArray[Any]] = []
+        self.rows: list[npt.NDArray[np.int64]] = []
+        self.names = names
+        self.stride = 1
+        self.kept = 0
+        self.seen = 0
+
+    def add(self, block: FloatArray, rows: npt.NDArray[np.int64]) -> None:
+        """Take a block (n_rows, n_names) and the numbers of its rows (n_rows,)."""
+        first = -self.seen % self.stride
+        self.seen += len(block)
+        self.blocks.append(np.array(block[first :: self.stride]))
+        self.rows.append(rows[first :: self.stride])
+        self.kept += len(self.rows[-1])
+        if self.kept > MOST_ROWS:
+            block, rows = np.concatenate(self.blocks)[::2], np.concatenate(self.rows)[::2]
+            self.blocks, self.rows, self.kept = [block.copy()], [rows.copy()], len(rows)
+            self.stride *= 2
+
+    def columns(self) -> tuple[dict[str, FloatArray], npt.NDArray[np.int64]]:
+        """The columns by name, (n_rows,) each, and the numbers of the rows."""
+        if not self.blocks:
+            return {name: np.zeros(0) for name in self.names}, np.zeros(0, dtype=np.int64)
+        block = np.concatenate(self.blocks)
+        self.blocks = []
+        return {name: np.ascontiguousarray(block[:, k]) for k, name in enumerate(self.names)}, np.concatenate(self.rows)
+
+    def notes(self) -> list[str]:
+        """What was left out, in sentences."""
+        if self.stride == 1:
+            return []
+        return [f"the log has {self.seen} rows; every {self.stride}th was kept, {self.kept} in all"]
+
+
+@dataclass
+class BadCells:
+    """Cells of one column that are no numbers: how many, and the first."""
+
+    count: int = 0
+    row: int = 0
+    text: str = ""
+
+
+class Cells:
+    """Turns cells into numbers and remembers what could not be turned."""
+
+    def __init__(self, log_map: LogMap):
+        self.missing = {"", "-", "--", "nan", "na", "n/a", "null", "none", *(one.lower() for one in log_map.missing)}
+        self.numbers = self._numbers(log_map.missing)
+        self.bad: dict[str, BadCells] = {}
+
+    @staticmethod
+    def _numbers(texts: tuple[str, ...]) -> list[float]:
+        found = []
+        for one in texts:
+            try:
+                found.append(float(one))
+            except ValueError:
+                continue
+        return found
+
+    def of(self, name: str, values: Any, rows: npt.NDArray[np.int64]) -> FloatArray:
+        """Numbers (n_rows,) of a pandas column, NaN where a cell holds none."""
+        import pandas as pd
+
+        if pd.api.types.is_numeric_dtype(values.dtype) and not pd.api.types.is_bool_dtype(values.dtype):
+            numbers = values.to_numpy(dtype=np.float64, na_value=np.nan)
+        else:
+            text = values.astype("string").str.strip()
+            numbers = pd.to_numeric(text, errors="coerce").to_numpy(dtype=np.float64, na_value=np.nan)
+            wrong = np.isnan(numbers) & ~text.str.lower().isin(self.missing).to_numpy() & text.notna().to_numpy()
+            if wrong.any():
+                k = int(np.flatnonzero(wrong)[0])
+                bad = self.bad.setdefault(name, BadCells(0, int(rows[k]), str(text.iloc[k])))
+                bad.count += int(wrong.sum())
+        for number in self.numbers:
+            numbers = np.where(numbers == number, np.nan, numbers)
+        return np.asarray(numbers)
+
+    def judge(self, table: Table, log_map: LogMap, n_rows: int) -> None:
+        """Note cells that are no numbers.  Raises LogError where they say that the log is to be read differently."""
+        problems = []
+        for name, bad in self.bad.items():
+            place = f"{table.path}, {table.unit} {bad.row}, column '{table.headers[name]}'"
+            cells = f"{bad.count} cells of {n_rows} are no numbers, the first is '{bad.text}'"
+            if re.fullmatch(r"[-+]?\d*,\d+([eE][-+]?\d+)?", bad.text):
+                fix = 'decimal = "," in [log], if the comma is the decimal sign'
+                problems.append(Problem("numbers with a comma in them", place, cells, fix))
+            elif match := re.fullmatch(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?\s*([^\d\s].*)", bad.text):
+                fix = "write the column in one unit, as plain numbers, and say the unit in the map"
+                problems.append(Problem(f"a cell has a unit of its own, '{match.group(1)}'", place, cells, fix))
+            elif bad.count > 0.5 * n_rows:
+                fix = f"name the column that holds '{name}'; texts for no value go into missing = [...] of [log]"
+                problems.append(Problem(f"the column of '{name}' holds text", place, cells, fix))
+            else:
+                table.notes.append(f"{name}: {cells} (line {bad.row}); taken as gaps")
+        if problems:
+            raise LogError(*problems)

@@ -1,0 +1,203 @@
+"""Reading text logs: comma, semicolon, tab or blank separated, with or without names, in blocks of rows."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import LogError, Problem, closest
+from .clock import Stamps
+from .headers import find_column
+from .mapping import LogMap
+from .quantities import MEANING
+from .table import TIME, Cells, Collector, Table
+
+BLOCK = 50_000
+"""Rows read at a time."""
+
+PEEK = 1 << 16
+"""Bytes looked at to find out how a log is written."""
+
+
+def read_text(path: Path, log_map: LogMap) -> Table:
+    """The columns of a text log that a map names.
+
+    Raises LogError where the file is empty, binary, in another encoding, or has not the columns named.
+    """
+    import pandas as pd
+
+    layout = look(path, log_map)
+    wanted = columns_named(log_map, layout.names, path, layout.where)
+    names = list(wanted)
+    collector, cells, stamps = Collector([TIME, *names[1:]]), Cells(log_map), Stamps(log_map.time, path)
+    line = layout.first + 1
+    dropped: list[str] = []
+    try:
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always", pd.errors.ParserWarning)
+            reader = pd.read_csv(
+                path,
+                header=None,
+                names=range(len(layout.names)),
+                index_col=False,
+                skiprows=layout.first,
+                sep=r"\s+" if layout.delimiter == " " else layout.delimiter,
+                decimal=log_map.decimal,
+                encoding=log_map.encoding,
+                na_values=list(log_map.missing),
+                skip_blank_lines=False,
+                skipinitialspace=True,
+                on_bad_lines="warn",
+                chunksize=BLOCK,
+                low_memory=False,
+            )
+            with reader:
+                for block in reader:
+                    rows = np.arange(line, line + len(block), dtype=np.int64)
+                    line += len(block)
+                    t = stamps.of(block[wanted[TIME]], rows)
+                    values = [cells.of(name, block[wanted[name]], rows) for name in names[1:]]
+                    collector.add(np.column_stack([t, *values]), rows)
+        dropped = [str(one.message) for one in said if issubclass(one.category, pd.errors.ParserWarning)]
+    except (UnicodeDecodeError, UnicodeError) as error:
+        raise _undecodable(path, log_map, error) from error
+    except (pd.errors.ParserError, pd.errors.EmptyDataError) as error:
+        fix = "say delimiter, skip and header in [log] of the map"
+        raise LogError(Problem("the log cannot be read as a table", str(path), str(error).strip(), fix)) from error
+    if not collector.seen:
+        raise LogError(Problem("the log has no rows", str(path), "only a header was found", "check 'skip' in [log]"))
+    columns, numbers = collector.columns()
+    headers = {name: layout.names[k] for name, k in wanted.items()}
+    t = columns.pop(TIME)
+    table = Table(path, t, columns, numbers, headers, stamps.clock, "line", [*stamps.notes, *collector.notes()])
+    bad = [int(one) for message in dropped for one in re.findall(r"[Ll]ine (\d+)", message)]
+    if bad:
+        table.notes.append(f"{len(bad)} lines have too many fields and were dropped, the first is line {bad[0]}")
+        if len(bad) > 0.5 * max(1, len(t)):
+            why = f"{len(bad)} of {len(bad) + len(t)} lines have more fields than the header's {len(layout.names)}"
+            raise _too_wide(path, bad[0], why)
+    cells.judge(table, log_map, len(t))
+    return table
+
+
+@dataclass(frozen=True)
+class Layout:
+    """How a text log is written: names of its columns, lines before the first row, and what separates fields."""
+
+    names: list[str]
+    first: int
+    delimiter: str
+    where: str
+
+
+def look(path: Path, log_map: LogMap) -> Layout:
+    """Find names and delimiter at the beginning of a log.  Raises LogError."""
+    content = start_of(path)
+    try:
+        text = content.decode(log_map.encoding, errors="strict" if len(content) < PEEK else "replace")
+    except (UnicodeDecodeError, UnicodeError) as error:
+        raise _undecodable(path, log_map, error) from error
+    lines = text.lstrip("\ufeff").splitlines()[: log_map.skip + 50]
+    at = log_map.skip
+    if len(lines) <= at or not any(line.strip() for line in lines[at:]):
+        why = f"it has {len(lines)} lines, of which {at} are to be skipped"
+        raise LogError(Problem("the log has no rows", str(path), why, "check 'skip' in [log], and the file"))
+    delimiter = log_map.delimiter or _delimiter(lines[at:])
+    if log_map.header:
+        names = _fields(lines[at], delimiter)
+        if all(_is_number(name) for name in names):
+            why = f"the line is '{lines[at][:60]}'"
+            fix = "say header = false in [log] and give columns by number, or correct 'skip'"
+            raise LogError(Problem("numbers where names of columns should be", f"{path}, line {at + 1}", why, fix))
+        for number, line in enumerate(lines[at + 1 :], start=at + 2):
+            fields = _fields(line, delimiter)
+            if len(fields) == len(names) + 1 and not fields[-1]:
+                # Lines that end with a delimiter: one column more, without a name.
+                names = [*names, ""]
+            elif len(fields) > len(names) and number == at + 2:
+                raise _too_wide(path, number, f"it has {len(fields)} fields, the header has {len(names)}")
+        return Layout(names, at + 1, delimiter, f"{path}, line {at + 1}")
+    width = max(len(_fields(line, delimiter)) for line in lines[at : at + 20])
+    return Layout([f"column {k}" for k in range(1, width + 1)], at, delimiter, f"{path}, line {at + 1}")
+
+
+def start_of(path: Path) -> bytes:
+    """The first bytes of a log.  Raises LogError where it cannot be opened, is empty or binary."""
+    try:
+        with path.open("rb") as file:
+            content = file.read(PEEK)
+    except OSError as error:
+        fix = "check the path, and that you may read the file"
+        raise LogError(Problem("the log cannot be opened", str(path), error.strerror or str(error), fix)) from error
+    if not content.strip():
+        raise LogError(Problem("the log is empty", str(path), fix="copy it again from where it was made"))
+    return content
+
+
+def binary(content: bytes) -> bool:
+    """Whether bytes are no text in any encoding a logger writes."""
+    return b"\0" in content and not content.startswith((b"\xff\xfe", b"\xfe\xff"))
+
+
+def columns_named(log_map: LogMap, names: list[str], path: Path, where: str) -> dict[str, int]:
+    """Position of each quantity's column in the log, time first.  Raises LogError naming all that are not there."""
+    asked: dict[str, Any] = {TIME: log_map.time.column}
+    asked |= {name: source.column for name, source in log_map.sources.items() if source.column is not None}
+    found, problems = {}, []
+    for name, column in asked.items():
+        k = find_column(column, names)
+        if k is None:
+            meaning = "time" if name == TIME else MEANING[name]
+            if isinstance(column, int):
+                what, fix = f"the log has no column {column}", f"it has {len(names)} columns"
+            else:
+                what = f"column '{column}' is missing from the log"
+                near = closest(column, names)
+                fix = near
+            problems.append(Problem(what, where, f"the map says it holds {meaning}", fix))
+        else:
+            found[name] = k
+    if problems:
+        raise LogError(*problems)
+    return found
+
+
+def _too_wide(path: Path, line: int, why: str) -> LogError:
+    fix = "the delimiter may be another one, or the decimal sign a comma: say delimiter and decimal in [log]"
+    return LogError(Problem("lines have more fields than the header", f"{path}, line {line}", why, fix))
+
+
+def _delimiter(lines: list[str]) -> str:
+    """The character that divides the first lines into the same number of fields; blanks where none does."""
+    whole = [line for line in lines if line.strip()][:20]
+    for mark in ("\t", ";", ",", "|"):
+        counts = [line.count(mark) for line in whole]
+        if min(counts) > 0 and (mark != "," or max(counts) == counts[0] or min(counts[1:], default=0) >= counts[0]):
+            return mark
+    return " "
+
+
+def _fields(line: str, delimiter: str) -> list[str]:
+    if delimiter == " ":
+        return line.split()
+    return [field.strip() for field in next(csv.reader(io.StringIO(line), delimiter=delimiter), [])]
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text.replace(",", "."))
+    except ValueError:
+        return False
+    return True
+
+
+def _undecodable(path: Path, log_map: LogMap, error: Exception) -> LogError:
+    fix = 'say its encoding in [log], such as encoding = "cp1252" or "utf-16"'
+    return LogError(Problem(f"the log is not {log_map.encoding}", str(path), str(error), fix))

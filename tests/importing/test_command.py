@@ -1,0 +1,79 @@
+"""``mmgtune trials import`` as a user runs it."""
+
+import signal
+
+import pytest
+
+from tests.command import run, run_until
+from tests.importing.made import MAP, logged, turn, write_csv
+
+
+@pytest.fixture
+def folder(tmp_path):
+    write_csv(tmp_path / "zigzag.csv", logged(turn()))
+    (tmp_path / "map.toml").write_text(MAP)
+    return tmp_path
+
+
+def test_import_check_and_again(folder):
+    command = ("trials", "import", "zigzag.csv", "--map", "map.toml", "-o", "trials")
+    dry = run(*command, "--dry-run", cwd=folder)
+    assert dry.code == 0, dry.err
+    assert "1 trials would be written" in dry.out
+    assert "positions missed by u, v, psi" in dry.out
+    assert not (folder / "trials").exists()
+    ended = run(*command, "--json", cwd=folder)
+    assert ended.code == 0, ended.err
+    (trial,) = ended.json()["trials"]
+    assert trial["n_samples"] == 400
+    assert sorted(path.name for path in (folder / "trials").iterdir()) == ["import-report.json", "zigzag.parquet"]
+    assert run("trials", "check", "trials", cwd=folder).code == 0
+    again = run(*command, cwd=folder)
+    assert again.code == 2
+    assert "exists already" in again.err
+    assert "--force" in again.err
+    assert run(*command, "--force", "--step", "2 s", cwd=folder).code == 0
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("-o", "out"), "give either --map or --preset"),
+        (("--map", "map.toml"), "add -o FOLDER"),
+        (("--map", "map.toml", "-o", "out", "--step", "2"), "has no unit"),
+        (("--map", "map.toml", "-o", "out", "--step", "0 s"), "above 0 s"),
+        (("--preset", "frt", "-o", "out"), "no preset is called 'frt'"),
+        (("--preset", "frt-ds-esso", "-o", "out"), "column 'x_position_mid' is missing"),
+        (("--map", "zigzag.csv", "-o", "out"), "not valid TOML"),
+    ],
+)
+def test_refusals(folder, options, words):
+    ended = run("trials", "import", "zigzag.csv", *options, cwd=folder)
+    assert ended.code == 2, ended.err
+    assert words in ended.err
+    assert "Traceback" not in ended.err
+    assert not (folder / "out").exists()
+
+
+def test_stopped_while_reading_leaves_nothing(folder):
+    lines = (folder / "zigzag.csv").read_text().splitlines()
+    body = "\n".join(lines[1:]) + "\n"
+    with (folder / "long.csv").open("w") as file:
+        file.write(lines[0] + "\n")
+        for _ in range(2000):
+            file.write(body)
+    started = folder / "started"
+
+    def ready():
+        started.touch()
+        import time
+
+        time.sleep(1.5)
+        return True
+
+    ended = run_until(
+        ready, signal.SIGINT, "trials", "import", "long.csv", "--map", "map.toml", "-o", "out", cwd=folder
+    )
+    assert ended.code == 130, (ended.code, ended.err)
+    assert "Traceback" not in ended.err
+    assert not (folder / "out").exists()

@@ -1,0 +1,86 @@
+"""Angles, sides and lever arms, one at a time."""
+
+import numpy as np
+import pytest
+
+from mmgtune.importing import conventions, motion, parse_map
+from mmgtune.importing.mapping import Source
+from mmgtune.importing.record import converted, unwrapped
+from mmgtune.units import DEG
+from tests.importing.made import MAP, imported, logged, refusal, said, suzaku, turn, write_csv
+
+
+@pytest.mark.parametrize(
+    ("source", "printed", "expected"),
+    [
+        (Source(), 30.0, 30.0),
+        (Source(positive="counterclockwise"), 30.0, -30.0),
+        (Source(zero="east"), 30.0, 120.0),
+        (Source(zero="east", positive="counterclockwise"), 30.0, 60.0),
+        (Source(offset=5.0 * DEG), 30.0, 35.0),
+        (Source(scale=2.0), 30.0, 60.0),
+    ],
+)
+def test_heading(source, printed, expected):
+    assert converted("psi", np.array([printed]), source, "deg") == pytest.approx(expected * DEG)
+
+
+def test_wind_to_is_wind_from_turned_round():
+    (angle,) = converted("wind_dir", np.array([90.0]), Source(direction="to"), "deg")
+    assert np.mod(angle, 2.0 * np.pi) == pytest.approx(270.0 * DEG)
+
+
+def test_unwrapping_sees_over_gaps():
+    turning = np.linspace(0.0, 20.0, 200)
+    wrapped = np.mod(turning, 2.0 * np.pi)
+    wrapped[50:55] = np.nan
+    back = unwrapped(wrapped, 2.0 * np.pi)
+    known = np.isfinite(wrapped)
+    assert np.abs(back - turning)[known].max() < 1e-12
+    assert np.isnan(back[~known]).all()
+
+
+def test_velocities_of_an_antenna_are_moved_to_midship(tmp_path):
+    trial = turn()
+    ahead, abeam = 40.0, 6.0
+    columns = logged(trial)
+    columns["north"] = trial.x + ahead * np.cos(trial.psi) - abeam * np.sin(trial.psi)
+    columns["east"] = trial.y + ahead * np.sin(trial.psi) + abeam * np.cos(trial.psi)
+    columns["ahead"] = (trial.u - abeam * trial.r) / (1852.0 / 3600.0)
+    columns["abeam"] = (trial.v_m + ahead * trial.r) / (1852.0 / 3600.0)
+    text = MAP.replace('axes = "ship"', 'axes = "ship"\npoint = "antenna"') + "[antenna]\nx = '40 m'\ny = '6 m'\n"
+    back = imported(write_csv(tmp_path / "log.csv", columns), text)
+    for name in ("x", "y", "u", "v_m"):
+        assert np.abs(getattr(back, name) - getattr(trial, name)).max() < 1e-9
+
+
+def test_in_ship_axes_and_back():
+    psi = np.array([0.3, 2.0])
+    u, v = motion.in_ship_axes(np.array([1.0, 2.0]), np.array([0.5, -1.0]), psi)
+    assert u * np.cos(psi) - v * np.sin(psi) == pytest.approx([1.0, 2.0])
+    assert u * np.sin(psi) + v * np.cos(psi) == pytest.approx([0.5, -1.0])
+
+
+@pytest.mark.parametrize("name", ["turn_p10", "turn_m20", "turn_p20", "turn_m10", "turn_p40"])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_rudder_sign_of_the_bundled_trials(name, sign):
+    trial = suzaku(name)
+    columns = dict(trial.columns) | {"delta": sign * trial.delta}
+    evidence = conventions.rudder_evidence(trial.t, columns)
+    # In doubt is allowed, wrong is not.
+    assert evidence.side in (0, int(sign))
+
+
+def test_v_to_port_is_found(tmp_path):
+    trial = suzaku("turn_p35")
+    columns = logged(trial)
+    columns["abeam"] = -columns["abeam"]
+    log = write_csv(tmp_path / "log.csv", columns)
+    text = MAP.replace('"kn", positive = "starboard"', '"kn"')
+    assert "velocities: ship axes, v to port" in said(log, text)
+    assert np.abs(imported(log, text).v_m - trial.v_m).max() < 1e-9
+
+
+def test_earth_axes_need_both_velocities():
+    text = MAP.replace('axes = "ship"', 'axes = "earth"').replace('u = { column = "ahead", unit = "kn" }\n', "")
+    assert "velocities in earth axes are of use only together" in refusal(lambda: parse_map(text))
