@@ -60,6 +60,14 @@ Targets = Annotated[
         rich_help_panel=SEARCH,
     ),
 ]
+WithEffects = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--with-effects",
+        help="Effects to put into the profile and tune besides, such as wind-drift; they begin at none.",
+        rich_help_panel=SEARCH,
+    ),
+]
 Fix = Annotated[
     list[str] | None,
     typer.Option("--fix", help="Coefficients to leave out of the targets; names or patterns.", rich_help_panel=SEARCH),
@@ -180,6 +188,49 @@ def load(profile: str, trials: str) -> tuple[ShipProfile, TrialSet]:
     if data.ship and data.ship != ship.id:
         say(f"warning: the trials are of '{data.ship}', the profile is of '{ship.id}'")
     return ship, data
+
+
+def with_effects(ship: ShipProfile, tags: tuple[str, ...]) -> tuple[ShipProfile, tuple[str, ...]]:
+    """The profile with these effects written into it at their null, and the names of their parameters.
+
+    Raises OptionError for an unknown effect, or one that does not apply.
+    """
+    from math import isfinite
+
+    from ..effects import effect_tags, find_effect
+    from ..errors import closest
+    from ..profile import extended_text, missing_for, parse_profile
+
+    added: dict[str, dict[str, tuple[float, float | None]]] = {}
+    for tag in tags:
+        effect = find_effect(tag)
+        if effect is None:
+            raise OptionError(Problem(f"unknown effect '{tag}'", "--with-effects", fix=closest(tag, effect_tags())))
+        missing = missing_for(effect, ship)
+        if missing:
+            raise OptionError(
+                Problem(
+                    f"the effect '{tag}' does not apply to this ship",
+                    "--with-effects",
+                    f"it needs {', '.join(missing)}, which the profile does not have",
+                    "add what is missing, or leave the effect out",
+                )
+            )
+        new = {n: p for n, p in effect.parameters.items() if f"{effect.kind}.{n}" not in ship.names()}
+        if not all(isfinite(parameter.null) for parameter in new.values()):
+            raise OptionError(
+                Problem(
+                    f"the effect '{tag}' has no value at which it is absent",
+                    "--with-effects",
+                    "it fades only towards infinity",
+                    f"write a first guess into the profile, [{effect.kind}], and name it in --targets",
+                )
+            )
+        added[tag] = {name: (parameter.null, None) for name, parameter in new.items()}
+    names = tuple(f"effects.{tag}.{name}" for tag, parameters in added.items() for name in parameters)
+    if not names:
+        return ship, ()
+    return parse_profile(extended_text(ship, added, "put in to be tuned"), ship.path), names
 
 
 def default_out(profile: ShipProfile) -> Path:

@@ -26,6 +26,7 @@ def command(
     trials: c.Trials = "suzaku",
     targets: c.Targets = None,
     fix: c.Fix = None,
+    with_effects: c.WithEffects = None,
     identifiable: c.Identifiable = False,
     channels: c.Channels = None,
     window: c.Window = None,
@@ -68,11 +69,12 @@ def command(
     from ..fitting import FitOptions, fit, prepare, write_run
 
     ship, data = c.load(profile, trials)
+    ship, added = c.with_effects(ship, c.split(with_effects))
     options = FitOptions(
         a_r=ar,
         seed=seed,
         method=method,
-        targets=c.split(targets),
+        targets=(*(c.split(targets) or (ship.targets if added else ())), *added),
         fixed=c.split(fix),
         channels=c.split(channels),
         window=c.window_of(window),

@@ -27,6 +27,7 @@ def command(
     ] = 0,
     targets: c.Targets = None,
     fix: c.Fix = None,
+    with_effects: c.WithEffects = None,
     channels: c.Channels = None,
     window: c.Window = None,
     objective: c.Objective = "paper",
@@ -55,11 +56,12 @@ def command(
     from ..fitting import FitOptions, fit_leaving_out
 
     ship, data = c.load(profile, trials)
+    ship, added = c.with_effects(ship, c.split(with_effects))
     options = FitOptions(
         a_r=ar,
         seed=seed,
         method="least-squares",
-        targets=c.split(targets),
+        targets=(*(c.split(targets) or (ship.targets if added else ())), *added),
         fixed=c.split(fix),
         channels=c.split(channels),
         window=c.window_of(window),

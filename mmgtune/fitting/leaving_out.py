@@ -18,6 +18,9 @@ from .least_squares import solve
 from .options import FitOptions
 from .run import Hooks, edge_ridge, in_pieces, make_problem, make_provenance, random_starts
 
+SETTLED = 1e-4
+"""Fall of J, as a share, that counts as none: scores of runs left out do not show it."""
+
 
 def leaving_out(trials: TrialSet, folds: int = 0) -> Iterator[tuple[tuple[str, ...], tuple[str, ...]]]:
     """Ids of the tune trials left out and of the others, in turn; windows of a run go together.
@@ -98,8 +101,8 @@ def fit_leaving_out(
 ) -> LeftOut:
     """Fit by least squares without each part of the runs in turn, and score the runs left out.
 
-    Every fit starts from the fit to all runs and from the pre-determined values; the fit to all runs takes the starts
-    of the options.  Raises OptionError for choices that make no sense.
+    Every fit starts from the fit to all runs; that one takes the starts of the options.
+    Raises OptionError for choices that make no sense.
     """
     began = time.perf_counter()
     options = replace(options, method="least-squares")
@@ -109,9 +112,11 @@ def fit_leaving_out(
     before = np.clip(box.to_unit(box.pre), 0.0, 1.0)
     hooks.on_phase("fitting all runs")
     ridge = edge_ridge(problem, options, before)
-    ends = solve(problem, random_starts(problem, options, before, ()), ridge=ridge, anchor=before, stop=hooks.stop)
+    first = random_starts(problem, options, before, ())
+    tolerance = SETTLED * float(problem.costs(before[:, None])[0])
+    ends = solve(problem, first, ridge=ridge, anchor=before, stop=hooks.stop, tolerance=tolerance)
     best = min(ends, key=lambda end: end.J)
-    starts = np.column_stack([best.unit, before])
+    starts = best.unit[:, None]
     chosen = [trials.trials[name] for name in trials.tune]
     sigma = spread(chosen)
     integrator = options.make_integrator()
@@ -123,7 +128,8 @@ def fit_leaving_out(
         runs = tuple(dict.fromkeys(trials.trials[name].run for name in out))
         hooks.on_phase(f"leaving out {', '.join(runs)}")
         part = make_problem(profile, trials, options, others)
-        fitted = min(solve(part, starts, ridge=ridge, anchor=before, stop=hooks.stop), key=lambda end: end.J)
+        ends = solve(part, starts, ridge=ridge, anchor=before, stop=hooks.stop, tolerance=SETTLED * best.J)
+        fitted = min(ends, key=lambda end: end.J + ridge * float(np.sum((end.unit - before) ** 2)))
         thetas.append(dict(zip(box.names, box.from_unit(fitted.unit).tolist(), strict=True)))
         parts.append(runs)
         theta = part.theta(fitted.unit[:, None])

@@ -100,6 +100,29 @@ def test_left_out_runs_are_scored_by_coefficients_that_never_saw_them(suzaku, no
         assert alone["hull.R_0"] == pytest.approx(theta["hull.R_0"], rel=1e-4)
 
 
+def test_effects_are_put_in_to_be_tuned(tmp_path, clean):
+    (tmp_path / "log").mkdir()
+    for name in clean.tune:
+        write_trial(clean.trials[name], tmp_path / "log" / f"{name}.parquet")
+    fitted = run(
+        "fit", "-t", "log", "--with-effects", "current,rudder-offset", "--method", "least-squares", "--starts", "1",
+        "--no-report", "--quiet", "--json", "--out", "out", cwd=tmp_path,
+    )  # fmt: skip
+    assert fitted.code == 0, fitted.err
+    theta = fitted.json()["theta"]
+    assert len(theta) == 15
+    assert abs(theta["effects.current.north"]) < 1e-3
+    assert "[effects.current]" in (tmp_path / "out" / "profile.toml").read_text()
+    assert run("profile", "validate", "out/profile.toml", cwd=tmp_path).code == 0
+
+
+@pytest.mark.parametrize(("tag", "said"), [("curent", "current"), ("steering-lag", "infinity")])
+def test_effects_that_cannot_be_put_in(tag, said, tmp_path):
+    ended = run("fit", "--with-effects", tag, "--dry-run", cwd=tmp_path)
+    assert ended.code == 2
+    assert said in ended.err
+
+
 def test_the_leave_out_command(tmp_path, clean):
     (tmp_path / "log").mkdir()
     for name in clean.tune:
