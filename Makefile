@@ -40,6 +40,7 @@ check: ## lint, types, arch and test
 
 hidden: $(RUNTIME) ## the full study of hidden effects, some hours; goes on where it was stopped
 	$(BIN)/python -m tests.hidden.study
+	$(BIN)/python -m tests.hidden.table
 
 bench: $(RUNTIME) ## time the simulation and the fit
 	$(BIN)/python tools/bench.py

@@ -1,8 +1,8 @@
 """The study of hidden effects: every case drawn, sailed, diagnosed from its files alone, and scored.
 
-    python -m tests.hidden.study [--out runs/hidden] [--jobs 2] [--only TEXT] [--minutes 200]
+    python -m tests.hidden.study [--out docs/hidden.jsonl] [--jobs 2] [--only TEXT] [--minutes 200]
 
-One line of JSON per case goes to results.jsonl as it is done; a run that was stopped goes on with what is missing.
+One line of JSON per case goes to the file as it is done; a run that was stopped goes on with what is missing.
 """
 
 from __future__ import annotations
@@ -173,13 +173,13 @@ def on_one_core(count: Synchronized[int]) -> None:
 def main() -> None:
     """Do what is missing."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=Path("runs/hidden"))
+    parser.add_argument("--out", type=Path, default=Path("docs/hidden.jsonl"))
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--only", default="", help="only cases whose name holds this")
     parser.add_argument("--minutes", type=float, default=math.inf, help="begin no case after this long")
     options = parser.parse_args()
-    options.out.mkdir(parents=True, exist_ok=True)
-    path = options.out / "results.jsonl"
+    path: Path = options.out
+    path.parent.mkdir(parents=True, exist_ok=True)
     done = {json.loads(line)["case"] for line in path.read_text().splitlines()} if path.exists() else set()
     left = [(kind, case) for kind, case in cases() if case.name not in done and options.only in case.name]
     print(f"{len(done)} done, {len(left)} to do", flush=True)
