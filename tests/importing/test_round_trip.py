@@ -192,6 +192,17 @@ def test_resampling_coarser_averages_and_finer_interpolates(tmp_path):
     assert np.diff(fine.t) == pytest.approx(0.5)
 
 
+def test_thinning_keeps_the_first_position(tmp_path):
+    """Beside the first sample there are only later ones: their mean lies ahead of it."""
+    trial = turn()
+    log = write_csv(tmp_path / "log.csv", logged(trial))
+    for step in (5.0, 8.0):
+        back = imported(log, step=step)
+        assert abs(back.x[0] - trial.x[0]) < 0.05
+        end = float(np.interp(back.t[-1], trial.t, trial.x))
+        assert abs(back.x[-1] - end) < 0.3
+
+
 def test_cut_to_the_manoeuvre(tmp_path):
     trial = suzaku()
     log = write_csv(tmp_path / "log.csv", logged(trial))
