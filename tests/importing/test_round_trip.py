@@ -272,6 +272,6 @@ def test_headers_with_units_need_no_units_in_the_map(tmp_path):
 
 
 def test_presets_read(tmp_path):
-    for name in ("frt-ds-esso", "nmea-0183"):
+    for name in ("frt-ds-esso", "nmea-0183", "simman-hsva", "simman-marin"):
         assert load_map(name, preset=True).name == name
     assert parse_map(MAP).format is None
