@@ -3,10 +3,11 @@
 mapping         the map of a log; reading_map: from TOML; quantities: what there is; headers: names and units in logs
 table           columns of a log; text, parquet_log: reading them; clock: time put right
 record          quantities in the program's units, each with its own time; nmea: reading sentences
-digits          made up for where too few are printed; cleaning: spikes
+digits          made up for where too few are printed; yaw: the heading from its rate; cleaning: spikes
 geodesy         latitude and longitude to metres; gridding: one uniform time
 motion          midship, ship axes, and velocities that were not measured
 conventions     signs and axes a map does not state
+cutting         what is kept of a record, and a pull-out as a trial of its own
 quality         what the result is worth
 importer        all of it
 """

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..trial.motion_checks import spikes
 from .quantities import CONTROLS
-from .record import Record, Series
+from .record import Record
 
 
 def without_spikes(record: Record) -> Record:
@@ -27,5 +29,5 @@ def without_spikes(record: Record) -> Record:
             values[rows] = np.nan
             if len(rows):
                 counts[name] = counts.get(name, 0) + len(rows)
-        series[name] = Series(one.t, values)
+        series[name] = replace(one, values=values)
     return Record(record.path, series, counts, record.notes)

@@ -108,6 +108,12 @@ def resampled(one: Series, t: FloatArray, step: float, gap: float, keep_spikes: 
         # A mean belongs to the mean time of its samples.
         times, values = moment[there] / number[there], total[there] / number[there]
     out = np.interp(t, times, values)
+    if keep_spikes and step > 1.5 * own and len(times) > 1:
+        # Only half a step of samples lies beside the first and the last time: their mean belongs further inside.
+        for end, inner, outside in ((0, 1, t < times[0]), (-1, -2, t > times[-1])):
+            if abs(times[inner] - times[end]) < 1.6 * step:
+                slope = (values[inner] - values[end]) / (times[inner] - times[end])
+                out[outside] += slope * (t[outside] - times[end])
     right = np.clip(np.searchsorted(times, t - 1e-6 * step), 0, len(times) - 1)
     left = np.clip(right - 1, 0, None)
     on_sample = np.abs(times[right] - t) < 0.01 * step

@@ -13,9 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import LogError, OutputError, Problem, TrialError
+from ..errors import LogError, OutputError, Problem
 from ..files import exists, write_text
-from ..manoeuvres.track import Track, find_execute
 from ..trial import Trial, write_trial
 from ..trial.model import FloatArray
 from ..trial.schema import ATTRIBUTES, COLUMNS, DIRECTIONS, REQUIRED
@@ -23,6 +22,7 @@ from ..trial.unusable import unusable
 from . import conventions, motion
 from .cleaning import without_spikes
 from .clock import put_right
+from .cutting import kept, pull_out
 from .geodesy import not_mirrored, with_local_positions
 from .gridding import FEWEST, Grid, on_grid, stretches
 from .mapping import LogMap
@@ -32,8 +32,27 @@ from .quality import quality_of, quality_text, same_units_throughout
 from .record import Record, record_of, time_in_seconds
 from .table import Table
 from .text import binary, read_text, start_of
+from .yaw import heading_recovered
 
 REPORT = "import-report.json"
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """What becomes one trial.
+
+    columns  of the trial format, (n_samples,)
+    began    time of the first sample on the log's clock [s]
+    notes    what was done, in sentences
+    follows  "pull-out" where it is what follows the piece before it; else ""
+    """
+
+    columns: dict[str, FloatArray]
+    record: Record
+    grid: Grid
+    began: float
+    notes: list[str]
+    follows: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,13 +104,15 @@ def import_logs(
     out = Path(out)
     if not dry_run and not overwrite:
         # Known before the work is done; parts of a log that is cut are found out later.
-        _refuse_existing([out / REPORT, *(out / f"{_name(log_map.id, Path(log))}.parquet" for log in logs)])
+        _refuse_existing(
+            [out / REPORT, *(out / f"{_name(log_map.of(Path(log)).id, Path(log))}.parquet" for log in logs)]
+        )
     trials: list[Trial] = []
     quality: list[dict[str, Any]] = []
     problems: list[Problem] = []
     for log in dict.fromkeys(Path(one) for one in logs):
         try:
-            made = _trials(log, log_map, step)
+            made = _trials(log, log_map.of(log), step)
         except LogError as error:
             problems += error.problems
             continue
@@ -144,13 +165,17 @@ def _trials(log: Path, log_map: LogMap, step: float | None) -> list[tuple[Trial,
             short += 1
     name = _name(log_map.id, log)
     found = []
-    for number, (columns, record, grid, began, notes) in enumerate(made, start=1):
-        id = name if len(made) == 1 else f"{name}_{number}"
-        if len(made) > 1:
-            notes = [f"part {number} of {len(made)} of the log", *notes]
+    count = sum(not piece.follows for piece in made)
+    number = 0
+    for piece in made:
+        number += not piece.follows
+        id = name if count == 1 else f"{name}_{number}"
+        notes = list(piece.notes)
+        if count > 1:
+            notes = [f"part {number} of {count} of the log", *notes]
         if short:
             notes = [*notes, f"{short} parts with fewer than {FEWEST} rows were left out"]
-        found.append(_trial(id, columns, record, grid, began, notes, log_map))
+        found.append(_trial(f"{id}_{piece.follows}" if piece.follows else id, piece, notes, log_map))
     return found
 
 
@@ -200,12 +225,10 @@ def _drop_duplicates(table: Table) -> None:
     table.columns = {name: values[kept] for name, values in table.columns.items()}
 
 
-def _of_record(
-    record: Record, log_map: LogMap, step: float | None
-) -> list[tuple[dict[str, FloatArray], Record, Grid, float, list[str]]]:
-    """Columns of each trial in a record, in the trial format; where they begin; what was done."""
+def _of_record(record: Record, log_map: LogMap, step: float | None) -> list[Piece]:
+    """What each trial in a record is made of, in the trial format.  Raises LogError where none is left."""
     where = str(record.path)
-    record = without_spikes(with_local_positions(record, log_map))
+    record = heading_recovered(without_spikes(with_local_positions(record, log_map)), log_map)
     grid = on_grid(record, log_map, step)
     columns = dict(grid.columns)
     measured = {name for name in record.series if name in ("u", "v", "r", "delta")}
@@ -229,14 +252,15 @@ def _of_record(
     for part in stretches(columns):
         cut = {name: values[part] for name, values in columns.items()}
         t = grid.t[part]
-        inside = _cut(t, cut, log_map, where)
+        inside, dropped = kept(t, cut, log_map, where)
         cut = {name: values[inside] for name, values in cut.items()}
         # What a cut begins with must be complete as well.
         rest = stretches(cut, 1)
         if rest and len(t[inside][rest[0]]) >= FEWEST:
             begun = t[inside][rest[0]]
             cut = {name: values[rest[0]] for name, values in cut.items()}
-            found.append(({"t": begun - begun[0], **cut}, record, grid, float(begun[0]), notes))
+            piece = Piece({"t": begun, **cut}, record, grid, float(begun[0]), [*notes, *dropped])
+            found += _split(piece) if log_map.cut.split else [piece]
     if not found:
         missing = [name for name in REQUIRED if name != "t" and not np.isfinite(columns[name]).any()]
         why = (
@@ -255,42 +279,32 @@ def _of_record(
     return found
 
 
-def _cut(t: FloatArray, columns: dict[str, FloatArray], log_map: LogMap, where: str) -> slice:
-    """The part of a stretch that a map keeps.  Raises LogError where nothing is left, or no rudder order is found."""
-    cut = log_map.cut
-    since = t - t[0]
-    first = 0.0
-    if cut.begin:
-        filled = {name: _filled(t, columns[name]) for name in ("x", "y", "psi", "u", "v", "delta")}
-        try:
-            execute = find_execute(Track(t=t, v_m=filled.pop("v"), **filled))
-        except TrialError as error:
-            why = "; ".join(problem.what for problem in error.problems)
-            fix = "give [cut] start and end instead"
-            raise LogError(Problem("the record cannot be cut at the first rudder order", where, why, fix)) from error
-        first = max(0.0, float(since[execute.index]) - cut.lead)
-    if cut.start is not None:
-        first = max(first, cut.start)
-    last = cut.end if cut.end is not None else float(since[-1])
-    low, high = np.searchsorted(since, [first - 1e-9, last + 1e-9])
-    return slice(int(low), int(high))
+def _split(piece: Piece) -> list[Piece]:
+    """A turning circle and its pull-out, where it has one."""
+    first = pull_out(piece.columns["t"], piece.columns)
+    if first is None:
+        return [piece]
+    at = float(piece.columns["t"][first])
+    # The last sample of one is the first of the other, as each needs its own state to start from.
+    parts = (("", slice(0, first + 1), f"its pull-out, from {at:.6g} s of the log, is a trial of its own"),
+             ("pull-out", slice(first, None), "the pull-out after a turning circle, a trial of its own"))  # fmt: skip
+    return [
+        Piece(
+            {name: values[part] for name, values in piece.columns.items()},
+            piece.record,
+            piece.grid,
+            float(piece.columns["t"][part][0]),
+            [*piece.notes, said],
+            follows,
+        )
+        for follows, part, said in parts
+    ]
 
 
-def _filled(t: FloatArray, values: FloatArray) -> FloatArray:
-    known = np.isfinite(values)
-    return np.interp(t, t[known], values[known])
-
-
-def _trial(
-    id: str,
-    columns: dict[str, FloatArray],
-    record: Record,
-    grid: Grid,
-    began: float,
-    notes: list[str],
-    log_map: LogMap,
-) -> tuple[Trial, dict[str, Any]]:
+def _trial(id: str, piece: Piece, notes: list[str], log_map: LogMap) -> tuple[Trial, dict[str, Any]]:
     """A trial and its quality.  Raises LogError where it could not be used."""
+    record = piece.record
+    columns = {**piece.columns, "t": piece.columns["t"] - piece.began}
     # Whoever reads the trial elsewhere has no use for a folder of this machine.
     notes = [note.replace(str(record.path), record.path.name) for note in notes]
     problems = unusable(columns, str(record.path))
@@ -304,11 +318,11 @@ def _trial(
     trial = Trial(
         id=id,
         ship=log_map.ship,
-        manoeuvre=log_map.manoeuvre.replace("{parent}", record.path.resolve().parent.name),
+        manoeuvre=piece.follows or log_map.manoeuvre.replace("{parent}", record.path.resolve().parent.name),
         source=log_map.source,
         **required,
         extra={name: values for name, values in kept.items() if name in COLUMNS},
         noise=log_map.noise,
         note="; ".join([*([log_map.note] if log_map.note else []), f"imported with the map {log_map.name}", *notes]),
     )
-    return trial, quality_of(trial, record, grid, began, notes)
+    return trial, quality_of(trial, record, piece.grid, piece.began, notes, log_map)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
 from pathlib import Path
 
 FORMATS = ("csv", "parquet", "nmea")
@@ -21,7 +22,8 @@ class Source:
     direction  "from" or "to", of wind and waves; None for other quantities
     scale      factor on the log's numbers, before the unit
     offset     added after unit and sign, in the program's unit
-    recover    "print-resolution": smoothed within the digits it is printed with; or None
+    recover    where few digits are printed. "print-resolution": smoothed within them; "yaw-rate": the integral of r,
+               its bias and lag fitted, in place of the heading; None: as it is printed
     line       line of the map, 0 where unknown
     """
 
@@ -61,15 +63,19 @@ class TimeSource:
 class Cut:
     """The part of the record to keep: seconds from its start, and what to begin with.
 
-    start, end  [s], None for the record's own
+    start, end  [s], None for the record's own; an end below 0 counts back from the record's
     begin       "first-rudder-order", or None
     lead        seconds kept before that order
+    to          "last-order": without the tail in which propeller and rudder both stand at zero; or None
+    split       "pull-out": what follows a turn's rudder order becomes a trial of its own; or None
     """
 
     start: float | None = None
     end: float | None = None
     begin: str | None = None
     lead: float = 0.0
+    to: str | None = None
+    split: str | None = None
 
 
 @dataclass(frozen=True)
@@ -77,8 +83,12 @@ class LogMap:
     """Everything needed to read a kind of log; lengths in m, times in s.
 
     name        file or preset it was read from
+    some        maps of logs that differ, by the pattern of their names
+    fields      how many a row of a log has, None where the map does not say
     axes        "ship" or "earth": of u and v; None where the map does not say
-    point       "midship" or "antenna": what u and v, or speed and course over ground, are of; None if not said
+    point       "midship", "antenna" or "stated": what u and v, or sog and cog, are of; None where the map does not say
+    stated      (2,) that point from midship, forward and to starboard; None unless ``point`` is "stated"
+    shifted     "earth-axes" where velocities were moved to midship already, but along earth axes; else None
     antenna     (2,) position of the antenna from midship, forward and to starboard; None where positions are of midship
     projection  of latitude and longitude; origin: (2,) its centre, latitude and longitude [deg], None: the first fix
     step        time step of the trials, None: the log's own median; gap: steps beyond which a hole is not bridged
@@ -92,11 +102,14 @@ class LogMap:
     decimal: str = "."
     skip: int = 0
     header: bool = True
+    fields: int | None = None
     missing: tuple[str, ...] = ()
     time: TimeSource = field(default_factory=TimeSource)
     sources: dict[str, Source] = field(default_factory=dict)
     axes: str | None = None
     point: str | None = None
+    stated: tuple[float, float] | None = None
+    shifted: str | None = None
     antenna: tuple[float, float] | None = None
     projection: str = "transverse-mercator"
     origin: tuple[float, float] | None = None
@@ -108,7 +121,16 @@ class LogMap:
     manoeuvre: str = ""
     source: str = "measured"
     note: str = ""
+    some: tuple[tuple[str, LogMap], ...] = ()
     noise: dict[str, float] = field(default_factory=dict)
+
+    def of(self, log: Path) -> LogMap:
+        """The map of one log: the first in ``some`` whose pattern its name matches, else this one."""
+        return next((one for pattern, one in self.some if fnmatchcase(log.name, pattern)), self)
+
+    def lever(self, point: str | None) -> tuple[float, float] | None:
+        """Position (2,) of a point from midship, forward and to starboard [m]; None where it is midship."""
+        return {"antenna": self.antenna, "stated": self.stated}.get(point or "")
 
     def place(self, quantity: str) -> str:
         """Where the map speaks of a quantity, for messages."""

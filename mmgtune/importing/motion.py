@@ -56,14 +56,29 @@ def in_ship_axes(north: FloatArray, east: FloatArray, psi: FloatArray) -> tuple[
     return north * np.cos(psi) + east * np.sin(psi), east * np.cos(psi) - north * np.sin(psi)
 
 
+def over_earth(u: FloatArray, v: FloatArray, psi: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Velocity north and east from that ahead and to starboard, (n_samples,) [m/s]."""
+    return u * np.cos(psi) - v * np.sin(psi), u * np.sin(psi) + v * np.cos(psi)
+
+
 def moved(columns: dict[str, FloatArray], log_map: LogMap, point: str) -> list[str]:
-    """Move velocities u and v [m/s] from the antenna to midship, in place, where they are of the antenna."""
-    if log_map.antenna is None or point != "antenna":
+    """Move velocities u and v [m/s] from the point they are of to midship, in place; what was done, in sentences.
+
+    Where they were moved already, but with the lever's velocity taken off along earth axes, that is put back first.
+    """
+    lever = log_map.lever(point)
+    if lever is None:
         return []
-    ahead, abeam = log_map.antenna
+    ahead, abeam = lever
+    said = []
+    if log_map.shifted:
+        back = in_ship_axes(-abeam * columns["r"], ahead * columns["r"], columns["psi"])
+        columns["u"], columns["v"] = columns["u"] + back[0], columns["v"] + back[1]
+        said.append("velocities had been moved to midship along earth axes instead of the ship's: that was undone")
     columns["u"] = columns["u"] + abeam * columns["r"]
     columns["v"] = columns["v"] - ahead * columns["r"]
-    return ["velocities moved from the antenna to midship"]
+    where = "the antenna" if point == "antenna" else f"{ahead:g} m forward and {abeam:g} m to starboard of it"
+    return [*said, f"velocities moved to midship from {where}"]
 
 
 def with_velocities(t: FloatArray, columns: dict[str, FloatArray]) -> list[str]:

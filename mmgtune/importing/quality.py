@@ -7,6 +7,7 @@ import math
 from typing import Any
 
 import numpy as np
+from scipy.integrate import cumulative_trapezoid
 
 from ..errors import LogError, Problem
 from ..trial import Trial, check_trial
@@ -15,6 +16,8 @@ from ..trial.kinematics import DEG, IN_EARTH_AXES, position_misfits, turning
 from ..trial.model import FloatArray
 from .conventions import rudder_evidence
 from .gridding import Grid
+from .mapping import LogMap
+from .motion import over_earth
 from .quantities import MEASURED
 from .record import Record
 
@@ -22,7 +25,9 @@ WINDOWS = 16
 """Parts of a record in which units are compared."""
 
 
-def quality_of(trial: Trial, record: Record, grid: Grid, began: float, notes: list[str]) -> dict[str, Any]:
+def quality_of(
+    trial: Trial, record: Record, grid: Grid, began: float, notes: list[str], log_map: LogMap
+) -> dict[str, Any]:
     """The quality of one trial, for people and as JSON; numbers that do not exist are None.
 
     began  time of the trial's first sample on the log's clock [s]
@@ -54,7 +59,11 @@ def quality_of(trial: Trial, record: Record, grid: Grid, began: float, notes: li
             "ratio": turned.ratio if np.std(turned.yaw) > 0.0 else None,
             "correlation": turned.correlation,
         },
-        "positions": {"ship_axes": _or_none(misfits.get("")), "earth_axes": _or_none(misfits.get(IN_EARTH_AXES))},
+        "positions": {
+            "ship_axes": _or_none(misfits.get("")),
+            "earth_axes": _or_none(misfits.get(IN_EARTH_AXES)),
+            **_residuals(trial, record, began, log_map),
+        },
         "rudder": {
             "agreement": evidence.agreement,
             "gain_standard_errors": evidence.gain,
@@ -115,6 +124,12 @@ def quality_text(quality: dict[str, Any]) -> str:
             f"  positions missed by u, v, psi by {100 * positions['ship_axes']:.2g} % of the distance; "
             f"read in earth axes by {100 * positions['earth_axes']:.2g} %"
         )
+    if positions["residual_x_m"] is not None:
+        said = f"  residual  integrated velocities leave x by {positions['residual_x_m']:.3g} m rms, y by "
+        said += f"{positions['residual_y_m']:.3g} m"
+        if positions["rounding_x_m"] is not None:
+            said += f"; rounding alone {positions['rounding_x_m']:.3g} and {positions['rounding_y_m']:.3g} m"
+        lines.append(said)
     lines.append(f"  rudder    turns the ship to its side: {rudder['side']}, agreement {rudder['agreement']:+.2f}")
     delta, n = q["controls"]["delta"], q["controls"]["n"]
     lines.append(
@@ -162,6 +177,33 @@ def same_units_throughout(t: FloatArray, columns: dict[str, FloatArray], where: 
                 why = f"they agree at {right[0]:.6g} s and differ by a factor of {other:.4g} at {wrong[0]:.6g} s"
                 fix = "write the log in one unit, or cut it with [cut] where the unit changes"
                 raise LogError(Problem(what, where, why, fix))
+
+
+def _residuals(trial: Trial, record: Record, began: float, log_map: LogMap) -> dict[str, float | None]:
+    """Rms distance of integrated velocities from the positions as printed, less its mean, and that of rounding [m].
+
+    Where positions are moved from an antenna, from those of the trial, and without that of rounding.
+    """
+    psi, u, v = trial.psi, trial.u, trial.v_m
+    known = np.isfinite(psi) & np.isfinite(u) & np.isfinite(v)
+    names = ("residual_x_m", "residual_y_m", "rounding_x_m", "rounding_y_m")
+    found: dict[str, float | None] = dict.fromkeys(names)
+    # An integral goes on over single spikes, not over holes.
+    if known.mean() < 0.99:
+        return found
+    psi, u, v = (np.interp(trial.t, trial.t[known], values[known]) for values in (psi, u, v))
+    ways = over_earth(u, v, psi)
+    for name, way in zip(("x", "y"), ways, strict=True):
+        run = cumulative_trapezoid(way, trial.t, initial=0.0)
+        series = record.series[name]
+        if series.printed is None or series.coarse is None or log_map.antenna is not None:
+            miss = trial.columns[name] - run
+        else:
+            inside = (series.t >= began - 1e-9) & (series.t <= began + trial.t[-1] + 1e-9) & np.isfinite(series.printed)
+            miss = series.printed[inside] - np.interp(series.t[inside] - began, trial.t, run)
+            found[f"rounding_{name}_m"] = _or_none(float(np.sqrt(np.mean(series.coarse[inside] ** 2) / 12.0)))
+        found[f"residual_{name}_m"] = _or_none(float(np.nanstd(miss)))
+    return found
 
 
 def _gaps(t: FloatArray, values: FloatArray, name: str) -> list[dict[str, Any]]:

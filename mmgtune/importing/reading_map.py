@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -31,16 +32,18 @@ TABLES = {
         "resample",
         "cut",
     ),
-    "log": ("format", "delimiter", "encoding", "decimal", "skip", "header", "missing"),
+    "log": ("format", "delimiter", "encoding", "decimal", "skip", "header", "fields", "missing"),
     "trial": ("ship", "id", "manoeuvre", "source", "note", "noise"),
     "time": ("column", "format", "unit", "scale", "recover", "step"),
-    "velocity": ("axes", "point"),
+    "velocity": ("axes", "point", "shifted"),
     "antenna": ("x", "y"),
     "position": ("projection", "origin"),
     "resample": ("step", "gap"),
-    "cut": ("start", "end", "from", "lead"),
+    "cut": ("start", "end", "from", "lead", "to", "split"),
 }
 COLUMN_KEYS = ("column", "value", "unit", "positive", "zero", "direction", "scale", "offset", "recover")
+RECOVER = {"x": ("print-resolution",), "y": ("print-resolution",), "psi": ("yaw-rate",)}
+"""What a map may have made up for where few digits are printed."""
 CONSTANT = (*CONTROLS, "delta_port", "delta_stbd", "n_bow", "n_stern", *[
     name for name in QUANTITIES if name.startswith(("wind", "wave", "depth"))
 ])  # fmt: skip
@@ -74,11 +77,60 @@ def parse_map(text: str, path: Path = Path("map")) -> LogMap:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise LogError(Problem("the map is not valid TOML", str(path), str(error), "correct the line named")) from error
+    some = data.pop("logs", [])
     reader = _Reader(data, text, path)
     made = reader.read()
+    if not isinstance(some, list) or not all(isinstance(one, dict) for one in some):
+        reader.problem("'logs' is not a list of tables", "logs", fix='write [[logs]] with name = "*_turn_*"')
+        some = []
+    parts = []
+    for number, table in enumerate(some, start=1):
+        part = _part(data, table, number, text, path, reader.problems)
+        if part is not None:
+            parts.append(part)
     if reader.problems:
         raise LogError(*reader.problems)
-    return made
+    return replace(made, some=tuple(parts))
+
+
+def _part(
+    data: dict[str, Any], table: dict[str, Any], number: int, text: str, path: Path, problems: list[Problem]
+) -> tuple[str, LogMap] | None:
+    """Pattern and map of the logs that one table of [[logs]] is for; what is wrong goes into ``problems``."""
+    where = f"{path}, [[logs]] {number}"
+    pattern = table.get("name")
+    if not isinstance(pattern, str) or not pattern:
+        fix = 'write name = "*_turn_*": * stands for any characters, ? for one'
+        problems.append(Problem("'logs.name', a pattern of names of logs, is missing", where, fix=fix))
+        return None
+    own = {key: value for key, value in table.items() if key != "name"}
+    known = tuple(name for name in TABLES if name)
+    for key in [key for key, value in own.items() if key not in known or not isinstance(value, dict)]:
+        what = f"'logs.{key}' is not a table" if key in known else f"unknown key 'logs.{key}'"
+        problems.append(Problem(what, where, fix=closest(key, ("name", *known))))
+        del own[key]
+    if not own:
+        problems.append(Problem("the entry changes nothing", where, fix="say what is different, or remove it"))
+        return None
+    # Lines are known of what all logs share; what is wrong only here is in this entry.
+    reader = _Reader(_merged(data, own), text, path)
+    made = reader.read()
+    shared = {(problem.what, problem.why) for problem in problems}
+    problems += [
+        Problem(problem.what, where, problem.why, problem.fix)
+        for problem in reader.problems
+        if (problem.what, problem.why) not in shared
+    ]
+    return pattern, made
+
+
+def _merged(data: dict[str, Any], own: dict[str, Any]) -> dict[str, Any]:
+    """Tables with some of their entries replaced, key by key."""
+    out = dict(data)
+    for key, value in own.items():
+        before = out.get(key)
+        out[key] = _merged(before, value) if isinstance(value, dict) and isinstance(before, dict) else value
+    return out
 
 
 class _Reader:
@@ -106,6 +158,7 @@ class _Reader:
         position = self.table("position")
         form = self.choice("log", log, "format", FORMATS)
         sources = self.sources()
+        point, stated = self.point()
         made = LogMap(
             name=self.path.stem,
             path=self.path,
@@ -115,11 +168,14 @@ class _Reader:
             decimal=self.choice("log", log, "decimal", (".", ",")) or ".",
             skip=self.count(log, "skip"),
             header=self.flag(log, "header"),
+            fields=self.count(log, "fields") or None,
             missing=self.texts(log, "missing"),
             time=self.time(),
             sources=sources,
             axes=self.choice("velocity", self.table("velocity"), "axes", ("ship", "earth")),
-            point=self.choice("velocity", self.table("velocity"), "point", ("midship", "antenna")),
+            point=point,
+            stated=stated,
+            shifted=self.choice("velocity", self.table("velocity"), "shifted", ("earth-axes",)),
             antenna=self.antenna(),
             projection=self.choice("position", position, "projection", PROJECTIONS) or PROJECTIONS[0],
             origin=self.origin(position),
@@ -179,7 +235,7 @@ class _Reader:
     def count(self, table: dict[str, Any], key: str) -> int:
         value = table.get(key, 0)
         if isinstance(value, bool) or not isinstance(value, int) or value < 0:
-            self.problem(f"'log.{key}' is {value!r}, not a number of lines", "log", key, fix=f"write {key} = 3")
+            self.problem(f"'log.{key}' is {value!r}, not a whole number", "log", key, fix=f"write {key} = 3")
             return 0
         return value
 
@@ -286,8 +342,9 @@ class _Reader:
             fix = "a constant is its value with a unit, in the trial format's conventions; nothing else"
             self.problem(f"'{where}' has a value and keys of a column", where, "value", fix=fix)
         offset = self.parsed(where, "offset", table["offset"], quantity.unit) if "offset" in table else 0.0
-        if "recover" in table and name not in ("x", "y"):
-            self.problem(f"'{where}.recover' is for positions x and y", where, "recover", fix="remove it")
+        if "recover" in table and name not in RECOVER:
+            what = f"'{where}.recover' is for positions x and y and for the heading"
+            self.problem(what, where, "recover", fix="remove it")
         direction = self.choice(where, table, "direction", ("from", "to")) if quantity.wind else None
         if quantity.wind and "direction" not in table and "value" not in table and "column" in table:
             self.problem(
@@ -305,17 +362,28 @@ class _Reader:
             direction=direction,
             scale=self.number(where, table, "scale", 1.0),
             offset=offset or 0.0,
-            recover=self.choice(where, table, "recover", ("print-resolution",)),
+            recover=self.choice(where, table, "recover", RECOVER[name]) if name in RECOVER else None,
             line=self.line(where),
         )
 
     def antenna(self) -> tuple[float, float] | None:
         if "antenna" not in self.data:
             return None
-        ends = [self.quantity("antenna", key, "m") for key in ("x", "y")]
+        return self.place("antenna", self.table("antenna"))
+
+    def point(self) -> tuple[str | None, tuple[float, float] | None]:
+        table = self.table("velocity")
+        if not isinstance(table.get("point"), dict):
+            return self.choice("velocity", table, "point", ("midship", "antenna")), None
+        self.unknown("velocity.point", table["point"], ("x", "y"))
+        return "stated", self.place("velocity.point", table["point"])
+
+    def place(self, name: str, table: dict[str, Any]) -> tuple[float, float] | None:
+        """A point of the ship from midship, forward and to starboard [m]."""
+        ends = [self.parsed(name, key, table[key], "m") if key in table else None for key in ("x", "y")]
         for key in ("x", "y"):
-            if key not in self.table("antenna"):
-                self.problem(f"'antenna.{key}' is missing", "antenna", fix='write x = "12 m" (forward), y = "0 m"')
+            if key not in table:
+                self.problem(f"'{name}.{key}' is missing", name, fix='write x = "12 m" (forward), y = "0 m"')
         return None if ends[0] is None or ends[1] is None else (ends[0], ends[1])
 
     def origin(self, table: dict[str, Any]) -> tuple[float, float] | None:
@@ -333,11 +401,21 @@ class _Reader:
         table = self.table("cut")
         begin = self.choice("cut", table, "from", ("first-rudder-order",))
         start, end = self.quantity("cut", "start", "s"), self.quantity("cut", "end", "s")
-        if start is not None and end is not None and start >= end:
+        if end == 0.0:
+            fix = 'write end = "600 s", or end = "-20 s" to drop the last 20 s'
+            self.problem("'cut.end' is 0", "cut", "end", "nothing would be left", fix)
+        if start is not None and end is not None and start >= end > 0.0:
             self.problem("'cut.start' is not before 'cut.end'", "cut", "start")
         if "lead" in table and begin is None:
             self.problem("'cut.lead' is given without 'cut.from'", "cut", "lead", fix='add from = "first-rudder-order"')
-        return Cut(start, end, begin, self.quantity("cut", "lead", "s") or 0.0)
+        return Cut(
+            start=start,
+            end=end,
+            begin=begin,
+            lead=self.quantity("cut", "lead", "s") or 0.0,
+            to=self.choice("cut", table, "to", ("last-order",)),
+            split=self.choice("cut", table, "split", ("pull-out",)),
+        )
 
     def noise(self, trial: dict[str, Any]) -> dict[str, float]:
         noise = trial.get("noise", {})
@@ -364,11 +442,25 @@ class _Reader:
             if source.value is not None and name not in CONSTANT:
                 what = f"'{name}', {MEANING[name]}, is given as a constant"
                 self.problem(what, f"columns.{name}", "value", "it is what a trial measures", "name its column")
+        if made.shifted and made.point not in ("antenna", "stated"):
+            self.problem(
+                "'velocity.shifted' says that velocities were moved, but not from where",
+                "velocity",
+                "shifted",
+                fix='say point = { x = "3 m", y = "0 m" }, where they were measured, seen from midship',
+            )
+        if made.shifted and made.axes is None and made.format != "nmea" and "sog" not in sources:
+            fix = 'say [velocity] axes = "earth" or axes = "ship"'
+            self.problem("are the shifted velocities in ship axes or in earth axes?", "velocity", "shifted", fix=fix)
         if made.format == "nmea":
             self.sentences(made)
             return
+        if self.table("log").get("fields") == 0:
+            self.problem("'log.fields' is 0", "log", "fields", fix="write how many fields a row has")
+        if made.fields and made.header:
+            self.problem("'log.fields' is for logs without a header", "log", "fields", "columns have names there")
         if made.format == "parquet":
-            self.meaningless("log", ("delimiter", "encoding", "decimal", "skip", "header"), "Parquet")
+            self.meaningless("log", ("delimiter", "encoding", "decimal", "skip", "header", "fields"), "Parquet")
         if made.time.column is None:
             self.problem("no column is named for time", "time", fix='write [time] with column = "..." and unit = "s"')
         for name, source in sources.items():
@@ -379,6 +471,14 @@ class _Reader:
             if name not in sources:
                 fix = f'write [columns.{name}] with column = "..." and unit, or value = "..." where it is constant'
                 self.problem(f"no column is named for '{name}', {MEANING[name]}", "columns", fix=fix)
+        rate = sources.get("r")
+        if "psi" in sources and sources["psi"].recover and (rate is None or rate.column is None or not rate.positive):
+            self.problem(
+                "the heading is to be recovered from the yaw rate, but the map does not say where that is and its sign",
+                "columns.psi",
+                "recover",
+                fix='write [columns.r] with column = "...", unit, and positive = "starboard" or "port"',
+            )
         if not ({"x", "y"} <= set(sources) or {"latitude", "longitude"} <= set(sources)):
             fix = "write [columns.x] and [columns.y], or [columns.latitude] and [columns.longitude]"
             self.problem("no columns are named for the position", "columns", fix=fix)
@@ -401,6 +501,8 @@ class _Reader:
             )
         if made.point == "antenna" and made.antenna is None:
             self.problem("velocities are of the antenna, but no [antenna] says where it is", "velocity", "point")
+        if made.point == "stated" and not {"u", "v"} & set(sources) and "sog" not in sources:
+            self.problem("'velocity.point' is given, but no velocities are", "velocity", "point", fix="remove it")
         for name, words, axes in (("u", ("north", "south"), "earth"), ("v", ("east", "west"), "earth")):
             positive = sources[name].positive if name in sources else None
             if positive in words and made.axes != axes:
@@ -416,7 +518,7 @@ class _Reader:
 
     def sentences(self, made: LogMap) -> None:
         """What a map of NMEA 0183 cannot say: sentences have columns, units, axes and times of their own."""
-        self.meaningless("log", ("delimiter", "encoding", "decimal", "skip", "header", "missing"), "NMEA 0183")
+        self.meaningless("log", TABLES["log"][1:], "NMEA 0183")
         self.meaningless("time", TABLES["time"], "NMEA 0183")
         self.meaningless("velocity", ("axes",), "NMEA 0183")
         for name, source in made.sources.items():

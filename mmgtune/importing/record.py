@@ -10,7 +10,7 @@ import numpy as np
 from .. import units
 from ..errors import LogError, Problem
 from ..trial.model import FloatArray
-from .digits import within_digits
+from .digits import print_step, within_digits
 from .headers import unit_in
 from .mapping import LogMap, Source
 from .quantities import AGAINST, MEANING, QUANTITIES
@@ -19,10 +19,18 @@ from .table import TIME, Table
 
 @dataclass(frozen=True, eq=False)
 class Series:
-    """Samples of one quantity: time [s], strictly increasing, and values in the program's unit, both (n_samples,)."""
+    """Samples of one quantity, all (n_samples,).
+
+    t        time [s], strictly increasing
+    values   in the program's unit
+    printed  values before digits were made up for, and coarse: the step they are printed in, both in the program's
+             unit; None where nothing is to be recovered
+    """
 
     t: FloatArray
     values: FloatArray
+    printed: FloatArray | None = None
+    coarse: FloatArray | None = None
 
     @property
     def step(self) -> float:
@@ -111,16 +119,26 @@ def record_of(table: Table, log_map: LogMap, t: FloatArray, rows: slice) -> Reco
             problems += error.problems
             continue
         printed = values[rows]
-        if source.recover:
-            # In the log's own unit: that is where the digits are.
-            printed, digits, coarsest = within_digits(t[rows], printed)
-            notes.append(
-                f"{name} is printed with {digits} significant digits, in steps of up to {coarsest:.3g} {unit}; "
-                "it was smoothed within half a step"
-                if digits
-                else f"{name} is printed with more than 6 digits: nothing to recover"
-            )
-        series[name] = Series(t[rows], converted(name, printed, source, unit))
+        if not source.recover:
+            series[name] = Series(t[rows], converted(name, printed, source, unit))
+            continue
+        # In the log's own unit: that is where the digits are.
+        if source.recover == "yaw-rate":
+            recovered, (steps, digits), how = printed, print_step(printed), ""
+        else:
+            recovered, digits, steps = within_digits(t[rows], printed)
+            how = "; it was smoothed within half a step"
+        if not digits:
+            notes.append(f"{name} is printed with more than 6 digits: nothing to recover")
+            series[name] = Series(t[rows], converted(name, printed, source, unit))
+            continue
+        coarsest = f"{np.nanmax(steps):.3g} {unit}"
+        notes.append(f"{name} is printed with {digits} significant digits, in steps of up to {coarsest}{how}")
+        factor = units.factors(QUANTITIES[name].unit)[unit] * abs(source.scale)
+        as_printed = converted(name, printed, source, unit)
+        series[name] = Series(
+            t[rows], converted(name, recovered, source, unit) if how else as_printed, as_printed, steps * factor
+        )
     if problems:
         raise LogError(*problems)
     return Record(table.path, series, notes=notes)

@@ -125,6 +125,10 @@ def look(path: Path, log_map: LogMap) -> Layout:
                 raise _too_wide(path, number, f"it has {len(fields)} fields, the header has {len(names)}")
         return Layout(names, at + 1, delimiter, f"{path}, line {at + 1}")
     width = max(len(_fields(line, delimiter)) for line in lines[at : at + 20])
+    if log_map.fields not in (None, width):
+        why = f"its rows have {width} fields, and the map is for rows of {log_map.fields}"
+        fix = "use the map or preset made for this log, or correct delimiter, skip and fields in [log]"
+        raise LogError(Problem("the log is of another kind than the map is for", f"{path}, line {at + 1}", why, fix))
     return Layout([f"column {k}" for k in range(1, width + 1)], at, delimiter, f"{path}, line {at + 1}")
 
 

@@ -49,12 +49,37 @@ def test_everything_wrong_at_once():
         ("[columns]", '[log]\nformat = "nmea"\n[columns]', "'columns.psi.column' has no meaning for NMEA 0183"),
         ("[columns]", '[log]\nformat = "nmea"\n[columns]', "no sentence holds 'u'"),
         ('y = { column = "east", unit = "m" }', "", "no columns are named for the position"),
+        ("[columns]", 'shifted = "earth-axes"\n[columns]', "but not from where"),
+        ("[columns]", 'shifted = "ship-axes"\n[columns]', "one of: 'earth-axes'"),
+        ('axes = "ship"', 'point = { x = "3 m", y = "0 m" }\nshifted = "earth-axes"', "ship axes or in earth axes?"),
+        ('axes = "ship"', 'axes = "ship"\npoint = { x = "3 m" }', "'velocity.point.y' is missing"),
+        ('axes = "ship"', 'axes = "ship"\npoint = { x = "3", y = "0 m" }', "'velocity.point.x'"),
+        ('axes = "ship"', 'axes = "ship"\npoint = { x = "3 m", y = "0 m", z = "1 m" }', "'velocity.point.z'"),
+        ('unit = "rpm"', 'unit = "rpm", recover = "yaw-rate"', "is for positions x and y and for the heading"),
+        ('"heading", unit = "deg"', '"heading", unit = "deg", recover = "print-resolution"', "one of: 'yaw-rate'"),
+        ("[columns]", '[cut]\nend = "0 s"\n[columns]', "nothing would be left"),
+        ("[columns]", "[log]\nheader = false\nfields = -1\n[columns]", "'log.fields' is -1"),
+        ("[columns]", "[log]\nheader = false\nfields = 0\n[columns]", "'log.fields' is 0"),
+        ("[columns]", "[log]\nfields = 9\n[columns]", "'log.fields' is for logs without a header"),
+        ("[columns]", '[cut]\nto = "last order"\n[columns]', "one of: 'last-order'"),
+        ("[columns]", '[cut]\nsplit = "pullout"\n[columns]', "one of: 'pull-out'"),
+        ("[columns]", '[logs]\nname = "a"\n[columns]', "'logs' is not a list"),
+        ("[columns]", '[[logs]]\ntrial = { ship = "a" }\n[columns]', "a pattern of names of logs, is missing"),
+        ("[columns]", '[[logs]]\nname = "a*"\n[columns]', "the entry changes nothing"),
+        ("[columns]", '[[logs]]\nname = "a*"\ntrail = { ship = "a" }\n[columns]', "did you mean 'trial'"),
+        ("[columns]", '[[logs]]\nname = "a*"\ncut = { end = "9" }\n[columns]', "[[logs]] 1"),
     ],
 )
 def test_mistakes(before, after, words):
     assert before in MAP
     answer = refusal(lambda: parse_map(MAP.replace(before, after, 1)))
     assert words in answer, answer
+
+
+def test_heading_from_a_rate_of_unknown_sign():
+    text = MAP.replace('"heading", unit = "deg"', '"heading", unit = "deg", recover = "yaw-rate"')
+    text = text.replace('unit = "deg/min", positive = "starboard"', 'unit = "deg/min"')
+    assert "does not say where that is and its sign" in refusal(lambda: parse_map(text))
 
 
 def test_absent_maps(tmp_path):

@@ -192,6 +192,17 @@ def test_resampling_coarser_averages_and_finer_interpolates(tmp_path):
     assert np.diff(fine.t) == pytest.approx(0.5)
 
 
+def test_thinning_keeps_the_first_position(tmp_path):
+    """Beside the first sample there are only later ones: their mean lies ahead of it."""
+    trial = turn()
+    log = write_csv(tmp_path / "log.csv", logged(trial))
+    for step in (5.0, 8.0):
+        back = imported(log, step=step)
+        assert abs(back.x[0] - trial.x[0]) < 0.05
+        end = float(np.interp(back.t[-1], trial.t, trial.x))
+        assert abs(back.x[-1] - end) < 0.3
+
+
 def test_cut_to_the_manoeuvre(tmp_path):
     trial = suzaku()
     log = write_csv(tmp_path / "log.csv", logged(trial))
@@ -261,6 +272,6 @@ def test_headers_with_units_need_no_units_in_the_map(tmp_path):
 
 
 def test_presets_read(tmp_path):
-    for name in ("frt-ds-esso", "nmea-0183"):
+    for name in ("frt-ds-esso", "nmea-0183", "simman-hsva", "simman-marin"):
         assert load_map(name, preset=True).name == name
     assert parse_map(MAP).format is None

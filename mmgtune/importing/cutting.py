@@ -1,0 +1,97 @@
+"""The part of a record a map keeps, and a pull-out as a trial of its own."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..errors import LogError, Problem, TrialError
+from ..manoeuvres import Track, find_execute, manoeuvre_kind
+from ..manoeuvres.track import noise_level
+from ..trial.model import FloatArray
+from ..units import DEG
+from .gridding import FEWEST
+from .mapping import LogMap
+from .quantities import MEASURED
+
+STANDING = 0.01
+"""Share of the largest revolutions up to which a propeller stands."""
+MIDSHIPS = 0.5 * DEG
+"""Rudder angle [rad] up to which a rudder is at zero."""
+
+
+def kept(t: FloatArray, columns: dict[str, FloatArray], log_map: LogMap, where: str) -> tuple[slice, list[str]]:
+    """The part of a stretch that a map keeps, and what was dropped, in sentences.
+
+    t        (n_samples,) [s]
+    columns  x, y, psi, u, v, n, delta, (n_samples,); n and delta without gaps
+
+    Raises LogError where the map asks for an order and the record has none.
+    """
+    cut = log_map.cut
+    since = t - t[0]
+    first, last = 0.0, float(since[-1])
+    said = []
+    if cut.to:
+        ordered = np.flatnonzero(~_standing(columns["n"], columns["delta"]))
+        if not len(ordered):
+            what = "the record cannot be cut after the last order: propeller and rudder stand at zero throughout"
+            raise LogError(Problem(what, where, fix="check the columns of n and delta, or leave out [cut] to"))
+        if last > since[ordered[-1]]:
+            idle = last - float(since[ordered[-1]])
+            said.append(f"the last {idle:.4g} s were dropped: propeller and rudder stand at zero there")
+        last = float(since[ordered[-1]])
+    if cut.begin:
+        try:
+            execute = find_execute(_track(t, columns))
+        except TrialError as error:
+            why = "; ".join(problem.what for problem in error.problems)
+            fix = "give [cut] start and end instead"
+            raise LogError(Problem("the record cannot be cut at the first rudder order", where, why, fix)) from error
+        first = max(0.0, float(since[execute.index]) - cut.lead)
+    if cut.start is not None:
+        first = max(first, cut.start)
+    if cut.end is not None:
+        last = min(last, cut.end if cut.end > 0.0 else float(since[-1]) + cut.end)
+        if cut.end < 0.0:
+            said.append(f"the last {-cut.end:g} s of the log were dropped, as the map says")
+    low, high = np.searchsorted(since, [first - 1e-9, last + 1e-9])
+    return slice(int(low), int(high)), said
+
+
+def pull_out(t: FloatArray, columns: dict[str, FloatArray]) -> int | None:
+    """First sample of the pull-out that follows a turning circle: the last one with the rudder over.
+
+    None where the record holds no turning circle, or the rudder is not brought back for the rest of it.
+
+    t        (n_samples,) [s]
+    columns  x, y, psi, u, v, r, delta, (n_samples,)
+    """
+    track = _track(t, columns)
+    if manoeuvre_kind(track) != "turning":
+        return None
+    order = find_execute(track)
+    size = np.abs(track.delta)
+    if len(size) - order.end < FEWEST or np.median(size[order.end + 1 :]) >= 0.25 * order.angle:
+        return None
+    # The order's last samples are within its tolerance, but on the way back already.
+    level = float(np.median(size[(order.start + 3 * order.end) // 4 : order.end + 1]))
+    still = size[order.start : order.end + 1] >= level - max(MIDSHIPS, 4.0 * noise_level(t, track.delta))
+    last = order.start + int(np.flatnonzero(still)[-1])
+    # A trial begins with a complete sample.
+    complete = np.flatnonzero(np.all([np.isfinite(columns[name][last:]) for name in MEASURED], axis=0))
+    first = last + int(complete[0]) if len(complete) else len(size)
+    return first if first >= FEWEST and len(size) - first >= FEWEST else None
+
+
+def _standing(n: FloatArray, delta: FloatArray) -> np.ndarray:
+    return np.asarray((np.abs(n) <= STANDING * np.abs(n).max()) & (np.abs(delta) <= MIDSHIPS))
+
+
+def _track(t: FloatArray, columns: dict[str, FloatArray]) -> Track:
+    filled = {name: _filled(t, columns[name]) for name in ("x", "y", "psi", "u", "v", "delta")}
+    return Track(t=t, v_m=filled.pop("v"), **filled)
+
+
+def _filled(t: FloatArray, values: FloatArray) -> FloatArray:
+    known = np.isfinite(values)
+    return np.interp(t, t[known], values[known])
