@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -23,6 +24,9 @@ FloatArray = npt.NDArray[np.float64]
 
 SCHEMA = 1
 VERDICTS = ("none", "found", "not-separable", "unexplained")
+
+LARGE = 10.0
+"""Variance beyond noise from which it is told as a multiple of the noise."""
 
 MOSTLY = 0.95
 """Share of the error above noise on the trials it was found on that a cause must remove to be named alone, where
@@ -180,10 +184,13 @@ class Diagnosis:
                 if self.causes
                 else ("no known cause accounts for it")
             )
-            return (
-                f"Something is wrong that this program does not know: {self.leftover.excess:.0%} beyond the noise of "
-                f"the sensors is left, and {told}."
+            excess = self.leftover.excess
+            left = (
+                f"{excess:.0%} beyond the noise of the sensors is left"
+                if excess < LARGE
+                else f"an error {math.sqrt(1.0 + excess):,.0f} times the noise of the sensors is left"
             )
+            return f"Something is wrong that this program does not know: {left}, and {told}."
         parts = [cause.sentence for cause in self.causes]
         text = ". ".join(parts) + "."
         if self.groups:
