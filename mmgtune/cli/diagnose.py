@@ -34,6 +34,7 @@ def command(
             "--channels", help="Motion channels that count: x, y, psi, u, v, r. Default: all.", rich_help_panel=c.SEARCH
         ),
     ] = None,
+    restart: c.Restart = None,
     most: Annotated[
         int, typer.Option("--most", help="Largest number of causes looked for.", rich_help_panel=c.SEARCH)
     ] = 4,
@@ -91,6 +92,7 @@ def command(
         substeps=substeps,
         backend=backend,
         seed=seed,
+        restart=restart,
         most=most,
         level=level,
     )

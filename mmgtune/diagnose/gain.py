@@ -116,24 +116,28 @@ def _share(excess: FloatArray) -> float:
 
 
 def held_out(bench: Workbench, found: Found, test: Sequence[Trial]) -> Gain:
-    """The gain on test trials; where there are none, on each trial with everything refitted without it."""
+    """The gain on test trials; where there are none, on each trial with everything refitted without it.
+
+    Windows of one trial are left out together.
+    """
     if test:
         compared, excess = _on(bench, found.base, found.final, test)
         return Gain("test trials", tuple(compared), excess, *_chance(bench, test))
     every: list[TrialComparison] = []
     rows = []
-    for left_out in bench.trials if len(bench.trials) > 1 else []:
-        others = [trial for trial in bench.trials if trial is not left_out]
+    runs = list(dict.fromkeys(trial.run for trial in bench.trials))
+    for run in runs if len(runs) > 1 else []:
+        others = [trial for trial in bench.trials if trial.run != run]
         names = [name for name in bench.box.names if name not in bench.targets]
         rest = make_workbench(bench.model.profile, others, bench.options, names)
         rest.targets = bench.targets
         rest.know(replace(bench.noise, cases=rest.problem.cases))
-        keep = [i for i, trial in enumerate(bench.trials) if trial is not left_out]
+        keep = [i for i, trial in enumerate(bench.trials) if trial.run != run]
         before, after = (
             rest.refit(p.names, p.unit[:, None], p.offsets[keep], integrator=p.integrator)
             for p in (found.base, found.final)
         )
-        compared, excess = _on(bench, before, after, [left_out])
+        compared, excess = _on(bench, before, after, [trial for trial in bench.trials if trial.run == run])
         every += compared
         rows.append(excess)
     if not rows:

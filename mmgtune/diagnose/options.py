@@ -26,6 +26,7 @@ class DiagnoseOptions:
     substeps    steps between two samples
     backend     "compiled" or "numpy"
     seed        of the starts and of the simulated critical values
+    restart     length of the windows [s] trials are cut into, each begun anew from a measured state; None for none
     most        largest number of causes looked for
     level       largest probability of a false alarm over the whole search
     """
@@ -39,6 +40,7 @@ class DiagnoseOptions:
     substeps: int = 1
     backend: str = "compiled"
     seed: int = 1
+    restart: float | None = None
     most: int = 4
     level: float = 0.01
 
@@ -70,6 +72,7 @@ class DiagnoseOptions:
             integrator=self.integrator,
             substeps=self.substeps,
             backend=self.backend,
+            restart=self.restart,
         )
 
     def to_dict(self) -> dict[str, Any]:

@@ -13,7 +13,7 @@ import numpy as np
 from ..backends import STATES
 from ..components import split_name
 from ..fitting.box import parameter_of
-from ..fitting.run import Hooks, make_provenance
+from ..fitting.run import Hooks, in_pieces, make_provenance
 from ..model import Model
 from ..profile import ShipProfile, with_all_effects
 from ..trial import Trial, TrialSet
@@ -49,6 +49,7 @@ def diagnose(
     Raises OptionError for choices that make no sense.
     """
     began = time.perf_counter()
+    trials = in_pieces(trials, options.fit_options())
     seen = _in_order([trial for name, trial in trials.trials.items() if name not in trials.test])
     test = _in_order([trials.trials[name] for name in trials.test])
     own = Model(profile)

@@ -9,10 +9,12 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
+from mmgtune.backends import STATES, Integrator
 from mmgtune.diagnose import VERDICTS, DiagnoseOptions, diagnose
 from mmgtune.diagnose.noise import NoiseModel, estimate
 from mmgtune.errors import OptionError
-from mmgtune.profile import load_profile, parse_profile
+from mmgtune.profile import load_profile, parse_profile, with_effects
+from mmgtune.simulation import simulate as simulate_trials
 from mmgtune.trial import load_trials
 from tests.command import run
 from tests.hidden.cases import Case, null, pair, single
@@ -52,6 +54,34 @@ def test_a_typical_effect_is_named(tag, tmp_path):
     for name, value in first["parameters"].items():
         low, high = value["ci95"]
         assert low is None or low <= value["value"] <= (np.inf if high is None else high), name
+
+
+def test_a_cause_is_named_on_windows_too(tmp_path):
+    case = single("current", 3, seed=1)
+    result = said_of(case, tmp_path, restart=150.0, effects=("current", "rudder-offset", "antenna"))
+    assert [cause.tag for cause in result.causes] == ["current"]
+    assert len(result.gain.compared) > 10  # windows of the trials held out
+
+
+def test_water_driven_by_measured_wind_is_named(suzaku, tmp_path):
+    """Made with the program's own simulator: the plant logs no wind."""
+    trials = load_trials(files(null(3), tmp_path))
+    driven = with_effects(suzaku.profile, {"wind-drift": {"along": 0.03, "across": -0.01}}, "test")
+    rng = np.random.default_rng(1)
+    made = {}
+    for k, trial in enumerate(trials.trials.values()):
+        speed, towards = 8.0 + 2.0 * np.sin(trial.t / 90.0), 0.9 * k + 0.3 * np.cos(trial.t / 150.0)
+        blown = replace(trial, extra={"wind_speed": speed, "wind_dir": towards % (2.0 * np.pi)})
+        (motion,) = simulate_trials(driven, [blown], integrator=Integrator("rk4"))
+        noisy = motion.states + rng.standard_normal(motion.states.shape) * [0.4, 0.4, 0.003, 0.02, 0.02, 0.0005]
+        made[trial.id] = replace(blown, **dict(zip(STATES, noisy.T, strict=True)))
+    options = DiagnoseOptions(effects=("wind-drift", "wind", "current", "wave-drift"))
+    result = diagnose(suzaku.profile, replace(trials, trials=made), options)
+    assert [cause.tag for cause in result.causes] == ["wind-drift"], result.sentence()
+    sizes = result.to_dict()["causes"][0]["parameters"]
+    assert sizes["along"]["value"] == pytest.approx(0.03, rel=0.1)
+    assert sizes["across"]["value"] == pytest.approx(-0.01, rel=0.3)
+    assert "of the measured wind" in result.sentence()
 
 
 @pytest.mark.parametrize("noise", ["white", "autocorrelated"])
