@@ -127,7 +127,10 @@ def estimate(cases: Cases, residuals: FloatArray) -> NoiseModel:
         parts = [residuals[rows] for name, rows in series_of(cases) if name == channel]
         n = sum(len(part) for part in parts)
         covariance = np.array(
-            [sum(float(part[lag:] @ part[: len(part) - lag]) for part in parts) / n for lag in range(LAGS + 1)]
+            [
+                sum(float(part[lag:] @ part[: len(part) - lag]) for part in parts if len(part) > lag) / n
+                for lag in range(LAGS + 1)
+            ]
         )
         channels[channel] = _decompose(covariance, n)
     return NoiseModel(cases, channels)

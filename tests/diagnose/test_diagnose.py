@@ -153,6 +153,19 @@ def test_without_test_trials_each_trial_is_left_out_in_turn(tmp_path):
     assert covered(case.effects, result.to_dict()) == [True]
 
 
+def test_a_window_of_few_samples_has_its_share_in_the_noise():
+    class Cases:
+        rows = np.full((2, 500, 6), -1)
+
+        def __len__(self):
+            return 2
+
+    Cases.rows[0] = np.arange(3000).reshape(500, 6)
+    Cases.rows[1, :3] = np.arange(3000, 3018).reshape(3, 6)
+    model = estimate(Cases(), 2.0 * np.random.default_rng(2).standard_normal(3018))
+    assert all(noise.white == pytest.approx(4.0, rel=0.3) for noise in model.channels.values())
+
+
 def test_noise_with_a_memory_is_told_from_white_noise_and_whitened():
     rng = np.random.default_rng(1)
 
