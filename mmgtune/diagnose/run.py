@@ -17,6 +17,7 @@ from ..fitting.run import Hooks, in_pieces, make_provenance
 from ..model import Model
 from ..profile import ShipProfile, with_all_effects
 from ..trial import Trial, TrialSet
+from ..trial.smoothing import FEWEST
 from .evidence import explain_forces, noise_share, residual_forces, short_horizon
 from .gain import Gain, J_of, held_out
 from .hypotheses import HULL_TERM, INTEGRATION_STEP, Hypothesis, hypotheses
@@ -223,13 +224,16 @@ def _evidence(bench: Workbench, found: Found, left: Leftover, gain: Gain) -> dic
     """Residuals before and after by trial and channel, short horizons, and residual forces with what explains them."""
     before = leftover(bench, found.base) if found.causes else left
     shown: dict[str, Any] = {"excess_before": before.channels, "excess_after": left.channels}
+    long_enough = [trial for trial in bench.trials if np.isfinite(trial.motion[:, 3:]).all(axis=1).sum() >= FEWEST]
     for which, point in (("before", found.base), ("after", found.final)):
         profile = _tuned(bench, point)
         model = Model(profile)
-        short = short_horizon(model, bench.trials, integrator=point.integrator)
-        shown[f"short_horizon_{which}"] = dict(zip(STATES, map(float, short.pooled_rms_in_noise), strict=True))
+        shown[f"short_horizon_{which}"] = {}
+        if long_enough:
+            short = short_horizon(model, long_enough, integrator=point.integrator)
+            shown[f"short_horizon_{which}"] = dict(zip(STATES, map(float, short.pooled_rms_in_noise), strict=True))
         forces = []
-        for trial in bench.trials:
+        for trial in long_enough:
             try:
                 forces.append(residual_forces(model, trial))
             except ValueError:  # too short or too full of gaps for inverse dynamics

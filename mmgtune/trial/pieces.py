@@ -8,13 +8,15 @@ import numpy as np
 
 from .model import Trial
 from .schema import ATTRIBUTES
+from .smoothing import FEWEST
 
 
 def windows(trial: Trial, length: float) -> list[Trial]:
     """Consecutive pieces of a trial, each ``length`` [s] long but for the last, which ends with the trial.
 
     A piece begins at the sample the one before it ends at, or at the first after that without a gap; so every sample
-    is compared once.  Ids get the second they begin at, "run_7@100"; ``part_of`` is the trial's own id.
+    is compared once.  A rest of fewer than FEWEST samples belongs to the piece before it.  Ids get the second they
+    begin at, "run_7@100"; ``part_of`` is the trial's own id.
     """
     whole = np.flatnonzero(np.isfinite(trial.motion).all(axis=1))
     pieces: list[Trial] = []
@@ -22,8 +24,9 @@ def windows(trial: Trial, length: float) -> list[Trial]:
     while at < len(whole):
         first = int(whole[at])
         at = int(np.searchsorted(trial.t[whole], trial.t[first] + length - 1e-9))
-        last = int(whole[at]) if at < len(whole) else trial.n_samples - 1
-        if last > first:
+        last = int(whole[at]) if at < len(whole) - FEWEST + 1 else trial.n_samples - 1
+        at = at if last < trial.n_samples - 1 else len(whole)
+        if last > first + 1:  # two samples are no motion
             pieces.append(_piece(trial, first, last + 1))
     return pieces
 
