@@ -24,8 +24,9 @@ def windows(trial: Trial, length: float) -> list[Trial]:
     while at < len(whole):
         first = int(whole[at])
         at = int(np.searchsorted(trial.t[whole], trial.t[first] + length - 1e-9))
-        last = int(whole[at]) if at < len(whole) - FEWEST + 1 else trial.n_samples - 1
-        at = at if last < trial.n_samples - 1 else len(whole)
+        if len(whole) - at < FEWEST:
+            at = len(whole)
+        last = int(whole[at]) if at < len(whole) else trial.n_samples - 1
         if last > first + 1:  # two samples are no motion
             pieces.append(_piece(trial, first, last + 1))
     return pieces

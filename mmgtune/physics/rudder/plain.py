@@ -6,7 +6,7 @@ import numpy as np
 
 from ..elementary import arctan2, cos, sin, where
 from ..quantities import Lanes, RudderOut
-from .reaction import rudder_reaction
+from .reaction import plain_normal_force, rudder_reaction
 
 
 class PlainRudder(NamedTuple):
@@ -45,8 +45,7 @@ def plain_rudder(flow, ship, wake, propeller, delta, p):
 
     sin_delta = sin(delta)
     cos_delta = cos(delta)
-    U_R2 = u_R * u_R + v_R * v_R
-    F_N = 0.5 * ship.rho * p.A_R * p.f_alpha * np.sqrt(U_R2) * (sin_delta * u_R - cos_delta * v_R)
+    F_N = plain_normal_force(u_R, v_R, sin_delta, cos_delta, ship.rho, p.A_R, p.f_alpha)
     return RudderOut(
         force=rudder_reaction(F_N, sin_delta, cos_delta, p.t_R, p.a_H, p.x_R_ * L, p.x_H_ * L),
         u_R=u_R,
