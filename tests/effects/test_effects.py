@@ -12,6 +12,7 @@ from mmgtune.errors import ProfileError
 from mmgtune.fitting.box import make_box
 from mmgtune.model import Model
 from mmgtune.orders import TurningOrder, run_manoeuvre
+from mmgtune.physics.quantities import Air, State
 from mmgtune.profile import extended_text, load_profile, missing_for, parse_profile, with_all_effects, with_effects
 from tests.backends.test_agree import zigzag_like
 from tests.runs import states, turn
@@ -178,6 +179,16 @@ def test_measured_wind_counts_where_there_is_some(ship):
         assert np.allclose(states(measured, logged, backend=backend), states(steady, cases, backend=backend), atol=1e-9)
     without = states(measured, cases)
     assert np.array_equal(without, states(Model(ship), cases))
+
+
+def test_water_goes_with_the_wind_and_to_its_right():
+    """Wind towards north seen from a ship that heads east: the water moves to port, and ahead where it veers right."""
+    effect = find_effect("wind-drift")
+    air, state = Air(5.0, 0.0, 1.0), State(0.0, 0.0, np.pi / 2.0, 0.0, 0.0, 0.0)
+    along = effect.function(state, air, effect.params(along=0.02, across=0.0))
+    across = effect.function(state, air, effect.params(along=0.0, across=0.02))
+    np.testing.assert_allclose(along, (0.0, -0.1), atol=1e-15)
+    np.testing.assert_allclose(across, (0.1, 0.0), atol=1e-15)
 
 
 def test_ordered_manoeuvres_have_the_effects_too(ship):

@@ -99,3 +99,19 @@ def test_wake_is_kept_within_its_limits(esso_osaka):
     assert w_P.min() >= 0.0
     assert w_P.max() < 1.0
     assert np.all(w_P[np.cos(angle) < 0.0] == 0.0)
+
+
+def test_cross_flow_resists_sway_and_turning(esso_osaka):
+    p = esso_osaka.coefficients(np.repeat(esso_osaka.matrix(), 2, axis=1))
+    sideways = esso_osaka.components.hull(flow(np.zeros(2), np.array([0.1, -0.1]), np.zeros(2), 3.0), p.ship, p.hull)
+    assert sideways.Y[0] < 0.0 < sideways.Y[1]
+    turning = esso_osaka.components.hull(flow(np.zeros(2), np.zeros(2), np.array([0.05, -0.05]), 3.0), p.ship, p.hull)
+    assert turning.N[0] < 0.0 < turning.N[1]
+
+
+def test_a_propeller_against_the_motion_takes_flow_from_the_rudder(esso_osaka):
+    p = esso_osaka.coefficients(np.repeat(esso_osaka.matrix(), 3, axis=1))
+    zero, n = np.zeros(3), np.array([10.0, -5.0, -10.0])
+    state = State(zero, zero, zero, np.full(3, 0.3), zero, zero)
+    u_R = forces(state, Control(n, zero), esso_osaka.components, p).rudder.u_R
+    assert u_R[0] > u_R[1] > u_R[2]
