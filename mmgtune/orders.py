@@ -103,6 +103,7 @@ def run_manoeuvre(
     sample: float = 1.0,
     step: float | None = None,
     engine: Callable[[float], float] | None = None,
+    theta: FloatArray | None = None,
 ) -> Motion:
     """Simulate a manoeuvre given as orders, sampled every ``sample`` seconds.
 
@@ -112,6 +113,7 @@ def run_manoeuvre(
     longest  time [s] after which the run ends in any case
     step     longest step of the integration and of the helmsman [s]; chosen from length and speed where None
     engine   revolutions as a share of ``n`` from the share of the approach speed left; constant where None
+    theta    (n_rows, 1) coefficients, those of the profile where None
     Raises OptionError where the profile has no approach condition and none is given.
     """
     model = ship if isinstance(ship, Model) else Model(ship)
@@ -129,7 +131,7 @@ def run_manoeuvre(
     n_0 = n if n is not None else profile.approach.n  # type: ignore[union-attr]
     if not (U_0 > 0.0 and math.isfinite(U_0)):
         raise OptionError(Problem(f"the approach speed is {U_0:g} m/s", "--speed", fix="give a speed above 0"))
-    ship_now = LaneModel(model, model.matrix())
+    ship_now = LaneModel(model, model.matrix() if theta is None else theta)
     start = State(*np.array([[0.0], [0.0], [heading], [U_0], [0.0], [0.0]]))
     delta, revolutions = 0.0, n_0
     logged = Control(np.array([n_0]), np.array([0.0]))

@@ -23,13 +23,15 @@ DRAWS = 2000
 class TrialScore:
     """One trial, or one window of it.
 
-    run        id of the run it belongs to
+    trial      id of the whole trial
+    run        name of the run it belongs to
     J          sum of squared differences of position and heading over L_pp and pi/4 (Suyama et al. 2023, eq. 39-40)
     squares    sum over samples of each state's squared difference over its sigma squared, by state
     n_samples  samples compared: complete ones after the first
     """
 
     id: str
+    trial: str
     run: str
     manoeuvre: str
     J: float
@@ -55,9 +57,15 @@ def by_manoeuvre(scores: Sequence[TrialScore]) -> dict[str, list[TrialScore]]:
 
 
 def by_run(scores: Sequence[TrialScore]) -> dict[str, list[TrialScore]]:
-    """Scores by run: the windows of one run together."""
+    """Scores by run: windows of one, and trials cut from one, together."""
     runs = dict.fromkeys(score.run for score in scores)
     return {run: [score for score in scores if score.run == run] for run in runs}
+
+
+def by_trial(scores: Sequence[TrialScore]) -> dict[str, list[TrialScore]]:
+    """Scores by trial: the windows of one together."""
+    ids = dict.fromkeys(score.trial for score in scores)
+    return {id: [score for score in scores if score.trial == id] for id in ids}
 
 
 def score(
@@ -92,6 +100,7 @@ def score(
         found.append(
             TrialScore(
                 trial.id,
+                trial.whole,
                 trial.run,
                 trial.manoeuvre,
                 sum(squares[name] / scales[name] ** 2 for name in ("x", "y", "psi")),

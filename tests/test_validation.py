@@ -15,7 +15,7 @@ from tests.fitting.conftest import make_set
 
 
 def _score(run: str, squares: float, n: int = 10, manoeuvre: str = "turning") -> TrialScore:
-    return TrialScore(run, run, manoeuvre, 0.0, {"x": squares}, n)
+    return TrialScore(run, run, run, manoeuvre, 0.0, {"x": squares}, n)
 
 
 def test_spread_wraps_the_heading(suzaku):

@@ -149,6 +149,13 @@ Out = Annotated[
     typer.Option("--out", "-o", help="Folder for the results. Default: runs/<time>-<profile>.", rich_help_panel=OUTPUT),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Replace the results in --out.", rich_help_panel=OUTPUT)]
+Manoeuvres = Annotated[
+    bool,
+    typer.Option(
+        "--manoeuvres",
+        help="Also repeat measured turning circles and zigzags with the model's own helmsman: advance, overshoots, ...",
+    ),
+]
 Json = Annotated[
     bool, typer.Option("--json", help="Print the result as one JSON document on stdout.", rich_help_panel=OUTPUT)
 ]

@@ -40,6 +40,7 @@ def command(
     substeps: c.Substeps = 1,
     backend: c.BackendName = "compiled",
     seed: c.Seed = 1,
+    manoeuvres: c.Manoeuvres = False,
     json: c.Json = False,
     quiet: c.Quiet = False,
 ) -> None:
@@ -54,6 +55,7 @@ def command(
       mmgtune leave-out -p my_ship.toml -t my_trials/ --restart 100 --objective standardised --folds 5
     """
     from ..fitting import FitOptions, fit_leaving_out
+    from .repeated import document, table
 
     ship, data = c.load(profile, trials)
     ship, added = c.with_effects(ship, c.split(with_effects))
@@ -76,9 +78,15 @@ def command(
         starts=starts,
     )
     with Progress(quiet) as progress:
-        result = fit_leaving_out(ship, data, options, folds, hooks=progress.hooks(), command=c.command_line())
+        result = fit_leaving_out(
+            ship, data, options, folds, manoeuvres, hooks=progress.hooks(), command=c.command_line()
+        )
     if json:
-        c.print_json(result.to_dict())
+        said = result.to_dict()
+        if manoeuvres:
+            before, after = document(result.repeated_before), document(result.repeated_after)
+            said["manoeuvres"] = {"before": before, "left_out": after}
+        c.print_json(said)
         return
     print(
         f"{'left out':<20}{'runs':>6}{'L_MSE before':>14}{'after':>10}{'J before':>12}{'after':>10}   removed of L_MSE"
@@ -94,4 +102,6 @@ def command(
             for v, w in zip(numbers, (14, 10, 12, 10), strict=True)
         ]
         print(f"{row['manoeuvre']:<20}{row['runs']:>6}{''.join(shown)}   {removed}")
+    if manoeuvres:
+        print(table({"before": result.repeated_before, "left out": result.repeated_after}))
     print(f"{len(result.parts)} fits in {result.wall_s:.1f} s.")

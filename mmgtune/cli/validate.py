@@ -25,6 +25,7 @@ def command(
         str | None,
         typer.Option("--sigma-from", help="Trials whose spread L_MSE is counted in. Default: the trials scored."),
     ] = None,
+    manoeuvres: c.Manoeuvres = False,
     integrator: c.IntegratorName = "rk4",
     substeps: c.Substeps = 1,
     backend: c.BackendName = "compiled",
@@ -40,14 +41,19 @@ def command(
       mmgtune validate suzaku suzaku
 
       mmgtune validate before.toml after.toml my_trials/ --window 100 --json
+
+      mmgtune validate suzaku suzaku --manoeuvres
     """
     from ..backends import Integrator
     from ..fitting.options import INTEGRATORS
     from ..model import Model
     from ..objective import spread
     from ..profile import load_profile
+    from ..repeating import repeat
     from ..trial import load_trials
     from ..validation import score
+    from .repeated import document as document_of
+    from .repeated import table
 
     if len(names) < 2:
         raise OptionError(
@@ -81,6 +87,14 @@ def command(
         {"profile": name, "id": ship.id, "sha256": ship.sha256, **summary(scored[name])}
         for name, ship in zip(names[:-1], ships, strict=True)
     ]
+    repeated = (
+        {name: repeat(ship, list(data.trials.values())) for name, ship in zip(names[:-1], ships, strict=True)}
+        if manoeuvres
+        else {}
+    )
+    for row in rows:
+        if manoeuvres:
+            row["manoeuvres"] = document_of(repeated[row["profile"]])
     document = {
         "schema": 1,
         "kind": "validate",
@@ -102,12 +116,14 @@ def command(
         print(f"  {'all':<34}{len(one['trials']):>6}{_shown(one['J'])}{_shown(one['L_MSE'], 10)}")
         for row in one["trials"]:
             print(f"    {row['id']:<38}{_shown(row['J'])}{_shown(row['L_MSE'], 10)}")
+    if manoeuvres:
+        print(table(repeated))
 
 
 def summary(scores: list[Any]) -> dict[str, Any]:
     """Scores over everything, by kind of manoeuvre and by run, for JSON; what diverged is null."""
     from ..fitting.comparison import finite
-    from ..validation import L_MSE, by_manoeuvre, by_run
+    from ..validation import L_MSE, by_manoeuvre, by_run, by_trial
 
     def row(of: list[Any]) -> dict[str, Any]:
         n = sum(one.n_samples for one in of)
@@ -123,8 +139,8 @@ def summary(scores: list[Any]) -> dict[str, Any]:
         **row(scores),
         "by_manoeuvre": {kind: {"runs": len(by_run(of)), **row(of)} for kind, of in by_manoeuvre(scores).items()},
         "trials": [
-            {"id": run, "manoeuvre": of[0].manoeuvre, "windows": len(of), **row(of)}
-            for run, of in by_run(scores).items()
+            {"id": id, "manoeuvre": of[0].manoeuvre, "windows": len(of), **row(of)}
+            for id, of in by_trial(scores).items()
         ],
     }
 

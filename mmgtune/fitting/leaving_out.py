@@ -11,7 +11,8 @@ import numpy as np
 
 from ..objective import spread
 from ..profile import ShipProfile
-from ..trial import TrialSet
+from ..repeating import Repeated, repeat
+from ..trial import Trial, TrialSet
 from ..validation import L_MSE, TrialScore, by_manoeuvre, improvement, score
 from .comparison import finite
 from .least_squares import solve
@@ -42,6 +43,7 @@ class LeftOut:
     thetas   for each part of the runs, values by name in profile units
     parts    ids of the runs of each part
     before, after  scores of all tune trials with the profile's values, and with those fitted without them
+    repeated_before, repeated_after  their manoeuvres repeated likewise, where asked for
     """
 
     thetas: tuple[dict[str, float], ...]
@@ -52,6 +54,8 @@ class LeftOut:
     sigma: dict[str, float]
     provenance: dict[str, Any]
     wall_s: float
+    repeated_before: tuple[Repeated, ...] = ()
+    repeated_after: tuple[Repeated, ...] = ()
 
     def rows(self) -> list[dict[str, Any]]:
         """L_MSE and J before and after by kind of manoeuvre, and over all, with the share removed and its interval."""
@@ -95,18 +99,21 @@ def fit_leaving_out(
     trials: TrialSet,
     options: FitOptions,
     folds: int = 0,
+    manoeuvres: bool = False,
     *,
     hooks: Hooks = Hooks(),
     command: str = "",
 ) -> LeftOut:
     """Fit by least squares without each part of the runs in turn, and score the runs left out.
 
+    manoeuvres  also repeat measured turning circles and zigzags, see ``repeating.repeat``
+
     Every fit starts from the fit to all runs; that one takes the starts of the options.
     Raises OptionError for choices that make no sense.
     """
     began = time.perf_counter()
     options = replace(options, method="least-squares")
-    trials = in_pieces(trials, options)
+    whole, trials = trials, in_pieces(trials, options)
     problem = make_problem(profile, trials, options)
     box, model = problem.box, problem.model
     before = np.clip(box.to_unit(box.pre), 0.0, 1.0)
@@ -121,6 +128,7 @@ def fit_leaving_out(
     sigma = spread(chosen)
     integrator = options.make_integrator()
     scores: dict[str, TrialScore] = {}
+    repeated: dict[str, Repeated] = {}
     thetas, parts = [], []
     for out, others in leaving_out(trials, folds):
         if hooks.stop():
@@ -136,6 +144,9 @@ def fit_leaving_out(
         left_out = [trials.trials[name] for name in out]
         for one in score(model, left_out, sigma, theta=theta, integrator=integrator, backend=options.backend):
             scores[one.id] = one
+        if manoeuvres:
+            hooks.on_phase(f"repeating {', '.join(runs)}")
+            repeated |= {one.id: one for one in repeat(model, _named(whole, left_out), theta=theta)}
     seen = [trial for trial in chosen if trial.id in scores]
     return LeftOut(
         tuple(thetas),
@@ -146,4 +157,11 @@ def fit_leaving_out(
         sigma,
         make_provenance(profile, trials, command),
         time.perf_counter() - began,
+        tuple(repeat(model, _named(whole, seen))) if manoeuvres else (),
+        tuple(repeated[name] for name in dict.fromkeys(trial.whole for trial in seen) if name in repeated),
     )
+
+
+def _named(whole: TrialSet, pieces: Sequence[Trial]) -> list[Trial]:
+    """The whole trials that pieces are of."""
+    return [whole.trials[name] for name in dict.fromkeys(piece.whole for piece in pieces)]

@@ -151,8 +151,8 @@ class FitResult:
         return rows
 
     def tuned_text(self) -> str:
-        """TOML of the tuned profile; windows stand there as the runs they were cut from."""
-        run = {one.trial.id: one.trial.run for one in self.compared}
+        """TOML of the tuned profile; windows stand there as the trials they were cut from."""
+        whole = {one.trial.id: one.trial.whole for one in self.compared}
         told = self.provenance["trials"]
         return tuned_text(
             self.profile,
@@ -164,9 +164,9 @@ class FitResult:
                 "created": self.provenance["created"],
                 "profile": self.profile.id,
                 "profile_sha256": self.profile.sha256,
-                "trials": {run[name]: sha256 for name, sha256 in told["sha256"].items()},
-                "tuned_on": list(dict.fromkeys(run[name] for name in told["tune"])),
-                "source_of_trials": {run[name]: source for name, source in told["source"].items()},
+                "trials": {whole[name]: sha256 for name, sha256 in told["sha256"].items()},
+                "tuned_on": list(dict.fromkeys(whole[name] for name in told["tune"])),
+                "source_of_trials": {whole[name]: source for name, source in told["source"].items()},
                 "a_r": self.options.a_r,
                 "seed": self.options.seed,
                 "method": self.options.method,

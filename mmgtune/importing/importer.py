@@ -166,6 +166,7 @@ def _trials(log: Path, log_map: LogMap, step: float | None) -> list[tuple[Trial,
     name = _name(log_map.id, log)
     found = []
     count = sum(not piece.follows for piece in made)
+    cut_from = name if len(made) > 1 else ""
     number = 0
     for piece in made:
         number += not piece.follows
@@ -175,7 +176,7 @@ def _trials(log: Path, log_map: LogMap, step: float | None) -> list[tuple[Trial,
             notes = [f"part {number} of {count} of the log", *notes]
         if short:
             notes = [*notes, f"{short} parts with fewer than {FEWEST} rows were left out"]
-        found.append(_trial(f"{id}_{piece.follows}" if piece.follows else id, piece, notes, log_map))
+        found.append(_trial(f"{id}_{piece.follows}" if piece.follows else id, piece, notes, log_map, cut_from))
     return found
 
 
@@ -301,7 +302,7 @@ def _split(piece: Piece) -> list[Piece]:
     ]
 
 
-def _trial(id: str, piece: Piece, notes: list[str], log_map: LogMap) -> tuple[Trial, dict[str, Any]]:
+def _trial(id: str, piece: Piece, notes: list[str], log_map: LogMap, cut_from: str) -> tuple[Trial, dict[str, Any]]:
     """A trial and its quality.  Raises LogError where it could not be used."""
     record = piece.record
     columns = {**piece.columns, "t": piece.columns["t"] - piece.began}
@@ -324,5 +325,6 @@ def _trial(id: str, piece: Piece, notes: list[str], log_map: LogMap) -> tuple[Tr
         extra={name: values for name, values in kept.items() if name in COLUMNS},
         noise=log_map.noise,
         note="; ".join([*([log_map.note] if log_map.note else []), f"imported with the map {log_map.name}", *notes]),
+        cut_from=cut_from,
     )
     return trial, quality_of(trial, record, piece.grid, piece.began, notes, log_map)

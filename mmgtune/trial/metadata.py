@@ -33,7 +33,7 @@ def facts_of(raw: bytes | None, path: Path, columns: Sequence[str]) -> tuple[dic
     if facts.get("schema", SCHEMA) != SCHEMA:
         fix = "update mmgtune, or write the file again"
         problems.append(Problem(f"schema is {facts['schema']!r}, not {SCHEMA}", where, fix=fix))
-    for key in ("id", "ship", "manoeuvre", "source", "note"):
+    for key in ("id", "ship", "manoeuvre", "source", "note", "cut_from"):
         if key in facts and not isinstance(facts[key], str):
             problems.append(Problem(f"'{key}' is {facts[key]!r}, not text", where, fix=f'write "{key}": "..."'))
     name = facts.get("id", "")

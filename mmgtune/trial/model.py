@@ -31,6 +31,7 @@ class Trial:
     sha256     of that file, "" where there is none
     ignored    columns of the file that hold no numbers and were left out
     part_of    id of the trial this is a window of, "" for a whole trial
+    cut_from   name of the run that this and other trials were cut from, "" where it is a run of its own
 
     Raises ValueError where arrays differ in length or ``extra`` repeats a required column.
     """
@@ -55,6 +56,7 @@ class Trial:
     sha256: str = ""
     ignored: tuple[str, ...] = ()
     part_of: str = ""
+    cut_from: str = ""
 
     def __post_init__(self) -> None:
         shape = (len(self.t),)
@@ -73,7 +75,12 @@ class Trial:
 
     @property
     def run(self) -> str:
-        """Id of the trial as it was run: its own, or that of the trial this is a window of."""
+        """Name of what was sailed in one go, which trials and windows cut from it share."""
+        return self.cut_from or self.whole
+
+    @property
+    def whole(self) -> str:
+        """Id of the whole trial: its own, or that of the trial this is a window of."""
         return self.part_of or self.id
 
     @property

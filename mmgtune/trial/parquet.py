@@ -49,6 +49,7 @@ def read_trial(path: Path | str) -> Trial:
         extra={name: values for name, values in columns.items() if name not in REQUIRED},
         noise={name: float(value) for name, value in facts.get("noise", {}).items()},
         note=facts.get("note", ""),
+        cut_from=facts.get("cut_from", ""),
         path=path,
         sha256=hashlib.sha256(content).hexdigest(),
         ignored=ignored,
@@ -78,6 +79,8 @@ def write_trial(trial: Trial, path: Path | str, overwrite: bool = False) -> Path
         "noise": {name: float(value) for name, value in trial.noise.items()},
         "note": trial.note,
     }
+    if trial.cut_from:
+        facts["cut_from"] = trial.cut_from
     schema = pa.schema(fields, metadata={METADATA_KEY: json.dumps(facts).encode()})
     table = pa.table([pa.array(column) for column in values.values()], schema=schema)
     with atomic(path, overwrite) as part:

@@ -43,7 +43,7 @@ OPTIONAL = {
     "wave_dir": Column("rad", "direction waves come from, clockwise from north"),
 }
 COLUMNS = {**REQUIRED, **OPTIONAL}
-METADATA = ("schema", "ship", "id", "manoeuvre", "source", "noise", "note")
+METADATA = ("schema", "ship", "id", "manoeuvre", "source", "noise", "note", "cut_from")
 SOURCES = ("measured", "generated")
 
 ATTRIBUTES = {name: "v_m" if name == "v" else name for name in REQUIRED}

@@ -159,6 +159,8 @@ def test_pull_out_is_a_trial_of_its_own(tmp_path):
     assert [path.name for path in result.files] == ["circle.parquet", "circle_pull-out.parquet"]
     circle, out = (read_trial(path) for path in result.files)
     assert (circle.manoeuvre, out.manoeuvre) == ("turning", "pull-out")
+    # What is left out to be predicted must not be known from its own other half.
+    assert circle.run == out.run == "circle"
     assert circle.duration == pytest.approx(300.0, abs=3.0)
     assert circle.duration + out.duration == pytest.approx(499.0)
     assert out.t[0] == 0.0
@@ -167,7 +169,9 @@ def test_pull_out_is_a_trial_of_its_own(tmp_path):
     assert result.quality[1]["began_s"] == pytest.approx(circle.duration)
     # A zigzag has none.
     log = write_csv(tmp_path / "zigzag.csv", logged(turn()))
-    assert imported(log, text).n_samples == 400
+    zigzag = imported(log, text)
+    assert zigzag.n_samples == 400
+    assert zigzag.cut_from == ""
 
 
 def test_rows_of_another_kind_of_log(tmp_path):

@@ -1,0 +1,74 @@
+"""Manoeuvres repeated by models, as a table and as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ..repeating import Repeated
+
+SHOWN = {
+    "advance_over_L": ("advance", "L", 2),
+    "transfer_over_L": ("transfer", "L", 2),
+    "tactical_diameter_over_L": ("tactical diameter", "L", 2),
+    "steady_diameter_over_L": ("steady diameter", "L", 2),
+    "overshoot_1_deg": ("1st overshoot", "deg", 1),
+    "overshoot_2_deg": ("2nd overshoot", "deg", 1),
+    "initial_turning_time_s": ("initial turning time", "s", 1),
+}
+"""Words, unit and decimals of the indices shown."""
+
+
+def table(by_model: Mapping[str, Sequence[Repeated]]) -> str:
+    """Measured indices beside those of each model, and the errors over all manoeuvres; one model at least."""
+    from ..repeating import summary
+
+    width = max(10, *(len(name) + 2 for name in by_model))
+    first = next(iter(by_model.values()))
+    if not first:
+        return "No trial is a turning circle or a zigzag without gaps."
+    lines = [f"{'manoeuvres repeated':<46}{'measured':>10}" + "".join(f"{name:>{width}}" for name in by_model)]
+    for k, one in enumerate(first):
+        lines.append(f"{one.id}: {one.order}")
+        for key, (words, unit, decimals) in SHOWN.items():
+            if (measured := one.measured.get(key)) is None:
+                continue
+            values = [repeated[k].simulated.get(key) for repeated in by_model.values()]
+            shown = ["-" if value is None else f"{value:.{decimals}f}" for value in values]
+            lines.append(
+                f"    {f'{words} [{unit}]':<42}{measured:>10.{decimals}f}" + "".join(f"{s:>{width}}" for s in shown)
+            )
+    errors = {name: summary(repeated) for name, repeated in by_model.items()}
+    lines.append("root mean square error")
+    for key, (words, unit, _) in SHOWN.items():
+        if any(key in of for of in errors.values()):
+            share = unit != "deg"
+            shown = [_error(of.get(key), share) for of in errors.values()]
+            lines.append(f"    {words:<42}{'':>10}" + "".join(f"{s:>{width}}" for s in shown))
+    return "\n".join(lines)
+
+
+def document(repeated: Sequence[Repeated]) -> dict[str, Any]:
+    """For JSON: every manoeuvre with all its indices, and the errors over all."""
+    from ..repeating import summary
+
+    return {
+        "runs": [
+            {
+                "id": one.id,
+                "manoeuvre": one.manoeuvre,
+                "order": one.order,
+                "measured": one.measured,
+                "simulated": one.simulated or None,
+            }
+            for one in repeated
+        ],
+        "errors": summary(repeated),
+    }
+
+
+def _error(of: Mapping[str, float] | None, share: bool) -> str:
+    if of is None:
+        return "-"
+    return f"{100.0 * of['rms']:.1f} %" if share else f"{of['rms']:.1f} deg"
