@@ -2,7 +2,7 @@
 
 from .baseline import Baseline, Recorded, read_baseline, write_baseline
 from .result import Changed, CheckReport, Item
-from .run import check, could_not_run, record
+from .run import check, could_not_run, record_baseline
 
 __all__ = [
     "Baseline",
@@ -13,6 +13,6 @@ __all__ = [
     "check",
     "could_not_run",
     "read_baseline",
-    "record",
+    "record_baseline",
     "write_baseline",
 ]

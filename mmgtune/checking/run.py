@@ -19,7 +19,7 @@ from .measuring import Values, applicable, default_tolerances, measure
 from .result import CheckReport, Item, Status
 
 
-def record(
+def record_baseline(
     profile: ShipProfile,
     trials: TrialSet,
     metrics: Sequence[str] = (),

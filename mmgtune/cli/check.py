@@ -172,7 +172,7 @@ def _check(asked: Asked) -> CheckReport:
 def _update(asked: Asked) -> CheckReport | None:
     """Write the baseline; the comparison with the one before, None where there was none to compare with."""
     from ..backends import Integrator
-    from ..checking import check, read_baseline, record, write_baseline
+    from ..checking import check, read_baseline, record_baseline, write_baseline
 
     path = _path(asked, "--update-baseline")
     ship, data = asked.loaded()
@@ -183,7 +183,9 @@ def _update(asked: Asked) -> CheckReport | None:
     if before is not None and same:
         integrator = Integrator(before.integrator, before.substeps)
         report = check(ship, data, before, names=asked.names, integrator=integrator, backend=asked.backend)
-    now = record(ship, data, asked.metrics, before=before, integrator=integrator or Integrator(), backend=asked.backend)
+    now = record_baseline(
+        ship, data, asked.metrics, before=before, integrator=integrator or Integrator(), backend=asked.backend
+    )
     write_baseline(now, path)
     return report
 
