@@ -9,7 +9,7 @@ DEMO := runs/demo
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo test lint types arch check regression bench hidden trials browser clean
+.PHONY: help demo test lint types arch check regression bench signs hidden trials browser clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-11s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -45,6 +45,9 @@ check: ## lint, types, arch, regression and test
 hidden: $(RUNTIME) ## the full study of hidden effects, some hours; goes on where it was stopped
 	$(BIN)/python -m tests.hidden.study
 	$(BIN)/python -m tests.hidden.table
+
+signs: $(DEV) ## turn round every sign in the equations: do the tests notice? Half an hour; goes on where it was stopped
+	$(BIN)/python tools/mutate_signs.py
 
 bench: $(RUNTIME) ## time the simulation and the fit
 	$(BIN)/python tools/bench.py
