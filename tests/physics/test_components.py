@@ -126,3 +126,18 @@ def test_asymmetric_wake_by_hand():
         water = flow(np.array([np.cos(beta)]), np.array([-np.sin(beta)]), np.array([0.0]), 7.0)
         w_P = model.components.wake(water, p.wake).w_P[0]
         assert (1 - w_P) / (1 - 0.40) == pytest.approx(1 + (1 - np.exp(-2.0 * 0.2)) * (C_2 - 1))
+
+
+@pytest.mark.parametrize("phi", [3.0, 19.0, 21.0, 35.0])
+def test_side_force_and_moment_of_the_four_quadrant_propeller(suzaku, phi):
+    """C_PY and the two pieces of C_PN printed beside eq. 16-22, at an inflow angle in degrees."""
+    p = coefficients(suzaku)
+    n, D_P = 1.5, 2.8
+    u_P = 0.7 * np.pi * n * D_P * np.tan(np.radians(phi))
+    found = four_quadrant_propeller(
+        None, WakeOut(*(np.array([v]) for v in (0.0, u_P, 0.0))), np.array([n]), p.ship, p.propeller
+    ).force
+    q = 0.5 * 1025.0 * 0.25 * np.pi * D_P**2 * (u_P**2 + (0.7 * np.pi * n * D_P) ** 2)
+    C_PN = -2.48e-4 * phi - 1.70e-3 if phi < 20.0 else -1.86e-4 * phi + 4.03e-3
+    assert found.Y[0] == pytest.approx(q * (-2.83e-5 * phi**2 + 6.04e-4 * phi - 1.28e-2))
+    assert found.N[0] == pytest.approx(q * 83.0 * C_PN)
