@@ -99,7 +99,8 @@ def caught_by(copy: Path, sign: Sign) -> str:
         "MMGTUNE_CACHE": str(cache),
     }
     try:
-        for suite in SUITES:
+        # Those that are about the file first.
+        for suite in sorted(SUITES, key=lambda suite: "effects" in sign.path and suite != "tests/effects"):
             command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", suite]
             try:
                 ended = subprocess.run(command, cwd=copy, env=environment, capture_output=True, timeout=PATIENCE)
