@@ -3,7 +3,7 @@
     import mmgtune
     profile = mmgtune.load_profile("suzaku")
     trials = mmgtune.load_trials("suzaku")
-    result = mmgtune.fitting(profile, trials, mmgtune.FitOptions(a_r=0.5))
+    result = mmgtune.fit(profile, trials, mmgtune.FitOptions(a_r=0.5))
     print(result.verdict())
 
 Everything listed here is what the commands call; it is imported when first used.
