@@ -123,3 +123,17 @@ def test_the_project_speaks_of_itself_alone():
             text = path.read_text(encoding="utf-8", errors="replace")
             for word in ("/work" + "/", "shared" + "/spec"):
                 assert word not in text, (name, word)
+
+
+def test_help_shows_all_of_its_words():
+    """Square brackets in the help of an option are taken for markup, and vanish."""
+    import typer.main
+
+    from mmgtune.cli import app
+
+    def options(command):
+        for one in getattr(command, "commands", {}).values():
+            yield from options(one)
+        yield from command.params
+
+    assert [one.name for one in options(typer.main.get_command(app)) if "[" in (getattr(one, "help", None) or "")] == []
