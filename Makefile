@@ -9,10 +9,10 @@ DEMO := runs/demo
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo test lint types arch check docs bench hidden trials browser clean
+.PHONY: help demo test lint types arch check regression docs bench signs hidden trials browser clean
 
 help: ## list the targets
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-11s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 demo: $(RUNTIME) ## tune the bundled ship on its bundled trials and say where the report is
 	$(BIN)/mmgtune fit --ar 0.5 --out $(DEMO) --force
@@ -32,10 +32,14 @@ types: $(DEV) ## static types
 arch: $(DEV) ## which module may use which
 	$(BIN)/lint-imports --no-logo
 
-check: ## lint, types, arch and test
+regression: $(RUNTIME) ## does the bundled model still do on the bundled trials what it did?
+	$(BIN)/mmgtune check suzaku suzaku --baseline trials/suzaku/check.json
+
+check: ## lint, types, arch, regression and test
 	@$(MAKE) --no-print-directory lint
 	@$(MAKE) --no-print-directory types
 	@$(MAKE) --no-print-directory arch
+	@$(MAKE) --no-print-directory regression
 	@$(MAKE) --no-print-directory test
 
 docs: export NO_MKDOCS_2_WARNING = 1
@@ -46,6 +50,9 @@ docs: $(DEV) ## the site of the documents, into site/; a warning is an error
 hidden: $(RUNTIME) ## the full study of hidden effects, some hours; goes on where it was stopped
 	$(BIN)/python -m tests.hidden.study
 	$(BIN)/python -m tests.hidden.table
+
+signs: $(DEV) ## turn round every sign in the equations: do the tests notice? Half an hour; goes on where it was stopped
+	$(BIN)/python tools/mutate_signs.py
 
 bench: $(RUNTIME) ## time the simulation and the fit
 	$(BIN)/python tools/bench.py

@@ -15,6 +15,11 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from .checking import CheckReport as CheckReport
+    from .checking import check as check
+    from .checking import read_baseline as read_baseline
+    from .checking import record_baseline as record_baseline
+    from .checking import write_baseline as write_baseline
     from .errors import MmgtuneError as MmgtuneError
     from .fitting import FitOptions as FitOptions
     from .fitting import FitResult as FitResult
@@ -33,6 +38,7 @@ if TYPE_CHECKING:
     from .orders import run_manoeuvre as run_manoeuvre
     from .profile import ShipProfile as ShipProfile
     from .profile import load_profile as load_profile
+    from .repeating import repeat as repeat
     from .report import render as render
     from .simulation import breakdown as breakdown
     from .simulation import simulate as simulate
@@ -41,8 +47,16 @@ if TYPE_CHECKING:
     from .trial import load_trials as load_trials
     from .trial import read_trial as read_trial
     from .trial import write_trial as write_trial
+    from .validation import score as score
 
 _WHERE = {
+    "CheckReport": "checking",
+    "check": "checking",
+    "read_baseline": "checking",
+    "record_baseline": "checking",
+    "write_baseline": "checking",
+    "repeat": "repeating",
+    "score": "validation",
     "MmgtuneError": "errors",
     "FitOptions": "fitting",
     "FitResult": "fitting",

@@ -23,6 +23,8 @@ _FACTORS: dict[str, dict[str, float]] = {
     "N": {"N": 1.0, "kN": 1e3},
     "s": {"s": 1.0, "min": 60.0, "h": 3600.0, "ms": 1e-3, "us": 1e-6},
     "kg/m^3": {"kg/m^3": 1.0, "t/m^3": 1e3},
+    "deg/s": {"deg/s": 1.0, "deg/min": 1.0 / 60.0, "rad/s": 1.0 / DEG},
+    "%": {"%": 1.0},
     "1/deg": {"1/deg": 1.0, "1/rad": DEG},
     "1/deg^2": {"1/deg^2": 1.0, "1/rad^2": DEG**2},
     "1/deg^3": {"1/deg^3": 1.0, "1/rad^3": DEG**3},

@@ -16,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -28,6 +29,7 @@ from mmgtune.files import write_text
 from mmgtune.fitting.cmaes import _strategy
 from mmgtune.model import Model
 from mmgtune.profile import load_profile
+from mmgtune.trial import load_trials, write_trial
 
 STEPS = 600
 LANES = (1, 48, 512, 4096)
@@ -89,7 +91,23 @@ def commands() -> list[dict[str, Any]]:
             for kind in ("cold", "warm"):
                 row[f"{kind}_s"], row["peak_memory_mb"] = run(line, environment)
             rows.append(row)
+        rows.append(a_check(Path(folder)))
     return rows
+
+
+def a_check(folder: Path) -> dict[str, Any]:
+    """A check of a hundred trials, the bundled ones ten times over."""
+    copies = folder / "hundred"
+    for trial in load_trials("suzaku").trials.values():
+        for k in range(10):
+            write_trial(replace(trial, id=f"{trial.id}_{k}"), copies / f"{trial.id}_{k}.parquet")
+    arguments = ["check", "suzaku", str(copies), "--baseline", str(folder / "check.json")]
+    environment = {**os.environ, "MMGTUNE_CACHE": str(folder / "cache")}
+    line = [sys.executable, "-m", "mmgtune", *arguments]
+    row: dict[str, Any] = {"command": "mmgtune check suzaku TRIALS --baseline FILE", "title": "check, 100 trials"}
+    row["cold_s"], _ = run([*line, "--update-baseline"], environment)
+    row["warm_s"], row["peak_memory_mb"] = run(line, environment)
+    return row
 
 
 def run(line: list[str], environment: dict[str, str]) -> tuple[float, int]:

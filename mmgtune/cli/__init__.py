@@ -14,7 +14,7 @@ from typing import Any
 import typer
 
 from ..errors import Interrupted, MmgtuneError, OutputError, Problem, cannot_write_reason
-from . import diagnose, fit, leave_out, profiles, report, simulate, sweep, trials, validate
+from . import check, cite, diagnose, doctor, fit, leave_out, profiles, report, simulate, sweep, trials, validate
 from .exitcodes import ExitCode
 
 EPILOG = "Exit codes: 0 good; 1 the answer is no; 2 could not run; 3 bug; 130 interrupted, best so far saved."
@@ -50,9 +50,12 @@ app.command("fit", epilog=EPILOG)(fit.command)
 app.command("sweep", epilog=EPILOG)(sweep.command)
 app.command("diagnose", epilog=EPILOG)(diagnose.command)
 app.command("leave-out", epilog=EPILOG)(leave_out.command)
+app.command("check", epilog=EPILOG)(check.command)
 app.command("validate", epilog=EPILOG)(validate.command)
 app.command("simulate", epilog=EPILOG)(simulate.command)
 app.command("report", epilog=EPILOG)(report.command)
+app.command("cite", epilog=EPILOG)(cite.command)
+app.command("doctor", epilog=EPILOG)(doctor.command)
 app.add_typer(trials.app, name="trials", epilog=EPILOG)
 app.add_typer(profiles.app, name="profile", epilog=EPILOG)
 

@@ -136,9 +136,10 @@ def summary(result: FitResult, folder: str, report: bool) -> str:
         note = ", ".join(word for word in (mark, "" if row["determined"] else "not determined") if word)
         place = "".join("*" if round(row["position"] * 20) == k else "-" for k in range(21))
         lines.append(f"{row['name']:<24}{row['pre_determined']:>11.4g}{row['value']:>11.4g}{error:>10}  {place} {note}")
-    lines += ["", f"{'trial':<24}{'role':<7}{'J before':>11}{'J after':>11}", ""]
+    width = max([22, *(len(one.trial.id) for one in result.compared)]) + 2
+    lines += ["", f"{'trial':<{width}}{'role':<7}{'J before':>11}{'J after':>11}", ""]
     for one in result.compared:
-        lines.append(f"{one.trial.id:<24}{one.role:<7}{one.J['before']:>11.4g}{one.J['after']:>11.4g}")
+        lines.append(f"{one.trial.id:<{width}}{one.role:<7}{one.J['before']:>11.4g}{one.J['after']:>11.4g}")
     lines += ["", *result.certificate.sentences[:2], *result.identifiability.sentences[:2]]
     lines += [f"Note: {warning}" for warning in result.warnings()]
     lines += ["", result.verdict(), f"{result.evaluations} evaluations in {result.wall_s:.1f} s."]

@@ -40,12 +40,12 @@ def table(by_model: Mapping[str, Sequence[Repeated]]) -> str:
                 f"    {f'{words} [{unit}]':<42}{measured:>10.{decimals}f}" + "".join(f"{s:>{width}}" for s in shown)
             )
     errors = {name: summary(repeated) for name, repeated in by_model.items()}
-    lines.append("root mean square error")
-    for key, (words, unit, _) in SHOWN.items():
-        if any(key in of for of in errors.values()):
-            share = unit != "deg"
-            shown = [_error(of.get(key), share) for of in errors.values()]
-            lines.append(f"    {words:<42}{'':>10}" + "".join(f"{s:>{width}}" for s in shown))
+    for heading, which in (("mean error", "mean"), ("root mean square error", "rms")):
+        lines.append(heading)
+        for key, (words, unit, _) in SHOWN.items():
+            if any(key in of for of in errors.values()):
+                shown = [_error(of.get(key), which, unit) for of in errors.values()]
+                lines.append(f"    {words:<42}{'':>10}" + "".join(f"{s:>{width}}" for s in shown))
     return "\n".join(lines)
 
 
@@ -68,7 +68,8 @@ def document(repeated: Sequence[Repeated]) -> dict[str, Any]:
     }
 
 
-def _error(of: Mapping[str, float] | None, share: bool) -> str:
+def _error(of: Mapping[str, float] | None, which: str, unit: str) -> str:
     if of is None:
         return "-"
-    return f"{100.0 * of['rms']:.1f} %" if share else f"{of['rms']:.1f} deg"
+    sign = "+" if which == "mean" else ""
+    return f"{of[which]:{sign}.1f} deg" if unit == "deg" else f"{100.0 * of[which]:{sign}.1f} %"

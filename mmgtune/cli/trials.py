@@ -51,7 +51,19 @@ def check(
 
 
 @app.command("inspect")
-def inspect(trials: Name, profile: c.Profile = "suzaku", json: c.Json = False) -> None:
+def inspect(
+    trials: Name,
+    profile: Annotated[
+        str | None,
+        typer.Option(
+            "--profile",
+            "-p",
+            help="Ship profile, for her length. Default: the bundled one the trials name.",
+            autocompletion=c.complete_profile,
+        ),
+    ] = None,
+    json: c.Json = False,
+) -> None:
     """Show what each trial holds: length, ranges, metadata, and its manoeuvring indices.
 
     Example:
@@ -59,12 +71,21 @@ def inspect(trials: Name, profile: c.Profile = "suzaku", json: c.Json = False) -
       mmgtune trials inspect suzaku
     """
     from ..profile import load_profile
+    from ..resources import profile_names
     from ..simulation import trial_indices
     from ..trial import load_trials
     from ..trial.describe import describe
 
-    L_pp = load_profile(profile).L_pp
     data = load_trials(trials)
+    name = profile or data.ship
+    if profile is None and name not in profile_names():
+        what = f"the trials are of '{name}'" if name else "the trials do not say which ship they are of"
+        fix = "name the ship's profile with --profile: indices are counted in ship lengths"
+        raise OptionError(Problem(what + ", which is no bundled profile" * bool(name), trials, fix=fix))
+    ship = load_profile(name)
+    if data.ship and data.ship != ship.id:
+        c.say(f"warning: the trials are of '{data.ship}', the profile is of '{ship.id}'")
+    L_pp = ship.L_pp
     rows = []
     for name, trial in data.trials.items():
         rows.append({**describe(trial), "role": data.role(name), "indices": trial_indices(trial, L_pp)})

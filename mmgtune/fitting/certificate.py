@@ -80,13 +80,26 @@ def certify(
     starts: list[LeastSquaresResult],
     restarts: list[Restart],
     J_cmaes: float | None,
+    ridge: float = 0.0,
+    anchor: FloatArray | None = None,
 ) -> Certificate:
     """The certificate at a point of the unit cube (n_targets,) with value J.
 
+    ridge, anchor  where the fit is regularised: weight of the squared distance from a point of the cube.  The cost is
+                   J with that added then, here as in the search
+
     Agreement is relative to J, or to a 1e-9th of J before tuning where J is smaller than that (noise-free trials).
     """
+
+    def cost(value: float, at: FloatArray) -> float:
+        return value if anchor is None else value + ridge * float(np.sum((at - anchor) ** 2))
+
+    J = cost(J, unit)
     floor = max(J, 1e-9 * J_before)
     residuals, jacobian = problem.central_jacobian(unit)
+    if anchor is not None:
+        residuals = np.concatenate([residuals, np.sqrt(ridge) * (unit - anchor)])
+        jacobian = np.vstack([jacobian, np.sqrt(ridge) * np.eye(len(unit))])
     gradient = 2.0 * jacobian.T @ residuals
     low, high = unit <= 0.0, unit >= 1.0
     active = (low & (gradient > 0.0)) | (high & (gradient < 0.0))
@@ -104,14 +117,14 @@ def certify(
     def agreeing(values: list[float]) -> int:
         return sum(value - J <= TOLERANCE * floor for value in values)
 
-    J_starts = [start.J for start in starts]
+    J_starts = [cost(start.J, start.unit) for start in starts]
     result = Certificate(
         restarts=len(restarts),
         restarts_agreeing=agreeing([restart.J for restart in restarts]),
         starts=len(starts),
         starts_agreeing=agreeing(J_starts),
         J_cmaes=J_cmaes,
-        J_least_squares=min(J_starts),
+        J_least_squares=min(start.J for start in starts),
         projected_gradient=slope,
         step_gain=gain,
         active=bounds,
@@ -131,7 +144,7 @@ def _sentences(c: Certificate, others: list[str]) -> tuple[str, ...]:
     if others:
         sentences.append(f"Other ends of starts, with a higher J: {', '.join(others[:5])}.")
     sentences.append(
-        f"One more Gauss-Newton step would lower J by {c.step_gain:.1e} of itself; "
+        f"One more Gauss-Newton step would lower the cost by {c.step_gain:.1e} of itself; "
         f"largest slope along a free coefficient {c.projected_gradient:.1e} J per box width."
     )
     for bound in sorted(c.active, key=lambda b: -b.gain_per_percent):

@@ -159,7 +159,8 @@ def fit(
 
     hooks.on_phase("certificate and identifiability")
     restarts = found.restarts if found else []
-    certificate = certify(problem, unit, J, J_before, ends, restarts, found.J if found else None)
+    pull = (ridge, before) if ridge else ()
+    certificate = certify(problem, unit, J, J_before, ends, restarts, found.J if found else None, *pull)
     held_by_bound = np.isin(problem.box.names, [bound.name for bound in certificate.active])
     roles = {name: trials.role(name) for name in trials.trials}
     everything = make_problem(profile, trials, options, tuple(trials.trials))

@@ -64,6 +64,7 @@ class Approach:
 class ShipProfile:
     """A ship: its components and coefficients, and what standard manoeuvres need.
 
+    limits  what each metric of a trial may be at most, by its name, in its unit (``metrics.METRICS``)
     text    the TOML it was read from; tuned profiles are made from it, comments and all
     sha256  of that text
     """
@@ -75,6 +76,7 @@ class ShipProfile:
     steering_gear: SteeringGear | None
     approach: Approach | None
     targets: tuple[str, ...]
+    limits: dict[str, float] = field(default_factory=dict)
     provenance: dict[str, Any] = field(default_factory=dict)
     path: Path | None = None
     text: str = ""

@@ -15,13 +15,15 @@ from .. import units
 from ..components import KINDS, UNTAGGED, Component, Field, find, tags
 from ..effects import Effect, effect_tags, find_effect
 from ..errors import Problem, ProfileError, closest
+from ..metrics import METRICS
 from ..physics.wind import wind_regression
 from ..resources import folder, profile_names
 from .extending import missing_for
 from .model import Approach, Coefficient, Section, ShipProfile, SteeringGear
 
 SCHEMA = 1
-SECTIONS = ("schema", "ship", *KINDS, "above_water", "effects", "steering_gear", "approach", "tuning", "provenance")
+PLAIN = ("steering_gear", "approach", "tuning", "limits", "provenance")
+SECTIONS = ("schema", "ship", *KINDS, "above_water", "effects", *PLAIN)
 REGRESSION = "Fujiwara, Ueno & Nimura 1998, regression on the geometry"
 VALUE_KEYS = ("value", "source", "assumption", "note", "bounds", "pre_determined", "stderr")
 
@@ -77,7 +79,7 @@ class _Reader:
         self.data = data
         self.text = text
         self.where = where
-        self.lines = _line_index(text)
+        self.lines = line_index(text)
         self.problems: list[Problem] = []
 
     def problem(self, what: str, section: str = "", key: str = "", why: str = "", fix: str = "") -> None:
@@ -115,6 +117,7 @@ class _Reader:
             steering_gear=SteeringGear(**gear) if gear else None,
             approach=Approach(**approach) if approach else None,
             targets=self.targets(sections) if complete else (),
+            limits=self.limits(),
             provenance=self.data.get("provenance", {}),
             path=path,
             text=self.text,
@@ -318,6 +321,22 @@ class _Reader:
                 self.problem(f"unknown target '{name}'", "tuning", "targets", fix=closest(name, known))
         return tuple(targets)
 
+    def limits(self) -> dict[str, float]:
+        """What metrics of a trial may be at most, each in its own unit."""
+        table = self.data.get("limits", {})
+        if not isinstance(table, dict):
+            self.problem("'limits' is not a table", "", "limits", fix='write [limits] and rms_psi = "5 deg" below it')
+            return {}
+        self.unknown("limits", table, ("source", *METRICS))
+        found: dict[str, float] = {}
+        for name in (name for name in table if name in METRICS):
+            unit = METRICS[name].unit
+            field = Field("", "-" if unit == "mixed" else unit, low=0.0)
+            numbers = self.numbers("limits", name, field, table[name])
+            if numbers:
+                found[name] = numbers[0]
+        return found
+
     def together(self, profile: ShipProfile) -> None:
         """What is impossible about numbers that are possible one by one."""
         L_pp = profile.L_pp
@@ -352,7 +371,7 @@ def with_wind_coefficients(sections: dict[str, Section]) -> Section:
     return replace(section, coefficients=coefficients)
 
 
-def _line_index(text: str) -> dict[tuple[str, str], int]:
+def line_index(text: str) -> dict[tuple[str, str], int]:
     """Line numbers of sections, under (section, ""), and of keys, under (section, key)."""
     index: dict[tuple[str, str], int] = {}
     section = ""

@@ -2,14 +2,16 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
 
-from mmgtune.trial import read_trial
+from mmgtune.trial import load_trials, read_trial, write_trial
 from tests.command import run
 
 COMMANDS = [
-    ("fit",), ("sweep",), ("leave-out",), ("validate",), ("simulate",), ("report",), ("trials", "import"),
+    ("fit",), ("sweep",), ("leave-out",), ("validate",), ("check",), ("cite",), ("doctor",),
+    ("simulate",), ("report",), ("trials", "import"),
     ("trials", "check"), ("trials", "inspect"), ("profile", "list"), ("profile", "show"), ("profile", "validate"),
 ]  # fmt: skip
 HEAVY = ("numpy", "scipy", "pandas", "numba", "cma", "matplotlib", "plotly", "pyarrow", "tomlkit", "jinja2")
@@ -104,6 +106,18 @@ def test_trials_check_and_inspect(tmp_path):
     assert rows["zigzag_10"]["role"] == "other"
     assert rows["turn_p35"]["ranges"]["delta"]["max"] == pytest.approx(35.0, abs=0.5)
     assert rows["turn_p35"]["source"] == "generated"
+
+
+def test_indices_are_counted_in_lengths_of_the_right_ship(tmp_path):
+    trial = next(iter(load_trials("suzaku").trials.values()))
+    write_trial(replace(trial, ship="kvlcc2"), tmp_path / "a.parquet")
+    assert run("trials", "inspect", "a.parquet", "--json", cwd=tmp_path).json()["L_pp_m"] == 320.0
+    other = run("trials", "inspect", "a.parquet", "-p", "suzaku", cwd=tmp_path)
+    assert "warning: the trials are of 'kvlcc2'" in other.err
+    write_trial(replace(trial, ship="Ever Given"), tmp_path / "b.parquet")
+    unknown = run("trials", "inspect", "b.parquet", cwd=tmp_path)
+    assert unknown.code == 2
+    assert "'Ever Given', which is no bundled profile" in unknown.err
 
 
 def test_profile_commands(tmp_path):

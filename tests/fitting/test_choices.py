@@ -59,6 +59,8 @@ def test_regularisation_pulls_towards_what_was_known(suzaku, clean):
     for share in (0.0, 1e-3, 1.0):
         found = fit(suzaku.profile, clean, replace(QUICK, regularise=share))
         away.append(float(np.linalg.norm(found.unit - 0.5)))
+        # The certificate is of what was made small, the pull included.
+        assert found.certificate.step_gain < 1e-6
     assert away[0] > away[1] > away[2]
 
 

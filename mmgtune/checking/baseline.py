@@ -1,0 +1,155 @@
+"""The committed file a model is compared with: what its metrics were, of which trials, and how they were found."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ..errors import OptionError, Problem, closest
+from ..files import write_text
+from ..metrics import METRICS
+from .measuring import Values
+
+SCHEMA = 1
+KIND = "check-baseline"
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """A trial as it was: SHA-256 of its file, and its metrics."""
+
+    sha256: str
+    metrics: Values
+
+
+@dataclass(frozen=True)
+class Baseline:
+    """What a model did on trials when it was last found good.
+
+    ship          id of the profile
+    sha256        of the profile's file
+    coefficients  every number of the profile by name, to say which of them changed
+    integrator, substeps, backend  as simulated; a comparison uses the same integrator
+    made_by       program and version
+    tolerances    for each metric, "relative" and "absolute" change for the worse that passes; a key "trial/metric"
+                  is for one trial
+    trials        by id
+    """
+
+    ship: str
+    sha256: str
+    coefficients: Mapping[str, float]
+    integrator: str
+    substeps: int
+    backend: str
+    made_by: str
+    tolerances: Mapping[str, Mapping[str, float]]
+    trials: Mapping[str, Recorded]
+
+    @property
+    def metrics(self) -> list[str]:
+        """Names of the metrics compared, in the order of METRICS."""
+        return [name for name in METRICS if name in self.tolerances]
+
+    def tolerance(self, trial: str, metric: str, value: float) -> float:
+        """Change for the worse of a metric of that value that passes, in the metric's unit."""
+        of = self.tolerances.get(f"{trial}/{metric}") or self.tolerances[metric]
+        return of.get("relative", 0.0) * abs(value) + of.get("absolute", 0.0)
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON; a metric of a simulation that diverged is null."""
+        return {
+            "schema": SCHEMA,
+            "kind": KIND,
+            "made_by": self.made_by,
+            "profile": {"id": self.ship, "sha256": self.sha256, "coefficients": dict(self.coefficients)},
+            "integrator": self.integrator,
+            "substeps": self.substeps,
+            "backend": self.backend,
+            "tolerances": {name: dict(of) for name, of in self.tolerances.items()},
+            "trials": {
+                name: {
+                    "sha256": trial.sha256,
+                    "metrics": {key: v if math.isfinite(v) else None for key, v in trial.metrics.items()},
+                }
+                for name, trial in self.trials.items()
+            },
+        }
+
+
+def write_baseline(baseline: Baseline, path: Path) -> None:
+    """Write the file, replacing one that is there.  Raises OutputError where the system refuses."""
+    write_text(path, json.dumps(baseline.to_dict(), indent=1, allow_nan=False) + "\n")
+
+
+def read_baseline(path: Path) -> Baseline:
+    """The baseline in a file.  Raises OptionError with everything that is wrong in it."""
+    again = "write it anew with --update-baseline, or take it from the repository"
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        fix = "write one with --update-baseline, and commit it"
+        raise OptionError(Problem("there is no baseline", str(path), fix=fix)) from None
+    except (OSError, ValueError, RecursionError) as error:
+        raise OptionError(Problem("the baseline cannot be read", str(path), str(error), again)) from None
+    if not isinstance(data, dict) or data.get("kind") != KIND:
+        raise OptionError(Problem("this is not a baseline of a check", str(path), f"it has no kind '{KIND}'", again))
+    if data.get("schema") != SCHEMA:
+        what = f"the baseline's schema is {data.get('schema')!r}, not {SCHEMA}"
+        raise OptionError(Problem(what, str(path), fix="update mmgtune, or write the baseline anew"))
+    try:
+        baseline = _parsed(data)
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        why = f"no {error}" if isinstance(error, KeyError) else str(error)
+        raise OptionError(Problem("the baseline is not complete", str(path), why, again)) from None
+    problems = _wrong(baseline, str(path))
+    if problems:
+        raise OptionError(*problems)
+    return baseline
+
+
+def _parsed(data: dict[str, Any]) -> Baseline:
+    profile = data["profile"]
+    return Baseline(
+        ship=str(profile["id"]),
+        sha256=str(profile["sha256"]),
+        coefficients={name: float(value) for name, value in profile["coefficients"].items()},
+        integrator=str(data["integrator"]),
+        substeps=int(data["substeps"]),
+        backend=str(data["backend"]),
+        made_by=str(data["made_by"]),
+        tolerances={name: {key: float(value) for key, value in of.items()} for name, of in data["tolerances"].items()},
+        trials={
+            name: Recorded(
+                str(of["sha256"]),
+                {key: math.inf if v is None else float(v) for key, v in of["metrics"].items()},
+            )
+            for name, of in data["trials"].items()
+        },
+    )
+
+
+def _wrong(baseline: Baseline, where: str) -> list[Problem]:
+    problems = []
+    for name, of in baseline.tolerances.items():
+        trial, _, metric = name.rpartition("/")
+        if metric not in METRICS:
+            problems.append(Problem(f"unknown metric '{metric}'", where, fix=closest(metric, tuple(METRICS))))
+        elif trial and (trial not in baseline.trials or metric not in baseline.tolerances):
+            problems.append(Problem(f"tolerance '{name}' is for nothing that is compared", where))
+        for key, value in of.items():
+            if key not in ("relative", "absolute") or not (math.isfinite(value) and value >= 0.0):
+                fix = 'write {"relative": 0.01, "absolute": 0.001}'
+                problems.append(Problem(f"tolerance '{name}' has {key} = {value}", where, fix=fix))
+    for trial, recorded in baseline.trials.items():
+        for metric in recorded.metrics:
+            if metric not in baseline.tolerances:
+                what = f"metric '{metric}' of trial '{trial}' has no tolerance"
+                problems.append(Problem(what, where, fix=f'add "{metric}" to "tolerances", or write the baseline anew'))
+    if not baseline.trials:
+        problems.append(Problem("the baseline names no trial", where))
+    return problems

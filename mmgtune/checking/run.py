@@ -1,0 +1,234 @@
+"""A profile checked against trials: better, as good as, or worse than its baseline and its limits."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Sequence
+from importlib.metadata import version
+
+from ..backends import Integrator
+from ..errors import OptionError, Problem, closest
+from ..metrics import METRICS
+from ..model import Model
+from ..profile import ShipProfile
+from ..trial import TrialSet
+from .baseline import Baseline, Recorded
+from .blame import changed_coefficients
+from .measuring import Values, applicable, default_tolerances, measure
+from .result import CheckReport, Item, Status
+
+
+def record_baseline(
+    profile: ShipProfile,
+    trials: TrialSet,
+    metrics: Sequence[str] = (),
+    *,
+    before: Baseline | None = None,
+    integrator: Integrator = Integrator(),
+    backend: str = "compiled",
+) -> Baseline:
+    """The baseline of a profile on trials as they are now.
+
+    metrics  of METRICS; where empty those of ``before``, or all that any trial shows
+    before   the baseline this one takes the place of: its tolerances stay
+    Raises OptionError for an unknown metric.
+    """
+    model = Model(profile)
+    names = _known(metrics) or (before.metrics if before else list(METRICS))
+    (found,) = measure(model, list(trials.trials.values()), names, integrator=integrator, backend=backend)
+    shown = names if before and not metrics else applicable(found)
+    tolerances = {name: dict(of) for name, of in default_tolerances(shown, model.L_pp).items()}
+    if before:
+        for name, of in before.tolerances.items():
+            trial, _, metric = name.rpartition("/")
+            if metric in tolerances and (not trial or trial in found):
+                tolerances[name] = dict(of)
+    return Baseline(
+        ship=profile.id,
+        sha256=profile.sha256,
+        coefficients=coefficients_of(model),
+        integrator=integrator.name,
+        substeps=integrator.substeps,
+        backend=backend,
+        made_by=made_by(),
+        tolerances=tolerances,
+        trials={name: Recorded(trials.trials[name].sha256, values) for name, values in found.items()},
+    )
+
+
+def check(
+    profile: ShipProfile,
+    trials: TrialSet,
+    baseline: Baseline | None = None,
+    *,
+    names: tuple[str, str, str | None] = ("", "", None),
+    metrics: Sequence[str] = (),
+    integrator: Integrator | None = None,
+    backend: str = "compiled",
+) -> CheckReport:
+    """Compare a profile with its baseline, and with the limits it sets itself.
+
+    names       what the user called profile, trials and baseline, for messages
+    metrics     of METRICS; where empty those of the baseline, or those with a limit
+    integrator  the baseline's where None
+    Raises OptionError where there is nothing to compare with, the baseline is of another ship or of another
+    integrator, or a metric is unknown.
+    """
+    began = time.perf_counter()
+    chosen = _integrator(baseline, integrator, names[2] or "baseline")
+    if baseline is None and not profile.limits:
+        raise OptionError(
+            Problem(
+                "there is nothing to compare with",
+                names[0] or profile.id,
+                "neither a baseline nor limits were given",
+                "name a baseline with --baseline, or put [limits] into the profile",
+            )
+        )
+    if baseline is not None and baseline.ship != profile.id:
+        raise OptionError(
+            Problem(
+                f"the baseline is of ship '{baseline.ship}', the profile of '{profile.id}'",
+                names[2] or "baseline",
+                fix="name the baseline of this ship, or write one with --update-baseline",
+            )
+        )
+    model = Model(profile)
+    wanted = _known(metrics) or (baseline.metrics if baseline else [])
+    wanted = [name for name in METRICS if name in wanted or (name in profile.limits and not metrics)]
+    (found,) = measure(model, list(trials.trials.values()), wanted, integrator=chosen, backend=backend)
+    items: list[Item] = []
+    for name, values in found.items():
+        items += compared(name, values, trials.trials[name].sha256, wanted, profile.limits, baseline)
+    gone = [name for name in baseline.trials if name not in found] if baseline else []
+    items += [
+        Item(name, "", None, None, None, "not comparable", "the baseline has it, the trials do not") for name in gone
+    ]
+    same = [
+        trial
+        for name, trial in trials.trials.items()
+        if baseline and name in baseline.trials and baseline.trials[name].sha256 == trial.sha256
+    ]
+    return CheckReport(
+        profile=names[0] or profile.id,
+        trials=names[1],
+        baseline=names[2],
+        profile_file=str(profile.path or ""),
+        sha256=profile.sha256,
+        items=tuple(items),
+        changed=changed_coefficients(model, same, baseline, chosen, backend) if baseline else (),
+        notes=_notes(baseline, backend),
+        problems=(),
+        made_by=made_by(),
+        integrator=chosen.name,
+        substeps=chosen.substeps,
+        backend=backend,
+        wall_s=time.perf_counter() - began,
+    )
+
+
+def could_not_run(names: tuple[str, str, str | None], problems: tuple[Problem, ...]) -> CheckReport:
+    """The report of a check that never came to compare anything."""
+    return CheckReport(
+        names[0], names[1], names[2], "", "", (), (), (), problems, made_by(), "", 0, "", 0.0
+    )  # fmt: skip
+
+
+def made_by() -> str:
+    """Program and version."""
+    return f"mmgtune {version('mmgtune')}"
+
+
+def coefficients_of(model: Model) -> dict[str, float]:
+    """Every number of a profile by name, those of tables one by one."""
+    return {name: float(model.base[row]) for name, row in model.rows.items()}
+
+
+def _known(metrics: Sequence[str]) -> list[str]:
+    for name in metrics:
+        if name not in METRICS:
+            raise OptionError(Problem(f"unknown metric '{name}'", "--metrics", fix=closest(name, tuple(METRICS))))
+    return [name for name in METRICS if name in metrics]
+
+
+def _integrator(baseline: Baseline | None, asked: Integrator | None, where: str) -> Integrator:
+    if baseline is None:
+        return asked or Integrator()
+    recorded = Integrator(baseline.integrator, baseline.substeps)
+    if asked is not None and asked != recorded:
+        raise OptionError(
+            Problem(
+                f"the baseline was made with {recorded.name}, {recorded.substeps} substeps, not {asked.name},"
+                f" {asked.substeps}",
+                where,
+                "its numbers cannot be compared with those of another integration",
+                "leave --integrator and --substeps out, or write the baseline anew with --update-baseline",
+            )
+        )
+    return recorded
+
+
+def compared(
+    trial: str,
+    values: Values,
+    sha256: str,
+    wanted: Sequence[str],
+    limits: dict[str, float],
+    baseline: Baseline | None,
+) -> list[Item]:
+    """Items of one trial: one per metric, one in all where its file is not the baseline's."""
+    recorded = baseline.trials.get(trial) if baseline else None
+    reason = ""
+    if baseline and recorded is None:
+        reason = "the trials have it, the baseline does not"
+    elif recorded and recorded.sha256 != sha256:
+        reason = "its file changed since the baseline"
+    items = [Item(trial, "", None, None, None, "not comparable", reason)] if reason else []
+    for name in wanted:
+        then = recorded.metrics.get(name) if recorded and not reason else None
+        now = values.get(name)
+        limit = limits.get(name)
+        if now is None:
+            if then is not None:
+                why = "the trial does not show it any more"
+                items.append(Item(trial, name, then, None, None, "not comparable", why))
+            elif name.startswith("rms_"):
+                channel = name.removeprefix("rms_")
+                items.append(Item(trial, name, None, None, None, "not shown", f"the trial has no measured {channel}"))
+            # That a turning circle has no overshoot goes without saying.
+        elif then is not None or limit is not None:
+            tolerance = baseline.tolerance(trial, name, then) if baseline and then is not None else 0.0
+            items.append(_judged(trial, name, then, now, tolerance, limit))
+        elif baseline and not reason and name in baseline.metrics:
+            items.append(Item(trial, name, None, now, None, "not comparable", "the baseline has no value of it"))
+    return items
+
+
+def _judged(trial: str, name: str, then: float | None, now: float, tolerance: float, limit: float | None) -> Item:
+    """A metric against its old value and its limit; either may be missing, not both."""
+    if limit is not None and abs(now) > limit:
+        return Item(trial, name, then, now, limit, "regressed", f"above the profile's limit of {limit:g}")
+    if then is None:
+        return Item(trial, name, None, now, limit, "ok")
+    allowed = abs(then) + tolerance
+    if math.isinf(then):
+        return Item(trial, name, then, now, None, "ok" if math.isinf(now) else "improved")
+    reason = "the simulation diverges or does not get there" if math.isinf(now) else ""
+    status: Status = "ok"
+    if abs(now) > allowed:
+        status = "regressed"
+    elif abs(now) < abs(then) - tolerance:
+        status = "improved"
+    return Item(trial, name, then, now, allowed, status, reason)
+
+
+def _notes(baseline: Baseline | None, backend: str) -> tuple[str, ...]:
+    if baseline is None:
+        return ()
+    notes = []
+    if baseline.made_by != made_by():
+        notes.append(f"the baseline was made by {baseline.made_by}, this is {made_by()}")
+    if baseline.backend != backend:
+        notes.append(f"the baseline was made with the {baseline.backend} back end; the two agree to rounding")
+    return tuple(notes)

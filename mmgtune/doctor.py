@@ -1,0 +1,133 @@
+"""What this installation can do, and what stands in its way."""
+
+from __future__ import annotations
+
+import os
+import platform
+import sys
+import time
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+import numpy as np
+
+from .backends import BACKENDS, get_backend
+from .errors import MmgtuneError
+from .model import Model
+from .objective import cases_of, make_objective
+from .profile import load_profile
+from .resources import folder, profile_names, trial_set_names
+from .trial import load_trials
+
+PACKAGES = ("numpy", "scipy", "numba", "cma", "pandas", "pyarrow", "pyproj", "matplotlib", "plotly")
+AGREE = 1e-9
+"""Largest difference of the two back ends, over the size of the motion, that is rounding."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing looked at.
+
+    ok   False where the program cannot do its work because of it
+    fix  what to do about it, "" where there is nothing to do
+    """
+
+    name: str
+    value: str
+    ok: bool = True
+    fix: str = ""
+
+
+def examine() -> list[Finding]:
+    """Look at everything; never raises for what it finds."""
+    return [*_versions(), _cores(), *_backends(), _cache(), *_data()]
+
+
+def _versions() -> list[Finding]:
+    found = [
+        Finding("mmgtune", version("mmgtune")),
+        Finding("Python", f"{platform.python_version()} ({sys.executable})"),
+        Finding("system", f"{platform.system()} {platform.machine()}"),
+    ]
+    for name in PACKAGES:
+        try:
+            found.append(Finding(name, version(name)))
+        except PackageNotFoundError:
+            found.append(Finding(name, "missing", ok=False, fix="install mmgtune again, with its dependencies"))
+    return found
+
+
+def _cores() -> Finding:
+    here = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    text = f"{here} of {os.cpu_count()}"
+    limit = os.environ.get("NUMBA_NUM_THREADS")
+    return Finding("cores", f"{text}, NUMBA_NUM_THREADS={limit}" if limit else text)
+
+
+def _backends() -> list[Finding]:
+    """Both back ends on one bundled trial: they must run, and agree."""
+    try:
+        model = Model(load_profile("suzaku"))
+        trials = list(load_trials("suzaku").trials.values())[:1]
+        cases = cases_of(trials, make_objective(model.L_pp))
+    except MmgtuneError as error:
+        return [Finding("back ends", f"cannot be tried: {error.problems[0].what}", ok=False)]
+    found, states = [], []
+    for name in BACKENDS:
+        began = time.perf_counter()
+        try:
+            result = get_backend(name).run(model, model.matrix(), cases, keep_states=True)
+            assert result.states is not None  # asked for
+        except Exception as error:  # whatever a compiler may raise is what is looked for here
+            fix = "set MMGTUNE_CACHE to a folder you may write to, or use --backend numpy" if name == "compiled" else ""
+            found.append(Finding(f"back end {name}", f"fails: {error!r}", ok=False, fix=fix))
+            continue
+        states.append(result.states)
+        found.append(
+            Finding(f"back end {name}", f"runs a trial in {time.perf_counter() - began:.2g} s, start included")
+        )
+    if len(states) == len(BACKENDS):
+        apart = float(np.max(np.abs(states[0] - states[1])) / np.max(np.abs(states[0])))
+        good = apart <= AGREE
+        text = f"agree to {apart:.1g}" if good else f"differ by {apart:.1g}"
+        fix = "" if good else "remove the folder of compiled kernels below, then please report it"
+        found.append(Finding("back ends", text, ok=good, fix=fix))
+    return found
+
+
+def _cache() -> Finding:
+    from .backends.compiling import cache_folder
+
+    path = cache_folder()
+    kernels = list(path.glob("mmgtune_kernel_*.py"))
+    size = sum(file.stat().st_size for file in path.rglob("*") if file.is_file()) / 1e6
+    text = f"{path}: {len(kernels)} kernels, {size:.1f} MB"
+    chosen = os.environ.get("MMGTUNE_CACHE")
+    lasting = path.name == "kernels"
+    fix = "" if lasting else "every run compiles anew (10-40 s): set MMGTUNE_CACHE to a folder you may write to"
+    return Finding("compile cache", text + (" (MMGTUNE_CACHE)" if chosen and lasting else ""), fix=fix)
+
+
+def _data() -> list[Finding]:
+    found = []
+    for name in profile_names():
+        try:
+            load_profile(name)
+        except MmgtuneError as error:
+            found.append(Finding(f"profile {name}", error.problems[0].what, ok=False, fix="install mmgtune again"))
+    for name in trial_set_names():
+        try:
+            load_trials(name)
+        except MmgtuneError as error:
+            found.append(Finding(f"trials {name}", error.problems[0].what, ok=False, fix="install mmgtune again"))
+    bundled = f"{len(profile_names())} profiles, {len(trial_set_names())} sets of trials ({folder('trials').parent})"
+    found.append(Finding("bundled data", bundled, ok=bool(profile_names() and trial_set_names())))
+    asked = os.environ.get("MMGTUNE_DATA")
+    if asked:
+        there = Path(asked).is_dir()
+        fix = "" if there else "name the folder of measured data, or unset it: only tests look there"
+        found.append(Finding("measured data", f"{asked}" if there else f"{asked} is no folder", ok=there, fix=fix))
+    else:
+        found.append(Finding("measured data", "MMGTUNE_DATA is not set (optional: only tests look there)"))
+    return found
