@@ -117,7 +117,7 @@ def sections(command: Any, context: click.Context) -> list[str]:
     if context.parent is not None:
         parts.append(f"\n## {context.command_path}\n")
         if not below:
-            usage = " ".join(command.collect_usage_pieces(context))
+            usage = " ".join(["[OPTIONS]", *map(shown_name, filter(is_argument, command.params))])
             parts.append(f"\n```text\n{context.command_path} {usage}\n```\n")
         parts.append(f"\n{described(command.help or '')}\n")
         if not below:
@@ -153,18 +153,28 @@ def tables(command: Any, context: click.Context) -> list[str]:
         if getattr(parameter, "hidden", False) or parameter.name == "help":
             continue
         panel = getattr(parameter, "rich_help_panel", None)
-        panel = panel or ("Arguments" if isinstance(parameter, click.Argument) else "Options")
+        panel = panel or ("Arguments" if is_argument(parameter) else "Options")
         panels.setdefault(panel, []).append(row(parameter, context))
     head = "| {} | meaning | default |\n|---|---|---|\n"
     return [f"\n{head.format(panel.lower())}{''.join(rows)}" for panel, rows in panels.items()]
 
 
+def is_argument(parameter: Any) -> bool:
+    """Whether a parameter is an argument, not an option."""
+    return bool(parameter.param_type_name == "argument")
+
+
+def shown_name(parameter: Any) -> str:
+    """What stands for an argument in the usage."""
+    name = str(parameter.metavar or parameter.name.upper())
+    return name if parameter.required else f"[{name}]"
+
+
 def row(parameter: Any, context: click.Context) -> str:
     """One option or argument."""
-    if isinstance(parameter, click.Argument):
-        names = parameter.make_metavar(ctx=context).strip("{}[]").replace("]", "").replace("[", "")
-    else:
-        names = ", ".join([*parameter.opts, *parameter.secondary_opts])
+    names = ", ".join([*parameter.opts, *parameter.secondary_opts])
+    if is_argument(parameter):
+        names = shown_name(parameter)
     default = parameter.get_default(context, call=True)
     shown = "required" if parameter.required else ""
     if default not in (None, False, "", ()) and not callable(default):

@@ -126,14 +126,15 @@ def test_the_project_speaks_of_itself_alone():
 
 
 def test_help_shows_all_of_its_words():
-    """Square brackets in the help of an option are taken for markup, and vanish."""
+    """Square brackets in the help of a command or an option are taken for markup, and vanish."""
     import typer.main
 
     from mmgtune.cli import app
 
-    def options(command):
+    def helps(command):
         for one in getattr(command, "commands", {}).values():
-            yield from options(one)
-        yield from command.params
+            yield from helps(one)
+        yield command.name, command.help
+        yield from ((one.name, getattr(one, "help", None)) for one in command.params)
 
-    assert [one.name for one in options(typer.main.get_command(app)) if "[" in (getattr(one, "help", None) or "")] == []
+    assert [name for name, text in helps(typer.main.get_command(app)) if "[" in (text or "")] == []
