@@ -16,6 +16,7 @@ from ..fitting.box import parameter_of
 from ..fitting.run import Hooks, in_pieces, make_provenance
 from ..model import Model
 from ..profile import ShipProfile, with_all_effects
+from ..threads import blas_on_one_thread
 from ..trial import Trial, TrialSet
 from ..trial.smoothing import FEWEST
 from .evidence import explain_forces, noise_share, residual_forces, short_horizon
@@ -35,6 +36,7 @@ TWINS = 3
 """Most similar effects listed for each."""
 
 
+@blas_on_one_thread
 def diagnose(
     profile: ShipProfile,
     trials: TrialSet,

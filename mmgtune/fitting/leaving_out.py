@@ -12,6 +12,7 @@ import numpy as np
 from ..objective import spread
 from ..profile import ShipProfile
 from ..repeating import Repeated, repeat
+from ..threads import blas_on_one_thread
 from ..trial import Trial, TrialSet
 from ..validation import L_MSE, TrialScore, by_manoeuvre, improvement, score
 from .comparison import finite
@@ -94,6 +95,7 @@ def _row(kind: str, before: Sequence[TrialScore], after: Sequence[TrialScore]) -
     }
 
 
+@blas_on_one_thread
 def fit_leaving_out(
     profile: ShipProfile,
     trials: TrialSet,

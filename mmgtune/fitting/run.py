@@ -18,6 +18,7 @@ from ..backends import STATES, get_backend
 from ..model import Model
 from ..objective import Objective, cases_of, make_objective, spread
 from ..profile import ShipProfile
+from ..threads import blas_on_one_thread
 from ..trial import TrialSet
 from .box import choose_targets, make_box
 from .certificate import certify
@@ -88,6 +89,7 @@ def make_problem(profile: ShipProfile, trials: TrialSet, options: FitOptions, id
     )
 
 
+@blas_on_one_thread
 def fit(
     profile: ShipProfile,
     trials: TrialSet,
