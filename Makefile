@@ -9,7 +9,7 @@ DEMO := runs/demo
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo test lint types arch check regression bench signs hidden trials browser clean
+.PHONY: help demo test lint types arch check regression docs bench signs hidden trials browser clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-11s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -42,6 +42,11 @@ check: ## lint, types, arch, regression and test
 	@$(MAKE) --no-print-directory regression
 	@$(MAKE) --no-print-directory test
 
+docs: export NO_MKDOCS_2_WARNING = 1
+docs: $(DEV) ## the site of the documents, into site/; a warning is an error
+	$(BIN)/mkdocs build --strict --quiet
+	@echo "site: $(CURDIR)/site/index.html"
+
 hidden: $(RUNTIME) ## the full study of hidden effects, some hours; goes on where it was stopped
 	$(BIN)/python -m tests.hidden.study
 	$(BIN)/python -m tests.hidden.table
@@ -52,8 +57,9 @@ signs: $(DEV) ## turn round every sign in the equations: do the tests notice? Ha
 bench: $(RUNTIME) ## time the simulation and the fit
 	$(BIN)/python tools/bench.py
 
-trials: $(RUNTIME) ## write the bundled trials anew
+trials: $(RUNTIME) ## write the bundled trials and the logs of the tutorial anew
 	$(BIN)/python tools/generate_suzaku_trials.py
+	$(BIN)/python -m tools.generate_tutorial_logs
 
 browser: ## install Debian's chromium for the tests of the page, where that is possible
 	@if command -v chromium >/dev/null; then \
@@ -68,7 +74,7 @@ browser: ## install Debian's chromium for the tests of the page, where that is p
 	fi
 
 clean: ## remove caches and built packages; .venv and runs stay
-	rm -rf build dist .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
+	rm -rf build dist site .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
 	find . -path ./$(VENV) -prune -o -path ./.git -prune -o -type d -name __pycache__ -exec rm -rf {} +
 
 $(RUNTIME): pyproject.toml

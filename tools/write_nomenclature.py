@@ -31,7 +31,7 @@ method; a dash means a pure number. A profile names a coefficient by its section
 
 
 EFFECTS = """
-# Effects
+## Effects
 
 What can differ between a ship and her model. A profile has them as tables `[effects.<tag>]`, a target names a
 parameter as `effects.<tag>.<symbol>`. They act in this order of the data flow.
@@ -46,7 +46,7 @@ def nomenclature() -> str:
         parts += table(component)
     parts.append(EFFECTS)
     for effect in BUILT_IN:
-        parts.append(f"\n## effects.{effect.tag} ({effect.place}): {effect.title}\n\n")
+        parts.append(f"\n### effects.{effect.tag} ({effect.place}): {effect.title}\n\n")
         parts += table(effect)
     return "".join(parts)
 

@@ -86,7 +86,7 @@ def command(
     substeps: c.Substeps = 1,
     backend: c.BackendName = "compiled",
 ) -> None:
-    """Does the profile still reproduce the trials? Compare with a committed baseline, or with its own [limits].
+    """Does the profile still reproduce the trials? Compare with a committed baseline, or with its own limits.
 
     Exit codes: 0 as good as the baseline or better; 1 worse; 2 not comparable, or could not run.
 

@@ -101,13 +101,13 @@ Restart = Annotated[
     float | None,
     typer.Option(
         "--restart",
-        help="Cut trials into windows this long [s], each begun anew from a measured state.",
+        help="Cut trials into windows this long (s), each begun anew from a measured state.",
         rich_help_panel=SEARCH,
     ),
 ]
 Every = Annotated[
     float | None,
-    typer.Option("--every", help="Compare samples this far apart [s]; default all.", rich_help_panel=SEARCH),
+    typer.Option("--every", help="Compare samples this far apart (s); default all.", rich_help_panel=SEARCH),
 ]
 Loss = Annotated[
     str,

@@ -26,7 +26,7 @@ def command(
         list[float] | None,
         typer.Option(
             "--turn",
-            help="Turning circle at this rudder angle [deg], starboard positive; repeatable.",
+            help="Turning circle at this rudder angle (deg), starboard positive; repeatable.",
             rich_help_panel=MANOEUVRE,
         ),
     ] = None,
@@ -34,7 +34,7 @@ def command(
         list[str] | None,
         typer.Option(
             "--zigzag",
-            help="Zigzag RUDDER/HEADING [deg], such as 20/20 or -10/10; repeatable.",
+            help="Zigzag RUDDER/HEADING (deg), such as 20/20 or -10/10; repeatable.",
             rich_help_panel=MANOEUVRE,
         ),
     ] = None,
@@ -46,7 +46,7 @@ def command(
     ] = None,
     rpm: Annotated[
         float | None,
-        typer.Option("--rpm", help="Propeller revolutions [1/min]. Default: the profile's.", rich_help_panel=MANOEUVRE),
+        typer.Option("--rpm", help="Propeller revolutions (1/min). Default: the profile's.", rich_help_panel=MANOEUVRE),
     ] = None,
     trials: Annotated[
         str | None,

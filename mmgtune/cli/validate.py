@@ -18,7 +18,7 @@ def command(
     window: Annotated[
         float | None,
         typer.Option(
-            "--window", "--restart", help="Cut trials into windows this long [s], each begun from a measured state."
+            "--window", "--restart", help="Cut trials into windows this long (s), each begun from a measured state."
         ),
     ] = None,
     sigma_from: Annotated[

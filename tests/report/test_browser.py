@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -11,36 +9,20 @@ from typing import Any
 import pytest
 
 from mmgtune.report import render
+from tests.browser import chromium
 
 from . import fake_run
 
 pytestmark = pytest.mark.browser
 
-FLAGS = (
-    "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
-    "--disable-component-update", "--disable-sync",
-)  # fmt: skip
 READY = 'html[data-ready="1"]'
 OVERFLOW = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
 
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
-    """Chromium, or a skip that a job may forbid with MMGTUNE_REQUIRE_BROWSER=1."""
-    path = os.environ.get("MMGTUNE_CHROMIUM") or shutil.which("chromium")
-    missing = "" if path else "there is no chromium; set MMGTUNE_CHROMIUM to one"
-    try:
-        from playwright.sync_api import sync_playwright
-    except ImportError:
-        missing = "playwright is not installed"
-    if missing:
-        if os.environ.get("MMGTUNE_REQUIRE_BROWSER") == "1":
-            pytest.fail(missing)
-        pytest.skip(missing)
-    with sync_playwright() as playwright:
-        opened = playwright.chromium.launch(executable_path=path, args=list(FLAGS))
-        yield opened
-        opened.close()
+    """Chromium, or a skip."""
+    yield from chromium()
 
 
 class Visit:

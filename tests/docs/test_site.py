@@ -1,0 +1,158 @@
+"""The site of the documents: it builds without a warning, and opens without a server and without a net."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+
+import pytest
+
+from tests.browser import chromium
+from tests.command import run
+
+ROOT = Path(__file__).parents[2]
+OVERFLOW = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The site, built so that a warning is an error."""
+    missing = [name for name in ("mkdocs", "material", "mkdocstrings", "latex2mathml") if not found(name)]
+    if missing:
+        pytest.skip(f"{', '.join(missing)} not installed: pip install '.[docs]'")
+    folder = tmp_path_factory.mktemp("site")
+    built = subprocess.run(
+        [sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", str(folder)],
+        cwd=ROOT,
+        env={**os.environ, "NO_MKDOCS_2_WARNING": "1"},
+        capture_output=True,
+        text=True,
+    )
+    assert built.returncode == 0, built.stderr
+    return folder
+
+
+def found(name: str) -> bool:
+    """Whether a module can be imported."""
+    return importlib.util.find_spec(name) is not None
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    """Chromium, or a skip."""
+    yield from chromium()
+
+
+@pytest.fixture
+def visit(browser: Any, site: Path) -> Iterator[Any]:
+    """Opens pages; fails where one complained, missed a file, asked elsewhere or is wider than the window."""
+    context = browser.new_context(offline=True, viewport={"width": 1280, "height": 900})
+    page = context.new_page()
+    complaints: list[str] = []
+    page.on("console", lambda message: complaints.append(f"{message.type}: {message.text}"))
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.on("requestfailed", lambda request: complaints.append(f"missing: {request.url}"))
+    page.on(
+        "request",
+        lambda request: request.url.startswith(("file:", "data:")) or complaints.append(f"outside: {request.url}"),
+    )
+
+    def go(name: str) -> Any:
+        page.goto((site / name).as_uri())
+        page.wait_for_load_state("networkidle")
+        assert page.evaluate(OVERFLOW) <= 0, name
+        return page
+
+    yield go
+    context.close()
+    assert complaints == []
+
+
+def test_equations_are_mathml(site):
+    for name in ("model", "low-speed", "effects", "calibration", "diagnosis"):
+        text = (site / "theory" / f"{name}.html").read_text(encoding="utf-8")
+        assert text.count("<math ") >= 5
+    for page in site.rglob("*.html"):
+        prose = re.sub(r"<(pre|code|script)\b.*?</\1>", "", page.read_text(encoding="utf-8"), flags=re.S)
+        assert "arithmatex" not in prose, page
+        assert "$$" not in prose, page
+
+
+def test_nothing_is_asked_from_elsewhere(site):
+    for page in site.rglob("*.html"):
+        for tag in re.findall(r"<(?:link|script|img|iframe)\b[^>]*>", page.read_text(encoding="utf-8")):
+            for address in re.findall(r'(?:src|href)="([^"]*)"', tag):
+                assert not urlsplit(address).netloc, (page.name, tag)
+
+
+def test_every_command_has_its_section(site, tmp_path):
+    text = (site / "reference" / "commands.html").read_text(encoding="utf-8")
+    help_text = run("--help", cwd=tmp_path).out
+    names = re.findall(r"^│ ([a-z][a-z-]+) ", help_text, flags=re.M)
+    assert {"fit", "diagnose", "trials"} <= set(names)
+    assert [name for name in names if f"mmgtune {name}<" not in text] == []
+
+
+def test_the_library_pages_hold_the_public_names(site):
+    import mmgtune
+
+    text = "".join(page.read_text(encoding="utf-8") for page in (site / "reference" / "api").glob("*.html"))
+    wanted = [f"{module}.{name}" for name, module in mmgtune._WHERE.items()]
+    assert [name for name in wanted if f'id="mmgtune.{name}"' not in text] == []
+
+
+@pytest.mark.browser
+def test_home(visit):
+    page = visit("index.html")
+    assert page.inner_text("h1").startswith("mmgtune")
+    page.click("text=Tutorial >> nth=0")
+    page.wait_for_selector("h1:has-text('From a raw log')")
+
+
+@pytest.mark.browser
+def test_equations_are_shown(visit):
+    page = visit("theory/model.html")
+    fraction = page.locator("math mfrac").first
+    over, under = (fraction.locator("> *").nth(k).bounding_box() for k in (0, 1))
+    assert over["y"] + over["height"] <= under["y"] + 1.0  # one above the other: rendered, not spelt out
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize(
+    "name",
+    [
+        "tutorial/index.html", "guides/calibrate.html", "theory/effects.html", "nomenclature.html", "formats.html",
+        "reference/commands.html", "reference/api/fitting.html", "esso-osaka.html", "kvlcc2.html", "hidden.html",
+        "limits.html", "changelog.html",
+    ],
+)  # fmt: skip
+def test_every_kind_of_page(visit, name):
+    page = visit(name)
+    assert page.inner_text("h1")
+    assert page.evaluate("[...document.images].every(image => image.complete && image.naturalWidth > 0)")
+
+
+@pytest.mark.browser
+def test_a_narrow_screen(visit):
+    page = visit("theory/model.html")
+    page.set_viewport_size({"width": 400, "height": 800})
+    assert page.evaluate(OVERFLOW) <= 0
+
+
+@pytest.mark.browser
+def test_search(visit):
+    page = visit("index.html")
+    page.focus(".md-search__input")
+    page.keyboard.type("gyro bias")
+    page.wait_for_selector(".md-search-result__item a")
+    assert "matching" in page.inner_text(".md-search-result__meta")
+    page.click(".md-search-result__item a >> nth=0")
+    page.wait_for_selector("h1")
+    assert "index.html" not in page.url.rsplit("/", 1)[-1].split("?")[0]
