@@ -33,7 +33,7 @@ Made from the commands themselves when this site was built; `mmgtune COMMAND --h
 | code | meaning |
 |---:|---|
 | 0 | good |
-| 1 | ran, and the answer is no (`--strict`, `--fail-on`) |
+| 1 | ran, and the answer is no (`check`, `--strict`, `--fail-on`) |
 | 2 | could not run: an option, a file or the output; the message says what, where, why and the fix |
 | 3 | a bug; a file with the traceback is named |
 | 130 | interrupted; the best so far is saved, `--resume` continues |

@@ -1,0 +1,89 @@
+"""Every command of the README and of the guides, run as it stands, page by page in a folder of its own.
+
+The pages on measured ships need data that does not travel with the program (tests/measured), the tutorial has a test of
+its own (test_tutorial.py), and the output of some commands here is what other tests are about: here they must work.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+from mmgtune.resources import folder
+from tests.command import QUICK, run
+from tests.docs.test_docs import ROOT, code
+
+PAGES = [
+    ROOT / "README.md",
+    *sorted((ROOT / "docs" / "guides").glob("*.md")),
+    *sorted((ROOT / "docs" / "theory").glob("*.md")),
+    ROOT / "docs" / "check-sensitivity.md",
+    *ROOT.glob("*/README.md"),
+    *ROOT.glob("*/*/README.md"),
+]
+MAKES_TRIALS = "trials import"
+TRIALS = ("turn_p35", "turn_m20", "zigzag_10", "zigzag_20")
+
+
+def commands(page):
+    """Commands of a page in order; what a shell would do with the rest of the line is left out."""
+    return [
+        line.split(" #")[0].strip()
+        for language in ("", "sh")
+        for block in code(page, language)
+        for line in map(str.strip, block.splitlines())
+        if line.startswith("mmgtune ")
+    ]
+
+
+@pytest.fixture
+def desk(tmp_path):
+    """What the pages presuppose: a profile and trials of one's own, logs with their map, a baseline, a run."""
+    profile = folder("ship_profiles") / "suzaku.toml"
+    for name in ("my_ship.toml", "before.toml", "after.toml", "ship.toml"):
+        shutil.copy(profile, tmp_path / name)
+    logs = ROOT / "docs" / "tutorial" / "logs"
+    shutil.copytree(logs, tmp_path / "logs")
+    for log in logs.glob("*.csv"):
+        shutil.copy(log, tmp_path)
+    (toml,) = [block for block in code(ROOT / "docs" / "tutorial" / "index.md", "toml") if "[columns]" in block]
+    for name in ("map.toml", "m.toml"):
+        (tmp_path / name).write_text(toml, encoding="utf-8")
+    shutil.copytree(folder("trials"), tmp_path / "trials")
+    shutil.copy(folder("trials") / "suzaku" / "check.json", tmp_path)
+    return tmp_path
+
+
+def own_trials(desk, name):
+    """A small set of trials under that name."""
+    (desk / name).mkdir(exist_ok=True)
+    for trial in TRIALS:
+        shutil.copy(folder("trials") / "suzaku" / f"{trial}.parquet", desk / name)
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if commands(page)], ids=lambda page: page.name)
+def test_commands_of_a_page_run(page, desk):
+    lines = commands(page)
+    if not any(MAKES_TRIALS in line for line in lines):
+        own_trials(desk, "my_trials")
+    if page.name == "ci.md":
+        shutil.rmtree(desk / "trials")
+        own_trials(desk, "trials")
+        (desk / "check.json").unlink()
+    if any("runs/demo" in line for line in lines):
+        assert run("fit", *QUICK, "--out", "runs/demo", cwd=desk).code == 0
+    for line in lines:
+        # Through a shell, for the patterns in names.
+        ended = subprocess.run(
+            line.replace("mmgtune", f'"{sys.executable}" -m mmgtune', 1),
+            shell=True,
+            cwd=desk,
+            env={**os.environ, "NO_COLOR": "1", "GITHUB_STEP_SUMMARY": "summary.md"},
+            capture_output=True,
+            text=True,
+            timeout=600,
+        )
+        assert ended.returncode == (1 if "--fail-on" in line else 0), (line, ended.stdout[-2000:], ended.stderr)
+        assert "Traceback" not in ended.stderr
