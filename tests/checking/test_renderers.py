@@ -77,6 +77,12 @@ def test_text_shows_what_is_wrong_and_the_verdict_last(worse):
     assert everything.count("\n") > len(worse.items)
 
 
+def test_text_names_the_coefficients_that_matter_most(worse):
+    many = tuple(Changed(f"hull.{k}", 1.0, 2.0, None, None) for k in range(30))
+    assert "and 20 more" in text(replace(worse, changed=many))
+    assert "hull.29" in text(replace(worse, changed=many), everything=True)
+
+
 def test_text_of_a_pass_is_two_lines(worse, ship, data, baseline):
     from mmgtune.checking import check
 

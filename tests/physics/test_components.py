@@ -4,12 +4,14 @@ import numpy as np
 import pytest
 
 from mmgtune.components import COMPONENTS
+from mmgtune.model import Model
 from mmgtune.physics.kinematics import R_PRIME_MAX, flow
 from mmgtune.physics.mmg import forces
 from mmgtune.physics.propeller.four_quadrant import four_quadrant_propeller
 from mmgtune.physics.quantities import Control, State, WakeOut
 from mmgtune.physics.rigid_body import accelerations
 from mmgtune.physics.rudder.flapped import flap_angle
+from mmgtune.profile import load_profile
 
 FLAP = np.radians([0, 10, 18, 25, 30, 34.5, 38, 41, 43.5, 45])
 
@@ -117,9 +119,6 @@ def test_wake_is_largest_at_zero_inflow_angle_and_fades(suzaku):
 
 
 def test_asymmetric_wake_by_hand():
-    from mmgtune.model import Model
-    from mmgtune.profile import load_profile
-
     model = Model(load_profile("kvlcc2_l7"))
     p = coefficients(model)
     for beta, C_2 in ((0.2, 1.6), (-0.2, 1.1)):
@@ -141,3 +140,13 @@ def test_side_force_and_moment_of_the_four_quadrant_propeller(suzaku, phi):
     C_PN = -2.48e-4 * phi - 1.70e-3 if phi < 20.0 else -1.86e-4 * phi + 4.03e-3
     assert found.Y[0] == pytest.approx(q * (-2.83e-5 * phi**2 + 6.04e-4 * phi - 1.28e-2))
     assert found.N[0] == pytest.approx(q * 83.0 * C_PN)
+
+
+@pytest.mark.parametrize("name", ["suzaku", "kvlcc2_l7", "esso_osaka_3m"])
+def test_angle_of_attack_of_the_rudder(name):
+    """alpha_R is the rudder angle less that of the inflow."""
+    model = Model(load_profile(name))
+    state = State(*(np.array([q]) for q in (0.0, 0.0, 0.0, 0.5, -0.1, 0.01)))
+    found = forces(state, Control(np.array([8.0]), np.array([0.2])), model.components, coefficients(model)).rudder
+    assert found.v_R[0] != 0.0
+    assert found.alpha_R[0] == pytest.approx(0.2 - np.arctan2(found.v_R[0], found.u_R[0]))

@@ -83,6 +83,7 @@ def test_propeller_astern(at, draught, J_S):
     n = -10.0
     u = J_S * n * D
     found = at(u, 0.0, 0.0, n, 0.0).propeller
+    assert found.J[0] == pytest.approx(J_S * (1.0 - 0.614) if u > 0.0 else J_S)
     K_T = -0.175 + 0.330 * J_S if J_S >= -0.233 else -0.251
     assert found.force.X[0] == pytest.approx(RHO * n**2 * D**4 * K_T)
     k = (5, None) if J_S > -0.06 else (3, 4) if J_S < -0.35 else (1, 2)
@@ -96,7 +97,7 @@ def jet_of(found):
     return 8.0 / math.pi * found.propeller.K_T[0] * (10.0 * D) ** 2
 
 
-@pytest.mark.parametrize(("v", "r"), [(0.08, 0.02), (-0.08, -0.02)])
+@pytest.mark.parametrize(("v", "r"), [(0.08, 0.02), (-0.08, -0.02), (0.02, 0.04)])
 @pytest.mark.parametrize("delta", [0.3, -0.2])
 def test_rudder_ahead(at, esso_osaka, v, r, delta):
     u, n, eta = 0.35, 10.0, D / H_R

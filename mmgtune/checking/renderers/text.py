@@ -8,6 +8,9 @@ from .numbers import change, value
 MOST = 25
 """Rows shown, the most severe first."""
 
+MOST_CHANGED = 10
+"""Coefficients shown, the most responsible first."""
+
 SHOWN = ("regressed", "not comparable", "improved")
 
 
@@ -38,7 +41,10 @@ def text(report: CheckReport, everything: bool = False) -> str:
         )
     if report.changed:
         lines.append(" coefficients that changed since the baseline:")
-        lines += [f"   {one}" for one in report.changed]
+        shown = report.changed if everything else report.changed[:MOST_CHANGED]
+        lines += [f"   {one}" for one in shown]
+        if len(shown) < len(report.changed):
+            lines.append(f"   and {len(report.changed) - len(shown)} more")
     lines += [f" note: {note}" for note in report.notes]
     if report.next:
         lines.append(f" next: {report.next}")
