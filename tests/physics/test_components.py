@@ -144,9 +144,11 @@ def test_side_force_and_moment_of_the_four_quadrant_propeller(suzaku, phi):
 
 @pytest.mark.parametrize("name", ["suzaku", "kvlcc2_l7", "esso_osaka_3m"])
 def test_angle_of_attack_of_the_rudder(name):
-    """alpha_R is the rudder angle less that of the inflow."""
+    """alpha_R is the rudder angle less that of the inflow; beta_R the drift at the place that l_R' stands for."""
     model = Model(load_profile(name))
     state = State(*(np.array([q]) for q in (0.0, 0.0, 0.0, 0.5, -0.1, 0.01)))
     found = forces(state, Control(np.array([8.0]), np.array([0.2])), model.components, coefficients(model)).rudder
     assert found.v_R[0] != 0.0
     assert found.alpha_R[0] == pytest.approx(0.2 - np.arctan2(found.v_R[0], found.u_R[0]))
+    beta, r_ = np.arctan2(0.1, 0.5), 0.01 * model.L_pp / np.hypot(0.5, 0.1)
+    assert found.beta_R[0] == pytest.approx(beta - model.profile.value("rudder.l_R_") * r_)
