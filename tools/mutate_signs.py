@@ -29,6 +29,7 @@ ROOT = Path(__file__).parent.parent
 FOLDERS = ("mmgtune/physics", "mmgtune/effects")
 SUITES = (
     "tests/physics",
+    "tests/effects/test_equations.py",
     "tests/checking/test_check.py::test_the_committed_baseline_is_what_the_program_does",
     "tests/papers",
     "tests/properties",
@@ -99,8 +100,7 @@ def caught_by(copy: Path, sign: Sign) -> str:
         "MMGTUNE_CACHE": str(cache),
     }
     try:
-        # Those that are about the file first.
-        for suite in sorted(SUITES, key=lambda suite: "effects" in sign.path and suite != "tests/effects"):
+        for suite in SUITES:
             command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", suite]
             try:
                 ended = subprocess.run(command, cwd=copy, env=environment, capture_output=True, timeout=PATIENCE)

@@ -1,0 +1,283 @@
+"""The equations of every effect, put against what they say written out another way."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+
+from mmgtune.effects import find_effect
+from mmgtune.effects.hull_term import TERMS
+from mmgtune.effects.memory import STIFF
+from mmgtune.model import Model
+from mmgtune.physics.mmg import forces
+from mmgtune.physics.quantities import Air, Control, Force, State
+from mmgtune.physics.wind import WindCoefficients, wind_shape
+from mmgtune.profile import load_profile
+
+L, D, RHO = 83.0, 3.8, 1025.0
+STILL = Air(0.0, 0.0, 0.0)
+STEERED = Control(1.7, 0.3)
+MOVING = State(x=120.0, y=-40.0, psi=0.7, u=2.5, v_m=-0.4, r=0.012)
+
+
+def lanes(group):
+    """The same with arrays of one lane."""
+    return type(group)(*(np.array([float(value)]) for value in group))
+
+
+@pytest.fixture(scope="module")
+def suzaku():
+    return Model(load_profile("suzaku"))
+
+
+@pytest.fixture(scope="module")
+def added(suzaku):
+    """Force that an effect on forces adds to SUZAKU's, as three numbers."""
+    p = suzaku.coefficients(suzaku.matrix())
+
+    def force(tag, values, state=MOVING, air=STILL, control=STEERED):
+        now = lanes(state)
+        found = forces(now, lanes(control), suzaku.components, p)
+        effect = find_effect(tag)
+        e = effect.params(**{name: np.array([float(value)]) for name, value in values.items()})
+        given = effect.function(now, lanes(air), found, suzaku.components, p, e)
+        return np.array([np.ravel(axis)[0] for axis in given]), found
+
+    return force
+
+
+@pytest.mark.parametrize("term", TERMS)
+@pytest.mark.parametrize(("u", "v_m", "r"), [(2.5, -0.4, 0.012), (2.0, 0.3, -0.02)])
+def test_hull_terms(added, term, u, v_m, r):
+    """A term named N_rrabsr is r' r' |r'| times its coefficient, and pushes along its own axis only."""
+    U = math.hypot(u, v_m)
+    prime = {"u": u / U, "v": v_m / U, "r": r * L / U}
+    size = 1.0
+    for absolute, symbol in re.findall(r"(abs)?([uvr])", term[2:].replace("one", "")):
+        size *= abs(prime[symbol]) if absolute else prime[symbol]
+    values = {**dict.fromkeys(TERMS, 0.0), term: 0.01}
+    force, _ = added("hull-term", values, MOVING._replace(u=u, v_m=v_m, r=r))
+    unit = 0.5 * RHO * L * D * U**2
+    expected = {axis: 0.0 for axis in "XYN"} | {term[0]: 0.01 * size * unit * (L if term[0] == "N" else 1.0)}
+    np.testing.assert_allclose(force, list(expected.values()), rtol=1e-12, atol=1e-9)
+
+
+def bearing_forces(speed, come_from, profile):
+    """Force of a true wind on the moving ship, by angles: Fujiwara et al. 1998 in words."""
+    course = MOVING.psi
+    towards = come_from + math.pi
+    ahead = speed * math.cos(towards - course) - MOVING.u
+    starboard = speed * math.sin(towards - course) - MOVING.v_m
+    U2 = ahead**2 + starboard**2
+    a = math.atan2(starboard, -ahead)  # of where it comes from, counterclockwise from the bow
+    c = {name: profile.value(f"above_water.{name}") for name in WindCoefficients._fields}
+    C_X = c["X_0"] + sum(c[f"X_{k}"] * math.cos(k * a) for k in (1, 3, 5))
+    C_Y = sum(c[f"Y_{k}"] * math.sin(k * a) for k in (1, 3, 5))
+    C_N = sum(c[f"N_{k}"] * math.sin(k * a) for k in (1, 2, 3))
+    A_T, A_L = (profile.value(f"above_water.{name}") for name in ("A_T", "A_L"))
+    return 0.5 * 1.225 * U2 * np.array([A_T * C_X, A_L * C_Y, A_L * L * C_N])
+
+
+@pytest.mark.parametrize("come_from", [0.2, 2.0, 3.9, 5.5])
+def test_wind(added, suzaku, come_from):
+    shape = {name: suzaku.profile.value(f"above_water.{name}") for name in ("A_T", "A_L", *WindCoefficients._fields)}
+    expected = bearing_forces(9.0, come_from, suzaku.profile)
+    steady, _ = added("wind", {"speed": 9.0, "direction": come_from, "measured": 1.0, **shape})
+    np.testing.assert_allclose(steady, expected, rtol=1e-3)
+    flow = Air(-9.0 * math.cos(come_from), -9.0 * math.sin(come_from), 1.0)
+    measured, _ = added("wind", {"speed": 3.0, "direction": 0.0, "measured": 1.0, **shape}, air=flow)
+    np.testing.assert_allclose(measured, steady, rtol=1e-9)
+    # Wind from starboard pushes to port.
+    from_starboard, _ = added("wind", {"speed": 20.0, "direction": MOVING.psi + 1.5, "measured": 1.0, **shape})
+    assert from_starboard[1] < 0.0
+    nothing, _ = added("wind", {"speed": 0.0, "direction": 0.0, "measured": 1.0, **shape})
+    assert not nothing.any()
+
+
+@pytest.mark.parametrize("a", np.linspace(-3.0, 3.0, 7))
+def test_harmonics_of_wind(a):
+    """Multiples of the angle are made by addition theorems; starboard is a negative angle."""
+    c = WindCoefficients(*np.linspace(0.1, 1.0, 10))
+    X, Y, N = wind_shape(math.cos(a), -math.sin(a), c)
+    assert pytest.approx(c.X_0 + sum(getattr(c, f"X_{k}") * math.cos(k * a) for k in (1, 3, 5))) == X
+    assert pytest.approx(sum(getattr(c, f"Y_{k}") * math.sin(k * a) for k in (1, 3, 5))) == Y
+    assert pytest.approx(sum(getattr(c, f"N_{k}") * math.sin(k * a) for k in (1, 2, 3))) == N
+
+
+def test_waves_push_where_they_go(added):
+    force, _ = added("wave-drift", {"force": 4000.0, "direction": 2.0})
+    towards = 2.0 + math.pi - MOVING.psi
+    np.testing.assert_allclose(force, [4000.0 * math.cos(towards), 4000.0 * math.sin(towards), 0.0], atol=1e-9)
+
+
+def test_resistance(added, suzaku):
+    force, found = added("resistance", {"factor": 1.2, "slope": 2.0})
+    U = found.flow.U[0]
+    Fn = U / math.sqrt(9.81 * L)
+    R = suzaku.profile.value("hull.R_0") * 0.5 * RHO * L * D * U**2
+    np.testing.assert_allclose(force, [-(0.2 + 2.0 * Fn) * R, 0.0, 0.0], rtol=2e-3, atol=1e-9)
+
+
+@pytest.mark.parametrize("delta", [0.5, -0.5])
+def test_a_stalled_rudder_keeps_the_force_of_the_angle_it_stalled_at(added, delta):
+    force, found = added("rudder-stall", {"angle": 0.2}, control=Control(1.7, delta))
+    alpha = found.rudder.alpha_R[0]
+    assert abs(alpha) > 0.2
+    left = math.sin(0.2) / abs(math.sin(alpha))
+    np.testing.assert_allclose(force, [(left - 1.0) * axis[0] for axis in found.rudder.force])
+    unchanged, _ = added("rudder-stall", {"angle": 1.5}, control=Control(1.7, delta))
+    assert not unchanged.any()
+
+
+def test_memory_is_a_lag_of_first_order():
+    e = find_effect("memory").params(6.0)
+    force, Y_dot, N_dot = find_effect("memory").function(Force(1.0, 10.0, 100.0), 4.0, 130.0, 0.1, e)
+    assert force == pytest.approx((0.0, -6.0, 30.0))
+    assert (Y_dot, N_dot) == pytest.approx((1.0, -5.0))
+    # A lag shorter than the step can follow acts in part.
+    short = find_effect("memory").params(0.25 * STIFF * 0.1)
+    force, *_ = find_effect("memory").function(Force(1.0, 10.0, 100.0), 4.0, 130.0, 0.1, short)
+    assert force == pytest.approx((0.0, -1.5, 7.5))
+
+
+def test_flow_effects_are_velocities_over_ground_seen_from_the_ship():
+    north, east = 0.3, -0.2
+    u, v = find_effect("current").function(MOVING, STILL, find_effect("current").params(north, east))
+    towards = math.atan2(east, north) - MOVING.psi
+    speed = math.hypot(north, east)
+    assert (u, v) == pytest.approx((speed * math.cos(towards), speed * math.sin(towards)))
+    # A share of the wind along it and to its right.
+    effect, air = find_effect("wind-drift"), Air(-4.0, 3.0, 1.0)
+    u, v = effect.function(MOVING, air, effect.params(0.03, 0.01))
+    wind = complex(air.north, air.east)
+    drift = wind * complex(0.03, 0.01) * np.exp(-1j * MOVING.psi)
+    assert (u, v) == pytest.approx((drift.real, drift.imag))
+    assert effect.function(MOVING, air._replace(known=0.0), effect.params(0.03, 0.01)) == pytest.approx((0.0, 0.0))
+
+
+def earth(state):
+    """Velocity over ground, north + i east."""
+    return complex(state.u, state.v_m) * np.exp(1j * state.psi)
+
+
+def test_an_antenna_sees_its_own_way():
+    effect = find_effect("antenna")
+    e = effect.params(-20.0, 3.0)
+    seen = effect.function(MOVING, e)
+    arm = complex(-20.0, 3.0)
+    assert complex(seen.x, seen.y) == pytest.approx(complex(MOVING.x, MOVING.y) + arm * np.exp(1j * MOVING.psi))
+    assert complex(seen.u, seen.v_m) == pytest.approx(complex(MOVING.u, MOVING.v_m) + 1j * MOVING.r * arm)
+    assert effect.inverse(seen, e) == pytest.approx(MOVING)
+
+
+def test_a_biased_compass_turns_the_axes_and_not_the_track():
+    effect = find_effect("heading-bias")
+    e = effect.params(0.05)
+    seen = effect.function(MOVING, e)
+    assert seen.psi == pytest.approx(MOVING.psi + 0.05)
+    assert earth(seen) == pytest.approx(earth(MOVING))
+    assert effect.inverse(seen, e) == pytest.approx(MOVING)
+
+
+@pytest.mark.parametrize(
+    ("tag", "value", "seen"),
+    [
+        ("gyro-bias", 0.001, {"r": MOVING.r + 0.001}),
+        ("gyro-scale", 1.1, {"r": MOVING.r * 1.1}),
+        ("speed-scale", 1.1, {"u": MOVING.u * 1.1}),
+    ],
+)
+def test_sensors_with_one_number(tag, value, seen):
+    effect = find_effect(tag)
+    e = effect.params(value)
+    assert effect.function(MOVING, e) == pytest.approx(MOVING._replace(**seen))
+    assert effect.inverse(effect.function(MOVING, e), e) == pytest.approx(MOVING)
+
+
+@pytest.mark.parametrize(
+    ("tag", "value", "left"),
+    [
+        ("rudder-offset", 0.02, Control(1.7, 0.32)),
+        ("rudder-gain", 0.9, Control(1.7, 0.27)),
+        ("rpm-scale", 1.1, Control(1.87, 0.3)),
+    ],
+)
+def test_actuators_with_one_number(tag, value, left):
+    effect = find_effect(tag)
+    assert effect.function(None, Control(1.7, 0.3), None, 1.0, effect.params(value)) == pytest.approx(left)
+
+
+@pytest.mark.parametrize(("start", "end", "before"), [(0.0, 0.3, -0.1), (0.2, -0.1, 0.25)])
+def test_steering_lag(start, end, before):
+    """Against the same response integrated finely; then the rate limit."""
+    effect, T, h = find_effect("steering-lag"), 2.5, 1.0
+    blade, n = before, 20000
+    for k in range(n):
+        order = start + (end - start) * (k + 0.5) / n
+        blade += h / n * (order - blade) / T
+    given = effect.function(Control(1.0, start), Control(1.5, end), Control(1.0, before), h, effect.params(T, math.inf))
+    assert given == pytest.approx(Control(1.5, blade), abs=1e-5)
+    limited = effect.function(Control(1.0, start), Control(1.5, end), Control(1.0, before), h, effect.params(0.0, 0.04))
+    assert limited.delta == pytest.approx(before + math.copysign(0.04, end - before))
+    at_once = effect.function(
+        Control(1.0, start), Control(1.5, end), Control(1.0, before), h, effect.params(0.0, math.inf)
+    )
+    assert at_once.delta == pytest.approx(end)
+
+
+@pytest.fixture(scope="module")
+def numbers(suzaku):
+    return {name: float(suzaku.base[row]) for name, row in suzaku.rows.items()}
+
+
+def test_shallow_water(numbers):
+    """Kijima et al. 1990, with the numbers of SUZAKU at a depth of 8 m."""
+    effect = find_effect("shallow-water")
+    found = effect.function(numbers, effect.params(8.0))
+    h, b = 3.8 / 8.0, 0.737 * 13.5 / 3.8
+
+    def deep(n):
+        return 1.0 / (1.0 - h) ** n - h
+
+    cubic = 1.0 + (-5.5 * b**2 + 26.0 * b - 31.5) * h
+    cubic += (37.0 * b**2 - 185.0 * b + 230.0) * h**2 + (-38.0 * b**2 + 197.0 * b - 250.0) * h**3
+    factors = {"Y_v": deep(0.40 * b), "N_v": deep(0.425 * b), "N_r": deep(1.5 - 14.28 * 3.8 / 83.0), "Y_r": cubic}
+    for name, factor in factors.items():
+        assert found[f"hull.{name}"] == pytest.approx(factor * numbers[f"hull.{name}"]), name
+    assert len(found) == len(factors)
+
+
+def test_loading(numbers):
+    """Ratios of the formulas of Inoue, Hirano & Kijima 1981."""
+    effect = find_effect("loading")
+    found = effect.function(numbers, effect.params(1.1, 0.2, 0.95))
+    c = 0.737 * 13.5 / 83.0
+
+    def derivatives(d, tau):
+        k = 2.0 * d / 83.0
+        lift = math.pi / 2.0 * k + 1.4 * c
+        return {
+            "Y_v": lift * (1.0 + 2.0 / 3.0 * tau),
+            "Y_r": k * (1.0 + 0.80 * tau),
+            "N_v": k * (1.0 - 0.27 * tau * lift / k),
+            "N_r": (0.54 * k - k**2) * (1.0 + 0.30 * tau),
+        }
+
+    new, old = derivatives(1.1 * 3.8, 0.2), derivatives(3.8, 0.0)
+    for name in new:
+        assert found[f"hull.{name}"] == pytest.approx(numbers[f"hull.{name}"] * new[name] / old[name], rel=1e-3), name
+    assert found["particulars.d"] == pytest.approx(1.1 * 3.8)
+    assert found["particulars.C_b"] == pytest.approx(0.95 * 0.737)
+
+
+def test_factors_on_polynomials(numbers):
+    side = find_effect("propeller-side-force")
+    found = side.function(numbers, side.params(1.4, 0.7))
+    assert {name[10:14] for name in found} == {"C_PY", "C_PN"}
+    for name, value in found.items():
+        assert value == pytest.approx(numbers[name] * (1.4 if "C_PY" in name else 0.7))
+    flap = find_effect("flap")
+    for name, value in flap.function(numbers, flap.params(0.8)).items():
+        assert name.startswith("rudder.flap[")
+        assert value == pytest.approx(0.8 * numbers[name])
