@@ -51,6 +51,10 @@ class Model:
         """Length between perpendiculars [m]."""
         return self.profile.L_pp
 
+    def numbers(self) -> dict[str, float]:
+        """Every number of the profile by name, those of tables one by one."""
+        return {name: float(self.base[row]) for name, row in self.rows.items()}
+
     def matrix(self, names: Sequence[str] = (), values: npt.ArrayLike | None = None) -> FloatArray:
         """Coefficients of candidates: ``values`` (n_names, n_candidates) for ``names``, the profile's elsewhere.
 

@@ -46,7 +46,7 @@ REST = 10.0
 class Repeated:
     """A measured turning circle or zigzag beside the model's own.
 
-    id, run     of the trial, and of the run it belongs to
+    id          of the trial
     manoeuvre   "turning" or "zigzag"
     order       in words: "35 deg to starboard", "10/10 to port first"
     measured, simulated  indices by names with their unit, None where a record does not reach one; no simulated ones
@@ -54,7 +54,6 @@ class Repeated:
     """
 
     id: str
-    run: str
     manoeuvre: str
     order: str
     measured: dict[str, Any]
@@ -86,7 +85,7 @@ def repeat(ship: ShipProfile | Model, trials: Sequence[Trial], *, theta: FloatAr
         kind = manoeuvre_kind(track)
         if kind in repeats:
             order, measured, simulated = repeats[kind](model, track, theta)
-            found.append(Repeated(trial.id, trial.run, kind, order, measured.to_dict(), simulated))
+            found.append(Repeated(trial.id, kind, order, measured.to_dict(), simulated))
     return found
 
 

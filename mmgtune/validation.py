@@ -52,20 +52,24 @@ def L_MSE(scores: Sequence[TrialScore]) -> float:
 
 def by_manoeuvre(scores: Sequence[TrialScore]) -> dict[str, list[TrialScore]]:
     """Scores by kind of manoeuvre, "" where trials do not say."""
-    kinds = dict.fromkeys(score.manoeuvre for score in scores)
-    return {kind: [score for score in scores if score.manoeuvre == kind] for kind in kinds}
+    return _grouped(scores, lambda score: score.manoeuvre)
 
 
 def by_run(scores: Sequence[TrialScore]) -> dict[str, list[TrialScore]]:
     """Scores by run: windows of one, and trials cut from one, together."""
-    runs = dict.fromkeys(score.run for score in scores)
-    return {run: [score for score in scores if score.run == run] for run in runs}
+    return _grouped(scores, lambda score: score.run)
 
 
 def by_trial(scores: Sequence[TrialScore]) -> dict[str, list[TrialScore]]:
     """Scores by trial: the windows of one together."""
-    ids = dict.fromkeys(score.trial for score in scores)
-    return {id: [score for score in scores if score.trial == id] for id in ids}
+    return _grouped(scores, lambda score: score.trial)
+
+
+def _grouped(scores: Sequence[TrialScore], key: Callable[[TrialScore], str]) -> dict[str, list[TrialScore]]:
+    groups: dict[str, list[TrialScore]] = {}
+    for score in scores:
+        groups.setdefault(key(score), []).append(score)
+    return groups
 
 
 def score(

@@ -60,9 +60,9 @@ def test_a_model_that_goes_astray_has_no_indices(suzaku, sailed):
 
 def test_errors_by_hand():
     def zigzag(measured, simulated):
-        return Repeated("a", "a", "zigzag", "10/10", {"overshoot_1_deg": measured}, {"overshoot_1_deg": simulated})
+        return Repeated("a", "zigzag", "10/10", {"overshoot_1_deg": measured}, {"overshoot_1_deg": simulated})
 
-    turn = Repeated("b", "b", "turning", "35", {"advance_over_L": 4.0}, {"advance_over_L": 3.0})
+    turn = Repeated("b", "turning", "35", {"advance_over_L": 4.0}, {"advance_over_L": 3.0})
     errors = summary([zigzag(10.0, 13.0), zigzag(8.0, 4.0), turn])
     assert errors["overshoot_1_deg"] == {"n": 2, "mean": -0.5, "rms": pytest.approx(math.sqrt(12.5))}
     assert errors["advance_over_L"] == {"n": 1, "mean": -0.25, "rms": 0.25}

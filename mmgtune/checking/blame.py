@@ -22,7 +22,7 @@ def changed_coefficients(
 
     trials  those that can be compared; each coefficient is put back alone, all of them as lanes of one run
     """
-    now = {name: float(model.base[row]) for name, row in model.rows.items()}
+    now = model.numbers()
     then = baseline.coefficients
     differing = [name for name in now if name in then and now[name] != then[name]]
     shares = _shares(model, trials, {name: then[name] for name in differing}, baseline, integrator, backend)

@@ -51,7 +51,7 @@ def measure(
         measured = _Measured(trial, model.L_pp)
         for k, by_trial in enumerate(found):
             states = None if result.diverged[i, k] else result.states[i, k, : trial.n_samples]
-            values = measured.against(states)
+            values = {"J": float(result.cost[i, k]), **measured.against(states)}
             by_trial[trial.id] = {name: values[name] for name in names if name in values}
     return found
 
@@ -93,25 +93,22 @@ class _Measured:
             self.indices = _overshoots(zigzag.overshoot)
 
     def against(self, states: FloatArray | None) -> Values:
-        """All metrics this trial has, of simulated states (n_samples, 6); all infinite where they are None."""
+        """All metrics this trial has but J, of simulated states (n_samples, 6); all infinite where they are None."""
         if states is None:
             states = np.full_like(self.trial.motion, np.inf)
         with np.errstate(all="ignore"):
-            values = self._sums(states) | self._distances(states) | self._indices(states)
+            values = self._channels(states) | self._distances(states) | self._indices(states)
         return {name: value if math.isfinite(value) else math.inf for name, value in values.items()}
 
-    def _sums(self, states: FloatArray) -> Values:
+    def _channels(self, states: FloatArray) -> Values:
         difference = (states - self.trial.motion)[1:]
         counts = np.isfinite(self.trial.motion[1:])
         squares = np.where(counts, difference**2, 0.0).sum(axis=0)
-        n = counts.sum(axis=0)
-        scales = default_scales(self.L_pp)
-        of = dict(zip(STATES, squares.tolist(), strict=True))
-        found = {"J": sum(of[name] / scales[name] ** 2 for name in ("x", "y", "psi"))}
-        for k, state in enumerate(STATES):
-            if n[k]:
+        found = {}
+        for state, total, n in zip(STATES, squares.tolist(), counts.sum(axis=0).tolist(), strict=True):
+            if n:
                 name = "rms_v" if state == "v_m" else f"rms_{state}"
-                found[name] = math.sqrt(of[state] / n[k]) / (DEG if state in ("psi", "r") else 1.0)
+                found[name] = math.sqrt(total / n) / (DEG if state in ("psi", "r") else 1.0)
         return found
 
     def _distances(self, states: FloatArray) -> Values:

@@ -47,7 +47,7 @@ def record_baseline(
     return Baseline(
         ship=profile.id,
         sha256=profile.sha256,
-        coefficients=coefficients_of(model),
+        coefficients=model.numbers(),
         integrator=integrator.name,
         substeps=integrator.substeps,
         backend=backend,
@@ -138,11 +138,6 @@ def could_not_run(names: tuple[str, str, str | None], problems: tuple[Problem, .
 def made_by() -> str:
     """Program and version."""
     return f"mmgtune {version('mmgtune')}"
-
-
-def coefficients_of(model: Model) -> dict[str, float]:
-    """Every number of a profile by name, those of tables one by one."""
-    return {name: float(model.base[row]) for name, row in model.rows.items()}
 
 
 def _known(metrics: Sequence[str]) -> list[str]:

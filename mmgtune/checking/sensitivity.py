@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -78,12 +78,8 @@ def sensitivity(
     found = measure(
         model, chosen, baseline.metrics, theta=model.matrix(names, values), integrator=integrator, backend=backend
     )
-    now = Baseline(
-        **{
-            **baseline.__dict__,
-            "trials": {name: Recorded(trials.trials[name].sha256, values) for name, values in found[-1].items()},
-        }
-    )
+    recorded = {name: Recorded(trials.trials[name].sha256, values) for name, values in found[-1].items()}
+    now = replace(baseline, trials=recorded)
     return [_noticed(names[k % n], "+" if k < n else "-", one, now, trials) for k, one in enumerate(found[:-1])]
 
 

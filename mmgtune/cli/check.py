@@ -136,16 +136,9 @@ class Asked:
 
     def chosen_integrator(self) -> Integrator | None:
         """The integrator asked for; None takes the baseline's."""
-        from ..backends import Integrator
-        from ..fitting.options import INTEGRATORS
-
         if self.integrator is None and self.substeps == 1:
             return None
-        name = self.integrator or "euler"
-        if name not in INTEGRATORS or self.substeps < 1:
-            what = f"no integrator '{name}' with {self.substeps} substeps"
-            raise OptionError(Problem(what, "--integrator", fix="euler or rk4"))
-        return Integrator(name, self.substeps)
+        return c.integrator_of(self.integrator or "euler", self.substeps)
 
     def loaded(self) -> tuple[ShipProfile, TrialSet]:
         """Profile and trials."""

@@ -13,6 +13,7 @@ import typer
 from ..errors import OptionError, Problem
 
 if TYPE_CHECKING:
+    from ..backends import Integrator
     from ..fitting import FitOptions
     from ..profile import ShipProfile
     from ..trial import TrialSet
@@ -186,15 +187,30 @@ def window_of(text: str | None) -> tuple[float, float] | None:
         ) from None
 
 
+def integrator_of(name: str, substeps: int) -> Integrator:
+    """The integrator of two options.  Raises OptionError for one that does not exist."""
+    from ..backends import Integrator
+
+    try:
+        return Integrator(name, substeps)
+    except ValueError as error:
+        raise OptionError(Problem(str(error), "--integrator", fix="euler or rk4")) from None
+
+
 def load(profile: str, trials: str) -> tuple[ShipProfile, TrialSet]:
     """Profile and trials by path or name; warns on stderr where the trials are of another ship."""
     from ..profile import load_profile
     from ..trial import load_trials
 
     ship, data = load_profile(profile), load_trials(trials)
+    warn_of_another_ship(ship, data)
+    return ship, data
+
+
+def warn_of_another_ship(ship: ShipProfile, data: TrialSet) -> None:
+    """Say on stderr that trials are of another ship than the profile."""
     if data.ship and data.ship != ship.id:
         say(f"warning: the trials are of '{data.ship}', the profile is of '{ship.id}'")
-    return ship, data
 
 
 def with_effects(ship: ShipProfile, tags: tuple[str, ...]) -> tuple[ShipProfile, tuple[str, ...]]:

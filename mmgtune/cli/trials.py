@@ -83,8 +83,7 @@ def inspect(
         fix = "name the ship's profile with --profile: indices are counted in ship lengths"
         raise OptionError(Problem(what + ", which is no bundled profile" * bool(name), trials, fix=fix))
     ship = load_profile(name)
-    if data.ship and data.ship != ship.id:
-        c.say(f"warning: the trials are of '{data.ship}', the profile is of '{ship.id}'")
+    c.warn_of_another_ship(ship, data)
     L_pp = ship.L_pp
     rows = []
     for name, trial in data.trials.items():

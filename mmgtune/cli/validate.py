@@ -44,8 +44,6 @@ def command(
 
       mmgtune validate suzaku suzaku --manoeuvres
     """
-    from ..backends import Integrator
-    from ..fitting.options import INTEGRATORS
     from ..model import Model
     from ..objective import spread
     from ..profile import load_profile
@@ -61,10 +59,7 @@ def command(
         )
     if window is not None and not window > 0.0:
         raise OptionError(Problem(f"the window is {window:g} s", "--window", fix="give a time in seconds above 0"))
-    if integrator not in INTEGRATORS or substeps < 1:
-        raise OptionError(
-            Problem(f"no integrator '{integrator}' with {substeps} substeps", "--integrator", fix="euler or rk4")
-        )
+    chosen = c.integrator_of(integrator, substeps)
     data = load_trials(names[-1])
     sigma = spread(list((load_trials(sigma_from) if sigma_from else data).trials.values()))
     still = [name for name, value in sigma.items() if not value > 0.0]
@@ -80,7 +75,7 @@ def command(
     pieces = list((data.in_windows(window) if window else data).trials.values())
     ships = [load_profile(name) for name in names[:-1]]
     scored = {
-        name: score(Model(ship), pieces, sigma, integrator=Integrator(integrator, substeps), backend=backend)
+        name: score(Model(ship), pieces, sigma, integrator=chosen, backend=backend)
         for name, ship in zip(names[:-1], ships, strict=True)
     }
     rows: list[dict[str, Any]] = [

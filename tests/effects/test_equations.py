@@ -228,7 +228,7 @@ def test_steering_lag(start, end, before):
 
 @pytest.fixture(scope="module")
 def numbers(suzaku):
-    return {name: float(suzaku.base[row]) for name, row in suzaku.rows.items()}
+    return suzaku.numbers()
 
 
 def test_shallow_water(numbers):
