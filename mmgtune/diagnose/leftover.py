@@ -2,7 +2,8 @@
 
 Slow noise of a sensor and an error of the model look alike in one channel.  They differ in two ways: what really
 moved the ship shows in heading and yaw rate, or in position and velocity, alike; and what depends on the state of the
-ship can be predicted from it on parts of the record it was not learnt from.
+ship can be predicted from it on parts of the record it was not learnt from.  And what a log of the inputs leaves open,
+such as when between two samples an order was given, moves the ship without being an error of the model.
 """
 
 from __future__ import annotations
@@ -16,6 +17,8 @@ import numpy.typing as npt
 from ..backends import STATES
 from ..trial import Trial
 from .evidence import share_explained
+from .linear import linearise
+from .noise import series_of
 from .workbench import Point, Workbench
 
 FloatArray = npt.NDArray[np.float64]
@@ -44,7 +47,8 @@ BLOCK = 20.0
 class Leftover:
     """What is left at a point.
 
-    excess     variance of all residuals beyond the white noise of the sensors, as a share of it
+    excess     variance of all residuals beyond the white noise of the sensors and what the logged inputs leave open, as
+               a share of that noise
     channels   the same by channel
     alike      correlation of what heading and yaw rate say, and of what position and velocity say, over the window
                where it is clearest
@@ -76,11 +80,13 @@ def leftover(bench: Workbench, point: Point) -> Leftover:
     """What is left at a point, on the trials of the workbench."""
     residuals = _residuals(bench, point)
     level = _white(residuals)
-    excess = {
-        name: float(np.nanmean(np.concatenate([r[1:, k] for r in residuals]) ** 2) / level[k] ** 2 - 1.0)
-        for k, name in enumerate(STATES)
-        if np.isfinite(level[k]) and level[k] > 0.0
-    }
+    left_open = _left_open(bench, point)
+    excess = {}
+    for k, name in enumerate(STATES):
+        if np.isfinite(level[k]) and level[k] > 0.0:
+            variance = float(np.nanmean(np.concatenate([r[1:, k] for r in residuals]) ** 2))
+            beyond = variance / level[k] ** 2 - 1.0
+            excess[name] = beyond - min(left_open[k] / level[k] ** 2, max(beyond, 0.0))
     alike = {window: _alike(bench.trials, residuals, window) for window in WINDOWS}
     clearest = {pair: max((alike[window][pair] for window in WINDOWS), key=lambda one: one[1]) for pair in PAIRS}
     return Leftover(
@@ -111,6 +117,21 @@ def _white(residuals: Sequence[FloatArray]) -> FloatArray:
     """(6,) white noise of each channel, from second differences of the residuals."""
     second = np.concatenate([np.diff(r, n=2, axis=0) for r in residuals])
     return np.asarray(np.sqrt(np.nanmean(second**2, axis=0) / 6.0))
+
+
+def _left_open(bench: Workbench, point: Point) -> FloatArray:
+    """(6,) variance of each channel that other inputs, alike in the log, bring beyond re-tuning, in SI units.
+
+    The most that one of a few draws brings: a record has few orders, so theirs do not average out.
+    """
+    linear = linearise(bench, point)
+    changed = bench.noise.restore(linear.wander[linear.measured])
+    found = np.zeros(len(STATES))
+    for k, name in enumerate(STATES):
+        rows = [rows for channel, rows in series_of(bench.problem.cases) if channel == name]
+        if rows:
+            found[k] = np.mean(changed[np.concatenate(rows)] ** 2, axis=0).max() * bench.sigma[k] ** 2
+    return found
 
 
 def _alike(trials: Sequence[Trial], residuals: Sequence[FloatArray], window: float) -> dict[str, tuple[float, float]]:

@@ -1,7 +1,8 @@
 """Everything around a fitted point made linear: what an effect would change that re-tuning cannot imitate.
 
 Signatures are differences over a typical size of the effect, not derivatives at its null: a lag of the rudder or a rate
-limit has no slope there.  They are whitened, and freed of what the initial states and the free coefficients explain.
+limit has no slope there.  An effect with one side only gets another over a small size, as it need not look like a large
+one.  They are whitened, and freed of what the initial states and the free coefficients explain.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from ..backends import STATES
 from ..fitting.box import parameter_of
 from ..fitting.least_squares import flat_where_lost
 from ..fitting.problem import FitProblem
@@ -23,6 +25,9 @@ FloatArray = npt.NDArray[np.float64]
 
 STEP = 1e-5
 """Step of derivatives, in the unit cube."""
+
+SMALL = 0.1
+"""A small size of an effect, as a share of the typical one."""
 
 BLOCK = 60.0
 """Length [s] of the pieces noise is resampled in."""
@@ -38,6 +43,8 @@ class Linear:
     residual    (n_rows,) less what free coefficients and initial states explain
     names       parameters with a signature
     signature   (n_rows, n_names) likewise, for one typical size of each
+    one_sided   those of them whose null is an end of their range
+    small       (n_rows, n_one_sided) signatures of those over a small size, as if grown to a typical one
     share       (n_names,) of the signature's length that re-tuning leaves
     noise       (n_rows,) the residual less all signatures: hardly anything but noise
     wander      (n_rows, DRAWS) what other noise of the logged inputs would change
@@ -48,15 +55,37 @@ class Linear:
     residual: FloatArray
     names: tuple[str, ...]
     signature: FloatArray
+    one_sided: tuple[str, ...]
+    small: FloatArray
     share: FloatArray
     noise: FloatArray
     wander: FloatArray
     blocks: npt.NDArray[np.int64]
     cases: npt.NDArray[np.int64]
 
+    @property
+    def measured(self) -> npt.NDArray[np.bool_]:
+        """(n_rows,) which rows are residuals; the others are offsets."""
+        rows = np.ones(len(self.residual), dtype=bool)
+        for end in np.append(self.cases[1:], len(rows)):
+            rows[end - len(STATES) : end] = False
+        return rows
+
     def columns(self, names: Sequence[str]) -> FloatArray:
         """Signatures of some parameters, (n_rows, n_parameters)."""
         return np.asarray(self.signature[:, [self.names.index(name) for name in names]])
+
+    def looks(self, names: Sequence[str]) -> list[FloatArray]:
+        """What some parameters may look like, each (n_rows, n_parameters): at a typical size and, where it differs, at
+        a small one."""
+        typical = self.columns(names)
+        if not set(names) & set(self.one_sided):
+            return [typical]
+        small = typical.copy()
+        for i, name in enumerate(names):
+            if name in self.one_sided:
+                small[:, i] = self.small[:, self.one_sided.index(name)]
+        return [typical, small]
 
     def chance(self, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
         """What noise has along orthonormal directions Q (n_rows, k): by block (n_blocks, k), by trial and draw of the
@@ -94,27 +123,31 @@ def linearise(bench: Workbench, point: Point, absent: Sequence[str] = (), apart:
     names = (*point.names, *wanted)
     problem = bench.problem_of(names, point.integrator)
     problem.offsets = point.offsets
-    at = np.concatenate([point.unit, bench.null(wanted)])
+    null = bench.null(wanted)
+    at = np.concatenate([point.unit, null])
     n_free = len(point.names)
     size = np.array([typical(bench, name) for name in wanted])
-    plus = np.concatenate([np.full(n_free, STEP), size])
+    ends = np.flatnonzero((null <= 0.0) | (null >= 1.0))
+    moved = np.concatenate([np.arange(len(names)), n_free + ends])  # which name each difference is taken over
+    plus = np.concatenate([np.full(n_free, STEP), size, SMALL * size[ends]])
     minus = plus.copy()
-    beyond = np.arange(len(names)) >= n_free  # derivatives may look over a bound, typical sizes may not
-    plus[beyond & (at + plus > 1.0)] = 0.0
-    minus[beyond & (at - minus < 0.0)] = 0.0
-    columns = np.repeat(at[:, None], 1 + 2 * len(names), axis=1)
-    columns[np.arange(len(names)), 1 + np.arange(len(names))] += plus
-    columns[np.arange(len(names)), 1 + len(names) + np.arange(len(names))] -= minus
+    beyond = moved >= n_free  # derivatives may look over a bound, sizes of effects may not
+    plus[beyond & (at[moved] + plus > 1.0)] = 0.0
+    minus[beyond & (at[moved] - minus < 0.0)] = 0.0
+    n_moved = len(moved)
+    columns = np.repeat(at[:, None], 1 + 2 * n_moved, axis=1)
+    columns[moved, 1 + np.arange(n_moved)] += plus
+    columns[moved, 1 + n_moved + np.arange(n_moved)] -= minus
     runs = problem.residuals(columns).T
     lost = np.asarray(~np.isfinite(runs).all(axis=0))
     runs[:, lost] = runs[:, :1]  # a run that diverged says nothing: its side of the difference is left out
-    plus[lost[1 : 1 + len(names)]] = 0.0
-    minus[lost[1 + len(names) :]] = 0.0
+    plus[lost[1 : 1 + n_moved]] = 0.0
+    minus[lost[1 + n_moved :]] = 0.0
     values = bench.noise.apply(runs)
-    slopes = (values[:, 1 : 1 + len(names)] - values[:, 1 + len(names) :]) / np.maximum(plus + minus, 1e-300)
-    for i, name in enumerate(names):
-        if parameter_of(bench.model, name) is not None:
-            slopes[:, i] *= typical(bench, name)
+    slopes = (values[:, 1 : 1 + n_moved] - values[:, 1 + n_moved :]) / np.maximum(plus + minus, 1e-300)
+    for k, i in enumerate(moved):
+        if parameter_of(bench.model, names[i]) is not None:
+            slopes[:, k] *= typical(bench, names[i])
     by_offset = bench.noise.apply(flat_where_lost(_offset_derivatives(bench, point)))
 
     left = without_offsets(
@@ -125,17 +158,19 @@ def linearise(bench: Workbench, point: Point, absent: Sequence[str] = (), apart:
     left -= Q @ (Q.T @ left)
     chosen = (*apart, *wanted)
     at_chosen = [1 + names.index(name) for name in chosen]
-    signature = left[:, at_chosen]
+    signature, small = left[:, at_chosen], left[:, 1 + len(names) : 1 + n_moved]
     length = np.linalg.norm(slopes[:, [i - 1 for i in at_chosen]], axis=0)
-    every = basis(signature)
+    every = basis(np.column_stack([signature, small]))
     first, blocks = _rows(problem)
     return Linear(
         residual=left[:, 0],
         names=chosen,
         signature=signature,
+        one_sided=tuple(wanted[i] for i in ends),
+        small=small,
         share=np.linalg.norm(signature, axis=0) / np.maximum(length, 1e-300),
         noise=left[:, 0] - every @ (every.T @ left[:, 0]),
-        wander=left[:, 1 + len(names) :],
+        wander=left[:, 1 + n_moved :],
         blocks=blocks,
         cases=first,
     )
@@ -156,7 +191,7 @@ def without_offsets(problem: FitProblem, values: FloatArray, S: FloatArray, offs
     parts = []
     for case, rows in enumerate(problem.rows_of_cases):
         root = np.sqrt(problem.prior[case])
-        added = np.zeros((6, values.shape[1]))
+        added = np.zeros((len(STATES), values.shape[1]))
         added[:, 0] = root * offsets[case]
         Q, _ = np.linalg.qr(np.vstack([S[rows], np.diag(root)]))
         own = np.vstack([values[rows], added])
@@ -187,5 +222,5 @@ def _rows(problem: FitProblem) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.in
         pieces = max(1, round(float(t[-1] - t[0]) / BLOCK))
         first.append(row)
         blocks += [row + (n * k) // pieces for k in range(pieces)]
-        row += n + 6
+        row += n + len(STATES)
     return np.array(first), np.array(sorted(set(blocks)))

@@ -87,7 +87,7 @@ class NoiseModel:
         return out
 
     def restore(self, values: FloatArray) -> FloatArray:
-        """Whitened residuals (n_residuals,) back in the units and with the memory they had before ``apply``."""
+        """Whitened residuals (n_residuals, ...) back in the units and with the memory they had before ``apply``."""
         out = np.empty_like(values)
         for channel, rows in self._series:
             noise = self.channels[channel]
@@ -95,7 +95,7 @@ class NoiseModel:
             part = values[rows] * sigma
             if noise.fading > 0.0:
                 part[0] *= np.sqrt(noise.variance) / sigma
-                part = lfilter([1.0, theta], [1.0, -phi], part)
+                part = lfilter([1.0, theta], [1.0, -phi], part, axis=0)
             out[rows] = part
         return out
 

@@ -173,8 +173,8 @@ class Diagnosis:
         """The answer in words a captain understands."""
         if self.verdict == "none":
             return (
-                "Nothing is wrong beyond the noise of the sensors: the re-tuned model fits these trials, and no cause "
-                "that was looked for shows."
+                "Nothing is wrong beyond the noise of the measurements: the re-tuned model fits these trials, and no "
+                "cause that was looked for shows."
             )
         share = self.gain.share_removed[0]
         where = "on trials not used" if self.gain.held_out == "test trials" else f"on {self.gain.held_out}"
@@ -186,7 +186,7 @@ class Diagnosis:
             )
             excess = self.leftover.excess
             left = (
-                f"{excess:.0%} beyond the noise of the sensors is left"
+                f"{excess:.0%} beyond the noise of the measurements is left"
                 if excess < LARGE
                 else f"an error {math.sqrt(1.0 + excess):,.0f} times the noise of the sensors is left"
             )

@@ -20,7 +20,7 @@ from ..threads import blas_on_one_thread
 from ..trial import Trial, TrialSet
 from ..trial.smoothing import FEWEST
 from .evidence import explain_forces, noise_share, residual_forces, short_horizon
-from .gain import Gain, J_of, held_out
+from .gain import J_of, held_out
 from .hypotheses import HULL_TERM, INTEGRATION_STEP, Hypothesis, hypotheses
 from .intervals import Estimate, estimates
 from .leftover import Leftover, leftover
@@ -70,7 +70,8 @@ def diagnose(
     hooks.on_phase("measuring the gain")
     sizes = estimates(bench, found.final)
     gain = held_out(bench, found, test)
-    left = leftover(bench, found.final)
+    before = leftover(bench, found.base)
+    left = leftover(bench, found.final) if found.causes or found.finer_step else before
     groups = tuple(
         (cause.tag, *(rival.hypothesis.tag for rival in rivals))
         for cause, rivals in zip(found.causes, found.rivals, strict=True)
@@ -89,14 +90,14 @@ def diagnose(
         suggestion=suggestion,
         gain=gain,
         leftover=left,
-        explained_share=_explained(bench, found, left),
+        explained_share=_explained(found, before, left),
         theta={name: values[name] for name in bench.targets},
         noise=_noise(bench),
         chi2=(
             found.base.chi2 / max(1, bench.problem.n_residuals),
             found.final.chi2 / max(1, bench.problem.n_residuals),
         ),
-        evidence=_evidence(bench, found, left, gain),
+        evidence=_evidence(bench, found, before, left),
         provenance=make_provenance(profile, trials, command),
         wall_s=time.perf_counter() - began,
         interrupted=hooks.stop(),
@@ -193,12 +194,11 @@ def _limit(bench: Workbench, name: str, sizes: float) -> float | None:
     return value if value <= bench.box.high[i] else None
 
 
-def _explained(bench: Workbench, found: Found, left: Leftover) -> float:
+def _explained(found: Found, before: Leftover, left: Leftover) -> float:
     """Share of the error above white noise on the trials looked at that the causes remove."""
     if not found.causes:
         return 0.0
-    before = leftover(bench, found.base).excess
-    return 1.0 - max(left.excess, 0.0) / before if before > 0.0 else 0.0
+    return 1.0 - max(left.excess, 0.0) / before.excess if before.excess > 0.0 else 0.0
 
 
 def _suggestion(bench: Workbench, found: Found) -> Suggestion | None:
@@ -222,9 +222,8 @@ def _noise(bench: Workbench) -> dict[str, dict[str, float]]:
     }
 
 
-def _evidence(bench: Workbench, found: Found, left: Leftover, gain: Gain) -> dict[str, Any]:
+def _evidence(bench: Workbench, found: Found, before: Leftover, left: Leftover) -> dict[str, Any]:
     """Residuals before and after by trial and channel, short horizons, and residual forces with what explains them."""
-    before = leftover(bench, found.base) if found.causes else left
     shown: dict[str, Any] = {"excess_before": before.channels, "excess_after": left.channels}
     long_enough = [trial for trial in bench.trials if np.isfinite(trial.motion[:, 3:]).all(axis=1).sum() >= FEWEST]
     for which, point in (("before", found.base), ("after", found.final)):

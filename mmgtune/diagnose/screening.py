@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -61,28 +61,27 @@ def _evidence(scores: FloatArray, parameters: int) -> FloatArray:
 
 def scores(linear: Linear, hypotheses: Sequence[Hypothesis]) -> list[Score]:
     """The score of every hypothesis."""
-    found = []
-    for hypothesis in hypotheses:
-        columns = linear.columns(hypothesis.names)
+    return [_best_look(linear, hypothesis) for hypothesis in hypotheses]
+
+
+def _best_look(linear: Linear, hypothesis: Hypothesis) -> Score:
+    """The score of a hypothesis by the look of it that explains most; power and share are those of a typical size."""
+    looks = linear.looks(hypothesis.names)
+    lengths = np.linalg.norm(looks[0], axis=0)
+    power = float(lengths.min()) if lengths.max() > NEVER else 0.0
+    share = float(linear.share[[linear.names.index(name) for name in hypothesis.names]].min())
+    best = Score(hypothesis, 0.0, np.zeros(len(hypothesis.names)), power, share, 1.0)
+    for columns in looks:
         lengths = np.linalg.norm(columns, axis=0)
         if not lengths.max() > NEVER:  # a stall where no rudder angle is large enough, for example
-            found.append(Score(hypothesis, 0.0, np.zeros(columns.shape[1]), 0.0, 0.0, 1.0))
             continue
         Q, R = np.linalg.qr(columns / np.maximum(lengths, 1e-300))
         along = Q.T @ linear.residual
-        step = -np.linalg.lstsq(R, along, rcond=1e-8)[0] / np.maximum(lengths, 1e-300)
-        at = [linear.names.index(name) for name in hypothesis.names]
-        found.append(
-            Score(
-                hypothesis,
-                float(along @ along),
-                step,
-                float(lengths.min()),
-                float(linear.share[at].min()),
-                linear.inflation(Q),
-            )
-        )
-    return found
+        score = float(along @ along)
+        if score > best.score:
+            step = -np.linalg.lstsq(R, along, rcond=1e-8)[0] / np.maximum(lengths, 1e-300)
+            best = replace(best, score=score, step=step, inflation=linear.inflation(Q))
+    return best
 
 
 class ChanceScores:
@@ -100,16 +99,16 @@ class ChanceScores:
         pick = rng.integers(n_draws, size=(len(linear.cases), DRAWS))
         self.largest = np.zeros(DRAWS)
         for hypothesis in hypotheses:
-            columns = linear.columns(hypothesis.names)
-            if not np.linalg.norm(columns, axis=0).max() > NEVER:
-                continue
-            Q = basis(columns)
-            by_block, by_trial = linear.chance(Q)
-            drawn = by_block.T @ signs
-            for trial, picked in enumerate(pick):
-                drawn += by_trial[trial][picked].T
-            score = np.sum(drawn**2, axis=0) / linear.inflation(Q)
-            self.largest = np.maximum(self.largest, _evidence(score, Q.shape[1]))
+            for columns in linear.looks(hypothesis.names):
+                if not np.linalg.norm(columns, axis=0).max() > NEVER:
+                    continue
+                Q = basis(columns)
+                by_block, by_trial = linear.chance(Q)
+                drawn = by_block.T @ signs
+                for trial, picked in enumerate(pick):
+                    drawn += by_trial[trial][picked].T
+                score = np.sum(drawn**2, axis=0) / linear.inflation(Q)
+                self.largest = np.maximum(self.largest, _evidence(score, Q.shape[1]))
         self.largest.sort()
 
     def p_value(self, evidence: float) -> float:

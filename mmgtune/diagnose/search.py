@@ -51,6 +51,9 @@ ENOUGH = 10.0
 """A hypothesis must beat none by this much of chi-squared beyond its share by the information criterion (BIC), and
 another hypothesis by as much to be told from it; in units of the noise along it."""
 
+BETTER = 5.0
+"""It must also fit that much better: that it has fewer parameters does not rule a rival out."""
+
 WORTH = 0.1
 """Smallest size worth speaking of where another effect would do as well, as a share of the typical one."""
 
@@ -83,8 +86,8 @@ class Refit:
 
     def beats(self, other: Refit) -> bool:
         """Whether this explains so much more that the other is out of the question."""
-        inflation = max(self.score.inflation, other.score.inflation)
-        return (self.gain - other.gain) / inflation - self.cost + other.cost >= ENOUGH
+        better = (self.gain - other.gain) / max(self.score.inflation, other.score.inflation)
+        return better >= BETTER and better - self.cost + other.cost >= ENOUGH
 
 
 @dataclass(frozen=True, eq=False)
@@ -226,12 +229,7 @@ def look(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis], first
 
 def _noise_at(bench: Workbench, linear: Linear) -> noises.NoiseModel:
     """Noise from the residual less all signatures, in the units residuals had before any whitening."""
-    rows = np.ones(len(linear.noise), dtype=bool)
-    ends = np.append(linear.cases[1:], len(linear.noise))
-    for end in ends:
-        rows[end - 6 : end] = False  # the offsets
-    left = bench.noise.restore(linear.noise[rows])
-    return noises.estimate(bench.problem.cases, left)
+    return noises.estimate(bench.problem.cases, bench.noise.restore(linear.noise[linear.measured]))
 
 
 def _differs(a: noises.NoiseModel, b: noises.NoiseModel) -> bool:
