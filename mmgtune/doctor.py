@@ -6,6 +6,7 @@ import os
 import platform
 import sys
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -111,16 +112,16 @@ def _cache() -> Finding:
 
 def _data() -> list[Finding]:
     found = []
-    for name in profile_names():
-        try:
-            load_profile(name)
-        except MmgtuneError as error:
-            found.append(Finding(f"profile {name}", error.problems[0].what, ok=False, fix="install mmgtune again"))
-    for name in trial_set_names():
-        try:
-            load_trials(name)
-        except MmgtuneError as error:
-            found.append(Finding(f"trials {name}", error.problems[0].what, ok=False, fix="install mmgtune again"))
+    loaders: dict[str, tuple[list[str], Callable[[str], object]]] = {
+        "profile": (profile_names(), load_profile),
+        "trials": (trial_set_names(), load_trials),
+    }
+    for kind, (names, load) in loaders.items():
+        for name in names:
+            try:
+                load(name)
+            except MmgtuneError as error:
+                found.append(Finding(f"{kind} {name}", error.problems[0].what, ok=False, fix="install mmgtune again"))
     bundled = f"{len(profile_names())} profiles, {len(trial_set_names())} sets of trials ({folder('trials').parent})"
     found.append(Finding("bundled data", bundled, ok=bool(profile_names() and trial_set_names())))
     asked = os.environ.get("MMGTUNE_DATA")

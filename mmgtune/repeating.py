@@ -31,9 +31,16 @@ from .units import DEG
 
 FloatArray = npt.NDArray[np.float64]
 
-TURNING = ("advance_over_L", "transfer_over_L", "tactical_diameter_over_L", "steady_diameter_over_L")
-ZIGZAG = ("overshoot_1_deg", "overshoot_2_deg", "initial_turning_time_s")
-"""What a manoeuvre is usually judged by; ``Repeated`` holds all indices."""
+JUDGED = {
+    "advance_over_L": ("advance", "L", 2),
+    "transfer_over_L": ("transfer", "L", 2),
+    "tactical_diameter_over_L": ("tactical diameter", "L", 2),
+    "steady_diameter_over_L": ("steady diameter", "L", 2),
+    "overshoot_1_deg": ("1st overshoot", "deg", 1),
+    "overshoot_2_deg": ("2nd overshoot", "deg", 1),
+    "initial_turning_time_s": ("initial turning time", "s", 1),
+}
+"""What a manoeuvre is usually judged by: words, unit and decimals worth showing; ``Repeated`` holds all indices."""
 
 PATIENCE = 2.0
 """A repetition may last this many times as long as the trial did."""
@@ -62,7 +69,7 @@ class Repeated:
     @property
     def judged(self) -> dict[str, tuple[float, float]]:
         """Measured and simulated value of the indices the manoeuvre is usually judged by, where both exist."""
-        pairs = {name: (self.measured.get(name), self.simulated.get(name)) for name in TURNING + ZIGZAG}
+        pairs = {name: (self.measured.get(name), self.simulated.get(name)) for name in JUDGED}
         return {name: (a, b) for name, (a, b) in pairs.items() if a is not None and b is not None}
 
 

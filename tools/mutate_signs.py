@@ -92,28 +92,28 @@ def signs(path: Path) -> Iterator[Sign]:
     yield from (found[at] for at in sorted(found))
 
 
+def passes(copy: Path, suite: str, **environment: str) -> bool:
+    """Whether a suite of the copy passes; subprocess.TimeoutExpired after PATIENCE."""
+    # Bytecode is told apart by time and size only, and a turned sign has neither of its own.
+    own = {"PYTHONPATH": str(copy), "PYTHONDONTWRITEBYTECODE": "1", **environment}
+    command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", suite]
+    ended = subprocess.run(command, cwd=copy, env={**os.environ, **own}, capture_output=True, timeout=PATIENCE)
+    return ended.returncode == 0
+
+
 def caught_by(copy: Path, sign: Sign) -> str:
     """The suite that fails with this sign turned round, "" where none does."""
     target = copy / sign.path
     right = (ROOT / sign.path).read_text(encoding="utf-8")
     target.write_text(sign.turned(right), encoding="utf-8")
     cache = Path(tempfile.mkdtemp(prefix="signs-"))
-    # Bytecode is told apart by time and size only, and a turned sign has neither of its own.
-    environment = {
-        **os.environ,
-        "PYTHONPATH": str(copy),
-        "PYTHONDONTWRITEBYTECODE": "1",
-        "MMGTUNE_CACHE": str(cache),
-    }
     try:
         for suite in SUITES:
-            command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", suite]
             try:
-                ended = subprocess.run(command, cwd=copy, env=environment, capture_output=True, timeout=PATIENCE)
+                if not passes(copy, suite, MMGTUNE_CACHE=str(cache)):
+                    return suite.partition("::")[0]
             except subprocess.TimeoutExpired:
                 return f"{suite} (does not end)"
-            if ended.returncode != 0:
-                return suite.partition("::")[0]
     finally:
         target.write_text(right, encoding="utf-8")
         shutil.rmtree(cache, ignore_errors=True)
@@ -194,12 +194,7 @@ def main() -> None:
 
 def caught_by_nothing_wrong(copy: Path) -> str:
     """The suite that fails as it is, "" where all pass: then a failure means the sign."""
-    environment = {**os.environ, "PYTHONPATH": str(copy), "PYTHONDONTWRITEBYTECODE": "1"}
-    for suite in SUITES:
-        command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", suite]
-        if subprocess.run(command, cwd=copy, env=environment, capture_output=True).returncode != 0:
-            return suite
-    return ""
+    return next((suite for suite in SUITES if not passes(copy, suite)), "")
 
 
 if __name__ == "__main__":

@@ -8,21 +8,10 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from ..repeating import Repeated
 
-SHOWN = {
-    "advance_over_L": ("advance", "L", 2),
-    "transfer_over_L": ("transfer", "L", 2),
-    "tactical_diameter_over_L": ("tactical diameter", "L", 2),
-    "steady_diameter_over_L": ("steady diameter", "L", 2),
-    "overshoot_1_deg": ("1st overshoot", "deg", 1),
-    "overshoot_2_deg": ("2nd overshoot", "deg", 1),
-    "initial_turning_time_s": ("initial turning time", "s", 1),
-}
-"""Words, unit and decimals of the indices shown."""
-
 
 def table(by_model: Mapping[str, Sequence[Repeated]]) -> str:
     """Measured indices beside those of each model, and the errors over all manoeuvres; one model at least."""
-    from ..repeating import summary
+    from ..repeating import JUDGED, summary
 
     width = max(10, *(len(name) + 2 for name in by_model))
     first = next(iter(by_model.values()))
@@ -31,7 +20,7 @@ def table(by_model: Mapping[str, Sequence[Repeated]]) -> str:
     lines = [f"{'manoeuvres repeated':<46}{'measured':>10}" + "".join(f"{name:>{width}}" for name in by_model)]
     for k, one in enumerate(first):
         lines.append(f"{one.id}: {one.order}")
-        for key, (words, unit, decimals) in SHOWN.items():
+        for key, (words, unit, decimals) in JUDGED.items():
             if (measured := one.measured.get(key)) is None:
                 continue
             values = [repeated[k].simulated.get(key) for repeated in by_model.values()]
@@ -42,7 +31,7 @@ def table(by_model: Mapping[str, Sequence[Repeated]]) -> str:
     errors = {name: summary(repeated) for name, repeated in by_model.items()}
     for heading, which in (("mean error", "mean"), ("root mean square error", "rms")):
         lines.append(heading)
-        for key, (words, unit, _) in SHOWN.items():
+        for key, (words, unit, _) in JUDGED.items():
             if any(key in of for of in errors.values()):
                 shown = [_error(of.get(key), which, unit) for of in errors.values()]
                 lines.append(f"    {words:<42}{'':>10}" + "".join(f"{s:>{width}}" for s in shown))

@@ -80,24 +80,24 @@ def certify(
     starts: list[LeastSquaresResult],
     restarts: list[Restart],
     J_cmaes: float | None,
-    ridge: float = 0.0,
-    anchor: FloatArray | None = None,
+    ridge: float,
+    anchor: FloatArray,
 ) -> Certificate:
     """The certificate at a point of the unit cube (n_targets,) with value J.
 
-    ridge, anchor  where the fit is regularised: weight of the squared distance from a point of the cube.  The cost is
-                   J with that added then, here as in the search
+    ridge, anchor  weight of the squared distance from a point of the cube, 0 where the fit is not regularised.  The
+                   cost is J with that added, here as in the search
 
     Agreement is relative to J, or to a 1e-9th of J before tuning where J is smaller than that (noise-free trials).
     """
 
     def cost(value: float, at: FloatArray) -> float:
-        return value if anchor is None else value + ridge * float(np.sum((at - anchor) ** 2))
+        return value + ridge * float(np.sum((at - anchor) ** 2))
 
     J = cost(J, unit)
     floor = max(J, 1e-9 * J_before)
     residuals, jacobian = problem.central_jacobian(unit)
-    if anchor is not None:
+    if ridge > 0.0:
         residuals = np.concatenate([residuals, np.sqrt(ridge) * (unit - anchor)])
         jacobian = np.vstack([jacobian, np.sqrt(ridge) * np.eye(len(unit))])
     gradient = 2.0 * jacobian.T @ residuals

@@ -161,8 +161,7 @@ def fit(
 
     hooks.on_phase("certificate and identifiability")
     restarts = found.restarts if found else []
-    pull = (ridge, before) if ridge else ()
-    certificate = certify(problem, unit, J, J_before, ends, restarts, found.J if found else None, *pull)
+    certificate = certify(problem, unit, J, J_before, ends, restarts, found.J if found else None, ridge, before)
     held_by_bound = np.isin(problem.box.names, [bound.name for bound in certificate.active])
     roles = {name: trials.role(name) for name in trials.trials}
     everything = make_problem(profile, trials, options, tuple(trials.trials))
