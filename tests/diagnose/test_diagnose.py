@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pyarrow as pa
@@ -12,6 +13,7 @@ import pytest
 from mmgtune.backends import STATES, Integrator
 from mmgtune.diagnose import VERDICTS, DiagnoseOptions, diagnose
 from mmgtune.diagnose.noise import NoiseModel, estimate
+from mmgtune.diagnose.search import Refit
 from mmgtune.errors import OptionError
 from mmgtune.profile import load_profile, parse_profile, with_effects
 from mmgtune.simulation import simulate as simulate_trials
@@ -63,6 +65,30 @@ def test_a_cause_is_named_on_windows_too(tmp_path):
     result = said_of(case, tmp_path, restart=restart, effects=("current", "rudder-offset", "antenna"))
     assert [cause.tag for cause in result.causes] == ["current"]
     assert len(result.gain.compared) > 10  # windows of the trials held out
+
+
+def test_a_small_effect_with_one_side_is_not_taken_for_another(tmp_path):
+    case = single("shallow-water", 1, seed=1)  # 200 m: what it changes is unlike what 12 m would
+    assert outcome(case.effects, said_of(case, tmp_path).to_dict()) == "right"
+
+
+def test_what_the_log_leaves_open_is_not_called_unexplained(tmp_path):
+    case = single("steering-lag", 1, seed=2)  # orders logged once a second, the moment in between is not
+    assert "rate_limit" in case.effects["steering-lag"]
+    result = said_of(case, tmp_path)
+    assert result.verdict == "none"
+    assert result.chi2[1] > 1.1  # more than the noise of the sensors it is
+
+
+@pytest.mark.parametrize(
+    ("gain", "of_rival", "beaten"),
+    [(100.0, 60.0, True), (100.0, 97.0, False), (100.0, 82.0, False)],
+    ids=["far better", "fewer parameters only", "not enough for its correlated noise"],
+)
+def test_a_rival_that_fits_as_well_stays_whatever_its_parameters(gain, of_rival, beaten):
+    score = SimpleNamespace(inflation=4.0)
+    best, rival = (Refit(None, score, None, g, cost, 0.0, 1.0, 0.0) for g, cost in ((gain, 10.0), (of_rival, 40.0)))
+    assert best.beats(rival) == beaten
 
 
 def test_water_driven_by_measured_wind_is_named(suzaku, tmp_path):
