@@ -8,6 +8,7 @@ One line of JSON per case goes to the file as it is done; a run that was stopped
 from __future__ import annotations
 
 import argparse
+import hashlib
 import json
 import math
 import multiprocessing
@@ -16,10 +17,12 @@ import tempfile
 import time
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from functools import cache
 from multiprocessing.sharedctypes import Synchronized
 from pathlib import Path
 from typing import Any
 
+import mmgtune
 from mmgtune.effects import find_effect
 
 from .cases import LADDER, Case, null, pair, single, unknown
@@ -28,6 +31,9 @@ from .unknown import UNKNOWN
 
 SEEDS = 10
 NULLS, COLOURED_NULLS, PAIRS = 80, 20, 50
+
+DEPENDS_ON = ("backends", "diagnose", "effects", "fitting", "physics", "trial")
+"""Parts of the package whose source decides what a diagnosis says."""
 
 
 def cases() -> Iterator[tuple[str, Case]]:
@@ -65,6 +71,14 @@ def diagnosed(case: Case) -> dict[str, Any]:
     return {**document, "seconds": time.perf_counter() - began}
 
 
+@cache
+def code() -> str:
+    """Fingerprint of the source that a diagnosis depends on: results of different ones are told apart."""
+    package = Path(mmgtune.__file__).parent
+    files = sorted(file for part in DEPENDS_ON for file in (package / part).rglob("*.py"))
+    return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()[:8]
+
+
 def kept(hidden: dict[str, dict[str, float]], said: dict[str, Any]) -> dict[str, Any]:
     """What of a diagnosis is worth keeping: a line of a kilobyte."""
     return {
@@ -79,6 +93,7 @@ def kept(hidden: dict[str, dict[str, float]], said: dict[str, Any]) -> dict[str,
         "chi2_per_residual": said["chi2_per_residual"],
         "share_above_noise_removed": said["gain"]["share_above_noise_removed"],
         "seconds": round(said["seconds"], 1),
+        "code": code(),
     }
 
 

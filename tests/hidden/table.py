@@ -109,9 +109,12 @@ def _summary(sets: dict[str, list[Row]]) -> list[str]:
         ("seconds a diagnosis, median, one core of a busy machine", f"{statistics.median(seconds):.0f}", "-"),
     ]
     done = sum(len(rows) for rows in sets.values())
+    codes = Counter(row.get("code", "earlier") for rows in sets.values() for row in rows)
+    told = ", ".join(f"{n} by {code}" for code, n in codes.most_common())
     head = f"{done} of the {N_CASES} cases of the study have been run so far; `make hidden` runs the rest.\n\n"
     table = ["| | result | aim |\n|---|---|---|\n", *(f"| {what} | {share} | {aim} |\n" for what, share, aim in lines)]
-    return [head if done < N_CASES else "", *table]
+    by_code = f"\nCases by fingerprint of the source that diagnosed them: {told}.\n" if len(codes) > 1 else ""
+    return [head if done < N_CASES else "", *table, by_code]
 
 
 def _limits(sets: dict[str, list[Row]]) -> list[str]:
