@@ -192,15 +192,15 @@ def _size(tag: str, hidden: Mapping[str, float]) -> str:
 def _amiss(sets: dict[str, list[Row]]) -> list[str]:
     """Cases that did not come out as they should have: every one above its limit, and every wrong name below."""
     parts = ["| hidden | above its limit | outcome | named |\n|---|---|---|---|\n"]
-    for name, rows in sets.items():
-        for row in rows if name != "unknown" else []:
-            good = row["outcome"] in ("right", "grouped", "clear")
-            if good or (not row["above_limit"] and row["outcome"] not in ("wrong", "alarm")):
-                continue
-            hidden = " and ".join(f"`{tag}` {_told(values)}" for tag, values in row["hidden"].items()) or "nothing"
-            named = ", ".join(f"`{cause['effect']}` {_told(cause['parameters'])}" for cause in row["causes"]) or "-"
-            above = {True: "yes", False: "no", None: "none stated"}[row["above_limit"]]
-            parts.append(f"| {hidden} | {above} | {row['outcome']} | {named} |\n")
+    listed = [row for name, rows in sets.items() if name != "unknown" for row in rows]
+    for row in sorted(listed, key=lambda row: row["case"]):
+        good = row["outcome"] in ("right", "grouped", "clear")
+        if good or (not row["above_limit"] and row["outcome"] not in ("wrong", "alarm")):
+            continue
+        hidden = " and ".join(f"`{tag}` {_told(values)}" for tag, values in row["hidden"].items()) or "nothing"
+        named = ", ".join(f"`{cause['effect']}` {_told(cause['parameters'])}" for cause in row["causes"]) or "-"
+        above = {True: "yes", False: "no", None: "none stated"}[row["above_limit"]]
+        parts.append(f"| {hidden} | {above} | {row['outcome']} | {named} |\n")
     return parts
 
 
