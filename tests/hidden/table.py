@@ -243,6 +243,8 @@ def figure(rows: Sequence[Row], path: Path) -> None:
         axis.set_title(tag, fontsize=9)
         axis.set_xticks(range(5))
         axis.set_yticks([0.0, 0.5, 1.0])
+    for axis in axes.flat[len(LADDER) - columns : len(LADDER)]:  # the lowest of each column
+        axis.tick_params(labelbottom=True)
     for axis in axes.flat[len(LADDER) :]:
         axis.axis("off")
     figure.supxlabel("size (3 is typical)")
