@@ -18,7 +18,7 @@ from ..backends import STATES
 from ..trial import Trial
 from .evidence import share_explained
 from .linear import linearise
-from .noise import series_of
+from .noise import rows_of_channels
 from .workbench import Point, Workbench
 
 FloatArray = npt.NDArray[np.float64]
@@ -127,10 +127,9 @@ def _left_open(bench: Workbench, point: Point) -> FloatArray:
     linear = linearise(bench, point)
     changed = bench.noise.restore(linear.wander[linear.measured])
     found = np.zeros(len(STATES))
-    for k, name in enumerate(STATES):
-        rows = [rows for channel, rows in series_of(bench.problem.cases) if channel == name]
-        if rows:
-            found[k] = np.mean(changed[np.concatenate(rows)] ** 2, axis=0).max() * bench.sigma[k] ** 2
+    for name, series in rows_of_channels(bench.problem.cases).items():
+        k = STATES.index(name)
+        found[k] = np.mean(changed[np.concatenate(series)] ** 2, axis=0).max() * bench.sigma[k] ** 2
     return found
 
 

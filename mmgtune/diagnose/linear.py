@@ -97,9 +97,19 @@ class Linear:
 
     def inflation(self, Q: FloatArray) -> float:
         """Variance of noise along directions Q over that of independent noise of variance 1; at least 1."""
-        by_block, by_trial = self.chance(Q)
-        memory = max(1.0, float(np.sum(by_block**2)) / int(Q.shape[1]))
-        return memory + float(np.sum(np.mean(by_trial**2, axis=1))) / int(Q.shape[1])
+        return inflation(*self.chance(Q))
+
+
+def inflation(by_block: FloatArray, by_trial: FloatArray) -> float:
+    """Variance of what ``Linear.chance`` gives over that of independent noise of variance 1; at least 1."""
+    n_directions = int(by_block.shape[1])
+    memory = max(1.0, float(np.sum(by_block**2)) / n_directions)
+    return memory + float(np.sum(np.mean(by_trial**2, axis=1))) / n_directions
+
+
+def inwards(null: FloatArray) -> FloatArray:
+    """Which way parameters leave their null, in the unit cube: 1 or -1 where it is an end, 0 for both ways."""
+    return np.where(null <= 0.0, 1.0, np.where(null >= 1.0, -1.0, 0.0))
 
 
 def typical(bench: Workbench, name: str) -> float:
@@ -127,7 +137,7 @@ def linearise(bench: Workbench, point: Point, absent: Sequence[str] = (), apart:
     at = np.concatenate([point.unit, null])
     n_free = len(point.names)
     size = np.array([typical(bench, name) for name in wanted])
-    ends = np.flatnonzero((null <= 0.0) | (null >= 1.0))
+    ends = np.flatnonzero(inwards(null))
     moved = np.concatenate([np.arange(len(names)), n_free + ends])  # which name each difference is taken over
     plus = np.concatenate([np.full(n_free, STEP), size, SMALL * size[ends]])
     minus = plus.copy()

@@ -112,9 +112,17 @@ def series_of(cases: Cases) -> list[tuple[str, npt.NDArray[np.int64]]]:
     return found
 
 
+def rows_of_channels(cases: Cases) -> dict[str, list[npt.NDArray[np.int64]]]:
+    """Where the residuals of each channel stand, case by case."""
+    found: dict[str, list[npt.NDArray[np.int64]]] = {}
+    for channel, rows in series_of(cases):
+        found.setdefault(channel, []).append(rows)
+    return found
+
+
 def white(cases: Cases) -> NoiseModel:
     """Noise of variance 1 without memory: what residuals divided by their noise have."""
-    return NoiseModel(cases, {channel: ChannelNoise() for channel, _ in series_of(cases)})
+    return NoiseModel(cases, {channel: ChannelNoise() for channel in rows_of_channels(cases)})
 
 
 def estimate(cases: Cases, residuals: FloatArray) -> NoiseModel:
@@ -123,8 +131,8 @@ def estimate(cases: Cases, residuals: FloatArray) -> NoiseModel:
     The white part is what the fading part, extrapolated from lags 1, 2, ..., leaves of the variance.
     """
     channels = {}
-    for channel in dict.fromkeys(name for name, _ in series_of(cases)):
-        parts = [residuals[rows] for name, rows in series_of(cases) if name == channel]
+    for channel, series in rows_of_channels(cases).items():
+        parts = [residuals[rows] for rows in series]
         n = sum(len(part) for part in parts)
         covariance = np.array(
             [

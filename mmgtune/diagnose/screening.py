@@ -10,7 +10,7 @@ import numpy.typing as npt
 from scipy.special import gammaincc
 
 from .hypotheses import Hypothesis
-from .linear import Linear, basis
+from .linear import Linear, basis, inflation
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -67,14 +67,13 @@ def scores(linear: Linear, hypotheses: Sequence[Hypothesis]) -> list[Score]:
 def _best_look(linear: Linear, hypothesis: Hypothesis) -> Score:
     """The score of a hypothesis by the look of it that explains most; power and share are those of a typical size."""
     looks = linear.looks(hypothesis.names)
-    lengths = np.linalg.norm(looks[0], axis=0)
-    power = float(lengths.min()) if lengths.max() > NEVER else 0.0
+    power = float(np.linalg.norm(looks[0], axis=0).min()) if _shown(looks[0]) else 0.0
     share = float(linear.share[[linear.names.index(name) for name in hypothesis.names]].min())
     best = Score(hypothesis, 0.0, np.zeros(len(hypothesis.names)), power, share, 1.0)
     for columns in looks:
-        lengths = np.linalg.norm(columns, axis=0)
-        if not lengths.max() > NEVER:  # a stall where no rudder angle is large enough, for example
+        if not _shown(columns):  # a stall where no rudder angle is large enough, for example
             continue
+        lengths = np.linalg.norm(columns, axis=0)
         Q, R = np.linalg.qr(columns / np.maximum(lengths, 1e-300))
         along = Q.T @ linear.residual
         score = float(along @ along)
@@ -82,6 +81,11 @@ def _best_look(linear: Linear, hypothesis: Hypothesis) -> Score:
             step = -np.linalg.lstsq(R, along, rcond=1e-8)[0] / np.maximum(lengths, 1e-300)
             best = replace(best, score=score, step=step, inflation=linear.inflation(Q))
     return best
+
+
+def _shown(columns: FloatArray) -> bool:
+    """Whether any trial shows a signature."""
+    return bool(np.linalg.norm(columns, axis=0).max() > NEVER)
 
 
 class ChanceScores:
@@ -100,14 +104,14 @@ class ChanceScores:
         self.largest = np.zeros(DRAWS)
         for hypothesis in hypotheses:
             for columns in linear.looks(hypothesis.names):
-                if not np.linalg.norm(columns, axis=0).max() > NEVER:
+                if not _shown(columns):
                     continue
                 Q = basis(columns)
                 by_block, by_trial = linear.chance(Q)
                 drawn = by_block.T @ signs
                 for trial, picked in enumerate(pick):
                     drawn += by_trial[trial][picked].T
-                score = np.sum(drawn**2, axis=0) / linear.inflation(Q)
+                score = np.sum(drawn**2, axis=0) / inflation(by_block, by_trial)
                 self.largest = np.maximum(self.largest, _evidence(score, Q.shape[1]))
         self.largest.sort()
 
@@ -128,7 +132,7 @@ def angles(linear: Linear, hypotheses: Sequence[Hypothesis]) -> FloatArray:
     bases = []
     for hypothesis in hypotheses:
         columns = linear.columns(hypothesis.names)
-        bases.append(basis(columns) if np.linalg.norm(columns, axis=0).max() > NEVER else None)
+        bases.append(basis(columns) if _shown(columns) else None)
     cosine = np.eye(len(hypotheses))
     for i, a in enumerate(bases):
         for j in range(i):

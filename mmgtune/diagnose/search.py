@@ -16,7 +16,7 @@ from ..backends import Integrator
 from ..fitting.least_squares import solve
 from . import noise as noises
 from .hypotheses import HULL_TERM, Hypothesis
-from .linear import Linear, linearise, typical
+from .linear import Linear, inwards, linearise, typical
 from .screening import ChanceScores, Score, evidence, scores
 from .workbench import TOLERANCE, Point, Workbench
 
@@ -271,9 +271,9 @@ def _starts(bench: Workbench, point: Point, score: Score, strong: bool) -> Float
     null = bench.null(names)
     size = np.array([typical(bench, name) for name in names])
     places = [null + np.clip(score.step, -4.0, 4.0) * size]
-    inwards = np.where(null <= 0.0, 1.0, np.where(null >= 1.0, -1.0, 0.0))
-    if inwards.any():
-        places += [null + inwards * size * factor for factor in (SIZES if strong else SIZES[:1])]
+    away = inwards(null)
+    if away.any():
+        places += [null + away * size * factor for factor in (SIZES if strong else SIZES[:1])]
     return np.column_stack([np.concatenate([point.unit, np.clip(place, 0.0, 1.0)]) for place in places])
 
 
