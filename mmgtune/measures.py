@@ -8,9 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from .arrays import FloatArray
 
 UNITS = {"MMD": "m", "MED": "m", "ASD": "mixed", "MSD": "mixed", "PMD": "%", "PED": "%", "cVDM": "%"}
 """Unit of each measure; "mixed" adds metres, radians and their rates as they are."""

@@ -9,12 +9,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from .arrays import FloatArray
 from .components import KINDS, Component
 from .effects import PLACES, Effect
 from .physics.mmg import Coefficients, Components
 from .profile import ShipProfile
-
-FloatArray = npt.NDArray[np.float64]
 
 
 class Model:

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .arrays import FloatArray
 from .backends import STATES, Cases, pad
-from .backends.cases import FloatArray
 from .errors import OptionError, Problem, closest
 from .trial import Trial, measured_wind
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
+from .arrays import FloatArray
 from .backends import LaneModel
 from .backends.numpy_lanes import STILL
 from .errors import OptionError, Problem
@@ -20,8 +20,6 @@ from .model import Model
 from .physics.quantities import Control, State
 from .profile import ShipProfile, SteeringGear
 from .simulation import Motion
-
-FloatArray = npt.NDArray[np.float64]
 
 FINE = 0.01
 """Step of the integration, fourth-order Runge-Kutta, as a share of the time the ship takes for its own length."""

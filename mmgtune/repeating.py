@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from .arrays import FloatArray
 from .errors import TrialError
 from .manoeuvres import (
     Track,
@@ -28,8 +28,6 @@ from .profile import ShipProfile
 from .simulation import Motion, track_of
 from .trial import Trial
 from .units import DEG
-
-FloatArray = npt.NDArray[np.float64]
 
 JUDGED = {
     "advance_over_L": ("advance", "L", 2),

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from .arrays import FloatArray
 from .backends import STATES, Integrator, LaneModel, get_backend, pad
 from .manoeuvres import Track, manoeuvre_kind
 from .manoeuvres.summary import indices_of
@@ -18,8 +18,6 @@ from .physics.mmg import Breakdown
 from .physics.quantities import Control, State
 from .profile import ShipProfile
 from .trial import Trial, measured_wind
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

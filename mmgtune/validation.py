@@ -6,14 +6,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from .arrays import FloatArray
 from .backends import STATES, Integrator, get_backend
 from .model import Model
 from .objective import cases_of, default_scales, make_objective
 from .trial import Trial
-
-FloatArray = npt.NDArray[np.float64]
 
 DRAWS = 2000
 """Times runs are drawn anew for an interval."""

@@ -5,7 +5,8 @@ from __future__ import annotations
 from functools import lru_cache
 
 from ..errors import OptionError, Problem, closest
-from .cases import STATES, Backend, Cases, Integrator, LaneResult, pad
+from ..physics.quantities import STATES
+from .cases import Backend, Cases, Integrator, LaneResult, pad
 from .compiled import Compiled
 from .kernel_source import WIDTH
 from .numpy_lanes import LaneModel, NumpyLanes

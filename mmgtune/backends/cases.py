@@ -8,14 +8,9 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import BoolArray, FloatArray, IntArray
 from ..model import Model
-
-FloatArray = npt.NDArray[np.float64]
-
-STATES = ("x", "y", "psi", "u", "v_m", "r")
-"""Order of the state in every array; units m, m, rad, m/s, m/s, rad/s."""
 
 SPEED_LIMIT = 1e3
 """Speed [m/s] beyond which a lane counts as diverged, far above any ship and far below overflow."""
@@ -35,7 +30,7 @@ class Cases:
     """
 
     t: FloatArray
-    n_samples: npt.NDArray[np.int64]
+    n_samples: IntArray
     controls: FloatArray
     wind: FloatArray
     initial: FloatArray
@@ -51,7 +46,7 @@ class Cases:
         return int(np.sum(self.n_samples - 1))
 
     @cached_property
-    def rows(self) -> npt.NDArray[np.int64]:
+    def rows(self) -> IntArray:
         """(n_cases, T, 6) place of each difference that counts among all residuals, -1 where none counts."""
         counts = self.weight > 0.0
         rows = np.full(counts.shape, -1, dtype=np.int64)
@@ -132,7 +127,7 @@ class LaneResult:
     """
 
     cost: FloatArray
-    diverged: npt.NDArray[np.bool_]
+    diverged: BoolArray
     states: FloatArray | None = None
     residuals: FloatArray | None = None
 

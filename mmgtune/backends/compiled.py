@@ -10,8 +10,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..model import Model
-from .cases import Cases, FloatArray, Integrator, LaneResult, finish
+from .cases import Cases, Integrator, LaneResult, finish
 from .kernel_source import WIDTH, kernel_source
 
 WORTH_A_THREAD = 20_000

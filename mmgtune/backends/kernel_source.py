@@ -13,6 +13,7 @@ from functools import lru_cache
 from ..components import Component
 from ..effects import Effect
 from ..model import Model
+from ..physics.quantities import STATES
 
 WIDTH = 8
 """Lanes that march together; two AVX2 or one AVX-512 register of float64."""
@@ -157,8 +158,6 @@ air = Air(
     wind_log[case, i - 1, 1] + f * (wind_log[case, i, 1] - wind_log[case, i - 1, 1]),
     wind_log[case, i, 2],
 )"""
-
-STATES = ("x", "y", "psi", "u", "v_m", "r")
 
 
 @lru_cache(maxsize=64)

@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..model import Model
 from ..physics.mmg import Breakdown, forces, rates, through_water
 from ..physics.quantities import Air, Control, State
-from .cases import Cases, FloatArray, Integrator, LaneResult, finish
+from .cases import Cases, Integrator, LaneResult, finish
 
 STILL = Air(0.0, 0.0, 0.0)
 """No wind measured."""

@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import FloatArray
 from ..backends import STATES, Integrator, get_backend
 from ..errors import TrialError
 from ..manoeuvres import Track, manoeuvre_kind, turning_indices, zigzag_indices
@@ -20,8 +20,6 @@ from ..objective import cases_of, default_scales, make_objective
 from ..simulation import track_of
 from ..trial import Trial
 from ..units import DEG
-
-FloatArray = npt.NDArray[np.float64]
 
 Values = dict[str, float]
 """Metrics of one trial by name; inf where the simulation diverged, absent where the trial does not show them."""

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import FloatArray
 from ..backends import STATES
 from ..fitting.comparison import TrialComparison, compare, finite
 from ..fitting.least_squares import fit_offsets
@@ -18,8 +18,6 @@ from ..simulation import trial_measures
 from ..trial import Trial
 from .search import Found
 from .workbench import Point, Workbench, make_workbench
-
-FloatArray = npt.NDArray[np.float64]
 
 RESAMPLES = 2000
 """Resamples of the trials an interval is made from."""

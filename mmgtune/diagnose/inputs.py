@@ -8,12 +8,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import FloatArray
 from ..trial.kinematics import white_noise
 from .workbench import Point, Workbench
-
-FloatArray = npt.NDArray[np.float64]
 
 DRAWS = 16
 """Simulated realisations per trial."""

@@ -6,12 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import FloatArray
 from .linear import linearise, typical
 from .workbench import Point, Workbench
-
-FloatArray = npt.NDArray[np.float64]
 
 NORMAL = 1.96
 """Deviations either side of a 95 % interval."""

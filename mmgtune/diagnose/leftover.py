@@ -12,16 +12,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import FloatArray
 from ..backends import STATES
 from ..trial import Trial
 from .evidence import share_explained
 from .linear import linearise
 from .noise import rows_of_channels
 from .workbench import Point, Workbench
-
-FloatArray = npt.NDArray[np.float64]
 
 NOTICED = 0.05
 """Variance beyond the white noise of the sensors, as a share of it, that is worth speaking of."""

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import BoolArray, FloatArray, IntArray
 from ..backends import STATES
 from ..fitting.box import parameter_of
 from ..fitting.least_squares import flat_where_lost
@@ -20,8 +20,6 @@ from ..fitting.problem import FitProblem
 from ..profile import scale_of
 from .inputs import wander
 from .workbench import Point, Workbench
-
-FloatArray = npt.NDArray[np.float64]
 
 STEP = 1e-5
 """Step of derivatives, in the unit cube."""
@@ -60,11 +58,11 @@ class Linear:
     share: FloatArray
     noise: FloatArray
     wander: FloatArray
-    blocks: npt.NDArray[np.int64]
-    cases: npt.NDArray[np.int64]
+    blocks: IntArray
+    cases: IntArray
 
     @property
-    def measured(self) -> npt.NDArray[np.bool_]:
+    def measured(self) -> BoolArray:
         """(n_rows,) which rows are residuals; the others are offsets."""
         rows = np.ones(len(self.residual), dtype=bool)
         for end in np.append(self.cases[1:], len(rows)):
@@ -223,7 +221,7 @@ def basis(columns: FloatArray) -> FloatArray:
     return np.asarray(shown @ (vectors[:, kept] / np.sqrt(square[kept])))
 
 
-def _rows(problem: FitProblem) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+def _rows(problem: FitProblem) -> tuple[IntArray, IntArray]:
     """First row of each trial, and of each block; the rows of a trial's offsets belong to its last."""
     first, blocks, row = [], [], 0
     for case, rows in enumerate(problem.rows_of_cases):

@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 from scipy.signal import lfilter
 
+from ..arrays import FloatArray, IntArray
 from ..backends import STATES, Cases
-
-FloatArray = npt.NDArray[np.float64]
 
 LAGS = 6
 """Autocovariances a fading part is estimated from."""
@@ -61,7 +59,7 @@ class NoiseModel:
 
     cases: Cases
     channels: dict[str, ChannelNoise]
-    _series: list[tuple[str, npt.NDArray[np.int64]]] = field(init=False)
+    _series: list[tuple[str, IntArray]] = field(init=False)
 
     def __post_init__(self) -> None:
         self._series = series_of(self.cases)
@@ -100,7 +98,7 @@ class NoiseModel:
         return out
 
 
-def series_of(cases: Cases) -> list[tuple[str, npt.NDArray[np.int64]]]:
+def series_of(cases: Cases) -> list[tuple[str, IntArray]]:
     """Residuals of each channel of each case: name of the channel and where they stand."""
     found = []
     for case in range(len(cases)):
@@ -112,9 +110,9 @@ def series_of(cases: Cases) -> list[tuple[str, npt.NDArray[np.int64]]]:
     return found
 
 
-def rows_of_channels(cases: Cases) -> dict[str, list[npt.NDArray[np.int64]]]:
+def rows_of_channels(cases: Cases) -> dict[str, list[IntArray]]:
     """Where the residuals of each channel stand, case by case."""
-    found: dict[str, list[npt.NDArray[np.int64]]] = {}
+    found: dict[str, list[IntArray]] = {}
     for channel, rows in series_of(cases):
         found.setdefault(channel, []).append(rows)
     return found

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from ..backends import STATES
 from ..effects import effect_tags
 from ..errors import OptionError, Problem, closest
 from ..fitting import FitOptions
 
-CHANNELS = ("x", "y", "psi", "u", "v_m", "r")
+CHANNELS = STATES
 """All of the motion is looked at: velocities tell sensors from forces."""
 
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from ..effects import Effect
 from ..fitting.comparison import finite
@@ -19,8 +18,6 @@ from .leftover import Leftover
 from .options import DiagnoseOptions
 from .separate import Suggestion
 from .wording import parameters_in_words
-
-FloatArray = npt.NDArray[np.float64]
 
 SCHEMA = 1
 VERDICTS = ("none", "found", "not-separable", "unexplained")

@@ -6,13 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 from scipy.special import gammaincc
 
+from ..arrays import FloatArray
 from .hypotheses import Hypothesis
 from .linear import Linear, basis, inflation
-
-FloatArray = npt.NDArray[np.float64]
 
 DRAWS = 4000
 """Simulated data sets without any effect."""

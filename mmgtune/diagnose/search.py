@@ -10,8 +10,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import FloatArray
 from ..backends import Integrator
 from ..fitting.least_squares import solve
 from . import noise as noises
@@ -19,8 +19,6 @@ from .hypotheses import HULL_TERM, Hypothesis
 from .linear import Linear, inwards, linearise, typical
 from .screening import ChanceScores, Score, evidence, scores
 from .workbench import TOLERANCE, Point, Workbench
-
-FloatArray = npt.NDArray[np.float64]
 
 STARTS = 6
 """Starts of the base fit."""

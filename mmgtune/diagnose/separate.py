@@ -8,15 +8,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import FloatArray
 from ..backends import STATES
 from ..objective import Objective, cases_of
 from ..orders import Helmsman, TurningOrder, ZigzagOrder, run_manoeuvre
 from ..simulation import Motion, as_trial
 from .workbench import Point, Workbench
-
-FloatArray = npt.NDArray[np.float64]
 
 DEG = math.pi / 180.0
 

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import FloatArray
 from ..backends import STATES, Integrator, get_backend
 from ..fitting.box import Box, choose_targets, make_box
 from ..fitting.least_squares import LeastSquaresResult, solve
@@ -19,8 +19,6 @@ from ..trial import Trial
 from ..trial.kinematics import white_noise
 from .noise import NoiseModel, white
 from .options import CHANNELS, DiagnoseOptions
-
-FloatArray = npt.NDArray[np.float64]
 
 TOLERANCE = 0.2
 """Fall of chi-squared that counts as none while searching; a fiftieth of what matters."""

@@ -13,13 +13,12 @@ from fnmatch import fnmatchcase
 import numpy as np
 import numpy.typing as npt
 
+from ..arrays import FloatArray
 from ..components import split_name
 from ..effects import Parameter
 from ..errors import OptionError, Problem, closest
 from ..model import Model
 from ..profile import scale_of
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

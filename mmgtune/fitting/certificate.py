@@ -6,13 +6,11 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import FloatArray
 from .cmaes import Restart
 from .least_squares import LeastSquaresResult
 from .problem import FitProblem
-
-FloatArray = npt.NDArray[np.float64]
 
 TOLERANCE = 1e-4
 """Relative difference of J within which two ends count as the same optimum."""

@@ -13,12 +13,10 @@ from typing import Any
 from zipfile import BadZipFile
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import FloatArray
 from ..errors import OptionError, Problem
 from ..files import atomic
-
-FloatArray = npt.NDArray[np.float64]
 
 NAME = "checkpoint.npz"
 EVERY = 25

@@ -17,11 +17,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import FloatArray
 from .problem import FitProblem
-
-FloatArray = npt.NDArray[np.float64]
 
 LAMBDAS = (12, 24, 48, 96, 128)
 """Population sizes: 12 at first, doubled at each restart, up to 128 (Suyama et al. 2023, section 5)."""

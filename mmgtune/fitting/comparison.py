@@ -7,16 +7,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import FloatArray
 from ..backends import STATES
 from ..manoeuvres.summary import indices_of
 from ..simulation import Motion, trial_indices
 from ..trial import Trial
 from .least_squares import fit_offsets
 from .problem import FitProblem
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,13 +6,11 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import BoolArray, FloatArray
 from .combinations import COMBINATIONS
 from .problem import FitProblem
 from .whitening import estimate_whitening
-
-FloatArray = npt.NDArray[np.float64]
 
 NULL_RATIO = 1e-6
 """Singular values below this share of the largest are zero but for the rounding of finite differences."""
@@ -97,7 +95,7 @@ class Identifiability:
         }
 
 
-def analyse(problem: FitProblem, unit: FloatArray, active: npt.NDArray[np.bool_]) -> Identifiability:
+def analyse(problem: FitProblem, unit: FloatArray, active: BoolArray) -> Identifiability:
     """Identifiability at a point of the unit cube (n_targets,); ``active`` marks targets held by their bound.
 
     Standard errors are those of the whitened, linearised problem over the targets that are free; they leave out
@@ -155,9 +153,7 @@ def _without_offsets(problem: FitProblem, sensitivity: FloatArray, by_offset: Fl
     return left
 
 
-def _errors(
-    sensitivity: FloatArray, free: npt.NDArray[np.bool_]
-) -> tuple[FloatArray, FloatArray, npt.NDArray[np.bool_]]:
+def _errors(sensitivity: FloatArray, free: BoolArray) -> tuple[FloatArray, FloatArray, BoolArray]:
     """Relative standard errors (inf where unknown), covariance, which targets have one; null directions left out."""
     n = sensitivity.shape[1]
     covariance = np.zeros((n, n))
@@ -211,7 +207,7 @@ def _combinations(
     relative: FloatArray,
     singular: FloatArray,
     vectors: FloatArray,
-    null: npt.NDArray[np.bool_],
+    null: BoolArray,
 ) -> tuple[KnownCombination, ...]:
     """Offered combinations that involve an undetermined target and are constant along every null direction."""
     if not null.any():
@@ -237,7 +233,7 @@ def _combinations(
     return tuple(known)
 
 
-def _sentences(problem: FitProblem, result: Identifiability, active: npt.NDArray[np.bool_]) -> tuple[str, ...]:
+def _sentences(problem: FitProblem, result: Identifiability, active: BoolArray) -> tuple[str, ...]:
     """The findings in words, most important first."""
     n, lost = len(result.names), len(result.null_directions)
     sentences = [f"{n - lost} of {n} combinations of the targets can be known from these trials."]

@@ -9,13 +9,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import FloatArray
 from ..trial import Trial
 from ..trial.kinematics import white_noise
 from ..trial.schema import MOTION
-
-FloatArray = npt.NDArray[np.float64]
 
 LARGEST = 5.0
 """Offsets are kept within this many standard deviations."""

@@ -13,10 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from ..arrays import BoolArray, FloatArray
 from .initial import LARGEST
 from .problem import FitProblem
-
-FloatArray = npt.NDArray[np.float64]
 
 QUIET = 1e-9
 """Relative fall of what is minimised that counts as none; two such iterations in a row end a start."""
@@ -281,7 +280,7 @@ class _Linear:
                 change[rows] += self._by_offset[rows] @ own
         return change
 
-    def bend(self, curved: FloatArray, damping: float, free: npt.NDArray[np.bool_]) -> tuple[FloatArray, FloatArray]:
+    def bend(self, curved: FloatArray, damping: float, free: BoolArray) -> tuple[FloatArray, FloatArray]:
         """Step and shift that undo a second derivative of the residuals, by least squares over the free targets."""
         gradient = self._jacobian.T @ curved
         pulls = []

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import FloatArray
 from ..backends import WIDTH, Backend, Cases, Integrator
 from ..model import Model
 from .box import Box
 from .initial import prior_weight
-
-FloatArray = npt.NDArray[np.float64]
 
 LANES_AT_ONCE = 512
 """Largest number of runs kept with their residuals at one time, but for the lanes of one block; bounds the memory."""

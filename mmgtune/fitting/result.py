@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import FloatArray
 from ..components import split_name
 from ..profile import ShipProfile, parse_profile, tuned_text
 from .box import Box
@@ -18,8 +18,6 @@ from .comparison import TrialComparison, finite, total
 from .identifiability import Identifiability
 from .least_squares import LeastSquaresResult
 from .options import FitOptions
-
-FloatArray = npt.NDArray[np.float64]
 
 SCHEMA = 1
 

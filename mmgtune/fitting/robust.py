@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import FloatArray
 from ..backends import Cases
 from .least_squares import LeastSquaresResult, solve
 from .problem import FitProblem
-
-FloatArray = npt.NDArray[np.float64]
 
 ROUNDS = 6
 """Times outliers are weighed anew."""

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import FloatArray
 from ..backends import STATES, get_backend
 from ..model import Model
 from ..objective import Objective, cases_of, make_objective, spread
@@ -32,8 +32,6 @@ from .options import FitOptions
 from .problem import FitProblem
 from .result import FitResult
 from .robust import weigh_down
-
-FloatArray = npt.NDArray[np.float64]
 
 EDGE = 0.5
 """Distance from the middle of the box to its edge, in the unit cube."""

@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import FloatArray, IntArray
 from ..backends import STATES
 from .problem import FitProblem
-
-FloatArray = npt.NDArray[np.float64]
 
 LARGEST = 0.999
 """Largest autocorrelation assumed; beyond it a trial of some hundred samples says nothing more."""
@@ -25,7 +23,7 @@ class Whitening:
 
     phi: dict[str, float]
     sigma: dict[str, float]
-    _series: list[tuple[str, npt.NDArray[np.int64]]]
+    _series: list[tuple[str, IntArray]]
 
     def apply(self, values: FloatArray) -> FloatArray:
         """Residuals (n_residuals, ...) or their derivatives, whitened."""
@@ -40,7 +38,7 @@ class Whitening:
 
 def estimate_whitening(problem: FitProblem, residuals: FloatArray) -> Whitening:
     """Autocorrelation and deviation per channel from residuals (n_residuals,) at the optimum, pooled over trials."""
-    series: list[tuple[str, npt.NDArray[np.int64]]] = []
+    series: list[tuple[str, IntArray]] = []
     for case in range(len(problem.cases)):
         for k, channel in enumerate(STATES):
             rows = problem.cases.rows[case, :, k]

@@ -8,10 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import BoolArray, FloatArray, IntArray
 from ..errors import LogError, Problem
-from ..trial.model import FloatArray
 from .mapping import TimeSource
 
 DAY = 86400.0
@@ -35,7 +34,7 @@ class Stamps:
         """Whether stamps are dates or clocks, so that what is returned is in s."""
         return self.format in ("iso", "clock")
 
-    def of(self, values: Any, rows: npt.NDArray[np.int64]) -> FloatArray:
+    def of(self, values: Any, rows: IntArray) -> FloatArray:
         """Time (n_rows,) of a pandas column: as printed, or in s from the first stamp; NaN where there is none.
 
         Raises LogError where the first stamps are neither numbers nor dates nor clocks.
@@ -95,7 +94,7 @@ class Stamps:
             self.day, self.last = float(days[-1]), float(values[-1])
         return out
 
-    def _unreadable(self, text: Any, rows: npt.NDArray[np.int64], how: str) -> None:
+    def _unreadable(self, text: Any, rows: IntArray, how: str) -> None:
         shown = text.iloc[0] if len(text) else ""
         fix = 'say format = "number", "iso" or "clock" in [time]'
         place = f"{self.path}, line {rows[0] if len(rows) else 0}"
@@ -112,7 +111,7 @@ class Timeline:
     notes   what was done, in sentences
     """
 
-    keep: npt.NDArray[np.bool_]
+    keep: BoolArray
     t: FloatArray
     parts: list[int] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..errors import LogError, Problem
 from ..trial.kinematics import DEG, FITS, IN_EARTH_AXES, position_misfits, turning
-from ..trial.model import FloatArray
 from .mapping import LogMap
 from .motion import in_ship_axes, moved
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..errors import LogError, Problem, TrialError
 from ..manoeuvres import Track, find_execute, manoeuvre_kind
 from ..manoeuvres.track import noise_level
-from ..trial.model import FloatArray
 from ..units import DEG
 from .gridding import FEWEST
 from .mapping import LogMap

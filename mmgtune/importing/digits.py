@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.interpolate import make_smoothing_spline
 
-from ..trial.model import FloatArray
+from ..arrays import FloatArray
 
 
 def print_step(values: FloatArray) -> tuple[FloatArray, int]:

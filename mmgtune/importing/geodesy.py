@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..errors import LogError, Problem
-from ..trial.model import FloatArray
 from .mapping import LogMap
 from .record import Record, Series
 

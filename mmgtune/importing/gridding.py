@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..errors import LogError, Problem
-from ..trial.model import FloatArray
 from .mapping import LogMap
 from .quantities import CONTROLS, MEANING, MEASURED
 from .record import Record, Series

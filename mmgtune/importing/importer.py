@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..errors import LogError, OutputError, Problem
 from ..files import exists, write_text
 from ..trial import Trial, write_trial
-from ..trial.model import FloatArray
 from ..trial.schema import ATTRIBUTES, COLUMNS, DIRECTIONS, REQUIRED
 from ..trial.unusable import unusable
 from . import conventions, motion

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..trial.kinematics import white_noise
-from ..trial.model import FloatArray
 from ..trial.smoothing import FEWEST, smoothed, time_scale
 from .mapping import LogMap
 

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
 
+from ..arrays import FloatArray
 from ..errors import LogError, Problem
 from ..trial import Trial, check_trial
 from ..trial.control_checks import fastest_change
 from ..trial.kinematics import DEG, IN_EARTH_AXES, position_misfits, turning
-from ..trial.model import FloatArray
 from .conventions import rudder_evidence
 from .gridding import Grid
 from .mapping import LogMap

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from .. import units
+from ..arrays import FloatArray
 from ..errors import LogError, Problem
-from ..trial.model import FloatArray
 from .digits import print_step, within_digits
 from .headers import unit_in
 from .mapping import LogMap, Source

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..arrays import FloatArray, IntArray
 from ..errors import LogError, Problem
-from ..trial.model import FloatArray
 from .mapping import LogMap
 
 MOST_ROWS = 1_000_000
@@ -34,7 +34,7 @@ class Table:
     path: Path
     t: FloatArray
     columns: dict[str, FloatArray]
-    rows: npt.NDArray[np.int64]
+    rows: IntArray
     headers: dict[str, str]
     clock: bool = False
     unit: str = "line"
@@ -50,13 +50,13 @@ class Collector:
 
     def __init__(self, names: list[str]):
         self.blocks: list[npt.NDArray[Any]] = []
-        self.rows: list[npt.NDArray[np.int64]] = []
+        self.rows: list[IntArray] = []
         self.names = names
         self.stride = 1
         self.kept = 0
         self.seen = 0
 
-    def add(self, block: FloatArray, rows: npt.NDArray[np.int64]) -> None:
+    def add(self, block: FloatArray, rows: IntArray) -> None:
         """Take a block (n_rows, n_names) and the numbers of its rows (n_rows,)."""
         first = -self.seen % self.stride
         self.seen += len(block)
@@ -68,7 +68,7 @@ class Collector:
             self.blocks, self.rows, self.kept = [block.copy()], [rows.copy()], len(rows)
             self.stride *= 2
 
-    def columns(self) -> tuple[dict[str, FloatArray], npt.NDArray[np.int64]]:
+    def columns(self) -> tuple[dict[str, FloatArray], IntArray]:
         """The columns by name, (n_rows,) each, and the numbers of the rows."""
         if not self.blocks:
             return {name: np.zeros(0) for name in self.names}, np.zeros(0, dtype=np.int64)
@@ -110,7 +110,7 @@ class Cells:
                 continue
         return found
 
-    def of(self, name: str, values: Any, rows: npt.NDArray[np.int64]) -> FloatArray:
+    def of(self, name: str, values: Any, rows: IntArray) -> FloatArray:
         """Numbers (n_rows,) of a pandas column, NaN where a cell holds none."""
         import pandas as pd
 

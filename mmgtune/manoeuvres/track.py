@@ -6,13 +6,10 @@ from dataclasses import dataclass, fields
 from typing import Any, Literal, get_type_hints
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..errors import Problem, TrialError
 from ..units import DEG
-
-Series = NDArray[np.float64]
-"""One channel, shape (n_samples,)."""
 
 Direction = Literal["starboard", "port"]
 
@@ -32,15 +29,15 @@ class Track:
     Raises TrialError naming every channel that is wrong.
     """
 
-    t: Series
-    x: Series
-    y: Series
-    psi: Series
-    u: Series
-    v_m: Series
-    delta: Series
-    r: Series | None = None
-    n: Series | None = None
+    t: FloatArray
+    x: FloatArray
+    y: FloatArray
+    psi: FloatArray
+    u: FloatArray
+    v_m: FloatArray
+    delta: FloatArray
+    r: FloatArray | None = None
+    n: FloatArray | None = None
 
     def __post_init__(self) -> None:
         problems = []
@@ -61,7 +58,7 @@ class Track:
             raise TrialError(*problems)
 
     @property
-    def speed(self) -> Series:
+    def speed(self) -> FloatArray:
         """Speed over ground U = sqrt(u^2 + v_m^2) [m/s], shape (n_samples,)."""
         return np.hypot(self.u, self.v_m)
 
@@ -118,7 +115,7 @@ def find_executes(track: Track) -> tuple[Execute, ...]:
     return tuple(found)
 
 
-def _runs(t: Series, label: Series) -> list[tuple[int, int, int]]:
+def _runs(t: FloatArray, label: FloatArray) -> list[tuple[int, int, int]]:
     """Stretches (side, first, last) of equal non-zero label (n_samples,); short gaps closed, short stretches out."""
     edges = np.flatnonzero(np.diff(label)) + 1
     bounds = zip(np.r_[0, edges].tolist(), np.r_[edges - 1, label.size - 1].tolist(), strict=True)
@@ -134,7 +131,7 @@ def _runs(t: Series, label: Series) -> list[tuple[int, int, int]]:
     return [run for run in runs if t[run[2]] - t[run[1]] >= 0.1 * longest]
 
 
-def _order_index(t: Series, towards: Series, start: int, noise: float) -> int:
+def _order_index(t: FloatArray, towards: FloatArray, start: int, noise: float) -> int:
     """Last sample on the plateau before the rudder reached its angle at sample ``start``.
 
     Walks back along the motion until the rudder had rested for half the time of the motion, or had moved the
@@ -167,7 +164,7 @@ def _order_index(t: Series, towards: Series, start: int, noise: float) -> int:
     return j + 1 + int(np.argmin(misfit))
 
 
-def noise_level(t: Series, values: Series) -> float:
+def noise_level(t: FloatArray, values: FloatArray) -> float:
     """Standard deviation of the noise on a smooth channel (n_samples,), in its unit.
 
     From each sample's distance to the line through its neighbours; the median leaves steps and corners out.
@@ -197,7 +194,7 @@ def _lengths_before(track: Track, index: int, distance: float) -> int:
     return int(np.searchsorted(track.t, track.t[index] - distance / max(float(track.speed[index]), 1e-6)))
 
 
-def first_crossing(values: Series, level: float, begin: int, end: int) -> float | None:
+def first_crossing(values: FloatArray, level: float, begin: int, end: int) -> float | None:
     """Fractional sample at which rising ``values`` first reach ``level`` in samples begin..end, or None."""
     above = np.flatnonzero(values[begin : end + 1] >= level)
     if above.size == 0:
@@ -206,12 +203,12 @@ def first_crossing(values: Series, level: float, begin: int, end: int) -> float 
     return float(i) if i == begin else i - 1 + float((level - values[i - 1]) / (values[i] - values[i - 1]))
 
 
-def value_at(values: Series, position: float) -> float:
+def value_at(values: FloatArray, position: float) -> float:
     """A channel (n_samples,) at a fractional sample, linearly interpolated."""
     return float(np.interp(position, np.arange(values.size), values))
 
 
-def integral(t: Series, values: Series, begin: float, end: float) -> float:
+def integral(t: FloatArray, values: FloatArray, begin: float, end: float) -> float:
     """Integral over time of a channel (n_samples,) between two fractional samples (trapezoidal rule)."""
     inside = np.arange(np.floor(begin) + 1, np.ceil(end))
     position = np.r_[begin, inside, end]

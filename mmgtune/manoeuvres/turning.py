@@ -12,12 +12,12 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..errors import Problem, TrialError
 from ..units import DEG
 from .track import (
     Direction,
     Execute,
-    Series,
     Track,
     approach_speed,
     find_execute,
@@ -103,7 +103,7 @@ def turning_indices(track: Track, L_pp: float, *, subtract_drift: bool = False) 
     approach = approach_speed(track, e, L_pp)
     at = {deg: first_crossing(phi, deg * DEG, e, order.end) for deg in (10, 90, 180, 270, 360)}
 
-    def reached(values: Series, deg: int) -> float | None:
+    def reached(values: FloatArray, deg: int) -> float | None:
         return None if (position := at[deg]) is None else value_at(values, position)
 
     return TurningIndices(
@@ -135,19 +135,19 @@ def turning_indices(track: Track, L_pp: float, *, subtract_drift: bool = False) 
     )
 
 
-def _turned(track: Track, order: Execute, L_pp: float) -> Series:
+def _turned(track: Track, order: Execute, L_pp: float) -> FloatArray:
     """Change of heading since the order (n_samples,), positive to the side of the turn [rad]."""
     return np.asarray(order.side * (track.psi - heading_at(track, order.index, L_pp)))
 
 
-def _from_order(track: Track, order: Execute, L_pp: float) -> tuple[Series, Series]:
+def _from_order(track: Track, order: Execute, L_pp: float) -> tuple[FloatArray, FloatArray]:
     """Distances (n_samples,) from the position at the order, along its heading and across to the turn's side [m]."""
     psi_0 = heading_at(track, order.index, L_pp)
     x, y = track.x - track.x[order.index], track.y - track.y[order.index]
     return x * np.cos(psi_0) + y * np.sin(psi_0), order.side * (y * np.cos(psi_0) - x * np.sin(psi_0))
 
 
-def _largest(distance: Series, begin: float | None, end: float | None, last: int) -> float | None:
+def _largest(distance: FloatArray, begin: float | None, end: float | None, last: int) -> float | None:
     """Largest distance between two crossings, None if it is still growing at the end."""
     if begin is None:
         return None
@@ -179,7 +179,7 @@ def _through_water(track: Track, order: Execute, drift: tuple[float, float, int]
     return replace(track, x=track.x - north * since, y=track.y - east * since, u=u, v_m=v_m)
 
 
-def _steady(track: Track, order: Execute, phi: Series) -> dict[str, Any]:
+def _steady(track: Track, order: Execute, phi: FloatArray) -> dict[str, Any]:
     """Means over the end of the turn, weighted by time; see TurningIndices."""
     names = ("heading_change", "speed", "yaw_rate", "diameter", "drift_angle")
     total = float(np.max(phi[order.index : order.end + 1]))

@@ -12,10 +12,10 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..units import DEG
 from .track import (
     Direction,
-    Series,
     Track,
     approach_speed,
     find_execute,
@@ -146,7 +146,9 @@ def usual_angle(measured: float) -> float:
     return (near if abs(near - degrees) <= max(1.5, 0.2 * near) else round(degrees)) * DEG
 
 
-def heading_peak(t: Series, heading: Series, begin: int, end: int, *, open_end: bool) -> tuple[float, float] | None:
+def heading_peak(
+    t: FloatArray, heading: FloatArray, begin: int, end: int, *, open_end: bool
+) -> tuple[float, float] | None:
     """Time [s] and height [rad] of the heading's peak in samples begin..end.
 
     A parabola through the samples within five standard deviations of the noise below the highest one, three at

@@ -17,6 +17,10 @@ class State(NamedTuple):
     r: Lanes  # yaw rate, to starboard [rad/s]
 
 
+STATES = State._fields
+"""Order of the state in every array; units m, m, rad, m/s, m/s, rad/s."""
+
+
 class Control(NamedTuple):
     """What the machinery does (eq. 4)."""
 

@@ -9,6 +9,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from ..arrays import FloatArray
 from .tracks import WORDS, onto
 from .wording import CHANNELS, Channel
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-    Array = npt.NDArray[np.float64]
+    Array = FloatArray
     Motion = Mapping[str, Array]
 
 LEFT = ("psi", "u", "v_m", "r", "delta", "n")

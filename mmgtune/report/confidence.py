@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from ..arrays import FloatArray
 from . import figures, findings, tables
 from .common import picture
 from .drawing import Drawn
@@ -11,9 +12,6 @@ from .page import Block, Details, Prose, Section, Table
 from .wording import clean, count, number, short, shown
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-
     from .load import RunRecord
 
 
@@ -54,13 +52,13 @@ def best_fit(record: RunRecord, drawings: dict[str, Drawn]) -> Section:
     return Section("trust", "Is this the best fit in the box?", tuple(blocks))
 
 
-def running(history: Any) -> npt.NDArray[np.float64]:
+def running(history: Any) -> FloatArray:
     """Evaluations counted through all restarts, also where each restart counts from its own beginning."""
     import numpy as np
 
     spent = np.asarray(history["evaluations"], dtype=np.float64)
     falls = np.where(np.diff(spent, prepend=spent[:1]) < 0.0, np.roll(spent, 1), 0.0)
-    total: npt.NDArray[np.float64] = np.maximum(spent + np.cumsum(falls), 1.0)
+    total: FloatArray = np.maximum(spent + np.cumsum(falls), 1.0)
     return total
 
 

@@ -11,11 +11,10 @@ import xml.etree.ElementTree as ElementTree
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from ..arrays import FloatArray
 from .wording import shown
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure
@@ -109,7 +108,7 @@ def log_ticks(axis: Axis) -> None:
     axis.set_minor_formatter(NullFormatter())
 
 
-def thinned(values: npt.NDArray[np.float64], limit: int = 500) -> slice:
+def thinned(values: FloatArray, limit: int = 500) -> slice:
     """Every so many samples that at most ``limit`` are drawn."""
     return slice(None, None, max(1, -(-len(values) // limit)))
 

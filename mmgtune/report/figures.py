@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from ..arrays import FloatArray
 from .drawing import AFTER, BEFORE, BOX, FLAG, INK, MUTED, log_ticks, new_figure
 from .wording import MINUS, clean, number, short, shown
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -146,9 +145,7 @@ def draw_box_positions(rows: Sequence[str], columns: Sequence[str], values: Sequ
     return figure
 
 
-def draw_convergence(
-    evaluations: npt.NDArray[np.float64], history: Mapping[str, npt.NDArray[np.float64]], least_squares: float | None
-) -> Figure:
+def draw_convergence(evaluations: FloatArray, history: Mapping[str, FloatArray], least_squares: float | None) -> Figure:
     """J against evaluations: every generation's best, the best so far, and where each restart began."""
     import numpy as np
 

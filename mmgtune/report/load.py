@@ -8,14 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..arrays import FloatArray
 from ..errors import OptionError, Problem
 from .wording import clean
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-
-    Motion = Mapping[str, npt.NDArray[np.float64]]
+    Motion = Mapping[str, FloatArray]
 
 SCHEMA = 1
 _COLUMNS = ("t", "x", "y", "psi", "u", "v_m", "r", "n", "delta")
@@ -37,7 +35,7 @@ class RunRecord:
 
     folder: Path
     data: Mapping[str, Any]
-    history: Mapping[str, npt.NDArray[np.float64]]
+    history: Mapping[str, FloatArray]
     motions: Mapping[str, Mapping[str, Motion]]
 
     @property
@@ -134,7 +132,7 @@ def _read(path: Path, kind: str) -> dict[str, Any]:
 def _run(folder: Path, data: Mapping[str, Any]) -> RunRecord:
     import numpy as np
 
-    history: dict[str, npt.NDArray[np.float64]] = {}
+    history: dict[str, FloatArray] = {}
     if (folder / "history.parquet").is_file():
         frame = _parquet(folder / "history.parquet")
         history = {str(name): frame[name].to_numpy(dtype=np.float64) for name in frame.columns} if len(frame) else {}

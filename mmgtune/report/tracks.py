@@ -6,16 +6,15 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from ..arrays import FloatArray
 from .drawing import LINES, MUTED, grid_of, legend_above, thinned
 from .wording import CHANNELS, clean
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    Motion = Mapping[str, npt.NDArray[np.float64]]
+    Motion = Mapping[str, FloatArray]
 
 WORDS = {"measured": "measured", "before": "before tuning", "after": "after tuning"}
 ROLES = {"tune": "tuned on", "test": "test", "other": "not used"}
@@ -100,7 +99,7 @@ def draw_histories(found: Mapping[str, Motion]) -> Figure:
     return figure
 
 
-def distance_from(one: Motion, measured: Motion) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+def distance_from(one: Motion, measured: Motion) -> tuple[FloatArray, FloatArray]:
     """Times and the distance of a simulated position from the measured one [m]."""
     import numpy as np
 
@@ -109,7 +108,7 @@ def distance_from(one: Motion, measured: Motion) -> tuple[npt.NDArray[np.float64
     return t, np.hypot(x - measured["x"], y - measured["y"])
 
 
-def onto(motion: Motion, name: str, t: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def onto(motion: Motion, name: str, t: FloatArray) -> FloatArray:
     """A column of a motion at the times ``t``; NaN outside the motion."""
     import numpy as np
 
@@ -143,7 +142,7 @@ def _track(ax: Axes, found: Mapping[str, Motion], spacing: float) -> None:
     ax.locator_params(nbins=5)
 
 
-def _times(t: npt.NDArray[np.float64], spacing: float) -> npt.NDArray[np.float64]:
+def _times(t: FloatArray, spacing: float) -> FloatArray:
     import numpy as np
 
     good = t[np.isfinite(t)]

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arrays import FloatArray
 from .finding import Finding
 from .kinematics import DEG
-from .model import FloatArray, Trial
+from .model import Trial
 from .motion_checks import spikes
 from .schema import DIRECTIONS
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .model import FloatArray
+from ..arrays import FloatArray
 
 DEG = np.pi / 180.0
 IN_EARTH_AXES = "in earth axes, u north and v east"

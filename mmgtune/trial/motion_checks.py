@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from ..arrays import FloatArray
 from .finding import Finding
 from .kinematics import DEG, FITS, IN_DEGREES, IN_EARTH_AXES, position_misfits, turning
-from .model import FloatArray, Trial
+from .model import Trial
 from .schema import INPUTS, LARGEST_YAW_RATE, MOTION
 
 

@@ -10,10 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..errors import Problem, TrialError
 from ..files import atomic
 from .metadata import facts_of
-from .model import FloatArray, Trial
+from .model import Trial
 from .schema import ATTRIBUTES, COLUMNS, METADATA_KEY, REQUIRED, SCHEMA
 from .unusable import unusable
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.interpolate import make_smoothing_spline
 
-from .model import FloatArray
+from ..arrays import FloatArray
 
 FEWEST = 10
 """Measured samples below which there is nothing to smooth."""

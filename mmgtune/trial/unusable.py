@@ -6,9 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..errors import Problem, closest
 from .kinematics import FITS, IN_DEGREES, position_misfits, turning
-from .model import FloatArray
 from .schema import COLUMNS, INPUTS, LARGEST_RUDDER, MOTION, REQUIRED, RUDDERS
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .model import FloatArray, Trial
+from ..arrays import FloatArray
+from .model import Trial
 
 
 def measured_wind(trial: Trial) -> FloatArray:

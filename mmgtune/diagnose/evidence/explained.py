@@ -7,9 +7,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
+from ...arrays import FloatArray
 from .forces import ResidualForces
-
-FloatArray = npt.NDArray[np.float64]
 
 NODES = 5
 """Nodes of the function fitted to a variable: four degrees of freedom beside the mean, for every variable."""

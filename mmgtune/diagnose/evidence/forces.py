@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 
+from ...arrays import FloatArray
 from ...model import Model
 from ...physics.mmg import Breakdown
 from ...physics.prime import force_unit, moment_unit
@@ -17,8 +18,6 @@ from ...simulation import breakdown
 from ...trial import Trial
 from ...trial.kinematics import white_noise
 from .smoothing import Smoothed, smooth
-
-FloatArray = npt.NDArray[np.float64]
 
 MOMENT = 3.0
 """Time [s] over which the rudder is looked at to tell whether it moves."""

@@ -6,14 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from ...arrays import BoolArray, FloatArray
 from ...backends import Integrator, get_backend, pad
 from ...model import Model
 from ...trial import Trial, measured_wind
-from .smoothing import BoolArray, Smoothed, smooth
-
-FloatArray = npt.NDArray[np.float64]
+from .smoothing import Smoothed, smooth
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,14 +12,13 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 
+from ...arrays import BoolArray, FloatArray
 from ...fitting.initial import noise_of
 from ...trial import Trial
 from ...trial.smoothing import FEWEST, smoothed, time_scale
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
+BoolArray = BoolArray
 
 REACH = 2.5
 """Time scales from an end or a long gap within which slopes of the spline are not relied on."""
