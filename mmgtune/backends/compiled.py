@@ -54,18 +54,22 @@ class Blocks:
 def make_blocks(cases: Cases, n_candidates: int) -> Blocks:
     """Blocks over all cases and candidates; the last lane is repeated where they do not fill the last block."""
     n_cases = len(cases)
-    per_case = -(-n_candidates // WIDTH)
-    if n_cases == 1 or n_candidates >= FULL * per_case * WIDTH:
-        thetas = np.minimum(np.arange(per_case * WIDTH), n_candidates - 1).reshape(per_case, WIDTH)
-        candidate_of = np.tile(thetas, (n_cases, 1))
-        case_of = np.repeat(np.arange(n_cases), per_case)[:, None].repeat(WIDTH, axis=1)
-        return Blocks(case_of, candidate_of, thetas, np.tile(np.arange(per_case), n_cases), mixed=False)
+    if n_cases == 1 or n_candidates >= FULL * WIDTH * -(-n_candidates // WIDTH):
+        return _blocks_of_one_case(n_cases, n_candidates)
     by_length = np.argsort(cases.n_samples, kind="stable")  # cases of a block should end together
     n_lanes = n_cases * n_candidates
     lanes = np.minimum(np.arange(-(-n_lanes // WIDTH) * WIDTH), n_lanes - 1).reshape(-1, WIDTH)
     case_of, candidate_of = by_length[lanes // n_candidates], lanes % n_candidates
     thetas, theta_of = np.unique(candidate_of, axis=0, return_inverse=True)
     return Blocks(case_of, candidate_of, thetas, theta_of.reshape(-1), mixed=True)
+
+
+@lru_cache(maxsize=64)
+def _blocks_of_one_case(n_cases: int, n_candidates: int) -> Blocks:
+    per_case = -(-n_candidates // WIDTH)
+    thetas = np.minimum(np.arange(per_case * WIDTH), n_candidates - 1).reshape(per_case, WIDTH)
+    case_of = np.repeat(np.arange(n_cases), per_case)[:, None].repeat(WIDTH, axis=1)
+    return Blocks(case_of, np.tile(thetas, (n_cases, 1)), thetas, np.tile(np.arange(per_case), n_cases), mixed=False)
 
 
 class Compiled:
@@ -140,6 +144,8 @@ class Compiled:
 
         def by_lane(values: FloatArray) -> FloatArray:
             """(n_cases, n_candidates, ...) of (n_blocks, WIDTH, ...)."""
+            if not blocks.mixed:
+                return values.reshape(n_cases, -1, *values.shape[2:])[:, :n_candidates]
             ordered = np.empty((n_cases, n_candidates, *values.shape[2:]))
             ordered[blocks.case_of, blocks.candidate_of] = values
             return ordered

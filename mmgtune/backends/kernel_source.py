@@ -47,9 +47,7 @@ def kernel(
     seen = carray(stack(6 * {W}), (6 * {W},))
     now = carray(stack({n_control} * {W}), ({n_control} * {W},))
     then = carray(stack({n_control} * {W}), ({n_control} * {W},))
-    here = carray(stack({n_around} * {W}), ({n_around} * {W},))
-    there = carray(stack({n_around} * {W}), ({n_around} * {W},))
-    h = carray(stack({W}), ({W},))
+{look_around}    h = carray(stack({W}), ({W},))
     J = carray(stack({W}), ({W},))
     fastest2 = carray(stack({W}), ({W},))
     n_stages = position.shape[0]
@@ -105,13 +103,11 @@ def kernel(
 {added}
                         rate = rates(state, u_c, v_c, Force(X, Y, N), coefficients.ship)
 {update}
-                for k in range({n_states}):
-                    for l in range({W}):
-                        s[k * {W} + l] = after_step(s[k * {W} + l], h[l], total[k * {W} + l])
+                for l in range({W}):
+{finish}
                 for k in range({n_control} * {W}):
                     now[k] = then[k]
-                for k in range({n_around} * {W}):
-                    here[k] = there[k]
+{look_on}
             for l in range({W}):
                 speed2 = s[3 * {W} + l] * s[3 * {W} + l] + s[4 * {W} + l] * s[4 * {W} + l]
                 fastest2[l] = speed2 if speed2 > fastest2[l] else fastest2[l]
@@ -160,6 +156,15 @@ def kernel(
             end[block, k] = s[k]
 '''
 
+_LOOK_AROUND = """\
+    here = carray(stack({n} * {W}), ({n} * {W},))
+    there = carray(stack({n} * {W}), ({n} * {W},))
+"""
+
+_LOOK_ON = """\
+                for k in range({n} * {W}):
+                    here[k] = there[k]"""
+
 _ANY_SHIFTED = """\
 shifted = False
 for l in range({W}):
@@ -187,7 +192,8 @@ def kernel_source(model: Model) -> str:
         n_rows=max(used) + 1,
         n_states=n_states,
         n_control=n_inputs * (1 + levels),
-        n_around=len(Surroundings._fields),
+        look_around=_LOOK_AROUND.format(n=len(Surroundings._fields), W=WIDTH) if _looks_around(model) else "",
+        look_on=_LOOK_ON.format(n=len(Surroundings._fields), W=WIDTH) if _looks_around(model) else "",
         W=WIDTH,
         any_shifted=_lines(8, _ANY_SHIFTED.format(W=WIDTH, shift=shift).splitlines()) if shift else "",
         from_initial=", ".join(f"initial[block, {k * WIDTH} + l]" for k in range(N_STATES)),
@@ -204,6 +210,9 @@ def kernel_source(model: Model) -> str:
         forces=_lines(24, _forces(model)),
         added=_lines(24, [*_added(model), *_lagging(model)]),
         update=_lines(24, _update(model)),
+        finish=_lines(
+            20, [f"{_slot('s', k)} = after_step({_slot('s', k)}, h[l], {_slot('total', k)})" for k in range(n_states)]
+        ),
         from_s=_state("s"),
         sense=_lines(16, [f"state = {_name(e)}(state, {_tuple(model, e)})" for e in sensors]),
         store_seen=_lines(16, [f"{_slot('seen', k)} = state.{name}" for k, name in enumerate(STATES)]),

@@ -1,6 +1,5 @@
 """Effects: absent at their null bit for bit, alike in both back ends, and each does what it says."""
 
-import sys
 from itertools import pairwise
 
 import numpy as np
@@ -236,52 +235,6 @@ def test_what_a_profile_gets_wrong_is_said(ship):
     assert missing_for(find_effect("flap"), plain) == ["rudder.flap[0]"]
     with pytest.raises(ProfileError, match="'wind' does not apply"):
         parse_profile(plain.text + '\n[effects.wind]\nspeed = "8 m/s"\ndirection = "10 deg"\n')
-
-
-PLUGIN = """
-from typing import NamedTuple
-from mmgtune.effects import Effect, Parameter
-from mmgtune.physics.quantities import Force, Lanes
-
-class Tug(NamedTuple):
-    pull: Lanes
-
-def tug(state, air, found, components, p, e):
-    return Force(X=e.pull, Y=0.0 * e.pull, N=0.0 * e.pull)
-
-EFFECT = Effect(kind="effects.tug", tag="tug", title="a tug ahead", place="force", params=Tug, function=tug, cites=(),
-                fields={"pull": Parameter("pull of the tug", "N")}, variants=(("pull",),))
-"""
-
-USE = """
-import numpy as np
-from mmgtune.model import Model
-from mmgtune.profile import load_profile, parse_profile
-from tests.runs import states, turn
-ship = load_profile("suzaku")
-pulled = Model(parse_profile(ship.text + '\\n[effects.tug]\\npull = "30 kN"\\n'))
-cases = turn(pulled, 0.0, 100.0)
-a, b = (states(pulled, cases, backend=name)[0, 0] for name in ("compiled", "numpy"))
-assert np.allclose(a, b), "back ends differ"
-assert a[-1, 3] > states(Model(ship), cases)[0, 0, -1, 3] + 0.3, "no pull"
-print("pulled")
-"""
-
-
-def test_an_effect_of_ones_own_needs_an_entry_point_only(tmp_path):
-    import os
-    import subprocess
-
-    (tmp_path / "tugs.py").write_text(PLUGIN)
-    info = tmp_path / "tugs-1.0.dist-info"
-    info.mkdir()
-    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: tugs\nVersion: 1.0\n")
-    (info / "entry_points.txt").write_text("[mmgtune.effects]\ntug = tugs:EFFECT\n")
-    path = os.pathsep.join([str(tmp_path), os.getcwd()])
-    done = subprocess.run(
-        [sys.executable, "-c", USE], env={**os.environ, "PYTHONPATH": path}, capture_output=True, text=True
-    )
-    assert done.stdout.strip() == "pulled", done.stderr
 
 
 def test_costs_of_all_lanes_stay_finite_at_the_corners_of_every_box(ship):
