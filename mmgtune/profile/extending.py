@@ -19,9 +19,12 @@ def scale_of(profile: ShipProfile) -> Scale:
 
 
 def missing_for(effect: Effect, profile: ShipProfile) -> list[str]:
-    """Coefficients the effect needs and the profile does not have; empty where it applies."""
+    """Coefficients and parts of the arrangement the effect needs and the profile lacks; empty where it applies."""
     has = {name for section in profile.sections.values() for name in section.numbers}
-    return [name for name in dict.fromkeys((*effect.needs, *effect.borrowed.values())) if name not in has]
+    has |= {*profile.arrangement.breakdown._fields}
+    return [
+        name for name in dict.fromkeys((*effect.needs, *effect.borrowed.values(), *effect.of_parts)) if name not in has
+    ]
 
 
 def with_effects(profile: ShipProfile, values: Mapping[str, Mapping[str, float]], source: str) -> ShipProfile:

@@ -1,12 +1,16 @@
 """Compiled and NumPy lanes give the same motion for every component."""
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
 from mmgtune.backends import Integrator, get_backend, pad
 from mmgtune.components import COMPONENTS, KINDS
 from mmgtune.model import Model
-from mmgtune.profile import load_profile
+from mmgtune.profile import load_profile, with_effects
 from mmgtune.resources import profile_names
 from tests.runs import states, turn
 
@@ -130,3 +134,64 @@ def test_residuals_are_the_roots_of_the_cost(suzaku, backend):
         expected = np.sqrt(weight[case][i, channel]) * (result.states[case, :, i, channel] - target[case][i, channel])
         if row >= 0:
             np.testing.assert_allclose(result.residuals[row], expected, atol=1e-12)
+
+
+@pytest.mark.parametrize("n_candidates", [1, 3, 11])
+def test_lanes_over_cases_and_candidates_are_bit_equal_to_single_runs(esso_osaka, n_candidates):
+    """Few candidates on cases of many lengths share blocks: nothing of one lane may show in another."""
+    rng = np.random.default_rng(6)
+    whole = backing(esso_osaka, 120)
+    lengths = rng.integers(2, len(whole.t[0]), size=21)
+    begins = [rng.integers(0, len(whole.t[0]) - n + 1) for n in lengths]
+    pieces = [slice(a, a + n) for a, n in zip(begins, lengths, strict=True)]
+    weight = [rng.uniform(size=(n, 6)) * (rng.uniform(size=(n, 6)) > 0.4) for n in lengths]
+    for w in weight:
+        w[0] = 0.0
+
+    def cases(chosen):
+        return pad(
+            [whole.t[0, pieces[k]] for k in chosen],
+            [whole.controls[0, pieces[k]] for k in chosen],
+            [whole.initial[0]] * len(chosen),
+            [np.ones((lengths[k], 6)) for k in chosen],
+            [weight[k] for k in chosen],
+            [whole.around[0, pieces[k]] for k in chosen],
+        )
+
+    model = Model(with_effects(esso_osaka.profile, {"clock-offset": {"seconds": -0.7}}, "a test"))
+    theta = model.matrix(["hull.C_D"], np.linspace(0.8, 1.2, n_candidates)[None])
+    everything, run = cases(range(21)), get_backend("compiled").run
+    together = run(model, theta, everything, integrator=Integrator("rk4", 2), keep_states=True, keep_residuals=True)
+    rows = everything.rows
+    for k in range(21):
+        for candidate in range(n_candidates):
+            one = cases([k])
+            alone = run(
+                model,
+                theta[:, [candidate]],
+                one,
+                integrator=Integrator("rk4", 2),
+                keep_states=True,
+                keep_residuals=True,
+            )
+            n = lengths[k]
+            assert alone.cost[0, 0] == together.cost[k, candidate]
+            assert np.array_equal(alone.states[0, 0], together.states[k, candidate, :n])
+            assert np.all(together.states[k, candidate, n:] == together.states[k, candidate, n - 1])
+            own = rows[k][rows[k] >= 0]
+            assert np.array_equal(alone.residuals[:, 0], together.residuals[own, candidate])
+
+
+def test_weights_at_the_first_sample_are_refused(suzaku):
+    cases = turn(suzaku, 20.0)
+    weight = np.ones((len(cases.t[0]), 6))
+    with pytest.raises(ValueError, match="first sample"):
+        pad([cases.t[0]], [cases.controls[0]], [cases.initial[0]], [0.0 * weight], [weight])
+
+
+def test_a_process_may_be_told_how_many_cores_it_has():
+    say = "from mmgtune.backends.compiled import _pool, cores; print(cores(), _pool()._max_workers)"
+    done = subprocess.run(
+        [sys.executable, "-c", say], env={**os.environ, "MMGTUNE_THREADS": "1"}, capture_output=True, text=True
+    )
+    assert done.stdout.split() == ["1", "1"], done.stderr
