@@ -18,13 +18,14 @@ from .finding import Finding
 from .model import Trial
 from .parquet import read_trial, write_trial
 from .pieces import windows
-from .wind import measured_wind
+from .wind import has_measured_wind, measured_wind
 
 __all__ = [
     "Finding",
     "Trial",
     "TrialSet",
     "check_trial",
+    "has_measured_wind",
     "load_trials",
     "measured_wind",
     "read_trial",

@@ -7,6 +7,9 @@ import numpy as np
 from ..arrays import FloatArray
 from .model import Trial
 
+WIND_PAIRS = (("wind_speed", "wind_dir"), ("wind_speed_app", "wind_dir_app"))
+"""Columns that are wind together, and nothing alone; the first pair that is there counts."""
+
 
 def measured_wind(trial: Trial) -> FloatArray:
     """(n_samples, 3) velocity of the air over ground, north and east [m/s], and 1 where the trial has wind, else 0.
@@ -29,3 +32,8 @@ def measured_wind(trial: Trial) -> FloatArray:
         return np.zeros((trial.n_samples, 3))
     bridged = [np.interp(trial.t, trial.t[whole], values[whole]) for values in (north, east)]
     return np.column_stack([*bridged, np.ones(trial.n_samples)])
+
+
+def has_measured_wind(trial: Trial) -> bool:
+    """Whether ``measured_wind`` finds any: speed and direction, both known in one sample at least."""
+    return bool(measured_wind(trial)[:, 2].any())
