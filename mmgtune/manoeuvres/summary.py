@@ -28,7 +28,7 @@ def indices_of(track: Track, L_pp: float, measured: Mapping[str, Any] | None = N
 
 
 def _angles(indices: Mapping[str, Any]) -> tuple[float, float] | None:
-    """Rudder and check angle [rad] of a zigzag's indices, None where they are of another manoeuvre or do not have both."""
+    """Rudder and check angle [rad] of a zigzag's indices; None of another manoeuvre's, or where one is not known."""
     angles = indices.get("rudder_angle_deg"), indices.get("heading_angle_deg")
     return None if None in angles else (angles[0] * DEG, angles[1] * DEG)
 

@@ -77,7 +77,7 @@ class ZigzagIndices:
         return f"{self.rudder_angle / DEG:.3g}/{check}"
 
     def to_dict(self) -> dict[str, Any]:
-        """The order and the fields by names with their unit: overshoot_1_deg, overshoot_from_execute_1_deg, reach_s ..."""
+        """The order, and fields by names with their unit: overshoot_1_deg, overshoot_from_execute_1_deg, reach_s ..."""
         return {"order": self.order, **with_units(self, self.L_pp)}
 
 
@@ -180,8 +180,8 @@ def usual_angle(measured: float, late: float = 0.0) -> float:
 def _check_angle(track: Track, counter_orders: list[Execute], counter: list[float], L_pp: float) -> float | None:
     """The usual check angle of headings ``counter`` [rad] at the counter-orders; None without any.
 
-    Both sides count alike, so that an original course that was not quite met drops out.  The rudder is reversed late, at
-    the ship's own rate of turn and by a sample at least.
+    Both sides count alike, so that an original course that was not quite met drops out.  The rudder is reversed late,
+    at the ship's own rate of turn and by a sample at least.
     """
     by_side = [float(np.median(part)) for part in (counter[::2], counter[1::2]) if part]
     if not by_side:

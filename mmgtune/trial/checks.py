@@ -28,7 +28,9 @@ def check_trial(trial: Trial) -> list[Finding]:
     if errors:
         return [Finding("error", problem.what, problem.where, problem.why, problem.fix) for problem in errors]
     with np.errstate(all="ignore"):
-        found = motion_findings(trial, where) + control_findings(trial, where) + _wind(trial, where) + _facts(trial, where)
+        found = (
+            motion_findings(trial, where) + control_findings(trial, where) + _wind(trial, where) + _facts(trial, where)
+        )
     return sorted(found, key=lambda finding: SEVERITIES.index(finding.severity))
 
 
