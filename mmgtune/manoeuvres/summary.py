@@ -29,8 +29,8 @@ def indices_of(track: Track, L_pp: float, measured: Mapping[str, Any] | None = N
 
 def _angles(indices: Mapping[str, Any]) -> tuple[float, float] | None:
     """Rudder and check angle [rad] of a zigzag's indices; None of another manoeuvre's, or where one is not known."""
-    angles = indices.get("rudder_angle_deg"), indices.get("heading_angle_deg")
-    return None if None in angles else (angles[0] * DEG, angles[1] * DEG)
+    rudder, check = indices.get("rudder_angle_deg"), indices.get("heading_angle_deg")
+    return None if rudder is None or check is None else (rudder * DEG, check * DEG)
 
 
 def criteria_of(track: Track, L_pp: float, V: float) -> tuple[Criterion, ...]:

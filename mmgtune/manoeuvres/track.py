@@ -183,7 +183,7 @@ def heading_at(track: Track, index: int, L_pp: float) -> float:
 
 
 def turn_rate_at(track: Track, index: int, L_pp: float) -> float:
-    """Rate of the heading at a sample [rad/s]: of a line through the quarter ship length before, two samples or more."""
+    """Rate of the heading at a sample [rad/s]: of a line through a quarter length before, of two samples or more."""
     part = _quarter_length_before(track, index, L_pp)
     part = slice(max(min(part.start, index - 1), 0), max(part.stop, 2))
     return float(np.polyfit(track.t[part] - track.t[index], track.psi[part], 1)[0])
