@@ -10,19 +10,20 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+from .inputs import INPUTS, Input, Role
+from .physics.arrangements import single_propeller_single_rudder
 from .physics.hull.cubic import CubicHull, cubic_hull
 from .physics.hull.unified import UnifiedHull, unified_hull
 from .physics.propeller.four_quadrant import FourQuadrantPropeller, four_quadrant_propeller
 from .physics.propeller.open_water import OpenWaterPropeller, open_water_propeller
 from .physics.propeller.reversible import ReversiblePropeller, reversible_propeller
-from .physics.quantities import AboveWater, Ship
+from .physics.quantities import HARMONICS, AboveWater, Ship
 from .physics.rudder.flapped import FlappedRudder, flapped_rudder
 from .physics.rudder.plain import PlainRudder, plain_rudder
 from .physics.rudder.reversible import ReversibleRudder, reversible_rudder
 from .physics.wake.asymmetric import AsymmetricWake, asymmetric_wake
 from .physics.wake.exponential import ExponentialWake, exponential_wake
 from .physics.wake.quadratic import QuadraticWake, quadratic_wake
-from .physics.wind import WindCoefficients
 
 
 @dataclass(frozen=True)
@@ -63,6 +64,49 @@ class Component:
     def __post_init__(self) -> None:
         if tuple(self.fields) != self.params._fields:
             raise TypeError(f"{self.kind} '{self.tag}': fields {tuple(self.fields)} are not {self.params._fields}")
+
+
+@dataclass(frozen=True)
+class Arrangement:
+    """How components are put together: which a ship has, what drives her, and the function that combines their forces.
+
+    control       NamedTuple of the inputs, each field one of ``inputs.INPUTS``
+    components    NamedTuple of the components' functions; its fields are the kinds a profile has besides particulars
+    coefficients  NamedTuple of ``ship`` and the same kinds
+    breakdown     NamedTuple of what ``forces`` returns: ``flow``, ``hull``, ``total``, and whatever else there is
+    forces        forces(State through the water, control, components, coefficients) -> breakdown
+    """
+
+    tag: str
+    title: str
+    control: type[Any]
+    components: type[Any]
+    coefficients: type[Any]
+    breakdown: type[Any]
+    forces: Callable[..., Any]
+    cites: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        unknown = [name for name in self.control._fields if name not in INPUTS]
+        lacking = [name for name in ("flow", "hull", "total") if name not in self.breakdown._fields]
+        if unknown or lacking:
+            raise TypeError(f"arrangement '{self.tag}': unknown inputs {unknown}, breakdown without {lacking}")
+        if self.coefficients._fields != ("ship", *self.components._fields):
+            raise TypeError(f"arrangement '{self.tag}': {self.coefficients._fields} are not ship and its components")
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """Kinds of components a profile needs one of each, in the order of ``coefficients``."""
+        return ("particulars", *self.components._fields)
+
+    @property
+    def inputs(self) -> tuple[Input, ...]:
+        """What drives the ship, in the order of ``control``."""
+        return tuple(INPUTS[name] for name in self.control._fields)
+
+    def of_role(self, role: Role) -> tuple[int, ...]:
+        """Places of the inputs of one role among all."""
+        return tuple(k for k, one in enumerate(self.inputs) if one.role == role)
 
 
 SUYAMA = "Suyama et al. 2023, arXiv:2312.04224"
@@ -336,7 +380,7 @@ REVERSIBLE_RUDDER = Component(
 )
 
 WIND_FORCES = {"X": "surge force", "Y": "sway force", "N": "yaw moment"}
-HARMONICS = (
+HARMONIC_WORDS = (
     "mean over the angle of the wind",
     "first harmonic",
     "second harmonic",
@@ -361,8 +405,8 @@ ABOVE_WATER = Component(
         "H_BR": Field("top of the bridge above the waterline", "m", low=0.0, high=150.0),
         "H_C": Field("centroid of the lateral area above the waterline", "m", low=0.0, high=100.0),
         **{
-            name: Field(f"wind {WIND_FORCES[name[0]]}, {HARMONICS[int(name[2])]}", derived=True)
-            for name in WindCoefficients._fields
+            name: Field(f"wind {WIND_FORCES[name[0]]}, {HARMONIC_WORDS[int(name[2])]}", derived=True)
+            for name in HARMONICS
         },
     },
 )
@@ -384,8 +428,21 @@ COMPONENTS = (
 )
 """Every component there is, in the order documentation lists them."""
 
-KINDS = ("particulars", "hull", "wake", "propeller", "rudder")
-"""The kinds a model needs one of each, in the order of ``physics.mmg.Coefficients``."""
+SINGLE_PROPELLER_SINGLE_RUDDER = Arrangement(
+    tag="single-propeller-single-rudder",
+    title="one propeller with one rudder behind it",
+    control=single_propeller_single_rudder.Control,
+    components=single_propeller_single_rudder.Components,
+    coefficients=single_propeller_single_rudder.Coefficients,
+    breakdown=single_propeller_single_rudder.Breakdown,
+    forces=single_propeller_single_rudder.forces,
+    cites=(SUYAMA,),
+)
+
+ARRANGEMENTS = (SINGLE_PROPELLER_SINGLE_RUDDER,)
+"""Every arrangement there is; a profile that names none has the first."""
+
+KINDS = SINGLE_PROPELLER_SINGLE_RUDDER.kinds
 
 UNTAGGED = {"particulars": SHIP, "above_water": ABOVE_WATER}
 """Kinds of which there is only one component, so that a profile names no model."""

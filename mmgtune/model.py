@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from .arrays import FloatArray
-from .components import KINDS, Component
-from .effects import PLACES, Effect
-from .physics.mmg import Coefficients, Components
+from .components import Component
+from .effects import ClockEffect, CoefficientsEffect, Effect
 from .profile import ShipProfile
+
+E = TypeVar("E", bound=Effect)
 
 
 class Model:
@@ -25,25 +26,34 @@ class Model:
 
     def __init__(self, profile: ShipProfile):
         self.profile = profile
-        self.parts: tuple[Component, ...] = tuple(profile.sections[kind].component for kind in KINDS)
-        self.components = Components(*(part.function for part in self.parts[1:]))
+        self.arrangement = profile.arrangement
+        self.parts: tuple[Component, ...] = tuple(profile.sections[kind].component for kind in self.arrangement.kinds)
+        self.components = self.arrangement.components(*(part.function for part in self.parts[1:]))
         present = [section.component for section in profile.sections.values()]
         self.effects: tuple[Effect, ...] = tuple(part for part in present if isinstance(part, Effect))
         numbers = {name: value for section in profile.sections.values() for name, value in section.numbers.items()}
         self.rows: dict[str, int] = {name: row for row, name in enumerate(numbers)}
         self.base: FloatArray = np.array(list(numbers.values()))
 
-    def acting(self, *places: str) -> tuple[Effect, ...]:
-        """The effects that act at these places of the data flow, in the order in which they act."""
-        unknown = set(places) - set(PLACES)
-        if unknown:
-            raise KeyError(f"no such place: {', '.join(unknown)}")
-        return tuple(effect for effect in self.effects if effect.place in places)
+    def acting(self, kind: type[E]) -> tuple[E, ...]:
+        """The effects that act at one place of the data flow, in the order in which they act."""
+        return tuple(effect for effect in self.effects if isinstance(effect, kind))
+
+    @property
+    def clocks(self) -> tuple[ClockEffect, ...]:
+        """The effects that shift the log of the inputs."""
+        return self.acting(ClockEffect)
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """What drives the ship: columns of trial files, in the order of ``Cases.controls``."""
+        return tuple(one.name for one in self.arrangement.inputs)
 
     @property
     def tags(self) -> tuple[str, ...]:
-        """The components and effects in use."""
-        return tuple(f"{part.kind}:{part.tag}" for part in (*self.parts, *self.effects))
+        """The arrangement, components and effects in use."""
+        parts = (f"{part.kind}:{part.tag}" for part in (*self.parts, *self.effects))
+        return (f"arrangement:{self.arrangement.tag}", *parts)
 
     @cached_property
     def L_pp(self) -> float:
@@ -66,8 +76,7 @@ class Model:
             changed = np.asarray(values, dtype=float)
             theta = np.repeat(self.base[:, None], changed.shape[1], axis=1)
             theta[[self.rows[name] for name in names]] = changed
-        for effect in self.acting("coefficients"):
-            assert effect.function is not None  # these have one
+        for effect in self.acting(CoefficientsEffect):
             now = {name: theta[row] for name, row in self.rows.items()}
             for name, value in effect.function(now, self.parameters(effect, theta)).items():
                 theta[self.rows[name]] = value
@@ -94,6 +103,7 @@ class Model:
             )
         )
 
-    def coefficients(self, theta: FloatArray) -> Coefficients:
-        """The tuples the equations take, with lanes of shape (n_candidates,) out of a (n_rows, n_candidates) matrix."""
-        return Coefficients(*(self.parameters(part, theta) for part in self.parts))
+    def coefficients(self, theta: FloatArray) -> Any:
+        """The arrangement's tuple of the tuples the equations take, with lanes of shape (n_candidates,) out of a matrix
+        (n_rows, n_candidates)."""
+        return self.arrangement.coefficients(*(self.parameters(part, theta) for part in self.parts))

@@ -10,7 +10,7 @@ import numpy as np
 from .arrays import FloatArray
 from .backends import STATES, Cases, pad
 from .errors import OptionError, Problem, closest
-from .trial import Trial, measured_wind
+from .trial import Trial, surroundings
 from .trial.pieces import counting
 
 PAPER_CHANNELS = ("x", "y", "psi")
@@ -113,10 +113,12 @@ def make_objective(
     return Objective(scales=scales or default_scales(L_pp), weights=weights, window=window, every=every)
 
 
-def cases_of(trials: Sequence[Trial], objective: Objective) -> Cases:
+def cases_of(trials: Sequence[Trial], objective: Objective, inputs: Sequence[str]) -> Cases:
     """Trials as cases to simulate: driven by the measured inputs from the first measured state.
 
-    Raises OptionError where the window or gaps leave a trial without a sample to compare.
+    inputs  what drives the ship, see ``Model.inputs``
+    Raises TrialError for a trial without one of them, OptionError where the window or gaps leave a trial without a
+    sample to compare.
     """
     weight = [objective.weight(trial) for trial in trials]
     for trial, values in zip(trials, weight, strict=True):
@@ -131,9 +133,9 @@ def cases_of(trials: Sequence[Trial], objective: Objective) -> Cases:
             )
     return pad(
         [trial.t for trial in trials],
-        [np.column_stack([trial.n, trial.delta]) for trial in trials],
+        [trial.inputs(inputs) for trial in trials],
         [trial.motion[0] for trial in trials],
         [np.nan_to_num(trial.motion, nan=0.0) for trial in trials],
         weight,
-        [measured_wind(trial) for trial in trials],
+        [surroundings(trial) for trial in trials],
     )

@@ -8,16 +8,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
 from .arrays import FloatArray
 from .backends import LaneModel
-from .backends.numpy_lanes import STILL
+from .backends.cases import Integrator
 from .errors import OptionError, Problem
 from .model import Model
-from .physics.quantities import Control, State
+from .physics.quantities import UNKNOWN, State
 from .profile import ShipProfile, SteeringGear
 from .simulation import Motion
 
@@ -26,6 +26,9 @@ FINE = 0.01
 
 LONGEST_STEP = 0.25
 """Longest step [s]; it is also how often the helmsman looks at the compass."""
+
+
+RK4 = Integrator("rk4")
 
 
 class Helmsman(Protocol):
@@ -132,53 +135,35 @@ def run_manoeuvre(
     ship_now = LaneModel(model, model.matrix() if theta is None else theta)
     start = State(*np.array([[0.0], [0.0], [heading], [U_0], [0.0], [0.0]]))
     delta, revolutions = 0.0, n_0
-    logged = Control(np.array([n_0]), np.array([0.0]))
-    chain = ship_now.moved([logged], [logged], None, np.zeros(1))
-    state = np.array([*start, *ship_now.lag_start(start, chain[-1])])
 
-    def shown() -> FloatArray:
-        """The six states as the sensors show them."""
-        return np.array(ship_now.sensed(State(*state[:6])))[:, 0]
+    def control() -> Any:
+        """Every rudder at the angle, every propeller at the revolutions, thrusters at rest."""
+        now = {"rudder": delta, "propeller": revolutions, "thruster": 0.0}
+        return model.arrangement.control(*(np.array([now[one.role]]) for one in model.arrangement.inputs))
 
+    run = ship_now.start(start, control())
     longest_step = step or min(LONGEST_STEP, FINE * model.L_pp / U_0)
     steps = max(1, math.ceil(sample / longest_step - 1e-9))
     h = sample / steps
-    rows: list[FloatArray] = [shown()]
-    controls = [(revolutions, delta)]
+    rows: list[FloatArray] = [np.array(run.shown)[:, 0]]
+    controls = [np.array(control())[:, 0]]
     diverged = False
     for i in range(round(longest / sample)):
         for k in range(steps):
             t = i * sample + k * h
-            seen = shown()
-            delta = move_rudder(delta, helmsman.order(t, float(seen[2] - heading)), profile.steering_gear, h)
+            seen = float(run.shown.psi[0])
+            delta = move_rudder(delta, helmsman.order(t, seen - heading), profile.steering_gear, h)
             if engine is not None:
-                revolutions = n_0 * engine(math.hypot(state[3, 0], state[4, 0]) / U_0)
-            before = chain
+                revolutions = n_0 * engine(math.hypot(run.s[3, 0], run.s[4, 0]) / U_0)
             with np.errstate(all="ignore"):
-                reached = Control(np.array([revolutions]), np.array([delta]))
-                chain = ship_now.moved(before, [reached], before, np.array([h]))
-                state = _rk4(ship_now, state, before[-1], chain[-1], h)
-        rows.append(shown())
-        controls.append((revolutions, delta))
-        diverged = not bool(np.isfinite(state).all())
+                run.step(control(), UNKNOWN, np.array([h]), RK4)
+        rows.append(np.array(run.shown)[:, 0])
+        controls.append(np.array(control())[:, 0])
+        diverged = not bool(np.isfinite(run.s).all())
         if diverged or helmsman.finished(float(rows[-1][2] - heading)):
             break
     times: FloatArray = sample * np.arange(len(rows), dtype=np.float64)
     inputs = np.array(controls)
     if ship_now.shift is not None:
         inputs = np.column_stack([np.interp(times - ship_now.shift, times, column) for column in inputs.T])
-    return Motion(id, times, np.vstack(rows), inputs, diverged)
-
-
-def _rk4(ship: LaneModel, state: FloatArray, now: Control, then: Control, h: float) -> FloatArray:
-    """One step of the classical Runge-Kutta method, inputs linear over the step."""
-
-    def rate(f: float, s: FloatArray) -> FloatArray:
-        control = Control(*(a + f * (b - a) for a, b in zip(now, then, strict=True)))
-        return ship.rates(s, control, STILL, h)
-
-    k1 = rate(0.0, state)
-    k2 = rate(0.5, state + 0.5 * h * k1)
-    k3 = rate(0.5, state + 0.5 * h * k2)
-    k4 = rate(1.0, state + h * k3)
-    return np.asarray(state + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4))
+    return Motion(id, times, np.vstack(rows), inputs, diverged, model.inputs)

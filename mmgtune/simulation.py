@@ -10,14 +10,15 @@ import numpy as np
 
 from .arrays import FloatArray
 from .backends import STATES, Integrator, LaneModel, get_backend, pad
+from .inputs import INPUTS, Role
 from .manoeuvres import Track, manoeuvre_kind
 from .manoeuvres.summary import indices_of
 from .measures import distance_measures, reference_of
 from .model import Model
-from .physics.mmg import Breakdown
-from .physics.quantities import Control, State
+from .physics.quantities import Force, State
 from .profile import ShipProfile
-from .trial import Trial, measured_wind
+from .trial import Trial, surroundings
+from .trial.schema import MAIN_INPUTS
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,8 +27,9 @@ class Motion:
 
     t         (n_samples,) time [s]
     states    (n_samples, 6) x, y [m], psi [rad], u, v_m [m/s], r [rad/s]
-    controls  (n_samples, 2) propeller revolutions [1/s], rudder angle [rad]
+    controls  (n_samples, n_inputs) what drove the ship
     diverged  whether the simulation left the world of ships; its states then mean nothing
+    inputs    names of the inputs, see ``inputs.INPUTS``
     """
 
     id: str
@@ -35,6 +37,7 @@ class Motion:
     states: FloatArray
     controls: FloatArray
     diverged: bool
+    inputs: tuple[str, ...] = MAIN_INPUTS
 
     def channel(self, name: str) -> FloatArray:
         """One of x, y, psi, u, v_m, r: (n_samples,)."""
@@ -43,7 +46,12 @@ class Motion:
     def track(self) -> Track:
         """The run as indices of manoeuvres are computed from it."""
         columns = dict(zip(STATES, self.states.T, strict=True))
-        return Track(t=self.t, n=self.controls[:, 0], delta=self.controls[:, 1], **columns)
+        return Track(t=self.t, n=self.mean_of("propeller"), delta=self.mean_of("rudder"), **columns)
+
+    def mean_of(self, role: Role) -> FloatArray:
+        """(n_samples,) mean over the inputs of one role; 0 where there is none."""
+        of = [k for k, name in enumerate(self.inputs) if INPUTS[name].role == role]
+        return self.controls[:, of].mean(axis=1) if of else np.zeros(len(self.t))
 
 
 def simulate(
@@ -62,29 +70,37 @@ def simulate(
     model = ship if isinstance(ship, Model) else Model(ship)
     if not trials:
         return []
-    controls = [np.column_stack([trial.n, trial.delta]) for trial in trials]
-    wind = [measured_wind(trial) for trial in trials]
-    cases = pad([trial.t for trial in trials], controls, [trial.motion[0] for trial in trials], wind=wind)
+    controls = [trial.inputs(model.inputs) for trial in trials]
+    around = [surroundings(trial) for trial in trials]
+    cases = pad([trial.t for trial in trials], controls, [trial.motion[0] for trial in trials], around=around)
     result = get_backend(backend).run(model, model.matrix(), cases, integrator=integrator, keep_states=True)
     assert result.states is not None  # asked for
     return [
-        Motion(trial.id, trial.t, result.states[i, 0, : trial.n_samples], controls[i], bool(result.diverged[i, 0]))
+        Motion(
+            trial.id,
+            trial.t,
+            result.states[i, 0, : trial.n_samples],
+            controls[i],
+            bool(result.diverged[i, 0]),
+            model.inputs,
+        )
         for i, trial in enumerate(trials)
     ]
 
 
-def breakdown(ship: ShipProfile | Model, states: FloatArray, controls: FloatArray) -> Breakdown:
+def breakdown(ship: ShipProfile | Model, states: FloatArray, controls: FloatArray) -> Any:
     """Forces and intermediates along a run, by the very functions the simulation uses.
 
-    states (n_samples, 6), controls (n_samples, 2) as in ``Motion`` -> Breakdown of arrays (n_samples,).
+    states (n_samples, 6), controls (n_samples, n_inputs) as in ``Motion``
+    -> the breakdown of the profile's arrangement, of arrays (n_samples,).
 
     Effects of the profile have acted; forces they add are in the total only.  What depends on the past or on measured
     wind is left out: lags count as settled.
     """
     model = ship if isinstance(ship, Model) else Model(ship)
     lanes = LaneModel(model, np.repeat(model.matrix(), len(states), axis=1))
-    logged = [Control(*controls.T)]
-    control = lanes.moved(logged, logged, None, np.zeros(len(states)))[-1]
+    logged = model.arrangement.control(*controls.T)
+    control = lanes.moved([], logged, None, np.zeros(len(states)))[-1]
     return lanes.breakdown(lanes.unsensed(State(*states.T)), control)
 
 
@@ -114,24 +130,8 @@ def as_trial(ship: ShipProfile, motion: Motion, *, with_forces: bool = False) ->
     """
     extra: dict[str, FloatArray] = {}
     if with_forces:
-        found = breakdown(ship, motion.states, motion.controls)
-        parts = {
-            "hull": found.hull,
-            "propeller": found.propeller.force,
-            "rudder": found.rudder.force,
-            "total": found.total,
-        }
-        for part, force in parts.items():
-            extra.update({f"{part}_{axis}": np.asarray(value) for axis, value in force._asdict().items()})
-        for group, names in (
-            (found.flow, ("U", "beta")),
-            (found.wake, ("w_P", "u_P", "beta_P")),
-            (found.propeller, ("J", "K_T")),
-        ):
-            extra.update({name: np.asarray(getattr(group, name)) for name in names})
-        extra.update(
-            {name: np.asarray(getattr(found.rudder, name)) for name in ("u_R", "v_R", "alpha_R", "beta_R", "F_N")}
-        )
+        extra = _columns(breakdown(ship, motion.states, motion.controls))
+    own = {name: motion.controls[:, k] for k, name in enumerate(motion.inputs) if name not in MAIN_INPUTS}
     x, y, psi, u, v_m, r = motion.states.T
     return Trial(
         id=motion.id,
@@ -145,11 +145,27 @@ def as_trial(ship: ShipProfile, motion: Motion, *, with_forces: bool = False) ->
         u=u,
         v_m=v_m,
         r=r,
-        n=motion.controls[:, 0],
-        delta=motion.controls[:, 1],
-        extra=extra,
+        n=motion.mean_of("propeller"),
+        delta=motion.mean_of("rudder"),
+        extra={**own, **extra},
         noise={},
         note=f"Simulated by mmgtune with profile '{ship.id}', sha256 {ship.sha256}.",
         path=None,
         sha256="",
     )
+
+
+KEPT_BACK = ("u", "v_m", "r", "v_", "r_", "jet", "D_P", "n")
+"""Parts of a breakdown that say nothing of their own beside the motion, the inputs and the others."""
+
+
+def _columns(found: Any) -> dict[str, FloatArray]:
+    """A breakdown as columns: forces as hull_X, rudder_N, ...; intermediates by their names, w_P, alpha_R, ..."""
+    columns: dict[str, FloatArray] = {}
+    for part, value in found._asdict().items():
+        for name, number in ({"force": value} if isinstance(value, Force) else value._asdict()).items():
+            if isinstance(number, Force):
+                columns.update({f"{part}_{axis}": np.asarray(one) for axis, one in number._asdict().items()})
+            elif name not in KEPT_BACK:
+                columns[f"{part}_{name}" if name in columns else name] = np.asarray(number)
+    return columns

@@ -85,7 +85,7 @@ def score(
     theta  (n_rows, 1) coefficients, those of the profile where None
     Windows of long trials are trials like any other (``TrialSet.in_windows``).
     """
-    cases = cases_of(trials, make_objective(model.L_pp, STATES))
+    cases = cases_of(trials, make_objective(model.L_pp, STATES), model.inputs)
     result = get_backend(backend).run(
         model, model.matrix() if theta is None else theta, cases, integrator=integrator, keep_states=True
     )

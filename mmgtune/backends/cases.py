@@ -11,6 +11,7 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..model import Model
+from ..physics.quantities import STATES, Surroundings
 
 SPEED_LIMIT = 1e3
 """Speed [m/s] beyond which a lane counts as diverged, far above any ship and far below overflow."""
@@ -22,20 +23,26 @@ class Cases:
 
     t          (n_cases, T) time [s]; padding repeats the last
     n_samples  (n_cases,) samples that count
-    controls   (n_cases, T, 2) propeller revolutions [1/s] and rudder angle [rad]
-    wind       (n_cases, T, 3) air over ground, north and east [m/s], and 1 where it was measured, 0 where not
+    controls   (n_cases, T, n_inputs) logged inputs, in the order of the model's arrangement
+    around     (n_cases, T, 3) surroundings, in the order of ``Surroundings``
     initial    (n_cases, 6) state at the first sample, as the sensors show it
     target     (n_cases, T, 6) what the motion is compared with; 0 where there is nothing
-    weight     (n_cases, T, 6) weight of each squared difference in the cost; 0 where there is nothing
+    weight     (n_cases, T, 6) weight of each squared difference in the cost; 0 where there is nothing, and at the first
+               sample, where a simulation begins
     """
 
     t: FloatArray
     n_samples: IntArray
     controls: FloatArray
-    wind: FloatArray
+    around: FloatArray
     initial: FloatArray
     target: FloatArray
     weight: FloatArray
+
+    def __post_init__(self) -> None:
+        """Raises ValueError where the first sample counts: no simulation can differ there."""
+        if self.weight[:, 0].any():
+            raise ValueError("weights at the first sample, which is where simulations begin")
 
     def __len__(self) -> int:
         return len(self.t)
@@ -65,29 +72,30 @@ def pad(
     initial: Sequence[FloatArray],
     target: Sequence[FloatArray] | None = None,
     weight: Sequence[FloatArray] | None = None,
-    wind: Sequence[FloatArray] | None = None,
+    around: Sequence[FloatArray] | None = None,
 ) -> Cases:
-    """Cases out of runs: times (n_i,), controls (n_i, 2), initial (6,), target and weight (n_i, 6), wind (n_i, 3)."""
+    """Cases out of runs: times (n_i,), controls (n_i, n_inputs), initial (6,), target and weight (n_i, 6), around
+    (n_i, 3); nothing counts where target and weight are None, and nothing was measured around where that is None."""
     n_samples = np.array([len(t) for t in times], dtype=np.int64)
     T = int(n_samples.max())
-    padded = Cases(
-        t=np.zeros((len(times), T)),
+
+    def padded(columns: Sequence[FloatArray] | None, width: int, *, hold: bool) -> FloatArray:
+        """(n_cases, T, width), after the end of a run its last row or 0."""
+        whole = np.zeros((len(times), T, width))
+        for into, n, values in zip(whole, n_samples, columns or (), strict=columns is not None):
+            into[:n] = values
+            into[n:] = values[-1] if hold else 0.0
+        return whole
+
+    return Cases(
+        t=padded([t[:, None] for t in times], 1, hold=True)[:, :, 0],
         n_samples=n_samples,
-        controls=np.zeros((len(times), T, 2)),
-        wind=np.zeros((len(times), T, 3)),
+        controls=padded(controls, controls[0].shape[1], hold=True),
+        around=padded(around, len(Surroundings._fields), hold=True),
         initial=np.array(initial, dtype=float),
-        target=np.zeros((len(times), T, 6)),
-        weight=np.zeros((len(times), T, 6)),
+        target=padded(target if weight is not None else None, len(STATES), hold=False),
+        weight=padded(weight if target is not None else None, len(STATES), hold=False),
     )
-    for i, n in enumerate(n_samples):
-        padded.t[i, :n], padded.t[i, n:] = times[i], times[i][-1]
-        padded.controls[i, :n], padded.controls[i, n:] = controls[i], controls[i][-1]
-        if wind is not None:
-            padded.wind[i, :n], padded.wind[i, n:] = wind[i], wind[i][-1]
-        if target is not None and weight is not None:
-            padded.target[i, :n] = target[i]
-            padded.weight[i, :n] = weight[i]
-    return padded
 
 
 @dataclass(frozen=True)

@@ -5,18 +5,22 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..model import Model
 from .cases import Cases, Integrator, LaneResult, finish
-from .kernel_source import WIDTH, kernel_source
+from .kernel_source import N_STATES, WIDTH, functions_of, kernel_source
 
 WORTH_A_THREAD = 20_000
 """Lane-steps (under a millisecond of work) below which starting a second thread costs more than it saves."""
+
+FULL = 0.75
+"""Share of lanes in use from which the lanes of a block are candidates of one case, which is the quicker way."""
 
 
 @lru_cache(maxsize=1)
@@ -24,9 +28,44 @@ def _pool() -> ThreadPoolExecutor:
     return ThreadPoolExecutor(max_workers=cores(), thread_name_prefix="mmgtune")
 
 
+@lru_cache(maxsize=1)
 def cores() -> int:
-    """Cores this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    """Cores this process may use: MMGTUNE_THREADS of them where that is set, for many processes side by side."""
+    allowed = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    told = os.environ.get("MMGTUNE_THREADS", "")
+    return max(1, min(allowed, int(told))) if told.isdigit() else allowed
+
+
+@dataclass(frozen=True, eq=False)
+class Blocks:
+    """Which lanes march together: a case and a candidate for each, (n_blocks, WIDTH).
+
+    theta_of  (n_blocks,) which of ``thetas`` (n_distinct, WIDTH) rows of candidates a block has
+    mixed     whether the lanes of a block belong to different cases
+    """
+
+    case_of: IntArray
+    candidate_of: IntArray
+    thetas: IntArray
+    theta_of: IntArray
+    mixed: bool
+
+
+def make_blocks(cases: Cases, n_candidates: int) -> Blocks:
+    """Blocks over all cases and candidates; the last lane is repeated where they do not fill the last block."""
+    n_cases = len(cases)
+    per_case = -(-n_candidates // WIDTH)
+    if n_cases == 1 or n_candidates >= FULL * per_case * WIDTH:
+        thetas = np.minimum(np.arange(per_case * WIDTH), n_candidates - 1).reshape(per_case, WIDTH)
+        candidate_of = np.tile(thetas, (n_cases, 1))
+        case_of = np.repeat(np.arange(n_cases), per_case)[:, None].repeat(WIDTH, axis=1)
+        return Blocks(case_of, candidate_of, thetas, np.tile(np.arange(per_case), n_cases), mixed=False)
+    by_length = np.argsort(cases.n_samples, kind="stable")  # cases of a block should end together
+    n_lanes = n_cases * n_candidates
+    lanes = np.minimum(np.arange(-(-n_lanes // WIDTH) * WIDTH), n_lanes - 1).reshape(-1, WIDTH)
+    case_of, candidate_of = by_length[lanes // n_candidates], lanes % n_candidates
+    thetas, theta_of = np.unique(candidate_of, axis=0, return_inverse=True)
+    return Blocks(case_of, candidate_of, thetas, theta_of.reshape(-1), mixed=True)
 
 
 class Compiled:
@@ -43,7 +82,7 @@ class Compiled:
         if text not in self._kernels:
             from .compiling import load_kernel
 
-            self._kernels[text] = load_kernel(text)
+            self._kernels[text] = load_kernel(text, functions_of(model))
         return self._kernels[text]
 
     def run(
@@ -57,51 +96,59 @@ class Compiled:
         keep_states: bool = False,
         keep_residuals: bool = False,
     ) -> LaneResult:
-        """See ``Backend.run``.  Lanes are padded to whole blocks by repeating the last candidate."""
+        """See ``Backend.run``."""
         n_cases, n_candidates = len(cases), theta.shape[1]
-        n_blocks = -(-n_candidates // WIDTH)
-        lanes = np.minimum(np.arange(n_blocks * WIDTH), n_candidates - 1)
-        blocked = theta[:, lanes].reshape(-1, n_blocks, WIDTH).transpose(1, 0, 2).reshape(n_blocks, -1)
-        if initial is None:
-            initial = np.repeat(cases.initial[:, None], n_candidates, axis=1)
-        start = initial[:, lanes].reshape(n_cases, n_blocks, WIDTH, 6).transpose(0, 1, 3, 2)
-        T = cases.t.shape[1]
-        cost = np.empty((n_cases, n_blocks, WIDTH))
-        fastest2 = np.empty((n_cases, n_blocks, WIDTH))
-        end = np.empty((n_cases, n_blocks, 6 * WIDTH))
-        states = np.empty((n_cases, T if keep_states else 1, 6, n_blocks * WIDTH))
-        residuals = np.empty((cases.n_residuals if keep_residuals else 0, n_blocks * WIDTH))
+        blocks = make_blocks(cases, n_candidates)
+        n_blocks = len(blocks.case_of)
+        start = (
+            cases.initial[blocks.case_of] if initial is None else initial[blocks.case_of, blocks.candidate_of]
+        ).transpose(0, 2, 1)
+        cost, fastest2 = np.empty((n_blocks, WIDTH)), np.empty((n_blocks, WIDTH))
+        end = np.empty((n_blocks, N_STATES * WIDTH))
+        states = np.empty((n_cases, n_candidates, cases.t.shape[1], N_STATES) if keep_states else (1, 1, 1, 1))
+        columns = n_candidates if blocks.mixed else blocks.thetas.size
+        residuals = np.empty((cases.n_residuals, columns) if keep_residuals else (1, 1))
+        rows = cases.rows if keep_residuals else np.zeros((1, 1, 1), dtype=np.int64)
         position, share = integrator.tableau
+        thetas = theta[:, blocks.thetas].transpose(1, 0, 2).reshape(len(blocks.thetas), -1)
         fixed = (
-            np.ascontiguousarray(blocked),
-            np.ascontiguousarray(start).reshape(n_cases, n_blocks, 6 * WIDTH),
+            np.ascontiguousarray(thetas),
+            blocks.theta_of,
+            np.ascontiguousarray(start).reshape(n_blocks, N_STATES * WIDTH),
+            blocks.case_of,
+            blocks.candidate_of,
+            blocks.mixed,
             *map(
                 np.ascontiguousarray,
-                (cases.t, cases.n_samples, cases.controls, cases.wind, cases.target, cases.weight),
+                (cases.t, cases.n_samples, cases.controls, cases.around, cases.target, cases.weight),
             ),
             position,
             share,
             integrator.substeps,
-            cases.rows,
+            rows,
         )
+        results = (keep_states, keep_residuals, cost, fastest2, end, states, residuals)
         kernel = self.kernel(model)
-        tasks = n_cases * n_blocks
-        work = cases.steps * n_blocks * WIDTH * len(position) * integrator.substeps
-        if work < WORTH_A_THREAD or tasks == 1 or cores() == 1:
-            kernel(*fixed, 0, tasks, cost, fastest2, end, states, residuals)
+        work = cases.steps * n_candidates * len(position) * integrator.substeps
+        if work < WORTH_A_THREAD or n_blocks == 1 or cores() == 1:
+            kernel(*fixed, 0, n_blocks, *results)
         else:
-            cuts = np.linspace(0, tasks, min(tasks, 4 * cores()) + 1).astype(int)
-            jobs = [
-                _pool().submit(kernel, *fixed, int(a), int(b), cost, fastest2, end, states, residuals)
-                for a, b in pairwise(cuts)
-            ]
+            cuts = np.linspace(0, n_blocks, min(n_blocks, 4 * cores()) + 1).astype(int)
+            jobs = [_pool().submit(kernel, *fixed, int(a), int(b), *results) for a, b in pairwise(cuts)]
             for job in jobs:
                 job.result()
 
-        def per_candidate(values: FloatArray) -> FloatArray:
-            return values.reshape(n_cases, n_blocks * WIDTH)[:, :n_candidates]
+        def by_lane(values: FloatArray) -> FloatArray:
+            """(n_cases, n_candidates, ...) of (n_blocks, WIDTH, ...)."""
+            ordered = np.empty((n_cases, n_candidates, *values.shape[2:]))
+            ordered[blocks.case_of, blocks.candidate_of] = values
+            return ordered
 
-        last = end.reshape(n_cases, n_blocks, 6, WIDTH).transpose(0, 1, 3, 2).reshape(n_cases, -1, 6)[:, :n_candidates]
-        kept = states[..., :n_candidates].transpose(0, 3, 1, 2) if keep_states else None
-        listed = residuals[:, :n_candidates] if keep_residuals else None
-        return finish(per_candidate(cost), per_candidate(fastest2), last, kept, listed)
+        last = by_lane(end.reshape(n_blocks, N_STATES, WIDTH).transpose(0, 2, 1))
+        return finish(
+            by_lane(cost),
+            by_lane(fastest2),
+            last,
+            states if keep_states else None,
+            residuals[:, :n_candidates] if keep_residuals else None,
+        )

@@ -13,7 +13,7 @@ import os
 import pkgutil
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 from pathlib import Path
 from types import ModuleType
@@ -28,6 +28,7 @@ from numba.extending import intrinsic, overload, register_jitable
 from .. import physics
 from ..effects import effects
 from ..physics import elementary
+from ..physics.integration import between
 from . import vector_math
 from .vector_math import OPTIONS, select, vector_arctan2, vector_cos, vector_exp, vector_sin
 
@@ -54,28 +55,41 @@ def logged_control(
 
     Before the first sample and after the last the log is held.
     """
-    j = i
+    j = min(i, n_samples[case] - 1)
     if shift != 0.0:
-        time = t[case, i - 1] + f * (t[case, i] - t[case, i - 1]) + shift
+        time = between(t[case, i - 1], t[case, i], f) + shift
         while j > 1 and t[case, j - 1] > time:
             j -= 1
         while j < n_samples[case] - 1 and t[case, j] < time:
             j += 1
         f = min(max((time - t[case, j - 1]) / (t[case, j] - t[case, j - 1]), 0.0), 1.0)
-    value: float = controls[case, j - 1, column] + f * (controls[case, j, column] - controls[case, j - 1, column])
+    value: float = between(controls[case, j - 1, column], controls[case, j, column], f)
     return value
 
 
-def _physics_modules() -> list[ModuleType]:
-    """Modules whose functions kernels call: the physics, and those of every effect."""
+def _modules() -> list[ModuleType]:
+    """Modules whose functions every kernel may call: the physics, and those of every effect."""
     names = {info.name for info in pkgutil.walk_packages(physics.__path__, physics.__name__ + ".")}
     names |= {effect.params.__module__ for effect in effects()}
     names |= {effect.function.__module__ for effect in effects() if effect.function is not None}
     return [importlib.import_module(name) for name in sorted(names)]
 
 
-def _register() -> None:
-    """Tell numba how to compile each function of ``physics``: as written, but elementary ones as vector arithmetic."""
+_registered: set[str] = set()
+
+
+def _register(module: ModuleType) -> None:
+    """Tell numba how to compile each function of a module: as written."""
+    if module.__name__ in _registered:
+        return
+    _registered.add(module.__name__)
+    for value in vars(module).values():
+        if inspect.isfunction(value) and value.__module__ == module.__name__:
+            register_jitable(**OPTIONS)(value)
+
+
+def _register_all() -> None:
+    """Elementary functions become vector arithmetic; all others are compiled as they stand."""
 
     def replace(function: Callable[..., Any], by: Callable[..., Any]) -> None:
         overload(function, jit_options=OPTIONS)(by)
@@ -85,22 +99,19 @@ def _register() -> None:
     replace(elementary.cos, lambda x: lambda x: vector_cos(x))
     replace(elementary.arctan2, lambda y, x: lambda y, x: vector_arctan2(y, x))
     replace(elementary.where, lambda condition, a, b: lambda condition, a, b: select(condition, float(a), float(b)))
-    for module in _physics_modules():
-        if module is elementary:
-            continue
-        for value in vars(module).values():
-            if inspect.isfunction(value) and value.__module__ == module.__name__:
-                register_jitable(**OPTIONS)(value)
+    _registered.add(elementary.__name__)
+    for module in _modules():
+        _register(module)
 
 
-_register()
+_register_all()
 
 
 @lru_cache(maxsize=1)
 def _source_hash() -> str:
     """Hash of everything compiled code depends on besides the kernel's own text."""
     digest = hashlib.sha256(f"{numba.__version__} {sys.version} ".encode())
-    for module in (*_physics_modules(), vector_math, sys.modules[__name__]):
+    for module in (*_modules(), vector_math, sys.modules[__name__]):
         digest.update(Path(str(module.__file__)).read_bytes())
     return digest.hexdigest()
 
@@ -120,9 +131,17 @@ def cache_folder() -> Path:
     return Path(tempfile.mkdtemp(prefix="mmgtune-"))
 
 
-def load_kernel(text: str) -> Callable[..., None]:
-    """The compiled ``kernel`` function of a generated text; compiled at its first call unless cached on disk."""
-    name = "mmgtune_kernel_" + hashlib.sha256((text + _source_hash()).encode()).hexdigest()[:16]
+def load_kernel(text: str, functions: Sequence[Callable[..., Any]] = ()) -> Callable[..., None]:
+    """The compiled ``kernel`` function of a generated text; compiled at its first call unless cached on disk.
+
+    functions  what it calls, some of them perhaps of other packages
+    """
+    digest = hashlib.sha256((text + _source_hash()).encode())
+    for module in dict.fromkeys(sys.modules[function.__module__] for function in functions):
+        if module.__name__ not in _registered:
+            _register(module)
+            digest.update(Path(str(module.__file__)).read_bytes())
+    name = "mmgtune_kernel_" + digest.hexdigest()[:16]
     path = cache_folder() / f"{name}.py"
     if not path.exists() or path.read_text(encoding="utf-8") != text:
         part = path.with_suffix(f".{os.getpid()}.part")

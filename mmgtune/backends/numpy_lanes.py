@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
 from ..arrays import FloatArray
+from ..effects import ActuatorEffect, Effect, FlowEffect, ForceEffect, LagEffect, SensorEffect
 from ..model import Model
-from ..physics.mmg import Breakdown, forces, rates, through_water
-from ..physics.quantities import Air, Control, State
+from ..physics.integration import after_step, at_stage, between, with_stage
+from ..physics.mmg import rates, through_water
+from ..physics.quantities import HELD, STATES, UNKNOWN, Force, State, Surroundings
 from .cases import Cases, Integrator, LaneResult, finish
 
-STILL = Air(0.0, 0.0, 0.0)
-"""No wind measured."""
+E = TypeVar("E", bound=Effect)
+
+N_STATES = len(STATES)
 
 
 class NumpyLanes:
@@ -38,10 +42,9 @@ class NumpyLanes:
         ship = LaneModel(model, np.ascontiguousarray(np.tile(theta, n_cases)))
         if initial is None:
             initial = np.repeat(cases.initial[:, None], n_candidates, axis=1)
-        position, share = integrator.tableau
         T = cases.t.shape[1]
         cost = np.zeros(shape)
-        states = np.empty((n_cases, n_candidates, T, 6)) if keep_states else None
+        states = np.empty((n_cases, n_candidates, T, N_STATES)) if keep_states else None
         residuals = np.empty((cases.n_residuals, n_candidates)) if keep_residuals else None
         if states is not None:
             states[:, :, 0] = initial
@@ -49,37 +52,27 @@ class NumpyLanes:
         def per_lane(values: FloatArray) -> FloatArray:
             return np.repeat(values, n_candidates)
 
-        def logged(k: int, f: float) -> Control:
-            return Control(*(_at(cases, k, f, column, ship.shift, per_lane) for column in range(2)))
+        def logged(k: int, f: float) -> Any:
+            inputs = range(cases.controls.shape[2])
+            return model.arrangement.control(*(_at(cases, k, f, column, ship.shift, per_lane) for column in inputs))
+
+        def around(k: int, f: float) -> Surroundings:
+            found = between(cases.around[:, k - 1], cases.around[:, k], f)
+            for name in HELD:
+                column = Surroundings._fields.index(name)
+                found[:, column] = cases.around[:, k, column]
+            return Surroundings(*(per_lane(values) for values in found.T))
 
         with np.errstate(all="ignore"):
-            start = ship.unsensed(State(*initial.reshape(-1, 6).T))
+            run = ship.start(State(*initial.reshape(-1, N_STATES).T), logged(1, 0.0), around(1, 0.0))
             fastest2 = np.zeros(n_cases * n_candidates)
-            here = logged(1, 0.0)
-            chain = ship.moved([here], [here], None, per_lane(np.zeros(n_cases)))
-            air = Air(*(per_lane(cases.wind[:, 0, j]) for j in range(3)))
-            s = np.array([*start, *ship.lag_start(start, chain[-1], air)])
             for k in range(1, T):
                 h = per_lane((cases.t[:, k] - cases.t[:, k - 1]) / integrator.substeps)
                 for sub in range(integrator.substeps):
-                    reached = ship.moved(chain, [logged(k, (sub + 1) / integrator.substeps)], chain, h)
-                    now, then = chain[-1], reached[-1]
-                    total = np.zeros_like(s)
-                    z = s
-                    for stage in range(len(position)):
-                        f = (sub + position[stage]) / integrator.substeps
-                        control = Control(*(a + position[stage] * (b - a) for a, b in zip(now, then, strict=True)))
-                        before, after = cases.wind[:, k - 1], cases.wind[:, k]
-                        north, east = (per_lane(before[:, j] + f * (after[:, j] - before[:, j])) for j in range(2))
-                        air = Air(north, east, known=per_lane(after[:, 2]))
-                        rate = ship.rates(z, control, air, h)
-                        total = total + share[stage] * rate
-                        if stage + 1 < len(position):
-                            z = s + position[stage + 1] * h * rate
-                    s = s + h * total
-                    chain = reached
-                fastest2 = np.fmax(fastest2, s[3] * s[3] + s[4] * s[4])
-                now_states = np.array(ship.sensed(State(*s[:6]))).T.reshape(n_cases, n_candidates, 6)
+                    f = (sub + 1) / integrator.substeps
+                    run.step(logged(k, f), around(k, f), h, integrator)
+                fastest2 = np.fmax(fastest2, run.s[3] * run.s[3] + run.s[4] * run.s[4])
+                now_states = np.array(run.shown).T.reshape(n_cases, n_candidates, N_STATES)
                 difference = now_states - cases.target[:, None, k]
                 cost += np.sum(cases.weight[:, None, k] * difference * difference, axis=-1)
                 if states is not None:
@@ -88,96 +81,164 @@ class NumpyLanes:
                     counts = cases.rows[:, k] >= 0
                     scaled = np.sqrt(cases.weight[:, None, k]) * difference
                     residuals[cases.rows[:, k][counts]] = scaled.transpose(0, 2, 1)[counts]
-        last = s[:6].T.reshape(n_cases, n_candidates, 6)
+        last = run.s[:N_STATES].T.reshape(n_cases, n_candidates, N_STATES)
         return finish(cost, fastest2.reshape(shape), last, states, residuals)
+
+
+class Acting(Generic[E]):
+    """An effect with the parameters of every lane."""
+
+    def __init__(self, effect: E, e: Any):
+        self.effect = effect
+        self.e = e
 
 
 class LaneModel:
     """A model with the coefficients of every lane, and its effects in the order in which they act."""
 
     def __init__(self, model: Model, theta: FloatArray):
+        self.arrangement = model.arrangement
         self.components = model.components
         self.p = model.coefficients(theta)
 
-        def acting(place: str) -> list[tuple[Any, Any]]:
-            return [(effect, model.parameters(effect, theta)) for effect in model.acting(place)]
+        def acting(kind: type[E]) -> list[Acting[E]]:
+            return [Acting(effect, model.parameters(effect, theta)) for effect in model.acting(kind)]
 
-        self.actuators, self.flows, self.forces = acting("actuator"), acting("flow"), acting("force")
-        self.lags, self.sensors = acting("lag"), acting("sensor")
-        self.shift: FloatArray | None = None
-        for _, e in acting("clock"):
-            self.shift = e[0] if self.shift is None else self.shift + e[0]
+        self.actuators, self.flows, self.forces = acting(ActuatorEffect), acting(FlowEffect), acting(ForceEffect)
+        self.lags, self.sensors = acting(LagEffect), acting(SensorEffect)
+        self.acts_on = [self.arrangement.of_role(one.effect.of) for one in self.actuators]
+        shifts = [model.parameters(effect, theta)[0] for effect in model.clocks]
+        self.shift: FloatArray | None = sum(shifts[1:], shifts[0]) if shifts else None
 
-    def moved(
-        self, start: list[Control], end: list[Control], before: list[Control] | None, h: FloatArray
-    ) -> list[Control]:
+    def start(self, shown: State, logged: Any, around: Surroundings = UNKNOWN) -> LaneRun:
+        """A run from the state the sensors show, with the machinery at rest at the inputs logged there."""
+        return LaneRun(self, self.unsensed(shown), logged, around)
+
+    def moved(self, start: list[Any], end: Any, before: list[Any] | None, h: Any) -> list[Any]:
         """What reaches and leaves each actuator at the end of a step; ``before`` None where it has been at rest."""
-        chain = [end[0]]
-        for k, (effect, e) in enumerate(self.actuators):
+        chain = [end]
+        for k, (one, inputs) in enumerate(zip(self.actuators, self.acts_on, strict=True)):
             first = chain[k] if before is None else start[k]
-            chain.append(effect.function(first, chain[k], first if before is None else before[k + 1], h, e))
+            held = first if before is None else before[k + 1]
+            left = list(chain[k])
+            for i in inputs:
+                left[i] = one.effect.function(first[i], chain[k][i], held[i], h, one.e)
+            chain.append(type(end)(*left))
         return chain
 
-    def water(self, state: State, air: Air) -> tuple[Any, Any]:
+    def water(self, state: State, around: Surroundings) -> tuple[Any, Any]:
         """Velocity of the water in the ship's axes."""
         u_c: Any = 0.0
         v_c: Any = 0.0
-        for effect, e in self.flows:
-            du, dv = effect.function(state, air, e)
+        for one in self.flows:
+            du, dv = one.effect.function(state, around, one.e)
             u_c, v_c = u_c + du, v_c + dv
         return u_c, v_c
 
-    def breakdown(self, state: State, control: Control, air: Air = STILL) -> Breakdown:
+    def breakdown(self, state: State, control: Any, around: Surroundings = UNKNOWN) -> Any:
         """Forces of the components, and in the total those that effects add."""
-        found: Breakdown = forces(through_water(state, *self.water(state, air)), control, self.components, self.p)
+        through = through_water(state, *self.water(state, around))
+        found = self.arrangement.forces(through, control, self.components, self.p)
         total = found.total
-        for effect, e in self.forces:
-            total = _sum(total, effect.function(state, air, found, self.components, self.p, e))
+        for one in self.forces:
+            total = _sum(total, one.effect.function(state, around, found, self.components, self.p, one.e))
         return found._replace(total=total)
 
-    def lag_start(self, state: State, control: Control, air: Air = STILL) -> list[FloatArray]:
-        """Lagging forces at the first state."""
+    def behind(self, state: State, control: Any, around: Surroundings) -> list[Any]:
+        """What lags remember at the first state."""
         if not self.lags:
             return []
-        hull = self.breakdown(state, control, air).hull
-        return [hull.Y, hull.N] * len(self.lags)
+        found = self.breakdown(state, control, around)
+        return [value for one in self.lags for value in one.effect.start(found, one.e)]
 
-    def rates(self, s: FloatArray, control: Control, air: Air, h: Any) -> FloatArray:
-        """Time derivatives of the six states and of the lagging forces, (6 + 2 n_lags, n_lanes)."""
-        state = State(*s[:6])
-        found = self.breakdown(state, control, air)
-        total = found.total
-        slopes: list[FloatArray] = []
-        for k, (effect, e) in enumerate(self.lags):
-            more, Y_dot, N_dot = effect.function(found.hull, s[6 + 2 * k], s[7 + 2 * k], h, e)
+    def rates(self, s: FloatArray, control: Any, around: Surroundings, h: Any) -> FloatArray:
+        """Time derivatives of the six states and of what lags remember, (n_states, n_lanes)."""
+        state = State(*s[:N_STATES])
+        found = self.breakdown(state, control, around)
+        total: Force = found.total
+        slopes: list[Any] = []
+        at = N_STATES
+        for one in self.lags:
+            behind = tuple(s[at : at + len(one.effect.states)])
+            more, own = one.effect.function(found, behind, h, one.e)
             total = _sum(total, more)
-            slopes += [Y_dot, N_dot]
-        return np.array([*rates(state, *self.water(state, air), total, self.p.ship), *slopes])
+            slopes += own
+            at += len(behind)
+        return np.array([*rates(state, *self.water(state, around), total, self.p.ship), *slopes])
 
     def sensed(self, state: State) -> State:
         """The state as the sensors show it."""
-        for effect, e in self.sensors:
-            state = effect.function(state, e)
+        for one in self.sensors:
+            state = one.effect.function(state, one.e)
         return state
 
     def unsensed(self, shown: State) -> State:
         """The state behind what the sensors show."""
-        for effect, e in reversed(self.sensors):
-            shown = effect.inverse(shown, e)
+        for one in reversed(self.sensors):
+            shown = one.effect.inverse(shown, one.e)
         return shown
 
 
-def _sum(a: Any, b: Any) -> Any:
-    return type(a)(*(one + other for one, other in zip(a, b, strict=True)))
+class LaneRun:
+    """Lanes on their way: the state, and what has reached and left each actuator.
+
+    s  (n_states, n_lanes) the six states, then what lags remember
+    """
+
+    def __init__(self, ship: LaneModel, state: State, logged: Any, around: Surroundings):
+        self.ship = ship
+        self._chain = ship.moved([], logged, None, 0.0 * np.asarray(logged[0]))
+        self._around = around
+        self.s: FloatArray = np.array([*state, *ship.behind(state, self._chain[-1], around)])
+
+    @property
+    def shown(self) -> State:
+        """The six states as the sensors show them."""
+        return self.ship.sensed(State(*self.s[:N_STATES]))
+
+    def step(self, logged: Any, around: Surroundings, h: Any, integrator: Integrator) -> None:
+        """March by h [s] to where these inputs are logged and these surroundings measured."""
+        position, share = integrator.tableau
+        reached = self.ship.moved(self._chain, logged, self._chain, h)
+        now, then = self._chain[-1], reached[-1]
+        total = np.zeros_like(self.s)
+        z = self.s
+        for stage, at in enumerate(position):
+            control = type(then)(*(between(a, b, at) for a, b in zip(now, then, strict=True)))
+            rate = self.ship.rates(z, control, _between(self._around, around, at), h)
+            total = with_stage(total, share[stage], rate)
+            if stage + 1 < len(position):
+                z = at_stage(self.s, position[stage + 1], h, rate)
+        self.s = after_step(self.s, h, total)
+        self._chain, self._around = reached, around
 
 
-def _at(cases: Cases, k: int, f: float, column: int, shift: FloatArray | None, per_lane: Any) -> FloatArray:
+def _between(before: Surroundings, after: Surroundings, f: float) -> Surroundings:
+    return Surroundings(
+        *(
+            b if name in HELD else between(a, b, f)
+            for name, a, b in zip(Surroundings._fields, before, after, strict=True)
+        )
+    )
+
+
+def _sum(a: Force, b: Force) -> Force:
+    return Force(*(one + other for one, other in zip(a, b, strict=True)))
+
+
+def _at(
+    cases: Cases,
+    k: int,
+    f: float,
+    column: int,
+    shift: FloatArray | None,
+    per_lane: Callable[[FloatArray], FloatArray],
+) -> FloatArray:
     """A logged input at the share f of the step that ends at sample k, each lane ``shift`` [s] later."""
-    before, after = cases.controls[:, k - 1, column], cases.controls[:, k, column]
-    value = per_lane(before + f * (after - before))
+    value = per_lane(between(cases.controls[:, k - 1, column], cases.controls[:, k, column], f))
     if shift is None:
         return np.asarray(value)
-    time = per_lane(cases.t[:, k - 1] + f * (cases.t[:, k] - cases.t[:, k - 1])) + shift
+    time = per_lane(between(cases.t[:, k - 1], cases.t[:, k], f)) + shift
     late = time.reshape(len(cases), -1)
     moved = [
         np.interp(late[case], cases.t[case, :n], cases.controls[case, :n, column])

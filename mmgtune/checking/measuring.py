@@ -41,7 +41,7 @@ def measure(
     -> for each candidate, by trial and metric
     """
     theta = model.matrix() if theta is None else theta
-    cases = cases_of(trials, make_objective(model.L_pp))
+    cases = cases_of(trials, make_objective(model.L_pp), model.inputs)
     result = get_backend(backend).run(model, theta, cases, integrator=integrator, keep_states=True)
     assert result.states is not None  # asked for
     found: list[dict[str, Values]] = [{} for _ in range(theta.shape[1])]

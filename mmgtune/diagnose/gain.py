@@ -167,7 +167,9 @@ def J_of(bench: Workbench, point: Point, test: Sequence[Trial]) -> float | None:
 def _problem(bench: Workbench, point: Point, trials: Sequence[Trial], objective: Objective) -> FitProblem:
     own = bench.problem_of(point.names, point.integrator)
     sigma = np.repeat(bench.sigma[None], len(trials), axis=0)
-    return FitProblem(own.model, cases_of(list(trials), objective), own.box, own.backend, own.integrator, sigma)
+    return FitProblem(
+        own.model, cases_of(list(trials), objective, own.model.inputs), own.box, own.backend, own.integrator, sigma
+    )
 
 
 def _on(

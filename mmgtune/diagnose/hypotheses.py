@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from ..effects import Effect
 from ..model import Model
 
-HULL_TERM = "hull-term"
 INTEGRATION_STEP = "integration-step"
 
 

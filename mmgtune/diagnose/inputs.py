@@ -31,7 +31,9 @@ def wander(bench: Workbench, point: Point) -> FloatArray:
     rng = np.random.default_rng(bench.options.seed)
     cases = bench.problem.cases
     problem = bench.problem_of(point.names, point.integrator)
-    level = np.array([[white_noise(trial.n), white_noise(trial.delta)] for trial in bench.trials])[:, None]
+    level = np.array(
+        [[white_noise(logged) for logged in trial.inputs(problem.model.inputs).T] for trial in bench.trials]
+    )[:, None]
     bend = np.zeros_like(cases.controls)
     bend[:, 1:-1] = np.abs(np.diff(cases.controls, n=2, axis=1))
     deviation = np.where(bend > CLEAR * level, np.hypot(level, BETWEEN * bend), level)
@@ -43,7 +45,7 @@ def wander(bench: Workbench, point: Point) -> FloatArray:
         t=np.repeat(cases.t, copies, axis=0),
         n_samples=np.repeat(cases.n_samples, copies),
         controls=controls.reshape(-1, *cases.controls.shape[1:]),
-        wind=np.repeat(cases.wind, copies, axis=0),
+        around=np.repeat(cases.around, copies, axis=0),
         initial=np.repeat(cases.initial + point.offsets, copies, axis=0),
         target=np.zeros_like(np.repeat(cases.target, copies, axis=0)),
         weight=np.repeat(cases.weight, copies, axis=0),

@@ -21,7 +21,7 @@ from ..trial import Trial, TrialSet, has_measured_wind
 from ..trial.smoothing import FEWEST
 from .evidence import explain_forces, noise_share, residual_forces, short_horizon
 from .gain import J_of, held_out
-from .hypotheses import HULL_TERM, INTEGRATION_STEP, Hypothesis, hypotheses
+from .hypotheses import INTEGRATION_STEP, Hypothesis, hypotheses
 from .intervals import Estimate, estimates
 from .leftover import Leftover, leftover
 from .linear import typical
@@ -154,7 +154,7 @@ def _promising(refit: Refit, step: Step) -> bool:
 
 def _detectability(bench: Workbench, step: Step, known: Sequence[Hypothesis]) -> list[Detectability]:
     """The table for every named hypothesis, from the first look."""
-    named = [s for s in step.scores if s.hypothesis.tag != HULL_TERM]
+    named = [s for s in step.scores if not s.hypothesis.effect.one_of_many]
     cosine = angles(step.linear, [s.hypothesis for s in named])
     found = []
     for i, score in enumerate(named):

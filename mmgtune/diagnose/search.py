@@ -15,7 +15,7 @@ from ..arrays import FloatArray
 from ..backends import Integrator
 from ..fitting.least_squares import solve
 from . import noise as noises
-from .hypotheses import HULL_TERM, Hypothesis
+from .hypotheses import Hypothesis
 from .linear import Linear, inwards, linearise, typical
 from .screening import ChanceScores, Score, evidence, scores
 from .workbench import TOLERANCE, Point, Workbench
@@ -34,7 +34,7 @@ PRECISE = 0.02
 
 REFITTED = 9
 TERMS_REFITTED = 4
-"""Named hypotheses and hull terms that are refitted each time: those of the best scores."""
+"""Hypotheses that are refitted each time, named ones and terms out of many: those of the best scores."""
 
 ROUGH = 4
 """Steps of a refit before it is compared with the others."""
@@ -67,7 +67,7 @@ class Refit:
     """A hypothesis fitted together with all that is known so far.
 
     gain      fall of chi-squared
-    cost      what its parameters would bring by chance, by BIC (and for a hull term, one of many, the choice)
+    cost      what its parameters would bring by chance, by BIC (and for one of many, the choice)
     evidence  the gain over its inflation, less the cost
     size      largest of its parameters' distances from their null, in typical sizes
     p_value   probability of such a fall anywhere in the search, were there nothing to find
@@ -242,8 +242,8 @@ def _differs(a: noises.NoiseModel, b: noises.NoiseModel) -> bool:
 def _refit_best(bench: Workbench, point: Point, ranked: Sequence[Score], linear: Linear, *, quick: bool) -> list[Refit]:
     """The most promising hypotheses refitted, best first."""
     order = sorted(ranked, key=lambda score: -score.score)
-    named = [s for s in order if s.hypothesis.tag != HULL_TERM]
-    terms = [s for s in order if s.hypothesis.tag == HULL_TERM]
+    named = [s for s in order if not s.hypothesis.effect.one_of_many]
+    terms = [s for s in order if s.hypothesis.effect.one_of_many]
     strong = point.chi2 > STRONG * bench.problem.n_residuals  # too far away for a linear score to choose
     if quick:
         chosen = named[:3] + terms[:1]
@@ -299,7 +299,7 @@ def _judged(
     gain = point.chi2 - end.chi2
     assert gain >= 0.0, "a nested refit ended above the model it extends"
     k = len(hypothesis.names)
-    cost = k * np.log(bench.problem.n_residuals) + (2.0 * np.log(n_terms) if hypothesis.tag == HULL_TERM else 0.0)
+    cost = k * np.log(bench.problem.n_residuals) + (2.0 * np.log(n_terms) if hypothesis.effect.one_of_many else 0.0)
     return Refit(
         hypothesis,
         score,

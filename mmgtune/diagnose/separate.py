@@ -123,7 +123,7 @@ def suggest(bench: Workbench, rivals: Sequence[tuple[str, Point]]) -> Suggestion
 
 def _predicted(bench: Workbench, point: Point, motion: Motion, objective: Objective) -> FloatArray:
     problem = bench.problem_of(point.names, point.integrator)
-    cases = cases_of([as_trial(bench.model.profile, motion)], objective)
+    cases = cases_of([as_trial(bench.model.profile, motion)], objective, problem.model.inputs)
     result = problem.backend.run(
         problem.model, problem.theta(point.unit[:, None]), cases, integrator=problem.integrator, keep_states=True
     )

@@ -26,19 +26,23 @@ def quantity(value: float, error: float | None, unit: str) -> str:
 
 
 def parameters_in_words(effect: Effect, estimates: Mapping[str, Estimate]) -> dict[str, str]:
-    """Each estimated parameter of an effect as text; for a current also its speed and where it sets."""
+    """Each estimated parameter of an effect as text; for a current, say, also its speed and where it sets."""
     found = {}
     for name, parameter in effect.parameters.items():
         estimate = estimates.get(f"{effect.kind}.{name}")
         if estimate is not None:
             half = None if estimate.low is None or estimate.high is None else 0.5 * (estimate.high - estimate.low)
             found[name] = quantity(estimate.value, half, parameter.unit)
-    if effect.tag == "current" and {"north", "east"} <= set(found):
-        north, east = (estimates[f"{effect.kind}.{name}"] for name in ("north", "east"))
-        speed = math.hypot(north.value, east.value)
-        error = math.hypot(
-            *(e.value / max(speed, 1e-12) * 0.5 * ((e.high or e.value) - (e.low or e.value)) for e in (north, east))
-        )
-        found["speed"] = quantity(speed, error, "m/s")
-        found["towards"] = f"{math.degrees(math.atan2(east.value, north.value)) % 360.0:.0f}°"
+    for (first, second), (size, direction) in effect.told_as.items():
+        if {first, second} <= set(found):
+            north, east = (estimates[f"{effect.kind}.{name}"] for name in (first, second))
+            length = math.hypot(north.value, east.value)
+            error = math.hypot(
+                *(
+                    e.value / max(length, 1e-12) * 0.5 * ((e.high or e.value) - (e.low or e.value))
+                    for e in (north, east)
+                )
+            )
+            found[size] = quantity(length, error, effect.parameters[first].unit)
+            found[direction] = f"{math.degrees(math.atan2(east.value, north.value)) % 360.0:.0f}°"
     return found

@@ -23,9 +23,6 @@ from .options import CHANNELS, DiagnoseOptions
 TOLERANCE = 0.2
 """Fall of chi-squared that counts as none while searching; a fiftieth of what matters."""
 
-ON_DEMAND = ("wind", "wind-drift", "hull-term", "wave-drift", "memory", "resistance")
-"""Effects that cost simulation time where they are absent; a model has them only where they are asked for."""
-
 LOOSE = 3.0
 """Initial states may leave their first sample by this many deviations of white noise before noise is known better."""
 
@@ -78,12 +75,13 @@ class Workbench:
 
     def model_of(self, names: Sequence[str]) -> Model:
         """A model that holds these parameters, what the profile has, and the effects that cost nothing."""
+        on_demand = [effect.tag for effect in self.model.effects if effect.on_demand]
         asked = [
             tag
-            for tag in ON_DEMAND
+            for tag in on_demand
             if tag in self.own_effects or any(name.startswith(f"effects.{tag}.") for name in names)
         ]
-        left_out = frozenset(ON_DEMAND) - frozenset(asked)
+        left_out = frozenset(on_demand) - frozenset(asked)
         if len(asked) > 1:  # one model for every combination: compiling another takes longer than running this one
             left_out = frozenset()
         if left_out not in self._models:
@@ -182,7 +180,7 @@ def make_workbench(
         c for c in CHANNELS if not options.channels or c in {"v_m" if o == "v" else o for o in options.channels}
     ]
     objective = Objective(dict(zip(STATES, sigma, strict=True)), dict.fromkeys(channels, 1.0))
-    cases = cases_of(list(trials), objective)
+    cases = cases_of(list(trials), objective, model.inputs)
     box = make_box(model, (*targets, *(name for name in names if name not in targets)), options.a_r)
     problem = FitProblem(
         model=model,

@@ -33,9 +33,36 @@ from . import (
     wind,
     wind_drift,
 )
-from .effect import PLACES, Effect, Parameter, Scale
+from .effect import (
+    PLACES,
+    ActuatorEffect,
+    ClockEffect,
+    CoefficientsEffect,
+    Effect,
+    FlowEffect,
+    ForceEffect,
+    LagEffect,
+    Parameter,
+    Scale,
+    SensorEffect,
+)
 
-__all__ = ["PLACES", "Effect", "Parameter", "Scale", "effect_tags", "effects", "find_effect"]
+__all__ = [
+    "PLACES",
+    "ActuatorEffect",
+    "ClockEffect",
+    "CoefficientsEffect",
+    "Effect",
+    "FlowEffect",
+    "ForceEffect",
+    "LagEffect",
+    "Parameter",
+    "Scale",
+    "SensorEffect",
+    "effect_tags",
+    "effects",
+    "find_effect",
+]
 
 BUILT_IN: tuple[Effect, ...] = tuple(
     module.EFFECT

@@ -2,9 +2,9 @@
 
 from typing import NamedTuple
 
-from ..physics.elementary import cos, sin
+from ..physics.frame import to_earth
 from ..physics.quantities import Lanes, State
-from .effect import Effect, Parameter
+from .effect import Parameter, SensorEffect
 
 
 class Antenna(NamedTuple):
@@ -14,13 +14,12 @@ class Antenna(NamedTuple):
     y: Lanes
 
 
-def antenna(state, e):
+def antenna(state: State, e: Antenna) -> State:
     """What an antenna at (x, y) in the ship's axes sees of the motion of midship."""
-    cos_psi = cos(state.psi)
-    sin_psi = sin(state.psi)
+    north, east = to_earth(state.psi, e.x, e.y)
     return State(
-        x=state.x + cos_psi * e.x - sin_psi * e.y,
-        y=state.y + sin_psi * e.x + cos_psi * e.y,
+        x=state.x + north,
+        y=state.y + east,
         psi=state.psi,
         u=state.u - state.r * e.y,
         v_m=state.v_m + state.r * e.x,
@@ -28,13 +27,12 @@ def antenna(state, e):
     )
 
 
-def antenna_inverse(logged, e):
+def antenna_inverse(logged: State, e: Antenna) -> State:
     """Motion of midship from that of the antenna."""
-    cos_psi = cos(logged.psi)
-    sin_psi = sin(logged.psi)
+    north, east = to_earth(logged.psi, e.x, e.y)
     return State(
-        x=logged.x - (cos_psi * e.x - sin_psi * e.y),
-        y=logged.y - (sin_psi * e.x + cos_psi * e.y),
+        x=logged.x - north,
+        y=logged.y - east,
         psi=logged.psi,
         u=logged.u + logged.r * e.y,
         v_m=logged.v_m - logged.r * e.x,
@@ -52,11 +50,10 @@ def _arm(direction: str, share: float) -> Parameter:
     )
 
 
-EFFECT = Effect(
+EFFECT = SensorEffect(
     kind="effects.antenna",
     tag="antenna",
     title="antenna away from midship",
-    place="sensor",
     params=Antenna,
     function=antenna,
     inverse=antenna_inverse,

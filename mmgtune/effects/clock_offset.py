@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from ..physics.quantities import Lanes
-from .effect import Effect, Parameter
+from .effect import ClockEffect, Parameter
 
 
 class ClockOffset(NamedTuple):
@@ -12,13 +12,11 @@ class ClockOffset(NamedTuple):
     seconds: Lanes
 
 
-EFFECT = Effect(
+EFFECT = ClockEffect(
     kind="effects.clock-offset",
     tag="clock-offset",
     title="clocks of control log and motion log apart",
-    place="clock",
     params=ClockOffset,
-    function=None,
     cites=(),
     fields={
         "seconds": Parameter(

@@ -2,9 +2,9 @@
 
 from typing import NamedTuple
 
-from ..physics.elementary import cos, sin
-from ..physics.quantities import Lanes
-from .effect import Effect, Parameter
+from ..physics.frame import to_ship
+from ..physics.quantities import Lanes, State, Surroundings
+from .effect import FlowEffect, Parameter
 
 
 class Current(NamedTuple):
@@ -14,15 +14,14 @@ class Current(NamedTuple):
     east: Lanes
 
 
-def current(state, air, e):
+def current(state: State, around: Surroundings, e: Current) -> tuple[Lanes, Lanes]:
     """Velocity of the water in the ship's axes: surge and sway [m/s].
 
     With velocities through water, and for a current that is constant in the earth frame, the equations of motion hold
     unchanged (Mathioudakis et al., eq. 9).
     """
-    cos_psi = cos(state.psi)
-    sin_psi = sin(state.psi)
-    return cos_psi * e.north + sin_psi * e.east, cos_psi * e.east - sin_psi * e.north
+    ahead, starboard = to_ship(state.psi, e.north, e.east)
+    return ahead, starboard
 
 
 def _component(direction: str) -> Parameter:
@@ -35,15 +34,15 @@ def _component(direction: str) -> Parameter:
     )
 
 
-EFFECT = Effect(
+EFFECT = FlowEffect(
     kind="effects.current",
     tag="current",
     title="current",
-    place="flow",
     params=Current,
     function=current,
     cites=("Mathioudakis et al., FAM, eq. 9",),
     fields={"north": _component("north"), "east": _component("east")},
     variants=(("north", "east"),),
+    told_as={("north", "east"): ("speed", "towards")},
     sentence=lambda v: f"The trials were run in a current of {v['speed']} setting towards {v['towards']}",
 )

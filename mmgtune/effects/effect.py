@@ -4,23 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple, Protocol
 
 from ..components import Component, Field
-
-PLACES = ("clock", "actuator", "flow", "coefficients", "force", "lag", "sensor")
-"""Where in the data flow an effect acts, in the order of the flow.
-
-clock         when the logged inputs acted; the simulators sample the log accordingly, no function
-actuator      f(start, end, before, h [s], e) -> Control that leaves it at the end of a step of h; start and end are
-              what reaches it at the ends of the step, before is what left it at the beginning (Control each)
-flow          f(State, Air, e) -> surge and sway velocity of the water itself in ship axes [m/s]
-coefficients  f(values {section.symbol: number or array}, e) -> those that change, {section.symbol: new value}
-force         f(State, Air, Breakdown, Components, Coefficients, e) -> Force that is added
-lag           f(hull Force, lagging Y [N], lagging N [N m], h [s], e) -> Force that is added, rates of the two; h is
-              the step of the integration
-sensor        f(State, e) -> State as the sensors log it, and ``inverse`` back
-"""
+from ..inputs import Role
+from ..physics.quantities import Force, Lanes, State, Surroundings
 
 
 class Scale(NamedTuple):
@@ -53,34 +41,39 @@ class Parameter(Field):
             object.__setattr__(self, "default", self.null)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Effect(Component):
-    """An effect: a component of kind "effects.<tag>" with a place in the data flow.
+    """An effect: a component of kind "effects.<tag>".  Each place of the data flow has a class of its own below.
 
+    place      where in the data flow it acts
     borrowed   fields of ``params`` after the parameters, with the profile's coefficient each is filled from
     variants   sets of parameters that are searched for together; each set is one hypothesis
     sentence   the cause in words a captain understands, from {parameter: number with unit and interval, as text}
+    told_as    pairs of parameters, north and east [SI], told as a size and a direction too: names of these two
     absorbed   coefficients of the profile that do the same as a parameter, {parameter: section.symbol}: where that one
                is tuned, the parameter is not searched for
     needs      coefficients the effect changes; it does not apply to a profile without them
-    inverse    of a sensor
+    of_parts   parts of the arrangement's breakdown it works on; it does not apply to a ship without them
+    on_demand  costs simulation time where it is absent: a search has it only in models that ask for it
+    one_of_many  its variants are many of one kind, of which chance finds the best: a search charges for the choice
     of_measured_wind  parameters that act on measured wind; others of the same effect stand in where there is none
     """
 
-    place: str = "force"
+    place: ClassVar[str]
     borrowed: Mapping[str, str] = field(default_factory=dict)
     variants: tuple[tuple[str, ...], ...] = ()
     sentence: Callable[[Mapping[str, str]], str] = lambda _: ""
+    told_as: Mapping[tuple[str, str], tuple[str, str]] = field(default_factory=dict)
     absorbed: Mapping[str, str] = field(default_factory=dict)
     needs: tuple[str, ...] = ()
-    inverse: Callable[..., Any] | None = None
+    of_parts: tuple[str, ...] = ()
+    on_demand: bool = False
+    one_of_many: bool = False
     of_measured_wind: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if (*self.fields, *self.borrowed) != self.params._fields:
             raise TypeError(f"effect '{self.tag}': {(*self.fields, *self.borrowed)} are not {self.params._fields}")
-        if self.place not in PLACES:
-            raise TypeError(f"effect '{self.tag}': place '{self.place}' is not one of {', '.join(PLACES)}")
         if self.kind != f"effects.{self.tag}":
             raise TypeError(f"effect '{self.tag}': its kind is '{self.kind}', not 'effects.{self.tag}'")
 
@@ -88,3 +81,126 @@ class Effect(Component):
     def parameters(self) -> dict[str, Parameter]:
         """The parameters by name."""
         return {name: field for name, field in self.fields.items() if isinstance(field, Parameter)}
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClockEffect(Effect):
+    """When the logged inputs acted: its first parameter is how late their log is [s]; simulators sample accordingly."""
+
+    place = "clock"
+    function: None = None
+
+
+class ActuatorFunction(Protocol):
+    """What leaves the actuator of one input at the end of a step of h [s].
+
+    start and end are what reaches it at the ends of the step, before is what left it at the beginning.
+    """
+
+    def __call__(self, start: Lanes, end: Lanes, before: Lanes, h: Lanes, e: Any, /) -> Lanes: ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class ActuatorEffect(Effect):
+    """On the way from a logged input to the ship; acts on every input of one role, each by itself."""
+
+    place = "actuator"
+    function: ActuatorFunction
+    of: Role
+
+
+class FlowFunction(Protocol):
+    """Surge and sway velocity of the water itself, in the ship's axes [m/s]."""
+
+    def __call__(self, state: State, around: Surroundings, e: Any, /) -> tuple[Lanes, Lanes]: ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class FlowEffect(Effect):
+    """Water that moves."""
+
+    place = "flow"
+    function: FlowFunction
+
+
+class CoefficientsFunction(Protocol):
+    """Coefficients that change, {section.symbol: new value}, from all of them."""
+
+    def __call__(self, values: Mapping[str, Lanes], e: Any, /) -> Mapping[str, Lanes]: ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class CoefficientsEffect(Effect):
+    """Other coefficients than the profile's; acts before any run."""
+
+    place = "coefficients"
+    function: CoefficientsFunction
+
+
+class ForceFunction(Protocol):
+    """Force that is added; found is the arrangement's breakdown, components and p its functions and coefficients."""
+
+    def __call__(self, state: State, around: Surroundings, found: Any, components: Any, p: Any, e: Any, /) -> Force: ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class ForceEffect(Effect):
+    """A further force."""
+
+    place = "force"
+    function: ForceFunction
+
+
+class LagFunction(Protocol):
+    """Force that is added, and rates of the states of its own, ``behind``; h is the step of the integration [s]."""
+
+    def __call__(self, found: Any, behind: Any, h: Lanes, e: Any, /) -> tuple[Force, tuple[Lanes, ...]]: ...
+
+
+class StartFunction(Protocol):
+    """States of its own at the first sample."""
+
+    def __call__(self, found: Any, e: Any, /) -> tuple[Lanes, ...]: ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class LagEffect(Effect):
+    """A force with a memory: any part of the breakdown, remembered in states that the integrator carries along.
+
+    states  names of these, in the order of ``behind``
+    """
+
+    place = "lag"
+    function: LagFunction
+    start: StartFunction
+    states: tuple[str, ...]
+
+
+class SensorFunction(Protocol):
+    """The state as the sensors log it."""
+
+    def __call__(self, state: State, e: Any, /) -> State: ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class SensorEffect(Effect):
+    """Between the motion and its log; ``inverse`` leads back."""
+
+    place = "sensor"
+    function: SensorFunction
+    inverse: SensorFunction
+
+
+EFFECTS_BY_PLACE: tuple[type[Effect], ...] = (
+    ClockEffect,
+    ActuatorEffect,
+    FlowEffect,
+    CoefficientsEffect,
+    ForceEffect,
+    LagEffect,
+    SensorEffect,
+)
+"""Kinds of effects in the order of the data flow."""
+
+PLACES = tuple(kind.place for kind in EFFECTS_BY_PLACE)
+"""Where in the data flow effects act, in its order."""

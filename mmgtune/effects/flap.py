@@ -1,9 +1,10 @@
 """The flap turns more or less than its linkage is believed to."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from ..physics.quantities import Lanes
-from .effect import Effect, Parameter
+from .effect import CoefficientsEffect, Parameter
 
 
 class Flap(NamedTuple):
@@ -12,16 +13,15 @@ class Flap(NamedTuple):
     factor: Lanes
 
 
-def flap(values, e):
+def flap(values: Mapping[str, Lanes], e: Flap) -> dict[str, Lanes]:
     """Flap angles of the profile's table, times factor [-]."""
     return {name: value * e.factor for name, value in values.items() if name.startswith("rudder.flap[")}
 
 
-EFFECT = Effect(
+EFFECT = CoefficientsEffect(
     kind="effects.flap",
     tag="flap",
     title="flap linkage",
-    place="coefficients",
     params=Flap,
     function=flap,
     cites=(),

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from ..physics.quantities import Lanes, State
-from .effect import Effect, Parameter
+from .effect import Parameter, SensorEffect
 
 
 class GyroBias(NamedTuple):
@@ -12,21 +12,20 @@ class GyroBias(NamedTuple):
     rate: Lanes
 
 
-def gyro_bias(state, e):
+def gyro_bias(state: State, e: GyroBias) -> State:
     """Yaw rate shown = yaw rate + rate [rad/s]."""
     return State(x=state.x, y=state.y, psi=state.psi, u=state.u, v_m=state.v_m, r=state.r + e.rate)
 
 
-def gyro_bias_inverse(logged, e):
+def gyro_bias_inverse(logged: State, e: GyroBias) -> State:
     """Yaw rate from the one shown."""
     return State(x=logged.x, y=logged.y, psi=logged.psi, u=logged.u, v_m=logged.v_m, r=logged.r - e.rate)
 
 
-EFFECT = Effect(
+EFFECT = SensorEffect(
     kind="effects.gyro-bias",
     tag="gyro-bias",
     title="bias of the rate gyro",
-    place="sensor",
     params=GyroBias,
     function=gyro_bias,
     inverse=gyro_bias_inverse,

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from ..physics.quantities import Lanes, State
-from .effect import Effect, Parameter
+from .effect import Parameter, SensorEffect
 
 
 class GyroScale(NamedTuple):
@@ -12,21 +12,20 @@ class GyroScale(NamedTuple):
     factor: Lanes
 
 
-def gyro_scale(state, e):
+def gyro_scale(state: State, e: GyroScale) -> State:
     """Yaw rate shown = factor [-] times yaw rate."""
     return State(x=state.x, y=state.y, psi=state.psi, u=state.u, v_m=state.v_m, r=state.r * e.factor)
 
 
-def gyro_scale_inverse(logged, e):
+def gyro_scale_inverse(logged: State, e: GyroScale) -> State:
     """Yaw rate from the one shown."""
     return State(x=logged.x, y=logged.y, psi=logged.psi, u=logged.u, v_m=logged.v_m, r=logged.r / e.factor)
 
 
-EFFECT = Effect(
+EFFECT = SensorEffect(
     kind="effects.gyro-scale",
     tag="gyro-scale",
     title="scale error of the rate gyro",
-    place="sensor",
     params=GyroScale,
     function=gyro_scale,
     inverse=gyro_scale_inverse,

@@ -2,10 +2,10 @@
 
 from typing import NamedTuple
 
-from ..physics.elementary import cos, sin
+from ..physics.frame import to_ship
 from ..physics.quantities import Lanes, State
 from ..units import DEG
-from .effect import Effect, Parameter
+from .effect import Parameter, SensorEffect
 
 
 class HeadingBias(NamedTuple):
@@ -14,30 +14,26 @@ class HeadingBias(NamedTuple):
     angle: Lanes
 
 
-def _turned(state, psi, angle):
+def _turned(state: State, psi: Lanes, angle: Lanes) -> State:
     """The same motion with another heading, its velocities in axes turned by ``angle`` [rad]."""
-    c = cos(angle)
-    s = sin(angle)
-    return State(
-        x=state.x, y=state.y, psi=psi, u=c * state.u + s * state.v_m, v_m=c * state.v_m - s * state.u, r=state.r
-    )
+    u, v_m = to_ship(angle, state.u, state.v_m)
+    return State(x=state.x, y=state.y, psi=psi, u=u, v_m=v_m, r=state.r)
 
 
-def heading_bias(state, e):
+def heading_bias(state: State, e: HeadingBias) -> State:
     """Heading shown = heading + angle; the ground velocity is logged in the axes of the heading shown."""
     return _turned(state, state.psi + e.angle, e.angle)
 
 
-def heading_bias_inverse(logged, e):
+def heading_bias_inverse(logged: State, e: HeadingBias) -> State:
     """Motion in the ship's own axes from what was logged."""
     return _turned(logged, logged.psi - e.angle, -e.angle)
 
 
-EFFECT = Effect(
+EFFECT = SensorEffect(
     kind="effects.heading-bias",
     tag="heading-bias",
     title="bias of the heading",
-    place="sensor",
     params=HeadingBias,
     function=heading_bias,
     inverse=heading_bias_inverse,

@@ -1,12 +1,13 @@
 """A term that the hull polynomial of the profile does not have, or has with the wrong coefficient."""
 
 from collections import namedtuple
+from typing import Any
 
 import numpy as np
 
 from ..physics.prime import force_unit, moment_unit
-from ..physics.quantities import Force
-from .effect import Effect, Parameter
+from ..physics.quantities import Force, Forces, State, Surroundings
+from .effect import ForceEffect, Parameter
 
 _X = ("vv", "vr", "rr", "absv", "absr", "vvvv", "vvrr", "rrrr")
 _ODD = ("v", "r", "uv", "ur", "vabsv", "rabsr", "vabsr", "rabsv", "vvv", "vvr", "vrr", "rrr")
@@ -17,7 +18,7 @@ TERMS = (*(f"X_{t}" for t in _X), *(f"{f}_{t}" for f in "YN" for t in (*_ODD, *_
 HullTerm = namedtuple("HullTerm", TERMS)  # type: ignore[misc]
 
 
-def hull_term(state, air, found, components, p, e):
+def hull_term(state: State, around: Surroundings, found: Forces, components: Any, p: Any, e: Any) -> Force:
     """Force of each coefficient times its monomial in u' = u/U, v', r', |v'|, |r'|, in the prime system."""
     u = found.flow.u / found.flow.U
     v = found.flow.v_
@@ -79,16 +80,17 @@ def _coefficient(term: str) -> Parameter:
     )
 
 
-EFFECT = Effect(
+EFFECT = ForceEffect(
     kind="effects.hull-term",
     tag="hull-term",
     title="one more term of the hull force",
-    place="force",
     params=HullTerm,
     function=hull_term,
     cites=(),
     fields={term: _coefficient(term) for term in TERMS},
     variants=tuple((term,) for term in TERMS),
+    on_demand=True,
+    one_of_many=True,
     absorbed={term: f"hull.{term}" for term in TERMS},
     sentence=lambda v: (
         "The hull force lacks " + " and ".join(f"a term {symbol(name)} of {value}" for name, value in v.items())

@@ -1,11 +1,11 @@
 """The ship lies deeper, lighter or trimmed, other than the profile has her."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
-import numpy as np
-
 from ..physics.quantities import Lanes
-from .effect import Effect, Parameter
+from ..physics.regressions.inoue1981 import LinearDerivatives, linear_derivatives
+from .effect import CoefficientsEffect, Parameter
 
 
 class Loading(NamedTuple):
@@ -16,24 +16,22 @@ class Loading(NamedTuple):
     displacement: Lanes
 
 
-def loading(values, e):
+def loading(values: Mapping[str, Lanes], e: Loading) -> dict[str, Lanes]:
     """Draught, block coefficient and linear hull derivatives of a ship loaded otherwise.
 
     d times draught, displacement with it; C_b times displacement.  The derivatives change by the ratios of the
     formulas of Inoue, Hirano & Kijima 1981 for draught and trim (by the stern, over the draught).  All else stays.
     """
-    L = values["particulars.L_pp"]
-    d = values["particulars.d"]
-    c = values["particulars.C_b"] * values["particulars.B"] / L
-    k, k_new = 2.0 * d / L, 2.0 * d * e.draught / L
-    lift, lift_new = 0.5 * np.pi * k + 1.4 * c, 0.5 * np.pi * k_new + 1.4 * c
+    L, B, d, C_b = (values[f"particulars.{name}"] for name in ("L_pp", "B", "d", "C_b"))
+    before = linear_derivatives(L, B, d, C_b, 0.0)
+    after = linear_derivatives(L, B, d * e.draught, C_b, e.trim)
     return {
         "particulars.d": d * e.draught,
-        "particulars.C_b": values["particulars.C_b"] * e.displacement,
-        "hull.Y_v": values["hull.Y_v"] * (lift_new / lift * (1.0 + 0.67 * e.trim)),
-        "hull.Y_r": values["hull.Y_r"] * (k_new / k * (1.0 + 0.80 * e.trim)),
-        "hull.N_v": values["hull.N_v"] * (k_new / k * (1.0 - 0.27 * e.trim * lift_new / k_new)),
-        "hull.N_r": values["hull.N_r"] * ((0.54 * k_new - k_new**2) / (0.54 * k - k**2) * (1.0 + 0.30 * e.trim)),
+        "particulars.C_b": C_b * e.displacement,
+        **{
+            f"hull.{name}": values[f"hull.{name}"] * (new / old)
+            for name, old, new in zip(LinearDerivatives._fields, before, after, strict=True)
+        },
     }
 
 
@@ -43,11 +41,10 @@ _WORDS = {
     "displacement": "{} times the displacement",
 }
 
-EFFECT = Effect(
+EFFECT = CoefficientsEffect(
     kind="effects.loading",
     tag="loading",
     title="draught and trim",
-    place="coefficients",
     params=Loading,
     function=loading,
     cites=("Inoue, Hirano & Kijima 1981, International Shipbuilding Progress 28, 112-125",),

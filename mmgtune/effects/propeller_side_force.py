@@ -1,9 +1,10 @@
 """Side force and yaw moment of the propeller differ from the profile's."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from ..physics.quantities import Lanes
-from .effect import Effect, Parameter
+from .effect import CoefficientsEffect, Parameter
 
 
 class PropellerSideForce(NamedTuple):
@@ -13,7 +14,7 @@ class PropellerSideForce(NamedTuple):
     moment: Lanes
 
 
-def propeller_side_force(values, e):
+def propeller_side_force(values: Mapping[str, Lanes], e: PropellerSideForce) -> dict[str, Lanes]:
     """The profile's side force polynomial times ``force``, its yaw moment polynomials times ``moment``."""
     factors = {"propeller.C_PY": e.force, "propeller.C_PN": e.moment}
     return {name: value * factors[name[:14]] for name, value in values.items() if name[:14] in factors}
@@ -31,11 +32,10 @@ def _factor(what: str) -> Parameter:
     )
 
 
-EFFECT = Effect(
+EFFECT = CoefficientsEffect(
     kind="effects.propeller-side-force",
     tag="propeller-side-force",
     title="side force of the propeller",
-    place="coefficients",
     params=PropellerSideForce,
     function=propeller_side_force,
     cites=(),

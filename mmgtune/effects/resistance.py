@@ -1,11 +1,11 @@
 """Resistance going straight differs from the model's, by a factor or in how it grows with speed."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..physics.quantities import Flow, Force, Lanes
-from .effect import Effect, Parameter
+from ..physics.quantities import Flow, Force, Forces, Lanes, State, Surroundings
+from .effect import ForceEffect, Parameter
 
 GRAVITY = 9.81
 
@@ -17,7 +17,7 @@ class Resistance(NamedTuple):
     slope: Lanes
 
 
-def resistance(state, air, found, components, p, e):
+def resistance(state: State, around: Surroundings, found: Forces, components: Any, p: Any, e: Resistance) -> Force:
     """Surge force [N] that makes the model's resistance coefficient R_0' into R_0' (factor + slope Fn).
 
     The model's own resistance is asked of its hull at the same speed without drift and yaw, so that any hull will do.
@@ -31,11 +31,10 @@ def resistance(state, air, found, components, p, e):
 
 _WORDS = {"factor": "it was {} times as large", "slope": "its coefficient grew by {} per unit of Froude number"}
 
-EFFECT = Effect(
+EFFECT = ForceEffect(
     kind="effects.resistance",
     tag="resistance",
     title="resistance",
-    place="force",
     params=Resistance,
     function=resistance,
     cites=(),
@@ -57,6 +56,7 @@ EFFECT = Effect(
         ),
     },
     variants=(("factor",), ("slope",)),
+    on_demand=True,
     absorbed={"factor": "hull.R_0"},
     sentence=lambda v: (
         "The resistance differed from the model's: "

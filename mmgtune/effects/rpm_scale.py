@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
-from ..physics.quantities import Control, Lanes
-from .effect import Effect, Parameter
+from ..physics.quantities import Lanes
+from .effect import ActuatorEffect, Parameter
 
 
 class RpmScale(NamedTuple):
@@ -12,16 +12,16 @@ class RpmScale(NamedTuple):
     factor: Lanes
 
 
-def rpm_scale(start, end, before, h, e):
+def rpm_scale(start: Lanes, end: Lanes, before: Lanes, h: Lanes, e: RpmScale) -> Lanes:
     """Revolutions = factor [-] times logged."""
-    return Control(n=end.n * e.factor, delta=end.delta)
+    return end * e.factor
 
 
-EFFECT = Effect(
+EFFECT = ActuatorEffect(
     kind="effects.rpm-scale",
     tag="rpm-scale",
     title="scale error of the revolutions",
-    place="actuator",
+    of="propeller",
     params=RpmScale,
     function=rpm_scale,
     cites=(),

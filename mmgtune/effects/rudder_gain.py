@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
-from ..physics.quantities import Control, Lanes
-from .effect import Effect, Parameter
+from ..physics.quantities import Lanes
+from .effect import ActuatorEffect, Parameter
 
 
 class RudderGain(NamedTuple):
@@ -12,16 +12,16 @@ class RudderGain(NamedTuple):
     factor: Lanes
 
 
-def rudder_gain(start, end, before, h, e):
+def rudder_gain(start: Lanes, end: Lanes, before: Lanes, h: Lanes, e: RudderGain) -> Lanes:
     """Blade angle = factor [-] times logged."""
-    return Control(n=end.n, delta=end.delta * e.factor)
+    return end * e.factor
 
 
-EFFECT = Effect(
+EFFECT = ActuatorEffect(
     kind="effects.rudder-gain",
     tag="rudder-gain",
     title="scale error of the rudder",
-    place="actuator",
+    of="rudder",
     params=RudderGain,
     function=rudder_gain,
     cites=(),

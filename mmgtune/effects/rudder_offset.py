@@ -2,9 +2,9 @@
 
 from typing import NamedTuple
 
-from ..physics.quantities import Control, Lanes
+from ..physics.quantities import Lanes
 from ..units import DEG
-from .effect import Effect, Parameter
+from .effect import ActuatorEffect, Parameter
 
 
 class RudderOffset(NamedTuple):
@@ -13,16 +13,16 @@ class RudderOffset(NamedTuple):
     angle: Lanes
 
 
-def rudder_offset(start, end, before, h, e):
+def rudder_offset(start: Lanes, end: Lanes, before: Lanes, h: Lanes, e: RudderOffset) -> Lanes:
     """Blade angle = logged + angle [rad]."""
-    return Control(n=end.n, delta=end.delta + e.angle)
+    return end + e.angle
 
 
-EFFECT = Effect(
+EFFECT = ActuatorEffect(
     kind="effects.rudder-offset",
     tag="rudder-offset",
     title="zero error of the rudder",
-    place="actuator",
+    of="rudder",
     params=RudderOffset,
     function=rudder_offset,
     cites=(),

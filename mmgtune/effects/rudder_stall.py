@@ -1,13 +1,13 @@
 """The rudder stalls: beyond an inflow angle its force grows no more."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..physics.elementary import sin, where
-from ..physics.quantities import Force, Lanes
+from ..physics.quantities import Force, Lanes, State, Surroundings
 from ..units import DEG
-from .effect import Effect, Parameter
+from .effect import ForceEffect, Parameter
 
 
 class RudderStall(NamedTuple):
@@ -16,7 +16,7 @@ class RudderStall(NamedTuple):
     angle: Lanes
 
 
-def rudder_stall(state, air, found, components, p, e):
+def rudder_stall(state: State, around: Surroundings, found: Any, components: Any, p: Any, e: RudderStall) -> Force:
     """Force that reduces the rudder's by sin(angle) / sin|alpha_R| where |alpha_R| is larger than the angle."""
     limit = np.minimum(e.angle, np.pi)
     alpha = np.abs(found.rudder.alpha_R)
@@ -26,11 +26,10 @@ def rudder_stall(state, air, found, components, p, e):
     return Force(X=lost * force.X, Y=lost * force.Y, N=lost * force.N)
 
 
-EFFECT = Effect(
+EFFECT = ForceEffect(
     kind="effects.rudder-stall",
     tag="rudder-stall",
     title="stall of the rudder",
-    place="force",
     params=RudderStall,
     function=rudder_stall,
     cites=(),
@@ -46,6 +45,7 @@ EFFECT = Effect(
             bounds_source="from 8 deg to an angle no rudder reaches",
         )
     },
+    of_parts=("rudder",),
     variants=(("angle",),),
     sentence=lambda v: f"The rudder stalled at an inflow angle of {v['angle']}",
 )

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from ..physics.quantities import Lanes, State
-from .effect import Effect, Parameter
+from .effect import Parameter, SensorEffect
 
 
 class SpeedScale(NamedTuple):
@@ -12,21 +12,20 @@ class SpeedScale(NamedTuple):
     factor: Lanes
 
 
-def speed_scale(state, e):
+def speed_scale(state: State, e: SpeedScale) -> State:
     """Surge velocity shown = factor [-] times surge velocity."""
     return State(x=state.x, y=state.y, psi=state.psi, u=state.u * e.factor, v_m=state.v_m, r=state.r)
 
 
-def speed_scale_inverse(logged, e):
+def speed_scale_inverse(logged: State, e: SpeedScale) -> State:
     """Surge velocity from the one shown."""
     return State(x=logged.x, y=logged.y, psi=logged.psi, u=logged.u / e.factor, v_m=logged.v_m, r=logged.r)
 
 
-EFFECT = Effect(
+EFFECT = SensorEffect(
     kind="effects.speed-scale",
     tag="speed-scale",
     title="scale error of the speed log",
-    place="sensor",
     params=SpeedScale,
     function=speed_scale,
     inverse=speed_scale_inverse,

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..physics.elementary import exp, where
-from ..physics.quantities import Control, Lanes
-from .effect import Effect, Parameter
+from ..physics.quantities import Lanes
+from .effect import ActuatorEffect, Parameter
 
 INSTANT = 1e-3
 """Time constant [s] up to which the blade counts as following at once."""
@@ -19,7 +19,7 @@ class SteeringLag(NamedTuple):
     rate_limit: Lanes
 
 
-def steering_lag(start, end, before, h, e):
+def steering_lag(start: Lanes, end: Lanes, before: Lanes, h: Lanes, e: SteeringLag) -> Lanes:
     """Blade angle after a step of h [s], for an order that changes linearly over the step.
 
     Exact for a first-order lag of time constant T: once transients have gone, the blade trails an order of slope a
@@ -29,21 +29,21 @@ def steering_lag(start, end, before, h, e):
     T = np.maximum(e.time_constant, INSTANT)
     step = np.maximum(h, INSTANT)
     left = where(slow, exp(-h / T), 0.0)
-    trail = where(slow, (end.delta - start.delta) / step * T, 0.0)
-    goal = end.delta - trail + (before.delta - start.delta + trail) * left
+    trail = where(slow, (end - start) / step * T, 0.0)
+    goal = end - trail + (before - start + trail) * left
     most = e.rate_limit * step
-    change = goal - before.delta
-    limited = before.delta + np.minimum(np.maximum(change, -most), most)
-    return Control(n=end.n, delta=where(np.abs(change) > most, limited, goal))
+    change = goal - before
+    limited = before + np.minimum(np.maximum(change, -most), most)
+    return where(np.abs(change) > most, limited, goal)
 
 
 _WORDS = {"time_constant": "with a time constant of {}", "rate_limit": "at {} at most"}
 
-EFFECT = Effect(
+EFFECT = ActuatorEffect(
     kind="effects.steering-lag",
     tag="steering-lag",
     title="rudder trailing its order",
-    place="actuator",
+    of="rudder",
     params=SteeringLag,
     function=steering_lag,
     cites=(),

@@ -1,12 +1,12 @@
 """Mean drift force of waves, constant in the earth frame."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..physics.elementary import cos, sin
-from ..physics.quantities import Force, Lanes
-from .effect import Effect, Parameter
+from ..physics.frame import to_ship
+from ..physics.quantities import Force, Forces, Lanes, State, Surroundings
+from .effect import ForceEffect, Parameter
 
 
 class WaveDrift(NamedTuple):
@@ -16,18 +16,16 @@ class WaveDrift(NamedTuple):
     direction: Lanes
 
 
-def wave_drift(state, air, found, components, p, e):
+def wave_drift(state: State, around: Surroundings, found: Forces, components: Any, p: Any, e: WaveDrift) -> Force:
     """Force [N] along one line over ground, at midship, without a moment (assumption: whatever the ship's heading)."""
-    angle = state.psi - e.direction
-    zero = 0.0 * angle
-    return Force(X=-e.force * cos(angle), Y=e.force * sin(angle), N=zero)
+    ahead, starboard = to_ship(state.psi - e.direction, -e.force, 0.0)
+    return Force(X=ahead, Y=starboard, N=0.0 * ahead)
 
 
-EFFECT = Effect(
+EFFECT = ForceEffect(
     kind="effects.wave-drift",
     tag="wave-drift",
     title="drift force of waves",
-    place="force",
     params=WaveDrift,
     function=wave_drift,
     cites=(),
@@ -49,5 +47,6 @@ EFFECT = Effect(
         ),
     },
     variants=(("force", "direction"),),
+    on_demand=True,
     sentence=lambda v: f"A steady force of {v['force']}, as of waves from {v['direction']}, acted on the ship",
 )

@@ -2,9 +2,9 @@
 
 from typing import NamedTuple
 
-from ..physics.elementary import cos, sin
-from ..physics.quantities import Lanes
-from .effect import Effect, Parameter
+from ..physics.frame import to_ship
+from ..physics.quantities import Lanes, State, Surroundings
+from .effect import FlowEffect, Parameter
 
 
 class WindDrift(NamedTuple):
@@ -14,16 +14,15 @@ class WindDrift(NamedTuple):
     across: Lanes
 
 
-def wind_drift(state, air, e):
+def wind_drift(state: State, around: Surroundings, e: WindDrift) -> tuple[Lanes, Lanes]:
     """Velocity of the water in the ship's axes: a share of the wind measured in the trial, turned to its right.
 
     Wind-driven surface currents are a few hundredths of the wind's speed; in a basin the water returns below.
     """
-    north = air.known * (e.along * air.north - e.across * air.east)
-    east = air.known * (e.along * air.east + e.across * air.north)
-    cos_psi = cos(state.psi)
-    sin_psi = sin(state.psi)
-    return cos_psi * north + sin_psi * east, cos_psi * east - sin_psi * north
+    north = around.wind_known * (e.along * around.wind_north - e.across * around.wind_east)
+    east = around.wind_known * (e.along * around.wind_east + e.across * around.wind_north)
+    ahead, starboard = to_ship(state.psi, north, east)
+    return ahead, starboard
 
 
 def _share(direction: str) -> Parameter:
@@ -35,16 +34,16 @@ def _share(direction: str) -> Parameter:
     )
 
 
-EFFECT = Effect(
+EFFECT = FlowEffect(
     kind="effects.wind-drift",
     tag="wind-drift",
     title="water driven by the wind",
-    place="flow",
     params=WindDrift,
     function=wind_drift,
     cites=("Wu 1983, Journal of Physical Oceanography 13, 1441-1451",),
     fields={"along": _share("along it"), "across": _share("to the right of it")},
     variants=(("along", "across"),),
+    on_demand=True,
     of_measured_wind=("along", "across"),
     sentence=lambda v: (
         f"The water moved with {v['along']} of the measured wind along it and {v['across']} to the right of it"

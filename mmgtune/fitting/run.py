@@ -79,7 +79,7 @@ def make_problem(profile: ShipProfile, trials: TrialSet, options: FitOptions, id
     scales = np.array([objective.scales[name] for name in STATES])
     return FitProblem(
         model=model,
-        cases=cases_of(chosen, objective),
+        cases=cases_of(chosen, objective, model.inputs),
         box=make_box(model, targets, options.a_r),
         backend=get_backend(options.backend),
         integrator=options.make_integrator(),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..trial.schema import COLUMNS, INPUTS, MOTION
+from ..trial.schema import COLUMNS, MAIN_INPUTS, MOTION
 
 AGAINST = ("south", "west", "port", "counterclockwise", "aft", "astern")
 """Words for a positive direction that is the opposite of the trial format's."""
@@ -60,7 +60,7 @@ QUANTITIES: dict[str, Quantity] = {
 MEASURED = tuple(MOTION)
 """Motion channels of a trial, of which u, v and r can be derived."""
 
-CONTROLS = tuple(INPUTS)
+CONTROLS = MAIN_INPUTS
 """Channels a trial must have at every sample."""
 
 MEANING = {name: column.meaning for name, column in COLUMNS.items()} | {

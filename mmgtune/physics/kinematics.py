@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from .elementary import arctan2, cos, sin
+from .elementary import arctan2
+from .frame import to_earth
 from .quantities import Flow
 
 R_PRIME_MAX = 5.0
@@ -30,6 +31,5 @@ def flow(u, v_m, r, L_pp):
 
 def pose_rate(psi, u, v_m, r):
     """Rates of north [m/s], east [m/s] and heading [rad/s] over ground (eq. 5-6)."""
-    cos_psi = cos(psi)
-    sin_psi = sin(psi)
-    return u * cos_psi - v_m * sin_psi, u * sin_psi + v_m * cos_psi, r
+    north, east = to_earth(psi, u, v_m)
+    return north, east, r

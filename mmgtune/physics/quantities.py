@@ -1,6 +1,7 @@
 """The quantities components exchange.  Every field is a float or an array of lanes, shape (n_lanes,)."""
 
-from typing import Any, NamedTuple
+from collections import namedtuple
+from typing import Any, NamedTuple, Protocol
 
 Lanes = Any
 """A float or an array of shape (n_lanes,): the equations do not care which."""
@@ -19,13 +20,6 @@ class State(NamedTuple):
 
 STATES = State._fields
 """Order of the state in every array; units m, m, rad, m/s, m/s, rad/s."""
-
-
-class Control(NamedTuple):
-    """What the machinery does (eq. 4)."""
-
-    n: Lanes  # propeller revolutions [1/s]
-    delta: Lanes  # rudder angle, to starboard [rad]
 
 
 class Force(NamedTuple):
@@ -93,31 +87,45 @@ class RudderOut(NamedTuple):
     F_N: Lanes  # normal force [N]
 
 
-class Air(NamedTuple):
-    """Wind measured on board or nearby, at one instant."""
+class Forces(Protocol):
+    """What every arrangement tells of one instant; each has more of its own."""
 
-    north: Lanes  # velocity of the air over ground, north [m/s]
-    east: Lanes  # and east [m/s]
-    known: Lanes  # 1 where it was measured, 0 where not
+    @property
+    def flow(self) -> Flow:
+        """Motion through the water."""
+
+    @property
+    def hull(self) -> Force:
+        """Force on the hull."""
+
+    @property
+    def total(self) -> Force:
+        """Force on the ship."""
 
 
-class AboveWater(NamedTuple):
-    """The part of a ship above the water, as wind sees it."""
+class Surroundings(NamedTuple):
+    """What was measured around the ship, at one instant."""
 
-    A_T: Lanes  # frontal area [m^2]
-    A_L: Lanes  # lateral area [m^2]
-    A_OD: Lanes  # lateral area of superstructure and deck cargo [m^2]
-    C: Lanes  # centroid of A_L, forward of midship [m]
-    C_BR: Lanes  # centroid of the superstructure, forward of midship [m]
-    H_BR: Lanes  # top of the bridge above the waterline [m]
-    H_C: Lanes  # centroid of A_L above the waterline [m]
-    X_0: Lanes  # harmonics of the wind force over the angle of the apparent wind [-]
-    X_1: Lanes
-    X_3: Lanes
-    X_5: Lanes
-    Y_1: Lanes
-    Y_3: Lanes
-    Y_5: Lanes
-    N_1: Lanes
-    N_2: Lanes
-    N_3: Lanes
+    wind_north: Lanes  # velocity of the air over ground, north [m/s]
+    wind_east: Lanes  # and east [m/s]
+    wind_known: Lanes  # 1 where the wind was measured, 0 where not
+
+
+UNKNOWN = Surroundings(0.0, 0.0, 0.0)
+"""Nothing measured."""
+
+HELD = ("wind_known",)
+"""Surroundings that hold over a step between samples with the value at its end; the others change linearly."""
+
+HARMONICS = ("X_0", "X_1", "X_3", "X_5", "Y_1", "Y_3", "Y_5", "N_1", "N_2", "N_3")
+"""Harmonics of the wind force over the angle of the apparent wind."""
+
+WindCoefficients = namedtuple("WindCoefficients", HARMONICS)  # type: ignore[misc]
+WindCoefficients.__doc__ = "Harmonics of the wind force, all [-]."
+
+ABOVE_WATER = ("A_T", "A_L", "A_OD", "C", "C_BR", "H_BR", "H_C")
+"""Frontal area, lateral area, lateral area of superstructure and deck cargo [m^2]; centroid of A_L and of the
+superstructure, forward of midship [m]; top of the bridge and centroid of A_L, above the waterline [m]."""
+
+AboveWater = namedtuple("AboveWater", (*ABOVE_WATER, *HARMONICS))  # type: ignore[misc]
+AboveWater.__doc__ = "The part of a ship above the water, as wind sees it: its geometry, then the harmonics."

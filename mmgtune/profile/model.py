@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ..components import Component, split_name
+from ..components import ARRANGEMENTS, Arrangement, Component, split_name
 from ..units import DIMENSIONLESS
 
 
@@ -65,6 +65,7 @@ class ShipProfile:
     """A ship: its components and coefficients, and what standard manoeuvres need.
 
     limits  what each metric of a trial may be at most, by its name, in its unit (``metrics.METRICS``)
+    arrangement  how the components are put together
     text    the TOML it was read from; tuned profiles are made from it, comments and all
     sha256  of that text
     """
@@ -81,6 +82,7 @@ class ShipProfile:
     path: Path | None = None
     text: str = ""
     sha256: str = ""
+    arrangement: Arrangement = ARRANGEMENTS[0]
 
     def coefficient(self, name: str) -> Coefficient:
         """The coefficient called 'section.symbol'; KeyError if there is none."""

@@ -16,7 +16,7 @@ from ..components import KINDS, UNTAGGED, Component, Field, find, tags
 from ..effects import Effect, effect_tags, find_effect
 from ..errors import Problem, ProfileError, closest
 from ..metrics import METRICS
-from ..physics.wind import wind_regression
+from ..physics.regressions.fujiwara1998 import wind_harmonics
 from ..resources import folder, profile_names
 from .extending import missing_for
 from .model import Approach, Coefficient, Section, ShipProfile, SteeringGear
@@ -363,7 +363,7 @@ def with_wind_coefficients(sections: dict[str, Section]) -> Section:
     section, ship = sections["above_water"], sections["particulars"].numbers
     given = {symbol: section.coefficients[symbol].value for symbol in section.coefficients}
     geometry = SimpleNamespace(**given)
-    by_regression = wind_regression(ship["particulars.L_pp"], ship["particulars.B"], geometry)._asdict()
+    by_regression = wind_harmonics(ship["particulars.L_pp"], ship["particulars.B"], geometry)._asdict()
     coefficients = {
         symbol: section.coefficients.get(symbol) or Coefficient(by_regression[symbol], source=REGRESSION)
         for symbol in section.component.fields

@@ -7,7 +7,7 @@ dataset         folders of files; split: which of them tune and which test
 unusable        what forbids using a trial
 checks          everything odd about one: motion_checks, control_checks; kinematics: what they measure
 pieces          long trials cut into windows
-wind            the wind it was measured in
+wind            the wind it was measured in; surroundings: all that was measured around the ship
 smoothing       channels without their noise
 describe        what a trial holds, in numbers
 """
@@ -18,6 +18,7 @@ from .finding import Finding
 from .model import Trial
 from .parquet import read_trial, write_trial
 from .pieces import windows
+from .surroundings import surroundings
 from .wind import has_measured_wind, measured_wind
 
 __all__ = [
@@ -29,6 +30,7 @@ __all__ = [
     "load_trials",
     "measured_wind",
     "read_trial",
+    "surroundings",
     "windows",
     "write_trial",
 ]

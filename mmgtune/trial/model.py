@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from ..arrays import FloatArray
+from ..errors import Problem, TrialError
+from ..inputs import INPUTS
 from .schema import ATTRIBUTES, CHANNELS
 
 
@@ -90,6 +93,27 @@ class Trial:
     def motion(self) -> FloatArray:
         """(n_samples, 6) x, y, psi, u, v_m, r."""
         return np.column_stack([getattr(self, name) for name in CHANNELS])
+
+    def inputs(self, names: Sequence[str]) -> FloatArray:
+        """(n_samples, n_inputs) what drove the ship, by names of ``inputs.INPUTS``.
+
+        Raises TrialError where the trial has not logged one of them, or with gaps.
+        """
+        have = self.columns
+        lacking = [name for name in names if name not in have or not np.isfinite(have[name]).all()]
+        if lacking:
+            raise TrialError(
+                *(
+                    Problem(
+                        f"trial '{self.id}' does not say '{name}' all along",
+                        str(self.path or self.id),
+                        f"the model is driven by it: {INPUTS[name].words} [{INPUTS[name].unit}]",
+                        "log it, fill its gaps, or take a profile whose arrangement does without",
+                    )
+                    for name in lacking
+                )
+            )
+        return np.column_stack([have[name] for name in names])
 
     @property
     def columns(self) -> dict[str, FloatArray]:

@@ -6,10 +6,11 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arrays import FloatArray
+from ..inputs import INPUTS
 from .finding import Finding
 from .kinematics import DEG, FITS, IN_DEGREES, IN_EARTH_AXES, position_misfits, turning
 from .model import Trial
-from .schema import INPUTS, LARGEST_YAW_RATE, MOTION
+from .schema import LARGEST_YAW_RATE, MOTION
 
 
 def motion_findings(trial: Trial, where: str) -> list[Finding]:

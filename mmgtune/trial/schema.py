@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ..inputs import INPUTS
+from ..physics.quantities import STATES
+
 SCHEMA = 1
 METADATA_KEY = b"mmgtune"
 
@@ -24,16 +27,17 @@ MOTION = {
     "v": Column("m/s", "velocity over ground in ship axes at midship, to starboard"),
     "r": Column("rad/s", "yaw rate, to starboard"),
 }
-INPUTS = {
-    "n": Column("1/s", "propeller revolutions"),
-    "delta": Column("rad", "rudder angle, to starboard: a positive angle turns the ship to starboard"),
+LOGGED = {name: Column(one.unit, one.words) for name, one in INPUTS.items()}
+MAIN_INPUTS = ("n", "delta")
+"""Revolutions and rudder angle that every trial has: manoeuvres are recognised by them."""
+
+REQUIRED = {
+    "t": Column("s", "time from the trial's start, strictly increasing"),
+    **MOTION,
+    **{name: LOGGED[name] for name in MAIN_INPUTS},
 }
-REQUIRED = {"t": Column("s", "time from the trial's start, strictly increasing"), **MOTION, **INPUTS}
 OPTIONAL = {
-    "delta_port": Column("rad", "port rudder angle"),
-    "delta_stbd": Column("rad", "starboard rudder angle"),
-    "n_bow": Column("1/s", "bow thruster revolutions"),
-    "n_stern": Column("1/s", "stern thruster revolutions"),
+    **{name: column for name, column in LOGGED.items() if name not in MAIN_INPUTS},
     "wind_speed": Column("m/s", "true wind speed"),
     "wind_dir": Column("rad", "direction the true wind comes from, clockwise from north"),
     "wind_speed_app": Column("m/s", "apparent wind speed at the ship"),
@@ -49,13 +53,13 @@ SOURCES = ("measured", "generated")
 ATTRIBUTES = {name: "v_m" if name == "v" else name for name in REQUIRED}
 """Attribute of a ``Trial`` that holds each required column: sway is ``v`` in the file, ``v_m`` in the program."""
 
-CHANNELS = tuple(ATTRIBUTES[name] for name in MOTION)
-"""Motion channels in the order of ``Trial.motion``: x, y, psi, u, v_m, r."""
+CHANNELS = STATES
+"""Motion channels in the order of ``Trial.motion``."""
 
 CHANNEL_UNITS = tuple(column.unit for column in MOTION.values())
 """Units of CHANNELS, in the same order."""
 
-RUDDERS = ("delta", "delta_port", "delta_stbd")
+RUDDERS = tuple(name for name, one in INPUTS.items() if one.role == "rudder")
 DIRECTIONS = ("wind_dir", "wind_dir_app", "wave_dir")
 
 LARGEST_RUDDER = 1.6

@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import Problem, closest
 from .kinematics import FITS, IN_DEGREES, position_misfits, turning
-from .schema import COLUMNS, INPUTS, LARGEST_RUDDER, MOTION, REQUIRED, RUDDERS
+from .schema import COLUMNS, LARGEST_RUDDER, MAIN_INPUTS, MOTION, REQUIRED, RUDDERS
 
 
 def unusable(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
@@ -85,7 +85,7 @@ def _values(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
             continue
         if infinite.any():
             say(f"'{name}' is infinite in {infinite.sum()} rows", name, _first(infinite), "", "mark gaps as NaN")
-        if name in INPUTS and missing.any():
+        if name in MAIN_INPUTS and missing.any():
             say(
                 f"'{name}' is no number in {missing.sum()} rows",
                 name,

@@ -12,7 +12,7 @@ from mmgtune.errors import ProfileError
 from mmgtune.fitting.box import make_box
 from mmgtune.model import Model
 from mmgtune.orders import TurningOrder, run_manoeuvre
-from mmgtune.physics.quantities import Air, State
+from mmgtune.physics.quantities import State, Surroundings
 from mmgtune.profile import extended_text, load_profile, missing_for, parse_profile, with_all_effects, with_effects
 from tests.backends.test_agree import zigzag_like
 from tests.runs import states, turn
@@ -54,7 +54,7 @@ def blown(model, seconds=900):
     cases = zigzag_like(model, seconds)
     t = cases.t[0]
     wind = np.column_stack([5.0 * np.cos(t / 80.0), 6.0 * np.sin(t / 50.0), np.ones(len(t))])
-    return pad([t], [cases.controls[0]], [cases.initial[0]], wind=[wind])
+    return pad([t], [cases.controls[0]], [cases.initial[0]], around=[wind])
 
 
 def test_every_effect_has_a_strong_value():
@@ -125,18 +125,16 @@ def test_current_moves_a_circle_and_leaves_the_ship_in_the_water_alone(ship):
 def test_steering_lag_is_the_exact_first_order_response(ship):
     T = 4.0
     function = find_effect("steering-lag").function
-    from mmgtune.physics.quantities import Control
-
     e = find_effect("steering-lag").params(T, np.inf)
     order = [min(max(0.0, t - 3.0), 10.0) for t in range(41)]  # a ramp
-    blade = Control(0.0, 0.0)
+    blade = 0.0
     for before, after in pairwise(order):
-        blade = function(Control(0.0, before), Control(0.0, after), blade, 1.0, e)
+        blade = function(before, after, blade, 1.0, e)
     fine, y = 1e-3, 0.0
     for k in range(40000):
         t = k * fine
         y += fine * (np.interp(t + 0.5 * fine, np.arange(41), order) - y) / T
-    assert float(blade.delta) == pytest.approx(y, abs=1e-3)
+    assert float(blade) == pytest.approx(y, abs=1e-3)
 
 
 def test_clock_offset_is_the_shift_of_the_log(ship):
@@ -174,7 +172,7 @@ def test_measured_wind_counts_where_there_is_some(ship):
     cases = turn(steady, 20.0, 200.0)
     t, controls, start = cases.t[0], cases.controls[0], cases.initial[0]
     wind = np.column_stack([np.full(len(t), -9.0 * np.cos(0.7)), np.full(len(t), -9.0 * np.sin(0.7)), np.ones(len(t))])
-    logged = pad([t], [controls], [start], wind=[wind])
+    logged = pad([t], [controls], [start], around=[wind])
     for backend in ("compiled", "numpy"):
         assert np.allclose(states(measured, logged, backend=backend), states(steady, cases, backend=backend), atol=1e-9)
     without = states(measured, cases)
@@ -184,7 +182,7 @@ def test_measured_wind_counts_where_there_is_some(ship):
 def test_water_goes_with_the_wind_and_to_its_right():
     """Wind towards north seen from a ship that heads east: the water moves to port, and ahead where it veers right."""
     effect = find_effect("wind-drift")
-    air, state = Air(5.0, 0.0, 1.0), State(0.0, 0.0, np.pi / 2.0, 0.0, 0.0, 0.0)
+    air, state = Surroundings(5.0, 0.0, 1.0), State(0.0, 0.0, np.pi / 2.0, 0.0, 0.0, 0.0)
     along = effect.function(state, air, effect.params(along=0.02, across=0.0))
     across = effect.function(state, air, effect.params(along=0.0, across=0.02))
     np.testing.assert_allclose(along, (0.0, -0.1), atol=1e-15)

@@ -6,17 +6,18 @@ import re
 import numpy as np
 import pytest
 
+from mmgtune.backends import LaneModel
 from mmgtune.effects import find_effect
 from mmgtune.effects.hull_term import TERMS
 from mmgtune.effects.memory import STIFF
 from mmgtune.model import Model
-from mmgtune.physics.mmg import forces
-from mmgtune.physics.quantities import Air, Control, Force, State
-from mmgtune.physics.wind import WindCoefficients, wind_shape
-from mmgtune.profile import load_profile
+from mmgtune.physics.arrangements.single_propeller_single_rudder import Control, forces
+from mmgtune.physics.quantities import Force, State, Surroundings, WindCoefficients
+from mmgtune.physics.wind import wind_shape
+from mmgtune.profile import load_profile, with_effects
 
 L, D, RHO = 83.0, 3.8, 1025.0
-STILL = Air(0.0, 0.0, 0.0)
+STILL = Surroundings(0.0, 0.0, 0.0)
 STEERED = Control(1.7, 0.3)
 MOVING = State(x=120.0, y=-40.0, psi=0.7, u=2.5, v_m=-0.4, r=0.012)
 
@@ -85,7 +86,7 @@ def test_wind(added, suzaku, come_from):
     expected = bearing_forces(9.0, come_from, suzaku.profile)
     steady, _ = added("wind", {"speed": 9.0, "direction": come_from, "measured": 1.0, **shape})
     np.testing.assert_allclose(steady, expected, rtol=1e-3)
-    flow = Air(-9.0 * math.cos(come_from), -9.0 * math.sin(come_from), 1.0)
+    flow = Surroundings(-9.0 * math.cos(come_from), -9.0 * math.sin(come_from), 1.0)
     measured, _ = added("wind", {"speed": 3.0, "direction": 0.0, "measured": 1.0, **shape}, air=flow)
     np.testing.assert_allclose(measured, steady, rtol=1e-9)
     # Wind from starboard pushes to port.
@@ -148,7 +149,7 @@ def test_flow_effects_are_velocities_over_ground_seen_from_the_ship():
     speed = math.hypot(north, east)
     assert (u, v) == pytest.approx((speed * math.cos(towards), speed * math.sin(towards)))
     # A share of the wind along it and to its right.
-    effect, air = find_effect("wind-drift"), Air(-4.0, 3.0, 1.0)
+    effect, air = find_effect("wind-drift"), Surroundings(-4.0, 3.0, 1.0)
     u, v = effect.function(MOVING, air, effect.params(0.03, 0.01))
     wind = complex(air.north, air.east)
     drift = wind * complex(0.03, 0.01) * np.exp(-1j * MOVING.psi)
@@ -204,8 +205,9 @@ def test_sensors_with_one_number(tag, value, seen):
     ],
 )
 def test_actuators_with_one_number(tag, value, left):
-    effect = find_effect(tag)
-    assert effect.function(None, Control(1.7, 0.3), None, 1.0, effect.params(value)) == pytest.approx(left)
+    model = Model(with_effects(load_profile("suzaku"), {tag: dict.fromkeys(find_effect(tag).fields, value)}, "test"))
+    ship = LaneModel(model, model.matrix())
+    assert ship.moved([], Control(1.7, 0.3), None, 1.0)[-1] == pytest.approx(left)
 
 
 @pytest.mark.parametrize(("start", "end", "before"), [(0.0, 0.3, -0.1), (0.2, -0.1, 0.25)])
@@ -216,14 +218,10 @@ def test_steering_lag(start, end, before):
     for k in range(n):
         order = start + (end - start) * (k + 0.5) / n
         blade += h / n * (order - blade) / T
-    given = effect.function(Control(1.0, start), Control(1.5, end), Control(1.0, before), h, effect.params(T, math.inf))
-    assert given == pytest.approx(Control(1.5, blade), abs=1e-5)
-    limited = effect.function(Control(1.0, start), Control(1.5, end), Control(1.0, before), h, effect.params(0.0, 0.04))
-    assert limited.delta == pytest.approx(before + math.copysign(0.04, end - before))
-    at_once = effect.function(
-        Control(1.0, start), Control(1.5, end), Control(1.0, before), h, effect.params(0.0, math.inf)
-    )
-    assert at_once.delta == pytest.approx(end)
+    assert effect.function(start, end, before, h, effect.params(T, math.inf)) == pytest.approx(blade, abs=1e-5)
+    limited = effect.function(start, end, before, h, effect.params(0.0, 0.04))
+    assert limited == pytest.approx(before + math.copysign(0.04, end - before))
+    assert effect.function(start, end, before, h, effect.params(0.0, math.inf)) == pytest.approx(end)
 
 
 @pytest.fixture(scope="module")

@@ -7,8 +7,8 @@ import pytest
 
 from mmgtune.effects import effect_tags, effects
 from mmgtune.model import Model
-from mmgtune.physics.mmg import derivatives
-from mmgtune.physics.quantities import Control, State
+from mmgtune.physics.arrangements.single_propeller_single_rudder import Control, derivatives
+from mmgtune.physics.quantities import State
 from mmgtune.profile import load_profile
 from mmgtune.trial import load_trials
 

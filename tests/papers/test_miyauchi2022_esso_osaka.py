@@ -5,10 +5,10 @@ import pytest
 from scipy.integrate import quad
 
 from mmgtune.backends import Integrator, pad
+from mmgtune.physics.arrangements.single_propeller_single_rudder import Control, forces
 from mmgtune.physics.hull.unified import cross_flow
 from mmgtune.physics.kinematics import flow
-from mmgtune.physics.mmg import forces
-from mmgtune.physics.quantities import Control, State
+from mmgtune.physics.quantities import State
 from tests.runs import states, turn
 
 

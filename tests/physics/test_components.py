@@ -5,10 +5,10 @@ import pytest
 
 from mmgtune.components import COMPONENTS
 from mmgtune.model import Model
+from mmgtune.physics.arrangements.single_propeller_single_rudder import Control, forces
 from mmgtune.physics.kinematics import R_PRIME_MAX, flow
-from mmgtune.physics.mmg import forces
 from mmgtune.physics.propeller.four_quadrant import four_quadrant_propeller
-from mmgtune.physics.quantities import Control, State, WakeOut
+from mmgtune.physics.quantities import State, WakeOut
 from mmgtune.physics.rigid_body import accelerations
 from mmgtune.physics.rudder.flapped import flap_angle
 from mmgtune.profile import load_profile

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from mmgtune.physics.mmg import forces
-from mmgtune.physics.quantities import Control, State
+from mmgtune.physics.arrangements.single_propeller_single_rudder import Control, forces
+from mmgtune.physics.quantities import State
 
 RHO, L, D, PITCH, H_R = 998.0, 3.0, 0.084, 0.7151, 0.1279
 K = (0.3278, -0.3323, -0.156)

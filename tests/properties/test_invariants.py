@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from mmgtune.backends import Integrator, get_backend, pad
 from mmgtune.model import Model
 from mmgtune.physics import prime
-from mmgtune.physics.mmg import derivatives, forces
-from mmgtune.physics.quantities import Control, State
+from mmgtune.physics.arrangements.single_propeller_single_rudder import Control, derivatives, forces
+from mmgtune.physics.quantities import State
 from mmgtune.profile import load_profile
 from tests.runs import states, turn
 

@@ -10,9 +10,8 @@ from scipy.interpolate import CubicSpline
 
 from ...arrays import FloatArray
 from ...model import Model
-from ...physics.mmg import Breakdown
 from ...physics.prime import force_unit, moment_unit
-from ...physics.quantities import Ship
+from ...physics.quantities import Forces, Ship
 from ...physics.rigid_body import accelerations
 from ...simulation import breakdown
 from ...trial import Trial
@@ -217,9 +216,9 @@ def _ship(model: Model) -> Ship:
     return found
 
 
-def _velocities(found: Breakdown) -> FloatArray:
+def _velocities(found: Forces) -> FloatArray:
     return np.column_stack([found.flow.u, found.flow.v_m, found.flow.r])
 
 
-def _total(found: Breakdown) -> FloatArray:
+def _total(found: Forces) -> FloatArray:
     return np.column_stack([found.total.X, found.total.Y, found.total.N])

@@ -10,7 +10,7 @@ import numpy as np
 from ...arrays import BoolArray, FloatArray
 from ...backends import Integrator, get_backend, pad
 from ...model import Model
-from ...trial import Trial, measured_wind
+from ...trial import Trial, surroundings
 from .smoothing import Smoothed, smooth
 
 
@@ -89,13 +89,13 @@ def short_horizon(
     windows = [(i, part) for i, motion in enumerate(motions) for part in _windows(motion, window)]
     if not windows:
         raise ValueError(f"no window of {window:g} s holds two samples with a measured state")
-    controls = [np.column_stack([trial.n, trial.delta]) for trial in trials]
-    wind = [measured_wind(trial) for trial in trials]
+    controls = [trial.inputs(model.inputs) for trial in trials]
+    around = [surroundings(trial) for trial in trials]
     cases = pad(
         [trials[i].t[part] for i, part in windows],
         [controls[i][part] for i, part in windows],
         [motions[i].states[part.start] for i, part in windows],
-        wind=[wind[i][part] for i, part in windows],
+        around=[around[i][part] for i, part in windows],
     )
     result = get_backend(backend).run(model, model.matrix(), cases, integrator=integrator, keep_states=True)
     assert result.states is not None  # asked for

@@ -8,9 +8,9 @@ import numpy as np
 
 from mmgtune.backends.cases import FloatArray
 from mmgtune.model import Model
+from mmgtune.physics.arrangements.single_propeller_single_rudder import Control, forces
 from mmgtune.physics.kinematics import pose_rate
-from mmgtune.physics.mmg import forces
-from mmgtune.physics.quantities import Control, Force, State
+from mmgtune.physics.quantities import Force, State
 from mmgtune.physics.rigid_body import accelerations
 from mmgtune.trial import Trial
 
