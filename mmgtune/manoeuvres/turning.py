@@ -14,6 +14,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import Problem, TrialError
+from ..physics.frame import to_ship
 from ..units import DEG
 from .track import (
     Direction,
@@ -144,7 +145,8 @@ def _from_order(track: Track, order: Execute, L_pp: float) -> tuple[FloatArray, 
     """Distances (n_samples,) from the position at the order, along its heading and across to the turn's side [m]."""
     psi_0 = heading_at(track, order.index, L_pp)
     x, y = track.x - track.x[order.index], track.y - track.y[order.index]
-    return x * np.cos(psi_0) + y * np.sin(psi_0), order.side * (y * np.cos(psi_0) - x * np.sin(psi_0))
+    along, across = to_ship(psi_0, x, y)
+    return along, order.side * across
 
 
 def _largest(distance: FloatArray, begin: float | None, end: float | None, last: int) -> float | None:
@@ -174,9 +176,10 @@ def _uniform_drift(track: Track, order: Execute, L_pp: float) -> tuple[float, fl
 def _through_water(track: Track, order: Execute, drift: tuple[float, float, int]) -> Track:
     """The record less a uniform drift, unchanged in position at the order."""
     north, east, _ = drift
-    since, cos, sin = track.t - track.t[order.index], np.cos(track.psi), np.sin(track.psi)
-    u, v_m = track.u - north * cos - east * sin, track.v_m + north * sin - east * cos
-    return replace(track, x=track.x - north * since, y=track.y - east * since, u=u, v_m=v_m)
+    since = track.t - track.t[order.index]
+    ahead, abeam = to_ship(track.psi, north, east)
+    x, y = track.x - north * since, track.y - east * since
+    return replace(track, x=x, y=y, u=track.u - ahead, v_m=track.v_m - abeam)
 
 
 def _steady(track: Track, order: Execute, phi: FloatArray) -> dict[str, Any]:

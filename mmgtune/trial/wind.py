@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
+from ..physics.frame import to_earth
 from .model import Trial
 
 WIND_PAIRS = (("wind_speed", "wind_dir"), ("wind_speed_app", "wind_dir_app"))
@@ -23,8 +24,7 @@ def measured_wind(trial: Trial) -> FloatArray:
     elif "wind_speed_app" in extra and "wind_dir_app" in extra:
         ahead = trial.u - extra["wind_speed_app"] * np.cos(extra["wind_dir_app"])
         abeam = trial.v_m - extra["wind_speed_app"] * np.sin(extra["wind_dir_app"])
-        north = ahead * np.cos(trial.psi) - abeam * np.sin(trial.psi)
-        east = ahead * np.sin(trial.psi) + abeam * np.cos(trial.psi)
+        north, east = to_earth(trial.psi, ahead, abeam)
     else:
         return np.zeros((trial.n_samples, 3))
     whole = np.isfinite(north) & np.isfinite(east)
