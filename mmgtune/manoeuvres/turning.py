@@ -61,7 +61,7 @@ class TurningIndices:
     time_180: Seconds
     time_270: Seconds
     time_360: Seconds
-    speed_ratio_90: float | None  # speed at 90 deg over approach speed [-]
+    speed_ratio_90: float | None  # speed at 90 deg over approach speed [-]; None from rest
     speed_ratio_180: float | None
     speed_ratio_360: float | None
     initial_turning_distance: Metres  # travelled from the order to 10 deg change of heading
@@ -107,6 +107,9 @@ def turning_indices(track: Track, L_pp: float, *, subtract_drift: bool = False) 
     def reached(values: FloatArray, deg: int) -> float | None:
         return None if (position := at[deg]) is None else value_at(values, position)
 
+    def speed_ratio(deg: int) -> float | None:
+        return None if approach == 0.0 or (U := reached(speed, deg)) is None else U / approach
+
     return TurningIndices(
         direction=order.direction,
         L_pp=L_pp,
@@ -123,9 +126,9 @@ def turning_indices(track: Track, L_pp: float, *, subtract_drift: bool = False) 
         time_180=reached(t - t[e], 180),
         time_270=reached(t - t[e], 270),
         time_360=reached(t - t[e], 360),
-        speed_ratio_90=reached(speed / approach, 90),
-        speed_ratio_180=reached(speed / approach, 180),
-        speed_ratio_360=reached(speed / approach, 360),
+        speed_ratio_90=speed_ratio(90),
+        speed_ratio_180=speed_ratio(180),
+        speed_ratio_360=speed_ratio(360),
         initial_turning_distance=None if at[10] is None else integral(t, speed, e, at[10]),
         **_steady(track, order, phi),
         residual_rate=_residual_rate(track, order, L_pp),

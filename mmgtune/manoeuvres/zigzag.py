@@ -187,7 +187,7 @@ def _check_angle(track: Track, counter_orders: list[Execute], counter: list[floa
     if not by_side:
         return None
     rates = [abs(turn_rate_at(track, order.index, L_pp)) for order in counter_orders]
-    reaction = REACTION * L_pp / approach_speed(track, counter_orders[0].index, L_pp)
+    reaction = REACTION * L_pp / max(approach_speed(track, counter_orders[0].index, L_pp), 1e-6)
     delay = max(reaction, float(np.median(np.diff(track.t))))
     return usual_angle(float(np.mean(by_side)), late=delay * float(np.median(rates)))
 
