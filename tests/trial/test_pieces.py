@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mmgtune.objective import cases_of, make_objective
+from mmgtune.objective import make_objective
 from mmgtune.trial import TrialSet, windows
 from tests.trial.made import made, with_value
 
@@ -42,7 +42,6 @@ def test_every_window_has_a_sample_that_counts():
     assert pieces[-1].duration == pytest.approx(31.1)
     objective = make_objective(10.0, every=2.0)
     assert all(objective.weight(piece).any() for piece in pieces)
-    assert len(cases_of(pieces, objective).t) > 0
 
 
 def test_a_window_lasts_until_a_sample_counts():
