@@ -61,9 +61,7 @@ def _versions() -> list[Finding]:
 
 def _cores() -> Finding:
     here = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    text = f"{here} of {os.cpu_count()}"
-    limit = os.environ.get("NUMBA_NUM_THREADS")
-    return Finding("cores", f"{text}, NUMBA_NUM_THREADS={limit}" if limit else text)
+    return Finding("cores", f"{here} of {os.cpu_count()}")
 
 
 def _backends() -> list[Finding]:

@@ -11,6 +11,7 @@ from .arrays import FloatArray
 from .backends import STATES, Cases, pad
 from .errors import OptionError, Problem, closest
 from .trial import Trial, surroundings
+from .trial.pieces import counting
 
 PAPER_CHANNELS = ("x", "y", "psi")
 """Position and heading: the channels of Suyama et al. 2023, eq. 39-40."""
@@ -55,8 +56,7 @@ class Objective:
             outside = (trial.t < self.window[0]) | (trial.t > self.window[1])
             weight[outside] = 0.0
         if self.every is not None:
-            count = np.floor((trial.t - trial.t[0]) / self.every + 1e-6)
-            weight[1:][np.diff(count) < 1.0] = 0.0
+            weight[~counting(trial.t, self.every)] = 0.0
         return weight
 
 

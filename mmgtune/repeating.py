@@ -25,7 +25,7 @@ from .manoeuvres import (
 from .model import Model
 from .orders import Helmsman, TurningOrder, ZigzagOrder, run_manoeuvre
 from .profile import ShipProfile
-from .simulation import Motion, track_of
+from .simulation import Motion, track_if_whole
 from .trial import Trial
 from .units import DEG
 
@@ -84,11 +84,9 @@ def repeat(ship: ShipProfile | Model, trials: Sequence[Trial], *, theta: FloatAr
     repeats: dict[str, _Repeat] = {"turning": _turn, "zigzag": _zigzag}
     found = []
     for trial in trials:
-        if np.isnan(trial.motion).any():
-            continue
-        track = track_of(trial)
-        kind = manoeuvre_kind(track)
-        if kind in repeats:
+        track = track_if_whole(trial)
+        kind = "other" if track is None else manoeuvre_kind(track)
+        if track is not None and kind in repeats:
             order, measured, simulated = repeats[kind](model, track, theta)
             found.append(Repeated(trial.id, kind, order, measured.to_dict(), simulated))
     return found

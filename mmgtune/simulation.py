@@ -10,6 +10,7 @@ import numpy as np
 
 from .arrays import FloatArray
 from .backends import STATES, Integrator, LaneModel, get_backend, pad
+from .errors import TrialError
 from .inputs import INPUTS, Role
 from .manoeuvres import Track, manoeuvre_kind
 from .manoeuvres.summary import indices_of
@@ -105,14 +106,23 @@ def breakdown(ship: ShipProfile | Model, states: FloatArray, controls: FloatArra
 
 
 def track_of(trial: Trial) -> Track:
-    """A measured trial as indices of manoeuvres are computed from it.  Raises ValueError where it has gaps."""
+    """A measured trial as indices of manoeuvres are computed from it.  Raises TrialError where it has gaps."""
     columns = dict(zip(STATES, trial.motion.T, strict=True))
     return Track(t=trial.t, n=trial.n, delta=trial.delta, **columns)
 
 
+def track_if_whole(trial: Trial) -> Track | None:
+    """The same, None where there is no record to read indices from: gaps, a heading that jumps, too few samples."""
+    try:
+        return track_of(trial)
+    except TrialError:
+        return None
+
+
 def trial_indices(trial: Trial, L_pp: float) -> dict[str, Any]:
-    """Manoeuvring indices of a measured trial; empty where gaps forbid them.  L_pp [m]."""
-    return {} if np.isnan(trial.motion).any() else indices_of(track_of(trial), L_pp)
+    """Manoeuvring indices of a measured trial; empty where ``track_if_whole`` finds no record.  L_pp [m]."""
+    track = track_if_whole(trial)
+    return {} if track is None else indices_of(track, L_pp)
 
 
 def trial_measures(trial: Trial, motion: Motion) -> dict[str, float]:

@@ -8,8 +8,9 @@ import pytest
 
 from mmgtune.orders import TurningOrder, ZigzagOrder, run_manoeuvre
 from mmgtune.repeating import Repeated, repeat, summary
-from mmgtune.simulation import as_trial
+from mmgtune.simulation import as_trial, trial_indices
 from mmgtune.trial import write_trial
+from mmgtune.trial.schema import ATTRIBUTES
 from tests.command import run
 
 RAD = math.radians(1.0)
@@ -47,7 +48,11 @@ def test_only_standard_manoeuvres_without_gaps(suzaku, sailed):
     x = np.array(turn.x)
     x[40] = np.nan
     straight = replace(zigzag, delta=np.zeros(zigzag.n_samples))
-    assert repeat(suzaku, [replace(turn, x=x), straight]) == []
+    wrapped = replace(turn, psi=(turn.psi + np.pi) % (2.0 * np.pi) - np.pi)
+    brief = replace(turn, **{name: getattr(turn, name)[:2] for name in ATTRIBUTES.values()})
+    assert repeat(suzaku, [replace(turn, x=x), straight, wrapped, brief]) == []
+    for trial in (replace(turn, x=x), straight, wrapped, brief):
+        assert trial_indices(trial, suzaku.L_pp) == {}
 
 
 def test_a_model_that_goes_astray_has_no_indices(suzaku, sailed):

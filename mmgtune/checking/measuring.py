@@ -17,7 +17,7 @@ from ..measures import UNITS, Reference, distance_measures, reference_of
 from ..metrics import METRICS, RELATIVE
 from ..model import Model
 from ..objective import cases_of, default_scales, make_objective
-from ..simulation import track_of
+from ..simulation import track_if_whole
 from ..trial import Trial
 from ..units import DEG
 
@@ -77,9 +77,7 @@ class _Measured:
         self.reference: Reference | None = None
         with contextlib.suppress(ValueError):  # a ship at rest, or never a complete sample
             self.reference = reference_of(trial.motion)
-        self.track: Track | None = None
-        if np.isfinite(trial.motion).all():
-            self.track = track_of(trial)
+        self.track = track_if_whole(trial)
         self.kind = manoeuvre_kind(self.track) if self.track else "other"
         self.nominal: tuple[float, float | None] = (0.0, None)
         self.indices: Values = {}

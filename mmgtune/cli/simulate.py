@@ -158,12 +158,13 @@ def _described(ship: ShipProfile, motion: Motion, trial: Trial | None) -> dict[s
 
     V = ship.approach.speed if ship.approach else float(motion.states[0, 3])
     track = None if motion.diverged else motion.track()
+    measured = trial_indices(trial, ship.L_pp) if trial is not None else None
     return {
         "id": motion.id,
         "status": "diverged" if motion.diverged else "ok",
         "duration_s": float(motion.t[-1]),
-        "indices": indices_of(track, ship.L_pp) if track else {},
-        "measured": trial_indices(trial, ship.L_pp) if trial is not None else None,
+        "indices": indices_of(track, ship.L_pp, measured) if track else {},
+        "measured": measured,
         "measures": trial_measures(trial, motion) if trial is not None and not motion.diverged else None,
         "criteria": [criterion.to_dict() for criterion in criteria_of(track, ship.L_pp, V)] if track else [],
     }

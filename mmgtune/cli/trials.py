@@ -99,8 +99,8 @@ def inspect(
         for channel, span in row["ranges"].items():
             print(f"  {channel:<8}{span['min']:>12.4g} .. {span['max']:<12.4g} {span['unit']}")
         for index, value in row["indices"].items():
-            if isinstance(value, float):
-                print(f"  {index:<34}{value:.4g}")
+            if isinstance(value, float | str):
+                print(f"  {index:<34}{value if isinstance(value, str) else f'{value:.4g}'}")
         if row["note"]:
             print(f"  {row['note']}")
 

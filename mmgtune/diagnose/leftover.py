@@ -15,6 +15,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..backends import STATES
+from ..physics.frame import to_earth
 from ..trial import Trial
 from .evidence import share_explained
 from .linear import linearise
@@ -138,10 +139,10 @@ def _alike(trials: Sequence[Trial], residuals: Sequence[FloatArray], window: flo
     for trial, r in zip(trials, residuals, strict=True):
         dt = np.diff(trial.t)
         n = max(2, round(window / float(np.median(dt))))
-        cos, sin = np.cos(trial.psi), np.sin(trial.psi)
         e_psi = r[:, 2]
-        north = r[:, 3] * cos - r[:, 4] * sin - e_psi * (trial.u * sin + trial.v_m * cos)
-        east = r[:, 3] * sin + r[:, 4] * cos + e_psi * (trial.u * cos - trial.v_m * sin)
+        way_north, way_east = to_earth(trial.psi, trial.u, trial.v_m)
+        north, east = to_earth(trial.psi, r[:, 3], r[:, 4])
+        north, east = north - e_psi * way_east, east + e_psi * way_north
         for pair, level, rate in (
             (PAIRS[0], e_psi, r[:, 5]),
             (PAIRS[1], r[:, 0], north),

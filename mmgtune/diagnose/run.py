@@ -17,7 +17,7 @@ from ..fitting.run import Hooks, in_pieces, make_provenance
 from ..model import Model
 from ..profile import ShipProfile, with_all_effects
 from ..threads import blas_on_one_thread
-from ..trial import Trial, TrialSet
+from ..trial import Trial, TrialSet, has_measured_wind
 from ..trial.smoothing import FEWEST
 from .evidence import explain_forces, noise_share, residual_forces, short_horizon
 from .gain import J_of, held_out
@@ -60,7 +60,7 @@ def diagnose(
         Model(with_all_effects(profile)),
         options.targets or profile.targets,
         options.effects,
-        any("wind_speed" in trial.extra or "wind_speed_app" in trial.extra for trial in seen),
+        any(has_measured_wind(trial) for trial in seen),
         [f"{effect.kind}.{name}" for effect in own.effects for name in effect.parameters],
     )
     bench = make_workbench(profile, seen, options, [name for h in known for name in h.names])

@@ -83,7 +83,7 @@ def compare(
         L_pp = problem.model.L_pp
         indices = {"measured": trial_indices(trial, L_pp)}
         for which, motion in motions.items():
-            indices[which] = {} if motion.diverged else indices_of(motion.track(), L_pp)
+            indices[which] = {} if motion.diverged else indices_of(motion.track(), L_pp, indices["measured"])
         J = {"before": float(result.cost[i, 0]), "after": float(result.cost[i, 1])}
         compared.append(TrialComparison(trial, roles[trial.id], J, motions, rms, indices))
     return compared

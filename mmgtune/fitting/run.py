@@ -58,7 +58,7 @@ def in_pieces(trials: TrialSet, options: FitOptions) -> TrialSet:
     """The trials cut into windows where the options ask for that; unchanged where they are windows already."""
     if options.restart is None or any(trial.part_of for trial in trials.trials.values()):
         return trials
-    return trials.in_windows(options.restart)
+    return trials.in_windows(options.restart, options.every)
 
 
 def objective_of(model: Model, trials: TrialSet, options: FitOptions) -> Objective:

@@ -8,9 +8,10 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import LogError, Problem
+from ..physics.frame import to_ship
 from ..trial.kinematics import DEG, FITS, IN_EARTH_AXES, position_misfits, turning
 from .mapping import LogMap
-from .motion import in_ship_axes, moved
+from .motion import moved
 
 TO_PORT = "with v positive to port"
 CLEAR = 4.0
@@ -160,7 +161,7 @@ def _axes(
     stated = log_map.sources["v"].positive
     point = log_map.point or "midship"
     if log_map.axes == "earth":
-        columns["u"], columns["v"] = in_ship_axes(columns["u"], columns["v"], columns["psi"])
+        columns["u"], columns["v"] = to_ship(columns["psi"], columns["u"], columns["v"])
         return ["velocities: earth axes, as the map says", *moved(columns, log_map, point)]
     if log_map.axes == "ship" and stated is not None:
         return ["velocities: ship axes, as the map says", *moved(columns, log_map, point)]
@@ -191,7 +192,7 @@ def _axes(
         return []
     best = known[0][1]
     if best == "earth axes":
-        columns["u"], columns["v"] = in_ship_axes(columns["u"], columns["v"], columns["psi"])
+        columns["u"], columns["v"] = to_ship(columns["psi"], columns["u"], columns["v"])
     elif best.endswith("port"):
         columns["v"] = -columns["v"]
     return [

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import LogError, Problem
+from ..physics.frame import to_ship
 from .mapping import LogMap
 from .record import Record, Series
 
@@ -89,9 +90,9 @@ def not_mirrored(columns: dict[str, FloatArray], where: str) -> None:
     way = float(np.sum(np.hypot(x[known], y[known])))
     if known.sum() < 10 or way == 0.0:
         return
-    cos, sin = np.cos(psi[known]), np.sin(psi[known])
-    along = float(np.sum(x[known] * cos + y[known] * sin)) / way
-    mirrored = float(np.sum(y[known] * cos + x[known] * sin)) / way
+    along, mirrored = (
+        float(np.sum(to_ship(psi[known], north[known], east[known])[0])) / way for north, east in ((x, y), (y, x))
+    )
     if along < 0.5 and mirrored > 0.8:
         why = (
             f"{100 * along:.0f} % of the way is made good along the heading, {100 * mirrored:.0f} % with them exchanged"

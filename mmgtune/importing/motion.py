@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
+from ..physics.frame import to_earth, to_ship
 from ..trial.kinematics import white_noise
 from ..trial.smoothing import FEWEST, smoothed, time_scale
 from .mapping import LogMap
@@ -21,9 +22,9 @@ def at_midship(columns: dict[str, FloatArray], log_map: LogMap) -> list[str]:
     if log_map.antenna is None:
         return []
     ahead, abeam = log_map.antenna
-    cos, sin = np.cos(columns["psi"]), np.sin(columns["psi"])
-    columns["x"] = columns["x"] - (ahead * cos - abeam * sin)
-    columns["y"] = columns["y"] - (ahead * sin + abeam * cos)
+    north, east = to_earth(columns["psi"], ahead, abeam)
+    columns["x"] = columns["x"] - north
+    columns["y"] = columns["y"] - east
     return [f"positions moved from the antenna, {ahead:g} m forward and {abeam:g} m to starboard of midship"]
 
 
@@ -46,19 +47,9 @@ def over_ground(columns: dict[str, FloatArray], log_map: LogMap) -> list[str]:
     north, east = columns.pop("north"), columns.pop("east")
     if "u" in columns and "v" in columns:
         return []
-    columns["u"], columns["v"] = in_ship_axes(north, east, columns["psi"])
+    columns["u"], columns["v"] = to_ship(columns["psi"], north, east)
     said = ["u and v are speed over ground along the course, turned by the heading"]
     return said + moved(columns, log_map, log_map.point or "antenna")
-
-
-def in_ship_axes(north: FloatArray, east: FloatArray, psi: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Velocity ahead and to starboard from that north and east, (n_samples,) [m/s]."""
-    return north * np.cos(psi) + east * np.sin(psi), east * np.cos(psi) - north * np.sin(psi)
-
-
-def over_earth(u: FloatArray, v: FloatArray, psi: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Velocity north and east from that ahead and to starboard, (n_samples,) [m/s]."""
-    return u * np.cos(psi) - v * np.sin(psi), u * np.sin(psi) + v * np.cos(psi)
 
 
 def moved(columns: dict[str, FloatArray], log_map: LogMap, point: str) -> list[str]:
@@ -72,7 +63,7 @@ def moved(columns: dict[str, FloatArray], log_map: LogMap, point: str) -> list[s
     ahead, abeam = lever
     said = []
     if log_map.shifted:
-        back = in_ship_axes(-abeam * columns["r"], ahead * columns["r"], columns["psi"])
+        back = to_ship(columns["psi"], -abeam * columns["r"], ahead * columns["r"])
         columns["u"], columns["v"] = columns["u"] + back[0], columns["v"] + back[1]
         said.append("velocities had been moved to midship along earth axes instead of the ship's: that was undone")
     columns["u"] = columns["u"] + abeam * columns["r"]
@@ -88,7 +79,7 @@ def with_velocities(t: FloatArray, columns: dict[str, FloatArray]) -> list[str]:
         return []
     (north, east), tau = _rates(t, [columns["x"], columns["y"]])
     known = np.isfinite(columns["x"]) & np.isfinite(columns["y"])
-    found = dict(zip(("u", "v"), in_ship_axes(north, east, columns["psi"]), strict=True))
+    found = dict(zip(("u", "v"), to_ship(columns["psi"], north, east), strict=True))
     for name in missing:
         columns[name] = np.where(known, found[name], np.nan)
     verb = "was" if len(missing) == 1 else "were"

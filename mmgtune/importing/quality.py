@@ -11,13 +11,13 @@ from scipy.integrate import cumulative_trapezoid
 
 from ..arrays import FloatArray
 from ..errors import LogError, Problem
+from ..physics.frame import to_earth
 from ..trial import Trial, check_trial
 from ..trial.control_checks import fastest_change
 from ..trial.kinematics import DEG, IN_EARTH_AXES, position_misfits, turning
 from .conventions import rudder_evidence
 from .gridding import Grid
 from .mapping import LogMap
-from .motion import over_earth
 from .quantities import MEASURED
 from .record import Record
 
@@ -192,7 +192,7 @@ def _residuals(trial: Trial, record: Record, began: float, log_map: LogMap) -> d
     if known.mean() < 0.99:
         return found
     psi, u, v = (np.interp(trial.t, trial.t[known], values[known]) for values in (psi, u, v))
-    ways = over_earth(u, v, psi)
+    ways = to_earth(psi, u, v)
     for name, way in zip(("x", "y"), ways, strict=True):
         run = cumulative_trapezoid(way, trial.t, initial=0.0)
         series = record.series[name]

@@ -4,6 +4,7 @@ The same functions read measured and simulated records, so that the two differ b
 """
 
 from .criteria import Criterion, check_turning, check_zigzag, first_overshoot_limit, second_overshoot_limit
+from .summary import criteria_of, indices_of
 from .track import Execute, Track, find_execute, find_executes
 from .turning import TurningIndices, turning_indices
 from .zigzag import ZigzagIndices, manoeuvre_kind, zigzag_indices
@@ -16,9 +17,11 @@ __all__ = [
     "ZigzagIndices",
     "check_turning",
     "check_zigzag",
+    "criteria_of",
     "find_execute",
     "find_executes",
     "first_overshoot_limit",
+    "indices_of",
     "manoeuvre_kind",
     "second_overshoot_limit",
     "turning_indices",

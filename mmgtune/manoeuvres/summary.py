@@ -2,25 +2,35 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
+from ..units import DEG
 from .criteria import Criterion, check_turning, check_zigzag
 from .track import Track
 from .turning import turning_indices
 from .zigzag import manoeuvre_kind, zigzag_indices
 
 
-def indices_of(track: Track, L_pp: float) -> dict[str, Any]:
+def indices_of(track: Track, L_pp: float, measured: Mapping[str, Any] | None = None) -> dict[str, Any]:
     """Indices with units in their names; empty where the record shows neither a turn nor a zigzag.
 
-    L_pp: length between perpendiculars [m].
+    L_pp      length between perpendiculars [m]
+    measured  indices of the run that the record is a simulation of: a zigzag keeps the rudder and check angle of that
+              one, because a helmsman who follows another heading does not reverse at the check heading
     """
     kind = manoeuvre_kind(track)
     if kind == "turning":
         return turning_indices(track, L_pp).to_dict()
     if kind == "zigzag":
-        return zigzag_indices(track, L_pp).to_dict()
+        return zigzag_indices(track, L_pp, _angles(measured or {})).to_dict()
     return {}
+
+
+def _angles(indices: Mapping[str, Any]) -> tuple[float, float] | None:
+    """Rudder and check angle [rad] of a zigzag's indices; None of another manoeuvre's, or where one is not known."""
+    rudder, check = indices.get("rudder_angle_deg"), indices.get("heading_angle_deg")
+    return None if rudder is None or check is None else (rudder * DEG, check * DEG)
 
 
 def criteria_of(track: Track, L_pp: float, V: float) -> tuple[Criterion, ...]:

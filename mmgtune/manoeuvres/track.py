@@ -176,10 +176,29 @@ def noise_level(t: FloatArray, values: FloatArray) -> float:
 
 def heading_at(track: Track, index: int, L_pp: float) -> float:
     """Heading at a sample [rad]; where it is noisy, from a line through the quarter ship length before."""
-    part = slice(_lengths_before(track, index, 0.25 * L_pp), index + 1)
+    part = _quarter_length_before(track, index, L_pp)
     if part.stop - part.start < 4 or noise_level(track.t, track.psi) < 0.02 * DEG:
         return float(track.psi[index])
     return float(np.polyfit(track.t[part] - track.t[index], track.psi[part], 1)[1])
+
+
+def turn_rate_at(track: Track, index: int, L_pp: float) -> float:
+    """Rate of the heading at a sample [rad/s]: of a line through a quarter length before, of two samples or more."""
+    part = _quarter_length_before(track, index, L_pp)
+    part = slice(max(min(part.start, index - 1), 0), max(part.stop, 2))
+    return float(np.polyfit(track.t[part] - track.t[index], track.psi[part], 1)[0])
+
+
+def original_course(track: Track, index: int, L_pp: float) -> float:
+    """Mean heading of the approach [rad]: over the ship length before an order, ten samples at least if there are any.
+
+    A helmsman counts from the course he was told to keep.  At the moment of the order the ship swings about it by
+    course-keeping, and the compass has its noise.
+    """
+    begin = max(min(_lengths_before(track, index, L_pp), index - 10), 0)
+    if begin == index:
+        return float(track.psi[index])
+    return integral(track.t, track.psi, begin, index) / float(track.t[index] - track.t[begin])
 
 
 def approach_speed(track: Track, index: int, L_pp: float) -> float:
@@ -187,6 +206,11 @@ def approach_speed(track: Track, index: int, L_pp: float) -> float:
     begin = _lengths_before(track, index, L_pp)
     U = integral(track.t, track.speed, begin, index) / float(track.t[index] - track.t[begin]) if begin < index else 0.0
     return U or float(track.speed[index])
+
+
+def _quarter_length_before(track: Track, index: int, L_pp: float) -> slice:
+    """Samples of the quarter ship length up to a sample, that one included."""
+    return slice(_lengths_before(track, index, 0.25 * L_pp), index + 1)
 
 
 def _lengths_before(track: Track, index: int, distance: float) -> int:

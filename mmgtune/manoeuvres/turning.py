@@ -14,6 +14,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import Problem, TrialError
+from ..physics.frame import to_ship
 from ..units import DEG
 from .track import (
     Direction,
@@ -60,7 +61,7 @@ class TurningIndices:
     time_180: Seconds
     time_270: Seconds
     time_360: Seconds
-    speed_ratio_90: float | None  # speed at 90 deg over approach speed [-]
+    speed_ratio_90: float | None  # speed at 90 deg over approach speed [-]; None from rest
     speed_ratio_180: float | None
     speed_ratio_360: float | None
     initial_turning_distance: Metres  # travelled from the order to 10 deg change of heading
@@ -106,6 +107,9 @@ def turning_indices(track: Track, L_pp: float, *, subtract_drift: bool = False) 
     def reached(values: FloatArray, deg: int) -> float | None:
         return None if (position := at[deg]) is None else value_at(values, position)
 
+    def speed_ratio(deg: int) -> float | None:
+        return None if approach == 0.0 or (U := reached(speed, deg)) is None else U / approach
+
     return TurningIndices(
         direction=order.direction,
         L_pp=L_pp,
@@ -122,9 +126,9 @@ def turning_indices(track: Track, L_pp: float, *, subtract_drift: bool = False) 
         time_180=reached(t - t[e], 180),
         time_270=reached(t - t[e], 270),
         time_360=reached(t - t[e], 360),
-        speed_ratio_90=reached(speed / approach, 90),
-        speed_ratio_180=reached(speed / approach, 180),
-        speed_ratio_360=reached(speed / approach, 360),
+        speed_ratio_90=speed_ratio(90),
+        speed_ratio_180=speed_ratio(180),
+        speed_ratio_360=speed_ratio(360),
         initial_turning_distance=None if at[10] is None else integral(t, speed, e, at[10]),
         **_steady(track, order, phi),
         residual_rate=_residual_rate(track, order, L_pp),
@@ -144,7 +148,8 @@ def _from_order(track: Track, order: Execute, L_pp: float) -> tuple[FloatArray, 
     """Distances (n_samples,) from the position at the order, along its heading and across to the turn's side [m]."""
     psi_0 = heading_at(track, order.index, L_pp)
     x, y = track.x - track.x[order.index], track.y - track.y[order.index]
-    return x * np.cos(psi_0) + y * np.sin(psi_0), order.side * (y * np.cos(psi_0) - x * np.sin(psi_0))
+    along, across = to_ship(psi_0, x, y)
+    return along, order.side * across
 
 
 def _largest(distance: FloatArray, begin: float | None, end: float | None, last: int) -> float | None:
@@ -174,9 +179,10 @@ def _uniform_drift(track: Track, order: Execute, L_pp: float) -> tuple[float, fl
 def _through_water(track: Track, order: Execute, drift: tuple[float, float, int]) -> Track:
     """The record less a uniform drift, unchanged in position at the order."""
     north, east, _ = drift
-    since, cos, sin = track.t - track.t[order.index], np.cos(track.psi), np.sin(track.psi)
-    u, v_m = track.u - north * cos - east * sin, track.v_m + north * sin - east * cos
-    return replace(track, x=track.x - north * since, y=track.y - east * since, u=u, v_m=v_m)
+    since = track.t - track.t[order.index]
+    ahead, abeam = to_ship(track.psi, north, east)
+    x, y = track.x - north * since, track.y - east * since
+    return replace(track, x=x, y=y, u=track.u - ahead, v_m=track.v_m - abeam)
 
 
 def _steady(track: Track, order: Execute, phi: FloatArray) -> dict[str, Any]:

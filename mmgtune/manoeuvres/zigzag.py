@@ -1,7 +1,14 @@
 """Zigzag: overshoots, times and distances.
 
-Overshoots as defined in IMO MSC.137(76), section 4; initial turning time as in ITTC 7.5-04-02-01.  Time to check
-yaw, reach and period are as recalled from the latter and were not checked against it.
+IMO MSC.137(76) and MSC/Circ.1053: after a steady approach the rudder is put over (first execute); when the heading has
+changed by the check angle from the original course, the rudder is reversed (second execute); and so on.  The first,
+second ... overshoot angle is the additional heading deviation after the second, third ... execute.  Helmsmen reverse
+late, so there are two readings of "additional", and both are given: beyond the check heading, original course plus or
+minus the check angle (``overshoot``, what publications print and the criteria are applied to), and beyond the heading
+at which the rudder was reversed indeed (``overshoot_from_execute``).
+
+Initial turning time as in ITTC 7.5-04-02-01.  Time to check yaw, reach and period are as recalled from the latter and
+were not checked against it.
 """
 
 from __future__ import annotations
@@ -16,6 +23,7 @@ from ..arrays import FloatArray
 from ..units import DEG
 from .track import (
     Direction,
+    Execute,
     Track,
     approach_speed,
     find_execute,
@@ -24,6 +32,8 @@ from .track import (
     heading_at,
     integral,
     noise_level,
+    original_course,
+    turn_rate_at,
     value_at,
     with_units,
 )
@@ -31,31 +41,44 @@ from .track import (
 USUAL_ANGLES = (1.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0)
 """Angles zigzags are named by [deg]; what was measured near one is taken for it."""
 
+REACTION = 0.1
+"""Time in which a rudder is reversed once the ship is at its check heading, at most [time the ship takes for its own
+length]: HSVA's model needs 0.06, MARIN's 0.05; a choice of this program."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class ZigzagIndices:
-    """A zigzag in numbers, headings counted from the approach; tuples hold what the record reaches, first one first."""
+    """A zigzag in numbers, headings counted from the original course; tuples hold what the record reaches, first first.
+
+    A zigzag "35/5" has a rudder angle of 35 deg and a check angle of 5 deg.
+    """
 
     direction: Direction  # side of the first order
     L_pp: Annotated[float, "m"]  # length between perpendiculars
     execute_at_start: bool  # the record begins with the rudder over: times and distances count from its first sample
     approach_speed: Annotated[float, "m/s"]  # mean over the last ship length before the first order
     rudder_angle: Annotated[float, "rad"]  # nominal rudder angle
-    heading_angle: Annotated[float | None, "rad"]  # nominal heading; None with no counter-order and none given
+    heading_angle: Annotated[float | None, "rad"]  # check angle; None with no counter-order and none given
     rudder_held: Annotated[float, "rad"]  # median of the angles held
     execute_time: Annotated[tuple[float, ...], "s"]  # of each order, on the record's clock
     execute_heading: Annotated[tuple[float, ...], "rad"]  # at each counter-order, positive to the side turned to before
-    overshoot: Annotated[tuple[float, ...], "rad"]  # peak beyond the nominal heading, as publications give it
-    overshoot_actual: Annotated[tuple[float, ...], "rad"]  # peak beyond the heading at the counter-order
+    overshoot: Annotated[tuple[float, ...], "rad"]  # peak beyond the check heading, as publications give it
+    overshoot_from_execute: Annotated[tuple[float, ...], "rad"]  # peak beyond the heading at the counter-order
     time_to_check_yaw: Annotated[tuple[float, ...], "s"]  # from each counter-order to the peak
-    initial_turning_time: Annotated[float | None, "s"]  # from the first order to the nominal heading
+    initial_turning_time: Annotated[float | None, "s"]  # from the first order to the check heading
     initial_turning_distance: Annotated[float | None, "m"]  # travelled in that time
-    reach: Annotated[float | None, "s"]  # from the first order until back at the approach heading after the second
+    reach: Annotated[float | None, "s"]  # from the first order until back on the original course after the second
     period: Annotated[float | None, "s"]  # from the first order until there after the third: a complete cycle
 
+    @property
+    def order(self) -> str:
+        """The zigzag's name, rudder angle over check angle [deg]: "35/5", or "20/?" with no check angle known."""
+        check = "?" if self.heading_angle is None else f"{self.heading_angle / DEG:.3g}"
+        return f"{self.rudder_angle / DEG:.3g}/{check}"
+
     def to_dict(self) -> dict[str, Any]:
-        """The fields by names with their unit, e.g. overshoot_1_deg, overshoot_actual_1_deg, reach_s."""
-        return with_units(self, self.L_pp)
+        """The order, and fields by names with their unit: overshoot_1_deg, overshoot_from_execute_1_deg, reach_s ..."""
+        return {"order": self.order, **with_units(self, self.L_pp)}
 
 
 def zigzag_indices(track: Track, L_pp: float, nominal: tuple[float, float | None] | None = None) -> ZigzagIndices:
@@ -63,7 +86,8 @@ def zigzag_indices(track: Track, L_pp: float, nominal: tuple[float, float | None
 
     track    the record
     L_pp     length between perpendiculars [m]
-    nominal  rudder and heading angle of the zigzag [rad]; None takes the usual angles nearest to the measured ones
+    nominal  rudder and check angle of the zigzag [rad], the latter None where it is not known; without ``nominal`` each
+             is the usual angle near the median of what was done, see ``usual_angle``
 
     Raises TrialError where no rudder order is found.
     """
@@ -73,17 +97,16 @@ def zigzag_indices(track: Track, L_pp: float, nominal: tuple[float, float | None
         if order.side != -orders[-1].side:
             break
         orders.append(order)
-    approach = heading_at(track, first.index, L_pp)
-    heading = first.side * (track.psi - approach)
+    course = original_course(track, first.index, L_pp)
+    heading = first.side * (track.psi - course)
     sides = [(-1.0) ** k for k in range(len(orders) - 1)]
     counter = [
-        side * first.side * (heading_at(track, order.index, L_pp) - approach)
+        side * first.side * (heading_at(track, order.index, L_pp) - course)
         for side, order in zip(sides, orders[1:], strict=True)
     ]
     held = float(np.median([order.angle for order in orders]))
     if nominal is None:
-        by_side = [float(np.median(part)) for part in (counter[::2], counter[1::2]) if part]
-        nominal = usual_angle(held), usual_angle(float(np.mean(by_side))) if by_side else None
+        nominal = usual_angle(held), _check_angle(track, orders[1:], counter, L_pp)
     rudder_angle, heading_angle = nominal
     ends = [order.index for order in orders[2:]] + [orders[-1].end] * (len(orders) > 1)
     peaks = []
@@ -110,7 +133,7 @@ def zigzag_indices(track: Track, L_pp: float, nominal: tuple[float, float | None
         execute_time=tuple(float(t[order.index]) for order in orders),
         execute_heading=tuple(counter),
         overshoot=tuple(top - heading_angle for _, top in peaks) if heading_angle is not None else (),
-        overshoot_actual=tuple(top - at for (_, top), at in zip(peaks, counter, strict=False)),
+        overshoot_from_execute=tuple(top - at for (_, top), at in zip(peaks, counter, strict=False)),
         time_to_check_yaw=tuple(when - float(t[o.index]) for (when, _), o in zip(peaks, orders[1:], strict=False)),
         initial_turning_time=None if turned is None else value_at(t, turned) - begun,
         initial_turning_distance=None if turned is None else integral(t, track.speed, first.index, turned),
@@ -139,11 +162,34 @@ def manoeuvre_kind(track: Track) -> Literal["turning", "zigzag", "other"]:
     return "turning" if len(executes) == 1 and first.side * heading[-1] >= 60.0 * DEG else "other"
 
 
-def usual_angle(measured: float) -> float:
-    """The usual angle within 1.5 deg or 20 % of the measured one, else the nearest whole degree [rad]."""
+def usual_angle(measured: float, late: float = 0.0) -> float:
+    """The usual angle near the measured one, else the nearest whole degree [rad].
+
+    Near is within 1 deg or 7 % of it; the measured angle may also exceed it by ``late`` [rad].
+    """
     degrees = measured / DEG
-    near = min(USUAL_ANGLES, key=lambda angle: abs(angle - degrees))
-    return (near if abs(near - degrees) <= max(1.5, 0.2 * near) else round(degrees)) * DEG
+
+    def near(angle: float) -> bool:
+        margin = max(1.0, 0.07 * angle)
+        return -margin <= degrees - angle <= max(margin, late / DEG)
+
+    found = min(filter(near, USUAL_ANGLES), key=lambda angle: abs(angle - degrees), default=float(round(degrees)))
+    return found * DEG
+
+
+def _check_angle(track: Track, counter_orders: list[Execute], counter: list[float], L_pp: float) -> float | None:
+    """The usual check angle of headings ``counter`` [rad] at the counter-orders; None without any.
+
+    Both sides count alike, so that an original course that was not quite met drops out.  The rudder is reversed late,
+    at the ship's own rate of turn and by a sample at least.
+    """
+    by_side = [float(np.median(part)) for part in (counter[::2], counter[1::2]) if part]
+    if not by_side:
+        return None
+    rates = [abs(turn_rate_at(track, order.index, L_pp)) for order in counter_orders]
+    reaction = REACTION * L_pp / max(approach_speed(track, counter_orders[0].index, L_pp), 1e-6)
+    delay = max(reaction, float(np.median(np.diff(track.t))))
+    return usual_angle(float(np.mean(by_side)), late=delay * float(np.median(rates)))
 
 
 def heading_peak(

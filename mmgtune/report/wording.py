@@ -50,7 +50,7 @@ _SUFFIXES = (
 
 
 _CIRCUMSTANCES = re.compile(
-    r"L_pp|execute|rudder_|heading_angle|approach_|drift_|residual_rate|steady_heading|direction|.*_over_L$"
+    r"L_pp|order|execute|rudder_|heading_angle|approach_|drift_|residual_rate|steady_heading|direction|.*_over_L$"
 )
 
 

@@ -19,13 +19,14 @@ from .model import Trial
 from .parquet import read_trial, write_trial
 from .pieces import windows
 from .surroundings import surroundings
-from .wind import measured_wind
+from .wind import has_measured_wind, measured_wind
 
 __all__ = [
     "Finding",
     "Trial",
     "TrialSet",
     "check_trial",
+    "has_measured_wind",
     "load_trials",
     "measured_wind",
     "read_trial",

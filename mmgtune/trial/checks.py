@@ -12,6 +12,7 @@ from .model import Trial
 from .motion_checks import motion_findings
 from .schema import COLUMNS, OPTIONAL
 from .unusable import unusable
+from .wind import WIND_PAIRS
 
 __all__ = ["Finding", "check_trial"]
 
@@ -27,8 +28,29 @@ def check_trial(trial: Trial) -> list[Finding]:
     if errors:
         return [Finding("error", problem.what, problem.where, problem.why, problem.fix) for problem in errors]
     with np.errstate(all="ignore"):
-        found = motion_findings(trial, where) + control_findings(trial, where) + _facts(trial, where)
+        found = (
+            motion_findings(trial, where) + control_findings(trial, where) + _wind(trial, where) + _facts(trial, where)
+        )
     return sorted(found, key=lambda finding: SEVERITIES.index(finding.severity))
+
+
+def _wind(trial: Trial, where: str) -> list[Finding]:
+    """Half a wind is none, and nothing uses it."""
+    found = []
+    for pair in WIND_PAIRS:
+        there = [name for name in pair if name in trial.extra]
+        if len(there) == 1:
+            (missing,) = set(pair) - set(there)
+            found.append(
+                Finding(
+                    "warning",
+                    f"there is '{there[0]}' without '{missing}'",
+                    f"{where}, column '{there[0]}'",
+                    "the trial counts as one without measured wind",
+                    f"add '{missing}', {COLUMNS[missing].meaning} [{COLUMNS[missing].unit}]",
+                )
+            )
+    return found
 
 
 def _facts(trial: Trial, where: str) -> list[Finding]:

@@ -38,9 +38,12 @@ class TrialSet:
         """What the trial of that id is for: "tune", "test" or "other"."""
         return "tune" if name in self.tune else "test" if name in self.test else "other"
 
-    def in_windows(self, length: float) -> TrialSet:
-        """The same set with every trial cut into windows of ``length`` [s]; each has the role of its trial."""
-        pieces = {name: windows(trial, length) for name, trial in self.trials.items()}
+    def in_windows(self, length: float, every: float | None = None) -> TrialSet:
+        """The same set with every trial cut into windows of ``length`` [s]; each has the role of its trial.
+
+        every  time between samples that count [s], None for all: each window has one at least, if its trial has
+        """
+        pieces = {name: windows(trial, length, every) for name, trial in self.trials.items()}
 
         def ids(names: tuple[str, ...]) -> tuple[str, ...]:
             return tuple(piece.id for name in names for piece in pieces[name])

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray
+from ..physics.frame import to_earth
 
 DEG = np.pi / 180.0
 IN_EARTH_AXES = "in earth axes, u north and v east"
@@ -102,8 +103,7 @@ def position_misfits(columns: Mapping[str, FloatArray]) -> dict[str, float]:
     window = int(np.clip(np.ceil(40.0 * noise / step), shortest, longest))
 
     def rotated(angle: FloatArray, v: FloatArray, scale: float = 1.0) -> FloatArray:
-        east = u * np.sin(angle) + v * np.cos(angle)
-        return scale * np.column_stack([u * np.cos(angle) - v * np.sin(angle), east]) * dt[:, None]
+        return scale * np.column_stack(to_earth(angle, u, v)) * dt[:, None]
 
     readings = {
         "": rotated(psi, v),

@@ -6,30 +6,63 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..arrays import BoolArray, FloatArray, IntArray
 from .model import Trial
 from .schema import ATTRIBUTES
 from .smoothing import FEWEST
 
 
-def windows(trial: Trial, length: float) -> list[Trial]:
+def windows(trial: Trial, length: float, every: float | None = None) -> list[Trial]:
     """Consecutive pieces of a trial, each ``length`` [s] long but for the last, which ends with the trial.
 
+    every  time between samples that count [s], None for all
+
     A piece begins at the sample the one before it ends at, or at the first after that without a gap; so every sample
-    is compared once.  A rest of fewer than FEWEST samples belongs to the piece before it.  Ids get the second they
-    begin at, "run_7@100"; ``part_of`` is the trial's own id.
+    is compared once.  It lasts until a complete sample counts after its first.  A rest with none, or with fewer than
+    FEWEST complete samples, belongs to the piece before it.  Ids get the second they begin at, "run_7@100"; ``part_of``
+    is the trial's own id.
     """
     whole = np.flatnonzero(np.isfinite(trial.motion).all(axis=1))
-    pieces: list[Trial] = []
+    pieces: list[tuple[int, int]] = []
     at = 0
     while at < len(whole):
         first = int(whole[at])
-        at = int(np.searchsorted(trial.t[whole], trial.t[first] + length - 1e-9))
+        compared = _first_compared(trial.t, whole[at:], length, every)
+        if pieces and compared is None:
+            pieces[-1] = (pieces[-1][0], trial.n_samples - 1)
+            break
+        until = trial.t[first] + length
+        at = int(np.searchsorted(trial.t[whole], until - 1e-9))
+        at = at if compared is None else max(at, int(np.searchsorted(whole, compared)))
         if len(whole) - at < FEWEST:
             at = len(whole)
         last = int(whole[at]) if at < len(whole) else trial.n_samples - 1
         if last > first + 1:  # two samples are no motion
-            pieces.append(_piece(trial, first, last + 1))
-    return pieces
+            pieces.append((first, last))
+    return [_piece(trial, first, last + 1) for first, last in pieces]
+
+
+def _first_compared(t: FloatArray, whole: IntArray, length: float, every: float | None) -> int | None:
+    """The first of the complete samples ``whole`` that counts in a window beginning at whole[0]; None without."""
+    first = int(whole[0])
+    for end in (int(np.searchsorted(t, t[first] + length)) + 1, len(t)):  # behind the window only where it holds none
+        inside = whole[: np.searchsorted(whole, end)]
+        found = inside[counting(t[first:end], every)[inside - first]]
+        if found.size:
+            return int(found[0])
+    return None
+
+
+def counting(t: FloatArray, every: float | None) -> BoolArray:
+    """Which samples of a trial count, (n_samples,): one in ``every`` [s], or all where None, but never the first.
+
+    t  (n_samples,) time [s]
+    """
+    counts = np.ones(len(t), dtype=bool)
+    counts[:1] = False
+    if every is not None:
+        counts[1:] = np.diff(np.floor((t - t[0]) / every + 1e-6)) >= 1.0
+    return counts
 
 
 def _piece(trial: Trial, first: int, end: int) -> Trial:

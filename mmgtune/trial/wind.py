@@ -5,7 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
+from ..physics.frame import to_earth
 from .model import Trial
+
+WIND_PAIRS = (("wind_speed", "wind_dir"), ("wind_speed_app", "wind_dir_app"))
+"""Columns that are wind together, and nothing alone; the first pair that is there counts."""
 
 
 def measured_wind(trial: Trial) -> FloatArray:
@@ -20,8 +24,7 @@ def measured_wind(trial: Trial) -> FloatArray:
     elif "wind_speed_app" in extra and "wind_dir_app" in extra:
         ahead = trial.u - extra["wind_speed_app"] * np.cos(extra["wind_dir_app"])
         abeam = trial.v_m - extra["wind_speed_app"] * np.sin(extra["wind_dir_app"])
-        north = ahead * np.cos(trial.psi) - abeam * np.sin(trial.psi)
-        east = ahead * np.sin(trial.psi) + abeam * np.cos(trial.psi)
+        north, east = to_earth(trial.psi, ahead, abeam)
     else:
         return np.zeros((trial.n_samples, 3))
     whole = np.isfinite(north) & np.isfinite(east)
@@ -29,3 +32,8 @@ def measured_wind(trial: Trial) -> FloatArray:
         return np.zeros((trial.n_samples, 3))
     bridged = [np.interp(trial.t, trial.t[whole], values[whole]) for values in (north, east)]
     return np.column_stack([*bridged, np.ones(trial.n_samples)])
+
+
+def has_measured_wind(trial: Trial) -> bool:
+    """Whether ``measured_wind`` finds any: speed and direction, both known in one sample at least."""
+    return bool(measured_wind(trial)[:, 2].any())

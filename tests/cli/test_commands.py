@@ -94,6 +94,7 @@ def test_simulate_trials_beside_the_measured_indices(tmp_path):
     assert len(runs) == 10
     assert runs["turn_p35"]["measured"]["advance_m"] > runs["turn_p35"]["indices"]["advance_m"]
     assert runs["zigzag_20"]["measured"]["overshoot_1_deg"] > 0.0
+    assert runs["zigzag_20"]["indices"]["order"] == runs["zigzag_20"]["measured"]["order"] == "20/20"
     assert runs["turn_m10"]["measures"]["MED"] > runs["turn_p40"]["measures"]["MED"] > 10.0
     assert set(runs["turn_m10"]["measures"]) == {"MMD", "MED", "ASD", "MSD", "PMD", "PED", "cVDM"}
 
@@ -102,6 +103,7 @@ def test_trials_check_and_inspect(tmp_path):
     assert run("trials", "check", "suzaku", "--strict", cwd=tmp_path).code == 0
     ended = run("trials", "inspect", "suzaku", "--json", cwd=tmp_path)
     rows = {row["id"]: row for row in ended.json()["trials"]}
+    assert "order 20/20" in " ".join(run("trials", "inspect", "suzaku", cwd=tmp_path).out.split())
     assert rows["turn_p35"]["role"] == "tune"
     assert rows["zigzag_10"]["role"] == "other"
     assert rows["turn_p35"]["ranges"]["delta"]["max"] == pytest.approx(35.0, abs=0.5)

@@ -1,7 +1,11 @@
 """``mmgtune doctor`` and ``mmgtune cite``."""
 
+import re
+from pathlib import Path
+
 import pytest
 
+import mmgtune
 from mmgtune.profile import load_profile
 from mmgtune.resources import profile_names
 from tests.command import run
@@ -42,6 +46,20 @@ def test_no_folder_for_kernels_is_told(tmp_path):
     (tmp_path / "file").write_text("", encoding="utf-8")
     ended = run("doctor", cwd=tmp_path, env={"MMGTUNE_CACHE": str(tmp_path / "file")})
     assert "every run compiles anew" in ended.out
+
+
+READ = re.compile(r'environ(?:\.get\(|\[)"([A-Z_]+)"')
+"""A variable of the environment being read."""
+
+
+def test_only_variables_that_something_reads_are_reported():
+    package, tests = Path(mmgtune.__file__).parent, Path(__file__).parents[1]
+    doctor = (package / "doctor.py").read_text(encoding="utf-8")
+    others = [path for folder in (package, tests) for path in folder.rglob("*.py") if path.name != "doctor.py"]
+    read = {name for path in others for name in READ.findall(path.read_text(encoding="utf-8"))}
+    told = set(READ.findall(doctor)) | set(re.findall(r"\b(?:MMGTUNE|NUMBA|OMP|OPENBLAS)_[A-Z_]+\b", doctor))
+    assert {"MMGTUNE_CACHE", "MMGTUNE_DATA"} <= told
+    assert told <= read
 
 
 @pytest.mark.parametrize("name", profile_names())

@@ -112,6 +112,16 @@ def test_water_driven_by_measured_wind_is_named(suzaku, tmp_path):
     assert "of the measured wind" in result.sentence()
 
 
+def test_half_a_wind_is_none():
+    """A wind speed without its direction drives nothing: it leaves the constant wind to be looked for."""
+    trials = load_trials("suzaku")
+    name, trial = next(iter(trials.trials.items()))
+    blown = replace(trial, extra={"wind_speed": np.full(trial.n_samples, 8.0)})
+    one = replace(trials, trials={name: blown}, tune=(name,), test=())
+    result = diagnose(load_profile("suzaku"), one, DiagnoseOptions(effects=("wind",)))
+    assert [known.parameters for known in result.detectability] == [("speed", "direction")]
+
+
 @pytest.mark.parametrize("noise", ["white", "autocorrelated"])
 def test_nothing_hidden_nothing_found(noise, tmp_path):
     case = null(5) if noise == "white" else null(5, AUTOCORRELATED)

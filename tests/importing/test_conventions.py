@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mmgtune.importing import conventions, motion, parse_map
+from mmgtune.importing import conventions, parse_map
 from mmgtune.importing.mapping import Source
 from mmgtune.importing.record import converted, unwrapped
 from mmgtune.units import DEG
@@ -52,13 +52,6 @@ def test_velocities_of_an_antenna_are_moved_to_midship(tmp_path):
     back = imported(write_csv(tmp_path / "log.csv", columns), text)
     for name in ("x", "y", "u", "v_m"):
         assert np.abs(getattr(back, name) - getattr(trial, name)).max() < 1e-9
-
-
-def test_in_ship_axes_and_back():
-    psi = np.array([0.3, 2.0])
-    u, v = motion.in_ship_axes(np.array([1.0, 2.0]), np.array([0.5, -1.0]), psi)
-    assert u * np.cos(psi) - v * np.sin(psi) == pytest.approx([1.0, 2.0])
-    assert u * np.sin(psi) + v * np.cos(psi) == pytest.approx([0.5, -1.0])
 
 
 @pytest.mark.parametrize("name", ["turn_p10", "turn_m20", "turn_p20", "turn_m10", "turn_p40"])

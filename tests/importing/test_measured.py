@@ -11,8 +11,8 @@ from scipy.integrate import cumulative_trapezoid
 
 from mmgtune.importing import import_logs, load_map
 from mmgtune.importing.digits import print_step
-from mmgtune.importing.motion import over_earth
 from mmgtune.manoeuvres import Track, find_executes, manoeuvre_kind, turning_indices
+from mmgtune.physics.frame import to_earth
 from mmgtune.trial import load_trials
 from mmgtune.units import DEG
 
@@ -89,7 +89,7 @@ def track(trial):
 
 def integrated(trial):
     """Positions (n_samples,) from velocities, without their constant."""
-    ways = over_earth(filled(trial, "u"), filled(trial, "v_m"), filled(trial, "psi"))
+    ways = to_earth(filled(trial, "psi"), filled(trial, "u"), filled(trial, "v_m"))
     return [cumulative_trapezoid(way, trial.t, initial=0.0) for way in ways]
 
 

@@ -182,3 +182,12 @@ def test_dictionary_carries_units():
     assert found["tactical_diameter_m"] is None
     assert found["tactical_diameter_over_L"] is None
     assert {"steady_yaw_rate_deg_per_s", "approach_speed_m_per_s", "time_90_s", "speed_ratio_90"} <= set(found)
+
+
+def test_a_turn_from_rest_has_no_speed_ratios():
+    track = circle()
+    resting = track.t <= T_ORDER
+    indices = turning_indices(replace(track, u=np.where(resting, 0.0, track.u)), L)
+    assert indices.approach_speed == 0.0
+    assert (indices.speed_ratio_90, indices.speed_ratio_180, indices.speed_ratio_360) == (None, None, None)
+    assert indices.advance is not None

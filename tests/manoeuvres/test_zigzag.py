@@ -22,7 +22,7 @@ def test_overshoots_times_and_distances(side, t, psi_0):
     assert (indices.rudder_angle, indices.heading_angle) == pytest.approx((10.0 * DEG, 10.0 * DEG))
     assert indices.overshoot[:3] == pytest.approx(FIRST - 10.0 * DEG, abs=1e-4)
     assert indices.execute_heading[:3] == pytest.approx([10.4 * DEG] * 3, abs=0.45 * DEG)
-    assert indices.overshoot_actual[:3] == pytest.approx(FIRST - np.array(indices.execute_heading[:3]), abs=1e-4)
+    assert indices.overshoot_from_execute[:3] == pytest.approx(FIRST - np.array(indices.execute_heading[:3]), abs=1e-4)
     orders = order_times(10.4 * DEG)
     assert indices.execute_time[:4] == pytest.approx([T_ORDER, *orders[:3]], abs=0.8)
     peaks = T_ORDER + (np.arange(3) + 0.5) * np.pi / OMEGA
@@ -37,7 +37,7 @@ def test_overshoots_times_and_distances(side, t, psi_0):
 
 def test_nominal_is_the_default_and_actual_is_smaller_by_the_late_execute():
     late = zigzag_indices(zigzag(actual=10.4 * DEG, t=np.arange(0.0, 640.0, 0.05)), L)
-    difference = np.array(late.overshoot[:3]) - np.array(late.overshoot_actual[:3])
+    difference = np.array(late.overshoot[:3]) - np.array(late.overshoot_from_execute[:3])
     assert difference == pytest.approx([0.4 * DEG] * 3, abs=0.03 * DEG)
 
 
@@ -100,17 +100,21 @@ def test_dictionary_carries_units():
     found = zigzag_indices(zigzag(), L).to_dict()
     assert found["overshoot_1_deg"] == pytest.approx(7.0, abs=0.01)
     assert found["overshoot_2_deg"] == pytest.approx(16.0, abs=0.01)
-    assert found["overshoot_actual_1_deg"] < found["overshoot_1_deg"]
+    assert found["overshoot_from_execute_1_deg"] < found["overshoot_1_deg"]
     assert found["heading_angle_deg"] == pytest.approx(10.0)
     assert found["initial_turning_distance_over_L"] == pytest.approx(found["initial_turning_distance_m"] / L)
     assert {"reach_s", "period_s", "time_to_check_yaw_1_s", "execute_time_1_s"} <= set(found)
 
 
 @pytest.mark.parametrize(
-    ("measured", "usual"), [(1.5, 1), (4.7, 5), (6.1, 5), (10.5, 10), (14.8, 15), (21.1, 20), (35.3, 35), (45.2, 45)]
-)
-def test_usual_angles(measured, usual):
-    assert usual_angle(measured * DEG) / DEG == pytest.approx(usual)
+    ("measured", "late", "usual"),
+    [
+        (1.4, 0.0, 1), (4.7, 0.0, 5), (6.0, 0.0, 5), (10.5, 0.0, 10), (14.8, 0.0, 15), (21.1, 0.0, 20), (35.3, 0.0, 35),
+        (12.4, 0.0, 12), (18.0, 0.0, 18), (45.2, 0.0, 45), (6.6, 0.0, 7), (6.6, 2.0, 5), (8.2, 2.0, 8), (9.2, 5.0, 10),
+    ],
+)  # fmt: skip
+def test_usual_angles(measured, late, usual):
+    assert usual_angle(measured * DEG, late * DEG) / DEG == pytest.approx(usual)
 
 
 def test_peak_lies_between_the_samples():

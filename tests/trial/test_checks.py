@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from mmgtune.resources import trial_set_names
-from mmgtune.trial import Trial, check_trial, load_trials
+from mmgtune.trial import Trial, check_trial, has_measured_wind, load_trials
 
 from .made import DEG, changed, made, said, with_value
 
@@ -114,7 +114,23 @@ def test_spikes(seed: int | None, name: str, value: float) -> None:
 
 
 def test_directions_in_degrees() -> None:
-    only(replace(made(), extra={"wind_dir": np.full(500, 270.0)}), "'wind_dir' is up to 270 rad")
+    blown = replace(made(), extra={"wind_speed": np.full(500, 8.0), "wind_dir": np.full(500, 270.0)})
+    only(blown, "'wind_dir' is up to 270 rad")
+
+
+@pytest.mark.parametrize("pair", [("wind_speed", "wind_dir"), ("wind_speed_app", "wind_dir_app")])
+def test_half_a_wind(pair: tuple[str, str]) -> None:
+    columns = {name: np.full(500, 2.0) for name in pair}
+    whole = replace(made(), extra=columns)
+    only(whole)
+    assert has_measured_wind(whole)
+    for kept, missing in (pair, pair[::-1]):
+        half = replace(made(), extra={kept: columns[kept]})
+        only(half, f"there is '{kept}' without '{missing}'")
+        assert not has_measured_wind(half)
+    never_both = [np.where(np.arange(500) < 200, np.nan, 2.0), np.where(np.arange(500) < 200, 2.0, np.nan)]
+    assert not has_measured_wind(replace(made(), extra=dict(zip(pair, never_both, strict=True))))
+    assert not has_measured_wind(made())
 
 
 def test_notes() -> None:

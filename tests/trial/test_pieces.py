@@ -1,7 +1,9 @@
 """Long trials cut into windows."""
 
 import numpy as np
+import pytest
 
+from mmgtune.objective import make_objective
 from mmgtune.trial import TrialSet, windows
 from tests.trial.made import made, with_value
 
@@ -29,3 +31,32 @@ def test_extra_columns_and_roles_go_with_the_windows():
     assert cut.tune == ("a@0", "a@200", "a@400")
     assert cut.role("b@200") == "test"
     assert cut.trials["a@200"].extra["wind_speed"][0] == 200.0
+
+
+def test_every_window_has_a_sample_that_counts():
+    """Fewer than two seconds are left at the end, and one sample in two seconds counts."""
+    trial = made(samples=612, dt=0.1)
+    assert [piece.id.partition("@")[2] for piece in windows(trial, 30.0)] == ["0", "30", "60"]
+    pieces = windows(trial, 30.0, every=2.0)
+    assert [piece.id.partition("@")[2] for piece in pieces] == ["0", "30"]
+    assert pieces[-1].duration == pytest.approx(31.1)
+    objective = make_objective(10.0, every=2.0)
+    assert all(objective.weight(piece).any() for piece in pieces)
+
+
+def test_a_window_lasts_until_a_sample_counts():
+    trial = made(samples=600, dt=0.1)
+    gap = with_value(trial, "v_m", slice(205, 390), np.nan)
+    pieces = windows(gap, 10.0, every=2.0)
+    # That from 20 s holds 0.5 s of samples and the end of the gap, which does not count: it lasts until 40 s.
+    assert [piece.id.partition("@")[2] for piece in pieces] == ["0", "10", "20", "40", "50"]
+    objective = make_objective(10.0, every=2.0)
+    assert all(objective.weight(piece)[np.isfinite(piece.motion).all(axis=1)].any() for piece in pieces)
+    short = windows(trial, 1.0, every=2.0)
+    assert [piece.duration for piece in short] == pytest.approx([2.0] * 28 + [3.9])
+
+
+def test_windows_with_every_are_the_same_where_each_had_a_sample():
+    trial = with_value(made(samples=400, dt=0.5), "x", slice(101, 110), np.nan)
+    ids = [piece.id for piece in windows(trial, 30.0)]
+    assert [piece.id for piece in windows(trial, 30.0, every=2.0)] == ids
