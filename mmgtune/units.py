@@ -38,12 +38,15 @@ DIMENSIONLESS = ("-", "prime")
 _QUANTITY = re.compile(r"^\s*((?:[-+0-9.eE]+\s*,\s*)*[-+0-9.eE]+)\s*([^\s0-9].*?|1/.*?)?\s*$")
 
 
-def parse(text: str, unit: str) -> tuple[float, ...]:
-    """The numbers of "12 kn" or "0, 10, 18 deg" in ``unit``.
+_INFINITE = re.compile(r"^\s*(inf)\s+(\S.*?)\s*$")
+
+
+def parse(text: str, unit: str, infinite: bool = False) -> tuple[float, ...]:
+    """The numbers of "12 kn" or "0, 10, 18 deg" in ``unit``; "inf deg/s" too where ``infinite`` allows it.
 
     Raises ValueError with a sentence saying what was expected.
     """
-    match = _QUANTITY.match(text)
+    match = (_INFINITE.match(text) if infinite else None) or _QUANTITY.match(text)
     if match is None:
         raise ValueError(f"'{text}' is not a number with a unit, such as '{example(unit)}'")
     written = (match.group(2) or "").strip()

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from ..components import Component, split_name
 from ..units import DIMENSIONLESS
+
+ABSENT = "absent"
+"""Source of a parameter of an effect that stands at its null and need not be written."""
 
 
 @dataclass(frozen=True)
@@ -64,9 +69,11 @@ class Approach:
 class ShipProfile:
     """A ship: its components and coefficients, and what standard manoeuvres need.
 
-    limits  what each metric of a trial may be at most, by its name, in its unit (``metrics.METRICS``)
-    text    the TOML it was read from; tuned profiles are made from it, comments and all
-    sha256  of that text
+    Two profiles are equal that say the same, wherever and however it is written.
+
+    limits    what each metric of a trial may be at most, by its name, in its unit (``metrics.METRICS``)
+    licence   of the data it was tuned to, where they have one; citation says how these are to be cited
+    template  the TOML it was read from, "" for one made in memory: the place for ``text``, comments and all
     """
 
     id: str
@@ -78,9 +85,22 @@ class ShipProfile:
     targets: tuple[str, ...]
     limits: dict[str, float] = field(default_factory=dict)
     provenance: dict[str, Any] = field(default_factory=dict)
-    path: Path | None = None
-    text: str = ""
-    sha256: str = ""
+    licence: str = ""
+    citation: str = ""
+    path: Path | None = field(default=None, compare=False)
+    template: str = field(default="", compare=False, repr=False)
+
+    @cached_property
+    def text(self) -> str:
+        """This profile as TOML, as it is now: the template with everything in it that differs."""
+        from .writing import profile_text
+
+        return profile_text(self)
+
+    @cached_property
+    def sha256(self) -> str:
+        """Of ``text``."""
+        return hashlib.sha256(self.text.encode()).hexdigest()
 
     def coefficient(self, name: str) -> Coefficient:
         """The coefficient called 'section.symbol'; KeyError if there is none."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 import re
 import tomllib
@@ -13,18 +12,21 @@ from typing import Any
 
 from .. import units
 from ..components import KINDS, UNTAGGED, Component, Field, find, tags
-from ..effects import Effect, effect_tags, find_effect
+from ..effects import Effect, Parameter, effect_tags, find_effect
 from ..errors import Problem, ProfileError, closest
 from ..metrics import METRICS
 from ..physics.wind import wind_regression
 from ..resources import folder, profile_names
-from .extending import missing_for
-from .model import Approach, Coefficient, Section, ShipProfile, SteeringGear
+from .changing import missing_for
+from .model import ABSENT, Approach, Coefficient, Section, ShipProfile, SteeringGear
 
 SCHEMA = 1
 PLAIN = ("steering_gear", "approach", "tuning", "limits", "provenance")
 SECTIONS = ("schema", "ship", *KINDS, "above_water", "effects", *PLAIN)
 REGRESSION = "Fujiwara, Ueno & Nimura 1998, regression on the geometry"
+DEFAULT = "default of the program"
+STEERING_GEAR = {"max_angle": Field("", "rad", low=0.0, high=1.6), "rate": Field("", "rad/s", low=0.0)}
+APPROACH = {"speed": Field("", "m/s", low=0.0), "n": Field("", "1/s")}
 VALUE_KEYS = ("value", "source", "assumption", "note", "bounds", "pre_determined", "stderr")
 
 
@@ -98,17 +100,14 @@ class _Reader:
                 fix=f"write 'schema = {SCHEMA}' on top",
             )
         ship = self.table("ship")
-        self.unknown("ship", ship, ("name", "id", "source"))
+        self.unknown("ship", ship, ("name", "id", "source", "licence", "citation"))
         present = (*KINDS, *(["above_water"] if "above_water" in self.data else []), *self.effects())
         found = {kind: self.component(kind) for kind in present}
         sections = {kind: section for kind, section in found.items() if section is not None}
         complete = len(sections) == len(present) and not self.problems
         if complete and "above_water" in sections:
             sections["above_water"] = with_wind_coefficients(sections)
-        gear = self.plain(
-            "steering_gear", {"max_angle": Field("", "rad", low=0.0, high=1.6), "rate": Field("", "rad/s", low=0.0)}
-        )
-        approach = self.plain("approach", {"speed": Field("", "m/s", low=0.0), "n": Field("", "1/s")})
+        gear, approach = self.plain("steering_gear", STEERING_GEAR), self.plain("approach", APPROACH)
         profile = ShipProfile(
             id=self.word("ship", ship, "id"),
             name=self.word("ship", ship, "name"),
@@ -119,9 +118,10 @@ class _Reader:
             targets=self.targets(sections) if complete else (),
             limits=self.limits(),
             provenance=self.data.get("provenance", {}),
+            licence=self.word("ship", ship, "licence") if "licence" in ship else "",
+            citation=self.word("ship", ship, "citation") if "citation" in ship else "",
             path=path,
-            text=self.text,
-            sha256=hashlib.sha256(self.text.encode()).hexdigest(),
+            template=self.text,
         )
         if complete:
             self.together(profile)
@@ -179,24 +179,35 @@ class _Reader:
         known = ("source", *(("model",) if tagged else ()), *component.fields)
         self.unknown(kind, table, known)
         coefficients: dict[str, Coefficient] = {}
+        missing: dict[str, Field] = {}
         for symbol, field in component.fields.items():
             if symbol in table:
                 coefficient = self.coefficient(kind, symbol, field, table[symbol], source)
-            elif field.default is not None:
-                coefficient = Coefficient(field.default, source="default of the program")
-            elif field.derived:
-                coefficient = None
             else:
-                self.problem(
-                    f"'{kind}.{symbol}' is missing ({field.label} [{field.unit}])",
-                    kind,
-                    why=f"{kind} model '{component.tag}' needs it",
-                    fix=f"add {symbol} = ... to [{kind}]",
-                )
-                coefficient = None
+                coefficient = default_of(field)
+                if coefficient is None and not field.derived:
+                    missing[symbol] = field
             if coefficient is not None:
                 coefficients[symbol] = coefficient
+        self.missing(component, missing)
         return Section(component, coefficients, source)
+
+    def missing(self, component: Component, fields: dict[str, Field]) -> None:
+        """Say all that a section leaves out, in one problem."""
+        if not fields:
+            return
+        names = [f"'{component.kind}.{symbol}'" for symbol in fields]
+        told = ", ".join(
+            f"{name} ({field.label} [{field.unit}])" for name, field in zip(names, fields.values(), strict=True)
+        )
+        self.problem(
+            f"{told} {'is' if len(fields) == 1 else 'are'} missing",
+            component.kind,
+            why=f"{component.kind} model '{component.tag}' needs {'it' if len(fields) == 1 else 'them'}, and a number "
+            "that is left out is not taken for 0",
+            fix=f"add {', '.join(f'{symbol} = ...' for symbol in fields)} to [{component.kind}]; "
+            "write 0.0 for a term that the source of your numbers does not have",
+        )
 
     def coefficient(self, kind: str, symbol: str, field: Field, written: Any, source: str) -> Coefficient | None:
         facts: dict[str, Any] = {"source": source}
@@ -207,7 +218,8 @@ class _Reader:
             facts["note"] = str(written.get("note", ""))
             for key in ("pre_determined", "stderr"):
                 if key in written:
-                    numbers = self.numbers(kind, symbol, Field("", field.unit), written[key])
+                    plain = replace(field, low=None, high=None, choices={}, table=0)
+                    numbers = self.numbers(kind, symbol, plain, written[key])
                     facts[key] = numbers[0] if numbers else None
             if "bounds" in written:
                 facts["bounds"] = self.bounds(kind, symbol, field, written["bounds"])
@@ -249,7 +261,7 @@ class _Reader:
             return None
         if isinstance(written, str):
             try:
-                numbers = units.parse(written, field.unit)
+                numbers = units.parse(written, field.unit, infinite=_may_be_infinite(field))
             except ValueError as error:
                 self.problem(f"'{name}': {error}", kind, symbol)
                 return None
@@ -277,6 +289,8 @@ class _Reader:
             self.problem(f"'{name}' has {len(numbers)} values, not {expected}", kind, symbol)
             return False
         for number in numbers:
+            if number == math.inf and _may_be_infinite(field):
+                continue
             if not math.isfinite(number):
                 self.problem(f"'{name}' is {number}", kind, symbol, why="only finite numbers can be simulated")
                 return False
@@ -330,9 +344,7 @@ class _Reader:
         self.unknown("limits", table, ("source", *METRICS))
         found: dict[str, float] = {}
         for name in (name for name in table if name in METRICS):
-            unit = METRICS[name].unit
-            field = Field("", "-" if unit == "mixed" else unit, low=0.0)
-            numbers = self.numbers("limits", name, field, table[name])
+            numbers = self.numbers("limits", name, limit_field(name), table[name])
             if numbers:
                 found[name] = numbers[0]
         return found
@@ -356,6 +368,25 @@ class _Reader:
         propeller = profile.sections["propeller"].coefficients
         if "phi_min" in propeller and profile.value("propeller.phi_min") >= profile.value("propeller.phi_max"):
             self.problem("'propeller.phi_min' is not below phi_max", "propeller", "phi_min")
+
+
+def limit_field(metric: str) -> Field:
+    """What a limit of that metric is written in."""
+    unit = METRICS[metric].unit
+    return Field("", "-" if unit == "mixed" else unit, low=0.0)
+
+
+def _may_be_infinite(field: Field) -> bool:
+    """Whether infinity is a value: the null of an effect that fades only towards it."""
+    return isinstance(field, Parameter) and math.isinf(field.null)
+
+
+def default_of(field: Field) -> Coefficient | None:
+    """What a profile that leaves a coefficient out means, None where it must not."""
+    if field.default is None:
+        return None
+    absent = isinstance(field, Parameter) and field.default == field.null
+    return Coefficient(field.default, source=ABSENT if absent else DEFAULT)
 
 
 def with_wind_coefficients(sections: dict[str, Section]) -> Section:

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from mmgtune import units
 from mmgtune.errors import ProfileError
-from mmgtune.profile import load_profile, parse_profile, tuned_text
+from mmgtune.profile import load_profile, parse_profile, tuned
 from mmgtune.resources import profile_names
 
 
@@ -28,15 +28,14 @@ def test_every_number_has_a_source_and_every_assumption_is_marked(name):
 def test_tuned_text_round_trip(name):
     profile = load_profile(name)
     values = {target: 1.1 * profile.value(target) for target in profile.targets}
-    text = tuned_text(profile, values, dict.fromkeys(values, 0.01), {"a_r": 0.5})
-    tuned = parse_profile(text)
+    read = parse_profile(tuned(profile, values, dict.fromkeys(values, 0.01), {"a_r": 0.5}).text)
     for target, value in values.items():
-        assert tuned.value(target) == value
+        assert read.value(target) == value
         first = profile.coefficient(target).pre_determined  # of a profile that is itself tuned, from before that
-        assert tuned.coefficient(target).pre_determined == (profile.value(target) if first is None else first)
-        assert tuned.coefficient(target).stderr == 0.01
+        assert read.coefficient(target).pre_determined == (profile.value(target) if first is None else first)
+        assert read.coefficient(target).stderr == 0.01
     untouched = [n for n in profile.names() if n not in values]
-    assert [tuned.value(n) for n in untouched] == [profile.value(n) for n in untouched]
+    assert [read.value(n) for n in untouched] == [profile.value(n) for n in untouched]
 
 
 def test_values_are_shown_as_people_write_them():
