@@ -244,6 +244,12 @@ def with_effects(ship: ShipProfile, tags: tuple[str, ...]) -> tuple[ShipProfile,
     return put_in(ship, added, "put in to be tuned"), names
 
 
+def terms(ship: ShipProfile) -> list[str]:
+    """Licence and citation of the data a profile was tuned to, as lines; none where it was not."""
+    named = (("licence of the data it was tuned to", ship.licence), ("cite for them", ship.citation))
+    return [f"{name}: {text}" for name, text in named if text]
+
+
 def default_out(profile: ShipProfile) -> Path:
     """A folder under runs/ that does not exist yet."""
     return Path("runs") / f"{datetime.now():%Y%m%d-%H%M%S}-{profile.id}"

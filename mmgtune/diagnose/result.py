@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..effects import Effect
-from ..fitting.comparison import finite
+from ..fitting.comparison import finite, finite_values
 from ..profile import ShipProfile, tuned, with_effects
 from .gain import Gain
 from .intervals import Estimate
@@ -256,7 +256,7 @@ class Diagnosis:
             "detectability": [one.to_dict() for one in self.detectability],
             "noise": {name: dict(values) for name, values in self.noise.items()},
             "chi2_per_residual": {"before": self.chi2[0], "after": self.chi2[1]},
-            "theta": dict(self.theta),
+            "theta": finite_values(self.theta),
             "trial_results": [one.to_dict() for one in self.gain.compared],
             "assumptions": [
                 {"name": name, "value": self.profile.written(name), "note": coefficient.note}

@@ -14,7 +14,7 @@ from ..profile import ShipProfile, tuned
 from .box import Box
 from .certificate import Certificate
 from .cmaes import Generation, Restart
-from .comparison import TrialComparison, finite, total
+from .comparison import TrialComparison, finite, finite_values, total
 from .identifiability import Identifiability
 from .least_squares import LeastSquaresResult
 from .options import FitOptions
@@ -140,9 +140,9 @@ class FitResult:
                     "low": finite(float(low[i])),
                     "high": finite(float(high[i])),
                     "value": finite(value),
-                    "position": z,
+                    "position": 1.0 - z if i in self.box.reciprocal else z,  # in the order of the values
                     "stderr": stderr.get(name),
-                    "at_bound": "low" if z <= 0.0 else "high" if z >= 1.0 else None,
+                    "at_bound": self.box.bound_at(i, z),
                     "determined": name not in undetermined,
                 }
             )
@@ -193,7 +193,7 @@ class FitResult:
             "J_test": self.J_of("test", "after"),
             "J_tune_before": self.J_of("tune", "before"),
             "J_test_before": self.J_of("test", "before"),
-            "theta": self.theta,
+            "theta": finite_values(self.theta),
             "stderr": self.identifiability.stderr,
             "at_bound": self.at_bound,
             "undetermined": list(self.identifiability.undetermined),

@@ -197,11 +197,10 @@ class _Reader:
         if not fields:
             return
         names = [f"'{component.kind}.{symbol}'" for symbol in fields]
-        told = ", ".join(
-            f"{name} ({field.label} [{field.unit}])" for name, field in zip(names, fields.values(), strict=True)
-        )
+        meanings = [f"({field.label} [{field.unit}])" for field in fields.values()]
+        told = ", ".join(f"{name} {meaning}" for name, meaning in zip(names, meanings, strict=True))
         self.problem(
-            f"{told} {'is' if len(fields) == 1 else 'are'} missing",
+            f"{told} are missing" if len(fields) > 1 else f"{names[0]} is missing {meanings[0]}",
             component.kind,
             why=f"{component.kind} model '{component.tag}' needs {'it' if len(fields) == 1 else 'them'}, and a number "
             "that is left out is not taken for 0",

@@ -77,6 +77,11 @@ def number(value: Any) -> float | None:
     return float(value)
 
 
+def coefficient_text(value: Any, digits: int = 4) -> str:
+    """A coefficient's number, which is infinite where JSON has null: an effect that is absent only there."""
+    return "∞" if value is None else shown(value, digits)
+
+
 def shown(value: Any, digits: int = 4) -> str:
     """A number with ``digits`` significant digits, a true minus and thin thousands; a dash where there is none."""
     size = number(value)

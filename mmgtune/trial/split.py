@@ -13,14 +13,16 @@ from typing import Any
 from ..errors import Problem, closest
 
 SPLIT = "split.toml"
-KEYS = ("ship", "tune", "test")
+KEYS = ("ship", "licence", "citation", "tune", "test")
 
 
 @dataclass(frozen=True)
 class Split:
-    """What a split says; ids in the order they are written, ship "" where it names none."""
+    """What a split says; ids in the order they are written, texts "" where it says nothing."""
 
     ship: str = ""
+    licence: str = ""
+    citation: str = ""
     tune: tuple[str, ...] = ()
     test: tuple[str, ...] = ()
 
@@ -41,10 +43,13 @@ def read_split(path: Path, known: Iterable[str] | None) -> tuple[Split, list[Pro
         for key in data
         if key not in KEYS
     ]
-    ship = data.get("ship", "")
-    if not isinstance(ship, str):
-        problems.append(Problem(f"'ship' is {ship!r}, not text", _place(path, text, "ship"), fix='write ship = "..."'))
-        ship = ""
+    texts = {}
+    for key in ("ship", "licence", "citation"):
+        texts[key] = data.get(key, "")
+        if not isinstance(texts[key], str):
+            what, fix = f"'{key}' is {texts[key]!r}, not text", f'write {key} = "..."'
+            problems.append(Problem(what, _place(path, text, key), fix=fix))
+            texts[key] = ""
     sets: dict[str, tuple[str, ...]] = {}
     for key in ("tune", "test"):
         ids = data.get(key, [])
@@ -63,7 +68,7 @@ def read_split(path: Path, known: Iterable[str] | None) -> tuple[Split, list[Pro
         what = f"trial '{name}' is both in 'tune' and in 'test'"
         why = "a test on what was tuned shows nothing"
         problems.append(Problem(what, _place(path, text, name), why, "name it in one of them"))
-    return Split(ship, sets["tune"], sets["test"]), problems
+    return Split(**texts, tune=sets["tune"], test=sets["test"]), problems
 
 
 def _ids(key: str, ids: list[str], known: Iterable[str] | None, path: Path, text: str) -> list[Problem]:
