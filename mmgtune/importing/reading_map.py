@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
-import tomllib
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -12,8 +10,8 @@ from typing import Any
 from .. import units
 from ..errors import LogError, Problem, closest
 from ..resources import import_map_names, import_maps
+from ..toml_reading import TomlReader, toml_of
 from ..trial.schema import COLUMNS, SOURCES
-from .headers import canonical
 from .mapping import FORMATS, PROJECTIONS, Cut, LogMap, Source, TimeSource
 from .quantities import CONTROLS, MEANING, QUANTITIES
 
@@ -73,10 +71,7 @@ def load_map(name: str | Path, preset: bool = False) -> LogMap:
 
 def parse_map(text: str, path: Path = Path("map")) -> LogMap:
     """The map written in ``text``; ``path`` is for messages.  Raises LogError with everything wrong in it."""
-    try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise LogError(Problem("the map is not valid TOML", str(path), str(error), "correct the line named")) from error
+    data = toml_of(text, "the map", str(path), LogError)
     some = data.pop("logs", [])
     reader = _Reader(data, text, path)
     made = reader.read()
@@ -133,26 +128,16 @@ def _merged(data: dict[str, Any], own: dict[str, Any]) -> dict[str, Any]:
     return out
 
 
-class _Reader:
-    """One pass over a parsed map, collecting problems as it goes."""
+class _Reader(TomlReader):
+    """One pass over a parsed map."""
 
     def __init__(self, data: dict[str, Any], text: str, path: Path):
-        self.data, self.path = data, path
-        self.problems: list[Problem] = []
-        self.lines = _lines(text)
-
-    def line(self, table: str, key: str = "") -> int:
-        return self.lines.get((table, key)) or self.lines.get((table, "")) or 0
-
-    def problem(self, what: str, table: str, key: str = "", why: str = "", fix: str = "") -> None:
-        line = self.line(table, key)
-        where = f"{self.path}, line {line}" if line else str(self.path)
-        self.problems.append(Problem(what, where, why, fix))
+        super().__init__(data, text, str(path))
+        self.path = path
 
     def read(self) -> LogMap:
-        self.unknown("", self.data)
-        if self.data.get("schema") != SCHEMA:
-            self.problem(f"schema is {self.data.get('schema')!r}, not {SCHEMA}", "", "schema", fix="write schema = 1")
+        self.unknown("", self.data, TABLES[""])
+        self.schema(SCHEMA)
         log = self.table("log")
         trial = self.table("trial")
         position = self.table("position")
@@ -182,11 +167,11 @@ class _Reader:
             step=self.quantity("resample", "step", "s", least=0.0),
             gap=self.number("resample", self.table("resample"), "gap", 5.0, least=1.0),
             cut=self.cut(),
-            ship=self.text("trial", trial, "ship"),
-            id=self.text("trial", trial, "id") or "{stem}",
-            manoeuvre=self.text("trial", trial, "manoeuvre"),
+            ship=self.text_of("trial", trial, "ship"),
+            id=self.text_of("trial", trial, "id") or "{stem}",
+            manoeuvre=self.text_of("trial", trial, "manoeuvre"),
             source=self.choice("trial", trial, "source", SOURCES) or "measured",
-            note=self.text("trial", trial, "note"),
+            note=self.text_of("trial", trial, "note"),
             noise=self.noise(trial),
         )
         self.together(made)
@@ -201,29 +186,6 @@ class _Reader:
                 self.problem(f"'{name}' is not a table", "", name, fix=f"write [{name}]")
             return {}
         return table
-
-    def unknown(self, name: str, table: dict[str, Any], known: tuple[str, ...] | None = None) -> None:
-        known = known or TABLES[name.split(".")[0]]
-        for key in table:
-            if key not in known:
-                shown = f"{name}.{key}" if name else key
-                self.problem(f"unknown key '{shown}'", name, key, fix=closest(key, known))
-
-    def choice(self, name: str, table: dict[str, Any], key: str, allowed: tuple[str, ...]) -> str | None:
-        if key not in table:
-            return None
-        if not isinstance(table[key], str) or table[key] not in allowed:
-            shown = ", ".join(repr(one) for one in dict.fromkeys(allowed))
-            self.problem(f"'{name}.{key}' is {table[key]!r}", name, key, fix=f"one of: {shown}")
-            return None
-        return str(table[key])
-
-    def text(self, name: str, table: dict[str, Any], key: str) -> str:
-        value = table.get(key, "")
-        if not isinstance(value, str):
-            self.problem(f"'{name}.{key}' is {value!r}, not text", name, key, fix=f'write {key} = "..."')
-            return ""
-        return value
 
     def texts(self, table: dict[str, Any], key: str) -> tuple[str, ...]:
         value = table.get(key, [])
@@ -260,13 +222,13 @@ class _Reader:
         return self.parsed(name, key, table[key], unit, least) if key in table else None
 
     def parsed(self, name: str, key: str, written: Any, unit: str, least: float | None = None) -> float | None:
-        try:
-            if not isinstance(written, str):
-                raise ValueError(f'{written!r} has no unit; write for example "{units.example(unit)}"')
-            (value,) = units.parse(written, unit)
-        except ValueError as error:
-            self.problem(f"'{name}.{key}': {error}", name, key)
+        values = self.quantities(name, key, written, unit)
+        if values is None:
             return None
+        if len(values) > 1:
+            self.problem(f"'{name}.{key}' has {len(values)} values, not 1", name, key)
+            return None
+        value = values[0]
         if not math.isfinite(value) or (least is not None and value <= least):
             self.problem(f"'{name}.{key}' is {written}", name, key, fix=f"it must be above {least or 0:g} {unit}")
             return None
@@ -288,13 +250,13 @@ class _Reader:
     def time(self) -> TimeSource:
         table = self.table("time")
         unit = table.get("unit")
-        if unit is not None and canonical(str(unit)) not in units.factors("s"):
+        if unit is not None and units.canonical(str(unit)) not in units.factors("s"):
             self.problem(f"unit of time is {unit!r}", "time", "unit", fix=f"one of: {', '.join(units.factors('s'))}")
         recover = self.choice("time", table, "recover", ("auto", "uniform", "never")) or "auto"
         return TimeSource(
             column=self.column("time", table),
             format=self.choice("time", table, "format", ("number", "iso", "clock")),
-            unit=None if unit is None else canonical(str(unit)),
+            unit=None if unit is None else units.canonical(str(unit)),
             scale=self.number("time", table, "scale", 1.0),
             recover=recover,
             step=self.quantity("time", "step", "s", least=0.0),
@@ -330,7 +292,7 @@ class _Reader:
         known = units.factors(quantity.unit)
         unit = table.get("unit")
         if unit is not None:
-            unit = canonical(str(unit))
+            unit = units.canonical(str(unit))
             if unit not in known:
                 self.problem(f"unit of '{name}' is {table['unit']!r}", where, "unit", fix=f"one of: {', '.join(known)}")
                 unit = None
@@ -436,7 +398,7 @@ class _Reader:
         """What is wrong about entries that are right one by one."""
         for name in TABLES:
             if name and name != "columns" and isinstance(self.data.get(name), dict):
-                self.unknown(name, self.data[name])
+                self.unknown(name, self.data[name], TABLES[name])
         sources = made.sources
         for name, source in sources.items():
             if source.value is not None and name not in CONSTANT:
@@ -534,18 +496,3 @@ class _Reader:
             if isinstance(written, dict) and key in written:
                 fix = "remove it: the standard says what sentences hold"
                 self.problem(f"'{where}.{key}' has no meaning for NMEA 0183", where, key, fix=fix)
-
-
-def _lines(text: str) -> dict[tuple[str, str], int]:
-    """Line numbers of tables, under (table, ""), and of keys, under (table, key)."""
-    index: dict[tuple[str, str], int] = {}
-    table = ""
-    for number, line in enumerate(text.splitlines(), start=1):
-        if header := re.match(r"\s*\[([\w.-]+)\]", line):
-            table = header.group(1)
-            index.setdefault((table, ""), number)
-        elif key := re.match(r"\s*([\w.-]+)\s*=", line):
-            index.setdefault((table, key.group(1)), number)
-            # An inline table is a table of its own name too: [columns] x = { ... }.
-            index.setdefault((f"{table}.{key.group(1)}" if table else key.group(1), ""), number)
-    return index

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
-import tomllib
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -17,6 +15,7 @@ from ..errors import Problem, ProfileError, closest
 from ..metrics import METRICS
 from ..physics.wind import wind_regression
 from ..resources import folder, profile_names
+from ..toml_reading import TomlReader, toml_of
 from .changing import missing_for
 from .model import ABSENT, Approach, Coefficient, Section, ShipProfile, SteeringGear
 
@@ -61,44 +60,21 @@ def load_profile(name: str | Path) -> ShipProfile:
 def parse_profile(text: str, path: Path | None = None) -> ShipProfile:
     """The profile written in ``text``; ``path`` is for messages.  Raises ProfileError."""
     where = str(path) if path else "profile"
-    try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise ProfileError(
-            Problem("the profile is not valid TOML", where, str(error), "correct the line named")
-        ) from error
-    reader = _Reader(data, text, where)
+    reader = _Reader(toml_of(text, "the profile", where, ProfileError), text, where)
     profile = reader.read(path)
     if reader.problems:
         raise ProfileError(*reader.problems)
     return profile
 
 
-class _Reader:
-    """One pass over a parsed profile, collecting problems as it goes."""
-
-    def __init__(self, data: dict[str, Any], text: str, where: str):
-        self.data = data
-        self.text = text
-        self.where = where
-        self.lines = line_index(text)
-        self.problems: list[Problem] = []
-
-    def problem(self, what: str, section: str = "", key: str = "", why: str = "", fix: str = "") -> None:
-        line = self.lines.get((section, key)) or self.lines.get((section, ""))
-        self.problems.append(Problem(what, f"{self.where}, line {line}" if line else self.where, why, fix))
+class _Reader(TomlReader):
+    """One pass over a parsed profile."""
 
     def read(self, path: Path | None) -> ShipProfile:
         for name in self.data:
             if name not in SECTIONS:
                 self.problem(f"unknown section [{name}]", name, fix=closest(name, SECTIONS))
-        if self.data.get("schema") != SCHEMA:
-            self.problem(
-                f"schema is {self.data.get('schema')!r}, not {SCHEMA}",
-                "",
-                "schema",
-                fix=f"write 'schema = {SCHEMA}' on top",
-            )
+        self.schema(SCHEMA)
         ship = self.table("ship")
         self.unknown("ship", ship, ("name", "id", "source", "licence", "citation"))
         present = (*KINDS, *(["above_water"] if "above_water" in self.data else []), *self.effects())
@@ -153,11 +129,6 @@ class _Reader:
         if table:
             self.problem(f"'{key}' of [{section}] is missing or not text", section, key, fix=f'write {key} = "..."')
         return ""
-
-    def unknown(self, section: str, table: dict[str, Any], known: tuple[str, ...]) -> None:
-        for key in table:
-            if key not in known:
-                self.problem(f"unknown key '{section}.{key}'", section, key, fix=closest(key, known))
 
     def component(self, kind: str) -> Section | None:
         if kind.partition(".")[0] not in self.data:
@@ -258,26 +229,8 @@ class _Reader:
                 return (field.choices[written],)
             self.problem(f"'{name}' is {written!r}", kind, symbol, fix=f"one of: {', '.join(field.choices)}")
             return None
-        if isinstance(written, str):
-            try:
-                numbers = units.parse(written, field.unit, infinite=_may_be_infinite(field))
-            except ValueError as error:
-                self.problem(f"'{name}': {error}", kind, symbol)
-                return None
-        elif isinstance(written, (int, float)) and not isinstance(written, bool):
-            if field.unit not in units.DIMENSIONLESS:
-                self.problem(
-                    f"'{name}' = {written} has no unit", kind, symbol, fix=f'write {symbol} = "{written} {field.unit}"'
-                )
-                return None
-            numbers = (float(written),)
-        else:
-            self.problem(
-                f"'{name}' is {written!r}, not a number",
-                kind,
-                symbol,
-                fix=f"write {symbol} = {units.example(field.unit)}",
-            )
+        numbers = self.quantities(kind, symbol, written, field.unit, infinite=_may_be_infinite(field))
+        if numbers is None:
             return None
         return numbers if self.possible(kind, symbol, field, numbers) else None
 
@@ -399,16 +352,3 @@ def with_wind_coefficients(sections: dict[str, Section]) -> Section:
         for symbol in section.component.fields
     }
     return replace(section, coefficients=coefficients)
-
-
-def line_index(text: str) -> dict[tuple[str, str], int]:
-    """Line numbers of sections, under (section, ""), and of keys, under (section, key)."""
-    index: dict[tuple[str, str], int] = {}
-    section = ""
-    for number, line in enumerate(text.splitlines(), start=1):
-        if header := re.match(r"\s*\[([\w.-]+)\]", line):
-            section = header.group(1)
-            index.setdefault((section, ""), number)
-        elif key := re.match(r"\s*([\w-]+)\s*=", line):
-            index.setdefault((section, key.group(1)), number)
-    return index

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-from ..errors import Problem, closest
+from ..errors import Problem, TrialError, closest
+from ..toml_reading import TomlReader, toml_of
 
 SPLIT = "split.toml"
 KEYS = ("ship", "licence", "citation", "tune", "test")
@@ -34,22 +33,15 @@ def read_split(path: Path, known: Iterable[str] | None) -> tuple[Split, list[Pro
     """
     try:
         text = path.read_text(encoding="utf-8")
-        data: dict[str, Any] = tomllib.loads(text)
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        fix = "correct the line named; it must be UTF-8 text"
-        return Split(), [Problem("the split cannot be read", str(path), str(error), fix)]
-    problems = [
-        Problem(f"unknown key '{key}'", _place(path, text, key), fix=closest(key, KEYS))
-        for key in data
-        if key not in KEYS
-    ]
-    texts = {}
-    for key in ("ship", "licence", "citation"):
-        texts[key] = data.get(key, "")
-        if not isinstance(texts[key], str):
-            what, fix = f"'{key}' is {texts[key]!r}, not text", f'write {key} = "..."'
-            problems.append(Problem(what, _place(path, text, key), fix=fix))
-            texts[key] = ""
+        data = toml_of(text, "the split", str(path), TrialError)
+    except (OSError, UnicodeDecodeError) as error:
+        return Split(), [Problem("the split cannot be read", str(path), str(error), "it must be UTF-8 text")]
+    except TrialError as error:
+        return Split(), list(error.problems)
+    reader = TomlReader(data, text, str(path))
+    reader.unknown("", data, KEYS)
+    texts = {key: reader.text_of("", data, key) for key in ("ship", "licence", "citation")}
+    problems = reader.problems
     sets: dict[str, tuple[str, ...]] = {}
     for key in ("tune", "test"):
         ids = data.get(key, [])

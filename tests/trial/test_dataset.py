@@ -80,7 +80,7 @@ def test_bundled_by_name(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Non
         ('tune = ["turn_p10"]\ntest = [7]', "'test' is not a list of trial ids", 2),
         ('tune = "turn_p10"', "'tune' is not a list of trial ids", 1),
         ('ship = 7\ntune = ["turn_p10"]', "'ship' is 7, not text", 1),
-        ("tune = [", "the split cannot be read", None),
+        ("tune = [", "the split is not valid TOML", None),
     ],
 )
 def test_splits_that_make_no_sense(folder: Path, split: str, expected: str, line: int | None) -> None:
