@@ -34,7 +34,7 @@ def ordered():
             angle = np.radians(float(name[-2:])) * (1.0 if "_p" in name else -1.0)
             begins = int(np.argmax(np.abs(trial.delta) > np.radians(0.5))) - 1
             trials[name] = replace(trial, delta=np.where(np.arange(len(trial.t)) >= begins, angle, 0.0))
-    return TrialSet(trials, tuple(trials), ())
+    return TrialSet(trials, tuple(trials), (), licence="CC BY-NC 4.0", citation="Who Measured 2020")
 
 
 def test_a_null_at_infinity_is_a_point_of_the_box(ship):
@@ -66,6 +66,7 @@ def test_a_rate_limit_is_found_from_its_null_at_infinity(ship, ordered, options)
     assert 0.0 < row["position"] < 1.0
     again = parse_profile(result.tuned_text())
     assert again == result.tuned_profile()
+    assert (again.licence, again.citation) == ("CC BY-NC 4.0", "Who Measured 2020")
     assert again.value(RATE_LIMIT) == result.theta[RATE_LIMIT]
     assert again.coefficient(RATE_LIMIT).pre_determined == np.inf
 
