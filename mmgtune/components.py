@@ -32,7 +32,8 @@ class Field:
 
     label    what it is, in words
     unit     SI unit, "-" for a pure number, "prime" for the prime system of the MMG standard method
-    default  value where a profile leaves it out; None if the profile must give it
+    default  value where a profile leaves it out; None if the profile must give it, which holds for every term of a
+             force: a term that a source does not have is written as 0
     low, high  impossible at or beyond these (exclusive), None where anything goes
     choices  words a profile may write instead of the number each stands for
     table    0 for a number; else the number of values of a table
@@ -65,6 +66,12 @@ class Component:
         if tuple(self.fields) != self.params._fields:
             raise TypeError(f"{self.kind} '{self.tag}': fields {tuple(self.fields)} are not {self.params._fields}")
 
+    def __reduce__(self) -> tuple[Callable[..., Component | None], tuple[str, ...]]:
+        """Pickled by name: functions stay where they are.  Raises TypeError for one that is not in ``COMPONENTS``."""
+        if find(self.kind, self.tag) is not self:
+            raise TypeError(f"{self.kind} '{self.tag}' is not one of COMPONENTS and cannot be found again")
+        return find, (self.kind, self.tag)
+
 
 @dataclass(frozen=True)
 class Arrangement:
@@ -93,6 +100,12 @@ class Arrangement:
             raise TypeError(f"arrangement '{self.tag}': unknown inputs {unknown}, breakdown without {lacking}")
         if self.coefficients._fields != ("ship", *self.components._fields):
             raise TypeError(f"arrangement '{self.tag}': {self.coefficients._fields} are not ship and its components")
+
+    def __reduce__(self) -> tuple[Callable[..., Arrangement | None], tuple[str]]:
+        """Pickled by tag.  Raises TypeError for one that is not in ``ARRANGEMENTS``."""
+        if find_arrangement(self.tag) is not self:
+            raise TypeError(f"arrangement '{self.tag}' is not one of ARRANGEMENTS and cannot be found again")
+        return find_arrangement, (self.tag,)
 
     @property
     def kinds(self) -> tuple[str, ...]:
@@ -148,7 +161,7 @@ CUBIC_HULL = Component(
     fields={
         "R_0": Field("resistance going straight", "prime", low=0.0),
         **{
-            name: Field(f"{force}, {term} term", "prime", default=0.0)
+            name: Field(f"{force}, {term} term", "prime")
             for force, symbol, terms in (
                 ("surge force", "X", ("vv", "vr", "rr", "vvvr", "vvvv")),
                 ("sway force", "Y", ("v", "r", "vvv", "vvr", "vrr", "rrr")),
@@ -170,7 +183,7 @@ UNIFIED_HULL = Component(
     fields={
         "X_0F": Field("surge force going straight ahead", "prime", high=0.0),
         "X_0A": Field("surge force going straight astern", "prime", high=0.0),
-        "X_vr": Field("surge force, vr term", "prime", default=0.0),
+        "X_vr": Field("surge force, vr term", "prime"),
         "Y_v": Field("sway force, v term", "prime"),
         "Y_r": Field("sway force, r term", "prime"),
         "N_v": Field("yaw moment, v term", "prime"),
@@ -240,13 +253,13 @@ FOUR_QUADRANT_PROPELLER = Component(
         "K_T1": Field("thrust coefficient, phi_P term", "1/deg"),
         "K_T2": Field("thrust coefficient, phi_P^2 term", "1/deg^2"),
         "K_T3": Field("thrust coefficient, phi_P^3 term", "1/deg^3"),
-        "C_PY0": Field("side force coefficient, constant term", default=0.0),
-        "C_PY1": Field("side force coefficient, phi_P term", "1/deg", default=0.0),
-        "C_PY2": Field("side force coefficient, phi_P^2 term", "1/deg^2", default=0.0),
-        "C_PN0_low": Field("yaw moment coefficient below phi_switch, constant term", default=0.0),
-        "C_PN1_low": Field("yaw moment coefficient below phi_switch, phi_P term", "1/deg", default=0.0),
-        "C_PN0_high": Field("yaw moment coefficient from phi_switch, constant term", default=0.0),
-        "C_PN1_high": Field("yaw moment coefficient from phi_switch, phi_P term", "1/deg", default=0.0),
+        "C_PY0": Field("side force coefficient, constant term"),
+        "C_PY1": Field("side force coefficient, phi_P term", "1/deg"),
+        "C_PY2": Field("side force coefficient, phi_P^2 term", "1/deg^2"),
+        "C_PN0_low": Field("yaw moment coefficient below phi_switch, constant term"),
+        "C_PN1_low": Field("yaw moment coefficient below phi_switch, phi_P term", "1/deg"),
+        "C_PN0_high": Field("yaw moment coefficient from phi_switch, constant term"),
+        "C_PN1_high": Field("yaw moment coefficient from phi_switch, phi_P term", "1/deg"),
         "phi_switch": Field("pitch angle where the yaw moment changes polynomial", "deg", default=20.0),
         "phi_min": Field("lower end of the range of the polynomials", "deg", low=-180.0, high=180.0),
         "phi_max": Field("upper end of the range of the polynomials", "deg", low=-180.0, high=180.0),
@@ -304,8 +317,8 @@ REVERSIBLE_PROPELLER = Component(
         "k_1": Field("thrust coefficient, J term, revolutions ahead"),
         "k_2": Field("thrust coefficient, J^2 term, revolutions ahead"),
         "J_max": Field("largest size of an advance ratio", default=1.5, low=0.0),
-        **{f"A_{i}": Field(f"side force, {where}", default=0.0) for i, where in enumerate(_SIDEWAYS, start=1)},
-        **{f"B_{i}": Field(f"yaw moment, {where}", default=0.0) for i, where in enumerate(_SIDEWAYS, start=1)},
+        **{f"A_{i}": Field(f"side force, {where}") for i, where in enumerate(_SIDEWAYS, start=1)},
+        **{f"B_{i}": Field(f"yaw moment, {where}") for i, where in enumerate(_SIDEWAYS, start=1)},
         "C_3": Field("surge force, revolutions astern, J_S below C_10"),
         "C_6": Field("surge force, revolutions astern, J_S from C_10 on, constant term"),
         "C_7": Field("surge force, revolutions astern, J_S from C_10 on, J_S term"),
@@ -338,7 +351,7 @@ FLAPPED_RUDDER = Component(
     cites=(SUYAMA, OKUDA),
     fields={
         **_RUDDER_GEOMETRY,
-        "u_R0": Field("inflow from the propeller at bollard condition", default=0.0, low=-1e-12),
+        "u_R0": Field("inflow from the propeller at bollard condition", low=-1e-12),
         **_RUDDER_INFLOW,
         "f_a0": Field("normal force gradient, flap amidships", "1/rad", low=0.0),
         "f_a2": Field("normal force gradient, flap angle squared term", "1/rad^3"),
@@ -373,8 +386,8 @@ REVERSIBLE_RUDDER = Component(
     fields={
         **_RUDDER_GEOMETRY,
         **_RUDDER_INFLOW,
-        "k_reverse": Field("propeller race against the motion of the ship", default=0.0, low=-1e-12),
-        "C_PR": Field("loss of inflow behind a braking propeller", default=0.0),
+        "k_reverse": Field("propeller race against the motion of the ship", low=-1e-12),
+        "C_PR": Field("loss of inflow behind a braking propeller"),
         "f_alpha": Field("normal force gradient", "1/rad", low=0.0),
     },
 )
@@ -442,7 +455,8 @@ SINGLE_PROPELLER_SINGLE_RUDDER = Arrangement(
 ARRANGEMENTS = (SINGLE_PROPELLER_SINGLE_RUDDER,)
 """Every arrangement there is; a profile that names none has the first."""
 
-KINDS = SINGLE_PROPELLER_SINGLE_RUDDER.kinds
+KINDS = tuple(dict.fromkeys(kind for arrangement in ARRANGEMENTS for kind in arrangement.kinds))
+"""Every kind of component that some arrangement has."""
 
 UNTAGGED = {"particulars": SHIP, "above_water": ABOVE_WATER}
 """Kinds of which there is only one component, so that a profile names no model."""
@@ -457,6 +471,11 @@ def split_name(name: str) -> tuple[str, str]:
 def tags(kind: str) -> tuple[str, ...]:
     """The tags a profile may name for one kind of component."""
     return tuple(component.tag for component in COMPONENTS if component.kind == kind)
+
+
+def find_arrangement(tag: str) -> Arrangement | None:
+    """The arrangement of that tag, None if there is none."""
+    return next((arrangement for arrangement in ARRANGEMENTS if arrangement.tag == tag), None)
 
 
 def find(kind: str, tag: str) -> Component | None:

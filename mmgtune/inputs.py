@@ -26,6 +26,11 @@ class Input:
     words: str
     role: Role
 
+    @property
+    def rate_unit(self) -> str:
+        """Unit of its rate of change."""
+        return {"rad": "rad/s", "1/s": "1/s^2"}[self.unit]
+
 
 INPUTS: dict[str, Input] = {
     one.name: one

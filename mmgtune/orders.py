@@ -18,7 +18,7 @@ from .backends.cases import Integrator
 from .errors import OptionError, Problem
 from .model import Model
 from .physics.quantities import UNKNOWN, State
-from .profile import ShipProfile, SteeringGear
+from .profile import ShipProfile
 from .simulation import Motion
 
 FINE = 0.01
@@ -84,14 +84,6 @@ class ZigzagOrder:
         return self._given > self.legs
 
 
-def move_rudder(delta: float, ordered: float, gear: SteeringGear | None, dt: float) -> float:
-    """Rudder angle [rad] after dt [s] of a gear with constant rate; at once where there is no gear."""
-    if gear is None:
-        return ordered
-    goal = min(max(ordered, -gear.max_angle), gear.max_angle)
-    return delta + min(max(goal - delta, -gear.rate * dt), gear.rate * dt)
-
-
 def run_manoeuvre(
     ship: ShipProfile | Model,
     helmsman: Helmsman,
@@ -107,6 +99,9 @@ def run_manoeuvre(
     theta: FloatArray | None = None,
 ) -> Motion:
     """Simulate a manoeuvre given as orders, sampled every ``sample`` seconds.
+
+    The order goes to every rudder, the revolutions to every propeller, each moved by its actuator in the profile;
+    thrusters rest.
 
     speed    approach speed [m/s], the profile's where None
     n        propeller revolutions [1/s], the profile's where None
@@ -134,36 +129,38 @@ def run_manoeuvre(
         raise OptionError(Problem(f"the approach speed is {U_0:g} m/s", "--speed", fix="give a speed above 0"))
     ship_now = LaneModel(model, model.matrix() if theta is None else theta)
     start = State(*np.array([[0.0], [0.0], [heading], [U_0], [0.0], [0.0]]))
-    delta, revolutions = 0.0, n_0
+    inputs = model.arrangement.inputs
+    actuators = [profile.actuator(one.name) for one in inputs]
+    driven = [n_0 if one.role == "propeller" else 0.0 for one in inputs]
 
     def control() -> Any:
-        """Every rudder at the angle, every propeller at the revolutions, thrusters at rest."""
-        now = {"rudder": delta, "propeller": revolutions, "thruster": 0.0}
-        return model.arrangement.control(*(np.array([now[one.role]]) for one in model.arrangement.inputs))
+        return model.arrangement.control(*(np.array([value]) for value in driven))
 
     run = ship_now.start(start, control())
     longest_step = step or min(LONGEST_STEP, FINE * model.L_pp / U_0)
     steps = max(1, math.ceil(sample / longest_step - 1e-9))
     h = sample / steps
     rows: list[FloatArray] = [np.array(run.shown)[:, 0]]
-    controls = [np.array(control())[:, 0]]
+    controls = [tuple(driven)]
     diverged = False
     for i in range(round(longest / sample)):
         for k in range(steps):
             t = i * sample + k * h
             seen = float(run.shown.psi[0])
-            delta = move_rudder(delta, helmsman.order(t, seen - heading), profile.steering_gear, h)
-            if engine is not None:
-                revolutions = n_0 * engine(math.hypot(run.s[3, 0], run.s[4, 0]) / U_0)
+            share = 1.0 if engine is None else engine(math.hypot(run.s[3, 0], run.s[4, 0]) / U_0)
+            orders = {"rudder": helmsman.order(t, seen - heading), "propeller": n_0 * share, "thruster": 0.0}
+            for place, (one, actuator) in enumerate(zip(inputs, actuators, strict=True)):
+                order = orders[one.role]
+                driven[place] = actuator.moved(driven[place], order, h) if actuator else order
             with np.errstate(all="ignore"):
                 run.step(control(), UNKNOWN, np.array([h]), RK4)
         rows.append(np.array(run.shown)[:, 0])
-        controls.append(np.array(control())[:, 0])
+        controls.append(tuple(driven))
         diverged = not bool(np.isfinite(run.s).all())
         if diverged or helmsman.finished(float(rows[-1][2] - heading)):
             break
     times: FloatArray = sample * np.arange(len(rows), dtype=np.float64)
-    inputs = np.array(controls)
+    logged = np.array(controls)
     if ship_now.shift is not None:
-        inputs = np.column_stack([np.interp(times - ship_now.shift, times, column) for column in inputs.T])
-    return Motion(id, times, np.vstack(rows), inputs, diverged, model.inputs)
+        logged = np.column_stack([np.interp(times - ship_now.shift, times, column) for column in logged.T])
+    return Motion(id, times, np.vstack(rows), logged, diverged, model.inputs)

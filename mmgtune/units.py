@@ -1,4 +1,4 @@
-"""Numbers with units, as people write them in profiles and on the command line; SI inside the program.
+"""Numbers with units, as people and logs write them; SI inside the program.
 
 Degrees, knots and revolutions per minute appear here and in what people read, nowhere else.  A unit library
 would treat a revolution as 2 pi of nothing and turn 106 rpm into 11.1 1/s, so the few units are listed.
@@ -20,6 +20,7 @@ _FACTORS: dict[str, dict[str, float]] = {
     "deg": {"deg": 1.0, "rad": 1.0 / DEG},
     "rad/s": {"rad/s": 1.0, "deg/s": DEG, "deg/min": DEG / 60.0},
     "1/s": {"1/s": 1.0, "rps": 1.0, "rpm": 1.0 / 60.0},
+    "1/s^2": {"1/s^2": 1.0, "rpm/s": 1.0 / 60.0},
     "N": {"N": 1.0, "kN": 1e3},
     "s": {"s": 1.0, "min": 60.0, "h": 3600.0, "ms": 1e-3, "us": 1e-6},
     "kg/m^3": {"kg/m^3": 1.0, "t/m^3": 1e3},
@@ -33,17 +34,31 @@ _FACTORS: dict[str, dict[str, float]] = {
     "1/rad^3": {"1/rad^3": 1.0, "1/deg^3": 1.0 / DEG**3},
 }
 
+_SYNONYMS = {
+    "knots": "kn", "knot": "kn", "kts": "kn", "kt": "kn", "kmh": "km/h", "kph": "km/h", "mps": "m/s", "m s-1": "m/s",
+    "degree": "deg", "degrees": "deg", "°": "deg", "radian": "rad", "radians": "rad",
+    "°/s": "deg/s", "degrees/s": "deg/s", "deg/sec": "deg/s", "dps": "deg/s", "rad/sec": "rad/s",
+    "°/min": "deg/min", "deg/minute": "deg/min",
+    "1/min": "rpm", "r/min": "rpm", "min-1": "rpm", "rev/min": "rpm", "hz": "1/s", "rev/s": "rps", "s-1": "1/s",
+    "metre": "m", "metres": "m", "meter": "m", "meters": "m", "feet": "ft", "foot": "ft", "nmi": "NM", "nm": "NM",
+    "sec": "s", "second": "s", "seconds": "s", "minutes": "min", "minute": "min", "hours": "h", "msec": "ms",
+}  # fmt: skip
+"""Names that people and loggers give to units, in small letters."""
+
 DIMENSIONLESS = ("-", "prime")
 
 _QUANTITY = re.compile(r"^\s*((?:[-+0-9.eE]+\s*,\s*)*[-+0-9.eE]+)\s*([^\s0-9].*?|1/.*?)?\s*$")
 
 
-def parse(text: str, unit: str) -> tuple[float, ...]:
-    """The numbers of "12 kn" or "0, 10, 18 deg" in ``unit``.
+_INFINITE = re.compile(r"^\s*(inf)\s+(\S.*?)\s*$")
+
+
+def parse(text: str, unit: str, infinite: bool = False) -> tuple[float, ...]:
+    """The numbers of "12 kn" or "0, 10, 18 deg" in ``unit``; "inf deg/s" too where ``infinite`` allows it.
 
     Raises ValueError with a sentence saying what was expected.
     """
-    match = _QUANTITY.match(text)
+    match = (_INFINITE.match(text) if infinite else None) or _QUANTITY.match(text)
     if match is None:
         raise ValueError(f"'{text}' is not a number with a unit, such as '{example(unit)}'")
     written = (match.group(2) or "").strip()
@@ -62,6 +77,12 @@ def parse(text: str, unit: str) -> tuple[float, ...]:
         return tuple(float(number) * factor for number in match.group(1).split(","))
     except ValueError:
         raise ValueError(f"'{text}' is not a number with a unit, such as '{example(unit)}'") from None
+
+
+def canonical(unit: str) -> str:
+    """A unit by the name the program knows it by; unknown ones as they are."""
+    unit = unit.strip()
+    return _SYNONYMS.get(unit.lower(), unit)
 
 
 def factors(unit: str) -> dict[str, float]:

@@ -18,7 +18,7 @@ import numpy as np
 
 from mmgtune.files import write_text
 from mmgtune.orders import Helmsman, TurningOrder, ZigzagOrder, run_manoeuvre
-from mmgtune.profile import load_profile, parse_profile, tuned_text
+from mmgtune.profile import load_profile, tuned
 from mmgtune.simulation import Motion
 from mmgtune.trial import Trial, write_trial
 
@@ -65,7 +65,7 @@ NOTE = (
 def generate(folder: Path) -> None:
     """Write all trials and the split to ``folder``, replacing what is there."""
     pre_determined = load_profile("suzaku")
-    ship = parse_profile(tuned_text(pre_determined, SHIP, {}, {}))
+    ship = tuned(pre_determined, SHIP, {}, {})
     runs: list[tuple[str, str, Helmsman, float]] = []
     for angle in (10, 20, 35, 40):
         for sign, letter in ((1, "p"), (-1, "m")):

@@ -9,7 +9,7 @@ import numpy as np
 from ..backends import Integrator, get_backend
 from ..model import Model
 from ..objective import cases_of, make_objective
-from ..profile.reading import line_index
+from ..toml_reading import line_index
 from ..trial import Trial
 from .baseline import Baseline
 from .result import Changed

@@ -50,12 +50,14 @@ def command(
                 "kind": "cite",
                 "profile": ship.id,
                 "source": ship.source,
+                "licence": ship.licence,
+                "citation": ship.citation,
                 "components": [{"component": name, "papers": list(of)} for name, of in parts.items()],
                 "methods": [{"method": name, "papers": list(of)} for name, of in METHODS.items()],
             }
         )
         return
-    print(f"{ship.name}\n    {ship.source}")
+    print("\n    ".join((ship.name, ship.source, *c.terms(ship))))
     for heading, of in (("Components", parts), ("Methods, where you used them", METHODS)):
         print(f"\n{heading}")
         for name, papers in of.items():

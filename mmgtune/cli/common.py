@@ -218,13 +218,12 @@ def with_effects(ship: ShipProfile, tags: tuple[str, ...]) -> tuple[ShipProfile,
 
     Raises OptionError for an unknown effect, or one that does not apply.
     """
-    from math import isfinite
-
     from ..effects import effect_tags, find_effect
     from ..errors import closest
-    from ..profile import extended_text, missing_for, parse_profile
+    from ..profile import missing_for
+    from ..profile import with_effects as put_in
 
-    added: dict[str, dict[str, tuple[float, float | None]]] = {}
+    added: dict[str, dict[str, float]] = {}
     for tag in tags:
         effect = find_effect(tag)
         if effect is None:
@@ -239,21 +238,16 @@ def with_effects(ship: ShipProfile, tags: tuple[str, ...]) -> tuple[ShipProfile,
                     "add what is missing, or leave the effect out",
                 )
             )
-        new = {n: p for n, p in effect.parameters.items() if f"{effect.kind}.{n}" not in ship.names()}
-        if not all(isfinite(parameter.null) for parameter in new.values()):
-            raise OptionError(
-                Problem(
-                    f"the effect '{tag}' has no value at which it is absent",
-                    "--with-effects",
-                    "it fades only towards infinity",
-                    f"write a first guess into the profile, [{effect.kind}], and name it in --targets",
-                )
-            )
-        added[tag] = {name: (parameter.null, None) for name, parameter in new.items()}
+        if effect.kind not in ship.sections:
+            added[tag] = {name: parameter.null for name, parameter in effect.parameters.items()}
     names = tuple(f"effects.{tag}.{name}" for tag, parameters in added.items() for name in parameters)
-    if not names:
-        return ship, ()
-    return parse_profile(extended_text(ship, added, "put in to be tuned"), ship.path), names
+    return put_in(ship, added, "put in to be tuned"), names
+
+
+def terms(ship: ShipProfile) -> list[str]:
+    """Licence and citation of the data a profile was tuned to, as lines; none where it was not."""
+    named = (("licence of the data it was tuned to", ship.licence), ("cite for them", ship.citation))
+    return [f"{name}: {text}" for name, text in named if text]
 
 
 def default_out(profile: ShipProfile) -> Path:

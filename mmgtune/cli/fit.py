@@ -135,7 +135,8 @@ def summary(result: FitResult, folder: str, report: bool) -> str:
         )
         note = ", ".join(word for word in (mark, "" if row["determined"] else "not determined") if word)
         place = "".join("*" if round(row["position"] * 20) == k else "-" for k in range(21))
-        lines.append(f"{row['name']:<24}{row['pre_determined']:>11.4g}{row['value']:>11.4g}{error:>10}  {place} {note}")
+        before, tuned = ("inf" if row[key] is None else f"{row[key]:.4g}" for key in ("pre_determined", "value"))
+        lines.append(f"{row['name']:<24}{before:>11}{tuned:>11}{error:>10}  {place} {note}")
     width = max([22, *(len(one.trial.id) for one in result.compared)]) + 2
     lines += ["", f"{'trial':<{width}}{'role':<7}{'J before':>11}{'J after':>11}", ""]
     for one in result.compared:

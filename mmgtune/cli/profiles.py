@@ -48,9 +48,13 @@ def show(profile: Name, json: c.Json = False) -> None:
         for symbol, number in section.coefficients.items()
     ]
     if json:
-        c.print_json({"schema": 1, "id": ship.id, "name": ship.name, "source": ship.source, "coefficients": rows})
+        finite: list[dict[str, object]] = [
+            {**row, "value": None if row["value"] == float("inf") else row["value"]} for row in rows
+        ]
+        told = {key: getattr(ship, key) for key in ("id", "name", "source", "licence", "citation")}
+        c.print_json({"schema": 1, **told, "coefficients": finite})
         return
-    print(f"{ship.name}\n{ship.source}\n")
+    print("\n".join((ship.name, ship.source, *c.terms(ship), "")))
     for row in rows:
         value = row["value"]
         text = ", ".join(f"{v:.4g}" for v in value) if isinstance(value, list) else f"{value:g}"

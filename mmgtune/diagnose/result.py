@@ -7,11 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from ..effects import Effect
-from ..fitting.comparison import finite
-from ..profile import ShipProfile, extended_text, parse_profile, tuned_text
+from ..fitting.comparison import finite, finite_values
+from ..profile import ShipProfile, tuned, with_effects
 from .gain import Gain
 from .intervals import Estimate
 from .leftover import Leftover
@@ -201,11 +199,11 @@ class Diagnosis:
         causes = [cite for cause in self.causes if cause.effect for cite in cause.effect.cites]
         return list(dict.fromkeys([*self.profile.cites(), *causes]))
 
-    def extended_text(self) -> str:
-        """TOML of the profile with re-tuned targets and the causes, each in its own table."""
-        source = f"diagnosed by mmgtune {self.provenance['mmgtune']}"
+    def extended_profile(self) -> ShipProfile:
+        """The profile with re-tuned targets and the causes, each in its own section."""
+        made_by = f"mmgtune {self.provenance['mmgtune']}"
         facts = {
-            "made_by": f"mmgtune {self.provenance['mmgtune']}",
+            "made_by": made_by,
             "command": self.provenance["command"],
             "created": self.provenance["created"],
             "profile_sha256": self.profile.sha256,
@@ -213,15 +211,22 @@ class Diagnosis:
             "verdict": self.verdict,
             "causes": [cause.tag for cause in self.causes],
         }
-        tuned = parse_profile(tuned_text(self.profile, self.theta, {}, facts, "extended"))
-        tables: dict[str, dict[str, tuple[float, float | None]]] = {}
+        values: dict[str, dict[str, float]] = {}
+        stderr: dict[str, dict[str, float | None]] = {}
         for cause in self.causes:
             if cause.effect is not None:
-                table = tables.setdefault(cause.tag, {})
                 for full, estimate in cause.estimates.items():
-                    if np.isfinite(estimate.value):
-                        table[full.rpartition(".")[2]] = (estimate.value, estimate.stderr)
-        return extended_text(tuned, tables, source) if tables else tuned.text
+                    name = full.rpartition(".")[2]
+                    values.setdefault(cause.tag, {})[name] = estimate.value
+                    stderr.setdefault(cause.tag, {})[name] = estimate.stderr
+        told = self.provenance["trials"]
+        data = {"licence": told.get("licence", ""), "citation": told.get("citation", "")}
+        retuned = tuned(self.profile, self.theta, {}, facts, "extended", **data)
+        return with_effects(retuned, values, f"diagnosed by {made_by}", stderr)
+
+    def extended_text(self) -> str:
+        """TOML of that."""
+        return self.extended_profile().text
 
     def to_dict(self) -> dict[str, Any]:
         """The document of ``diagnosis.json``, schema 1 (docs/formats.md)."""
@@ -251,7 +256,7 @@ class Diagnosis:
             "detectability": [one.to_dict() for one in self.detectability],
             "noise": {name: dict(values) for name, values in self.noise.items()},
             "chi2_per_residual": {"before": self.chi2[0], "after": self.chi2[1]},
-            "theta": dict(self.theta),
+            "theta": finite_values(self.theta),
             "trial_results": [one.to_dict() for one in self.gain.compared],
             "assumptions": [
                 {"name": name, "value": self.profile.written(name), "note": coefficient.note}

@@ -14,9 +14,8 @@ from ..backends import STATES
 from ..objective import Objective, cases_of
 from ..orders import Helmsman, TurningOrder, ZigzagOrder, run_manoeuvre
 from ..simulation import Motion, as_trial
+from ..units import DEG
 from .workbench import Point, Workbench
-
-DEG = math.pi / 180.0
 
 
 @dataclass

@@ -77,6 +77,14 @@ class Effect(Component):
         if self.kind != f"effects.{self.tag}":
             raise TypeError(f"effect '{self.tag}': its kind is '{self.kind}', not 'effects.{self.tag}'")
 
+    def __reduce__(self) -> tuple[Callable[..., Component | None], tuple[str, ...]]:
+        """Pickled by tag, as components are.  Raises TypeError for an effect that no list and no entry point names."""
+        from . import find_effect
+
+        if find_effect(self.tag) is not self:
+            raise TypeError(f"effect '{self.tag}' is not named by an entry point and cannot be found again")
+        return find_effect, (self.tag,)
+
     @property
     def parameters(self) -> dict[str, Parameter]:
         """The parameters by name."""

@@ -48,6 +48,17 @@ class Box:
         return self.high - self.low
 
     @property
+    def relative(self) -> FloatArray:
+        """What a share of each target is of: its pre-determined value, its width where that is 0 or infinite."""
+        return np.abs(np.where((self.pre != 0.0) & np.isfinite(self.pre), self.pre, self.width))
+
+    def bound_at(self, i: int, z: float) -> str | None:
+        """ "low" or "high" where target ``i`` at z in the cube has its lowest or highest value, None between."""
+        if 0.0 < z < 1.0:
+            return None
+        return "low" if (z <= 0.0) != (i in self.reciprocal) else "high"
+
+    @property
     def charted(self) -> set[int]:
         """Targets that are not searched for as they are."""
         return {*self.reciprocal, *(i for pair in self.polar for i in pair)}

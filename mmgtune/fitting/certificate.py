@@ -102,9 +102,9 @@ def certify(
     low, high = unit <= 0.0, unit >= 1.0
     active = (low & (gradient > 0.0)) | (high & (gradient < 0.0))
     free = ~active
-    per_percent = 0.01 * np.abs(problem.box.pre) / problem.box.width
+    per_percent = 0.01 * problem.box.relative / problem.box.width
     bounds = tuple(
-        ActiveBound(name, "low" if low[i] else "high", float(abs(gradient[i]) * per_percent[i]))
+        ActiveBound(name, problem.box.bound_at(i, unit[i]) or "", float(abs(gradient[i]) * per_percent[i]))
         for i, name in enumerate(problem.box.names)
         if active[i]
     )

@@ -98,3 +98,8 @@ def total(compared: Sequence[TrialComparison], role: str, which: str) -> float |
 def finite(value: float | None) -> float | None:
     """The number, or None where JSON has no word for it."""
     return value if value is not None and np.isfinite(value) else None
+
+
+def finite_values(values: Mapping[str, float]) -> dict[str, float | None]:
+    """Numbers by name for JSON."""
+    return {name: finite(value) for name, value in values.items()}

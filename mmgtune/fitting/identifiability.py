@@ -104,7 +104,7 @@ def analyse(problem: FitProblem, unit: FloatArray, active: BoolArray) -> Identif
     box = problem.box
     residuals, jacobian = problem.central_jacobian(unit)
     whitening = estimate_whitening(problem, residuals)
-    relative = np.abs(np.where((box.pre != 0.0) & np.isfinite(box.pre), box.pre, box.width))
+    relative = box.relative
     sensitivity = whitening.apply(jacobian * (relative / box.width))
     if problem.sigma is not None:
         _, _, by_offset = problem.jacobians(unit[:, None])

@@ -15,7 +15,7 @@ from ..repeating import Repeated, repeat
 from ..threads import blas_on_one_thread
 from ..trial import Trial, TrialSet
 from ..validation import L_MSE, TrialScore, by_manoeuvre, improvement, score
-from .comparison import finite
+from .comparison import finite, finite_values
 from .least_squares import solve
 from .options import FitOptions
 from .run import Hooks, edge_ridge, in_pieces, make_problem, make_provenance, random_starts
@@ -75,7 +75,8 @@ class LeftOut:
             "sigma": self.sigma,
             "scores": self.rows(),
             "parts": [
-                {"left_out": list(runs), "theta": theta} for runs, theta in zip(self.parts, self.thetas, strict=True)
+                {"left_out": list(runs), "theta": finite_values(theta)}
+                for runs, theta in zip(self.parts, self.thetas, strict=True)
             ],
             "wall_s": self.wall_s,
         }

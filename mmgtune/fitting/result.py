@@ -10,11 +10,11 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..components import split_name
-from ..profile import ShipProfile, parse_profile, tuned_text
+from ..profile import ShipProfile, tuned
 from .box import Box
 from .certificate import Certificate
 from .cmaes import Generation, Restart
-from .comparison import TrialComparison, finite, total
+from .comparison import TrialComparison, finite, finite_values, total
 from .identifiability import Identifiability
 from .least_squares import LeastSquaresResult
 from .options import FitOptions
@@ -136,23 +136,23 @@ class FitResult:
                     "name": name,
                     "label": field.label,
                     "unit": field.unit,
-                    "pre_determined": float(self.box.pre[i]),
+                    "pre_determined": finite(float(self.box.pre[i])),
                     "low": finite(float(low[i])),
                     "high": finite(float(high[i])),
-                    "value": value,
-                    "position": z,
+                    "value": finite(value),
+                    "position": 1.0 - z if i in self.box.reciprocal else z,  # in the order of the values
                     "stderr": stderr.get(name),
-                    "at_bound": "low" if z <= 0.0 else "high" if z >= 1.0 else None,
+                    "at_bound": self.box.bound_at(i, z),
                     "determined": name not in undetermined,
                 }
             )
         return rows
 
-    def tuned_text(self) -> str:
-        """TOML of the tuned profile; windows stand there as the trials they were cut from."""
+    def tuned_profile(self) -> ShipProfile:
+        """The tuned profile, ready to simulate; in its provenance windows stand as the trials they were cut from."""
         whole = {one.trial.id: one.trial.whole for one in self.compared}
         told = self.provenance["trials"]
-        return tuned_text(
+        return tuned(
             self.profile,
             self.theta,
             self.identifiability.stderr,
@@ -172,11 +172,13 @@ class FitResult:
                 "at_bound": self.at_bound,
                 "undetermined": list(self.identifiability.undetermined),
             },
+            licence=told.get("licence", ""),
+            citation=told.get("citation", ""),
         )
 
-    def tuned_profile(self) -> ShipProfile:
-        """The tuned profile, ready to simulate."""
-        return parse_profile(self.tuned_text())
+    def tuned_text(self) -> str:
+        """TOML of the tuned profile."""
+        return self.tuned_profile().text
 
     def to_dict(self) -> dict[str, Any]:
         """The document of ``fit.json``, schema 1 (docs/formats.md)."""
@@ -191,7 +193,7 @@ class FitResult:
             "J_test": self.J_of("test", "after"),
             "J_tune_before": self.J_of("tune", "before"),
             "J_test_before": self.J_of("test", "before"),
-            "theta": self.theta,
+            "theta": finite_values(self.theta),
             "stderr": self.identifiability.stderr,
             "at_bound": self.at_bound,
             "undetermined": list(self.identifiability.undetermined),

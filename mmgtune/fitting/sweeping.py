@@ -15,6 +15,7 @@ from ..errors import OptionError, Problem
 from ..files import write_text
 from ..profile import ShipProfile
 from ..trial import TrialSet
+from .comparison import finite_values
 from .folder import write_run
 from .least_squares import fit_offsets, solve
 from .leaving_out import leaving_out
@@ -117,7 +118,7 @@ class SweepResult:
                     "J_test": run.J_of("test", "after"),
                     "J_tune_cmaes": run.certificate.J_cmaes,
                     "agreement": run.certificate.agreement(),
-                    "theta": run.theta,
+                    "theta": finite_values(run.theta),
                     "coefficients": run.coefficients(),
                     "at_bound": run.at_bound,
                     "undetermined": list(run.identifiability.undetermined),

@@ -1,6 +1,7 @@
 """Logs of trials (CSV, Parquet, NMEA 0183) to trial files.
 
-mapping         the map of a log; reading_map: from TOML; quantities: what there is; headers: names and units in logs
+mapping         the map of a log; reading_map: from TOML; checking_map: its contradictions; quantities: what there is
+headers         names and units in logs
 table           columns of a log; text, parquet_log: reading them; clock: time put right
 record          quantities in the program's units, each with its own time; nmea: reading sentences
 digits          made up for where too few are printed; yaw: the heading from its rate; cleaning: spikes

@@ -9,7 +9,8 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import LogError, Problem
 from ..physics.frame import to_ship
-from ..trial.kinematics import DEG, FITS, IN_EARTH_AXES, position_misfits, turning
+from ..trial.kinematics import FITS, IN_EARTH_AXES, position_misfits, turning
+from ..units import DEG
 from .mapping import LogMap
 from .motion import moved
 

@@ -5,23 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-_SYNONYMS = {
-    "knots": "kn", "knot": "kn", "kts": "kn", "kt": "kn", "kmh": "km/h", "kph": "km/h", "mps": "m/s", "m s-1": "m/s",
-    "degree": "deg", "degrees": "deg", "°": "deg", "radian": "rad", "radians": "rad",
-    "°/s": "deg/s", "degrees/s": "deg/s", "deg/sec": "deg/s", "dps": "deg/s", "rad/sec": "rad/s",
-    "°/min": "deg/min", "deg/minute": "deg/min",
-    "1/min": "rpm", "r/min": "rpm", "min-1": "rpm", "rev/min": "rpm", "hz": "1/s", "rev/s": "rps", "s-1": "1/s",
-    "metre": "m", "metres": "m", "meter": "m", "meters": "m", "feet": "ft", "foot": "ft", "nmi": "NM", "nm": "NM",
-    "sec": "s", "second": "s", "seconds": "s", "minutes": "min", "minute": "min", "hours": "h", "msec": "ms",
-}  # fmt: skip
+from ..units import canonical
 
 _UNIT = re.compile(r"^(.*?)\s*(?:\[([^\[\]]+)\]|\(([^()]+)\))\s*$")
-
-
-def canonical(unit: str) -> str:
-    """A unit by the name the program knows it by; unknown ones as they are."""
-    unit = unit.strip()
-    return _SYNONYMS.get(unit.lower(), unit)
 
 
 def unit_in(header: str) -> str | None:

@@ -8,6 +8,30 @@ from pathlib import Path
 
 FORMATS = ("csv", "parquet", "nmea")
 PROJECTIONS = ("transverse-mercator", "azimuthal-equidistant")
+TABLES = {
+    "": (
+        "schema",
+        "description",
+        "log",
+        "trial",
+        "time",
+        "columns",
+        "velocity",
+        "antenna",
+        "position",
+        "resample",
+        "cut",
+    ),
+    "log": ("format", "delimiter", "encoding", "decimal", "skip", "header", "fields", "missing"),
+    "trial": ("ship", "id", "manoeuvre", "source", "note", "noise"),
+    "time": ("column", "format", "unit", "scale", "recover", "step"),
+    "velocity": ("axes", "point", "shifted"),
+    "antenna": ("x", "y"),
+    "position": ("projection", "origin"),
+    "resample": ("step", "gap"),
+    "cut": ("start", "end", "from", "lead", "to", "split"),
+}
+"""Tables of a map and their keys; "" stands for the map itself."""
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import LogError, Problem
-from ..units import DEG, KNOT
+from ..units import DEG, KNOT, factors
 from .clock import DAY, put_right
 from .mapping import LogMap, TimeSource
 from .quantities import AGAINST, QUANTITIES
@@ -28,7 +28,9 @@ SENTENCES = {
     "ROT": "yaw rate", "RSA": "rudder", "RPM": "revolutions", "MWV": "wind", "MWD": "wind", "ZDA": "date",
 }  # fmt: skip
 POSITIONS = ("GGA", "RMC", "GLL")
-_SPEED = {"K": 1.0 / 3.6, "M": 1.0, "N": KNOT}
+_SPEED = {letter: factors("m/s")[unit] for letter, unit in (("K", "km/h"), ("M", "m/s"), ("N", "kn"))}
+_PER_MINUTE = factors("rad/s")["deg/min"]
+_RPM = factors("1/s")["rpm"]
 _LINE = re.compile(rb"[$!]([A-Z]{2}|P[A-Z]*)([A-Z]{3}),([^*\r\n]*)(?:\*([0-9A-Fa-f]{2}))?\s*$")
 
 
@@ -110,11 +112,11 @@ class _Parser:
         elif (kind == "HDT" and f[0]) or (kind == "THS" and f[0] and f[1] != "V"):
             self.wait("psi", float(f[0]) * DEG)
         elif kind == "ROT" and f[0] and f[1] == "A":
-            self.wait("r", float(f[0]) * DEG / 60.0)
+            self.wait("r", float(f[0]) * _PER_MINUTE)
         elif kind == "RSA":
             self.rudder(f)
         elif kind == "RPM" and f[2] and f[4] == "A":
-            self.wait(f"n {f[0]}{f[1]}", float(f[2]) / 60.0)
+            self.wait(f"n {f[0]}{f[1]}", float(f[2]) * _RPM)
         elif kind == "MWV" and f[0] and f[2] and f[4] == "A" and f[1] == "R":
             self.wait("wind_dir_app", float(f[0]) * DEG)
             self.wait("wind_speed_app", float(f[2]) * _SPEED[f[3]])

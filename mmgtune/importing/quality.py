@@ -14,7 +14,8 @@ from ..errors import LogError, Problem
 from ..physics.frame import to_earth
 from ..trial import Trial, check_trial
 from ..trial.control_checks import fastest_change
-from ..trial.kinematics import DEG, IN_EARTH_AXES, position_misfits, turning
+from ..trial.kinematics import IN_EARTH_AXES, position_misfits, turning
+from ..units import DEG, KNOT
 from .conventions import rudder_evidence
 from .gridding import Grid
 from .mapping import LogMap
@@ -168,7 +169,7 @@ def same_units_throughout(t: FloatArray, columns: dict[str, FloatArray], where: 
                 ratios["way"].append((float(t[first]), logged / run))
     for name, factor, what in (
         ("turn", 1.0 / DEG, "the unit of heading or yaw rate changes within the log"),
-        ("way", 3600.0 / 1852.0, "the unit of velocities or positions changes within the log"),
+        ("way", 1.0 / KNOT, "the unit of velocities or positions changes within the log"),
     ):
         right = [at for at, ratio in ratios[name] if abs(ratio - 1.0) < 0.1]
         for other in (factor, 1.0 / factor):

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
-import tomllib
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -12,46 +10,16 @@ from typing import Any
 from .. import units
 from ..errors import LogError, Problem, closest
 from ..resources import import_map_names, import_maps
+from ..toml_reading import TomlReader, toml_of
 from ..trial.schema import COLUMNS, SOURCES
-from .headers import canonical
-from .mapping import FORMATS, PROJECTIONS, Cut, LogMap, Source, TimeSource
-from .quantities import CONTROLS, MEANING, QUANTITIES
+from .checking_map import check
+from .mapping import FORMATS, PROJECTIONS, TABLES, Cut, LogMap, Source, TimeSource
+from .quantities import MEANING, QUANTITIES
 
 SCHEMA = 1
-TABLES = {
-    "": (
-        "schema",
-        "description",
-        "log",
-        "trial",
-        "time",
-        "columns",
-        "velocity",
-        "antenna",
-        "position",
-        "resample",
-        "cut",
-    ),
-    "log": ("format", "delimiter", "encoding", "decimal", "skip", "header", "fields", "missing"),
-    "trial": ("ship", "id", "manoeuvre", "source", "note", "noise"),
-    "time": ("column", "format", "unit", "scale", "recover", "step"),
-    "velocity": ("axes", "point", "shifted"),
-    "antenna": ("x", "y"),
-    "position": ("projection", "origin"),
-    "resample": ("step", "gap"),
-    "cut": ("start", "end", "from", "lead", "to", "split"),
-}
 COLUMN_KEYS = ("column", "value", "unit", "positive", "zero", "direction", "scale", "offset", "recover")
 RECOVER = {"x": ("print-resolution",), "y": ("print-resolution",), "psi": ("yaw-rate",)}
 """What a map may have made up for where few digits are printed."""
-CONSTANT = (*CONTROLS, "delta_port", "delta_stbd", "n_bow", "n_stern", *[
-    name for name in QUANTITIES if name.startswith(("wind", "wave", "depth"))
-])  # fmt: skip
-"""What a map may give as a constant."""
-IN_SENTENCES = (
-    "psi", "r", "n", "delta", "delta_port", "delta_stbd", "wind_speed", "wind_dir", "wind_speed_app", "wind_dir_app",
-)  # fmt: skip
-"""What a map may give a sign, a factor and an offset to where the log is NMEA 0183."""
 DELIMITERS = {",": ",", ";": ";", "|": "|", "tab": "\t", "\t": "\t", "space": " ", " ": " "}
 
 
@@ -73,10 +41,7 @@ def load_map(name: str | Path, preset: bool = False) -> LogMap:
 
 def parse_map(text: str, path: Path = Path("map")) -> LogMap:
     """The map written in ``text``; ``path`` is for messages.  Raises LogError with everything wrong in it."""
-    try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise LogError(Problem("the map is not valid TOML", str(path), str(error), "correct the line named")) from error
+    data = toml_of(text, "the map", str(path), LogError)
     some = data.pop("logs", [])
     reader = _Reader(data, text, path)
     made = reader.read()
@@ -133,26 +98,16 @@ def _merged(data: dict[str, Any], own: dict[str, Any]) -> dict[str, Any]:
     return out
 
 
-class _Reader:
-    """One pass over a parsed map, collecting problems as it goes."""
+class _Reader(TomlReader):
+    """One pass over a parsed map."""
 
     def __init__(self, data: dict[str, Any], text: str, path: Path):
-        self.data, self.path = data, path
-        self.problems: list[Problem] = []
-        self.lines = _lines(text)
-
-    def line(self, table: str, key: str = "") -> int:
-        return self.lines.get((table, key)) or self.lines.get((table, "")) or 0
-
-    def problem(self, what: str, table: str, key: str = "", why: str = "", fix: str = "") -> None:
-        line = self.line(table, key)
-        where = f"{self.path}, line {line}" if line else str(self.path)
-        self.problems.append(Problem(what, where, why, fix))
+        super().__init__(data, text, str(path))
+        self.path = path
 
     def read(self) -> LogMap:
-        self.unknown("", self.data)
-        if self.data.get("schema") != SCHEMA:
-            self.problem(f"schema is {self.data.get('schema')!r}, not {SCHEMA}", "", "schema", fix="write schema = 1")
+        self.unknown("", self.data, TABLES[""])
+        self.schema(SCHEMA)
         log = self.table("log")
         trial = self.table("trial")
         position = self.table("position")
@@ -182,14 +137,17 @@ class _Reader:
             step=self.quantity("resample", "step", "s", least=0.0),
             gap=self.number("resample", self.table("resample"), "gap", 5.0, least=1.0),
             cut=self.cut(),
-            ship=self.text("trial", trial, "ship"),
-            id=self.text("trial", trial, "id") or "{stem}",
-            manoeuvre=self.text("trial", trial, "manoeuvre"),
+            ship=self.text_of("trial", trial, "ship"),
+            id=self.text_of("trial", trial, "id") or "{stem}",
+            manoeuvre=self.text_of("trial", trial, "manoeuvre"),
             source=self.choice("trial", trial, "source", SOURCES) or "measured",
-            note=self.text("trial", trial, "note"),
+            note=self.text_of("trial", trial, "note"),
             noise=self.noise(trial),
         )
-        self.together(made)
+        for name in TABLES:
+            if name and name != "columns" and isinstance(self.data.get(name), dict):
+                self.unknown(name, self.data[name], TABLES[name])
+        check(made, self)
         return made
 
     # tables and single values
@@ -201,29 +159,6 @@ class _Reader:
                 self.problem(f"'{name}' is not a table", "", name, fix=f"write [{name}]")
             return {}
         return table
-
-    def unknown(self, name: str, table: dict[str, Any], known: tuple[str, ...] | None = None) -> None:
-        known = known or TABLES[name.split(".")[0]]
-        for key in table:
-            if key not in known:
-                shown = f"{name}.{key}" if name else key
-                self.problem(f"unknown key '{shown}'", name, key, fix=closest(key, known))
-
-    def choice(self, name: str, table: dict[str, Any], key: str, allowed: tuple[str, ...]) -> str | None:
-        if key not in table:
-            return None
-        if not isinstance(table[key], str) or table[key] not in allowed:
-            shown = ", ".join(repr(one) for one in dict.fromkeys(allowed))
-            self.problem(f"'{name}.{key}' is {table[key]!r}", name, key, fix=f"one of: {shown}")
-            return None
-        return str(table[key])
-
-    def text(self, name: str, table: dict[str, Any], key: str) -> str:
-        value = table.get(key, "")
-        if not isinstance(value, str):
-            self.problem(f"'{name}.{key}' is {value!r}, not text", name, key, fix=f'write {key} = "..."')
-            return ""
-        return value
 
     def texts(self, table: dict[str, Any], key: str) -> tuple[str, ...]:
         value = table.get(key, [])
@@ -260,13 +195,13 @@ class _Reader:
         return self.parsed(name, key, table[key], unit, least) if key in table else None
 
     def parsed(self, name: str, key: str, written: Any, unit: str, least: float | None = None) -> float | None:
-        try:
-            if not isinstance(written, str):
-                raise ValueError(f'{written!r} has no unit; write for example "{units.example(unit)}"')
-            (value,) = units.parse(written, unit)
-        except ValueError as error:
-            self.problem(f"'{name}.{key}': {error}", name, key)
+        values = self.quantities(name, key, written, unit)
+        if values is None:
             return None
+        if len(values) > 1:
+            self.problem(f"'{name}.{key}' has {len(values)} values, not 1", name, key)
+            return None
+        value = values[0]
         if not math.isfinite(value) or (least is not None and value <= least):
             self.problem(f"'{name}.{key}' is {written}", name, key, fix=f"it must be above {least or 0:g} {unit}")
             return None
@@ -288,13 +223,13 @@ class _Reader:
     def time(self) -> TimeSource:
         table = self.table("time")
         unit = table.get("unit")
-        if unit is not None and canonical(str(unit)) not in units.factors("s"):
+        if unit is not None and units.canonical(str(unit)) not in units.factors("s"):
             self.problem(f"unit of time is {unit!r}", "time", "unit", fix=f"one of: {', '.join(units.factors('s'))}")
         recover = self.choice("time", table, "recover", ("auto", "uniform", "never")) or "auto"
         return TimeSource(
             column=self.column("time", table),
             format=self.choice("time", table, "format", ("number", "iso", "clock")),
-            unit=None if unit is None else canonical(str(unit)),
+            unit=None if unit is None else units.canonical(str(unit)),
             scale=self.number("time", table, "scale", 1.0),
             recover=recover,
             step=self.quantity("time", "step", "s", least=0.0),
@@ -330,7 +265,7 @@ class _Reader:
         known = units.factors(quantity.unit)
         unit = table.get("unit")
         if unit is not None:
-            unit = canonical(str(unit))
+            unit = units.canonical(str(unit))
             if unit not in known:
                 self.problem(f"unit of '{name}' is {table['unit']!r}", where, "unit", fix=f"one of: {', '.join(known)}")
                 unit = None
@@ -431,121 +366,3 @@ class _Reader:
             if value is not None:
                 found[name] = value
         return found
-
-    def together(self, made: LogMap) -> None:
-        """What is wrong about entries that are right one by one."""
-        for name in TABLES:
-            if name and name != "columns" and isinstance(self.data.get(name), dict):
-                self.unknown(name, self.data[name])
-        sources = made.sources
-        for name, source in sources.items():
-            if source.value is not None and name not in CONSTANT:
-                what = f"'{name}', {MEANING[name]}, is given as a constant"
-                self.problem(what, f"columns.{name}", "value", "it is what a trial measures", "name its column")
-        if made.shifted and made.point not in ("antenna", "stated"):
-            self.problem(
-                "'velocity.shifted' says that velocities were moved, but not from where",
-                "velocity",
-                "shifted",
-                fix='say point = { x = "3 m", y = "0 m" }, where they were measured, seen from midship',
-            )
-        if made.shifted and made.axes is None and made.format != "nmea" and "sog" not in sources:
-            fix = 'say [velocity] axes = "earth" or axes = "ship"'
-            self.problem("are the shifted velocities in ship axes or in earth axes?", "velocity", "shifted", fix=fix)
-        if made.format == "nmea":
-            self.sentences(made)
-            return
-        if self.table("log").get("fields") == 0:
-            self.problem("'log.fields' is 0", "log", "fields", fix="write how many fields a row has")
-        if made.fields and made.header:
-            self.problem("'log.fields' is for logs without a header", "log", "fields", "columns have names there")
-        if made.format == "parquet":
-            self.meaningless("log", ("delimiter", "encoding", "decimal", "skip", "header", "fields"), "Parquet")
-        if made.time.column is None:
-            self.problem("no column is named for time", "time", fix='write [time] with column = "..." and unit = "s"')
-        for name, source in sources.items():
-            if source.column is None and source.value is None:
-                fix = 'write column = "..." or value = "..."'
-                self.problem(f"'{name}' has neither a column nor a value", f"columns.{name}", fix=fix)
-        for name in ("psi", *CONTROLS):
-            if name not in sources:
-                fix = f'write [columns.{name}] with column = "..." and unit, or value = "..." where it is constant'
-                self.problem(f"no column is named for '{name}', {MEANING[name]}", "columns", fix=fix)
-        rate = sources.get("r")
-        if "psi" in sources and sources["psi"].recover and (rate is None or rate.column is None or not rate.positive):
-            self.problem(
-                "the heading is to be recovered from the yaw rate, but the map does not say where that is and its sign",
-                "columns.psi",
-                "recover",
-                fix='write [columns.r] with column = "...", unit, and positive = "starboard" or "port"',
-            )
-        if not ({"x", "y"} <= set(sources) or {"latitude", "longitude"} <= set(sources)):
-            fix = "write [columns.x] and [columns.y], or [columns.latitude] and [columns.longitude]"
-            self.problem("no columns are named for the position", "columns", fix=fix)
-        if {"x", "latitude"} <= set(sources):
-            self.problem(
-                "the map has both local and geographic positions", "columns.latitude", fix="remove one of them"
-            )
-        if {"u", "sog"} <= set(sources):
-            self.problem("the map has both u and speed over ground", "columns.sog", fix="remove one of them")
-        if len({"sog", "cog"} & set(sources)) == 1:
-            self.problem("speed and course over ground are of use only together", "columns", fix="name both")
-        if made.axes == "earth" and len({"u", "v"} & set(sources)) == 1:
-            self.problem("velocities in earth axes are of use only together", "velocity", "axes", fix="name u and v")
-        if made.antenna and {"u", "v"} & set(sources) and made.point is None:
-            self.problem(
-                "are the velocities u and v of midship or of the antenna?",
-                "antenna",
-                why="a ship's ends move sideways when she turns",
-                fix='say [velocity] point = "midship" or point = "antenna"',
-            )
-        if made.point == "antenna" and made.antenna is None:
-            self.problem("velocities are of the antenna, but no [antenna] says where it is", "velocity", "point")
-        if made.point == "stated" and not {"u", "v"} & set(sources) and "sog" not in sources:
-            self.problem("'velocity.point' is given, but no velocities are", "velocity", "point", fix="remove it")
-        for name, words, axes in (("u", ("north", "south"), "earth"), ("v", ("east", "west"), "earth")):
-            positive = sources[name].positive if name in sources else None
-            if positive in words and made.axes != axes:
-                fix = '[velocity] axes = "earth"'
-                self.problem(
-                    f"'{name}' is positive to the {positive}: earth axes?", f"columns.{name}", fix=f"say {fix}"
-                )
-
-    def meaningless(self, table: str, keys: tuple[str, ...], form: str) -> None:
-        for key in keys:
-            if key in self.table(table):
-                self.problem(f"'{table}.{key}' has no meaning for {form}", table, key, fix="remove it")
-
-    def sentences(self, made: LogMap) -> None:
-        """What a map of NMEA 0183 cannot say: sentences have columns, units, axes and times of their own."""
-        self.meaningless("log", TABLES["log"][1:], "NMEA 0183")
-        self.meaningless("time", TABLES["time"], "NMEA 0183")
-        self.meaningless("velocity", ("axes",), "NMEA 0183")
-        for name, source in made.sources.items():
-            where = f"columns.{name}"
-            if name not in IN_SENTENCES and source.value is None:
-                fix = closest(name, IN_SENTENCES)
-                self.problem(f"no sentence holds '{name}'", where, fix=f"{fix}; or give it as a constant")
-            self.meaningless_of(where, ("column", "unit", "zero", "direction", "recover"))
-
-    def meaningless_of(self, where: str, keys: tuple[str, ...]) -> None:
-        written = self.data["columns"][where.removeprefix("columns.")]
-        for key in keys:
-            if isinstance(written, dict) and key in written:
-                fix = "remove it: the standard says what sentences hold"
-                self.problem(f"'{where}.{key}' has no meaning for NMEA 0183", where, key, fix=fix)
-
-
-def _lines(text: str) -> dict[tuple[str, str], int]:
-    """Line numbers of tables, under (table, ""), and of keys, under (table, key)."""
-    index: dict[tuple[str, str], int] = {}
-    table = ""
-    for number, line in enumerate(text.splitlines(), start=1):
-        if header := re.match(r"\s*\[([\w.-]+)\]", line):
-            table = header.group(1)
-            index.setdefault((table, ""), number)
-        elif key := re.match(r"\s*([\w.-]+)\s*=", line):
-            index.setdefault((table, key.group(1)), number)
-            # An inline table is a table of its own name too: [columns] x = { ... }.
-            index.setdefault((f"{table}.{key.group(1)}" if table else key.group(1), ""), number)
-    return index

@@ -1,23 +1,24 @@
 """Ship profiles: TOML files with every number, its unit and its source."""
 
-from .extending import missing_for, scale_of, with_all_effects, with_effects
-from .model import Approach, Coefficient, Section, ShipProfile, SteeringGear
+from .changing import missing_for, scale_of, tuned, with_all_effects, with_effects
+from .model import Actuator, Approach, Coefficient, Section, ShipProfile, SteeringGear
 from .reading import find_profile, load_profile, parse_profile
-from .writing import extended_text, tuned_text
+from .writing import profile_text
 
 __all__ = [
+    "Actuator",
     "Approach",
     "Coefficient",
     "Section",
     "ShipProfile",
     "SteeringGear",
-    "extended_text",
     "find_profile",
     "load_profile",
     "missing_for",
     "parse_profile",
+    "profile_text",
     "scale_of",
-    "tuned_text",
+    "tuned",
     "with_all_effects",
     "with_effects",
 ]

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from ..components import ARRANGEMENTS, Arrangement, Component, split_name
+from ..inputs import INPUTS
 from ..units import DIMENSIONLESS
+
+ABSENT = "absent"
+"""Source of a parameter of an effect that stands at its null and need not be written."""
 
 
 @dataclass(frozen=True)
@@ -45,11 +51,30 @@ class Section:
 
 
 @dataclass(frozen=True)
+class Actuator:
+    """Limits of what moves one input, for manoeuvres that give orders: low and high in its unit, rate in that per s."""
+
+    low: float
+    high: float
+    rate: float
+
+    def moved(self, value: float, ordered: float, dt: float) -> float:
+        """What the input has become after dt [s] of a constant rate towards the order."""
+        goal = min(max(ordered, self.low), self.high)
+        return value + min(max(goal - value, -self.rate * dt), self.rate * dt)
+
+
+@dataclass(frozen=True)
 class SteeringGear:
-    """Limits of the rudder's motion, for manoeuvres that give orders: max_angle [rad], rate [rad/s]."""
+    """Limits of every rudder that has no actuator of its own: max_angle [rad] to either side, rate [rad/s]."""
 
     max_angle: float
     rate: float
+
+    @property
+    def actuator(self) -> Actuator:
+        """The same limits as an actuator has them."""
+        return Actuator(-self.max_angle, self.max_angle, self.rate)
 
 
 @dataclass(frozen=True)
@@ -64,10 +89,13 @@ class Approach:
 class ShipProfile:
     """A ship: its components and coefficients, and what standard manoeuvres need.
 
-    limits  what each metric of a trial may be at most, by its name, in its unit (``metrics.METRICS``)
+    Two profiles are equal that say the same, wherever and however it is written.
+
+    limits    what each metric of a trial may be at most, by its name, in its unit (``metrics.METRICS``)
+    licence   of the data it was tuned to, where they have one; citation says how these are to be cited
     arrangement  how the components are put together
-    text    the TOML it was read from; tuned profiles are made from it, comments and all
-    sha256  of that text
+    actuators    limits of what moves the inputs, by input; see ``actuator``
+    template  the TOML it was read from, "" for one made in memory: the place for ``text``, comments and all
     """
 
     id: str
@@ -79,10 +107,29 @@ class ShipProfile:
     targets: tuple[str, ...]
     limits: dict[str, float] = field(default_factory=dict)
     provenance: dict[str, Any] = field(default_factory=dict)
-    path: Path | None = None
-    text: str = ""
-    sha256: str = ""
+    licence: str = ""
+    citation: str = ""
     arrangement: Arrangement = ARRANGEMENTS[0]
+    actuators: dict[str, Actuator] = field(default_factory=dict)
+    path: Path | None = field(default=None, compare=False)
+    template: str = field(default="", compare=False, repr=False)
+
+    @cached_property
+    def text(self) -> str:
+        """This profile as TOML, as it is now: the template with everything in it that differs."""
+        from .writing import profile_text
+
+        return profile_text(self)
+
+    @cached_property
+    def sha256(self) -> str:
+        """Of ``text``."""
+        return hashlib.sha256(self.text.encode()).hexdigest()
+
+    def actuator(self, name: str) -> Actuator | None:
+        """What moves an input: its own actuator, else the steering gear for a rudder; None where orders act at once."""
+        gear = self.steering_gear.actuator if self.steering_gear and INPUTS[name].role == "rudder" else None
+        return self.actuators.get(name, gear)
 
     def coefficient(self, name: str) -> Coefficient:
         """The coefficient called 'section.symbol'; KeyError if there is none."""

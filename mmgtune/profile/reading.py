@@ -2,29 +2,31 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
-import re
-import tomllib
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 from .. import units
-from ..components import KINDS, UNTAGGED, Component, Field, find, tags
-from ..effects import Effect, effect_tags, find_effect
+from ..components import ARRANGEMENTS, KINDS, UNTAGGED, Arrangement, Component, Field, find, find_arrangement, tags
+from ..effects import Effect, Parameter, effect_tags, find_effect
 from ..errors import Problem, ProfileError, closest
+from ..inputs import Input
 from ..metrics import METRICS
 from ..physics.regressions.fujiwara1998 import wind_harmonics
 from ..resources import folder, profile_names
-from .extending import missing_for
-from .model import Approach, Coefficient, Section, ShipProfile, SteeringGear
+from ..toml_reading import TomlReader, toml_of
+from .changing import missing_for
+from .model import ABSENT, Actuator, Approach, Coefficient, Section, ShipProfile, SteeringGear
 
 SCHEMA = 1
-PLAIN = ("steering_gear", "approach", "tuning", "limits", "provenance")
-SECTIONS = ("schema", "ship", *KINDS, "above_water", "effects", *PLAIN)
+PLAIN = ("steering_gear", "actuators", "approach", "tuning", "limits", "provenance")
+SECTIONS = ("schema", "ship", "arrangement", *KINDS, "above_water", "effects", *PLAIN)
 REGRESSION = "Fujiwara, Ueno & Nimura 1998, regression on the geometry"
+DEFAULT = "default of the program"
+STEERING_GEAR = {"max_angle": Field("", "rad", low=0.0, high=1.6), "rate": Field("", "rad/s", low=0.0)}
+APPROACH = {"speed": Field("", "m/s", low=0.0), "n": Field("", "1/s")}
 VALUE_KEYS = ("value", "source", "assumption", "note", "bounds", "pre_determined", "stderr")
 
 
@@ -59,56 +61,33 @@ def load_profile(name: str | Path) -> ShipProfile:
 def parse_profile(text: str, path: Path | None = None) -> ShipProfile:
     """The profile written in ``text``; ``path`` is for messages.  Raises ProfileError."""
     where = str(path) if path else "profile"
-    try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise ProfileError(
-            Problem("the profile is not valid TOML", where, str(error), "correct the line named")
-        ) from error
-    reader = _Reader(data, text, where)
+    reader = _Reader(toml_of(text, "the profile", where, ProfileError), text, where)
     profile = reader.read(path)
     if reader.problems:
         raise ProfileError(*reader.problems)
     return profile
 
 
-class _Reader:
-    """One pass over a parsed profile, collecting problems as it goes."""
-
-    def __init__(self, data: dict[str, Any], text: str, where: str):
-        self.data = data
-        self.text = text
-        self.where = where
-        self.lines = line_index(text)
-        self.problems: list[Problem] = []
-
-    def problem(self, what: str, section: str = "", key: str = "", why: str = "", fix: str = "") -> None:
-        line = self.lines.get((section, key)) or self.lines.get((section, ""))
-        self.problems.append(Problem(what, f"{self.where}, line {line}" if line else self.where, why, fix))
+class _Reader(TomlReader):
+    """One pass over a parsed profile."""
 
     def read(self, path: Path | None) -> ShipProfile:
         for name in self.data:
             if name not in SECTIONS:
                 self.problem(f"unknown section [{name}]", name, fix=closest(name, SECTIONS))
-        if self.data.get("schema") != SCHEMA:
-            self.problem(
-                f"schema is {self.data.get('schema')!r}, not {SCHEMA}",
-                "",
-                "schema",
-                fix=f"write 'schema = {SCHEMA}' on top",
-            )
+        self.schema(SCHEMA)
         ship = self.table("ship")
-        self.unknown("ship", ship, ("name", "id", "source"))
-        present = (*KINDS, *(["above_water"] if "above_water" in self.data else []), *self.effects())
+        self.unknown("ship", ship, ("name", "id", "source", "licence", "citation"))
+        arrangement = self.arrangement()
+        for name in (name for name in KINDS if name in self.data and name not in arrangement.kinds):
+            self.problem(f"[{name}] is no part of this ship", name, why=f"she is arranged as {arrangement.title}")
+        present = (*arrangement.kinds, *(["above_water"] if "above_water" in self.data else []), *self.effects())
         found = {kind: self.component(kind) for kind in present}
         sections = {kind: section for kind, section in found.items() if section is not None}
         complete = len(sections) == len(present) and not self.problems
         if complete and "above_water" in sections:
             sections["above_water"] = with_wind_coefficients(sections)
-        gear = self.plain(
-            "steering_gear", {"max_angle": Field("", "rad", low=0.0, high=1.6), "rate": Field("", "rad/s", low=0.0)}
-        )
-        approach = self.plain("approach", {"speed": Field("", "m/s", low=0.0), "n": Field("", "1/s")})
+        gear, approach = self.plain("steering_gear", STEERING_GEAR), self.plain("approach", APPROACH)
         profile = ShipProfile(
             id=self.word("ship", ship, "id"),
             name=self.word("ship", ship, "name"),
@@ -119,13 +98,49 @@ class _Reader:
             targets=self.targets(sections) if complete else (),
             limits=self.limits(),
             provenance=self.data.get("provenance", {}),
+            licence=self.word("ship", ship, "licence") if "licence" in ship else "",
+            citation=self.word("ship", ship, "citation") if "citation" in ship else "",
             path=path,
-            text=self.text,
-            sha256=hashlib.sha256(self.text.encode()).hexdigest(),
+            template=self.text,
+            arrangement=arrangement,
+            actuators=self.actuators(arrangement),
         )
         if complete:
             self.together(profile)
         return profile
+
+    def arrangement(self) -> Arrangement:
+        """How the components are put together; the first of all where the profile does not say."""
+        if "arrangement" not in self.data:
+            return ARRANGEMENTS[0]
+        table = self.table("arrangement")
+        self.unknown("arrangement", table, ("model", "source"))
+        model = table.get("model")
+        found = find_arrangement(model) if isinstance(model, str) else None
+        if found is None:
+            known = tuple(one.tag for one in ARRANGEMENTS)
+            self.problem(f"unknown arrangement {model!r}", "arrangement", "model", fix=closest(str(model), known))
+        return found or ARRANGEMENTS[0]
+
+    def actuators(self, arrangement: Arrangement) -> dict[str, Actuator]:
+        """Limits of what moves the inputs, by input."""
+        tables = self.data.get("actuators", {})
+        if not isinstance(tables, dict):
+            self.problem("'actuators' is not a table", "", "actuators", fix="write [actuators.delta], for example")
+            return {}
+        inputs = {one.name: one for one in arrangement.inputs}
+        found = {}
+        for name in tables:
+            section = f"actuators.{name}"
+            if name not in inputs:
+                self.problem(f"nothing drives this ship that is called '{name}'", section, fix=closest(name, [*inputs]))
+                continue
+            limits = self.plain(section, actuator_fields(inputs[name]))
+            if limits and limits["low"] >= limits["high"]:
+                self.problem(f"'{section}.low' is not below high", section, "low")
+            elif limits:
+                found[name] = Actuator(**limits)
+        return found
 
     def effects(self) -> list[str]:
         """Sections "effects.<tag>" of the profile, in the order in which they act."""
@@ -154,11 +169,6 @@ class _Reader:
             self.problem(f"'{key}' of [{section}] is missing or not text", section, key, fix=f'write {key} = "..."')
         return ""
 
-    def unknown(self, section: str, table: dict[str, Any], known: tuple[str, ...]) -> None:
-        for key in table:
-            if key not in known:
-                self.problem(f"unknown key '{section}.{key}'", section, key, fix=closest(key, known))
-
     def component(self, kind: str) -> Section | None:
         if kind.partition(".")[0] not in self.data:
             self.table(kind)
@@ -179,24 +189,34 @@ class _Reader:
         known = ("source", *(("model",) if tagged else ()), *component.fields)
         self.unknown(kind, table, known)
         coefficients: dict[str, Coefficient] = {}
+        missing: dict[str, Field] = {}
         for symbol, field in component.fields.items():
             if symbol in table:
                 coefficient = self.coefficient(kind, symbol, field, table[symbol], source)
-            elif field.default is not None:
-                coefficient = Coefficient(field.default, source="default of the program")
-            elif field.derived:
-                coefficient = None
             else:
-                self.problem(
-                    f"'{kind}.{symbol}' is missing ({field.label} [{field.unit}])",
-                    kind,
-                    why=f"{kind} model '{component.tag}' needs it",
-                    fix=f"add {symbol} = ... to [{kind}]",
-                )
-                coefficient = None
+                coefficient = default_of(field)
+                if coefficient is None and not field.derived:
+                    missing[symbol] = field
             if coefficient is not None:
                 coefficients[symbol] = coefficient
+        self.missing(component, missing)
         return Section(component, coefficients, source)
+
+    def missing(self, component: Component, fields: dict[str, Field]) -> None:
+        """Say all that a section leaves out, in one problem."""
+        if not fields:
+            return
+        names = [f"'{component.kind}.{symbol}'" for symbol in fields]
+        meanings = [f"({field.label} [{field.unit}])" for field in fields.values()]
+        told = ", ".join(f"{name} {meaning}" for name, meaning in zip(names, meanings, strict=True))
+        self.problem(
+            f"{told} are missing" if len(fields) > 1 else f"{names[0]} is missing {meanings[0]}",
+            component.kind,
+            why=f"{component.kind} model '{component.tag}' needs {'it' if len(fields) == 1 else 'them'}, and a number "
+            "that is left out is not taken for 0",
+            fix=f"add {', '.join(f'{symbol} = ...' for symbol in fields)} to [{component.kind}]; "
+            "write 0.0 for a term that the source of your numbers does not have",
+        )
 
     def coefficient(self, kind: str, symbol: str, field: Field, written: Any, source: str) -> Coefficient | None:
         facts: dict[str, Any] = {"source": source}
@@ -207,7 +227,8 @@ class _Reader:
             facts["note"] = str(written.get("note", ""))
             for key in ("pre_determined", "stderr"):
                 if key in written:
-                    numbers = self.numbers(kind, symbol, Field("", field.unit), written[key])
+                    plain = replace(field, low=None, high=None, choices={}, table=0)
+                    numbers = self.numbers(kind, symbol, plain, written[key])
                     facts[key] = numbers[0] if numbers else None
             if "bounds" in written:
                 facts["bounds"] = self.bounds(kind, symbol, field, written["bounds"])
@@ -247,26 +268,8 @@ class _Reader:
                 return (field.choices[written],)
             self.problem(f"'{name}' is {written!r}", kind, symbol, fix=f"one of: {', '.join(field.choices)}")
             return None
-        if isinstance(written, str):
-            try:
-                numbers = units.parse(written, field.unit)
-            except ValueError as error:
-                self.problem(f"'{name}': {error}", kind, symbol)
-                return None
-        elif isinstance(written, (int, float)) and not isinstance(written, bool):
-            if field.unit not in units.DIMENSIONLESS:
-                self.problem(
-                    f"'{name}' = {written} has no unit", kind, symbol, fix=f'write {symbol} = "{written} {field.unit}"'
-                )
-                return None
-            numbers = (float(written),)
-        else:
-            self.problem(
-                f"'{name}' is {written!r}, not a number",
-                kind,
-                symbol,
-                fix=f"write {symbol} = {units.example(field.unit)}",
-            )
+        numbers = self.quantities(kind, symbol, written, field.unit, infinite=_may_be_infinite(field))
+        if numbers is None:
             return None
         return numbers if self.possible(kind, symbol, field, numbers) else None
 
@@ -277,6 +280,8 @@ class _Reader:
             self.problem(f"'{name}' has {len(numbers)} values, not {expected}", kind, symbol)
             return False
         for number in numbers:
+            if number == math.inf and _may_be_infinite(field):
+                continue
             if not math.isfinite(number):
                 self.problem(f"'{name}' is {number}", kind, symbol, why="only finite numbers can be simulated")
                 return False
@@ -295,7 +300,7 @@ class _Reader:
 
     def plain(self, section: str, fields: dict[str, Field]) -> dict[str, float] | None:
         """A section of plain numbers that may be absent as a whole."""
-        if section not in self.data:
+        if section.partition(".")[0] not in self.data:
             return None
         table = self.table(section)
         self.unknown(section, table, ("source", *fields))
@@ -330,9 +335,7 @@ class _Reader:
         self.unknown("limits", table, ("source", *METRICS))
         found: dict[str, float] = {}
         for name in (name for name in table if name in METRICS):
-            unit = METRICS[name].unit
-            field = Field("", "-" if unit == "mixed" else unit, low=0.0)
-            numbers = self.numbers("limits", name, field, table[name])
+            numbers = self.numbers("limits", name, limit_field(name), table[name])
             if numbers:
                 found[name] = numbers[0]
         return found
@@ -353,9 +356,33 @@ class _Reader:
                     why=f"it needs {', '.join(missing)}, which this profile does not have",
                     fix="remove the table, or add what is missing",
                 )
-        propeller = profile.sections["propeller"].coefficients
+        propeller = profile.sections["propeller"].coefficients if "propeller" in profile.sections else {}
         if "phi_min" in propeller and profile.value("propeller.phi_min") >= profile.value("propeller.phi_max"):
             self.problem("'propeller.phi_min' is not below phi_max", "propeller", "phi_min")
+
+
+def actuator_fields(one: Input) -> dict[str, Field]:
+    """What the limits of an input are written in."""
+    return {"low": Field("", one.unit), "high": Field("", one.unit), "rate": Field("", one.rate_unit, low=0.0)}
+
+
+def limit_field(metric: str) -> Field:
+    """What a limit of that metric is written in."""
+    unit = METRICS[metric].unit
+    return Field("", "-" if unit == "mixed" else unit, low=0.0)
+
+
+def _may_be_infinite(field: Field) -> bool:
+    """Whether infinity is a value: the null of an effect that fades only towards it."""
+    return isinstance(field, Parameter) and math.isinf(field.null)
+
+
+def default_of(field: Field) -> Coefficient | None:
+    """What a profile that leaves a coefficient out means, None where it must not."""
+    if field.default is None:
+        return None
+    absent = isinstance(field, Parameter) and field.default == field.null
+    return Coefficient(field.default, source=ABSENT if absent else DEFAULT)
 
 
 def with_wind_coefficients(sections: dict[str, Section]) -> Section:
@@ -369,16 +396,3 @@ def with_wind_coefficients(sections: dict[str, Section]) -> Section:
         for symbol in section.component.fields
     }
     return replace(section, coefficients=coefficients)
-
-
-def line_index(text: str) -> dict[tuple[str, str], int]:
-    """Line numbers of sections, under (section, ""), and of keys, under (section, key)."""
-    index: dict[tuple[str, str], int] = {}
-    section = ""
-    for number, line in enumerate(text.splitlines(), start=1):
-        if header := re.match(r"\s*\[([\w.-]+)\]", line):
-            section = header.group(1)
-            index.setdefault((section, ""), number)
-        elif key := re.match(r"\s*([\w-]+)\s*=", line):
-            index.setdefault((section, key.group(1)), number)
-    return index

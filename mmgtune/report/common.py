@@ -85,7 +85,11 @@ def provenance(data: Mapping[str, Any]) -> Section:
         ("ship profile", shortest(profile.get("path") or "", "ship_profiles")),
         ("profile's hash (SHA-256)", profile.get("sha256")),
         ("profile's source", profile.get("source")),
+        ("profile's licence, of the data it was tuned to", profile.get("licence")),
+        ("to be cited for these", profile.get("citation")),
         ("trials", shortest(trials.get("path") or "", "trials")),
+        ("licence of the trials", trials.get("licence")),
+        ("to be cited for the trials", trials.get("citation")),
         ("tuned on", ", ".join(map(str, trials.get("tune") or [])) or "none"),
         ("tested on", ", ".join(map(str, trials.get("test") or [])) or "none"),
     ]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..arrays import FloatArray
 from .drawing import AFTER, BEFORE, BOX, FLAG, INK, MUTED, log_ticks, new_figure
-from .wording import MINUS, clean, number, short, shown
+from .wording import MINUS, clean, coefficient_text, number, short
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -61,7 +61,7 @@ def _forest_row(ax: Axes, place: int, row: Mapping[str, Any]) -> None:
         markeredgewidth=1.5,
     )
     ax.annotate(
-        shown(row["value"]),
+        coefficient_text(row["value"]),
         (1.0, place),
         xycoords=("axes fraction", "data"),
         xytext=(6, 0),

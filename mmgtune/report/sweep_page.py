@@ -10,7 +10,7 @@ from .common import assumptions, generated_banner, misfit_tile, picture, provena
 from .drawing import Drawn
 from .page import Cell, Commands, Page, Prose, Section, Table, Tile, cells
 from .tables import described
-from .wording import NONE, clean, listing, number, short, shown
+from .wording import NONE, clean, coefficient_text, listing, number, short
 
 if TYPE_CHECKING:
     from .load import SweepRecord
@@ -130,12 +130,12 @@ def _values(names: Sequence[str], runs: Sequence[Mapping[str, Any]], best: float
         line: list[str | Cell] = [
             short(clean(name)),
             described(first),
-            shown(first.get("pre_determined")),
+            coefficient_text(first.get("pre_determined", "")),
         ]
         for run in runs:
             row = _find(run, name)
             bound = {"low": " ▼", "high": " ▲"}.get(str(row.get("at_bound")), "")
-            line.append(Cell(shown(row.get("value")) + bound, "note" if bound else ""))
+            line.append(Cell(coefficient_text(row.get("value", "")) + bound, "note" if bound else ""))
         rows.append(cells(*line))
     titles = [f"a_r = {run['a_r']:g}" + (" ✓" if number(run["a_r"]) == best else "") for run in runs]
     return Table(

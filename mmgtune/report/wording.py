@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from ..units import DEG
+
 MINUS = "\u2212"
 NONE = "\u2013"
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ud800-\udfff\ufffe\uffff]")
@@ -29,17 +31,16 @@ class Channel:
         return f"{self.words} [{self.unit}]"
 
 
-_DEG = 180.0 / math.pi
 CHANNELS: Mapping[str, Channel] = {
     channel.name: channel
     for channel in (
         Channel("x", "position north", "m", 1.0, 2),
         Channel("y", "position east", "m", 1.0, 2),
-        Channel("psi", "heading", "deg", _DEG, 2),
+        Channel("psi", "heading", "deg", 1.0 / DEG, 2),
         Channel("u", "surge velocity", "m/s", 1.0, 3),
         Channel("v_m", "sway velocity", "m/s", 1.0, 3),
-        Channel("r", "yaw rate", "deg/s", _DEG, 3),
-        Channel("delta", "rudder angle", "deg", _DEG, 2),
+        Channel("r", "yaw rate", "deg/s", 1.0 / DEG, 3),
+        Channel("delta", "rudder angle", "deg", 1.0 / DEG, 2),
         Channel("n", "propeller speed", "rpm", 60.0, 1),
     )
 }
@@ -75,6 +76,11 @@ def number(value: Any) -> float | None:
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
         return None
     return float(value)
+
+
+def coefficient_text(value: Any, digits: int = 4) -> str:
+    """A coefficient's number, which is infinite where JSON has null: an effect that is absent only there."""
+    return "∞" if value is None else shown(value, digits)
 
 
 def shown(value: Any, digits: int = 4) -> str:

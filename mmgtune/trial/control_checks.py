@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
+from ..units import DEG
 from .finding import Finding
-from .kinematics import DEG
 from .model import Trial
 from .motion_checks import spikes
 from .schema import DIRECTIONS

@@ -20,6 +20,8 @@ class TrialSet:
 
     tune, test  ids, in the order of the split; without a split all trials tune
     ship        id of the ship, "" where neither split nor files say
+    licence     of the measurements and how to cite them, "" where the split does not say: profiles tuned to them
+                carry both
     path        folder or file they come from
     """
 
@@ -28,6 +30,8 @@ class TrialSet:
     test: tuple[str, ...]
     ship: str = ""
     path: Path | None = None
+    licence: str = ""
+    citation: str = ""
 
     @property
     def others(self) -> tuple[str, ...]:
@@ -94,7 +98,8 @@ def load_trials(name: str | Path) -> TrialSet:
     if problems:
         raise TrialError(*problems)
     ships = [trial.ship for trial in trials.values() if trial.ship]
-    return TrialSet(trials, said.tune, said.test, said.ship or (ships[0] if ships else ""), path)
+    ship = said.ship or (ships[0] if ships else "")
+    return TrialSet(trials, said.tune, said.test, ship, path, said.licence, said.citation)
 
 
 def find_trials(name: str | Path) -> Path:

@@ -13,8 +13,8 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..physics.frame import to_earth
+from ..units import DEG, KNOT
 
-DEG = np.pi / 180.0
 IN_EARTH_AXES = "in earth axes, u north and v east"
 IN_DEGREES = "with the heading in degrees"
 FITS = 0.1
@@ -111,7 +111,7 @@ def position_misfits(columns: Mapping[str, FloatArray]) -> dict[str, float]:
         "with v positive to port": rotated(psi, -v),
         IN_DEGREES: rotated(psi * DEG, v),
         "with x east and y north": rotated(psi, v)[:, ::-1],
-        "with velocities in knots": rotated(psi, v, 1852.0 / 3600.0),
+        "with velocities in knots": rotated(psi, v, KNOT),
     }
     return {name: _misfit(moved, steps, usable, window) for name, steps in readings.items()}
 

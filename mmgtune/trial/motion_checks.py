@@ -7,8 +7,9 @@ import numpy.typing as npt
 
 from ..arrays import FloatArray
 from ..inputs import INPUTS
+from ..units import DEG
 from .finding import Finding
-from .kinematics import DEG, FITS, IN_DEGREES, IN_EARTH_AXES, position_misfits, turning
+from .kinematics import FITS, IN_DEGREES, IN_EARTH_AXES, position_misfits, turning
 from .model import Trial
 from .schema import LARGEST_YAW_RATE, MOTION
 

@@ -3,24 +3,25 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-from ..errors import Problem, closest
+from ..errors import Problem, TrialError, closest
+from ..toml_reading import TomlReader, toml_of
 
 SPLIT = "split.toml"
-KEYS = ("ship", "tune", "test")
+KEYS = ("ship", "licence", "citation", "tune", "test")
 
 
 @dataclass(frozen=True)
 class Split:
-    """What a split says; ids in the order they are written, ship "" where it names none."""
+    """What a split says; ids in the order they are written, texts "" where it says nothing."""
 
     ship: str = ""
+    licence: str = ""
+    citation: str = ""
     tune: tuple[str, ...] = ()
     test: tuple[str, ...] = ()
 
@@ -32,19 +33,15 @@ def read_split(path: Path, known: Iterable[str] | None) -> tuple[Split, list[Pro
     """
     try:
         text = path.read_text(encoding="utf-8")
-        data: dict[str, Any] = tomllib.loads(text)
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        fix = "correct the line named; it must be UTF-8 text"
-        return Split(), [Problem("the split cannot be read", str(path), str(error), fix)]
-    problems = [
-        Problem(f"unknown key '{key}'", _place(path, text, key), fix=closest(key, KEYS))
-        for key in data
-        if key not in KEYS
-    ]
-    ship = data.get("ship", "")
-    if not isinstance(ship, str):
-        problems.append(Problem(f"'ship' is {ship!r}, not text", _place(path, text, "ship"), fix='write ship = "..."'))
-        ship = ""
+        data = toml_of(text, "the split", str(path), TrialError)
+    except (OSError, UnicodeDecodeError) as error:
+        return Split(), [Problem("the split cannot be read", str(path), str(error), "it must be UTF-8 text")]
+    except TrialError as error:
+        return Split(), list(error.problems)
+    reader = TomlReader(data, text, str(path))
+    reader.unknown("", data, KEYS)
+    texts = {key: reader.text_of("", data, key) for key in ("ship", "licence", "citation")}
+    problems = reader.problems
     sets: dict[str, tuple[str, ...]] = {}
     for key in ("tune", "test"):
         ids = data.get(key, [])
@@ -63,7 +60,7 @@ def read_split(path: Path, known: Iterable[str] | None) -> tuple[Split, list[Pro
         what = f"trial '{name}' is both in 'tune' and in 'test'"
         why = "a test on what was tuned shows nothing"
         problems.append(Problem(what, _place(path, text, name), why, "name it in one of them"))
-    return Split(ship, sets["tune"], sets["test"]), problems
+    return Split(**texts, tune=sets["tune"], test=sets["test"]), problems
 
 
 def _ids(key: str, ids: list[str], known: Iterable[str] | None, path: Path, text: str) -> list[Problem]:

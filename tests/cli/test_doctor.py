@@ -70,6 +70,17 @@ def test_every_paper_of_a_profile_is_cited(name, tmp_path):
     assert told
 
 
+def test_licence_and_citation_of_the_measurements_are_told(tmp_path):
+    for command in (("cite",), ("profile", "show")):
+        document = run(*command, "esso_osaka_3m_tuned", "--json", cwd=tmp_path).json()
+        assert document["licence"] == "CC BY-NC 4.0"
+        assert "doi 10.1007/s00773-021-00867-1" in document["citation"]
+        words = run(*command, "esso_osaka_3m_tuned", cwd=tmp_path).out
+        assert "licence of the data it was tuned to: CC BY-NC 4.0" in words
+        assert "doi 10.1007/s00773-021-00867-1" in words
+        assert "licence" not in run(*command, "suzaku", cwd=tmp_path).out
+
+
 def test_cite_in_words(tmp_path):
     ended = run("cite", "esso_osaka_3m", cwd=tmp_path)
     assert "Yoshimura, Nakao & Ishibashi 2009" in ended.out

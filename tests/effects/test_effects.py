@@ -12,7 +12,7 @@ from mmgtune.fitting.box import make_box
 from mmgtune.model import Model
 from mmgtune.orders import TurningOrder, run_manoeuvre
 from mmgtune.physics.quantities import State, Surroundings
-from mmgtune.profile import extended_text, load_profile, missing_for, parse_profile, with_all_effects, with_effects
+from mmgtune.profile import load_profile, missing_for, parse_profile, with_all_effects, with_effects
 from tests.backends.test_agree import zigzag_like
 from tests.runs import states, turn
 
@@ -76,9 +76,8 @@ def test_null_is_the_base_run_bit_for_bit_compiled(ship, integrator):
 
 @pytest.mark.parametrize("tag", TAGS)
 def test_each_changes_the_run_and_can_be_written_and_read(ship, tag):
-    values = {name: (value, 0.1 * abs(value)) for name, value in STRONG[tag].items()}
-    text = extended_text(ship, {tag: values}, "a test")
-    read = parse_profile(text)
+    stderr = {name: 0.1 * abs(value) for name, value in STRONG[tag].items()}
+    read = parse_profile(with_effects(ship, {tag: STRONG[tag]}, "a test", {tag: stderr}).text)
     for name, value in STRONG[tag].items():
         assert read.value(f"effects.{tag}.{name}") == pytest.approx(value, rel=1e-12)
         assert read.coefficient(f"effects.{tag}.{name}").stderr == pytest.approx(0.1 * abs(value), rel=1e-12)

@@ -58,6 +58,7 @@ def test_everything_wrong_at_once():
         ('unit = "rpm"', 'unit = "rpm", recover = "yaw-rate"', "is for positions x and y and for the heading"),
         ('"heading", unit = "deg"', '"heading", unit = "deg", recover = "print-resolution"', "one of: 'yaw-rate'"),
         ("[columns]", '[cut]\nend = "0 s"\n[columns]', "nothing would be left"),
+        ("[columns]", '[cut]\nend = "3, 4 s"\n[columns]', "has 2 values, not 1"),
         ("[columns]", "[log]\nheader = false\nfields = -1\n[columns]", "'log.fields' is -1"),
         ("[columns]", "[log]\nheader = false\nfields = 0\n[columns]", "'log.fields' is 0"),
         ("[columns]", "[log]\nfields = 9\n[columns]", "'log.fields' is for logs without a header"),

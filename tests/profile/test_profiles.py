@@ -7,8 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mmgtune import units
+from mmgtune.components import COMPONENTS, KINDS
 from mmgtune.errors import ProfileError
-from mmgtune.profile import load_profile, parse_profile, tuned_text
+from mmgtune.profile import load_profile, parse_profile, tuned, with_effects
 from mmgtune.resources import profile_names
 
 
@@ -28,15 +29,52 @@ def test_every_number_has_a_source_and_every_assumption_is_marked(name):
 def test_tuned_text_round_trip(name):
     profile = load_profile(name)
     values = {target: 1.1 * profile.value(target) for target in profile.targets}
-    text = tuned_text(profile, values, dict.fromkeys(values, 0.01), {"a_r": 0.5})
-    tuned = parse_profile(text)
+    read = parse_profile(tuned(profile, values, dict.fromkeys(values, 0.01), {"a_r": 0.5}).text)
     for target, value in values.items():
-        assert tuned.value(target) == value
+        assert read.value(target) == value
         first = profile.coefficient(target).pre_determined  # of a profile that is itself tuned, from before that
-        assert tuned.coefficient(target).pre_determined == (profile.value(target) if first is None else first)
-        assert tuned.coefficient(target).stderr == 0.01
+        assert read.coefficient(target).pre_determined == (profile.value(target) if first is None else first)
+        assert read.coefficient(target).stderr == 0.01
     untouched = [n for n in profile.names() if n not in values]
-    assert [tuned.value(n) for n in untouched] == [profile.value(n) for n in untouched]
+    assert [read.value(n) for n in untouched] == [profile.value(n) for n in untouched]
+
+
+MAY_BE_LEFT_OUT = {"rho", "phi_switch", "J_max", "slipstream_kt"}
+
+
+@pytest.mark.parametrize("component", [c for c in COMPONENTS if c.kind in KINDS], ids=lambda c: f"{c.kind} {c.tag}")
+def test_no_term_of_a_force_has_a_default(component):
+    assert {symbol for symbol, field in component.fields.items() if field.default is not None} <= MAY_BE_LEFT_OUT
+
+
+def test_every_term_that_is_left_out_is_named_at_once():
+    lines = load_profile("suzaku").text.splitlines()
+    gone = ("X_vvvr", "Y_rrr", "N_v", "C_PN0_low", "u_R0", "t_R")
+    with pytest.raises(ProfileError) as told:
+        parse_profile("\n".join(line for line in lines if not line.startswith(tuple(f"{name} =" for name in gone))))
+    hull, propeller, rudder = told.value.problems
+    assert hull.what.startswith("'hull.X_vvvr' (surge force, vvvr term [prime]), 'hull.Y_rrr' (")
+    assert hull.where == "profile, line 27"
+    assert hull.fix.startswith("add X_vvvr = ..., Y_rrr = ..., N_v = ... to [hull]; write 0.0 for a term that")
+    assert propeller.what.startswith("'propeller.C_PN0_low' is missing (yaw moment coefficient below phi_switch, ")
+    assert "'rudder.u_R0'" in rudder.what
+    assert "'rudder.t_R'" in rudder.what
+
+
+def test_a_term_the_source_does_not_have_is_written_as_zero():
+    hull = load_profile("kvlcc2").sections["hull"].coefficients
+    assert hull["X_vvvr"].value == 0.0
+    assert "not in this form" in hull["X_vvvr"].source
+
+
+@pytest.mark.parametrize("name", profile_names())
+def test_what_was_tuned_to_measurements_says_under_which_licence(name):
+    profile = load_profile(name)
+    measured = "measured" in profile.provenance.get("source_of_trials", {}).values()
+    assert bool(profile.licence) == bool(profile.citation) == measured
+    changed = tuned(with_effects(profile, {"current": {"north": 1.0}}, "a test"), {}, {}, {}, "tuned", "CC BY 4.0", "A")
+    assert changed.licence.split("; ") == [one for one in (profile.licence, "CC BY 4.0") if one]
+    assert parse_profile(changed.text).citation == changed.citation
 
 
 def test_values_are_shown_as_people_write_them():

@@ -98,6 +98,10 @@ def test_numbers_of_the_record_are_on_the_page(fit_folder: Path, page: str) -> N
     assert "No coefficient inside the box can be moved" in page
     assert "(1-t_R) eps^2" in page
     assert record["profile"]["sha256"] in page
+    assert "licence of the trials" in page
+    assert "CC BY-NC 4.0" in page
+    assert "Who Measured 2020" in page
+    assert "licence, of the data" not in page  # the profile has none
     assert "mmgtune sweep -p ship_profiles/suzaku.toml -t trials/suzaku" in page
 
 

@@ -80,7 +80,7 @@ def test_bundled_by_name(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Non
         ('tune = ["turn_p10"]\ntest = [7]', "'test' is not a list of trial ids", 2),
         ('tune = "turn_p10"', "'tune' is not a list of trial ids", 1),
         ('ship = 7\ntune = ["turn_p10"]', "'ship' is 7, not text", 1),
-        ("tune = [", "the split cannot be read", None),
+        ("tune = [", "the split is not valid TOML", None),
     ],
 )
 def test_splits_that_make_no_sense(folder: Path, split: str, expected: str, line: int | None) -> None:
@@ -123,3 +123,11 @@ def test_ids_are_not_doubted_where_a_file_cannot_be_read(folder: Path) -> None:
     (folder / "turn_p20.parquet").write_bytes(b"PAR1")
     (problem,) = complaints(with_split(folder, 'tune = ["turn_p20"]'))
     assert "damaged" in problem
+
+
+def test_licence_and_citation_of_a_data_set_reach_the_profile_tuned_to_it(folder: Path) -> None:
+    terms = 'licence = "CC BY-NC 4.0"\ncitation = "Who Measured 2020"\ntune = ["turn_p10"]'
+    data = load_trials(with_split(folder, terms))
+    assert (data.licence, data.citation) == ("CC BY-NC 4.0", "Who Measured 2020")
+    assert data.in_windows(50.0).licence == "CC BY-NC 4.0"
+    assert "'licence' is 4, not text" in complaints(with_split(folder, 'licence = 4\ntune = ["turn_p10"]'))[0]

@@ -1,0 +1,109 @@
+"""Reading TOML that people write: everything wrong in a file is said at once, each with its line."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from typing import Any
+
+from . import units
+from .errors import MmgtuneError, Problem, closest
+
+
+def toml_of(text: str, what: str, where: str, error: type[MmgtuneError]) -> dict[str, Any]:
+    """The tables written in ``text``.  Raises ``error`` where ``what``, such as "the profile", is not TOML."""
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as why:
+        raise error(Problem(f"{what} is not valid TOML", where, str(why), "correct the line named")) from why
+
+
+def line_index(text: str) -> dict[tuple[str, str], int]:
+    """Line numbers of tables, under (table, ""), and of keys, under (table, key)."""
+    index: dict[tuple[str, str], int] = {}
+    table = ""
+    for number, line in enumerate(text.splitlines(), start=1):
+        if header := re.match(r"\s*\[([\w.-]+)\]", line):
+            table = header.group(1)
+            index.setdefault((table, ""), number)
+        elif key := re.match(r"\s*([\w.-]+)\s*=", line):
+            index.setdefault((table, key.group(1)), number)
+            # An inline table is a table of its own name too: [columns] x = { ... }.
+            index.setdefault((named(table, key.group(1)), ""), number)
+    return index
+
+
+def named(table: str, key: str) -> str:
+    """A key with its table, as messages name it."""
+    return f"{table}.{key}" if table else key
+
+
+class TomlReader:
+    """One pass over parsed TOML, collecting problems as it goes; what is wrong reads as if it were not there.
+
+    where  the file, for messages
+    """
+
+    def __init__(self, data: dict[str, Any], text: str, where: str):
+        self.data, self.text, self.where = data, text, where
+        self.lines = line_index(text)
+        self.problems: list[Problem] = []
+
+    def line(self, table: str, key: str = "") -> int:
+        """Line of a key, of its table where the key has none, 0 where neither is there."""
+        return self.lines.get((table, key)) or self.lines.get((table, "")) or 0
+
+    def problem(self, what: str, table: str = "", key: str = "", why: str = "", fix: str = "") -> None:
+        """Note something wrong, where table and key stand."""
+        line = self.line(table, key)
+        self.problems.append(Problem(what, f"{self.where}, line {line}" if line else self.where, why, fix))
+
+    def schema(self, number: int) -> None:
+        """The version of the format, which must be ``number``."""
+        if self.data.get("schema") != number:
+            what = f"schema is {self.data.get('schema')!r}, not {number}"
+            self.problem(what, "", "schema", fix=f"write 'schema = {number}' on top")
+
+    def unknown(self, name: str, table: dict[str, Any], known: tuple[str, ...]) -> None:
+        """Note keys of a table that are not among those known."""
+        for key in table:
+            if key not in known:
+                self.problem(f"unknown key '{named(name, key)}'", name, key, fix=closest(key, known))
+
+    def text_of(self, name: str, table: dict[str, Any], key: str) -> str:
+        """A text, "" where there is none."""
+        value = table.get(key, "")
+        if isinstance(value, str):
+            return value
+        self.problem(f"'{named(name, key)}' is {value!r}, not text", name, key, fix=f'write {key} = "..."')
+        return ""
+
+    def choice(self, name: str, table: dict[str, Any], key: str, allowed: tuple[str, ...]) -> str | None:
+        """One of the words allowed, None where there is none."""
+        if key not in table:
+            return None
+        if isinstance(table[key], str) and table[key] in allowed:
+            return str(table[key])
+        words = ", ".join(repr(one) for one in dict.fromkeys(allowed))
+        self.problem(f"'{named(name, key)}' is {table[key]!r}", name, key, fix=f"one of: {words}")
+        return None
+
+    def quantities(
+        self, name: str, key: str, written: Any, unit: str, infinite: bool = False
+    ) -> tuple[float, ...] | None:
+        """The numbers of text with a unit in ``unit``, or of a bare number where it is dimensionless; else None."""
+        shown = named(name, key)
+        if isinstance(written, str):
+            try:
+                return units.parse(written, unit, infinite=infinite)
+            except ValueError as error:
+                self.problem(f"'{shown}': {error}", name, key)
+        elif not isinstance(written, (int, float)) or isinstance(written, bool):
+            fix = f"write {key} = {units.example(unit)}"
+            self.problem(f"'{shown}' is {written!r}, not a number", name, key, fix=fix)
+        elif unit not in units.DIMENSIONLESS:
+            fix = f'write {key} = "{written} {unit}"'
+            self.problem(f"'{shown}' = {written} has no unit", name, key, fix=fix)
+        else:
+            return (float(written),)
+        return None
