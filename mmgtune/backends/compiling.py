@@ -13,7 +13,8 @@ import os
 import pkgutil
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from functools import lru_cache
 from pathlib import Path
 from types import ModuleType
@@ -120,6 +121,33 @@ def cache_folder() -> Path:
     return Path(tempfile.mkdtemp(prefix="mmgtune-"))
 
 
+@contextmanager
+def _alone(path: Path) -> Iterator[None]:
+    """No other process is inside for the same path, where there are such locks; a lock dies with its holder."""
+    with path.open("w") as file:
+        if sys.platform != "win32":
+            import fcntl
+
+            with suppress(OSError):  # some network folders have none: then a kernel may be compiled twice
+                fcntl.flock(file, fcntl.LOCK_EX)
+        yield
+
+
+def _compiled_once(function: Any, lock: Path) -> Callable[..., None]:
+    """The same function; of several processes that call it first, one compiles and the others read what it wrote."""
+    ready = False
+
+    def kernel(*args: Any) -> None:
+        nonlocal ready
+        if not ready:
+            with _alone(lock):
+                function.compile(tuple(map(function.typeof_pyval, args)))
+            ready = True
+        function(*args)
+
+    return kernel
+
+
 def load_kernel(text: str) -> Callable[..., None]:
     """The compiled ``kernel`` function of a generated text; compiled at its first call unless cached on disk."""
     name = "mmgtune_kernel_" + hashlib.sha256((text + _source_hash()).encode()).hexdigest()[:16]
@@ -134,5 +162,4 @@ def load_kernel(text: str) -> Callable[..., None]:
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module
     spec.loader.exec_module(module)
-    function: Callable[..., None] = module.kernel
-    return function
+    return _compiled_once(module.kernel, path.with_suffix(".lock"))
