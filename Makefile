@@ -6,14 +6,16 @@ BIN := $(VENV)/bin
 RUNTIME := $(VENV)/.installed
 DEV := $(VENV)/.installed-dev
 DEMO := runs/demo
-PYTEST := $(BIN)/pytest -n auto --maxprocesses 8 --dist worksteal
+PYTEST := $(BIN)/pytest -n auto --maxprocesses 8 --dist loadgroup --no-loadscope-reorder
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo test quick lint types arch check regression docs bench signs hidden trials browser constraints clean
+.PHONY: help install demo test quick lint types arch check regression docs bench signs hidden trials browser constraints clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-11s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+install: $(DEV) ## .venv with all that the other targets need
 
 demo: $(RUNTIME) ## tune the bundled ship on its bundled trials and say where the report is
 	$(BIN)/mmgtune fit --ar 0.5 --out $(DEMO) --force
@@ -108,5 +110,5 @@ define install
 }
 @echo "installing mmgtune into $(VENV): a minute or two, once"
 @$(BIN)/python -m pip install --quiet --disable-pip-version-check \
-	--constraint constraints.txt --editable '$(1)'
+	--no-compile --constraint constraints.txt --editable '$(1)'
 endef

@@ -12,6 +12,8 @@ from mmgtune.simulation import as_trial
 from mmgtune.trial import write_trial
 from tests.command import run
 
+pytestmark = [pytest.mark.xdist_group("repeating"), pytest.mark.slow(5)]
+
 RAD = math.radians(1.0)
 
 

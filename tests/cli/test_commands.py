@@ -9,6 +9,8 @@ import pytest
 from mmgtune.trial import load_trials, read_trial, write_trial
 from tests.command import run
 
+pytestmark = pytest.mark.slow(1)
+
 COMMANDS = [
     ("fit",), ("sweep",), ("leave-out",), ("validate",), ("check",), ("cite",), ("doctor",),
     ("simulate",), ("report",), ("trials", "import"),

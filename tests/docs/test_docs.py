@@ -35,18 +35,21 @@ def code(page, language):
     ]
 
 
+@pytest.mark.slow(5)
 def test_the_example_of_the_readme_runs(capsys):
     (example,) = code(ROOT / "README.md", "python")
     exec(compile(example, "README.md", "exec"), {})
     assert "4 of 4 of these trials improve" in capsys.readouterr().out
 
 
+@pytest.mark.slow(10)
 def test_the_examples_of_the_library_page_run(capsys):
     for example in code(ROOT / "docs" / "reference" / "api" / "index.md", "python"):
         exec(compile(example, "index.md", "exec"), {})
     assert "4 of 4 of these trials improve" in capsys.readouterr().out
 
 
+@pytest.mark.slow(5)
 def test_every_command_shown_is_understood():
     """Commands are run with --help behind them: options and arguments must exist, nothing is worked on."""
     from typer.testing import CliRunner
