@@ -37,6 +37,17 @@ def test_help_imports_nothing_heavy():
     assert ended.stderr.strip().endswith("[]")
 
 
+def test_trials_are_read_without_scipy_and_pandas(tmp_path):
+    """They take most of a second to load, and few commands need them."""
+    code = (
+        "import sys\nsys.argv = ['mmgtune', 'trials', 'check', 'suzaku']\nfrom mmgtune.cli import main\n"
+        "try:\n    main()\nexcept SystemExit as end:\n    assert not end.code\n"
+        "print([name for name in ('pandas', 'scipy', 'matplotlib', 'numba') if name in sys.modules], file=sys.stderr)"
+    )
+    ended = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert ended.stderr.strip().endswith("[]")
+
+
 def test_a_mistyped_command_is_answered_with_the_nearest(tmp_path):
     ended = run("fti", cwd=tmp_path)
     assert ended.code == 2
