@@ -6,13 +6,16 @@ BIN := $(VENV)/bin
 RUNTIME := $(VENV)/.installed
 DEV := $(VENV)/.installed-dev
 DEMO := runs/demo
+PYTEST := $(BIN)/pytest -n auto --maxprocesses 8 --dist loadgroup --no-loadscope-reorder
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo test lint types arch check regression docs bench signs hidden trials browser clean
+.PHONY: help install demo test quick lint types arch check regression docs bench signs hidden trials browser constraints clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-11s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+install: $(DEV) ## .venv with all that the other targets need
 
 demo: $(RUNTIME) ## tune the bundled ship on its bundled trials and say where the report is
 	$(BIN)/mmgtune fit --ar 0.5 --out $(DEMO) --force
@@ -20,8 +23,11 @@ demo: $(RUNTIME) ## tune the bundled ship on its bundled trials and say where th
 	if [ -z "$$report" ]; then echo "no HTML report was written to $(DEMO)" >&2; exit 1; fi; \
 	echo; echo "HTML report: $$report"
 
-test: $(DEV) ## run the tests (those of the page need chromium: make browser)
-	$(BIN)/pytest
+test: $(DEV) ## run the tests, on all cores (those of the page need chromium: make browser)
+	$(PYTEST)
+
+quick: $(DEV) ## the tests of the edit loop: none that is slow or opens a page
+	$(PYTEST) -q -m 'not slow and not browser'
 
 lint: $(DEV) ## style and common mistakes
 	$(BIN)/ruff check .
@@ -73,15 +79,22 @@ browser: ## install Debian's chromium for the tests of the page, where that is p
 			|| echo "chromium could not be installed: the browser tests are skipped"; \
 	fi
 
+constraints: ## write constraints.txt anew: the newest releases that pyproject.toml allows
+	@folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT && $(PYTHON) -m venv "$$folder" \
+	&& "$$folder/bin/python" -m pip install --quiet --disable-pip-version-check --editable '.[dev]' \
+	&& { sed -n '/^#/p' constraints.txt; "$$folder/bin/python" -m pip freeze --exclude mmgtune; } > constraints.txt.part \
+	&& mv constraints.txt.part constraints.txt
+	@echo "constraints.txt is new: 'make check' installs and tests it"
+
 clean: ## remove caches and built packages; .venv and runs stay
 	rm -rf build dist site .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
 	find . -path ./$(VENV) -prune -o -path ./.git -prune -o -type d -name __pycache__ -exec rm -rf {} +
 
-$(RUNTIME): pyproject.toml
+$(RUNTIME): pyproject.toml constraints.txt
 	$(call install,.)
 	@touch $@
 
-$(DEV): pyproject.toml
+$(DEV): pyproject.toml constraints.txt
 	$(call install,.[dev])
 	@touch $(RUNTIME) $@
 
@@ -96,5 +109,6 @@ define install
 	exit 1; \
 }
 @echo "installing mmgtune into $(VENV): a minute or two, once"
-@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '$(1)'
+@$(BIN)/python -m pip install --quiet --disable-pip-version-check \
+	--no-compile --constraint constraints.txt --editable '$(1)'
 endef

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = [pytest.mark.xdist_group("wheel"), pytest.mark.slow(10)]
+
 ROOT = Path(__file__).parent.parent
 
 

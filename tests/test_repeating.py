@@ -13,6 +13,8 @@ from mmgtune.trial import write_trial
 from mmgtune.trial.schema import ATTRIBUTES
 from tests.command import run
 
+pytestmark = [pytest.mark.xdist_group("repeating"), pytest.mark.slow(5)]
+
 RAD = math.radians(1.0)
 
 

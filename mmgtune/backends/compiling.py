@@ -13,7 +13,8 @@ import os
 import pkgutil
 import sys
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from functools import lru_cache
 from pathlib import Path
 from types import ModuleType
@@ -76,6 +77,8 @@ def _modules() -> list[ModuleType]:
 
 
 _registered: set[str] = set()
+_own: set[str] = set()
+"""Modules whose functions numba knows, and those of them that ``_source_hash`` covers."""
 
 
 def _register(module: ModuleType) -> None:
@@ -102,6 +105,7 @@ def _register_all() -> None:
     _registered.add(elementary.__name__)
     for module in _modules():
         _register(module)
+    _own.update(_registered)
 
 
 _register_all()
@@ -131,6 +135,33 @@ def cache_folder() -> Path:
     return Path(tempfile.mkdtemp(prefix="mmgtune-"))
 
 
+@contextmanager
+def _alone(path: Path) -> Iterator[None]:
+    """No other process is inside for the same path, where there are such locks; a lock dies with its holder."""
+    with path.open("w") as file:
+        if sys.platform != "win32":
+            import fcntl
+
+            with suppress(OSError):  # some network folders have none: then a kernel may be compiled twice
+                fcntl.flock(file, fcntl.LOCK_EX)
+        yield
+
+
+def _compiled_once(function: Any, lock: Path) -> Callable[..., None]:
+    """The same function; of several processes that call it first, one compiles and the others read what it wrote."""
+    ready = False
+
+    def kernel(*args: Any) -> None:
+        nonlocal ready
+        if not ready:
+            with _alone(lock):
+                function.compile(tuple(map(function.typeof_pyval, args)))
+            ready = True
+        function(*args)
+
+    return kernel
+
+
 def load_kernel(text: str, functions: Sequence[Callable[..., Any]] = ()) -> Callable[..., None]:
     """The compiled ``kernel`` function of a generated text; compiled at its first call unless cached on disk.
 
@@ -138,7 +169,7 @@ def load_kernel(text: str, functions: Sequence[Callable[..., Any]] = ()) -> Call
     """
     digest = hashlib.sha256((text + _source_hash()).encode())
     for module in dict.fromkeys(sys.modules[function.__module__] for function in functions):
-        if module.__name__ not in _registered:
+        if module.__name__ not in _own:
             _register(module)
             digest.update(Path(str(module.__file__)).read_bytes())
     name = "mmgtune_kernel_" + digest.hexdigest()[:16]
@@ -153,5 +184,4 @@ def load_kernel(text: str, functions: Sequence[Callable[..., Any]] = ()) -> Call
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module
     spec.loader.exec_module(module)
-    function: Callable[..., None] = module.kernel
-    return function
+    return _compiled_once(module.kernel, path.with_suffix(".lock"))

@@ -127,6 +127,18 @@ def _table(path: Path) -> tuple[bytes, Any]:
         raise TrialError(Problem(what, str(path), why, fix)) from error
 
 
+def _numbers(column: Any) -> FloatArray:
+    """A column of numbers (n_samples,), NaN where a row has none; its own ``to_numpy`` would load pandas for this."""
+    import pyarrow as pa
+
+    whole = column.combine_chunks()
+    if whole.type != pa.float64():
+        whole = whole.cast(pa.float64(), safe=False)
+    if whole.null_count:
+        whole = whole.fill_null(np.nan)
+    return np.array(np.from_dlpack(whole))
+
+
 def _columns(table: Any, path: Path) -> tuple[dict[str, FloatArray], tuple[str, ...], list[Problem]]:
     """Columns of numbers (n_samples,) by name, names of other columns, and problems."""
     import pyarrow as pa
@@ -140,7 +152,7 @@ def _columns(table: Any, path: Path) -> tuple[dict[str, FloatArray], tuple[str, 
     for k, name in enumerate(table.column_names):
         kind = table.schema.field(k).type
         if pa.types.is_floating(kind) or pa.types.is_integer(kind):
-            columns[name] = np.array(table.column(k).to_numpy(), dtype=np.float64)
+            columns[name] = _numbers(table.column(k))
         elif name in COLUMNS:
             fix = f"write it as float64, in {COLUMNS[name].unit}"
             problems.append(Problem(f"column '{name}' holds {kind}, not numbers", str(path), fix=fix))

@@ -8,7 +8,6 @@ of parameters).  The number of parameters follows from tau.  Noise that is not w
 from __future__ import annotations
 
 import numpy as np
-from scipy.interpolate import make_smoothing_spline
 
 from ..arrays import FloatArray
 
@@ -24,6 +23,8 @@ def time_scale(t: FloatArray, channels: FloatArray, noise: FloatArray, dt: float
     noise     (n_channels,) standard deviation of white noise, in the channels' units
     dt        usual time between samples [s]
     """
+    from scipy.interpolate import make_smoothing_spline  # half a second, which few commands need
+
     span = float(t[-1] - t[0])
     scale = np.maximum(noise, 1e-6 * np.maximum(np.ptp(channels, axis=0), 1e-6))
     scaled = (channels - channels.mean(axis=0)) / scale
@@ -44,6 +45,8 @@ def smoothed(t: FloatArray, values: FloatArray, tau: float, dt: float, derivativ
     Gaps (NaN) are bridged.  NaN before the first and after the last measured sample, and throughout where fewer than
     FEWEST samples are measured.
     """
+    from scipy.interpolate import make_smoothing_spline
+
     known = np.isfinite(values) if values.ndim == 1 else np.isfinite(values).all(axis=1)
     out = np.full(values.shape, np.nan)
     if known.sum() >= FEWEST:

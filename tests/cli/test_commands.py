@@ -9,6 +9,8 @@ import pytest
 from mmgtune.trial import load_trials, read_trial, write_trial
 from tests.command import run
 
+pytestmark = pytest.mark.slow(1)
+
 COMMANDS = [
     ("fit",), ("sweep",), ("leave-out",), ("validate",), ("check",), ("cite",), ("doctor",),
     ("simulate",), ("report",), ("trials", "import"),
@@ -32,6 +34,17 @@ def test_help_imports_nothing_heavy():
         f"print([name for name in {HEAVY!r} if name in sys.modules], file=sys.stderr)"
     )
     ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert ended.stderr.strip().endswith("[]")
+
+
+def test_trials_are_read_without_scipy_and_pandas(tmp_path):
+    """They take most of a second to load, and few commands need them."""
+    code = (
+        "import sys\nsys.argv = ['mmgtune', 'trials', 'check', 'suzaku']\nfrom mmgtune.cli import main\n"
+        "try:\n    main()\nexcept SystemExit as end:\n    assert not end.code\n"
+        "print([name for name in ('pandas', 'scipy', 'matplotlib', 'numba') if name in sys.modules], file=sys.stderr)"
+    )
+    ended = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
     assert ended.stderr.strip().endswith("[]")
 
 

@@ -23,6 +23,8 @@ from tests.hidden.cases import Case, null, pair, single
 from tests.hidden.plant import AUTOCORRELATED, simulate, write
 from tests.hidden.study import covered, outcome
 
+pytestmark = pytest.mark.slow(15)
+
 ROOT = Path(__file__).parent.parent.parent
 
 

@@ -63,7 +63,18 @@ def own_trials(desk, name):
         shutil.copy(folder("trials") / "suzaku" / f"{trial}.parquet", desk / name)
 
 
-@pytest.mark.parametrize("page", [page for page in PAGES if commands(page)], ids=lambda page: page.name)
+SECONDS = {"README.md": 150, "calibrate.md": 70}
+"""About, of pages that take much longer than the others."""
+
+
+@pytest.mark.parametrize(
+    "page",
+    [
+        pytest.param(page, id=page.name, marks=pytest.mark.slow(SECONDS.get(page.name, 20)))
+        for page in PAGES
+        if commands(page)
+    ],
+)
 def test_commands_of_a_page_run(page, desk):
     lines = commands(page)
     if not any(MAKES_TRIALS in line for line in lines):

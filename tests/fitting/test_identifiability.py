@@ -7,6 +7,8 @@ from mmgtune.fitting import FitOptions, fit, make_problem
 from mmgtune.fitting.identifiability import analyse
 from tests.fitting.conftest import TRUTH, make_set
 
+pytestmark = [pytest.mark.xdist_group("identifiability"), pytest.mark.slow(5)]
+
 TRADED = {"rudder.t_R", "rudder.a_H", "rudder.x_H_", "rudder.eps", "rudder.gamma_Rp", "rudder.gamma_Rn"}
 
 

@@ -11,6 +11,8 @@ from mmgtune.profile import load_profile
 from mmgtune.trial import load_trials
 from tests.fitting.conftest import make_set
 
+pytestmark = [pytest.mark.xdist_group("search"), pytest.mark.slow(10)]
+
 
 @pytest.fixture(scope="module")
 def problem(suzaku, noisy):

@@ -15,6 +15,8 @@ from mmgtune.report import render
 from . import fake_run
 from .conftest import read
 
+pytestmark = [pytest.mark.xdist_group("report"), pytest.mark.slow(5)]
+
 
 def meagre(tmp_path: Path, **changes: object) -> str:
     """The page of a fit with parts of its record replaced."""

@@ -20,6 +20,8 @@ from mmgtune.report import render
 from . import fake_run
 from .conftest import read
 
+pytestmark = [pytest.mark.xdist_group("report"), pytest.mark.slow(10)]
+
 FIGURES = {"tracks", "distances", "histories", "coefficients", "convergence", "correlation"}
 
 
