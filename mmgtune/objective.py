@@ -1,4 +1,8 @@
-"""What a fit makes small: J, the sum of squared scaled differences between simulated and measured motion."""
+"""What a fit makes small: J, the sum of squared scaled differences between simulated and measured motion.
+
+Gaps have one rule everywhere, here and in ``evaluation``: each sample of each channel after the first counts where it
+was measured, whatever the other channels did.
+"""
 
 from __future__ import annotations
 
@@ -8,9 +12,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .arrays import FloatArray
-from .backends import STATES, Cases, pad
+from .backends import STATES, Cases
 from .errors import OptionError, Problem, closest
-from .trial import Trial, measured_wind
+from .predictor import cases_from
+from .trial import Trial
 
 PAPER_CHANNELS = ("x", "y", "psi")
 """Position and heading: the channels of Suyama et al. 2023, eq. 39-40."""
@@ -118,6 +123,15 @@ def cases_of(trials: Sequence[Trial], objective: Objective) -> Cases:
 
     Raises OptionError where the window or gaps leave a trial without a sample to compare.
     """
+    weight = weights_of(trials, objective)
+    return cases_from(trials, target=[np.nan_to_num(trial.motion, nan=0.0) for trial in trials], weight=weight)
+
+
+def weights_of(trials: Sequence[Trial], objective: Objective) -> list[FloatArray]:
+    """Weight of each squared difference of trials, (n_samples, 6) each.
+
+    Raises OptionError where the window or gaps leave a trial without a sample to compare.
+    """
     weight = [objective.weight(trial) for trial in trials]
     for trial, values in zip(trials, weight, strict=True):
         if not values.any():
@@ -129,11 +143,4 @@ def cases_of(trials: Sequence[Trial], objective: Objective) -> Cases:
                     "choose a window inside the trial, or leave the trial out of the split",
                 )
             )
-    return pad(
-        [trial.t for trial in trials],
-        [np.column_stack([trial.n, trial.delta]) for trial in trials],
-        [trial.motion[0] for trial in trials],
-        [np.nan_to_num(trial.motion, nan=0.0) for trial in trials],
-        weight,
-        [measured_wind(trial) for trial in trials],
-    )
+    return weight

@@ -1,23 +1,23 @@
-"""Simulating trials: what the model makes of the inputs a ship was given, and of the forces on the way."""
+"""Simulating trials: what a predictor makes of the inputs a ship was given, and of the forces on the way."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from .arrays import FloatArray
-from .backends import STATES, Integrator, LaneModel, get_backend, pad
+from .backends import STATES, Integrator, LaneModel
 from .manoeuvres import Track, manoeuvre_kind
 from .manoeuvres.summary import indices_of
-from .measures import distance_measures, reference_of
 from .model import Model
 from .physics.mmg import Breakdown
 from .physics.quantities import Control, State
+from .predictor import Predictor, as_predictor, cases_from, portions
 from .profile import ShipProfile
-from .trial import Trial, measured_wind
+from .trial import Trial
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +28,7 @@ class Motion:
     states    (n_samples, 6) x, y [m], psi [rad], u, v_m [m/s], r [rad/s]
     controls  (n_samples, 2) propeller revolutions [1/s], rudder angle [rad]
     diverged  whether the simulation left the world of ships; its states then mean nothing
+    member    of the predictor, from 0
     """
 
     id: str
@@ -35,6 +36,7 @@ class Motion:
     states: FloatArray
     controls: FloatArray
     diverged: bool
+    member: int = 0
 
     def channel(self, name: str) -> FloatArray:
         """One of x, y, psi, u, v_m, r: (n_samples,)."""
@@ -47,7 +49,7 @@ class Motion:
 
 
 def simulate(
-    ship: ShipProfile | Model,
+    ship: Predictor | ShipProfile | Model,
     trials: Sequence[Trial],
     *,
     integrator: Integrator = Integrator(),
@@ -55,22 +57,30 @@ def simulate(
 ) -> list[Motion]:
     """Simulate each trial from its first measured state with its measured inputs.
 
-    integrator  "euler" at the trial's own step as Suyama et al. 2023 do, or "rk4"
+    integrator  "rk4", or "euler" at the trial's own step as Suyama et al. 2023 do
     backend     "compiled" or "numpy"; they agree to rounding
+    -> trial by trial, and of each all members
     Never raises for a run that diverges: it is marked so.
     """
-    model = ship if isinstance(ship, Model) else Model(ship)
-    if not trials:
-        return []
-    controls = [np.column_stack([trial.n, trial.delta]) for trial in trials]
-    wind = [measured_wind(trial) for trial in trials]
-    cases = pad([trial.t for trial in trials], controls, [trial.motion[0] for trial in trials], wind=wind)
-    result = get_backend(backend).run(model, model.matrix(), cases, integrator=integrator, keep_states=True)
-    assert result.states is not None  # asked for
-    return [
-        Motion(trial.id, trial.t, result.states[i, 0, : trial.n_samples], controls[i], bool(result.diverged[i, 0]))
-        for i, trial in enumerate(trials)
-    ]
+    return list(motions(as_predictor(ship, integrator=integrator, backend=backend), trials))
+
+
+def motions(predictor: Predictor, trials: Sequence[Trial], offsets: FloatArray | None = None) -> Iterator[Motion]:
+    """The same one after the other, so that no more is held than is being looked at.
+
+    offsets  (n_trials, 6) added to the first measured states
+    """
+    for portion in portions([trial.n_samples for trial in trials], predictor.n_members):
+        some = trials[portion]
+        start = None
+        if offsets is not None:
+            start = [trial.motion[0] + own for trial, own in zip(some, offsets[portion], strict=True)]
+        found = predictor.predict(cases_from(some, initial=start))
+        for i, trial in enumerate(some):
+            controls = np.column_stack([trial.n, trial.delta])
+            for k in range(predictor.n_members):
+                states = np.array(found.states[i, k, : trial.n_samples])  # a copy: a view would hold all of them
+                yield Motion(trial.id, trial.t, states, controls, bool(found.diverged[i, k]), k)
 
 
 def breakdown(ship: ShipProfile | Model, states: FloatArray, controls: FloatArray) -> Breakdown:
@@ -97,14 +107,6 @@ def track_of(trial: Trial) -> Track:
 def trial_indices(trial: Trial, L_pp: float) -> dict[str, Any]:
     """Manoeuvring indices of a measured trial; empty where gaps forbid them.  L_pp [m]."""
     return {} if np.isnan(trial.motion).any() else indices_of(track_of(trial), L_pp)
-
-
-def trial_measures(trial: Trial, motion: Motion) -> dict[str, float]:
-    """The seven distance measures between a measured trial and its simulation; empty where they do not exist."""
-    try:
-        return distance_measures(trial.motion, motion.states, reference_of(trial.motion))
-    except ValueError:  # a ship at rest, or never a complete sample
-        return {}
 
 
 def as_trial(ship: ShipProfile, motion: Motion, *, with_forces: bool = False) -> Trial:
