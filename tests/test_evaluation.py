@@ -16,7 +16,7 @@ from mmgtune.objective import make_objective, spread
 from mmgtune.profile import ShipProfile
 from mmgtune.simulation import simulate
 from mmgtune.trial import TrialSet, write_trial
-from mmgtune.validation import score
+from mmgtune.validation import score, validate
 from tests.command import run
 from tests.fitting.conftest import make_set
 
@@ -128,6 +128,13 @@ def test_nothing_warns_where_a_simulation_diverges(wild, suzaku):
     trials = make_set(suzaku, noise=1.0)
     every = list(trials.trials.values())
     records = evaluate(wild, every)
+    assert any(record.diverged for record in records)
+    for record in records:
+        assert record.J >= 0.0
+        assert record.rms
+        assert record.measures
+        assert record.indices is not None
+    assert all(row["L_MSE"] is None for row in validate({"wild": wild}, trials, manoeuvres=True).rows)
     checked = measure(wild, every, list(METRICS))[0].values()
     assert any(value == np.inf for values in checked for value in values.values())
     left = fit_leaving_out(wild, trials, QUICK, folds=2)
