@@ -25,7 +25,7 @@ from .model import Model
 from .objective import Objective, make_objective, weights_of
 from .predictor import Predictor, as_predictor
 from .profile import ShipProfile
-from .simulation import Motion, motions, track_of
+from .simulation import Motion, motions, ordered_angles, track_of, trial_indices
 from .trial import Trial
 
 
@@ -68,14 +68,14 @@ class Measured:
     @cached_property
     def indices(self) -> dict[str, Any]:
         """Manoeuvring indices by names with their unit; empty where there are none."""
-        return indices_of(self.track, self.L_pp) if self.track else {}
+        return trial_indices(self.trial, self.L_pp)
 
     @cached_property
     def nominal(self) -> tuple[float, float | None] | None:
         """Rudder and heading angle [rad] a zigzag is named by; None for another manoeuvre."""
         if self.track is None or self.kind != "zigzag":
             return None
-        zigzag = zigzag_indices(self.track, self.L_pp)
+        zigzag = zigzag_indices(self.track, self.L_pp, ordered_angles(self.trial))
         return zigzag.rudder_angle, zigzag.heading_angle
 
     def indices_of(self, simulated: Track) -> dict[str, Any]:

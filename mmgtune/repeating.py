@@ -27,7 +27,7 @@ from .model import Model
 from .orders import LONGEST_STEP, Helmsman, TurningOrder, ZigzagOrder, run_manoeuvre
 from .predictor import PhysicsPredictor, Predictor, as_predictor, stepper_of
 from .profile import ShipProfile
-from .simulation import Motion, track_of
+from .simulation import Motion, ordered_angles, track_of
 from .trial import Trial
 from .units import DEG
 
@@ -84,7 +84,8 @@ def repeat(
     -> trial by trial, and of each all members
 
     Each begins straight ahead at the trial's approach speed and heading, with its mean revolutions before the order
-    throughout.  A turn gets the angle held; a zigzag the median angle held, with counter-orders at its nominal heading.
+    throughout.  A turn gets the angle held; a zigzag the median angle held, with counter-orders at its check angle: the
+    one its trial names ("zigzag 35/5"), else the usual one nearest to where the rudder was reversed.
     The rudder moves as the profile's steering gear does, at once where it has none.  There is no measured wind.
     Any predictor can be steered, see ``predictor.stepper_of``.
     """
@@ -94,11 +95,10 @@ def repeat(
     for trial in trials:
         if np.isnan(trial.motion).any():
             continue
-        track = track_of(trial)
-        kind = manoeuvre_kind(track)
+        kind = manoeuvre_kind(track_of(trial))
         if kind in repeats:
             for member in range(predictor.n_members):
-                order, measured, simulated = repeats[kind](predictor, member, track)
+                order, measured, simulated = repeats[kind](predictor, member, trial)
                 found.append(Repeated(trial.id, kind, order, measured.to_dict(), simulated, member))
     return found
 
@@ -138,12 +138,12 @@ def summary(repeated: Sequence[Repeated]) -> dict[str, dict[str, float | int]]:
     }
 
 
-_Repeat = Callable[[Predictor, int, Track], tuple[str, TurningIndices | ZigzagIndices, dict[str, Any]]]
+_Repeat = Callable[[Predictor, int, Trial], tuple[str, TurningIndices | ZigzagIndices, dict[str, Any]]]
 """Order in words, what was measured, and what a member makes of it."""
 
 
-def _turn(predictor: Predictor, member: int, track: Track) -> tuple[str, TurningIndices, dict[str, Any]]:
-    L_pp = predictor.L_pp
+def _turn(predictor: Predictor, member: int, trial: Trial) -> tuple[str, TurningIndices, dict[str, Any]]:
+    track, L_pp = track_of(trial), predictor.L_pp
     measured = turning_indices(track, L_pp)
     angle = _signed(measured.rudder_angle, measured.direction)
     until = float(np.max(np.abs(track.psi - track.psi[0]))) + 5.0 * DEG
@@ -153,9 +153,9 @@ def _turn(predictor: Predictor, member: int, track: Track) -> tuple[str, Turning
     return order, measured, _read(lambda: turning_indices(again.track(), L_pp)) if again else {}
 
 
-def _zigzag(predictor: Predictor, member: int, track: Track) -> tuple[str, ZigzagIndices, dict[str, Any]]:
-    L_pp = predictor.L_pp
-    measured = zigzag_indices(track, L_pp)
+def _zigzag(predictor: Predictor, member: int, trial: Trial) -> tuple[str, ZigzagIndices, dict[str, Any]]:
+    track, L_pp = track_of(trial), predictor.L_pp
+    measured = zigzag_indices(track, L_pp, ordered_angles(trial))
     angle = _signed(measured.rudder_held, measured.direction)
     heading = measured.heading_angle or measured.rudder_angle
     legs = len(measured.execute_time)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -10,7 +11,7 @@ import numpy as np
 
 from .arrays import FloatArray
 from .backends import STATES, Integrator, LaneModel
-from .manoeuvres import Track, manoeuvre_kind
+from .manoeuvres import Track, manoeuvre_kind, zigzag_indices
 from .manoeuvres.summary import indices_of
 from .model import Model
 from .physics.mmg import Breakdown
@@ -18,6 +19,10 @@ from .physics.quantities import Control, State
 from .predictor import Predictor, as_predictor, cases_from, portions
 from .profile import ShipProfile
 from .trial import Trial
+from .units import DEG
+
+ORDERED = re.compile(r"zig-?zag\D*(\d+(?:\.\d+)?)\s*/\s*(\d+(?:\.\d+)?)", re.IGNORECASE)
+"""How a trial's manoeuvre names the angles of a zigzag."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,9 +109,20 @@ def track_of(trial: Trial) -> Track:
     return Track(t=trial.t, n=trial.n, delta=trial.delta, **columns)
 
 
+def ordered_angles(trial: Trial) -> tuple[float, float] | None:
+    """Rudder and check angle [rad] that a zigzag was ordered with, where the trial says so: "zigzag 35/5"."""
+    said = ORDERED.search(trial.manoeuvre)
+    return (float(said[1]) * DEG, float(said[2]) * DEG) if said else None
+
+
 def trial_indices(trial: Trial, L_pp: float) -> dict[str, Any]:
     """Manoeuvring indices of a measured trial; empty where gaps forbid them.  L_pp [m]."""
-    return {} if np.isnan(trial.motion).any() else indices_of(track_of(trial), L_pp)
+    if np.isnan(trial.motion).any():
+        return {}
+    track = track_of(trial)
+    if manoeuvre_kind(track) == "zigzag":
+        return zigzag_indices(track, L_pp, ordered_angles(trial)).to_dict()
+    return indices_of(track, L_pp)
 
 
 def as_trial(ship: ShipProfile, motion: Motion, *, with_forces: bool = False) -> Trial:
