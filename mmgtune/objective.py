@@ -1,4 +1,8 @@
-"""What a fit makes small: J, the sum of squared scaled differences between simulated and measured motion."""
+"""What a fit makes small: J, the sum of squared scaled differences between simulated and measured motion.
+
+Gaps have one rule everywhere, here and in ``evaluation``: each sample of each channel after the first counts where it
+was measured, whatever the other channels did.
+"""
 
 from __future__ import annotations
 
@@ -8,9 +12,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .arrays import FloatArray
-from .backends import STATES, Cases, pad
+from .backends import STATES, Cases
 from .errors import OptionError, Problem, closest
-from .trial import Trial, surroundings
+from .predictor import cases_from
+from .trial import Trial
 from .trial.pieces import counting
 
 PAPER_CHANNELS = ("x", "y", "psi")
@@ -120,6 +125,16 @@ def cases_of(trials: Sequence[Trial], objective: Objective, inputs: Sequence[str
     Raises TrialError for a trial without one of them, OptionError where the window or gaps leave a trial without a
     sample to compare.
     """
+    weight = weights_of(trials, objective)
+    target = [np.nan_to_num(trial.motion, nan=0.0) for trial in trials]
+    return cases_from(trials, inputs, target=target, weight=weight)
+
+
+def weights_of(trials: Sequence[Trial], objective: Objective) -> list[FloatArray]:
+    """Weight of each squared difference of trials, (n_samples, 6) each.
+
+    Raises OptionError where the window or gaps leave a trial without a sample to compare.
+    """
     weight = [objective.weight(trial) for trial in trials]
     for trial, values in zip(trials, weight, strict=True):
         if not values.any():
@@ -131,11 +146,4 @@ def cases_of(trials: Sequence[Trial], objective: Objective, inputs: Sequence[str
                     "choose a window inside the trial, or leave the trial out of the split",
                 )
             )
-    return pad(
-        [trial.t for trial in trials],
-        [trial.inputs(inputs) for trial in trials],
-        [trial.motion[0] for trial in trials],
-        [np.nan_to_num(trial.motion, nan=0.0) for trial in trials],
-        weight,
-        [surroundings(trial) for trial in trials],
-    )
+    return weight

@@ -6,6 +6,7 @@ model foretells for an order, and whether the trial agreed.  So the order is rea
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -14,6 +15,7 @@ import numpy as np
 
 from .arrays import FloatArray
 from .errors import TrialError
+from .inputs import INPUTS
 from .manoeuvres import (
     Track,
     TurningIndices,
@@ -23,9 +25,10 @@ from .manoeuvres import (
     zigzag_indices,
 )
 from .model import Model
-from .orders import Helmsman, TurningOrder, ZigzagOrder, run_manoeuvre
+from .orders import LONGEST_STEP, Helmsman, TurningOrder, ZigzagOrder, run_manoeuvre
+from .predictor import PhysicsPredictor, Predictor, as_predictor, stepper_of
 from .profile import ShipProfile
-from .simulation import Motion, track_if_whole
+from .simulation import Motion, ordered_angles, track_if_whole
 from .trial import Trial
 from .units import DEG
 
@@ -56,6 +59,7 @@ class Repeated:
     order       in words: "35 deg to starboard", "10/10 to port first"
     measured, simulated  indices by names with their unit, None where a record does not reach one; no simulated ones
                 where the simulation diverged or did not turn
+    member      of the predictor, from 0
     """
 
     id: str
@@ -63,6 +67,7 @@ class Repeated:
     order: str
     measured: dict[str, Any]
     simulated: dict[str, Any]
+    member: int = 0
 
     @property
     def judged(self) -> dict[str, tuple[float, float]]:
@@ -71,25 +76,50 @@ class Repeated:
         return {name: (a, b) for name, (a, b) in pairs.items() if a is not None and b is not None}
 
 
-def repeat(ship: ShipProfile | Model, trials: Sequence[Trial], *, theta: FloatArray | None = None) -> list[Repeated]:
+def repeat(
+    ship: Predictor | ShipProfile | Model, trials: Sequence[Trial], *, theta: FloatArray | None = None
+) -> list[Repeated]:
     """Repeat each trial that is a turning circle or a zigzag without gaps; others are left out.
 
-    theta  (n_rows, 1) coefficients, those of the profile where None
+    theta  (n_rows, n_members) coefficients of a profile or model, its own where None
+    -> trial by trial, and of each all members
 
     Each begins straight ahead at the trial's approach speed and heading, with its mean revolutions before the order
-    throughout.  A turn gets the angle held; a zigzag the median angle held, with counter-orders at its nominal heading.
+    throughout.  A turn gets the angle held; a zigzag the median angle held, with counter-orders at its check angle: the
+    one its trial names ("zigzag 35/5"), else the usual one nearest to where the rudder was reversed.
     The rudder moves as the profile's steering gear does, at once where it has none.  There is no measured wind.
+    Any predictor can be steered, see ``predictor.stepper_of``.
     """
-    model = ship if isinstance(ship, Model) else Model(ship)
+    predictor = as_predictor(ship, theta=theta)
     repeats: dict[str, _Repeat] = {"turning": _turn, "zigzag": _zigzag}
     found = []
     for trial in trials:
         track = track_if_whole(trial)
         kind = "other" if track is None else manoeuvre_kind(track)
         if track is not None and kind in repeats:
-            order, measured, simulated = repeats[kind](model, track, theta)
-            found.append(Repeated(trial.id, kind, order, measured.to_dict(), simulated))
+            for member in range(predictor.n_members):
+                order, measured, simulated = repeats[kind](predictor, member, trial, track)
+                found.append(Repeated(trial.id, kind, order, measured.to_dict(), simulated, member))
     return found
+
+
+def document(repeated: Sequence[Repeated]) -> dict[str, Any]:
+    """For JSON: every manoeuvre with all its indices, and the errors over all."""
+    several = any(one.member for one in repeated)
+    return {
+        "runs": [
+            {
+                "id": one.id,
+                **({"member": one.member} if several else {}),
+                "manoeuvre": one.manoeuvre,
+                "order": one.order,
+                "measured": one.measured,
+                "simulated": one.simulated or None,
+            }
+            for one in repeated
+        ],
+        "errors": summary(repeated),
+    }
 
 
 def summary(repeated: Sequence[Repeated]) -> dict[str, dict[str, float | int]]:
@@ -108,30 +138,32 @@ def summary(repeated: Sequence[Repeated]) -> dict[str, dict[str, float | int]]:
     }
 
 
-_Repeat = Callable[[Model, Track, FloatArray | None], tuple[str, TurningIndices | ZigzagIndices, dict[str, Any]]]
-"""Order in words, what was measured, and what the model makes of it."""
+_Repeat = Callable[[Predictor, int, Trial, Track], tuple[str, TurningIndices | ZigzagIndices, dict[str, Any]]]
+"""Order in words, what was measured, and what a member makes of it."""
 
 
-def _turn(model: Model, track: Track, theta: FloatArray | None) -> tuple[str, TurningIndices, dict[str, Any]]:
-    measured = turning_indices(track, model.L_pp)
+def _turn(predictor: Predictor, member: int, trial: Trial, track: Track) -> tuple[str, TurningIndices, dict[str, Any]]:
+    L_pp = predictor.L_pp
+    measured = turning_indices(track, L_pp)
     angle = _signed(measured.rudder_angle, measured.direction)
     until = float(np.max(np.abs(track.psi - track.psi[0]))) + 5.0 * DEG
     order = f"{measured.rudder_angle / DEG:.3g} deg to {measured.direction}"
     at = measured.execute_time, measured.approach_speed
-    again = _run(model, track, *at, theta, lambda begin: TurningOrder(angle, begin, until))
-    return order, measured, _read(lambda: turning_indices(again.track(), model.L_pp)) if again else {}
+    again = _run(predictor, member, track, *at, lambda begin: TurningOrder(angle, begin, until))
+    return order, measured, _read(lambda: turning_indices(again.track(), L_pp)) if again else {}
 
 
-def _zigzag(model: Model, track: Track, theta: FloatArray | None) -> tuple[str, ZigzagIndices, dict[str, Any]]:
-    measured = zigzag_indices(track, model.L_pp)
+def _zigzag(predictor: Predictor, member: int, trial: Trial, track: Track) -> tuple[str, ZigzagIndices, dict[str, Any]]:
+    L_pp = predictor.L_pp
+    measured = zigzag_indices(track, L_pp, ordered_angles(trial))
     angle = _signed(measured.rudder_held, measured.direction)
     heading = measured.heading_angle or measured.rudder_angle
     legs = len(measured.execute_time)
     order = f"{measured.rudder_angle / DEG:.3g}/{heading / DEG:.3g} to {measured.direction} first"
     at = measured.execute_time[0], measured.approach_speed
-    again = _run(model, track, *at, theta, lambda begin: ZigzagOrder(angle, heading, begin, legs))
+    again = _run(predictor, member, track, *at, lambda begin: ZigzagOrder(angle, heading, begin, legs))
     nominal = measured.rudder_angle, heading
-    return order, measured, _read(lambda: zigzag_indices(again.track(), model.L_pp, nominal)) if again else {}
+    return order, measured, _read(lambda: zigzag_indices(again.track(), L_pp, nominal)) if again else {}
 
 
 def _signed(angle: float, direction: str) -> float:
@@ -146,25 +178,68 @@ def _read(indices: Callable[[], TurningIndices | ZigzagIndices]) -> dict[str, An
 
 
 def _run(
-    model: Model,
+    predictor: Predictor,
+    member: int,
     track: Track,
     execute: float,
     speed: float,
-    theta: FloatArray | None,
     helmsman: Callable[[float], Helmsman],
 ) -> Motion | None:
     """The manoeuvre with the order half a ship length after the start; None where it diverges."""
     assert track.n is not None  # tracks of trials have it
     before = track.t <= execute
     sample = float(np.median(np.diff(track.t)))
-    motion = run_manoeuvre(
-        model,
-        helmsman(max(0.5 * model.L_pp / speed, REST * sample)),
+    motion = steered(
+        predictor,
+        member,
+        helmsman(max(0.5 * predictor.L_pp / speed, REST * sample)),
         speed=speed,
         n=float(np.mean(track.n[before])),
         heading=float(track.psi[before][-1]),
-        longest=PATIENCE * float(track.t[-1] - track.t[0]) + model.L_pp / speed,
+        longest=PATIENCE * float(track.t[-1] - track.t[0]) + predictor.L_pp / speed,
         sample=sample,
-        theta=theta,
     )
     return None if motion.diverged else motion
+
+
+def steered(
+    predictor: Predictor,
+    member: int,
+    helmsman: Helmsman,
+    *,
+    speed: float,
+    n: float,
+    heading: float,
+    longest: float,
+    sample: float,
+) -> Motion:
+    """A member steered by a helmsman from straight ahead; arguments as for ``run_manoeuvre``.
+
+    A physics model has the steering gear of its profile.  With any other predictor the rudder moves at once, and steps
+    are as long as a helmsman waits between two looks at the compass.
+    """
+    if isinstance(predictor, PhysicsPredictor):
+        own = predictor.theta[:, member : member + 1]
+        return run_manoeuvre(
+            predictor.model, helmsman, speed=speed, n=n, heading=heading, longest=longest, sample=sample, theta=own
+        )
+    state = np.array([0.0, 0.0, heading, speed, 0.0, 0.0])
+    driven = {"propeller": n, "rudder": 0.0, "thruster": 0.0}
+    now = np.array([driven[INPUTS[name].role] for name in predictor.inputs])
+    under_way = stepper_of(predictor, member, state, now)
+    steps = max(1, math.ceil(sample / LONGEST_STEP - 1e-9))
+    states, controls = [state], [now]
+    diverged = False
+    for i in range(round(longest / sample)):
+        for k in range(steps):
+            t = i * sample + k * sample / steps
+            driven["rudder"] = helmsman.order(t, float(state[2] - heading))
+            then = np.array([driven[INPUTS[name].role] for name in predictor.inputs])
+            state, now = under_way.step(now, then, sample / steps), then
+        states.append(state)
+        controls.append(now)
+        diverged = not bool(np.isfinite(state).all())
+        if diverged or helmsman.finished(float(state[2] - heading)):
+            break
+    times: FloatArray = sample * np.arange(len(states), dtype=np.float64)
+    return Motion("run", times, np.array(states), np.array(controls), diverged, tuple(predictor.inputs), member)

@@ -1,25 +1,30 @@
-"""Simulating trials: what the model makes of the inputs a ship was given, and of the forces on the way."""
+"""Simulating trials: what a predictor makes of the inputs a ship was given, and of the forces on the way."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from .arrays import FloatArray
-from .backends import STATES, Integrator, LaneModel, get_backend, pad
+from .backends import STATES, Integrator, LaneModel
 from .errors import TrialError
 from .inputs import INPUTS, Role
-from .manoeuvres import Track, manoeuvre_kind
+from .manoeuvres import Track, manoeuvre_kind, zigzag_indices
 from .manoeuvres.summary import indices_of
-from .measures import distance_measures, reference_of
 from .model import Model
 from .physics.quantities import Force, State
+from .predictor import Predictor, as_predictor, cases_from, portions
 from .profile import ShipProfile
-from .trial import Trial, surroundings
+from .trial import Trial
 from .trial.schema import MAIN_INPUTS
+from .units import DEG
+
+ORDERED = re.compile(r"zig-?zag\D*(\d+(?:\.\d+)?)\s*/\s*(\d+(?:\.\d+)?)", re.IGNORECASE)
+"""How a trial's manoeuvre names the angles of a zigzag."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +36,7 @@ class Motion:
     controls  (n_samples, n_inputs) what drove the ship
     diverged  whether the simulation left the world of ships; its states then mean nothing
     inputs    names of the inputs, see ``inputs.INPUTS``
+    member    of the predictor, from 0
     """
 
     id: str
@@ -39,6 +45,7 @@ class Motion:
     controls: FloatArray
     diverged: bool
     inputs: tuple[str, ...] = MAIN_INPUTS
+    member: int = 0
 
     def channel(self, name: str) -> FloatArray:
         """One of x, y, psi, u, v_m, r: (n_samples,)."""
@@ -56,7 +63,7 @@ class Motion:
 
 
 def simulate(
-    ship: ShipProfile | Model,
+    ship: Predictor | ShipProfile | Model,
     trials: Sequence[Trial],
     *,
     integrator: Integrator = Integrator(),
@@ -64,29 +71,32 @@ def simulate(
 ) -> list[Motion]:
     """Simulate each trial from its first measured state with its measured inputs.
 
-    integrator  "euler" at the trial's own step as Suyama et al. 2023 do, or "rk4"
+    integrator  "rk4", or "euler" at the trial's own step as Suyama et al. 2023 do
     backend     "compiled" or "numpy"; they agree to rounding
+    -> trial by trial, and of each all members
     Never raises for a run that diverges: it is marked so.
     """
-    model = ship if isinstance(ship, Model) else Model(ship)
-    if not trials:
-        return []
-    controls = [trial.inputs(model.inputs) for trial in trials]
-    around = [surroundings(trial) for trial in trials]
-    cases = pad([trial.t for trial in trials], controls, [trial.motion[0] for trial in trials], around=around)
-    result = get_backend(backend).run(model, model.matrix(), cases, integrator=integrator, keep_states=True)
-    assert result.states is not None  # asked for
-    return [
-        Motion(
-            trial.id,
-            trial.t,
-            result.states[i, 0, : trial.n_samples],
-            controls[i],
-            bool(result.diverged[i, 0]),
-            model.inputs,
-        )
-        for i, trial in enumerate(trials)
-    ]
+    return list(motions(as_predictor(ship, integrator=integrator, backend=backend), trials))
+
+
+def motions(predictor: Predictor, trials: Sequence[Trial], offsets: FloatArray | None = None) -> Iterator[Motion]:
+    """The same one after the other, so that no more is held than is being looked at.
+
+    offsets  (n_trials, 6) added to the first measured states
+    """
+    for portion in portions([trial.n_samples for trial in trials], predictor.n_members):
+        some = trials[portion]
+        start = None
+        if offsets is not None:
+            start = [trial.motion[0] + own for trial, own in zip(some, offsets[portion], strict=True)]
+        found = predictor.predict(cases_from(some, predictor.inputs, initial=start))
+        for i, trial in enumerate(some):
+            controls = trial.inputs(predictor.inputs)
+            for k in range(predictor.n_members):
+                states = np.array(found.states[i, k, : trial.n_samples])  # a copy: a view would hold all of them
+                yield Motion(
+                    trial.id, trial.t, states, controls, bool(found.diverged[i, k]), tuple(predictor.inputs), k
+                )
 
 
 def breakdown(ship: ShipProfile | Model, states: FloatArray, controls: FloatArray) -> Any:
@@ -119,18 +129,21 @@ def track_if_whole(trial: Trial) -> Track | None:
         return None
 
 
+def ordered_angles(trial: Trial) -> tuple[float, float] | None:
+    """Rudder and check angle [rad] that a zigzag was ordered with, where the trial says so: "zigzag 35/5"."""
+    said = ORDERED.search(trial.manoeuvre)
+    return (float(said[1]) * DEG, float(said[2]) * DEG) if said else None
+
+
 def trial_indices(trial: Trial, L_pp: float) -> dict[str, Any]:
     """Manoeuvring indices of a measured trial; empty where ``track_if_whole`` finds no record.  L_pp [m]."""
     track = track_if_whole(trial)
-    return {} if track is None else indices_of(track, L_pp)
-
-
-def trial_measures(trial: Trial, motion: Motion) -> dict[str, float]:
-    """The seven distance measures between a measured trial and its simulation; empty where they do not exist."""
-    try:
-        return distance_measures(trial.motion, motion.states, reference_of(trial.motion))
-    except ValueError:  # a ship at rest, or never a complete sample
+    if track is None:
         return {}
+    track = track_of(trial)
+    if manoeuvre_kind(track) == "zigzag":
+        return zigzag_indices(track, L_pp, ordered_angles(trial)).to_dict()
+    return indices_of(track, L_pp)
 
 
 def as_trial(ship: ShipProfile, motion: Motion, *, with_forces: bool = False) -> Trial:

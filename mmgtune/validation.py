@@ -4,14 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from .arrays import FloatArray
-from .backends import STATES, Integrator, get_backend
+from .backends import STATES, Integrator
+from .errors import OptionError, Problem
+from .evaluation import TrialRecord, records
 from .model import Model
-from .objective import cases_of, default_scales, make_objective
-from .trial import Trial
+from .objective import spread
+from .predictor import PhysicsPredictor, Predictor, as_predictor
+from .profile import ShipProfile
+from .repeating import Repeated, document, repeat
+from .trial import Trial, TrialSet
 
 DRAWS = 2000
 """Times runs are drawn anew for an interval."""
@@ -19,13 +25,16 @@ DRAWS = 2000
 
 @dataclass(frozen=True)
 class TrialScore:
-    """One trial, or one window of it.
+    """One member on one trial, or on one window of it.
 
     trial      id of the whole trial
     run        name of the run it belongs to
     J          sum of squared differences of position and heading over L_pp and pi/4 (Suyama et al. 2023, eq. 39-40)
     squares    sum over samples of each state's squared difference over its sigma squared, by state
-    n_samples  samples compared: complete ones after the first
+    counts     samples compared, by state: those after the first at which it was measured
+    n_samples  samples after the first at which any was
+    method     how it was simulated
+    member     of the predictor, from 0
     """
 
     id: str
@@ -34,18 +43,32 @@ class TrialScore:
     manoeuvre: str
     J: float
     squares: Mapping[str, float]
+    counts: Mapping[str, int]
     n_samples: int
+    method: str = ""
+    member: int = 0
 
     @property
     def L_MSE(self) -> float:
-        """Mean over the samples of the sum over the six states (Wakita et al. 2022, eq. 26); inf where diverged."""
+        """Sum over the six states of the mean over their samples (Wakita et al. 2022, eq. 26); inf where diverged."""
         return L_MSE([self])
 
 
+def L_MSE_by_state(scores: Sequence[TrialScore]) -> dict[str, float]:
+    """The parts of the standardised error over several trials: the mean over all samples of each state.
+
+    Each sample counts alike; a state that no trial measured is left out.
+    """
+    counts = {name: sum(score.counts.get(name, 0) for score in scores) for name in STATES}
+    return {
+        name: float(sum(score.squares.get(name, 0.0) for score in scores) / n) for name, n in counts.items() if n > 0
+    }
+
+
 def L_MSE(scores: Sequence[TrialScore]) -> float:
-    """The standardised error over several trials: each sample counts alike; NaN where there is none."""
-    n = sum(score.n_samples for score in scores)
-    return float(sum(sum(score.squares.values()) for score in scores) / n) if n else float("nan")
+    """The standardised error over several trials, the sum of its parts by state; NaN where there is none."""
+    parts = L_MSE_by_state(scores)
+    return float(sum(parts.values())) if parts else float("nan")
 
 
 def by_manoeuvre(scores: Sequence[TrialScore]) -> dict[str, list[TrialScore]]:
@@ -70,47 +93,180 @@ def _grouped(scores: Sequence[TrialScore], key: Callable[[TrialScore], str]) -> 
     return groups
 
 
+def by_member(scores: Sequence[TrialScore]) -> list[list[TrialScore]]:
+    """Scores by member of the predictor, in order."""
+    groups: dict[int, list[TrialScore]] = {}
+    for one in scores:
+        groups.setdefault(one.member, []).append(one)
+    return [groups[member] for member in sorted(groups)]
+
+
 def score(
-    model: Model,
+    ship: Predictor | ShipProfile | Model,
     trials: Sequence[Trial],
     sigma: Mapping[str, float],
     *,
     theta: FloatArray | None = None,
-    integrator: Integrator = Integrator("rk4"),
+    integrator: Integrator = Integrator(),
     backend: str = "compiled",
 ) -> list[TrialScore]:
     """Scores of trials, each simulated from its first measured state with its measured inputs.
 
     sigma  what differences of each state are divided by in L_MSE [SI], see ``objective.spread``
-    theta  (n_rows, 1) coefficients, those of the profile where None
+    theta  (n_rows, n_members) coefficients of a profile or model, its own where None
+    -> trial by trial, and of each all members
     Windows of long trials are trials like any other (``TrialSet.in_windows``).
     """
-    cases = cases_of(trials, make_objective(model.L_pp, STATES), model.inputs)
-    result = get_backend(backend).run(
-        model, model.matrix() if theta is None else theta, cases, integrator=integrator, keep_states=True
+    predictor = as_predictor(ship, theta=theta, integrator=integrator, backend=backend)
+    return [score_of(record, sigma) for record in records(predictor, trials)]
+
+
+def score_of(record: TrialRecord, sigma: Mapping[str, float]) -> TrialScore:
+    """The score of one record; ``sigma`` as for ``score``."""
+    trial = record.trial
+    return TrialScore(
+        trial.id,
+        trial.whole,
+        trial.run,
+        trial.manoeuvre,
+        record.J,
+        {name: value / sigma[name] ** 2 for name, value in record.squares.items()},
+        record.counts,
+        int(record.measured.counted.any(axis=1).sum()),
+        record.method,
+        record.member,
     )
-    assert result.states is not None  # asked for
-    scales = default_scales(model.L_pp)
-    found = []
-    for i, trial in enumerate(trials):
-        with np.errstate(all="ignore"):
-            difference = (result.states[i, 0, : trial.n_samples] - trial.motion)[1:]
-        difference = difference[np.isfinite(trial.motion[1:]).all(axis=1)]
-        squares = dict(zip(STATES, np.sum(difference**2, axis=0).tolist(), strict=True))
-        if result.diverged[i, 0]:
-            squares = dict.fromkeys(STATES, float("inf"))
-        found.append(
-            TrialScore(
-                trial.id,
-                trial.whole,
-                trial.run,
-                trial.manoeuvre,
-                sum(squares[name] / scales[name] ** 2 for name in ("x", "y", "psi")),
-                {name: value / sigma[name] ** 2 for name, value in squares.items()},
-                len(difference),
+
+
+@dataclass(frozen=True, eq=False)
+class Validation:
+    """Predictors scored on the same trials, by the name each was given.
+
+    sigma       what differences of each state are divided by in L_MSE [SI]
+    window      length of the windows [s] trials were cut into, None for whole trials
+    repeated    measured turning circles and zigzags repeated, None where not asked for
+    """
+
+    predictors: Mapping[str, Predictor]
+    scores: Mapping[str, tuple[TrialScore, ...]]
+    sigma: Mapping[str, float]
+    window: float | None
+    repeated: Mapping[str, tuple[Repeated, ...]] | None
+
+    @property
+    def rows(self) -> list[dict[str, Any]]:
+        """One predictor a row, for JSON: what it is, how it was simulated, its scores and repetitions."""
+        rows = []
+        for name, predictor in self.predictors.items():
+            profile = predictor.model.profile if isinstance(predictor, PhysicsPredictor) else None
+            row: dict[str, Any] = {
+                "profile": name,
+                "id": predictor.name,
+                "sha256": profile.sha256 if profile else None,
+                "method": predictor.method,
+                **summary(self.scores[name]),
+            }
+            if self.repeated is not None:
+                row["manoeuvres"] = document(self.repeated[name])
+            rows.append(row)
+        return rows
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "schema": 1,
+            "kind": "validate",
+            "window_s": self.window,
+            "sigma": dict(self.sigma),
+            "profiles": self.rows,
+        }
+
+
+def validate(
+    ships: Mapping[str, Predictor | ShipProfile | Model],
+    trials: TrialSet,
+    *,
+    window: float | None = None,
+    sigma: Mapping[str, float] | None = None,
+    manoeuvres: bool = False,
+    integrator: Integrator = Integrator(),
+    backend: str = "compiled",
+) -> Validation:
+    """Score ships on trials, each by the name it is given.
+
+    window      length of the windows [s] trials are cut into, each begun from a measured state; None for whole trials
+    sigma       what L_MSE divides differences of each state by [SI]; the spread of the trials where None
+    manoeuvres  also repeat measured turning circles and zigzags, see ``repeating.repeat``
+
+    Raises OptionError for a window that is no time, and where a state does not vary in what sigma is taken from.
+    """
+    if window is not None and not window > 0.0:
+        raise OptionError(Problem(f"the window is {window:g} s", "window", fix="give a time in seconds above 0"))
+    sigma = spread(list(trials.trials.values())) if sigma is None else sigma
+    still = [name for name, value in sigma.items() if not value > 0.0]
+    if still:
+        raise OptionError(
+            Problem(
+                f"these trials do not vary in {', '.join(still)}",
+                str(trials.path or "sigma"),
+                "L_MSE divides by the spread of each state",
+                "take the spread from trials that do",
             )
         )
+    whole = list(trials.trials.values())
+    pieces = list((trials.in_windows(window) if window else trials).trials.values())
+    made = {name: as_predictor(ship, integrator=integrator, backend=backend) for name, ship in ships.items()}
+    return Validation(
+        made,
+        {name: tuple(score(ship, pieces, sigma)) for name, ship in made.items()},
+        sigma,
+        window,
+        {name: tuple(repeat(ship, whole)) for name, ship in made.items()} if manoeuvres else None,
+    )
+
+
+def summary(scores: Sequence[TrialScore]) -> dict[str, Any]:
+    """Scores over everything, by kind of manoeuvre and by trial, for JSON; what diverged is null.
+
+    Of a predictor with several members these are the means over the members, and ``members`` has each one's own.
+    """
+    members = by_member(scores)
+    found = {
+        **_row(scores),
+        "by_manoeuvre": {kind: {"runs": len(by_run(of)), **_row(of)} for kind, of in by_manoeuvre(scores).items()},
+        "trials": [
+            {"id": id, "manoeuvre": of[0].manoeuvre, "windows": len(by_member(of)[0]), **_row(of)}
+            for id, of in by_trial(scores).items()
+        ],
+    }
+    if len(members) > 1:
+        found["members"] = [
+            {
+                "member": of[0].member,
+                **_row(of),
+                "trials": [{"id": id, **_row(own)} for id, own in by_trial(of).items()],
+            }
+            for of in members
+        ]
     return found
+
+
+def _row(scores: Sequence[TrialScore]) -> dict[str, Any]:
+    """J and L_MSE of some trials, the mean over members."""
+    members = by_member(scores)
+    parts = [L_MSE_by_state(of) for of in members]
+    return {
+        "J": _mean([sum(one.J for one in of) for of in members]),
+        "L_MSE": _mean([L_MSE(of) for of in members]),
+        "L_MSE_by_state": {name: _mean([of[name] for of in parts]) for name in parts[0]},
+        "n_samples": sum(one.n_samples for one in members[0]),
+    }
+
+
+def _mean(values: Sequence[float]) -> float | None:
+    """The mean, None where it is not a number that JSON has."""
+    mean = sum(values) / len(values)
+    return float(mean) if np.isfinite(mean) else None
 
 
 def improvement(

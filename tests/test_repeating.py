@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mmgtune.evaluation import evaluate
 from mmgtune.orders import TurningOrder, ZigzagOrder, run_manoeuvre
 from mmgtune.repeating import Repeated, repeat, summary
 from mmgtune.simulation import as_trial, trial_indices
@@ -63,6 +64,19 @@ def test_a_model_that_goes_astray_has_no_indices(suzaku, sailed):
     assert one.simulated == {}
     assert one.judged == {}
     assert summary([one]) == {}
+
+
+def test_a_late_helmsman_does_not_change_the_order(suzaku):
+    """A 35/5 zigzag whose rudder is reversed two degrees late is repeated as 35/5, where the trial says what it was."""
+    late = as_trial(suzaku.profile, run_manoeuvre(suzaku, ZigzagOrder(35.0 * RAD, 7.0 * RAD, 30.0), id="late"))
+    (one,) = repeat(suzaku, [replace(late, manoeuvre="zigzag 35/5")])
+    assert one.order == "35/5 to starboard first"
+    assert one.measured["heading_angle_deg"] == pytest.approx(5.0)
+    assert one.simulated["execute_heading_1_deg"] < one.measured["execute_heading_1_deg"] - 1.5
+    measured, simulated = one.judged["overshoot_1_deg"]
+    assert simulated < measured - 1.5
+    (record,) = evaluate(suzaku, [replace(late, manoeuvre="zigzag 35/5")])
+    assert record.measured.indices["overshoot_1_deg"] == measured
 
 
 def test_errors_by_hand():

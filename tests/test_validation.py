@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmgtune.backends import STATES, Integrator
+from mmgtune.backends import STATES
 from mmgtune.objective import default_scales, spread
 from mmgtune.simulation import simulate
 from mmgtune.trial import write_trial
@@ -15,7 +15,7 @@ from tests.fitting.conftest import make_set
 
 
 def _score(run: str, squares: float, n: int = 10, manoeuvre: str = "turning") -> TrialScore:
-    return TrialScore(run, run, run, manoeuvre, 0.0, {"x": squares}, n)
+    return TrialScore(run, run, run, manoeuvre, 0.0, {"x": squares}, {"x": n}, n)
 
 
 def test_spread_wraps_the_heading(suzaku):
@@ -30,8 +30,7 @@ def test_both_measures_by_hand(suzaku):
     """Equation 26 of Wakita et al. 2022, and J of Suyama et al. 2023, over all samples after the first."""
     trials = list(make_set(suzaku, noise=1.0).trials.values())[:2]
     sigma = spread(trials)
-    euler = Integrator()
-    found = score(suzaku, trials, sigma, integrator=euler)
+    found = score(suzaku, trials, sigma)
     for trial, motion, one in zip(trials, simulate(suzaku, trials), found, strict=True):
         difference = dict(zip(STATES, (motion.states - trial.motion)[1:].T, strict=True))
         squares = sum((difference[name] / sigma[name]) ** 2 for name in STATES)
@@ -40,12 +39,31 @@ def test_both_measures_by_hand(suzaku):
         assert pytest.approx(sum(np.sum((difference[c] / scales[c]) ** 2) for c in ("x", "y", "psi"))) == one.J
 
 
-def test_gaps_are_not_scored(suzaku):
-    trial = next(iter(make_set(suzaku).trials.values()))
+def test_a_gap_in_one_channel_leaves_the_others(suzaku):
+    """A gap takes its own channel's samples out of J and L_MSE, and nobody else's."""
+    trial = next(iter(make_set(suzaku, noise=1.0).trials.values()))
     x = np.array(trial.x)
     x[50:60] = np.nan
-    (found,) = score(suzaku, [replace(trial, x=x)], spread([trial]), integrator=Integrator())
-    assert found.n_samples == trial.n_samples - 1 - 10
+    sigma = spread([trial])
+    (whole,) = score(suzaku, [trial], sigma)
+    (found,) = score(suzaku, [replace(trial, x=x)], sigma)
+    assert found.n_samples == whole.n_samples == trial.n_samples - 1
+    assert found.counts == {**whole.counts, "x": trial.n_samples - 11}
+    (motion,) = simulate(suzaku, [trial])
+    lost = np.sum((motion.states - trial.motion)[50:60, 0] ** 2)
+    assert pytest.approx(whole.J - lost / 83.0**2, rel=1e-12) == found.J
+    parts = {name: whole.squares[name] / whole.counts[name] for name in STATES}
+    parts["x"] = (whole.squares["x"] - lost / sigma["x"] ** 2) / found.counts["x"]
+    assert pytest.approx(sum(parts.values()), rel=1e-12) == found.L_MSE
+
+
+def test_a_channel_nobody_measured_adds_nothing(suzaku):
+    trial = next(iter(make_set(suzaku, noise=1.0).trials.values()))
+    v = np.full(trial.n_samples, np.nan)
+    v[0] = trial.v_m[0]
+    (whole,) = score(suzaku, [trial], spread([trial]))
+    (found,) = score(suzaku, [replace(trial, v_m=v)], spread([trial]))
+    assert pytest.approx(whole.L_MSE - whole.squares["v_m"] / whole.counts["v_m"]) == found.L_MSE
 
 
 def test_samples_count_alike_over_trials_of_any_length():

@@ -102,11 +102,11 @@ def pad(
 class Integrator:
     """A fixed-step method in which each stage needs only the one before.
 
-    name      "euler" (the paper's) or "rk4"
+    name      "rk4", or "euler" (the paper's)
     substeps  steps between two samples; inputs are interpolated linearly where the method looks between samples
     """
 
-    name: str = "euler"
+    name: str = "rk4"
     substeps: int = 1
 
     def __post_init__(self) -> None:

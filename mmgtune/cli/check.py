@@ -81,7 +81,7 @@ def command(
     ] = None,
     integrator: Annotated[
         str | None,
-        typer.Option("--integrator", help="euler or rk4. Default: the baseline's.", rich_help_panel=c.SEARCH),
+        typer.Option("--integrator", help="rk4 or euler. Default: the baseline's, else rk4.", rich_help_panel=c.SEARCH),
     ] = None,
     substeps: c.Substeps = 1,
     backend: c.BackendName = "compiled",
@@ -138,7 +138,7 @@ class Asked:
         """The integrator asked for; None takes the baseline's."""
         if self.integrator is None and self.substeps == 1:
             return None
-        return c.integrator_of(self.integrator or "euler", self.substeps)
+        return c.integrator_of(self.integrator or "rk4", self.substeps)
 
     def loaded(self) -> tuple[ShipProfile, TrialSet]:
         """Profile and trials."""

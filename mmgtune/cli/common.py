@@ -138,7 +138,7 @@ Initial = Annotated[
     ),
 ]
 IntegratorName = Annotated[
-    str, typer.Option("--integrator", help="euler (as the paper) or rk4.", rich_help_panel=SEARCH)
+    str, typer.Option("--integrator", help="rk4, or euler (as the paper).", rich_help_panel=SEARCH)
 ]
 Substeps = Annotated[
     int, typer.Option("--substeps", help="Integration steps between two samples.", rich_help_panel=SEARCH)
@@ -194,7 +194,7 @@ def integrator_of(name: str, substeps: int) -> Integrator:
     try:
         return Integrator(name, substeps)
     except ValueError as error:
-        raise OptionError(Problem(str(error), "--integrator", fix="euler or rk4")) from None
+        raise OptionError(Problem(str(error), "--integrator", fix="rk4 or euler")) from None
 
 
 def load(profile: str, trials: str) -> tuple[ShipProfile, TrialSet]:

@@ -127,8 +127,8 @@ def summary(result: Diagnosis, folder: str, report: bool) -> str:
     if before is not None and after is not None and result.causes:
         low, high = result.gain.share_removed[1:]
         lines.append(
-            f"J held out ({result.gain.held_out}): {before:.4g} -> {after:.4g}; 95 % interval of the share "
-            f"removed {100.0 * low:.1f} to {100.0 * high:.1f} %."
+            f"J held out ({result.gain.words}; {result.gain.method}): {before:.4g} -> {after:.4g}; "
+            f"95 % interval of the share removed {100.0 * low:.1f} to {100.0 * high:.1f} %."
         )
     if result.suggestion:
         lines.append(f"A trial that would tell: {result.suggestion.manoeuvre}.")

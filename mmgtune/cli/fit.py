@@ -38,7 +38,7 @@ def command(
     method: c.Method = "cma-es",
     starts: c.Starts = 20,
     initial: c.Initial = "measured",
-    integrator: c.IntegratorName = "euler",
+    integrator: c.IntegratorName = "rk4",
     substeps: c.Substeps = 1,
     backend: c.BackendName = "compiled",
     seed: c.Seed = 1,
@@ -138,7 +138,7 @@ def summary(result: FitResult, folder: str, report: bool) -> str:
         before, tuned = ("inf" if row[key] is None else f"{row[key]:.4g}" for key in ("pre_determined", "value"))
         lines.append(f"{row['name']:<24}{before:>11}{tuned:>11}{error:>10}  {place} {note}")
     width = max([22, *(len(one.trial.id) for one in result.compared)]) + 2
-    lines += ["", f"{'trial':<{width}}{'role':<7}{'J before':>11}{'J after':>11}", ""]
+    lines += ["", f"{'trial':<{width}}{'role':<7}{'J before':>11}{'J after':>11}   {result.method}", ""]
     for one in result.compared:
         lines.append(f"{one.trial.id:<{width}}{one.role:<7}{one.J['before']:>11.4g}{one.J['after']:>11.4g}")
     lines += ["", *result.certificate.sentences[:2], *result.identifiability.sentences[:2]]

@@ -36,7 +36,7 @@ def command(
     regularise: c.Regularise = 0.0,
     starts: c.Starts = 4,
     initial: c.Initial = "measured",
-    integrator: c.IntegratorName = "euler",
+    integrator: c.IntegratorName = "rk4",
     substeps: c.Substeps = 1,
     backend: c.BackendName = "compiled",
     seed: c.Seed = 1,
@@ -55,7 +55,8 @@ def command(
       mmgtune leave-out -p my_ship.toml -t my_trials/ --restart 100 --objective standardised --folds 5
     """
     from ..fitting import FitOptions, fit_leaving_out
-    from .repeated import document, table
+    from ..repeating import document
+    from .repeated import table
 
     ship, data = c.load(profile, trials)
     ship, added = c.with_effects(ship, c.split(with_effects))
@@ -104,4 +105,4 @@ def command(
         print(f"{row['manoeuvre']:<20}{row['runs']:>6}{''.join(shown)}   {removed}")
     if manoeuvres:
         print(table({"before": result.repeated_before, "left out": result.repeated_after}))
-    print(f"{len(result.parts)} fits in {result.wall_s:.1f} s.")
+    print(f"{len(result.parts)} fits in {result.wall_s:.1f} s, simulated by {result.method}.")

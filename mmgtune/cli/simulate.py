@@ -12,12 +12,15 @@ from ..errors import OptionError, Problem
 from . import common as c
 
 if TYPE_CHECKING:
+    from ..evaluation import TrialRecord
     from ..orders import Helmsman
     from ..profile import ShipProfile
     from ..simulation import Motion
-    from ..trial import Trial
 
 MANOEUVRE = "Manoeuvre"
+
+ORDERED = "rk4"
+"""How manoeuvres given as orders are simulated, at steps of their own."""
 
 
 def command(
@@ -54,7 +57,7 @@ def command(
             "--trials", "-t", help="Simulate these trials with their own inputs instead.", rich_help_panel=c.INPUT
         ),
     ] = None,
-    integrator: c.IntegratorName = "euler",
+    integrator: c.IntegratorName = "rk4",
     substeps: c.Substeps = 1,
     backend: c.BackendName = "compiled",
     out: Annotated[
@@ -94,10 +97,10 @@ def command(
             raise OptionError(
                 Problem("--trials has its own inputs", "--trials", fix="leave out --turn, --zigzag, --speed and --rpm")
             )
-        runs, measured = _on_trials(ship, trials, integrator, substeps, backend)
+        runs, records = _on_trials(ship, trials, integrator, substeps, backend)
     else:
-        runs, measured = _on_orders(ship, turn or ([] if zigzag else [35.0, -35.0]), zigzag or [], speed, rpm), {}
-    results = [_described(ship, motion, measured.get(motion.id)) for motion in runs]
+        runs, records = _on_orders(ship, turn or ([] if zigzag else [35.0, -35.0]), zigzag or [], speed, rpm), {}
+    results = [_described(ship, motion, records.get(motion.id)) for motion in runs]
     files = _write(ship, runs, out, forces, force) if out is not None else []
     if json:
         c.print_json(
@@ -141,31 +144,30 @@ def _on_orders(
 
 def _on_trials(
     ship: ShipProfile, name: str, integrator: str, substeps: int, backend: str
-) -> tuple[list[Motion], dict[str, Trial]]:
+) -> tuple[list[Motion], dict[str, TrialRecord]]:
+    from ..evaluation import evaluate
     from ..fitting import FitOptions
-    from ..simulation import simulate
     from ..trial import load_trials
 
     options = FitOptions(integrator=integrator, substeps=substeps, backend=backend)
-    data = load_trials(name)
-    motions = simulate(ship, list(data.trials.values()), integrator=options.make_integrator(), backend=backend)
-    return motions, data.trials
+    trials = list(load_trials(name).trials.values())
+    records = evaluate(ship, trials, integrator=options.make_integrator(), backend=backend)
+    return [record.motion for record in records], {record.trial.id: record for record in records}
 
 
-def _described(ship: ShipProfile, motion: Motion, trial: Trial | None) -> dict[str, Any]:
+def _described(ship: ShipProfile, motion: Motion, record: TrialRecord | None) -> dict[str, Any]:
     from ..manoeuvres.summary import criteria_of, indices_of
-    from ..simulation import trial_indices, trial_measures
 
     V = ship.approach.speed if ship.approach else float(motion.states[0, 3])
     track = None if motion.diverged else motion.track()
-    measured = trial_indices(trial, ship.L_pp) if trial is not None else None
     return {
         "id": motion.id,
         "status": "diverged" if motion.diverged else "ok",
         "duration_s": float(motion.t[-1]),
-        "indices": indices_of(track, ship.L_pp, measured) if track else {},
-        "measured": measured,
-        "measures": trial_measures(trial, motion) if trial is not None and not motion.diverged else None,
+        "integrator": record.method if record else ORDERED,
+        "indices": record.indices if record else indices_of(track, ship.L_pp) if track else {},
+        "measured": record.measured.indices if record else None,
+        "measures": record.measures if record and not motion.diverged else None,
         "criteria": [criterion.to_dict() for criterion in criteria_of(track, ship.L_pp, V)] if track else [],
     }
 
@@ -188,7 +190,7 @@ def _write(ship: ShipProfile, runs: list[Motion], out: Path, forces: bool, repla
 def _text(result: dict[str, Any]) -> str:
     from ..measures import UNITS
 
-    lines = [f"{result['id']}  ({result['status']}, {result['duration_s']:.0f} s)"]
+    lines = [f"{result['id']}  ({result['status']}, {result['duration_s']:.0f} s, {result['integrator']})"]
     measured = result["measured"] or {}
     for name, value in result["indices"].items():
         if value is not None and value != []:

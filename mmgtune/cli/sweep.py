@@ -35,7 +35,7 @@ def command(
     method: c.Method = "cma-es",
     starts: c.Starts = 20,
     initial: c.Initial = "measured",
-    integrator: c.IntegratorName = "euler",
+    integrator: c.IntegratorName = "rk4",
     substeps: c.Substeps = 1,
     backend: c.BackendName = "compiled",
     seed: c.Seed = 1,
@@ -123,7 +123,7 @@ def summary(result: SweepResult, folder: str, report: bool) -> str:
         before = result.runs[0].J_of(role, "before")
         if before is not None:
             cells = [f"{run.J_of(role, 'after') or float('nan'):>11.4g}" for run in result.runs]
-            lines.append(f"{label:<24}" + "".join(cells) + f"   before {before:.4g}")
+            lines.append(f"{label:<24}" + "".join(cells) + f"   before {before:.4g}, {result.runs[0].method}")
     if result.leave_one_out is not None:
         lines.append(f"{'J left out':<24}" + "".join(f"{J:>11.4g}" for J in result.leave_one_out))
     lines += ["", "* on a bound", "", result.recommended()["sentence"], result.overfitting()["sentence"]]

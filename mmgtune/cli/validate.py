@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -44,13 +44,10 @@ def command(
 
       mmgtune validate suzaku suzaku --manoeuvres
     """
-    from ..model import Model
     from ..objective import spread
     from ..profile import load_profile
-    from ..repeating import repeat
     from ..trial import load_trials
-    from ..validation import score
-    from .repeated import document as document_of
+    from ..validation import validate
     from .repeated import table
 
     if len(names) < 2:
@@ -72,72 +69,36 @@ def command(
                 "name trials that do with --sigma-from",
             )
         )
-    pieces = list((data.in_windows(window) if window else data).trials.values())
-    ships = [load_profile(name) for name in names[:-1]]
-    scored = {
-        name: score(Model(ship), pieces, sigma, integrator=chosen, backend=backend)
-        for name, ship in zip(names[:-1], ships, strict=True)
-    }
-    rows: list[dict[str, Any]] = [
-        {"profile": name, "id": ship.id, "sha256": ship.sha256, **summary(scored[name])}
-        for name, ship in zip(names[:-1], ships, strict=True)
-    ]
-    repeated = (
-        {name: repeat(ship, list(data.trials.values())) for name, ship in zip(names[:-1], ships, strict=True)}
-        if manoeuvres
-        else {}
+    found = validate(
+        {name: load_profile(name) for name in names[:-1]},
+        data,
+        window=window,
+        sigma=sigma,
+        manoeuvres=manoeuvres,
+        integrator=chosen,
+        backend=backend,
     )
-    for row in rows:
-        if manoeuvres:
-            row["manoeuvres"] = document_of(repeated[row["profile"]])
+    rows = found.rows
     document = {
-        "schema": 1,
-        "kind": "validate",
+        **found.to_dict(),
         "trials": names[-1],
-        "window_s": window,
-        "sigma": sigma,
         "sigma_from": sigma_from or names[-1],
         "integrator": integrator,
-        "profiles": rows,
+        "substeps": substeps,
     }
     if json:
         c.print_json(document)
         return
     for one in rows:
-        print(f"{one['profile']} ({one['id']})")
+        print(f"{one['profile']} ({one['id']}), {one['method']}")
         print(f"  {'':<34}{'runs':>6}{'J':>12}{'L_MSE':>10}")
         for kind, row in one["by_manoeuvre"].items():
             print(f"  {kind or 'manoeuvre not stated':<34}{row['runs']:>6}{_shown(row['J'])}{_shown(row['L_MSE'], 10)}")
         print(f"  {'all':<34}{len(one['trials']):>6}{_shown(one['J'])}{_shown(one['L_MSE'], 10)}")
         for row in one["trials"]:
             print(f"    {row['id']:<38}{_shown(row['J'])}{_shown(row['L_MSE'], 10)}")
-    if manoeuvres:
-        print(table(repeated))
-
-
-def summary(scores: list[Any]) -> dict[str, Any]:
-    """Scores over everything, by kind of manoeuvre and by run, for JSON; what diverged is null."""
-    from ..fitting.comparison import finite
-    from ..validation import L_MSE, by_manoeuvre, by_run, by_trial
-
-    def row(of: list[Any]) -> dict[str, Any]:
-        n = sum(one.n_samples for one in of)
-        per_state = {state: finite(sum(one.squares[state] for one in of) / n) for state in of[0].squares} if n else {}
-        return {
-            "J": finite(sum(one.J for one in of)),
-            "L_MSE": finite(L_MSE(of)),
-            "L_MSE_by_state": per_state,
-            "n_samples": n,
-        }
-
-    return {
-        **row(scores),
-        "by_manoeuvre": {kind: {"runs": len(by_run(of)), **row(of)} for kind, of in by_manoeuvre(scores).items()},
-        "trials": [
-            {"id": id, "manoeuvre": of[0].manoeuvre, "windows": len(of), **row(of)}
-            for id, of in by_trial(scores).items()
-        ],
-    }
+    if found.repeated is not None:
+        print(table(found.repeated))
 
 
 def _shown(value: float | None, width: int = 12) -> str:

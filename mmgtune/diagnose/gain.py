@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -14,7 +14,6 @@ from ..fitting.comparison import TrialComparison, compare, finite
 from ..fitting.least_squares import fit_offsets
 from ..fitting.problem import FitProblem
 from ..objective import Objective, cases_of, make_objective
-from ..simulation import trial_measures
 from ..trial import Trial
 from .search import Found
 from .workbench import Point, Workbench, make_workbench
@@ -28,6 +27,14 @@ RELEVANT = 0.05
 MOST = 0.9
 """Share of the error above noise on held-out trials that the right causes remove at least."""
 
+HeldOut = Literal["test", "each", "only"]
+HELD_OUT: dict[HeldOut, str] = {
+    "test": "test trials",
+    "each": "each trial in turn",
+    "only": "the trials themselves: there is only one",
+}
+"""What the gain is measured on, in words."""
+
 INDICES = ("tactical_diameter_m", "advance_m", "overshoot_1_deg", "overshoot_2_deg")
 """Indices whose errors are reported."""
 
@@ -36,14 +43,14 @@ INDICES = ("tactical_diameter_m", "advance_m", "overshoot_1_deg", "overshoot_2_d
 class Gain:
     """Before and after the causes, on held-out trials with their initial states estimated.
 
-    held_out    "test trials", or "each trial in turn" where there are none
+    held_out    the test trials; each in turn where there are none; the only one where there is but one
     compared    every held-out trial, "before" and "after"
     excess      (n_trials, 2) chi-squared beyond the noise of the sensors, before and after
     floor       chi-squared that noise brings to all of them
     chance      deviation of that
     """
 
-    held_out: str
+    held_out: HeldOut
     compared: tuple[TrialComparison, ...]
     excess: FloatArray
     floor: float
@@ -73,9 +80,19 @@ class Gain:
 
     def measures(self, which: str) -> dict[str, float]:
         """Means over trials of the seven distance measures, "before" or "after"."""
-        found = [trial_measures(one.trial, one.motions[which]) for one in self.compared]
+        found = [one.records[which].measures for one in self.compared]
         names = dict.fromkeys(name for one in found for name in one)
         return {name: float(np.mean([one[name] for one in found if name in one])) for name in names}
+
+    @property
+    def words(self) -> str:
+        """What was held out, in words."""
+        return HELD_OUT[self.held_out]
+
+    @property
+    def method(self) -> str:
+        """How the trials were simulated."""
+        return self.compared[0].records["after"].method
 
     def index_errors(self, which: str) -> dict[str, float]:
         """Mean absolute errors of manoeuvring indices, "before" or "after"."""
@@ -91,14 +108,16 @@ class Gain:
         """For JSON."""
         share, low, high = self.share_removed
         return {
-            "held_out": self.held_out,
+            "held_out": self.words,
+            "held_out_code": self.held_out,
+            "method": self.method,
             "trials": [one.trial.id for one in self.compared],
             "J_test_before": self.J[0],
             "J_test_after": self.J[1],
             "share_above_noise_removed": share,
             "share_ci95": [low, high],
-            "measures_before": self.measures("before"),
-            "measures_after": self.measures("after"),
+            "measures_before": {name: finite(value) for name, value in self.measures("before").items()},
+            "measures_after": {name: finite(value) for name, value in self.measures("after").items()},
             "index_errors_before": self.index_errors("before"),
             "index_errors_after": self.index_errors("after"),
             "by_trial": [
@@ -120,7 +139,7 @@ def held_out(bench: Workbench, found: Found, test: Sequence[Trial]) -> Gain:
     """
     if test:
         compared, excess = _on(bench, found.base, found.final, test)
-        return Gain("test trials", tuple(compared), excess, *_chance(bench, test))
+        return Gain("test", tuple(compared), excess, *_chance(bench, test))
     every: list[TrialComparison] = []
     rows = []
     runs = list(dict.fromkeys(trial.run for trial in bench.trials))
@@ -140,8 +159,8 @@ def held_out(bench: Workbench, found: Found, test: Sequence[Trial]) -> Gain:
         rows.append(excess)
     if not rows:
         every, whole = _on(bench, found.base, found.final, bench.trials)
-        return Gain("the trials themselves: there is only one", tuple(every), whole, *_chance(bench, bench.trials))
-    return Gain("each trial in turn", tuple(every), np.concatenate(rows), *_chance(bench, bench.trials))
+        return Gain("only", tuple(every), whole, *_chance(bench, bench.trials))
+    return Gain("each", tuple(every), np.concatenate(rows), *_chance(bench, bench.trials))
 
 
 def _chance(bench: Workbench, trials: Sequence[Trial]) -> tuple[float, float]:
@@ -167,9 +186,8 @@ def J_of(bench: Workbench, point: Point, test: Sequence[Trial]) -> float | None:
 def _problem(bench: Workbench, point: Point, trials: Sequence[Trial], objective: Objective) -> FitProblem:
     own = bench.problem_of(point.names, point.integrator)
     sigma = np.repeat(bench.sigma[None], len(trials), axis=0)
-    return FitProblem(
-        own.model, cases_of(list(trials), objective, own.model.inputs), own.box, own.backend, own.integrator, sigma
-    )
+    cases = cases_of(list(trials), objective, own.model.inputs)
+    return FitProblem.of(own.model, cases, own.box, own.backend, own.integrator, sigma)
 
 
 def _on(
@@ -184,8 +202,8 @@ def _on(
         unit[[names.index(name) for name in point.names]] = point.unit
         units.append(unit)
     roles = dict.fromkeys((trial.id for trial in trials), "test")
-    paper = _problem(bench, wide, trials, make_objective(bench.model.L_pp))
-    compared = compare(paper, trials, roles, *units)
+    by_paper = make_objective(bench.model.L_pp)
+    compared = compare(_problem(bench, wide, trials, by_paper), trials, by_paper, roles, *units)
     objective = Objective(dict(zip(STATES, bench.sigma, strict=True)), dict.fromkeys(bench.channels, 1.0))
     scaled = _problem(bench, wide, trials, objective)
     floor = np.array([_floor(bench, scaled, case) for case in range(len(trials))])

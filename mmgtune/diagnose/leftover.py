@@ -100,16 +100,8 @@ def leftover(bench: Workbench, point: Point) -> Leftover:
 def _residuals(bench: Workbench, point: Point) -> list[FloatArray]:
     """Simulated less measured by trial, (n_samples, 6), in SI units; NaN in gaps."""
     problem = bench.problem_of(point.names, point.integrator)
-    result = problem.backend.run(
-        problem.model,
-        problem.theta(point.unit[:, None]),
-        problem.cases,
-        initial=problem.initial(1, point.offsets[:, None]),
-        integrator=problem.integrator,
-        keep_states=True,
-    )
-    assert result.states is not None  # asked for
-    return [result.states[i, 0, : trial.n_samples] - trial.motion for i, trial in enumerate(bench.trials)]
+    states = problem.states(point.unit[:, None], point.offsets[:, None]).states
+    return [states[i, 0, : trial.n_samples] - trial.motion for i, trial in enumerate(bench.trials)]
 
 
 def _white(residuals: Sequence[FloatArray]) -> FloatArray:

@@ -129,8 +129,7 @@ def linearise(bench: Workbench, point: Point, absent: Sequence[str] = (), apart:
     """
     wanted = tuple(dict.fromkeys(name for name in absent if name not in point.names))
     names = (*point.names, *wanted)
-    problem = bench.problem_of(names, point.integrator)
-    problem.offsets = point.offsets
+    problem = bench.problem_of(names, point.integrator).with_offsets(point.offsets)
     null = bench.null(wanted)
     at = np.concatenate([point.unit, null])
     n_free = len(point.names)
@@ -158,9 +157,8 @@ def linearise(bench: Workbench, point: Point, absent: Sequence[str] = (), apart:
             slopes[:, k] *= typical(bench, names[i])
     by_offset = bench.noise.apply(flat_where_lost(_offset_derivatives(bench, point)))
 
-    left = without_offsets(
-        problem, np.column_stack([values[:, 0], slopes, wander(bench, point)]), by_offset, point.offsets
-    )
+    columns = np.column_stack([values[:, 0], slopes, wander(bench, point)])
+    left = problem.without_offsets(columns, by_offset, problem.prior, point.offsets)
     free = np.array([name not in apart and 0.0 < z < 1.0 for name, z in zip(point.names, point.unit, strict=True)])
     Q = basis(left[:, 1 : 1 + n_free][:, free])
     left -= Q @ (Q.T @ left)
@@ -189,22 +187,6 @@ def _offset_derivatives(bench: Workbench, point: Point) -> FloatArray:
     problem = bench.problem_of(point.names, point.integrator)
     _, _, by_offset = problem.jacobians(point.unit[:, None], point.offsets[:, None])
     return np.asarray(by_offset[0])
-
-
-def without_offsets(problem: FitProblem, values: FloatArray, S: FloatArray, offsets: FloatArray) -> FloatArray:
-    """Columns (n_residuals, k) with a row for each offset of an initial state added, less what offsets explain.
-
-    The first column is the residual; the rows added are offsets over their deviations.
-    """
-    parts = []
-    for case, rows in enumerate(problem.rows_of_cases):
-        root = np.sqrt(problem.prior[case])
-        added = np.zeros((len(STATES), values.shape[1]))
-        added[:, 0] = root * offsets[case]
-        Q, _ = np.linalg.qr(np.vstack([S[rows], np.diag(root)]))
-        own = np.vstack([values[rows], added])
-        parts.append(own - Q @ (Q.T @ own))
-    return np.vstack(parts)
 
 
 def basis(columns: FloatArray) -> FloatArray:

@@ -172,7 +172,7 @@ class Diagnosis:
                 "cause that was looked for shows."
             )
         share = self.gain.share_removed[0]
-        where = "on trials not used" if self.gain.held_out == "test trials" else f"on {self.gain.held_out}"
+        where = "on trials not used" if self.gain.held_out == "test" else f"on {self.gain.words}"
         if self.verdict == "unexplained":
             told = (
                 f"the best of what is known would remove {_percent(self.explained_share)} of it"

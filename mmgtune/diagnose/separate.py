@@ -123,8 +123,4 @@ def suggest(bench: Workbench, rivals: Sequence[tuple[str, Point]]) -> Suggestion
 def _predicted(bench: Workbench, point: Point, motion: Motion, objective: Objective) -> FloatArray:
     problem = bench.problem_of(point.names, point.integrator)
     cases = cases_of([as_trial(bench.model.profile, motion)], objective, problem.model.inputs)
-    result = problem.backend.run(
-        problem.model, problem.theta(point.unit[:, None]), cases, integrator=problem.integrator, keep_states=True
-    )
-    assert result.states is not None  # asked for
-    return np.asarray(result.states[0, 0])
+    return np.asarray(problem.predictor(point.unit[:, None]).predict(cases).states[0, 0])

@@ -104,14 +104,8 @@ class Workbench:
 
     def problem_of(self, names: Sequence[str], integrator: Integrator | None = None) -> FitProblem:
         """The problem of fitting ``names``, everything else at its value in the profile."""
-        problem = replace(
-            self.problem,
-            model=self.model_of(names),
-            box=self.sub_box(names),
-            integrator=integrator or self.problem.integrator,
-        )
-        problem.prior = self.problem.prior
-        return problem
+        problem = self.problem.with_targets(self.model_of(names), self.sub_box(names))
+        return problem if integrator is None else problem.with_integrator(integrator)
 
     def null(self, names: Sequence[str]) -> FloatArray:
         """(n_names,) position of the profile's values: targets at theirs, effects absent."""
@@ -129,8 +123,7 @@ class Workbench:
         tolerance: float = TOLERANCE,
     ) -> Point:
         """The best fit of ``names`` from starts (n_names, n_starts), initial states beginning at ``offsets``."""
-        problem = self.problem_of(names, integrator)
-        problem.offsets = offsets
+        problem = self.problem_of(names, integrator).with_offsets(offsets)
         whiten = self.noise.apply if self.noise_known else None
         ends = solve(problem, starts, max_iterations=max_iterations, whiten=whiten, tolerance=tolerance)
         self.refits += len(ends)
@@ -149,8 +142,13 @@ class Workbench:
         """Take another noise model for all that follows."""
         self.noise = noise
         deviation = np.array([np.sqrt(noise.channels[c].variance) if c in noise.channels else LOOSE for c in STATES])
-        self.problem.prior = np.repeat(1.0 / (self.sigma * deviation)[None] ** 2, len(self.trials), axis=0)
-        self.problem.sigma = np.repeat((self.sigma * np.maximum(deviation, LOOSE))[None], len(self.trials), axis=0)
+        prior = np.repeat(1.0 / (self.sigma * deviation)[None] ** 2, len(self.trials), axis=0)
+        sigma = np.repeat((self.sigma * np.maximum(deviation, LOOSE))[None], len(self.trials), axis=0)
+        self.problem = self.problem.with_prior(sigma, prior)
+
+    def integrate(self, integrator: Integrator) -> None:
+        """Simulate by another method in all that follows."""
+        self.problem = self.problem.with_integrator(integrator)
 
     def values(self, point: Point) -> dict[str, float]:
         """What was free, by name, in profile units."""
@@ -182,7 +180,7 @@ def make_workbench(
     objective = Objective(dict(zip(STATES, sigma, strict=True)), dict.fromkeys(channels, 1.0))
     cases = cases_of(list(trials), objective, model.inputs)
     box = make_box(model, (*targets, *(name for name in names if name not in targets)), options.a_r)
-    problem = FitProblem(
+    problem = FitProblem.of(
         model=model,
         cases=cases,
         box=box,

@@ -10,8 +10,9 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..backends import STATES
-from ..manoeuvres.summary import indices_of
-from ..simulation import Motion, trial_indices
+from ..evaluation import TrialRecord, evaluate
+from ..objective import Objective
+from ..simulation import Motion
 from ..trial import Trial
 from .least_squares import fit_offsets
 from .problem import FitProblem
@@ -19,14 +20,34 @@ from .problem import FitProblem
 
 @dataclass(frozen=True, eq=False)
 class TrialComparison:
-    """One trial; ``role`` is "tune", "test" or "other"."""
+    """One trial: its records "before" and "after"; ``role`` is "tune", "test" or "other"."""
 
     trial: Trial
     role: str
-    J: dict[str, float]  # "before", "after"
-    motions: dict[str, Motion]
-    rms: dict[str, dict[str, float]]  # channel -> before, after [SI]
-    indices: dict[str, dict[str, Any]]  # "measured", "before", "after"
+    records: Mapping[str, TrialRecord]
+
+    @property
+    def J(self) -> dict[str, float]:
+        """J "before" and "after"; inf where the simulation diverged."""
+        return {which: record.J for which, record in self.records.items()}
+
+    @property
+    def motions(self) -> dict[str, Motion]:
+        """The simulations."""
+        return {which: record.motion for which, record in self.records.items()}
+
+    @property
+    def rms(self) -> dict[str, dict[str, float]]:
+        """Root mean square of the differences by channel, before and after [SI]; NaN for one never measured."""
+        return {
+            name: {which: record.rms.get(name, np.nan) for which, record in self.records.items()} for name in STATES
+        }
+
+    @property
+    def indices(self) -> dict[str, dict[str, Any]]:
+        """Manoeuvring indices "measured", "before" and "after"."""
+        measured = self.records["before"].measured.indices
+        return {"measured": measured, **{which: record.indices for which, record in self.records.items()}}
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON; a J that is not finite becomes null."""
@@ -49,44 +70,26 @@ class TrialComparison:
 
 
 def compare(
-    problem: FitProblem, trials: Sequence[Trial], roles: Mapping[str, str], before: FloatArray, after: FloatArray
+    problem: FitProblem,
+    trials: Sequence[Trial],
+    objective: Objective,
+    roles: Mapping[str, str],
+    before: FloatArray,
+    after: FloatArray,
 ) -> list[TrialComparison]:
     """Simulate every trial with the coefficients at two positions (n_targets,) of the unit cube.
 
-    problem  over all of ``trials``, in their order; where it estimates initial states, each trial gets its own
+    problem    over all of ``trials``, in their order; where it estimates initial states, each trial gets its own
+    objective  what J counts
     """
-    unit = np.column_stack([before, after])
-    offsets = None
-    if problem.sigma is not None:
-        offsets = np.stack([fit_offsets(problem, before), fit_offsets(problem, after)], axis=1)
-    result = problem.backend.run(
-        problem.model,
-        problem.theta(unit),
-        problem.cases,
-        initial=problem.initial(2, offsets),
-        integrator=problem.integrator,
-        keep_states=True,
-    )
-    assert result.states is not None  # asked for
-    compared = []
-    for i, trial in enumerate(trials):
-        motions: dict[str, Motion] = {}
-        rms: dict[str, dict[str, float]] = {channel: {} for channel in STATES}
-        for k, which in enumerate(("before", "after")):
-            states = result.states[i, k, : trial.n_samples]
-            controls = np.column_stack([trial.n, trial.delta])
-            motions[which] = Motion(trial.id, trial.t, states, controls, bool(result.diverged[i, k]))
-            with np.errstate(all="ignore"):
-                error = np.sqrt(np.nanmean((states - trial.motion) ** 2, axis=0))
-            for channel, value in zip(STATES, error, strict=True):
-                rms[channel][which] = float(value) if not result.diverged[i, k] else float("nan")
-        L_pp = problem.model.L_pp
-        indices = {"measured": trial_indices(trial, L_pp)}
-        for which, motion in motions.items():
-            indices[which] = {} if motion.diverged else indices_of(motion.track(), L_pp, indices["measured"])
-        J = {"before": float(result.cost[i, 0]), "after": float(result.cost[i, 1])}
-        compared.append(TrialComparison(trial, roles[trial.id], J, motions, rms, indices))
-    return compared
+    found: dict[str, tuple[TrialRecord, ...]] = {}
+    for which, unit in (("before", before), ("after", after)):
+        offsets = None if problem.sigma is None else fit_offsets(problem, unit)
+        found[which] = evaluate(problem.predictor(unit[:, None]), trials, objective, offsets=offsets)
+    return [
+        TrialComparison(trial, roles[trial.id], {which: of[i] for which, of in found.items()})
+        for i, trial in enumerate(trials)
+    ]
 
 
 def total(compared: Sequence[TrialComparison], role: str, which: str) -> float | None:

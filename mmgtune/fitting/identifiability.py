@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -20,6 +20,13 @@ CHECKED = 1e-3
 
 PART = 0.02
 """Share of a direction's largest weight from which a coefficient counts as taking part in it."""
+
+
+class Undetermined(NamedTuple):
+    """Why a target has no value of its own: "traded" against others, or "weak", less known than its box is wide."""
+
+    why: Literal["traded", "weak"]
+    words: str
 
 
 @dataclass(frozen=True)
@@ -61,7 +68,7 @@ class Identifiability:
     singular_values  of the whitened derivatives by relative change of each target, largest first [-]
     stderr           per target, in profile units; None on a bound or where the data does not determine it
     correlation      names and matrix for the targets that have a standard error
-    undetermined     targets the data does not determine, each with the reason
+    undetermined     targets the data does not determine, each with why
     autocorrelation  of neighbouring residuals per channel
     """
 
@@ -71,7 +78,7 @@ class Identifiability:
     correlation_names: tuple[str, ...]
     correlation: FloatArray
     null_directions: tuple[NullDirection, ...]
-    undetermined: dict[str, str]
+    undetermined: dict[str, Undetermined]
     combinations: tuple[KnownCombination, ...]
     autocorrelation: dict[str, float]
     sentences: tuple[str, ...] = field(default=())
@@ -89,7 +96,8 @@ class Identifiability:
             "combinations": [
                 {"expression": c.expression, "value": c.value, "stderr": c.stderr} for c in self.combinations
             ],
-            "undetermined": self.undetermined,
+            "undetermined": {name: of.words for name, of in self.undetermined.items()},
+            "undetermined_why": {name: of.why for name, of in self.undetermined.items()},
             "autocorrelation": self.autocorrelation,
             "sentences": list(self.sentences),
         }
@@ -98,8 +106,9 @@ class Identifiability:
 def analyse(problem: FitProblem, unit: FloatArray, active: BoolArray) -> Identifiability:
     """Identifiability at a point of the unit cube (n_targets,); ``active`` marks targets held by their bound.
 
-    Standard errors are those of the whitened, linearised problem over the targets that are free; they leave out
-    errors of the model itself and of the measured initial states.
+    Standard errors are those of the whitened, linearised problem over the targets that are free, together with the
+    initial states where the problem estimates these; they leave out errors of the model itself, and of measured initial
+    states that are held.
     """
     box = problem.box
     residuals, jacobian = problem.central_jacobian(unit)
@@ -107,21 +116,22 @@ def analyse(problem: FitProblem, unit: FloatArray, active: BoolArray) -> Identif
     relative = box.relative
     sensitivity = whitening.apply(jacobian * (relative / box.width))
     if problem.sigma is not None:
-        _, _, by_offset = problem.jacobians(unit[:, None])
-        sensitivity = _without_offsets(problem, sensitivity, whitening.apply(by_offset[0]))
+        by_offset = whitening.apply(problem.central_offsets(unit))
+        sensitivity = problem.without_offsets(sensitivity, by_offset, problem.sigma**-2.0)
     _, singular, vectors = np.linalg.svd(sensitivity, full_matrices=False)
     null = singular < NULL_RATIO * singular[0]
     directions = tuple(_direction(problem, unit, relative, v) for v in _sparse(vectors[null]))
 
-    undetermined: dict[str, str] = {}
+    undetermined: dict[str, Undetermined] = {}
     for direction in directions:
         for name in direction.weights:
-            undetermined[name] = "only combinations of it with others show in the motion"
+            undetermined[name] = Undetermined("traded", "only combinations of it with others show in the motion")
     stderr, covariance, known = _errors(sensitivity, ~active)
     for i, name in enumerate(box.names):
         half = 0.5 * box.width[i] / relative[i]
         if name not in undetermined and not active[i] and not stderr[i] < half:
-            undetermined[name] = f"its standard error exceeds the half width of its box, {half:.0%} of its value"
+            words = f"its standard error exceeds the half width of its box, {half:.0%} of its value"
+            undetermined[name] = Undetermined("weak", words)
     usable = [i for i in range(len(box)) if known[i] and box.names[i] not in undetermined]
     deviation = np.sqrt(np.diag(covariance))[usable]
     correlation = covariance[np.ix_(usable, usable)] / np.outer(deviation, deviation)
@@ -141,16 +151,6 @@ def analyse(problem: FitProblem, unit: FloatArray, active: BoolArray) -> Identif
         autocorrelation=whitening.phi,
     )
     return replace(result, sentences=_sentences(problem, result, active))
-
-
-def _without_offsets(problem: FitProblem, sensitivity: FloatArray, by_offset: FloatArray) -> FloatArray:
-    """Whitened derivatives less what estimated initial states, known within their noise, could explain of them."""
-    assert problem.sigma is not None  # asked for only then
-    left = sensitivity.copy()
-    for rows, sigma in zip(problem.rows_of_cases, problem.sigma, strict=True):
-        S = by_offset[rows]
-        left[rows] -= S @ np.linalg.solve(S.T @ S + np.diag(sigma**-2.0), S.T @ sensitivity[rows])
-    return left
 
 
 def _errors(sensitivity: FloatArray, free: BoolArray) -> tuple[FloatArray, FloatArray, BoolArray]:
@@ -191,12 +191,8 @@ def _direction(problem: FitProblem, unit: FloatArray, relative: FloatArray, vect
     first = members[sizes.index(sorted(sizes)[len(sizes) // 3])]
     factor = 1.0 / percent[first]
     step = CHECKED * vector * relative * factor / box.width
-    both = np.column_stack([unit, unit + step])
-    result = problem.backend.run(
-        problem.model, problem.theta(both), problem.cases, integrator=problem.integrator, keep_states=True
-    )
-    assert result.states is not None  # asked for
-    shift = np.abs(result.states[:, 1, :, :2] - result.states[:, 0, :, :2]).max()
+    states = problem.states(np.column_stack([unit, unit + step])).states
+    shift = np.abs(states[:, 1, :, :2] - states[:, 0, :, :2]).max()
     ordered = [first, *(i for i in members if i != first)]
     return NullDirection({box.names[i]: float(percent[i] * factor) for i in ordered}, float(shift))
 
@@ -238,7 +234,7 @@ def _sentences(problem: FitProblem, result: Identifiability, active: BoolArray) 
     n, lost = len(result.names), len(result.null_directions)
     sentences = [f"{n - lost} of {n} combinations of the targets can be known from these trials."]
     sentences += [direction.sentence for direction in result.null_directions]
-    weak = [name for name, why in result.undetermined.items() if why.startswith("its standard error")]
+    weak = [name for name, of in result.undetermined.items() if of.why == "weak"]
     if weak:
         sentences.append(f"Not determined by these trials within their box: {', '.join(weak)}.")
     held = [name for name, on in zip(result.names, active, strict=True) if on]

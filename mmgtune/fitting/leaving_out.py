@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..objective import spread
+from ..predictor import words_of
 from ..profile import ShipProfile
 from ..repeating import Repeated, repeat
 from ..threads import blas_on_one_thread
@@ -58,6 +59,11 @@ class LeftOut:
     repeated_before: tuple[Repeated, ...] = ()
     repeated_after: tuple[Repeated, ...] = ()
 
+    @property
+    def method(self) -> str:
+        """How trials were simulated, to be named beside J."""
+        return words_of(self.options.make_integrator())
+
     def rows(self) -> list[dict[str, Any]]:
         """L_MSE and J before and after by kind of manoeuvre, and over all, with the share removed and its interval."""
         groups = {"": (self.before, self.after)}
@@ -73,6 +79,7 @@ class LeftOut:
             **self.provenance,
             "options": self.options.to_dict(),
             "sigma": self.sigma,
+            "integrator": self.method,
             "scores": self.rows(),
             "parts": [
                 {"left_out": list(runs), "theta": finite_values(theta)}

@@ -12,7 +12,7 @@ OBJECTIVES = ("paper", "standardised")
 LOSSES = ("squares", "huber")
 METHODS = ("cma-es", "least-squares")
 INITIAL = ("measured", "estimated")
-INTEGRATORS = ("euler", "rk4")
+INTEGRATORS = ("rk4", "euler")
 DEFAULT_STARTS = 20
 
 
@@ -52,7 +52,7 @@ class FitOptions:
     loss: str = "squares"
     regularise: float = 0.0
     initial: str = "measured"
-    integrator: str = "euler"
+    integrator: str = "rk4"
     substeps: int = 1
     backend: str = "compiled"
     starts: int = DEFAULT_STARTS

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Self
 
 import numpy as np
 
 from ..arrays import FloatArray
 from ..backends import WIDTH, Backend, Cases, Integrator
 from ..model import Model
+from ..predictor import PhysicsPredictor, Prediction
 from .box import Box
 from .initial import prior_weight
 
@@ -16,28 +18,81 @@ LANES_AT_ONCE = 512
 """Largest number of runs kept with their residuals at one time, but for the lanes of one block; bounds the memory."""
 
 
-@dataclass(eq=False)
+@dataclass
+class Counter:
+    """How often the whole set was simulated for one candidate; shared by a problem and those derived from it."""
+
+    evaluations: int = 0
+
+
+@dataclass(frozen=True, eq=False)
 class FitProblem:
-    """Model, cases, targets and box; counts how often it simulated the whole set for one candidate.
+    """Model, cases, targets and box.  Nothing of it changes: ``with_...`` and ``held`` give another problem.
 
     sigma    (n_cases, 6) deviations of the measured initial states where these are estimated, None where they are held
-    offsets  (n_cases, 6) offsets of the initial states in use where a call gives none; zero at first
+    offsets  (n_cases, 6) offsets of the initial states in use where a call gives none
+    prior    (n_cases, 6) weight of squared offsets beside J; zero where initial states are held
     """
 
     model: Model
     cases: Cases
     box: Box
     backend: Backend
-    integrator: Integrator = field(default_factory=Integrator)
-    sigma: FloatArray | None = None
-    offsets: FloatArray = field(init=False)
-    evaluations: int = field(default=0, init=False)
+    integrator: Integrator
+    sigma: FloatArray | None
+    offsets: FloatArray
+    prior: FloatArray
+    counter: Counter = field(default_factory=Counter)
 
-    def __post_init__(self) -> None:
-        self.offsets = np.zeros((len(self.cases), 6))
-        self.prior = np.zeros((len(self.cases), 6))  # weight of squared offsets beside J
-        if self.sigma is not None:
-            self.prior = prior_weight(self.sigma, self.cases.weight)
+    @classmethod
+    def of(
+        cls,
+        model: Model,
+        cases: Cases,
+        box: Box,
+        backend: Backend,
+        integrator: Integrator = Integrator(),
+        sigma: FloatArray | None = None,
+    ) -> Self:
+        """The problem with offsets of zero and the prior that the noise of the initial states calls for."""
+        none = np.zeros((len(cases), 6))
+        prior = none if sigma is None else prior_weight(sigma, cases.weight)
+        return cls(model, cases, box, backend, integrator, sigma, none, prior)
+
+    def with_offsets(self, offsets: FloatArray) -> Self:
+        """Initial states begin (n_cases, 6) off the measured ones where a call does not say otherwise."""
+        return replace(self, offsets=offsets)
+
+    def with_cases(self, cases: Cases) -> Self:
+        """The same trials weighed otherwise."""
+        return replace(self, cases=cases)
+
+    def with_integrator(self, integrator: Integrator) -> Self:
+        """Simulated by another method."""
+        return replace(self, integrator=integrator)
+
+    def with_targets(self, model: Model, box: Box) -> Self:
+        """Other coefficients free, of a model of the same ship."""
+        return replace(self, model=model, box=box)
+
+    def with_prior(self, sigma: FloatArray, prior: FloatArray) -> Self:
+        """Initial states estimated, (n_cases, 6) deviations and weights of squared offsets given apart."""
+        return replace(self, sigma=sigma, prior=prior)
+
+    def estimated(self, sigma: FloatArray) -> Self:
+        """Initial states estimated within deviations (n_cases, 6), beginning with no offsets."""
+        none = np.zeros_like(self.offsets)
+        return replace(self, sigma=sigma, offsets=none, prior=prior_weight(sigma, self.cases.weight))
+
+    def held(self) -> Self:
+        """Initial states held at the measured ones."""
+        none = np.zeros_like(self.offsets)
+        return replace(self, sigma=None, offsets=none, prior=none)
+
+    @property
+    def evaluations(self) -> int:
+        """How often this problem and those it shares its counter with simulated the whole set for one candidate."""
+        return self.counter.evaluations
 
     @property
     def n_residuals(self) -> int:
@@ -61,6 +116,23 @@ class FitProblem:
             return np.repeat((self.cases.initial + self.offsets)[:, None], n_candidates, axis=1)
         return self.cases.initial[:, None] + offsets
 
+    def predictor(self, unit: FloatArray) -> PhysicsPredictor:
+        """Candidates (n_targets, n_candidates) as members of a predictor."""
+        return PhysicsPredictor(self.model, self.theta(unit), self.integrator, self.backend.name)
+
+    def states(self, unit: FloatArray, offsets: FloatArray | None = None) -> Prediction:
+        """Motion of candidates (n_targets, n_candidates) on every case; offsets as for ``costs``."""
+        result = self.backend.run(
+            self.model,
+            self.theta(unit),
+            self.cases,
+            initial=self.initial(unit.shape[1], offsets),
+            integrator=self.integrator,
+            keep_states=True,
+        )
+        assert result.states is not None  # asked for
+        return Prediction(result.states, result.diverged)
+
     def costs(self, unit: FloatArray, offsets: FloatArray | None = None) -> FloatArray:
         """J of candidates (n_targets, n_candidates) -> (n_candidates,); inf where a run diverged.
 
@@ -71,7 +143,7 @@ class FitProblem:
     def costs_by_case(self, unit: FloatArray, offsets: FloatArray | None = None) -> FloatArray:
         """J of candidates by case, (n_cases, n_candidates); arguments as for ``costs``."""
         n_candidates = unit.shape[1]
-        self.evaluations += n_candidates
+        self.counter.evaluations += n_candidates
         result = self.backend.run(
             self.model,
             self.theta(unit),
@@ -87,7 +159,7 @@ class FitProblem:
         Ordered by case, sample and channel.  A candidate that diverged has inf everywhere.
         """
         n_candidates = unit.shape[1]
-        self.evaluations += n_candidates
+        self.counter.evaluations += n_candidates
         initial = self.initial(n_candidates, offsets)
         out = np.empty((self.n_residuals, n_candidates))
         chunk = max(WIDTH, LANES_AT_ONCE // len(self.cases))
@@ -150,3 +222,42 @@ class FitProblem:
         columns[np.arange(n), 1 + n + np.arange(n)] -= step
         values = self.residuals(columns)
         return values[0], (values[1 : n + 1] - values[n + 1 :]).T / (2.0 * step)
+
+    def central_offsets(self, unit: FloatArray, step: float = 1e-2) -> FloatArray:
+        """Derivatives (n_residuals, 6) of residuals by the initial offsets of their case, by central differences.
+
+        step  in deviations of the initial states, which must be estimated
+        """
+        assert self.sigma is not None  # asked of such problems only
+        moved = np.repeat(self.offsets[:, None], 12, axis=1)
+        for k in range(6):
+            moved[:, k, k] += step * self.sigma[:, k]
+            moved[:, 6 + k, k] -= step * self.sigma[:, k]
+        values = self.residuals(np.repeat(unit[:, None], 12, axis=1), moved)
+        slopes = (values[:6] - values[6:]).T
+        for case, rows in enumerate(self.rows_of_cases):
+            slopes[rows] /= 2.0 * step * self.sigma[case]
+        return slopes
+
+    def without_offsets(
+        self, values: FloatArray, by_offset: FloatArray, prior: FloatArray, offsets: FloatArray | None = None
+    ) -> FloatArray:
+        """Columns (n_residuals, k) less what initial offsets explain of them, six rows longer for each case.
+
+        by_offset  (n_residuals, 6) derivatives of the residuals by the offsets of their case
+        prior      (n_cases, 6) weight of squared offsets beside squared residuals
+        offsets    (n_cases, 6) where the first column is the residuals at these offsets; None where no column is
+
+        The rows added are what is known of the offsets themselves: without them the rest would count for less than it
+        says.  Whatever is fitted to the columns that come back is fitted together with the offsets.
+        """
+        parts = []
+        for case, rows in enumerate(self.rows_of_cases):
+            root = np.sqrt(prior[case])
+            added = np.zeros((6, values.shape[1]))
+            if offsets is not None:
+                added[:, 0] = root * offsets[case]
+            Q, _ = np.linalg.qr(np.vstack([by_offset[rows], np.diag(root)]))
+            own = np.vstack([values[rows], added])
+            parts.append(own - Q @ (Q.T @ own))
+        return np.vstack(parts)

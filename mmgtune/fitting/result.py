@@ -10,6 +10,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..components import split_name
+from ..predictor import words_of
 from ..profile import ShipProfile, tuned
 from .box import Box
 from .certificate import Certificate
@@ -76,6 +77,11 @@ class FitResult:
         """J over the "tune" or "test" trials, "before" or "after"; None without such trials."""
         return finite(total(self.compared, role, which))
 
+    @property
+    def method(self) -> str:
+        """How trials were simulated, to be named beside J."""
+        return words_of(self.options.make_integrator())
+
     def verdict(self) -> str:
         """The result in one sentence."""
         before, after = self.J_of("test", "before"), self.J_of("test", "after")
@@ -85,12 +91,12 @@ class FitResult:
             change = 100.0 * (after / before - 1.0)
             size = f"falls by {min(-change, 99.9):.1f} %" if change < 0 else f"rises by {change:.1f} %"
             return (
-                f"On {len(tests)} trials not used for tuning, J of the tuned {self.profile.name} {size}, "
-                f"from {before:.4g} to {after:.4g}; {better} of {len(tests)} of these trials improve."
+                f"On {len(tests)} trials not used for tuning, J ({self.method}) of the tuned {self.profile.name} "
+                f"{size}, from {before:.4g} to {after:.4g}; {better} of {len(tests)} of these trials improve."
             )
         return (
             f"On the {sum(c.role == 'tune' for c in self.compared)} trials it was tuned to, "
-            f"the tuned {self.profile.name} has J {self.J:.4g} instead of {self.J_before:.4g}; "
+            f"the tuned {self.profile.name} has J ({self.method}) {self.J:.4g} instead of {self.J_before:.4g}; "
             "there are no test trials to confirm it."
         )
 
@@ -168,6 +174,7 @@ class FitResult:
                 "a_r": self.options.a_r,
                 "seed": self.options.seed,
                 "method": self.options.method,
+                "integrator": self.method,
                 "J_tune": self.J,
                 "at_bound": self.at_bound,
                 "undetermined": list(self.identifiability.undetermined),
@@ -189,6 +196,7 @@ class FitResult:
             "interrupted": self.interrupted,
             "verdict": self.verdict(),
             "warnings": self.warnings(),
+            "integrator": self.method,
             "J_tune": self.J_of("tune", "after"),
             "J_test": self.J_of("test", "after"),
             "J_tune_before": self.J_of("tune", "before"),

@@ -47,15 +47,14 @@ def weigh_down(
 
     Iteratively reweighted least squares with Huber's weights; ridge and anchor as for ``solve``.
     """
-    plain = problem.cases
-    problem.offsets = best.offsets
+    plain = problem
     for _ in range(ROUNDS):
-        problem.cases = plain
-        weights = huber_weights(plain, problem.residuals(best.unit[:, None])[0])
-        problem.cases = replace(plain, weight=plain.weight * weights)
+        weights = huber_weights(plain.cases, plain.with_offsets(best.offsets).residuals(best.unit[:, None])[0])
+        problem = plain.with_cases(replace(plain.cases, weight=plain.cases.weight * weights))
+        problem = problem.with_offsets(best.offsets)
         better = solve(problem, best.unit[:, None], ridge=ridge, anchor=anchor)[0]
         moved = float(np.max(np.abs(better.unit - best.unit)))
-        best, problem.offsets = better, better.offsets
+        best = better
         if moved < SETTLED:
             break
-    return problem, best
+    return problem.with_offsets(best.offsets), best

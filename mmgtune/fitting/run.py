@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import platform
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
@@ -14,13 +14,13 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray
-from ..backends import STATES, get_backend
+from ..backends import STATES, Backend, Integrator, get_backend
 from ..model import Model
 from ..objective import Objective, cases_of, make_objective, spread
 from ..profile import ShipProfile
 from ..threads import blas_on_one_thread
 from ..trial import TrialSet
-from .box import choose_targets, make_box
+from .box import Box, choose_targets, make_box
 from .certificate import certify
 from .checkpoint import EVERY, Checkpoint
 from .cmaes import Search, search
@@ -61,30 +61,71 @@ def in_pieces(trials: TrialSet, options: FitOptions) -> TrialSet:
     return trials.in_windows(options.restart, options.every)
 
 
-def objective_of(model: Model, trials: TrialSet, options: FitOptions) -> Objective:
-    """What the options ask to make small; its scales come from all tune trials."""
+@dataclass(frozen=True, eq=False)
+class Setting:
+    """What all problems of one fit have in common.
+
+    estimated  whether trials start from an estimated state
+    """
+
+    model: Model
+    trials: TrialSet
+    objective: Objective
+    box: Box
+    a_r: float
+    backend: Backend
+    integrator: Integrator
+    estimated: bool
+
+    def holding(self, names: Sequence[str]) -> Setting:
+        """The same with some targets held at their pre-determined values."""
+        left = [name for name in self.box.names if name not in names]
+        return replace(self, box=make_box(self.model, left, self.a_r))
+
+    def problem(self, ids: Sequence[str] = ()) -> FitProblem:
+        """The problem of fitting the tune trials, or the trials ``ids``.
+
+        Raises OptionError where the window leaves one without a sample.
+        """
+        chosen = [self.trials.trials[name] for name in ids or self.trials.tune]
+        cases = cases_of(chosen, self.objective, self.model.inputs)
+        sigma = self.deviations(ids) if self.estimated else None
+        return FitProblem.of(self.model, cases, self.box, self.backend, self.integrator, sigma)
+
+    def deviations(self, ids: Sequence[str] = ()) -> FloatArray:
+        """Deviations (n_trials, 6) of the measured initial states."""
+        scales = np.array([self.objective.scales[name] for name in STATES])
+        return deviations([self.trials.trials[name] for name in ids or self.trials.tune], scales)
+
+
+def make_setting(profile: ShipProfile, trials: TrialSet, options: FitOptions) -> Setting:
+    """The setting of fitting ``profile`` to trials.
+
+    Raises OptionError for targets, box or channels that make no sense.
+    """
+    model = Model(profile)
+    # Scales come from all tune trials, whichever of them a problem is over.
     scales = spread([trials.trials[name] for name in trials.tune]) if options.objective == "standardised" else None
-    return make_objective(model.L_pp, options.channels, options.window, scales=scales, every=options.every)
+    objective = make_objective(model.L_pp, options.channels, options.window, scales=scales, every=options.every)
+    box = make_box(model, choose_targets(model, options.targets, options.fixed), options.a_r)
+    return Setting(
+        model,
+        trials,
+        objective,
+        box,
+        options.a_r,
+        get_backend(options.backend),
+        options.make_integrator(),
+        options.initial == "estimated",
+    )
 
 
-def make_problem(profile: ShipProfile, trials: TrialSet, options: FitOptions, ids: tuple[str, ...] = ()) -> FitProblem:
+def make_problem(profile: ShipProfile, trials: TrialSet, options: FitOptions, ids: Sequence[str] = ()) -> FitProblem:
     """The problem of fitting ``profile`` to the tune trials, or to the trials ``ids``.
 
     Raises OptionError for targets, box, channels or window that make no sense.
     """
-    model = Model(profile)
-    targets = choose_targets(model, options.targets, options.fixed)
-    objective = objective_of(model, trials, options)
-    chosen = [trials.trials[name] for name in ids or trials.tune]
-    scales = np.array([objective.scales[name] for name in STATES])
-    return FitProblem(
-        model=model,
-        cases=cases_of(chosen, objective, model.inputs),
-        box=make_box(model, targets, options.a_r),
-        backend=get_backend(options.backend),
-        integrator=options.make_integrator(),
-        sigma=deviations(chosen, scales) if options.initial == "estimated" else None,
-    )
+    return make_setting(profile, trials, options).problem(ids)
 
 
 @blas_on_one_thread
@@ -109,9 +150,14 @@ def fit(
     """
     began = time.perf_counter()
     trials = in_pieces(trials, options)
+    setting = make_setting(profile, trials, options)
+    problem = setting.problem()
     if options.identifiable:
-        options = hold_directions(profile, trials, options)
-    problem = make_problem(profile, trials, options)
+        held = traded(problem)
+        options = replace(options, fixed=(*options.fixed, *held), identifiable=False)
+        setting = setting.holding(held)
+        problem = problem.with_targets(setting.model, setting.box)
+    plain = problem
     provenance = make_provenance(profile, trials, command)
     checkpoint = None
     if checkpoint_folder is not None:
@@ -130,13 +176,11 @@ def fit(
     hooks.on_phase("least squares")
     starts = random_starts(problem, options, before, more_starts)
     if problem.sigma is not None:  # far from an optimum, free initial states only lead astray
-        held = make_problem(profile, trials, replace(options, initial="measured"))
-        starts = np.column_stack([end.unit for end in solve(held, starts, stop=hooks.stop)])
-        problem.evaluations += held.evaluations
+        starts = np.column_stack([end.unit for end in solve(problem.held(), starts, stop=hooks.stop)])
     ridge = edge_ridge(problem, options, before)
     ends = solve(problem, starts, ridge=ridge, anchor=before, stop=hooks.stop)
     best = min(ends, key=lambda end: end.J + ridge * float(np.sum((end.unit - before) ** 2)))
-    problem.offsets = best.offsets
+    problem = problem.with_offsets(best.offsets)
     if options.loss == "huber" and not hooks.stop():
         hooks.on_phase("weighing outliers down")
         problem, best = weigh_down(problem, best, ridge, before)
@@ -153,7 +197,7 @@ def fit(
     if not hooks.stop() and ridge == 0.0:
         best = _nearest(problem, best, before)
     unit, J = best.unit, best.J
-    problem.offsets = best.offsets
+    problem = problem.with_offsets(best.offsets)
     if found is not None and found.J < J:
         unit, J = found.unit, found.J
 
@@ -162,9 +206,9 @@ def fit(
     certificate = certify(problem, unit, J, J_before, ends, restarts, found.J if found else None, ridge, before)
     held_by_bound = np.isin(problem.box.names, [bound.name for bound in certificate.active])
     roles = {name: trials.role(name) for name in trials.trials}
-    everything = make_problem(profile, trials, options, tuple(trials.trials))
-    objective = objective_of(problem.model, trials, options)
-    compared = tuple(compare(everything, list(trials.trials.values()), roles, before, unit))
+    everything = setting.problem(tuple(trials.trials))
+    compared = tuple(compare(everything, list(trials.trials.values()), setting.objective, roles, before, unit))
+    free_start = None if setting.estimated else J_free_start(plain.estimated(setting.deviations()), unit)
     return FitResult(
         profile=profile,
         options=options,
@@ -172,7 +216,7 @@ def fit(
         unit=unit,
         J=J if options.loss == "squares" else float(total(compared, "tune", "after") or J),
         J_before=J_before,
-        J_free_start=_free_start(profile, trials, options, unit),
+        J_free_start=free_start,
         compared=compared,
         restarts=tuple(restarts),
         starts=tuple(ends),
@@ -183,8 +227,8 @@ def fit(
         diverged=found.diverged if found else 0,
         wall_s=time.perf_counter() - began,
         held=tuple(options.fixed),
-        scales=objective.scales,
-        channels=objective.channels,
+        scales=setting.objective.scales,
+        channels=setting.objective.channels,
         provenance=provenance,
         interrupted=hooks.stop(),
     )
@@ -207,21 +251,16 @@ def random_starts(
     return np.clip(np.column_stack(starts), 0.0, 1.0)
 
 
-def _free_start(profile: ShipProfile, trials: TrialSet, options: FitOptions, unit: FloatArray) -> float | None:
-    """J of the same coefficients if each tune trial started from an estimated state; None where it does already."""
-    if options.initial == "estimated":
-        return None
-    problem = make_problem(profile, trials, replace(options, initial="estimated"))
+def J_free_start(problem: FitProblem, unit: FloatArray) -> float:
+    """J of coefficients (n_targets,) if each trial started from the state that fits best within its noise."""
     return float(problem.costs(unit[:, None], fit_offsets(problem, unit)[:, None])[0])
 
 
-def hold_directions(profile: ShipProfile, trials: TrialSet, options: FitOptions) -> FitOptions:
-    """The same options with one coefficient fixed for every direction no trial can tell, found before searching."""
-    problem = make_problem(profile, trials, options)
+def traded(problem: FitProblem) -> tuple[str, ...]:
+    """One coefficient of every direction no trial can tell, found at the pre-determined values."""
     free = np.zeros(len(problem.box), dtype=bool)
     directions = analyse(problem, problem.box.to_unit(problem.box.pre), free).null_directions
-    held = tuple(next(iter(direction.weights)) for direction in directions)
-    return replace(options, fixed=(*options.fixed, *held), identifiable=False)
+    return tuple(next(iter(direction.weights)) for direction in directions)
 
 
 def _search(

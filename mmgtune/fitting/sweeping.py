@@ -108,6 +108,7 @@ class SweepResult:
             **first.provenance,
             "interrupted": self.interrupted,
             "a_r": self.widths,
+            "integrator": first.method,
             "J_tune_before": first.J_of("tune", "before"),
             "J_test_before": first.J_of("test", "before"),
             "runs": [

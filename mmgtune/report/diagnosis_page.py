@@ -72,6 +72,11 @@ def build(record: DiagnosisRecord) -> Page:
     )
 
 
+def _held_out(gain: Mapping[str, Any]) -> str:
+    """What J is of, and by which method; records of older versions do not say."""
+    return ", ".join(clean(word) for word in (gain["held_out"], gain.get("method")) if word)
+
+
 def _tiles(data: Mapping[str, Any]) -> tuple[Tile, ...]:
     gain = data["gain"]
     moved = change(gain.get("J_test_before"), gain.get("J_test_after"))
@@ -80,7 +85,7 @@ def _tiles(data: Mapping[str, Any]) -> tuple[Tile, ...]:
         tiles.append(Tile("Causes", ", ".join(clean(cause["effect"]) for cause in data["causes"])))
     before, after = shown(gain.get("J_test_before")), shown(gain.get("J_test_after"))
     if data["causes"]:
-        tiles.append(Tile("Misfit J, held out", f"{before} → {after}", percent(moved), gain["held_out"], tone(moved)))
+        tiles.append(Tile("Misfit J, held out", f"{before} → {after}", percent(moved), _held_out(gain), tone(moved)))
         low, high = gain["share_ci95"]
         tiles.append(
             Tile(
@@ -90,7 +95,7 @@ def _tiles(data: Mapping[str, Any]) -> tuple[Tile, ...]:
             )
         )
     else:
-        tiles.append(Tile("Misfit J, held out", before, note=f"re-tuned model, {gain['held_out']}"))
+        tiles.append(Tile("Misfit J, held out", before, note=f"re-tuned model, {_held_out(gain)}"))
         left = data["unexplained"]["share_of_noise_variance"]
         tiles.append(Tile("Left beyond sensor noise", f"{100.0 * left:.1f} %", note="of the noise's variance"))
     return tuple(tiles)

@@ -140,7 +140,7 @@ def test_no_trial_left(ready):
         (("--format", "xml"), "no format 'xml'"),
         (("--metrics", "JJ"), "unknown metric"),
         (("--integrator", "leapfrog"), "leapfrog"),
-        (("--integrator", "rk4"), "made with euler"),
+        (("--integrator", "euler"), "made with rk4"),
         (("--backend", "gpu"), "unknown back end"),
         (("--sensitivity", "0"), "of itself"),
         (("--summary", "no/such/folder/s.md"), "cannot write"),

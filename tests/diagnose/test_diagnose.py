@@ -187,7 +187,7 @@ def test_without_test_trials_each_trial_is_left_out_in_turn(tmp_path):
     kept = ("turn_p10", "turn_m20", "zigzag_20")
     alone = replace(trials, trials={name: trials.trials[name] for name in kept}, tune=kept, test=())
     result = diagnose(load_profile("suzaku"), alone)
-    assert result.gain.held_out == "each trial in turn"
+    assert result.gain.held_out == "each"
     assert len(result.gain.compared) == 3
     assert [cause.tag for cause in result.causes] == ["gyro-bias"]
     assert covered(case.effects, result.to_dict()) == [True]

@@ -33,7 +33,7 @@ NOISE = np.array([0.4, 0.4, np.radians(0.17), 0.02, 0.02, np.radians(0.03)])
 def make_trial(
     model: Model, name: str, degrees: float, seconds: int, truth: Mapping[str, float], noise: float = 0.0
 ) -> Trial:
-    """A turn of the ship with coefficients ``truth``, Euler at 1 s, after 20 s straight on."""
+    """A turn of the ship with coefficients ``truth``, steps of 1 s, after 20 s straight on."""
     t = np.arange(seconds + 1.0)
     delta = np.sign(degrees) * np.clip((t - 20.0) * np.radians(2.32), 0.0, np.radians(abs(degrees)))
     controls = np.column_stack([np.full(len(t), 104.0 / 60.0), delta])

@@ -5,6 +5,7 @@ import pytest
 
 from mmgtune.fitting import FitOptions, fit, make_problem
 from mmgtune.fitting.identifiability import analyse
+from mmgtune.fitting.whitening import estimate_whitening
 from tests.fitting.conftest import TRUTH, make_set
 
 pytestmark = [pytest.mark.xdist_group("identifiability"), pytest.mark.slow(5)]
@@ -62,7 +63,7 @@ def test_holding_one_member_removes_the_direction(suzaku, noisy):
     unit = problem.box.to_unit([TRUTH[name] for name in problem.box.names])
     found = analyse(problem, unit, np.zeros(11, dtype=bool))
     assert found.null_directions == ()
-    assert not TRADED & {name for name, why in found.undetermined.items() if "combinations" in why}
+    assert not TRADED & {name for name, of in found.undetermined.items() if of.why == "traded"}
 
 
 def test_identifiable_option_holds_one_member(suzaku, noisy):
@@ -102,3 +103,48 @@ def test_a_coefficient_the_motion_does_not_show_is_undetermined(suzaku, clean):
     found = analyse(problem, problem.box.to_unit(problem.box.pre), np.zeros(2, dtype=bool))
     assert "rudder.u_R0" in found.undetermined
     assert "hull.R_0" not in found.undetermined
+
+
+def test_estimated_initial_states_count(suzaku, noisy):
+    """Against the whole of it at once: targets and the six offsets of every case as one linear problem.
+
+    Whitened derivatives of all residuals by both, and one row for what is known of each offset; the covariance of the
+    targets is a block of the inverse of its normal matrix.
+    """
+    names = ("R_0", "w_P0", "N_r", "kappa", "a_H")
+    problem = make_problem(suzaku.profile, noisy, FitOptions(targets=names, initial="estimated"))
+    rng = np.random.default_rng(3)
+    problem = problem.with_offsets(0.1 * problem.sigma * rng.uniform(-1.0, 1.0, problem.sigma.shape))
+    unit = problem.box.to_unit([TRUTH.get(name, problem.box.pre[i]) for i, name in enumerate(problem.box.names)])
+    found = analyse(problem, unit, np.zeros(len(names), dtype=bool))
+
+    n_cases = len(problem.cases)
+    whitening = estimate_whitening(problem, problem.residuals(unit[:, None])[0])
+    columns = []
+    for k in range(len(unit)):
+        step = 1e-5 * np.eye(len(unit))[k]
+        above, below = (problem.residuals((unit + side * step)[:, None])[0] for side in (1.0, -1.0))
+        columns.append((above - below) / 2e-5 / problem.box.width[k])
+    for case in range(n_cases):
+        for k in range(6):
+            step = np.zeros((n_cases, 1, 6))
+            step[case, 0, k] = 0.02 * problem.sigma[case, k]
+            here = problem.offsets[:, None]
+            above, below = (problem.residuals(unit[:, None], here + side * step)[0] for side in (1.0, -1.0))
+            columns.append((above - below) / 0.04)  # by a deviation
+    joint = whitening.apply(np.column_stack(columns))
+    known = np.hstack([np.zeros((6 * n_cases, len(unit))), np.eye(6 * n_cases)])
+    joint = np.vstack([joint, known])
+    scale = np.linalg.norm(joint, axis=0)
+    covariance = np.linalg.inv((joint / scale).T @ (joint / scale)) / np.outer(scale, scale)
+    covariance = covariance[: len(unit), : len(unit)]
+    deviation = np.sqrt(np.diag(covariance))
+    for i, name in enumerate(found.names):
+        assert name not in found.undetermined
+        assert found.stderr[name] == pytest.approx(deviation[i], rel=1e-4), name
+    correlation = covariance / np.outer(deviation, deviation)
+    assert found.correlation == pytest.approx(correlation, abs=1e-4)
+
+    # They matter: states known exactly would make the coefficients look better known than they are.
+    held = analyse(problem.held(), unit, np.zeros(len(names), dtype=bool))
+    assert max(found.stderr[name] / held.stderr[name] for name in found.names) > 1.05

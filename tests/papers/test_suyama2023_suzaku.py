@@ -3,7 +3,14 @@
 import numpy as np
 import pytest
 
-from tests.runs import states, turn
+from mmgtune.backends import Integrator
+from tests import runs
+from tests.runs import turn
+
+
+def states(model, cases, theta=None):
+    """As the paper simulates: Euler at the trial's own step."""
+    return runs.states(model, cases, theta, integrator=Integrator("euler"))
 
 
 def widths(model, theta=None):

@@ -8,9 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import BoolArray, FloatArray
-from ...backends import Integrator, get_backend, pad
+from ...backends import Integrator
 from ...model import Model
-from ...trial import Trial, surroundings
+from ...predictor import Predictor, as_predictor, cases_from, portions
+from ...profile import ShipProfile
+from ...trial import Trial
 from .smoothing import Smoothed, smooth
 
 
@@ -63,10 +65,11 @@ class ShortHorizon:
 
 
 def short_horizon(
-    model: Model,
+    ship: Predictor | ShipProfile | Model,
     trials: Sequence[Trial],
     *,
     window: float = 60.0,
+    member: int = 0,
     integrator: Integrator = Integrator(),
     backend: str = "compiled",
 ) -> ShortHorizon:
@@ -74,6 +77,8 @@ def short_horizon(
 
     A sample at which one window ends and the next begins belongs to the one that ends.  Windows begin anew after a gap
     too long to be bridged.  Lags of the model count as settled at each restart.
+
+    member  of the predictor, from 0
 
     Restarts carry on what noise the smoothing left: the true model's residuals are one to two deviations of the noise,
     most in the heading.
@@ -85,27 +90,27 @@ def short_horizon(
         raise ValueError("there are no trials")
     if not window > 0.0:
         raise ValueError(f"a window of {window:g} s is not positive")
+    predictor = as_predictor(ship, integrator=integrator, backend=backend)
     motions = [smooth(trial) for trial in trials]
     windows = [(i, part) for i, motion in enumerate(motions) for part in _windows(motion, window)]
     if not windows:
         raise ValueError(f"no window of {window:g} s holds two samples with a measured state")
-    controls = [trial.inputs(model.inputs) for trial in trials]
-    around = [surroundings(trial) for trial in trials]
-    cases = pad(
-        [trials[i].t[part] for i, part in windows],
-        [controls[i][part] for i, part in windows],
-        [motions[i].states[part.start] for i, part in windows],
-        around=[around[i][part] for i, part in windows],
-    )
-    result = get_backend(backend).run(model, model.matrix(), cases, integrator=integrator, keep_states=True)
-    assert result.states is not None  # asked for
     residuals = [np.full((trial.n_samples, 6), np.nan) for trial in trials]
     since = [np.full(trial.n_samples, np.nan) for trial in trials]
-    for k, (i, part) in enumerate(windows):
-        t, after = trials[i].t, slice(part.start + 1, part.stop)
-        since[i][after] = t[after] - t[part.start]
-        if not result.diverged[k, 0]:
-            residuals[i][after] = result.states[k, 0, 1 : part.stop - part.start] - trials[i].motion[after]
+    diverged = 0
+    for portion in portions([part.stop - part.start for _, part in windows], predictor.n_members):
+        some = windows[portion]
+        parts = [part for _, part in some]
+        start = [motions[i].states[part.start] for i, part in some]
+        found = predictor.predict(
+            cases_from([trials[i] for i, _ in some], predictor.inputs, parts=parts, initial=start)
+        )
+        diverged += int(found.diverged[:, member].sum())
+        for k, (i, part) in enumerate(some):
+            t, after = trials[i].t, slice(part.start + 1, part.stop)
+            since[i][after] = t[after] - t[part.start]
+            if not found.diverged[k, member]:
+                residuals[i][after] = found.states[k, member, 1 : part.stop - part.start] - trials[i].motion[after]
     return ShortHorizon(
         ids=tuple(trial.id for trial in trials),
         t=tuple(trial.t for trial in trials),
@@ -113,7 +118,7 @@ def short_horizon(
         since=tuple(since),
         noise=np.array([motion.noise for motion in motions]),
         window=window,
-        diverged=int(result.diverged.sum()),
+        diverged=diverged,
     )
 
 

@@ -1,0 +1,228 @@
+"""Whatever turns cases into states: a physics model with one or many parameter vectors, a network, a formula.
+
+A predictor has members (candidates, particles, networks) along one axis; each predicts every case.  Simulation, scores,
+checks, repetitions and reports take a predictor, or a profile or model, which ``as_predictor`` makes one of.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+
+from .arrays import BoolArray, FloatArray
+from .backends import Cases, Integrator, get_backend, pad
+from .errors import OptionError, Problem
+from .model import Model
+from .profile import ShipProfile
+from .trial import Trial, surroundings
+
+AT_ONCE = 400_000
+"""Samples times members predicted at one time, but for those of a single case; bounds the memory (20 MB of states)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Prediction:
+    """What a predictor makes of cases.
+
+    states    (n_cases, n_members, T, 6) x, y [m], psi [rad], u, v_m [m/s], r [rad/s]; after the end of a case anything
+    diverged  (n_cases, n_members) whether a run left the world of ships; its states then mean nothing
+    """
+
+    states: FloatArray
+    diverged: BoolArray
+
+
+@runtime_checkable
+class Predictor(Protocol):
+    """Turns cases into states.
+
+    name       what to call it
+    L_pp       length of the ship between perpendiculars [m]
+    n_members  how many predictions it makes of each case
+    inputs     what drives it, by names of ``inputs.INPUTS``: the columns of ``cases.controls``
+    method     how it gets on in time, named beside every J: "rk4", "network at 1 s"
+    """
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def L_pp(self) -> float: ...
+
+    @property
+    def n_members(self) -> int: ...
+
+    @property
+    def inputs(self) -> Sequence[str]: ...
+
+    @property
+    def method(self) -> str: ...
+
+    def predict(self, cases: Cases) -> Prediction:
+        """All members on every case, each from ``cases.initial``; never raises for a run that diverges."""
+        ...
+
+
+class Stepper(Protocol):
+    """One member under way, steered while it moves."""
+
+    def step(self, now: FloatArray, then: FloatArray, h: float) -> FloatArray:
+        """The state (6,) after h [s] more with inputs going from ``now`` to ``then``, (n_inputs,) each."""
+        ...
+
+
+@runtime_checkable
+class Steerable(Predictor, Protocol):
+    """A predictor that remembers more than the state shows, such as a network with a memory: it steps by itself."""
+
+    def stepper(self, member: int, state: FloatArray, controls: FloatArray) -> Stepper:
+        """A member ready to go from a state (6,) with inputs (n_inputs,)."""
+        ...
+
+
+@dataclass(eq=False)
+class Restarted:
+    """Any predictor steered: begun anew at each step from the state it reached, as a case of two samples."""
+
+    predictor: Predictor
+    member: int
+    state: FloatArray
+
+    def step(self, now: FloatArray, then: FloatArray, h: float) -> FloatArray:
+        """See ``Stepper``; NaN throughout once it diverged."""
+        found = self.predictor.predict(pad([np.array([0.0, h])], [np.array([now, then])], [self.state]))
+        lost = bool(found.diverged[0, self.member])
+        self.state = np.full(6, np.nan) if lost else np.array(found.states[0, self.member, 1])
+        return self.state
+
+
+def stepper_of(predictor: Predictor, member: int, state: FloatArray, controls: FloatArray) -> Stepper:
+    """A member under way from a state (6,) with inputs (n_inputs,): its own stepper, or one that begins anew each step."""
+    if isinstance(predictor, Steerable):
+        return predictor.stepper(member, state, controls)
+    return Restarted(predictor, member, state)
+
+
+@dataclass(frozen=True, eq=False)
+class PhysicsPredictor:
+    """A model with one or many parameter vectors.
+
+    theta  (n_rows, n_members) coefficients
+    """
+
+    model: Model
+    theta: FloatArray
+    integrator: Integrator = Integrator()
+    backend: str = "compiled"
+
+    @property
+    def name(self) -> str:
+        """Id of the profile."""
+        return self.model.profile.id
+
+    @property
+    def L_pp(self) -> float:
+        """Length between perpendiculars [m]."""
+        return self.model.L_pp
+
+    @property
+    def n_members(self) -> int:
+        """Number of parameter vectors."""
+        return int(self.theta.shape[1])
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """What drives the model."""
+        return self.model.inputs
+
+    @property
+    def method(self) -> str:
+        """The integrator."""
+        return words_of(self.integrator)
+
+    def predict(self, cases: Cases) -> Prediction:
+        """See ``Predictor``."""
+        result = get_backend(self.backend).run(
+            self.model, self.theta, cases, integrator=self.integrator, keep_states=True
+        )
+        assert result.states is not None  # asked for
+        return Prediction(result.states, result.diverged)
+
+
+def as_predictor(
+    ship: Predictor | ShipProfile | Model,
+    *,
+    theta: FloatArray | None = None,
+    integrator: Integrator = Integrator(),
+    backend: str = "compiled",
+) -> Predictor:
+    """A profile or model as a predictor; a predictor as it is, ``integrator`` and ``backend`` being its own affair.
+
+    theta  (n_rows, n_members) coefficients of a profile or model, its own where None
+    Raises OptionError for anything else, and for coefficients of something that has none of that kind.
+    """
+    if isinstance(ship, ShipProfile):
+        ship = Model(ship)
+    if isinstance(ship, Model):
+        return PhysicsPredictor(ship, ship.matrix() if theta is None else theta, integrator, backend)
+    if not isinstance(ship, Predictor):
+        raise OptionError(
+            Problem(
+                f"a {type(ship).__name__} is no ship",
+                repr(ship)[:60],
+                "a ship profile, a model or a predictor is needed",
+                "load a profile with load_profile(NAME)",
+            )
+        )
+    if theta is not None:
+        raise OptionError(Problem("coefficients are given for a predictor", ship.name, "only a profile has them"))
+    return ship
+
+
+def words_of(integrator: Integrator) -> str:
+    """The integrator as it is named beside J: "rk4", "euler, 2 substeps"."""
+    return integrator.name + (f", {integrator.substeps} substeps" if integrator.substeps > 1 else "")
+
+
+def cases_from(
+    trials: Sequence[Trial],
+    inputs: Sequence[str],
+    *,
+    parts: Sequence[slice] | None = None,
+    initial: Sequence[FloatArray] | None = None,
+    target: Sequence[FloatArray] | None = None,
+    weight: Sequence[FloatArray] | None = None,
+) -> Cases:
+    """Trials as cases, driven by their measured inputs, in what was measured around them.
+
+    inputs   what drives the predictor
+    parts    samples of each that are meant, all where None
+    initial  (6,) state each starts from, that of its first sample where None
+    target, weight  (n_samples, 6) as in ``Cases``
+    Raises TrialError for a trial without one of the inputs.
+    """
+    parts = [slice(0, trial.n_samples) for trial in trials] if parts is None else parts
+    both = list(zip(trials, parts, strict=True))
+    return pad(
+        [trial.t[part] for trial, part in both],
+        [trial.inputs(inputs)[part] for trial, part in both],
+        [trial.motion[part.start] for trial, part in both] if initial is None else initial,
+        target,
+        weight,
+        [surroundings(trial)[part] for trial, part in both],
+    )
+
+
+def portions(lengths: Sequence[int], n_members: int) -> Iterator[slice]:
+    """Cases of these lengths in portions that are predicted at one time; a case is padded to the longest of them."""
+    first, longest = 0, 0
+    for k, length in enumerate(lengths):
+        longest = max(longest, length)
+        if k > first and (k + 1 - first) * longest * n_members > AT_ONCE:
+            yield slice(first, k)
+            first, longest = k, length
+    if lengths:
+        yield slice(first, len(lengths))
