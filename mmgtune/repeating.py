@@ -110,6 +110,23 @@ def summary(repeated: Sequence[Repeated]) -> dict[str, dict[str, float | int]]:
     }
 
 
+def document(repeated: Sequence[Repeated]) -> dict[str, Any]:
+    """For JSON: every manoeuvre with all its indices, and the errors over all."""
+    return {
+        "runs": [
+            {
+                "id": one.id,
+                "manoeuvre": one.manoeuvre,
+                "order": one.order,
+                "measured": one.measured,
+                "simulated": one.simulated or None,
+            }
+            for one in repeated
+        ],
+        "errors": summary(repeated),
+    }
+
+
 _Repeat = Callable[[Model, Track, FloatArray | None], tuple[str, TurningIndices | ZigzagIndices, dict[str, Any]]]
 """Order in words, what was measured, and what the model makes of it."""
 

@@ -36,6 +36,11 @@ class Motion:
     controls: FloatArray
     diverged: bool
 
+    def __repr__(self) -> str:
+        """In a line."""
+        end = "diverged" if self.diverged else f"{self.t[-1]:g} s, {len(self.t)} samples"
+        return f"Motion({self.id}: {end})"
+
     def channel(self, name: str) -> FloatArray:
         """One of x, y, psi, u, v_m, r: (n_samples,)."""
         return self.states[:, STATES.index(name)]

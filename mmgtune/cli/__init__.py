@@ -5,17 +5,19 @@ Nothing heavy is imported until a command runs, so that ``mmgtune --help`` is qu
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 import tempfile
 import traceback
-from typing import Any
 
 import typer
 
 from ..errors import Interrupted, MmgtuneError, OutputError, Problem, cannot_write_reason
 from . import check, cite, diagnose, doctor, fit, leave_out, profiles, report, simulate, sweep, trials, validate
 from .exitcodes import ExitCode
+from .interrupts import Stopped, stop_at_once
+from .options import problems_in_flags
 
 EPILOG = "Exit codes: 0 good; 1 the answer is no; 2 could not run; 3 bug; 130 interrupted, best so far saved."
 
@@ -62,16 +64,19 @@ app.add_typer(profiles.app, name="profile", epilog=EPILOG)
 
 def main() -> None:
     """Run the command line; every way out has its exit code."""
-    signal.signal(signal.SIGINT, _interrupt)
+    signal.signal(signal.SIGINT, stop_at_once)
     try:
         app()
-    except Interrupted as error:
+    except (Stopped, Interrupted) as error:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # no second line from a second Ctrl-C
         print(f"interrupted: {error}", file=sys.stderr)
         sys.exit(ExitCode.INTERRUPTED)
     except MmgtuneError as error:
-        for problem in error.problems:
+        for problem in problems_in_flags(error):
             print(f"error: {problem}", file=sys.stderr)
         sys.exit(ExitCode.COULD_NOT_RUN)
+    except BrokenPipeError:
+        _reader_is_gone()
     except OSError as error:  # a full disk, say, anywhere the library did not expect one
         print(f"error: {OutputError(Problem(cannot_write_reason(error)))}", file=sys.stderr)
         sys.exit(ExitCode.COULD_NOT_RUN)
@@ -82,5 +87,7 @@ def main() -> None:
         sys.exit(ExitCode.BUG)
 
 
-def _interrupt(_signal: int, _frame: Any) -> None:
-    raise Interrupted(Problem("stopped before there was anything to save"))
+def _reader_is_gone() -> None:
+    """Whoever read stdout, such as ``head``, has seen enough: that is no failure, and nothing more can be said."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    sys.exit(ExitCode.GOOD)

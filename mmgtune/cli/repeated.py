@@ -1,9 +1,9 @@
-"""Manoeuvres repeated by models, as a table and as JSON."""
+"""Manoeuvres repeated by models, as a table."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ..repeating import Repeated
@@ -36,25 +36,6 @@ def table(by_model: Mapping[str, Sequence[Repeated]]) -> str:
                 shown = [_error(of.get(key), which, unit) for of in errors.values()]
                 lines.append(f"    {words:<42}{'':>10}" + "".join(f"{s:>{width}}" for s in shown))
     return "\n".join(lines)
-
-
-def document(repeated: Sequence[Repeated]) -> dict[str, Any]:
-    """For JSON: every manoeuvre with all its indices, and the errors over all."""
-    from ..repeating import summary
-
-    return {
-        "runs": [
-            {
-                "id": one.id,
-                "manoeuvre": one.manoeuvre,
-                "order": one.order,
-                "measured": one.measured,
-                "simulated": one.simulated or None,
-            }
-            for one in repeated
-        ],
-        "errors": summary(repeated),
-    }
 
 
 def _error(of: Mapping[str, float] | None, which: str, unit: str) -> str:

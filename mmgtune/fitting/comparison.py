@@ -28,6 +28,10 @@ class TrialComparison:
     rms: dict[str, dict[str, float]]  # channel -> before, after [SI]
     indices: dict[str, dict[str, Any]]  # "measured", "before", "after"
 
+    def __repr__(self) -> str:
+        """In a line."""
+        return f"TrialComparison({self.trial.id}, {self.role}: J {self.J['before']:.4g} -> {self.J['after']:.4g})"
+
     def to_dict(self) -> dict[str, Any]:
         """For JSON; a J that is not finite becomes null."""
         return {
