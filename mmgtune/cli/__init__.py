@@ -5,7 +5,6 @@ Nothing heavy is imported until a command runs, so that ``mmgtune --help`` is qu
 
 from __future__ import annotations
 
-import os
 import signal
 import sys
 import tempfile
@@ -18,6 +17,7 @@ from . import check, cite, diagnose, doctor, fit, leave_out, profiles, report, s
 from .exitcodes import ExitCode
 from .interrupts import Stopped, stop_at_once
 from .options import problems_in_flags
+from .pipes import Piped, ReaderGone, say_no_more
 
 EPILOG = "Exit codes: 0 good; 1 the answer is no; 2 could not run; 3 bug; 130 interrupted, best so far saved."
 
@@ -65,8 +65,16 @@ app.add_typer(profiles.app, name="profile", epilog=EPILOG)
 def main() -> None:
     """Run the command line; every way out has its exit code."""
     signal.signal(signal.SIGINT, stop_at_once)
+    stdout = sys.stdout
+    sys.stdout = Piped(stdout)  # type: ignore[assignment]
     try:
-        app()
+        try:
+            app()
+        finally:
+            sys.stdout.flush()
+    except ReaderGone:
+        say_no_more()
+        sys.exit(ExitCode.GOOD)
     except (Stopped, Interrupted) as error:
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # no second line from a second Ctrl-C
         print(f"interrupted: {error}", file=sys.stderr)
@@ -75,8 +83,6 @@ def main() -> None:
         for problem in problems_in_flags(error):
             print(f"error: {problem}", file=sys.stderr)
         sys.exit(ExitCode.COULD_NOT_RUN)
-    except BrokenPipeError:
-        _reader_is_gone()
     except OSError as error:  # a full disk, say, anywhere the library did not expect one
         print(f"error: {OutputError(Problem(cannot_write_reason(error)))}", file=sys.stderr)
         sys.exit(ExitCode.COULD_NOT_RUN)
@@ -85,9 +91,5 @@ def main() -> None:
             file.write(f"{' '.join(sys.argv)}\n{traceback.format_exc()}")
         print(f"bug: {sys.exc_info()[1]!r}\n  the full traceback is in {file.name}; please report it", file=sys.stderr)
         sys.exit(ExitCode.BUG)
-
-
-def _reader_is_gone() -> None:
-    """Whoever read stdout, such as ``head``, has seen enough: that is no failure, and nothing more can be said."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    sys.exit(ExitCode.GOOD)
+    finally:
+        sys.stdout = stdout

@@ -36,9 +36,11 @@ class RunOptions(Options):
         """A run to continue needs its folder, and is not replaced."""
         found = super().problems()
         if self.resume and self.out is None:
-            found.append(Problem("resume needs the folder of the interrupted run", "resume", fix="add out=FOLDER"))
+            found.append(Problem("resume=True needs the folder of the interrupted run", "resume", fix="add out=FOLDER"))
         if self.resume and self.force:
-            found.append(Problem("resume goes on with what is there, force replaces it", "resume", fix="leave one out"))
+            found.append(
+                Problem("resume=True goes on with what is there, force=True replaces it", "resume", fix="leave one out")
+            )
         return found
 
 
