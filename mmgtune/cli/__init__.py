@@ -66,7 +66,7 @@ def main() -> None:
     """Run the command line; every way out has its exit code."""
     signal.signal(signal.SIGINT, stop_at_once)
     stdout = sys.stdout
-    sys.stdout = Piped(stdout)  # type: ignore[assignment]
+    sys.stdout = Piped(stdout)
     try:
         try:
             app()
