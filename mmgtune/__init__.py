@@ -1,9 +1,7 @@
 """Calibrate MMG manoeuvring models of ships against measured trials.
 
     import mmgtune
-    profile = mmgtune.load_profile("suzaku")
-    trials = mmgtune.load_trials("suzaku")
-    result = mmgtune.fit(profile, trials, mmgtune.FitOptions(a_r=0.5))
+    result = mmgtune.fit("suzaku", "suzaku", mmgtune.FitOptions(a_r=0.5))
     print(result.verdict())
 
 Everything listed here is what the commands call; it is imported when first used.
@@ -19,12 +17,17 @@ if TYPE_CHECKING:
     from .checking import check as check
     from .checking import read_baseline as read_baseline
     from .checking import record_baseline as record_baseline
+    from .checking import update_baseline as update_baseline
     from .checking import write_baseline as write_baseline
+    from .diagnose import Diagnosis as Diagnosis
+    from .diagnose import diagnose as diagnose
+    from .diagnose import write_diagnosis as write_diagnosis
     from .errors import MmgtuneError as MmgtuneError
-    from .fitting import FitOptions as FitOptions
     from .fitting import FitResult as FitResult
+    from .fitting import LeftOut as LeftOut
     from .fitting import SweepResult as SweepResult
     from .fitting import fit as fit
+    from .fitting import leave_out as leave_out
     from .fitting import sweep as sweep
     from .fitting import write_run as write_run
     from .importing import import_logs as import_logs
@@ -33,6 +36,12 @@ if TYPE_CHECKING:
     from .manoeuvres.summary import indices_of as indices_of
     from .measures import distance_measures as distance_measures
     from .model import Model as Model
+    from .options import DiagnoseOptions as DiagnoseOptions
+    from .options import FitOptions as FitOptions
+    from .options import LeaveOutOptions as LeaveOutOptions
+    from .options import SimulateOptions as SimulateOptions
+    from .options import SweepOptions as SweepOptions
+    from .options import ValidateOptions as ValidateOptions
     from .orders import TurningOrder as TurningOrder
     from .orders import ZigzagOrder as ZigzagOrder
     from .orders import run_manoeuvre as run_manoeuvre
@@ -40,13 +49,16 @@ if TYPE_CHECKING:
     from .profile import load_profile as load_profile
     from .repeating import repeat as repeat
     from .report import render as render
+    from .simulating import Simulated as Simulated
+    from .simulating import simulate as simulate
     from .simulation import breakdown as breakdown
-    from .simulation import simulate as simulate
     from .trial import Trial as Trial
     from .trial import TrialSet as TrialSet
     from .trial import load_trials as load_trials
     from .trial import read_trial as read_trial
     from .trial import write_trial as write_trial
+    from .validating import Validation as Validation
+    from .validating import validate as validate
     from .validation import score as score
 
 _WHERE = {
@@ -54,11 +66,24 @@ _WHERE = {
     "check": "checking",
     "read_baseline": "checking",
     "record_baseline": "checking",
+    "update_baseline": "checking",
     "write_baseline": "checking",
+    "Diagnosis": "diagnose",
+    "write_diagnosis": "diagnose",
+    "LeftOut": "fitting",
+    "leave_out": "fitting",
+    "DiagnoseOptions": "options",
+    "LeaveOutOptions": "options",
+    "SimulateOptions": "options",
+    "SweepOptions": "options",
+    "ValidateOptions": "options",
+    "Validation": "validating",
+    "validate": "validating",
+    "Simulated": "simulating",
     "repeat": "repeating",
     "score": "validation",
     "MmgtuneError": "errors",
-    "FitOptions": "fitting",
+    "FitOptions": "options",
     "FitResult": "fitting",
     "SweepResult": "fitting",
     "fit": "fitting",
@@ -77,7 +102,7 @@ _WHERE = {
     "render": "report",
     "breakdown": "simulation",
     "distance_measures": "measures",
-    "simulate": "simulation",
+    "simulate": "simulating",
     "Trial": "trial",
     "TrialSet": "trial",
     "load_trials": "trial",
@@ -85,10 +110,12 @@ _WHERE = {
     "write_trial": "trial",
 }
 
-__all__ = sorted(_WHERE)
+__all__ = sorted([*_WHERE, "diagnose"])
 
 
 def __getattr__(name: str) -> Any:
+    if name == "diagnose":  # the package, which is called like the function
+        return import_module(".diagnose", __name__)
     if name not in _WHERE:
         raise AttributeError(f"module 'mmgtune' has no attribute '{name}'")
     return getattr(import_module(f".{_WHERE[name]}", __name__), name)

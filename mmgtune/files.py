@@ -51,7 +51,7 @@ def exists(path: Path) -> Problem:
         what="the output exists already",
         where=str(path),
         why="results are never overwritten silently",
-        fix="choose another --out, or add --force to replace it",
+        fix="choose another folder, or add force=True to replace it",
     )
 
 
@@ -62,6 +62,6 @@ def cannot_write(path: Path, error: OSError) -> OutputError:
             what="cannot write the output",
             where=str(path),
             why=error.strerror or str(error),
-            fix="choose a folder with room that you may write to, with --out",
+            fix="choose a folder with room that you may write to",
         )
     )

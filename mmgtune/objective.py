@@ -94,7 +94,7 @@ def make_objective(
         name, _, written = entry.partition(":")
         name = "v_m" if name == "v" else name
         if name not in STATES:
-            raise OptionError(Problem(f"unknown channel '{name}'", "--channels", fix=closest(name, STATES)))
+            raise OptionError(Problem(f"unknown channel '{name}'", "channels", fix=closest(name, STATES)))
         try:
             weights[name] = float(written) if written else 1.0
         except ValueError:
@@ -103,7 +103,7 @@ def make_objective(
             raise OptionError(
                 Problem(
                     f"weight '{written}' of channel '{name}' is not a positive number",
-                    "--channels",
+                    "channels",
                     fix=f"write {name}:1",
                 )
             )
@@ -111,8 +111,8 @@ def make_objective(
         raise OptionError(
             Problem(
                 f"the time window {window[0]:g}..{window[1]:g} s is empty",
-                "--window",
-                fix="write --window FIRST:LAST in seconds",
+                "window",
+                fix="write window=FIRST:LAST in seconds",
             )
         )
     return Objective(scales=scales or default_scales(L_pp), weights=weights, window=window, every=every)
@@ -141,7 +141,7 @@ def weights_of(trials: Sequence[Trial], objective: Objective) -> list[FloatArray
             raise OptionError(
                 Problem(
                     f"trial '{trial.id}' has no sample to compare with",
-                    "--window" if objective.window else str(trial.path or trial.id),
+                    "window" if objective.window else str(trial.path or trial.id),
                     f"it lasts from {trial.t[0]:g} to {trial.t[-1]:g} s and needs two samples or more that count",
                     "choose a window inside the trial, or leave the trial out of the split",
                 )

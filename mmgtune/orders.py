@@ -29,6 +29,15 @@ LONGEST_STEP = 0.25
 
 
 RK4 = Integrator("rk4")
+RUDDER_MOST, HEADING_MOST = 1.6, 2.0 * math.pi
+"""Rudder angle and check heading [rad] beyond which degrees are meant."""
+
+
+def in_radians(angle: float, name: str, most: float) -> None:
+    """Raises OptionError where an angle [rad] is so large that it must be in degrees."""
+    if not abs(angle) <= most:
+        fix = f"write math.radians({angle:g}) if {angle:g} deg is meant"
+        raise OptionError(Problem(f"the {name} is {angle:g} rad", "", "orders are in radians", fix))
 
 
 class Helmsman(Protocol):
@@ -51,6 +60,10 @@ class TurningOrder:
     at: float = 20.0
     until: float = math.radians(540.0)
 
+    def __post_init__(self) -> None:
+        """Raises OptionError for an angle that must be degrees."""
+        in_radians(self.angle, "rudder angle", RUDDER_MOST)
+
     def order(self, t: float, heading: float) -> float:
         """See ``Helmsman``."""
         return self.angle if t >= self.at else 0.0
@@ -70,6 +83,11 @@ class ZigzagOrder:
     legs: int = 5
     _side: float = 0.0
     _given: int = 0
+
+    def __post_init__(self) -> None:
+        """Raises OptionError for angles that must be degrees."""
+        in_radians(self.rudder, "rudder angle", RUDDER_MOST)
+        in_radians(self.heading, "check heading", HEADING_MOST)
 
     def order(self, t: float, heading: float) -> float:
         """See ``Helmsman``."""
@@ -120,13 +138,13 @@ def run_manoeuvre(
                 "the approach condition is not known",
                 str(profile.path or profile.id),
                 "the profile has no [approach] section",
-                "add one, or give --speed and --rpm",
+                "add one, or give speed and rpm",
             )
         )
     U_0 = speed if speed is not None else profile.approach.speed  # type: ignore[union-attr]
     n_0 = n if n is not None else profile.approach.n  # type: ignore[union-attr]
     if not (U_0 > 0.0 and math.isfinite(U_0)):
-        raise OptionError(Problem(f"the approach speed is {U_0:g} m/s", "--speed", fix="give a speed above 0"))
+        raise OptionError(Problem(f"the approach speed is {U_0:g} m/s", "speed", fix="give a speed above 0"))
     ship_now = LaneModel(model, model.matrix() if theta is None else theta)
     start = State(*np.array([[0.0], [0.0], [heading], [U_0], [0.0], [0.0]]))
     inputs = model.arrangement.inputs

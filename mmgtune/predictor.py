@@ -100,7 +100,7 @@ class Restarted:
 
 
 def stepper_of(predictor: Predictor, member: int, state: FloatArray, controls: FloatArray) -> Stepper:
-    """A member under way from a state (6,) with inputs (n_inputs,): its own stepper, or one that begins anew each step."""
+    """A member under way from a state (6,) with inputs (n_inputs,): its own stepper, or one begun anew each step."""
     if isinstance(predictor, Steerable):
         return predictor.stepper(member, state, controls)
     return Restarted(predictor, member, state)

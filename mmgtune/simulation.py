@@ -47,6 +47,11 @@ class Motion:
     inputs: tuple[str, ...] = MAIN_INPUTS
     member: int = 0
 
+    def __repr__(self) -> str:
+        """In a line."""
+        end = "diverged" if self.diverged else f"{self.t[-1]:g} s, {len(self.t)} samples"
+        return f"Motion({self.id}: {end})"
+
     def channel(self, name: str) -> FloatArray:
         """One of x, y, psi, u, v_m, r: (n_samples,)."""
         return self.states[:, STATES.index(name)]
@@ -84,19 +89,18 @@ def motions(predictor: Predictor, trials: Sequence[Trial], offsets: FloatArray |
 
     offsets  (n_trials, 6) added to the first measured states
     """
+    inputs = tuple(predictor.inputs)
     for portion in portions([trial.n_samples for trial in trials], predictor.n_members):
         some = trials[portion]
         start = None
         if offsets is not None:
             start = [trial.motion[0] + own for trial, own in zip(some, offsets[portion], strict=True)]
-        found = predictor.predict(cases_from(some, predictor.inputs, initial=start))
+        found = predictor.predict(cases_from(some, inputs, initial=start))
         for i, trial in enumerate(some):
-            controls = trial.inputs(predictor.inputs)
+            controls = trial.inputs(inputs)
             for k in range(predictor.n_members):
                 states = np.array(found.states[i, k, : trial.n_samples])  # a copy: a view would hold all of them
-                yield Motion(
-                    trial.id, trial.t, states, controls, bool(found.diverged[i, k]), tuple(predictor.inputs), k
-                )
+                yield Motion(trial.id, trial.t, states, controls, bool(found.diverged[i, k]), inputs, k)
 
 
 def breakdown(ship: ShipProfile | Model, states: FloatArray, controls: FloatArray) -> Any:

@@ -10,14 +10,11 @@ import numpy as np
 
 from .arrays import FloatArray
 from .backends import STATES, Integrator
-from .errors import OptionError, Problem
 from .evaluation import TrialRecord, records
 from .model import Model
-from .objective import spread
-from .predictor import PhysicsPredictor, Predictor, as_predictor
+from .predictor import Predictor, as_predictor
 from .profile import ShipProfile
-from .repeating import Repeated, document, repeat
-from .trial import Trial, TrialSet
+from .trial import Trial
 
 DRAWS = 2000
 """Times runs are drawn anew for an interval."""
@@ -135,93 +132,6 @@ def score_of(record: TrialRecord, sigma: Mapping[str, float]) -> TrialScore:
         int(record.measured.counted.any(axis=1).sum()),
         record.method,
         record.member,
-    )
-
-
-@dataclass(frozen=True, eq=False)
-class Validation:
-    """Predictors scored on the same trials, by the name each was given.
-
-    sigma       what differences of each state are divided by in L_MSE [SI]
-    window      length of the windows [s] trials were cut into, None for whole trials
-    repeated    measured turning circles and zigzags repeated, None where not asked for
-    """
-
-    predictors: Mapping[str, Predictor]
-    scores: Mapping[str, tuple[TrialScore, ...]]
-    sigma: Mapping[str, float]
-    window: float | None
-    repeated: Mapping[str, tuple[Repeated, ...]] | None
-
-    @property
-    def rows(self) -> list[dict[str, Any]]:
-        """One predictor a row, for JSON: what it is, how it was simulated, its scores and repetitions."""
-        rows = []
-        for name, predictor in self.predictors.items():
-            profile = predictor.model.profile if isinstance(predictor, PhysicsPredictor) else None
-            row: dict[str, Any] = {
-                "profile": name,
-                "id": predictor.name,
-                "sha256": profile.sha256 if profile else None,
-                "method": predictor.method,
-                **summary(self.scores[name]),
-            }
-            if self.repeated is not None:
-                row["manoeuvres"] = document(self.repeated[name])
-            rows.append(row)
-        return rows
-
-    def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
-        return {
-            "schema": 1,
-            "kind": "validate",
-            "window_s": self.window,
-            "sigma": dict(self.sigma),
-            "profiles": self.rows,
-        }
-
-
-def validate(
-    ships: Mapping[str, Predictor | ShipProfile | Model],
-    trials: TrialSet,
-    *,
-    window: float | None = None,
-    sigma: Mapping[str, float] | None = None,
-    manoeuvres: bool = False,
-    integrator: Integrator = Integrator(),
-    backend: str = "compiled",
-) -> Validation:
-    """Score ships on trials, each by the name it is given.
-
-    window      length of the windows [s] trials are cut into, each begun from a measured state; None for whole trials
-    sigma       what L_MSE divides differences of each state by [SI]; the spread of the trials where None
-    manoeuvres  also repeat measured turning circles and zigzags, see ``repeating.repeat``
-
-    Raises OptionError for a window that is no time, and where a state does not vary in what sigma is taken from.
-    """
-    if window is not None and not window > 0.0:
-        raise OptionError(Problem(f"the window is {window:g} s", "window", fix="give a time in seconds above 0"))
-    sigma = spread(list(trials.trials.values())) if sigma is None else sigma
-    still = [name for name, value in sigma.items() if not value > 0.0]
-    if still:
-        raise OptionError(
-            Problem(
-                f"these trials do not vary in {', '.join(still)}",
-                str(trials.path or "sigma"),
-                "L_MSE divides by the spread of each state",
-                "take the spread from trials that do",
-            )
-        )
-    whole = list(trials.trials.values())
-    pieces = list((trials.in_windows(window) if window else trials).trials.values())
-    made = {name: as_predictor(ship, integrator=integrator, backend=backend) for name, ship in ships.items()}
-    return Validation(
-        made,
-        {name: tuple(score(ship, pieces, sigma)) for name, ship in made.items()},
-        sigma,
-        window,
-        {name: tuple(repeat(ship, whole)) for name, ship in made.items()} if manoeuvres else None,
     )
 
 

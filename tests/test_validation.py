@@ -93,7 +93,7 @@ def test_the_command(tmp_path, suzaku):
     (tmp_path / "log").mkdir()
     for trial in data.trials.values():
         write_trial(trial, tmp_path / "log" / f"{trial.id}.parquet")
-    ended = run("validate", "suzaku", "kvlcc2", "log", "--window", "100", "--json", cwd=tmp_path)
+    ended = run("validate", "suzaku", "kvlcc2", "log", "--restart", "100", "--json", cwd=tmp_path)
     assert ended.code == 0, ended.err
     document = ended.json()
     good, other = document["profiles"]
@@ -110,7 +110,7 @@ def test_the_command(tmp_path, suzaku):
     ("arguments", "said"),
     [
         (("suzaku",), "missing"),
-        (("suzaku", "suzaku", "--window", "0"), "--window"),
+        (("suzaku", "suzaku", "--restart", "0"), "--restart"),
         (("suzaku", "suzaku", "--integrator", "leapfrog"), "leapfrog"),
         (("suzaku", "nowhere"), "no such trials"),
     ],

@@ -36,12 +36,15 @@ Made from the commands themselves when this site was built; `mmgtune COMMAND --h
 | 1 | ran, and the answer is no (`check`, `--strict`, `--fail-on`) |
 | 2 | could not run: an option, a file or the output; the message says what, where, why and the fix |
 | 3 | a bug; a file with the traceback is named |
-| 130 | interrupted; the best so far is saved, `--resume` continues |
+| 130 | interrupted; what takes long has saved the best so far, `--resume --out FOLDER` continues it |
 
 ## What all commands share
 
 A profile or a data set is a file, a folder, or the name of one that travels with the program. `--json` prints one JSON
-document on stdout and nothing else; [its keys](../formats.md) are documented. `--dry-run` says what would be done.
+document on stdout and nothing else; [its keys](../formats.md) are documented. `--dry-run` of a command that takes long
+says what would be done, and about how long it takes. Ctrl-C once finishes the step at hand and saves, twice stops at
+once; a run that is resumed comes to the numbers of one that was never stopped. An option of the same name means the
+same in every command.
 Results are never replaced without `--force`.
 """
 

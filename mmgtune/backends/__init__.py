@@ -34,4 +34,4 @@ def get_backend(name: str = "compiled") -> Backend:
         return Compiled()
     if name == "numpy":
         return NumpyLanes()
-    raise OptionError(Problem(f"unknown back end '{name}'", "--backend", fix=closest(name, BACKENDS)))
+    raise OptionError(Problem(f"unknown back end '{name}'", "backend", fix=closest(name, BACKENDS)))

@@ -2,7 +2,7 @@
 
 from .baseline import Baseline, Recorded, read_baseline, write_baseline
 from .result import Changed, CheckReport, Item
-from .run import check, could_not_run, record_baseline
+from .run import check, could_not_run, record_baseline, update_baseline
 
 __all__ = [
     "Baseline",
@@ -14,5 +14,6 @@ __all__ = [
     "could_not_run",
     "read_baseline",
     "record_baseline",
+    "update_baseline",
     "write_baseline",
 ]

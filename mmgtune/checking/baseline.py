@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ..backends import Integrator
 from ..errors import OptionError, Problem, closest
 from ..files import write_text
 from ..metrics import METRICS
@@ -50,6 +51,15 @@ class Baseline:
     tolerances: Mapping[str, Mapping[str, float]]
     trials: Mapping[str, Recorded]
 
+    def __repr__(self) -> str:
+        """In a line."""
+        return f"Baseline({self.ship}, {len(self.trials)} trials, {len(self.tolerances)} metrics, {self.method})"
+
+    @property
+    def method(self) -> Integrator:
+        """The integrator it was made with."""
+        return Integrator(self.integrator, self.substeps)
+
     @property
     def metrics(self) -> list[str]:
         """Names of the metrics compared, in the order of METRICS."""
@@ -88,11 +98,11 @@ def write_baseline(baseline: Baseline, path: Path) -> None:
 
 def read_baseline(path: Path) -> Baseline:
     """The baseline in a file.  Raises OptionError with everything that is wrong in it."""
-    again = "write it anew with --update-baseline, or take it from the repository"
+    again = "write it anew with update_baseline=True, or take it from the repository"
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
-        fix = "write one with --update-baseline, and commit it"
+        fix = "write one with update_baseline=True, and commit it"
         raise OptionError(Problem("there is no baseline", str(path), fix=fix)) from None
     except (OSError, ValueError, RecursionError) as error:
         raise OptionError(Problem("the baseline cannot be read", str(path), str(error), again)) from None

@@ -142,6 +142,10 @@ class CheckReport:
             found[item.status].append(item)
         return {status: sorted(of, key=lambda item: -item.severity) for status, of in found.items()}
 
+    def __repr__(self) -> str:
+        """In a line."""
+        return f"CheckReport({self.profile[-60:]} on {self.trials[-60:]}: {self.verdict})"
+
     @property
     def verdict(self) -> Verdict:
         """A regression is one even where other trials cannot be compared."""

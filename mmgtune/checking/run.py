@@ -6,17 +6,21 @@ import math
 import time
 from collections.abc import Sequence
 from importlib.metadata import version
+from pathlib import Path
 
 from ..backends import Integrator
 from ..errors import OptionError, Problem, closest
+from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..metrics import METRICS
 from ..model import Model
 from ..profile import ShipProfile
 from ..trial import TrialSet
-from .baseline import Baseline, Recorded
+from .baseline import Baseline, Recorded, read_baseline, write_baseline
 from .blame import changed_coefficients
 from .measuring import Values, applicable, default_tolerances, measure
 from .result import CheckReport, Item, Status
+
+BaselineGiven = Baseline | str | Path | None
 
 
 def record_baseline(
@@ -58,24 +62,28 @@ def record_baseline(
 
 
 def check(
-    profile: ShipProfile,
-    trials: TrialSet,
-    baseline: Baseline | None = None,
+    profile: ShipGiven,
+    trials: TrialsGiven,
+    baseline: BaselineGiven = None,
     *,
-    names: tuple[str, str, str | None] = ("", "", None),
+    names: tuple[str, str, str | None] | None = None,
     metrics: Sequence[str] = (),
     integrator: Integrator | None = None,
     backend: str = "compiled",
 ) -> CheckReport:
     """Compare a profile with its baseline, and with the limits it sets itself.
 
-    names       what the user called profile, trials and baseline, for messages
+    profile, trials, baseline  objects, paths or bundled names
+    names       what the user called them, for messages
     metrics     of METRICS; where empty those of the baseline, or those with a limit
     integrator  the baseline's where None
     Raises OptionError where there is nothing to compare with, the baseline is of another ship or of another
     integrator, or a metric is unknown.
     """
     began = time.perf_counter()
+    names = names or called(profile, trials, baseline)
+    baseline = baseline_of(baseline)
+    profile, trials = ship_of(profile), trials_of(trials)
     chosen = _integrator(baseline, integrator, names[2] or "baseline")
     if baseline is None and not profile.limits:
         raise OptionError(
@@ -83,7 +91,7 @@ def check(
                 "there is nothing to compare with",
                 names[0] or profile.id,
                 "neither a baseline nor limits were given",
-                "name a baseline with --baseline, or put [limits] into the profile",
+                "name a baseline with baseline=FILE, or put [limits] into the profile",
             )
         )
     if baseline is not None and baseline.ship != profile.id:
@@ -91,7 +99,7 @@ def check(
             Problem(
                 f"the baseline is of ship '{baseline.ship}', the profile of '{profile.id}'",
                 names[2] or "baseline",
-                fix="name the baseline of this ship, or write one with --update-baseline",
+                fix="name the baseline of this ship, or write one with update_baseline=True",
             )
         )
     model = Model(profile)
@@ -128,6 +136,49 @@ def check(
     )
 
 
+def update_baseline(
+    profile: ShipGiven,
+    trials: TrialsGiven,
+    path: str | Path,
+    *,
+    names: tuple[str, str, str | None] | None = None,
+    metrics: Sequence[str] = (),
+    integrator: Integrator | None = None,
+    backend: str = "compiled",
+) -> CheckReport | None:
+    """Write the baseline anew; tolerances in one that is there stay.
+
+    names       what the user called profile, trials and baseline, for messages
+    integrator  that of the baseline there, or the default, where None
+    Returns the comparison with the one before; None where there was none, or none of that integrator.
+    Raises OptionError for a file that is there and no baseline, or an unknown metric.
+    """
+    names = names or called(profile, trials, path)
+    profile, trials = ship_of(profile), trials_of(trials)
+    file = Path(path)
+    before = read_baseline(file) if file.exists() else None
+    recorded = before.method if before else None
+    report = None
+    if before is not None and integrator in (None, recorded):
+        integrator = recorded
+        report = check(profile, trials, before, names=names, integrator=integrator, backend=backend)
+    chosen = integrator or Integrator()
+    now = record_baseline(profile, trials, metrics, before=before, integrator=chosen, backend=backend)
+    write_baseline(now, file)
+    return report
+
+
+def called(profile: object, trials: object, baseline: object) -> tuple[str, str, str | None]:
+    """What the user called profile, trials and baseline, where these are names or paths."""
+    first, second, third = (str(one) if isinstance(one, (str, Path)) else "" for one in (profile, trials, baseline))
+    return first, second, third or None
+
+
+def baseline_of(given: BaselineGiven) -> Baseline | None:
+    """A baseline, or the one in that file.  Raises OptionError with everything wrong in it."""
+    return read_baseline(Path(given)) if isinstance(given, (str, Path)) else given
+
+
 def could_not_run(names: tuple[str, str, str | None], problems: tuple[Problem, ...]) -> CheckReport:
     """The report of a check that never came to compare anything."""
     return CheckReport(
@@ -143,14 +194,14 @@ def made_by() -> str:
 def _known(metrics: Sequence[str]) -> list[str]:
     for name in metrics:
         if name not in METRICS:
-            raise OptionError(Problem(f"unknown metric '{name}'", "--metrics", fix=closest(name, tuple(METRICS))))
+            raise OptionError(Problem(f"unknown metric '{name}'", "metrics", fix=closest(name, tuple(METRICS))))
     return [name for name in METRICS if name in metrics]
 
 
 def _integrator(baseline: Baseline | None, asked: Integrator | None, where: str) -> Integrator:
     if baseline is None:
         return asked or Integrator()
-    recorded = Integrator(baseline.integrator, baseline.substeps)
+    recorded = baseline.method
     if asked is not None and asked != recorded:
         raise OptionError(
             Problem(
@@ -158,7 +209,7 @@ def _integrator(baseline: Baseline | None, asked: Integrator | None, where: str)
                 f" {asked.substeps}",
                 where,
                 "its numbers cannot be compared with those of another integration",
-                "leave --integrator and --substeps out, or write the baseline anew with --update-baseline",
+                "leave integrator and substeps out, or write the baseline anew with update_baseline=True",
             )
         )
     return recorded

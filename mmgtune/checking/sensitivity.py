@@ -65,7 +65,7 @@ def sensitivity(
     Raises OptionError for a share that is none.
     """
     if not 0.0 < share < 1.0:
-        raise OptionError(Problem(f"a change by {share:g} of itself", "--sensitivity", fix="write 0.02 for 2 %"))
+        raise OptionError(Problem(f"a change by {share:g} of itself", "sensitivity", fix="write 0.02 for 2 %"))
     model = Model(profile)
     names = [name for name in model.rows if model.base[model.rows[name]] != 0.0 and _is_number(profile, name)]
     here = np.array([model.base[model.rows[name]] for name in names])

@@ -9,13 +9,15 @@ import signal
 import sys
 import tempfile
 import traceback
-from typing import Any
 
 import typer
 
 from ..errors import Interrupted, MmgtuneError, OutputError, Problem, cannot_write_reason
 from . import check, cite, diagnose, doctor, fit, leave_out, profiles, report, simulate, sweep, trials, validate
 from .exitcodes import ExitCode
+from .interrupts import Stopped, stop_at_once
+from .options import problems_in_flags
+from .pipes import Piped, ReaderGone, say_no_more
 
 EPILOG = "Exit codes: 0 good; 1 the answer is no; 2 could not run; 3 bug; 130 interrupted, best so far saved."
 
@@ -62,14 +64,23 @@ app.add_typer(profiles.app, name="profile", epilog=EPILOG)
 
 def main() -> None:
     """Run the command line; every way out has its exit code."""
-    signal.signal(signal.SIGINT, _interrupt)
+    signal.signal(signal.SIGINT, stop_at_once)
+    stdout = sys.stdout
+    sys.stdout = Piped(stdout)
     try:
-        app()
-    except Interrupted as error:
+        try:
+            app()
+        finally:
+            sys.stdout.flush()
+    except ReaderGone:
+        say_no_more()
+        sys.exit(ExitCode.GOOD)
+    except (Stopped, Interrupted) as error:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # no second line from a second Ctrl-C
         print(f"interrupted: {error}", file=sys.stderr)
         sys.exit(ExitCode.INTERRUPTED)
     except MmgtuneError as error:
-        for problem in error.problems:
+        for problem in problems_in_flags(error):
             print(f"error: {problem}", file=sys.stderr)
         sys.exit(ExitCode.COULD_NOT_RUN)
     except OSError as error:  # a full disk, say, anywhere the library did not expect one
@@ -80,7 +91,5 @@ def main() -> None:
             file.write(f"{' '.join(sys.argv)}\n{traceback.format_exc()}")
         print(f"bug: {sys.exc_info()[1]!r}\n  the full traceback is in {file.name}; please report it", file=sys.stderr)
         sys.exit(ExitCode.BUG)
-
-
-def _interrupt(_signal: int, _frame: Any) -> None:
-    raise Interrupted(Problem("stopped before there was anything to save"))
+    finally:
+        sys.stdout = stdout

@@ -5,28 +5,30 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from ..errors import MmgtuneError, OptionError, Problem, closest
+from ..options import CheckOptions
 from . import common as c
 from .exitcodes import ExitCode
+from .options import problems_in_flags, takes
 
 if TYPE_CHECKING:
-    from ..backends import Integrator
     from ..checking import CheckReport
-    from ..profile import ShipProfile
-    from ..trial import TrialSet
 
 CI = "CI"
 FORMATS = ("text", "json", "junit", "github", "markdown")
 CODES = {"pass": ExitCode.GOOD, "regressed": ExitCode.NO, "not comparable": ExitCode.COULD_NOT_RUN}
 
 
+@takes(options=CheckOptions)
 def command(
     profile: Annotated[str, typer.Argument(help="Ship profile: a TOML file or a bundled name.")],
     trials: Annotated[str, typer.Argument(help="Folder of trial files, one file, or a bundled name.")],
+    *,
+    options: CheckOptions,
     baseline: Annotated[
         Path | None,
         typer.Option("--baseline", "-b", help="The committed JSON file to compare with.", rich_help_panel=c.INPUT),
@@ -39,14 +41,6 @@ def command(
             rich_help_panel=c.OUTPUT,
         ),
     ] = False,
-    metrics: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--metrics",
-            help="Only these metrics (J, MED, cVDM, rms_psi, advance, ...); repeatable, or with commas.",
-            rich_help_panel=c.INPUT,
-        ),
-    ] = None,
     everything: Annotated[bool, typer.Option("--all", help="Also list what passed.", rich_help_panel=c.OUTPUT)] = False,
     format: Annotated[
         str | None,
@@ -79,12 +73,6 @@ def command(
             rich_help_panel=CI,
         ),
     ] = None,
-    integrator: Annotated[
-        str | None,
-        typer.Option("--integrator", help="rk4 or euler. Default: the baseline's, else rk4.", rich_help_panel=c.SEARCH),
-    ] = None,
-    substeps: c.Substeps = 1,
-    backend: c.BackendName = "compiled",
 ) -> None:
     """Does the profile still reproduce the trials? Compare with a committed baseline, or with its own limits.
 
@@ -100,106 +88,50 @@ def command(
 
       mmgtune check ship.toml trials/ -b check.json --sensitivity 0.02
     """
+    from .. import checking
+
     chosen = "json" if json else format
     if chosen is not None and chosen not in FORMATS:
-        raise OptionError(Problem(f"no format '{chosen}'", "--format", fix=closest(chosen, FORMATS)))
-    asked = Asked(
-        (profile, trials, None if baseline is None else str(baseline)), c.split(metrics), integrator, substeps, backend
-    )
+        raise OptionError(Problem(f"no format '{chosen}'", "format", fix=closest(chosen, FORMATS)))
+    if baseline is None and (update_baseline or sensitivity is not None):
+        name = "update_baseline" if update_baseline else "sensitivity"
+        raise OptionError(Problem(f"{name}=True needs a baseline", name, fix="name its file with baseline=FILE"))
     if sensitivity is not None:
-        _sensitivity(asked, sensitivity, json)
+        _sensitivity(profile, trials, baseline, options, sensitivity, json)
         return
     give = Given(chosen, everything, junit, summary)
+    names = (profile, trials, None if baseline is None else str(baseline))
     try:
+        recorded = None
+        if baseline is not None and not (update_baseline and not baseline.exists()):
+            recorded = checking.read_baseline(baseline)
+        ship, data = c.load(profile, trials)
+        how: dict[str, Any] = {"names": names, "metrics": options.metrics, "backend": options.backend}
+        how["integrator"] = options.asked_integrator(recorded.method if recorded else None)
         if update_baseline:
-            give.update(_update(asked), str(baseline))
+            give.update(checking.update_baseline(ship, data, str(baseline), **how), str(baseline))
             return
-        report = _check(asked)
+        report = checking.check(ship, data, recorded, **how)
     except MmgtuneError as error:
-        from ..checking import could_not_run
-
-        give.elsewhere(could_not_run(asked.names, error.problems))
+        give.elsewhere(checking.could_not_run(names, tuple(problems_in_flags(error))))
         raise
     give(report)
     raise typer.Exit(CODES[report.verdict])
 
 
-@dataclass(frozen=True)
-class Asked:
-    """What is to be compared, and how: profile, trials and baseline as the user called them."""
-
-    names: tuple[str, str, str | None]
-    metrics: tuple[str, ...]
-    integrator: str | None
-    substeps: int
-    backend: str
-
-    def chosen_integrator(self) -> Integrator | None:
-        """The integrator asked for; None takes the baseline's."""
-        if self.integrator is None and self.substeps == 1:
-            return None
-        return c.integrator_of(self.integrator or "rk4", self.substeps)
-
-    def loaded(self) -> tuple[ShipProfile, TrialSet]:
-        """Profile and trials."""
-        return c.load(self.names[0], self.names[1])
-
-
-def _check(asked: Asked) -> CheckReport:
-    from ..checking import check, read_baseline
-
-    name = asked.names[2]
-    baseline = None if name is None else read_baseline(Path(name))
-    ship, data = asked.loaded()
-    return check(
-        ship,
-        data,
-        baseline,
-        names=asked.names,
-        metrics=asked.metrics,
-        integrator=asked.chosen_integrator(),
-        backend=asked.backend,
-    )
-
-
-def _update(asked: Asked) -> CheckReport | None:
-    """Write the baseline; the comparison with the one before, None where there was none to compare with."""
-    from ..backends import Integrator
-    from ..checking import check, read_baseline, record_baseline, write_baseline
-
-    path = _path(asked, "--update-baseline")
-    ship, data = asked.loaded()
-    before = read_baseline(path) if path.exists() else None
-    integrator = asked.chosen_integrator()
-    same = before is not None and integrator in (None, Integrator(before.integrator, before.substeps))
-    report = None
-    if before is not None and same:
-        integrator = Integrator(before.integrator, before.substeps)
-        report = check(ship, data, before, names=asked.names, integrator=integrator, backend=asked.backend)
-    now = record_baseline(
-        ship, data, asked.metrics, before=before, integrator=integrator or Integrator(), backend=asked.backend
-    )
-    write_baseline(now, path)
-    return report
-
-
-def _sensitivity(asked: Asked, share: float, json: bool) -> None:
+def _sensitivity(
+    profile: str, trials: str, baseline: Path | None, options: CheckOptions, share: float, json: bool
+) -> None:
     from ..checking import read_baseline
     from ..checking.sensitivity import sensitivity, table
 
-    baseline = read_baseline(_path(asked, "--sensitivity"))
-    ship, data = asked.loaded()
-    rows = sensitivity(ship, data, baseline, share, backend=asked.backend)
+    recorded = read_baseline(Path(str(baseline)))
+    ship, data = c.load(profile, trials)
+    rows = sensitivity(ship, data, recorded, share, backend=options.backend)
     if json:
         c.print_json({"schema": 1, "kind": "check-sensitivity", "share": share, "rows": [r.to_dict() for r in rows]})
     else:
         print(table(rows, share), end="")
-
-
-def _path(asked: Asked, option: str) -> Path:
-    if asked.names[2] is None:
-        raise OptionError(Problem(f"{option} needs a baseline", option, fix="name its file with --baseline FILE"))
-    return Path(asked.names[2])
 
 
 @dataclass(frozen=True)

@@ -6,54 +6,27 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..errors import OptionError, Problem
+from ..options import FitOptions
 from . import common as c
 from .exitcodes import ExitCode
+from .options import RunOptions, in_flags, takes
 from .progress import Progress
 
 if TYPE_CHECKING:
     from ..fitting import FitResult
 
 
+@takes(options=FitOptions, run=RunOptions)
 def command(
-    ar: Annotated[
-        float,
-        typer.Option(
-            "--ar", help="Half width of the box, as a share of each pre-determined value.", rich_help_panel=c.SEARCH
-        ),
-    ] = 0.5,
     profile: c.Profile = "suzaku",
     trials: c.Trials = "suzaku",
-    targets: c.Targets = None,
-    fix: c.Fix = None,
-    with_effects: c.WithEffects = None,
-    identifiable: c.Identifiable = False,
-    channels: c.Channels = None,
-    window: c.Window = None,
-    objective: c.Objective = "paper",
-    restart: c.Restart = None,
-    every: c.Every = None,
-    loss: c.Loss = "squares",
-    regularise: c.Regularise = 0.0,
-    method: c.Method = "cma-es",
-    starts: c.Starts = 20,
-    initial: c.Initial = "measured",
-    integrator: c.IntegratorName = "rk4",
-    substeps: c.Substeps = 1,
-    backend: c.BackendName = "compiled",
-    seed: c.Seed = 1,
-    out: c.Out = None,
-    force: c.Force = False,
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Continue the interrupted search in --out.", rich_help_panel=c.OUTPUT)
-    ] = False,
+    *,
+    options: FitOptions,
+    run: RunOptions,
     strict: Annotated[
         bool,
         typer.Option("--strict", help="Exit 1 unless the searches agree on the optimum.", rich_help_panel=c.OUTPUT),
     ] = False,
-    json: c.Json = False,
-    quiet: c.Quiet = False,
-    dry_run: c.DryRun = False,
     no_report: c.NoReport = False,
 ) -> None:
     """Fine-tune the coefficients of a profile to trials, within +-a_r of their pre-determined values.
@@ -66,61 +39,34 @@ def command(
 
       mmgtune fit --ar 0.5 --json --out runs/today | jq .J_test
     """
-    from ..fitting import FitOptions, fit, prepare, write_run
+    from ..fitting import fit, plan_fit, prepare, write_run
+    from ..report import render
 
     ship, data = c.load(profile, trials)
-    ship, added = c.with_effects(ship, c.split(with_effects))
-    options = FitOptions(
-        a_r=ar,
-        seed=seed,
-        method=method,
-        targets=(*(c.split(targets) or (ship.targets if added else ())), *added),
-        fixed=c.split(fix),
-        channels=c.split(channels),
-        window=c.window_of(window),
-        objective=objective,
-        restart=restart,
-        every=every,
-        loss=loss,
-        regularise=regularise,
-        initial=initial,
-        integrator=integrator,
-        substeps=substeps,
-        backend=backend,
-        starts=starts,
-        identifiable=identifiable,
-    )
-    if resume and out is None:
-        raise OptionError(
-            Problem("--resume needs the folder of the interrupted run", "--resume", fix="add --out FOLDER")
-        )
-    folder = out or c.default_out(ship)
-    plan = c.plan(ship, data, options, folder)  # also finds what is wrong before a folder is made
-    if dry_run:
-        print(plan)
+    folder = run.out or c.default_out(ship)
+    plan = plan_fit(ship, data, options)  # also finds what is wrong before a folder is made
+    if run.dry_run:
+        c.print_plan(plan, folder)
         return
-    prepare(folder, force=force, resume=resume)
-    with Progress(quiet) as progress:
+    prepare(folder, force=run.force, resume=run.resume)
+    with Progress(run.quiet, folder) as progress:
         result = fit(
             ship,
             data,
             options,
             hooks=progress.hooks(),
             checkpoint_folder=folder,
-            resume=resume,
+            resume=run.resume,
             command=c.command_line(),
         )
         document = write_run(result, folder)
-    if not no_report:
-        from ..report import render
-
-        render(folder)
-    if json:
+        if not no_report:
+            render(folder)
+    if run.json:
         c.print_json(document)
     else:
         print(summary(result, str(folder), report=not no_report))
-    if result.interrupted:
-        raise typer.Exit(ExitCode.INTERRUPTED)
+    progress.leave(result.interrupted)
     if strict and not result.converged:
         raise typer.Exit(ExitCode.NO)
 
@@ -141,8 +87,8 @@ def summary(result: FitResult, folder: str, report: bool) -> str:
     lines += ["", f"{'trial':<{width}}{'role':<7}{'J before':>11}{'J after':>11}   {result.method}", ""]
     for one in result.compared:
         lines.append(f"{one.trial.id:<{width}}{one.role:<7}{one.J['before']:>11.4g}{one.J['after']:>11.4g}")
-    lines += ["", *result.certificate.sentences[:2], *result.identifiability.sentences[:2]]
-    lines += [f"Note: {warning}" for warning in result.warnings()]
+    lines += ["", *result.certificate.sentences[:2], *map(in_flags, result.identifiability.sentences[:2])]
+    lines += [f"Note: {in_flags(warning)}" for warning in result.warnings()]
     lines += ["", result.verdict(), f"{result.evaluations} evaluations in {result.wall_s:.1f} s."]
     lines.append(f"Report: {folder}/report.html" if report else f"Results: {folder}")
     return "\n".join(lines)

@@ -2,47 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING
 
-import typer
-
+from ..options import LeaveOutOptions
 from . import common as c
+from .options import RunOptions, takes
 from .progress import Progress
 
+if TYPE_CHECKING:
+    from ..fitting import LeftOut
 
+
+@takes(options=LeaveOutOptions, run=RunOptions)
 def command(
-    ar: Annotated[
-        float,
-        typer.Option(
-            "--ar", help="Half width of the box, as a share of each pre-determined value.", rich_help_panel=c.SEARCH
-        ),
-    ] = 0.5,
     profile: c.Profile = "suzaku",
     trials: c.Trials = "suzaku",
-    folds: Annotated[
-        int,
-        typer.Option(
-            "--folds", help="Parts the runs are dealt out to; 0: each run alone.", min=0, rich_help_panel=c.SEARCH
-        ),
-    ] = 0,
-    targets: c.Targets = None,
-    fix: c.Fix = None,
-    with_effects: c.WithEffects = None,
-    channels: c.Channels = None,
-    window: c.Window = None,
-    objective: c.Objective = "paper",
-    restart: c.Restart = None,
-    every: c.Every = None,
-    regularise: c.Regularise = 0.0,
-    starts: c.Starts = 4,
-    initial: c.Initial = "measured",
-    integrator: c.IntegratorName = "rk4",
-    substeps: c.Substeps = 1,
-    backend: c.BackendName = "compiled",
-    seed: c.Seed = 1,
-    manoeuvres: c.Manoeuvres = False,
-    json: c.Json = False,
-    quiet: c.Quiet = False,
+    *,
+    options: LeaveOutOptions,
+    run: RunOptions,
 ) -> None:
     """Fit without each tune trial in turn and score the trials left out: what a tuning is worth on unseen runs.
 
@@ -54,44 +31,35 @@ def command(
 
       mmgtune leave-out -p my_ship.toml -t my_trials/ --restart 100 --objective standardised --folds 5
     """
-    from ..fitting import FitOptions, fit_leaving_out
-    from ..repeating import document
-    from .repeated import table
+    from ..fitting import leave_out, plan_leave_out, prepare, write_left_out
 
     ship, data = c.load(profile, trials)
-    ship, added = c.with_effects(ship, c.split(with_effects))
-    options = FitOptions(
-        a_r=ar,
-        seed=seed,
-        method="least-squares",
-        targets=(*(c.split(targets) or (ship.targets if added else ())), *added),
-        fixed=c.split(fix),
-        channels=c.split(channels),
-        window=c.window_of(window),
-        objective=objective,
-        restart=restart,
-        every=every,
-        regularise=regularise,
-        initial=initial,
-        integrator=integrator,
-        substeps=substeps,
-        backend=backend,
-        starts=starts,
-    )
-    with Progress(quiet) as progress:
-        result = fit_leaving_out(
-            ship, data, options, folds, manoeuvres, hooks=progress.hooks(), command=c.command_line()
-        )
-    if json:
-        said = result.to_dict()
-        if manoeuvres:
-            before, after = document(result.repeated_before), document(result.repeated_after)
-            said["manoeuvres"] = {"before": before, "left_out": after}
-        c.print_json(said)
+    folder = run.out or c.default_out(ship)
+    plan = plan_leave_out(ship, data, options)
+    if run.dry_run:
+        c.print_plan(plan, folder)
         return
-    print(
+    prepare(folder, force=run.force, resume=run.resume)
+    with Progress(run.quiet, folder) as progress:
+        result = leave_out(
+            ship, data, options, hooks=progress.hooks(), folder=folder, resume=run.resume, command=c.command_line()
+        )
+        document = write_left_out(result, folder)
+    if run.json:
+        c.print_json(document)
+    else:
+        print(summary(result, str(folder)))
+    progress.leave(result.interrupted)
+
+
+def summary(result: LeftOut, folder: str) -> str:
+    """The result as a person wants to read it in a terminal."""
+    from .repeated import table
+
+    head = (
         f"{'left out':<20}{'runs':>6}{'L_MSE before':>14}{'after':>10}{'J before':>12}{'after':>10}   removed of L_MSE"
     )
+    lines = [f"{head}   removed of L_MSE"] if result.parts else []
     for row in result.rows():
         interval = row["share_removed_ci95"]
         removed = "-" if row["share_removed"] is None else f"{100 * row['share_removed']:.0f} %"
@@ -102,7 +70,10 @@ def command(
             f"{'diverged':>{w}}" if v is None else f"{v:>{w}.4g}"
             for v, w in zip(numbers, (14, 10, 12, 10), strict=True)
         ]
-        print(f"{row['manoeuvre']:<20}{row['runs']:>6}{''.join(shown)}   {removed}")
-    if manoeuvres:
-        print(table({"before": result.repeated_before, "left out": result.repeated_after}))
-    print(f"{len(result.parts)} fits in {result.wall_s:.1f} s, simulated by {result.method}.")
+        lines.append(f"{row['manoeuvre']:<20}{row['runs']:>6}{''.join(shown)}   {removed}")
+    if result.options.manoeuvres and result.parts:
+        lines.append(table({"before": result.repeated_before, "left out": result.repeated_after}))
+    if result.interrupted:
+        lines.append(f"Stopped after {len(result.parts)} of {result.n_parts} parts; scores are of those alone.")
+    lines.append(f"{len(result.parts)} fits in {result.wall_s:.1f} s, simulated by {result.method}. Results: {folder}")
+    return "\n".join(lines)

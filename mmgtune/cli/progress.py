@@ -5,11 +5,15 @@ from __future__ import annotations
 import signal
 import sys
 import time
+from pathlib import Path
 from types import FrameType, TracebackType
 from typing import TYPE_CHECKING, Any
 
-from ..errors import Interrupted, Problem
+import typer
+
 from .common import say
+from .exitcodes import ExitCode
+from .interrupts import Stopped
 
 if TYPE_CHECKING:
     from ..fitting import Hooks
@@ -20,10 +24,14 @@ LINE_EVERY = 5.0
 
 
 class Progress:
-    """A context in which a fit reports what it does and can be interrupted."""
+    """A context in which a long command reports what it does, can be interrupted, and writes its results.
 
-    def __init__(self, quiet: bool):
+    folder  where the results go, for messages
+    """
+
+    def __init__(self, quiet: bool, folder: Path):
         self.quiet = quiet
+        self.folder = folder
         self.stopped = False
         self._phase = ""
         self._began = time.monotonic()
@@ -53,11 +61,22 @@ class Progress:
             self._status.stop()
         signal.signal(signal.SIGINT, self._previous)
 
+    def leave(self, interrupted: bool) -> None:
+        """End with the exit code of an interrupted command, where it was; called when everything is written.
+
+        interrupted  whether the result is less than was asked for; Ctrl-C may also come when it is complete
+        """
+        if not self.stopped:
+            return
+        if interrupted:
+            say(f"interrupted: the best so far is in {self.folder}; --resume --out {self.folder} continues")
+        else:
+            say(f"interrupted: the results in {self.folder} were complete by then")
+        raise typer.Exit(ExitCode.INTERRUPTED)
+
     def _interrupt(self, _signal: int, _frame: FrameType | None) -> None:
         if self.stopped:
-            raise Interrupted(
-                Problem("stopped at once", fix="the last checkpoint in --out can be continued with --resume")
-            )
+            raise Stopped(f"stopped at once; --resume --out {self.folder} continues from the last checkpoint")
         self.stopped = True
         say("finishing this step, then saving the best so far; press Ctrl-C again to stop at once")
 

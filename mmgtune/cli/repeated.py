@@ -1,4 +1,4 @@
-"""Manoeuvres repeated by models, as a table and as JSON."""
+"""Manoeuvres repeated by models, as a table."""
 
 from __future__ import annotations
 

@@ -2,48 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
-import typer
-
-from ..errors import OptionError, Problem
+from ..options import SweepOptions
 from . import common as c
-from .exitcodes import ExitCode
+from .options import RunOptions, takes
 from .progress import Progress
 
 if TYPE_CHECKING:
     from ..fitting import SweepResult
 
 
+@takes(options=SweepOptions, run=RunOptions)
 def command(
-    ar: Annotated[
-        str, typer.Option("--ar", help="Half widths of the box, comma-separated.", rich_help_panel=c.SEARCH)
-    ] = "0.2,0.3,0.4,0.5,0.6",
     profile: c.Profile = "suzaku",
     trials: c.Trials = "suzaku",
-    targets: c.Targets = None,
-    fix: c.Fix = None,
-    identifiable: c.Identifiable = False,
-    channels: c.Channels = None,
-    window: c.Window = None,
-    objective: c.Objective = "paper",
-    restart: c.Restart = None,
-    every: c.Every = None,
-    loss: c.Loss = "squares",
-    regularise: c.Regularise = 0.0,
-    method: c.Method = "cma-es",
-    starts: c.Starts = 20,
-    initial: c.Initial = "measured",
-    integrator: c.IntegratorName = "rk4",
-    substeps: c.Substeps = 1,
-    backend: c.BackendName = "compiled",
-    seed: c.Seed = 1,
-    out: c.Out = None,
-    force: c.Force = False,
-    json: c.Json = False,
-    quiet: c.Quiet = False,
-    dry_run: c.DryRun = False,
+    *,
+    options: SweepOptions,
+    run: RunOptions,
     no_report: c.NoReport = False,
 ) -> None:
     """Fit at several widths of the box, recommend one, and say where over-fitting begins.
@@ -54,58 +30,27 @@ def command(
 
       mmgtune sweep --method least-squares --out runs/sweep
     """
-    from ..fitting import FitOptions, prepare, sweep
+    from ..fitting import plan_sweep, prepare, sweep
+    from ..report import render
 
     ship, data = c.load(profile, trials)
-    widths = _numbers(ar)
-    options = FitOptions(
-        a_r=widths[0],
-        seed=seed,
-        method=method,
-        targets=c.split(targets),
-        fixed=c.split(fix),
-        channels=c.split(channels),
-        window=c.window_of(window),
-        objective=objective,
-        restart=restart,
-        every=every,
-        loss=loss,
-        regularise=regularise,
-        initial=initial,
-        integrator=integrator,
-        substeps=substeps,
-        backend=backend,
-        starts=starts,
-        identifiable=identifiable,
-    )
-    folder = out or c.default_out(ship)
-    plans = [c.plan(ship, data, replace(options, a_r=a_r), folder) for a_r in widths]
-    if dry_run:
-        print(f"sweep over a_r = {ar}; the first:\n{plans[0]}")
+    folder = run.out or c.default_out(ship)
+    plan = plan_sweep(ship, data, options)
+    if run.dry_run:
+        c.print_plan(plan, folder)
         return
-    prepare(folder, force=force)
-    with Progress(quiet) as progress:
-        result = sweep(ship, data, widths, options, hooks=progress.hooks(), folder=folder, command=c.command_line())
-    if not no_report:
-        from ..report import render
-
-        render(folder)
-    if json:
+    prepare(folder, force=run.force, resume=run.resume)
+    with Progress(run.quiet, folder) as progress:
+        result = sweep(
+            ship, data, options, hooks=progress.hooks(), folder=folder, resume=run.resume, command=c.command_line()
+        )
+        if not no_report:
+            render(folder)
+    if run.json:
         c.print_json({**result.to_dict(), "out": str(folder)})
     else:
         print(summary(result, str(folder), report=not no_report))
-    if result.interrupted:
-        raise typer.Exit(ExitCode.INTERRUPTED)
-
-
-def _numbers(text: str) -> list[float]:
-    try:
-        numbers = [float(part) for part in text.split(",") if part.strip()]
-    except ValueError:
-        numbers = []
-    if not numbers:
-        raise OptionError(Problem(f"'{text}' is not a list of numbers", "--ar", fix="write --ar 0.2,0.3,0.4,0.5,0.6"))
-    return numbers
+    progress.leave(result.interrupted)
 
 
 def summary(result: SweepResult, folder: str, report: bool) -> str:

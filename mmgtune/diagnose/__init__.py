@@ -1,6 +1,6 @@
 """Diagnosis: what a simulation gets wrong, the cause, the extended model, and the gain on trials it has not seen.
 
-options, result   what goes in and comes out; run: from beginning to end
+result            what comes out; run: from beginning to end; planning: what it would do
 hypotheses        what may be the cause
 workbench         trials, model with every effect, refits
 noise, inputs     what chance does to residuals
@@ -10,9 +10,24 @@ intervals, gain, leftover, separate   sizes, held-out gain, what is left, the tr
 evidence          residual forces and short horizons, before any cause
 """
 
+import sys
+from types import ModuleType
+from typing import Any
+
+from ..options import DiagnoseOptions
 from .folder import write_diagnosis
-from .options import DiagnoseOptions
+from .planning import plan_diagnosis
 from .result import VERDICTS, Diagnosis
 from .run import diagnose
 
-__all__ = ["VERDICTS", "DiagnoseOptions", "Diagnosis", "diagnose", "write_diagnosis"]
+__all__ = ["VERDICTS", "DiagnoseOptions", "Diagnosis", "diagnose", "plan_diagnosis", "write_diagnosis"]
+
+
+class _Callable(ModuleType):
+    """The package has the name of its one function, and is called like it: ``mmgtune.diagnose(...)``."""
+
+    def __call__(self, *given: Any, **named: Any) -> Diagnosis:
+        return diagnose(*given, **named)
+
+
+sys.modules[__name__].__class__ = _Callable

@@ -9,16 +9,17 @@ from typing import Any
 
 from ..effects import Effect
 from ..fitting.comparison import finite, finite_values
+from ..options import DiagnoseOptions
 from ..profile import ShipProfile, tuned, with_effects
 from .gain import Gain
 from .intervals import Estimate
 from .leftover import Leftover
-from .options import DiagnoseOptions
 from .separate import Suggestion
 from .wording import parameters_in_words
 
 SCHEMA = 1
-VERDICTS = ("none", "found", "not-separable", "unexplained")
+VERDICTS = ("none", "found", "not-separable", "unexplained", "interrupted")
+"""Codes; people read ``Diagnosis.sentence``."""
 
 LARGE = 10.0
 """Variance beyond noise from which it is told as a multiple of the noise."""
@@ -143,9 +144,16 @@ class Diagnosis:
     wall_s: float
     interrupted: bool = False
 
+    def __repr__(self) -> str:
+        """In a line."""
+        causes = ", ".join(cause.tag for cause in self.causes) or "no cause"
+        return f"Diagnosis({self.profile.id}, {self.verdict}: {causes})"
+
     @property
     def verdict(self) -> str:
         """One of ``VERDICTS``."""
+        if self.interrupted:
+            return "interrupted"
         # Held-out error alone does not tell: with few trials the targets themselves are known too badly for that.
         fails = self.gain.remains and self.leftover.noticed
         if self.leftover.structured if not self.causes else fails or self._mostly_left:
@@ -161,11 +169,19 @@ class Diagnosis:
 
     @property
     def named(self) -> tuple[Cause, ...]:
-        """The causes a reader may rely on: none where something unknown is at work too."""
-        return () if self.verdict == "unexplained" else self.causes
+        """The causes a reader may rely on: none where something unknown is at work too, or the search was stopped."""
+        return () if self.verdict in ("unexplained", "interrupted") else self.causes
 
     def sentence(self) -> str:
         """The answer in words a captain understands."""
+        if self.verdict == "interrupted":
+            known = ", ".join(dict.fromkeys(cause.tag for cause in self.causes))
+            told = (
+                f"Found by then, and not yet compared with their rivals: {known}."
+                if known
+                else "No cause was found by then."
+            )
+            return f"The search was stopped before its end, so nothing can be concluded. {told}"
         if self.verdict == "none":
             return (
                 "Nothing is wrong beyond the noise of the measurements: the re-tuned model fits these trials, and no "
@@ -251,7 +267,9 @@ class Diagnosis:
                 "largest_share_by_one_quantity": {
                     name: {"quantity": what, "share": share} for name, (what, share) in self.leftover.explained.items()
                 },
-                "best_known": [cause.to_dict() for cause in self.causes] if self.verdict == "unexplained" else [],
+                "best_known": [cause.to_dict() for cause in self.causes]
+                if self.verdict in ("unexplained", "interrupted")
+                else [],
             },
             "detectability": [one.to_dict() for one in self.detectability],
             "noise": {name: dict(values) for name, values in self.noise.items()},

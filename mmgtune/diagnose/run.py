@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,8 +14,11 @@ import numpy as np
 from ..backends import STATES
 from ..components import split_name
 from ..fitting.box import parameter_of
-from ..fitting.run import Hooks, in_pieces, make_provenance
+from ..fitting.journal import Journal, journalled
+from ..fitting.run import Hooks, identity_of, in_pieces, make_provenance
+from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..model import Model
+from ..options import DiagnoseOptions
 from ..profile import ShipProfile, with_all_effects
 from ..threads import blas_on_one_thread
 from ..trial import Trial, TrialSet, has_measured_wind
@@ -25,7 +29,6 @@ from .hypotheses import INTEGRATION_STEP, Hypothesis, hypotheses
 from .intervals import Estimate, estimates
 from .leftover import Leftover, leftover
 from .linear import typical
-from .options import DiagnoseOptions
 from .result import Candidate, Cause, Detectability, Diagnosis
 from .screening import angles
 from .search import ENOUGH, WORTH, Found, Refit, Step, search
@@ -38,19 +41,45 @@ TWINS = 3
 
 @blas_on_one_thread
 def diagnose(
-    profile: ShipProfile,
-    trials: TrialSet,
+    profile: ShipGiven,
+    trials: TrialsGiven,
     options: DiagnoseOptions = DiagnoseOptions(),
     *,
     hooks: Hooks = Hooks(),
+    folder: Path | None = None,
+    resume: bool = False,
     command: str = "",
 ) -> Diagnosis:
     """Show what the model gets wrong on the trials, name the cause, extend the model, measure the gain.
 
     Causes are looked for on every trial that the split does not keep for testing; the gain is that on the test trials,
     or on each trial in turn where there are none.  Nothing is read but the profile, the columns and the split.
-    Raises OptionError for choices that make no sense.
+
+    profile, trials  objects, paths or bundled names
+    folder  where each finished refit is noted at once; None for nowhere
+    resume  continue what was stopped in the folder
+    Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to.
     """
+    profile, trials = ship_of(profile), trials_of(trials)
+    provenance = make_provenance(profile, trials, command)
+    journal = None
+    if folder is not None:
+        journal = Journal(folder, identity_of(profile, trials, options, provenance), hooks.stop)
+        journal.begin(resume)
+    with journalled(journal):
+        found = _diagnose(profile, trials, options, hooks, provenance)
+    if journal is not None and not found.interrupted:
+        journal.remove()
+    return found
+
+
+def _diagnose(
+    profile: ShipProfile,
+    trials: TrialSet,
+    options: DiagnoseOptions,
+    hooks: Hooks,
+    provenance: dict[str, Any],
+) -> Diagnosis:
     began = time.perf_counter()
     trials = in_pieces(trials, options.fit_options())
     seen = _in_order([trial for name, trial in trials.trials.items() if name not in trials.test])
@@ -98,7 +127,7 @@ def diagnose(
             found.final.chi2 / max(1, bench.problem.n_residuals),
         ),
         evidence=_evidence(bench, found, before, left),
-        provenance=make_provenance(profile, trials, command),
+        provenance=provenance,
         wall_s=time.perf_counter() - began,
         interrupted=hooks.stop(),
     )

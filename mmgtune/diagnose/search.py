@@ -62,6 +62,14 @@ FINER = 4
 """The integration step as a cause: a Runge-Kutta step this many times finer."""
 
 
+Stop = Callable[[], bool]
+"""Asked often; True ends the search with what it has."""
+
+
+class _Stopped(Exception):
+    """A look that was not finished, of which nothing can be told."""
+
+
 @dataclass(frozen=True, eq=False)
 class Refit:
     """A hypothesis fitted together with all that is known so far.
@@ -151,16 +159,19 @@ def search(
     bench: Workbench,
     hypotheses: Sequence[Hypothesis],
     say: Callable[[str], None] = lambda _: None,
-    stop: Callable[[], bool] = lambda: False,
+    stop: Stop = lambda: False,
 ) -> Found:
-    """Forward search with a backward look after each addition."""
+    """Forward search with a backward look after each addition; where it is stopped, what was accepted by then."""
     say("re-tuning the model without any cause")
     base = base_fit(bench)
     found = Found(base, base)
     left = list(hypotheses)
     while not stop():
         say("looking for a cause" if not found.causes else f"looking for cause {len(found.causes) + 1}")
-        step = look(bench, found.final, left, first=not found.steps)
+        try:
+            step = look(bench, found.final, left, first=not found.steps, stop=stop)
+        except _Stopped:
+            break
         found.steps.append(step)
         if step.finer is not None and step.finer > max(2.0 * ENOUGH, ALMOST * _gain(step)):
             say("the integration step is a cause")
@@ -181,6 +192,9 @@ def search(
         first = found.steps[0].base
         found.base = bench.refit(first.names, first.unit[:, None], first.offsets)
         found.final = bench.refit(found.final.names, found.final.unit[:, None], found.final.offsets, tolerance=PRECISE)
+    if stop():
+        found.rivals = [[] for _ in found.causes]
+        return found
     if len(found.causes) > 1:
         _drop_superfluous(bench, found)
     say("comparing the causes with their rivals")
@@ -197,7 +211,9 @@ def finer(integrator: Integrator) -> Integrator:
     return Integrator("rk4", FINER * integrator.substeps)
 
 
-def look(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis], first: bool) -> Step:
+def look(
+    bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis], first: bool, stop: Stop = lambda: False
+) -> Step:
     """Scores of all hypotheses at a point, refits of the best, and whether the best of those is to be believed.
 
     Noise is estimated anew from what the best refit and all other signatures together leave: any less, and a cause
@@ -206,7 +222,7 @@ def look(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis], first
     names = [name for h in hypotheses for name in h.names]
     linear = linearise(bench, point, names)
     ranked = scores(linear, hypotheses)
-    best = _refit_best(bench, point, ranked, linear, quick=True)
+    best = _refit_best(bench, point, ranked, linear, quick=True, stop=stop)
     richest = best[0].point if best and best[0].gain > 2.0 * ENOUGH else point
     at_best = linear if richest is point else linearise(bench, richest, [n for n in names if n not in richest.names])
     known = _noise_at(bench, at_best)
@@ -215,7 +231,7 @@ def look(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis], first
         point = bench.refit(point.names, point.unit[:, None], point.offsets)
         linear = linearise(bench, point, names)
         ranked = scores(linear, hypotheses)
-    refits = _refit_best(bench, point, ranked, linear, quick=False)
+    refits = _refit_best(bench, point, ranked, linear, quick=False, stop=stop)
     finer_gain = None
     if first:
         other = bench.refit(point.names, point.unit[:, None], point.offsets, integrator=finer(point.integrator))
@@ -223,6 +239,11 @@ def look(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis], first
     rivals = _rivals(refits) if refits else []
     accepted, reason = _decide(bench, refits, rivals)
     return Step(point, linear, ranked, refits, rivals, accepted, reason, finer_gain)
+
+
+def _go_on(stop: Stop) -> None:
+    if stop():
+        raise _Stopped
 
 
 def _noise_at(bench: Workbench, linear: Linear) -> noises.NoiseModel:
@@ -239,7 +260,9 @@ def _differs(a: noises.NoiseModel, b: noises.NoiseModel) -> bool:
     return False
 
 
-def _refit_best(bench: Workbench, point: Point, ranked: Sequence[Score], linear: Linear, *, quick: bool) -> list[Refit]:
+def _refit_best(
+    bench: Workbench, point: Point, ranked: Sequence[Score], linear: Linear, *, quick: bool, stop: Stop
+) -> list[Refit]:
     """The most promising hypotheses refitted, best first."""
     order = sorted(ranked, key=lambda score: -score.score)
     named = [s for s in order if not s.hypothesis.effect.one_of_many]
@@ -250,11 +273,15 @@ def _refit_best(bench: Workbench, point: Point, ranked: Sequence[Score], linear:
     else:
         chosen = named[: None if strong else REFITTED] + terms[: (2 if strong else 1) * TERMS_REFITTED]
     chosen = [s for s in chosen if s.power > 0.0]
-    rough = [_rough(bench, point, score, strong) for score in chosen]
+    rough = []
+    for score in chosen:
+        _go_on(stop)
+        rough.append(_rough(bench, point, score, strong))
     most = max((point.chi2 - end.chi2 for end in rough), default=0.0)
     chance = None if quick else ChanceScores(linear, [s.hypothesis for s in ranked], bench.options.seed)
     refits = []
     for score, end in zip(chosen, rough, strict=True):
+        _go_on(stop)
         gain = point.chi2 - end.chi2
         if gain >= WORTH_GOING_ON * most and gain > 0.5 * ENOUGH * score.inflation:
             end = bench.refit(end.names, end.unit[:, None], end.offsets)

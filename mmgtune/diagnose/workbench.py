@@ -14,11 +14,11 @@ from ..fitting.least_squares import LeastSquaresResult, solve
 from ..fitting.problem import FitProblem
 from ..model import Model
 from ..objective import Objective, cases_of
+from ..options import DiagnoseOptions
 from ..profile import ShipProfile, with_all_effects
 from ..trial import Trial
 from ..trial.kinematics import white_noise
 from .noise import NoiseModel, white
-from .options import CHANNELS, DiagnoseOptions
 
 TOLERANCE = 0.2
 """Fall of chi-squared that counts as none while searching; a fiftieth of what matters."""
@@ -174,9 +174,7 @@ def make_workbench(
     own = Model(profile)
     targets = choose_targets(own, options.targets, options.fixed)
     sigma = noise_levels(trials)
-    channels = [
-        c for c in CHANNELS if not options.channels or c in {"v_m" if o == "v" else o for o in options.channels}
-    ]
+    channels = [c for c in STATES if not options.channels or c in {"v_m" if o == "v" else o for o in options.channels}]
     objective = Objective(dict(zip(STATES, sigma, strict=True)), dict.fromkeys(channels, 1.0))
     cases = cases_of(list(trials), objective, model.inputs)
     box = make_box(model, (*targets, *(name for name in names if name not in targets)), options.a_r)

@@ -1,8 +1,9 @@
 """Calibration: search, least squares, certificate, identifiability, sweep and run folders."""
 
+from ..options import METHODS, FitOptions, LeaveOutOptions, SweepOptions
 from .folder import prepare, write_run
-from .leaving_out import LeftOut, fit_leaving_out
-from .options import METHODS, FitOptions
+from .leaving_out import LeftOut, leave_out, write_left_out
+from .planning import Plan, plan_fit, plan_leave_out, plan_sweep
 from .result import FitResult
 from .run import Hooks, fit, in_pieces, make_problem
 from .sweeping import SweepResult, sweep
@@ -12,13 +13,20 @@ __all__ = [
     "FitOptions",
     "FitResult",
     "Hooks",
+    "LeaveOutOptions",
     "LeftOut",
+    "Plan",
+    "SweepOptions",
     "SweepResult",
     "fit",
-    "fit_leaving_out",
     "in_pieces",
+    "leave_out",
     "make_problem",
+    "plan_fit",
+    "plan_leave_out",
+    "plan_sweep",
     "prepare",
     "sweep",
+    "write_left_out",
     "write_run",
 ]

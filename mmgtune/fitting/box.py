@@ -108,18 +108,18 @@ def make_box(model: Model, targets: Sequence[str], a_r: float) -> Box:
         raise OptionError(
             Problem(
                 f"a_r is {a_r:g}",
-                "--ar",
+                "a_r",
                 "the box would have no room",
-                "give the half width as a share, such as --ar 0.5",
+                "give the half width as a share, such as a_r=0.5",
             )
         )
     if not targets:
         raise OptionError(
             Problem(
                 "no coefficient to tune",
-                "--targets",
+                "targets",
                 "the profile lists none",
-                'name some, such as --targets "hull.Y_*"',
+                'name some, such as targets="hull.Y_*"',
             )
         )
     problems: list[Problem] = []
@@ -149,7 +149,7 @@ def make_box(model: Model, targets: Sequence[str], a_r: float) -> Box:
             problems.append(
                 Problem(
                     f"target '{name}' is 0",
-                    "--targets",
+                    "targets",
                     "a box of +- a_r times its value has no width",
                     "give it bounds in the profile, { value = 0.0, bounds = [low, high] }, or leave it out",
                 )
@@ -212,12 +212,12 @@ def choose_targets(model: Model, patterns: Sequence[str], fixed: Sequence[str] =
 
     chosen: list[str] = []
     for pattern in patterns or profile.targets:
-        found = matching(pattern, names, "--targets")
+        found = matching(pattern, names, "targets")
         if any(sign in pattern for sign in "*?["):
             found = [n for n in found if profile.value(n) != 0.0 or profile.coefficient(n).bounds is not None]
         chosen += found
     for pattern in fixed:
-        held = matching(pattern, names, "--fix")
+        held = matching(pattern, names, "fixed")
         chosen = [name for name in chosen if name not in held]
     return tuple(dict.fromkeys(chosen))
 

@@ -53,7 +53,9 @@ class Checkpoint:
         """Costs by generation.  Raises OptionError where there is no checkpoint or it belongs to another fit."""
         if not self.path.is_file():
             raise OptionError(
-                Problem("nothing to resume", str(self.folder), "the folder holds no checkpoint", "run without --resume")
+                Problem(
+                    "nothing to resume", str(self.folder), "the folder holds no checkpoint", "run without resume=True"
+                )
             )
         try:
             with np.load(self.path, allow_pickle=False) as data:
@@ -63,21 +65,26 @@ class Checkpoint:
         except (OSError, ValueError, KeyError, EOFError, BadZipFile) as error:
             raise OptionError(
                 Problem(
-                    "the checkpoint cannot be read", str(self.path), str(error), "delete it, or run without --resume"
+                    "the checkpoint cannot be read", str(self.path), str(error), "delete it, or run without resume=True"
                 )
             ) from error
-        changed = sorted(key for key in {*identity, *self.identity} if identity.get(key) != self.identity.get(key))
-        if changed:
-            raise OptionError(
-                Problem(
-                    "the checkpoint belongs to another fit",
-                    str(self.path),
-                    f"different now: {', '.join(changed)}",
-                    "repeat the command it was made with, or run without --resume",
-                )
-            )
+        differing(identity, self.identity, self.path)
         return parts
 
     def remove(self) -> None:
         """Delete the file: the fit is finished."""
         self.path.unlink(missing_ok=True)
+
+
+def differing(recorded: dict[str, Any], now: dict[str, Any], path: Path) -> None:
+    """Raises OptionError where what a file was made from is not what the run is of now."""
+    changed = sorted(key for key in {*recorded, *now} if recorded.get(key) != now.get(key))
+    if changed:
+        raise OptionError(
+            Problem(
+                "the checkpoint belongs to another fit",
+                str(path),
+                f"different now: {', '.join(changed)}",
+                "repeat the command it was made with, or run without resume=True",
+            )
+        )

@@ -13,12 +13,13 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import astuple, dataclass, field
 from typing import Any
 
 import numpy as np
 
 from ..arrays import FloatArray
+from .journal import remembered
 from .problem import FitProblem
 
 LAMBDAS = (12, 24, 48, 96, 128)
@@ -78,6 +79,34 @@ class Search:
     finished: bool = False
 
 
+def _asked(problem: FitProblem, seed: int, start: FloatArray, **named: Any) -> list[Any]:
+    """What tells one search from another."""
+    box = (problem.box.names, problem.box.low, problem.box.high)
+    return ["search", *box, problem.offsets, seed, start, named.get("tolerance"), named.get("populations")]
+
+
+def _noted(found: Search) -> dict[str, Any]:
+    return {
+        "unit": found.unit.tolist(),
+        "J": found.J,
+        "restarts": [list(astuple(one)) for one in found.restarts],
+        "history": [list(astuple(one)) for one in found.history],
+        "diverged": found.diverged,
+    }
+
+
+def _recalled(noted: dict[str, Any]) -> Search:
+    return Search(
+        np.array(noted["unit"]),
+        noted["J"],
+        [Restart(*one) for one in noted["restarts"]],
+        [Generation(*one) for one in noted["history"]],
+        diverged=noted["diverged"],
+        finished=True,
+    )
+
+
+@remembered(_asked, _noted, _recalled)
 def search(
     problem: FitProblem,
     seed: int,

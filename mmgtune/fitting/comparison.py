@@ -49,6 +49,10 @@ class TrialComparison:
         measured = self.records["before"].measured.indices
         return {"measured": measured, **{which: record.indices for which, record in self.records.items()}}
 
+    def __repr__(self) -> str:
+        """In a line."""
+        return f"TrialComparison({self.trial.id}, {self.role}: J {self.J['before']:.4g} -> {self.J['after']:.4g})"
+
     def to_dict(self) -> dict[str, Any]:
         """For JSON; a J that is not finite becomes null."""
         return {

@@ -22,6 +22,8 @@ OWN_FILES = (
     RESULT,
     "sweep.json",
     "diagnosis.json",
+    "leave_out.json",
+    "journal.jsonl",
     "profile.toml",
     "history.parquet",
     "motions.parquet",
@@ -37,7 +39,7 @@ def prepare(folder: Path, *, force: bool = False, resume: bool = False) -> Path:
     written to.
     """
     if folder.exists() and not folder.is_dir():
-        raise OutputError(Problem("the output is a file, not a folder", str(folder), fix="choose another --out"))
+        raise OutputError(Problem("the output is a file, not a folder", str(folder), fix="choose another folder"))
     taken = folder.is_dir() and any(folder.iterdir())
     if taken and not (force or resume):
         raise OutputError(exists(folder))
@@ -46,8 +48,8 @@ def prepare(folder: Path, *, force: bool = False, resume: bool = False) -> Path:
             Problem(
                 "the folder holds files that are not a run of mmgtune",
                 str(folder),
-                "--force would mix them",
-                "choose another --out",
+                "force=True would mix them",
+                "choose another folder",
             )
         )
     try:

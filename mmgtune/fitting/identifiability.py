@@ -47,7 +47,7 @@ class NullDirection:
         return (
             f"No trial can tell these coefficients apart: {parts} together leave every simulated motion unchanged "
             f"(a thousandth of this step shifts no position by more than {self.largest_shift:.1e} m). "
-            f"Only combinations of them are known; hold one with --fix {next(iter(self.weights))}."
+            f"Only combinations of them are known; hold one with fixed={next(iter(self.weights))}."
         )
 
 

@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ..arrays import BoolArray, FloatArray
 from .initial import LARGEST
+from .journal import remembered
 from .problem import FitProblem
 
 QUIET = 1e-9
@@ -44,6 +46,27 @@ class LeastSquaresResult:
     converged: bool
 
 
+def _asked(problem: FitProblem, starts: FloatArray, *given: Any, **named: Any) -> list[Any]:
+    """What tells one solve from another."""
+    named = {name: value for name, value in named.items() if not callable(value)}
+    anchor = named.pop("anchor", None)
+    plain = [value for value in given if not callable(value)]
+    box = (problem.box.names, problem.box.low, problem.box.high)
+    return ["solve", *box, problem.offsets, starts, anchor, repr(plain), repr(sorted(named.items()))]
+
+
+def _noted(ends: list[LeastSquaresResult]) -> list[Any]:
+    return [[end.unit.tolist(), end.offsets.tolist(), float(end.J), end.iterations, end.converged] for end in ends]
+
+
+def _recalled(noted: list[Any]) -> list[LeastSquaresResult]:
+    return [
+        LeastSquaresResult(np.array(unit), np.array(offsets).reshape(-1, 6), J, iterations, converged)
+        for unit, offsets, J, iterations, converged in noted
+    ]
+
+
+@remembered(_asked, _noted, _recalled)
 def solve(
     problem: FitProblem,
     starts: FloatArray,

@@ -2,24 +2,42 @@
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ..files import write_text
+from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..objective import spread
+from ..options import LeaveOutOptions
 from ..predictor import words_of
 from ..profile import ShipProfile
-from ..repeating import Repeated, repeat
+from ..repeating import Repeated, document, repeat
 from ..threads import blas_on_one_thread
 from ..trial import Trial, TrialSet
 from ..validation import L_MSE, TrialScore, by_manoeuvre, improvement, score
 from .comparison import finite, finite_values
+from .extending import with_effects
+from .journal import Journal, journalled
 from .least_squares import solve
-from .options import FitOptions
-from .run import Hooks, edge_ridge, in_pieces, make_problem, make_provenance, random_starts
+from .robust import weigh_down
+from .run import (
+    Hooks,
+    edge_ridge,
+    hold_directions,
+    identity_of,
+    in_pieces,
+    make_problem,
+    make_provenance,
+    random_starts,
+)
+
+RESULT = "leave_out.json"
 
 SETTLED = 1e-4
 """Fall of J, as a share, that counts as none: scores of runs left out do not show it."""
@@ -46,16 +64,20 @@ class LeftOut:
     parts    ids of the runs of each part
     before, after  scores of all tune trials with the profile's values, and with those fitted without them
     repeated_before, repeated_after  their manoeuvres repeated likewise, where asked for
+    n_parts  how many there are to be
+    interrupted  stopped by the user; scores are of the parts finished by then
     """
 
     thetas: tuple[dict[str, float], ...]
     parts: tuple[tuple[str, ...], ...]
     before: tuple[TrialScore, ...]
     after: tuple[TrialScore, ...]
-    options: FitOptions
+    options: LeaveOutOptions
     sigma: dict[str, float]
     provenance: dict[str, Any]
     wall_s: float
+    n_parts: int
+    interrupted: bool = False
     repeated_before: tuple[Repeated, ...] = ()
     repeated_after: tuple[Repeated, ...] = ()
 
@@ -64,8 +86,21 @@ class LeftOut:
         """How trials were simulated, to be named beside J."""
         return words_of(self.options.make_integrator())
 
+    def __repr__(self) -> str:
+        """In a line."""
+        stopped = ", interrupted" if self.interrupted else ""
+        scores = "" if not self.parts else f", L_MSE {L_MSE(self.before):.4g} -> {L_MSE(self.after):.4g}"
+        return (
+            f"LeftOut({self.provenance['profile']['id']}, {len(self.parts)} of {self.n_parts} parts{scores}{stopped})"
+        )
+
     def rows(self) -> list[dict[str, Any]]:
-        """L_MSE and J before and after by kind of manoeuvre, and over all, with the share removed and its interval."""
+        """L_MSE and J before and after over all, then by kind of manoeuvre, with the share removed and its interval.
+
+        None where no part was finished.
+        """
+        if not self.parts:
+            return []
         groups = {"": (self.before, self.after)}
         after = by_manoeuvre(self.after)
         groups |= {kind: (tuple(of), tuple(after[kind])) for kind, of in by_manoeuvre(self.before).items() if kind}
@@ -73,10 +108,12 @@ class LeftOut:
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
-        return {
+        found = {
             "schema": 1,
             "kind": "leave-out",
             **self.provenance,
+            "interrupted": self.interrupted,
+            "n_parts": self.n_parts,
             "options": self.options.to_dict(),
             "sigma": self.sigma,
             "integrator": self.method,
@@ -87,6 +124,12 @@ class LeftOut:
             ],
             "wall_s": self.wall_s,
         }
+        if self.options.manoeuvres:
+            found["manoeuvres"] = {
+                "before": document(self.repeated_before),
+                "left_out": document(self.repeated_after),
+            }
+        return found
 
 
 def _row(kind: str, before: Sequence[TrialScore], after: Sequence[TrialScore]) -> dict[str, Any]:
@@ -104,26 +147,54 @@ def _row(kind: str, before: Sequence[TrialScore], after: Sequence[TrialScore]) -
 
 
 @blas_on_one_thread
-def fit_leaving_out(
-    profile: ShipProfile,
-    trials: TrialSet,
-    options: FitOptions,
-    folds: int = 0,
-    manoeuvres: bool = False,
+def leave_out(
+    profile: ShipGiven,
+    trials: TrialsGiven,
+    options: LeaveOutOptions = LeaveOutOptions(),
     *,
     hooks: Hooks = Hooks(),
+    folder: Path | None = None,
+    resume: bool = False,
     command: str = "",
 ) -> LeftOut:
     """Fit by least squares without each part of the runs in turn, and score the runs left out.
 
-    manoeuvres  also repeat measured turning circles and zigzags, see ``repeating.repeat``
+    profile, trials  objects, paths or bundled names
+    folder  where each finished fit is noted at once; None for nowhere
+    resume  continue what was stopped in the folder
 
     Every fit starts from the fit to all runs; that one takes the starts of the options.
-    Raises OptionError for choices that make no sense.
+    Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to.
     """
+    profile, trials = ship_of(profile), trials_of(trials)
+    profile, options = with_effects(profile, options)
+    provenance = make_provenance(profile, trials, command)
+    journal = None
+    if folder is not None:
+        journal = Journal(folder, identity_of(profile, trials, options, provenance), hooks.stop)
+        journal.begin(resume)
+    with journalled(journal):
+        found = _leave_out(profile, trials, options, hooks, provenance)
+    if journal is not None and not found.interrupted:
+        journal.remove()
+    return found
+
+
+def write_left_out(result: LeftOut, folder: Path) -> dict[str, Any]:
+    """Write the result.  Returns its document."""
+    document = {**result.to_dict(), "out": str(folder)}
+    write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+    return document
+
+
+def _leave_out(
+    profile: ShipProfile, whole: TrialSet, asked: LeaveOutOptions, hooks: Hooks, provenance: dict[str, Any]
+) -> LeftOut:
     began = time.perf_counter()
-    options = replace(options, method="least-squares")
-    whole, trials = trials, in_pieces(trials, options)
+    options = asked.fit_options()
+    trials = in_pieces(whole, options)
+    if options.identifiable:
+        options = hold_directions(profile, trials, options)
     problem = make_problem(profile, trials, options)
     box, model = problem.box, problem.model
     before = np.clip(box.to_unit(box.pre), 0.0, 1.0)
@@ -140,7 +211,8 @@ def fit_leaving_out(
     scores: dict[str, TrialScore] = {}
     repeated: dict[str, Repeated] = {}
     thetas, parts = [], []
-    for out, others in leaving_out(trials, folds):
+    dealt = list(leaving_out(trials, asked.folds))
+    for out, others in dealt:
         if hooks.stop():
             break
         runs = tuple(dict.fromkeys(trials.trials[name].run for name in out))
@@ -148,26 +220,33 @@ def fit_leaving_out(
         part = make_problem(profile, trials, options, others)
         ends = solve(part, starts, ridge=ridge, anchor=before, stop=hooks.stop, tolerance=SETTLED * best.J)
         fitted = min(ends, key=lambda end: end.J + ridge * float(np.sum((end.unit - before) ** 2)))
+        if options.loss == "huber" and not hooks.stop():
+            part, fitted = weigh_down(part, fitted, ridge, before)
+        if hooks.stop():  # not fitted to its end
+            break
         thetas.append(dict(zip(box.names, box.from_unit(fitted.unit).tolist(), strict=True)))
         parts.append(runs)
         theta = part.theta(fitted.unit[:, None])
         left_out = [trials.trials[name] for name in out]
         for one in score(model, left_out, sigma, theta=theta, integrator=integrator, backend=options.backend):
             scores[one.id] = one
-        if manoeuvres:
+        if asked.manoeuvres:
             hooks.on_phase(f"repeating {', '.join(runs)}")
             repeated |= {one.id: one for one in repeat(model, _named(whole, left_out), theta=theta)}
     seen = [trial for trial in chosen if trial.id in scores]
+    scored = score(model, seen, sigma, integrator=integrator, backend=options.backend) if seen else []
     return LeftOut(
         tuple(thetas),
         tuple(parts),
-        tuple(score(model, seen, sigma, integrator=integrator, backend=options.backend)),
+        tuple(scored),
         tuple(scores[trial.id] for trial in seen),
-        options,
+        asked,
         sigma,
-        make_provenance(profile, trials, command),
+        provenance,
         time.perf_counter() - began,
-        tuple(repeat(model, _named(whole, seen))) if manoeuvres else (),
+        len(dealt),
+        len(parts) < len(dealt),
+        tuple(repeat(model, _named(whole, seen))) if asked.manoeuvres else (),
         tuple(repeated[name] for name in dict.fromkeys(trial.whole for trial in seen) if name in repeated),
     )
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..components import split_name
+from ..options import FitOptions
 from ..predictor import words_of
 from ..profile import ShipProfile, tuned
 from .box import Box
@@ -18,7 +19,6 @@ from .cmaes import Generation, Restart
 from .comparison import TrialComparison, finite, finite_values, total
 from .identifiability import Identifiability
 from .least_squares import LeastSquaresResult
-from .options import FitOptions
 
 SCHEMA = 1
 
@@ -54,6 +54,12 @@ class FitResult:
     channels: tuple[str, ...]
     provenance: Mapping[str, Any]
     interrupted: bool = False
+
+    def __repr__(self) -> str:
+        """In a line."""
+        stopped = ", interrupted" if self.interrupted else ""
+        J = f"J {self.J_before:.4g} -> {self.J:.4g}"
+        return f"FitResult({self.profile.id}, {len(self.box)} targets, a_r {self.options.a_r:g}, {J}{stopped})"
 
     @property
     def theta(self) -> dict[str, float]:
@@ -113,7 +119,7 @@ class FitResult:
         if self.J_free_start is not None and self.J_free_start < 0.5 * self.J:
             found.append(
                 f"Of J = {self.J:.4g} on the tune trials {self.J - self.J_free_start:.4g} comes from starting "
-                "each trial at its noisy first sample; --initial estimated removes that."
+                "each trial at its noisy first sample; initial=estimated removes that."
             )
         gaps = [c.trial.id for c in self.compared if np.isnan(c.trial.motion).any()]
         if gaps:

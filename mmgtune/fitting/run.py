@@ -15,8 +15,10 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..backends import STATES, Backend, Integrator, get_backend
+from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..model import Model
 from ..objective import Objective, cases_of, make_objective, spread
+from ..options import FitOptions, Options, TuningOptions
 from ..profile import ShipProfile
 from ..threads import blas_on_one_thread
 from ..trial import TrialSet
@@ -25,10 +27,11 @@ from .certificate import certify
 from .checkpoint import EVERY, Checkpoint
 from .cmaes import Search, search
 from .comparison import compare, total
+from .extending import with_effects
 from .identifiability import analyse
 from .initial import deviations
+from .journal import Journal, journalled, kept
 from .least_squares import LeastSquaresResult, fit_offsets, solve
-from .options import FitOptions
 from .problem import FitProblem
 from .result import FitResult
 from .robust import weigh_down
@@ -54,7 +57,7 @@ class Hooks:
     stop: Callable[[], bool] = lambda: False
 
 
-def in_pieces(trials: TrialSet, options: FitOptions) -> TrialSet:
+def in_pieces(trials: TrialSet, options: TuningOptions) -> TrialSet:
     """The trials cut into windows where the options ask for that; unchanged where they are windows already."""
     if options.restart is None or any(trial.part_of for trial in trials.trials.values()):
         return trials
@@ -130,8 +133,8 @@ def make_problem(profile: ShipProfile, trials: TrialSet, options: FitOptions, id
 
 @blas_on_one_thread
 def fit(
-    profile: ShipProfile,
-    trials: TrialSet,
+    profile: ShipGiven,
+    trials: TrialsGiven,
     options: FitOptions = FitOptions(),
     *,
     hooks: Hooks = Hooks(),
@@ -142,12 +145,43 @@ def fit(
 ) -> FitResult:
     """Fine-tune the targets of ``profile`` within their box to the tune trials, and look at the test trials.
 
-    checkpoint_folder  where the search saves its state; None for nowhere
-    resume             continue the search saved there
+    profile, trials    objects, paths or bundled names
+    checkpoint_folder  where the fit saves its state; None for nowhere
+    resume             continue the fit saved there
     more_starts        coefficient sets to start least squares from besides, such as the optimum of a smaller box
     command            what to call this fit in its provenance
     Raises OptionError for choices that make no sense, OutputError where the checkpoint cannot be written.
     """
+    profile, trials = ship_of(profile), trials_of(trials)
+    profile, options = with_effects(profile, options)
+    provenance = make_provenance(profile, trials, command)
+    if checkpoint_folder is None:
+        return _fit(profile, trials, options, hooks, None, resume, more_starts, provenance)
+    identity = identity_of(profile, trials, options, provenance)
+    checkpoint = Checkpoint(checkpoint_folder, identity)
+    if kept():  # part of a longer run, whose journal knows what is finished
+        return _fit(profile, trials, options, hooks, checkpoint, resume, more_starts, provenance)
+    journal = Journal(checkpoint_folder, identity, hooks.stop)
+    if resume and checkpoint.path.is_file():
+        checkpoint.load()  # says first what is wrong with the larger part
+    journal.begin(resume)
+    with journalled(journal):
+        result = _fit(profile, trials, options, hooks, checkpoint, resume, more_starts, provenance)
+    if not result.interrupted:
+        journal.remove()
+    return result
+
+
+def _fit(
+    profile: ShipProfile,
+    trials: TrialSet,
+    options: FitOptions,
+    hooks: Hooks,
+    checkpoint: Checkpoint | None,
+    resume: bool,
+    more_starts: tuple[Mapping[str, float], ...],
+    provenance: dict[str, Any],
+) -> FitResult:
     began = time.perf_counter()
     trials = in_pieces(trials, options)
     setting = make_setting(profile, trials, options)
@@ -158,18 +192,7 @@ def fit(
         setting = setting.holding(held)
         problem = problem.with_targets(setting.model, setting.box)
     plain = problem
-    provenance = make_provenance(profile, trials, command)
-    checkpoint = None
-    if checkpoint_folder is not None:
-        identity = {
-            "profile": profile.sha256,
-            "trials": trials.hashes(),
-            "tune": list(trials.tune),
-            "options": options.to_dict(),
-            "versions": provenance["environment"],
-        }
-        checkpoint = Checkpoint(checkpoint_folder, identity)
-    recorded = checkpoint.load() if checkpoint and resume else None
+    recorded = checkpoint.load() if checkpoint and resume and checkpoint.path.is_file() else None
     before = problem.box.to_unit(problem.box.pre)
     J_before = float(problem.costs(before[:, None])[0])
 
@@ -263,6 +286,12 @@ def traded(problem: FitProblem) -> tuple[str, ...]:
     return tuple(next(iter(direction.weights)) for direction in directions)
 
 
+def hold_directions(profile: ShipProfile, trials: TrialSet, options: FitOptions) -> FitOptions:
+    """The same options with one coefficient fixed for every direction no trial can tell, found before searching."""
+    held = traded(make_problem(profile, trials, options))
+    return replace(options, fixed=(*options.fixed, *held), identifiable=False)
+
+
 def _search(
     problem: FitProblem,
     options: FitOptions,
@@ -300,6 +329,20 @@ def _nearest(problem: FitProblem, best: LeastSquaresResult, before: FloatArray) 
     """Of all sets that fit as well as ``best``, the one nearest to the pre-determined values."""
     moved = solve(problem, best.unit[:, None], ridge=RIDGE * best.J, anchor=before)[0]
     return moved if moved.J <= best.J * (1.0 + 1e-7) else best
+
+
+def identity_of(
+    profile: ShipProfile, trials: TrialSet, options: Options, provenance: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Everything a run depends on: a run that was stopped is continued only where none of it has changed."""
+    return {
+        "profile": profile.sha256,
+        "trials": trials.hashes(),
+        "tune": list(trials.tune),
+        "test": list(trials.test),
+        "options": options.to_dict(),
+        "versions": {**provenance["environment"], "mmgtune": provenance["mmgtune"]},
+    }
 
 
 def make_provenance(profile: ShipProfile, trials: TrialSet, command: str) -> dict[str, Any]:

@@ -4,31 +4,32 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..errors import OptionError, Problem
 from ..files import write_text
+from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
+from ..options import SweepOptions
 from ..profile import ShipProfile
 from ..trial import TrialSet
 from .comparison import finite_values
+from .extending import with_effects
 from .folder import write_run
+from .journal import Journal, journalled
 from .least_squares import fit_offsets, solve
 from .leaving_out import leaving_out
-from .options import FitOptions
 from .result import FitResult
-from .run import Hooks, fit, in_pieces, make_problem
+from .run import Hooks, fit, identity_of, in_pieces, make_problem, make_provenance
 
 RESULT = "sweep.json"
 
 
 @dataclass(frozen=True, eq=False)
 class SweepResult:
-    """Fits by rising a_r.
+    """Fits by rising a_r; of one that was stopped those finished, and the best so far of the one it was at.
 
     leave_one_out  J over trials left out one at a time, per a_r; None where there are test trials to judge by
     """
@@ -37,6 +38,11 @@ class SweepResult:
     leave_one_out: tuple[float, ...] | None
     wall_s: float
     interrupted: bool = False
+
+    def __repr__(self) -> str:
+        """In a line."""
+        stopped = ", interrupted" if self.interrupted else ""
+        return f"SweepResult({self.runs[0].profile.id}, a_r {', '.join(f'{a_r:g}' for a_r in self.widths)}{stopped})"
 
     @property
     def widths(self) -> list[float]:
@@ -55,7 +61,11 @@ class SweepResult:
         return int(np.argmin(self.judged()))
 
     def recommended(self) -> dict[str, Any]:
-        """The a_r with the least J on trials not used."""
+        """The a_r with the least J on trials not used; none where the sweep was stopped."""
+        if self.interrupted:
+            done = sum(not run.interrupted for run in self.runs)
+            words = f"The sweep was stopped after {done} of its widths; no a_r is recommended before all are done."
+            return {"a_r": None, "by": None, "sentence": words}
         judged, best = self.judged(), self.best
         a_r = self.widths[best]
         by = "leave-one-trial-out" if self.leave_one_out is not None else "test set"
@@ -76,7 +86,9 @@ class SweepResult:
         }
 
     def overfitting(self) -> dict[str, Any]:
-        """Whether J rises on trials not used while it falls on those tuned to."""
+        """Whether J rises on trials not used while it falls on those tuned to; not said of a sweep that was stopped."""
+        if self.interrupted:
+            return {"found": None, "sentence": "Whether a wider box over-fits is not known before all widths are done."}
         judged, best = self.judged(), self.best
         worse = [
             i
@@ -133,7 +145,7 @@ class SweepResult:
             if loo is None
             else [{"a_r": a, "J": J} for a, J in zip(self.widths, loo, strict=True)],
             "overfitting": self.overfitting(),
-            "warnings": self.runs[self.best].warnings(),
+            "warnings": self.runs[-1 if self.interrupted else self.best].warnings(),
             "citations": first.profile.cites(),
             "wall_s": self.wall_s,
         }
@@ -145,53 +157,78 @@ def folder_name(a_r: float) -> str:
 
 
 def sweep(
-    profile: ShipProfile,
-    trials: TrialSet,
-    widths: Sequence[float],
-    options: FitOptions = FitOptions(),
+    profile: ShipGiven,
+    trials: TrialsGiven,
+    options: SweepOptions = SweepOptions(),
     *,
     hooks: Hooks = Hooks(),
     folder: Path | None = None,
+    resume: bool = False,
     command: str = "",
 ) -> SweepResult:
     """Fit at every half width; each fit also starts from the optimum of the narrower boxes, so J never rises with a_r.
 
+    profile, trials  objects, paths or bundled names
     folder  where each finished fit is written at once, in a sub-folder of its own; None for nowhere
-    Raises OptionError for no width, or one given twice.
+    resume  continue the sweep in the folder that was stopped: what is finished there is read back
+    Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to.
     """
-    began = time.perf_counter()
-    trials = in_pieces(trials, options)
-    if not widths or len(set(widths)) < len(widths):
-        what = "a half width is given twice" if widths else "no half width to sweep over"
-        raise OptionError(Problem(what, "--ar", fix="write --ar 0.2,0.3,0.4,0.5,0.6"))
-    for a_r in widths:  # every width must be possible before the first is worked on
-        make_problem(profile, trials, replace(options, a_r=a_r))
-    runs: list[FitResult] = []
-    for a_r in sorted(widths):
-        result = fit(
-            profile,
-            trials,
-            replace(options, a_r=a_r),
-            hooks=_named(hooks, a_r),
-            more_starts=tuple(run.theta for run in runs[-1:]),
-            command=command,
-        )
-        runs.append(result)
-        if folder is not None:
-            write_run(result, folder / folder_name(a_r))
-        if hooks.stop():
-            break
-    left_out = None
-    if not trials.test and len({trials.trials[name].run for name in trials.tune}) > 1 and not hooks.stop():
-        hooks.on_phase("leaving out one trial at a time")
-        left_out = tuple(_leave_one_out(profile, trials, run) for run in runs)
-    swept = SweepResult(tuple(runs), left_out, time.perf_counter() - began, interrupted=hooks.stop())
+    profile, trials = ship_of(profile), trials_of(trials)
+    profile, options = with_effects(profile, options)
+    journal = None
+    if folder is not None:
+        identity = identity_of(profile, trials, options, make_provenance(profile, trials, command))
+        journal = Journal(folder, identity, hooks.stop)
+        journal.begin(resume)
+    with journalled(journal):
+        swept = _sweep(profile, trials, options, hooks, folder, resume, command)
     if folder is not None:
         write_text(
             folder / RESULT,
             json.dumps({**swept.to_dict(), "out": str(folder)}, indent=1, allow_nan=False, ensure_ascii=False) + "\n",
         )
+    if journal is not None and not swept.interrupted:
+        journal.remove()
     return swept
+
+
+def _sweep(
+    profile: ShipProfile,
+    trials: TrialSet,
+    options: SweepOptions,
+    hooks: Hooks,
+    folder: Path | None,
+    resume: bool,
+    command: str,
+) -> SweepResult:
+    began = time.perf_counter()
+    trials = in_pieces(trials, options)
+    for a_r in options.widths:  # every width must be possible before the first is worked on
+        make_problem(profile, trials, options.at(a_r))
+    runs: list[FitResult] = []
+    for a_r in sorted(options.widths):
+        own = None if folder is None else folder / folder_name(a_r)
+        result = fit(
+            profile,
+            trials,
+            options.at(a_r),
+            hooks=_named(hooks, a_r),
+            more_starts=tuple(run.theta for run in runs[-1:]),
+            checkpoint_folder=own,
+            resume=resume,
+            command=command,
+        )
+        runs.append(result)
+        if own is not None:
+            write_run(result, own)
+        if hooks.stop():
+            break
+    left_out = None
+    if not trials.test and len({trials.trials[name].run for name in trials.tune}) > 1 and not hooks.stop():
+        hooks.on_phase("leaving out one trial at a time")
+        judged = [_leave_one_out(profile, trials, run, hooks) for run in runs]
+        left_out = None if hooks.stop() else tuple(judged)
+    return SweepResult(tuple(runs), left_out, time.perf_counter() - began, interrupted=hooks.stop())
 
 
 def _named(hooks: Hooks, a_r: float) -> Hooks:
@@ -199,11 +236,13 @@ def _named(hooks: Hooks, a_r: float) -> Hooks:
     return replace(hooks, on_phase=lambda words: hooks.on_phase(f"a_r = {a_r:g}, {words}"))
 
 
-def _leave_one_out(profile: ShipProfile, trials: TrialSet, run: FitResult) -> float:
-    """J summed over the tune trials, each simulated with coefficients fitted to the others."""
+def _leave_one_out(profile: ShipProfile, trials: TrialSet, run: FitResult, hooks: Hooks) -> float:
+    """J summed over the tune trials, each simulated with coefficients fitted to the others; NaN where stopped."""
     total = 0.0
     start = run.unit[:, None]
     for left_out, others in leaving_out(trials):
+        if hooks.stop():
+            return float("nan")
         fitted = min(solve(make_problem(profile, trials, run.options, others), start), key=lambda end: end.J)
         alone = make_problem(profile, trials, run.options, left_out)
         offsets = None if alone.sigma is None else fit_offsets(alone, fitted.unit)[:, None]

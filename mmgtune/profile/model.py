@@ -131,6 +131,12 @@ class ShipProfile:
         gear = self.steering_gear.actuator if self.steering_gear and INPUTS[name].role == "rudder" else None
         return self.actuators.get(name, gear)
 
+    def __repr__(self) -> str:
+        """In a line."""
+        parts = ", ".join(f"{kind} {section.component.tag}" for kind, section in list(self.sections.items())[:6])
+        more = ", ..." if len(self.sections) > 6 else ""
+        return f"ShipProfile({self.id}: {parts}{more})"
+
     def coefficient(self, name: str) -> Coefficient:
         """The coefficient called 'section.symbol'; KeyError if there is none."""
         section, symbol = split_name(name)

@@ -24,6 +24,7 @@ _WORDS = {
     "found": "cause found",
     "not-separable": "causes that cannot be told apart",
     "unexplained": "something unknown",
+    "interrupted": "stopped before its end",
 }
 _RUNS = {"measured": "measured", "before": "without a cause", "after": "with the causes"}
 

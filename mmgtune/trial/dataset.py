@@ -33,6 +33,11 @@ class TrialSet:
     licence: str = ""
     citation: str = ""
 
+    def __repr__(self) -> str:
+        """In a line."""
+        roles = f"{len(self.trials)} trials, {len(self.tune)} tune, {len(self.test)} test"
+        return f"TrialSet({self.ship or 'ship not stated'}: {roles})"
+
     @property
     def others(self) -> tuple[str, ...]:
         """Ids of the trials that neither tune nor test."""

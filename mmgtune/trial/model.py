@@ -69,6 +69,11 @@ class Trial:
         extra = {name: _frozen(name, values, shape) for name, values in self.extra.items()}
         object.__setattr__(self, "extra", extra)
 
+    def __repr__(self) -> str:
+        """In a line."""
+        words = ", ".join(word for word in (self.ship, self.manoeuvre, self.source) if word)
+        return f"Trial({self.id}: {words}, {self.n_samples} samples)"
+
     @property
     def n_samples(self) -> int:
         """Number of samples."""

@@ -245,7 +245,7 @@ def test_noise_with_a_memory_is_told_from_white_noise_and_whitened():
 def test_options_that_make_no_sense_are_said():
     with pytest.raises(OptionError, match="unknown effect 'curent'"):
         DiagnoseOptions(effects=("curent",))
-    with pytest.raises(OptionError, match="at most 0 causes"):
+    with pytest.raises(OptionError, match="most is 0"):
         DiagnoseOptions(most=0)
     with pytest.raises(OptionError, match="unknown integrator"):
         DiagnoseOptions(integrator="eulr")

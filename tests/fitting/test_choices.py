@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mmgtune.errors import OptionError
-from mmgtune.fitting import FitOptions, fit, fit_leaving_out, make_problem
+from mmgtune.fitting import FitOptions, LeaveOutOptions, fit, leave_out, make_problem
 from mmgtune.fitting.leaving_out import leaving_out
 from mmgtune.trial import TrialSet, write_trial
 from tests.command import run
@@ -89,7 +89,8 @@ def test_windows_of_a_run_are_left_out_together(clean):
 
 def test_left_out_runs_are_scored_by_coefficients_that_never_saw_them(suzaku, noisy):
     few = replace(QUICK, targets=("hull.R_0", "wake.w_P0", "rudder.kappa"), starts=1)
-    result = fit_leaving_out(suzaku.profile, noisy, few)
+    asked = LeaveOutOptions(targets=few.targets, starts=1, integrator=few.integrator)
+    result = leave_out(suzaku.profile, noisy, asked)
     assert [one.id for one in result.after] == list(noisy.tune)
     row = result.rows()[0]
     assert row["manoeuvre"] == "all"

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from mmgtune.errors import OptionError
-from mmgtune.fitting import FitOptions, Hooks, fit, make_problem, sweep
+from mmgtune.fitting import FitOptions, Hooks, SweepOptions, fit, make_problem, sweep
 from mmgtune.fitting.cmaes import from_box, search, to_box
 from mmgtune.fitting.least_squares import bounded_step, solve
-from mmgtune.profile import load_profile
 from mmgtune.trial import load_trials
 from tests.fitting.conftest import make_set
 
@@ -145,9 +144,7 @@ def test_a_stop_keeps_the_best_so_far(suzaku, noisy):
 
 @pytest.fixture(scope="module")
 def swept():
-    return sweep(
-        load_profile("suzaku"), load_trials("suzaku"), (0.6, 0.2, 0.4), FitOptions(method="least-squares", starts=4)
-    )
+    return sweep("suzaku", "suzaku", SweepOptions(widths=(0.6, 0.2, 0.4), method="least-squares", starts=4))
 
 
 def test_j_never_rises_with_a_r(swept):
@@ -171,7 +168,7 @@ def test_recommendation_is_the_least_test_cost(swept):
 
 def test_without_test_trials_one_trial_is_left_out_at_a_time(suzaku):
     trials = make_set(suzaku, noise=1.0, test=False)
-    swept = sweep(suzaku.profile, trials, (0.2, 0.4), FitOptions(method="least-squares", starts=2))
+    swept = sweep(suzaku.profile, trials, SweepOptions(widths=(0.2, 0.4), method="least-squares", starts=2))
     assert swept.recommended()["by"] == "leave-one-trial-out"
     assert len(swept.leave_one_out) == 2
     assert swept.recommended()["a_r"] == 0.4  # the truth lies beyond 0.2
@@ -193,7 +190,7 @@ def test_over_fitting_is_named(swept):
 @pytest.mark.parametrize("widths", [(), (0.2, 0.2), (0.2, -0.1)])
 def test_impossible_widths_are_refused_before_any_work(suzaku, noisy, widths):
     with pytest.raises(OptionError):
-        sweep(suzaku.profile, noisy, widths, FitOptions(method="least-squares"))
+        sweep(suzaku.profile, noisy, SweepOptions(widths=widths, method="least-squares"))
 
 
 @pytest.mark.parametrize("a_r", [0.2, 0.3, 0.4, 0.5, 0.6])

@@ -20,7 +20,7 @@ def test_scores_before_and_after_tuning(tmp_path):
     logs = sorted(DATA.glob("*/*.csv"))
     imported = run("trials", "import", *logs, "--preset", "frt-ds-esso", "-o", "esso", cwd=tmp_path)
     assert imported.code == 0, imported.err
-    ended = run("validate", *PUBLISHED, "esso", "--window", "100", "--json", cwd=tmp_path)
+    ended = run("validate", *PUBLISHED, "esso", "--restart", "100", "--json", cwd=tmp_path)
     assert ended.code == 0, ended.err
     for one in ended.json()["profiles"]:
         for kind, value in PUBLISHED[one["profile"]].items():

@@ -49,7 +49,7 @@ def imported(tmp_path_factory):
 def test_scores_before_and_after_tuning(name, imported):
     *_, window, published = SETS[name]
     folder = imported(name)
-    ended = run("validate", *published, folder, "--window", window, "--json", cwd=folder.parent)
+    ended = run("validate", *published, folder, "--restart", window, "--json", cwd=folder.parent)
     assert ended.code == 0, ended.err
     for one in ended.json()["profiles"]:
         assert one["L_MSE"] == pytest.approx(published[one["profile"]], rel=0.01)

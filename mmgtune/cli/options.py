@@ -1,0 +1,216 @@
+"""Dataclasses of options as flags of commands, and what the library says of fields said in flags."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
+from functools import wraps
+from pathlib import Path
+from typing import Annotated, Any, get_args, get_origin, get_type_hints
+
+import typer
+from typer.models import OptionInfo
+
+from ..errors import MmgtuneError, OptionError, Problem
+from ..options import Options, choice, choices
+from ..options.choice import OUTPUT
+
+FLAGS: dict[str, str] = {}
+"""The flag of every field of every dataclass that a command takes."""
+
+
+@dataclass(frozen=True)
+class RunOptions(Options):
+    """What every long command can be told about what it leaves behind."""
+
+    out: Path | None = choice(None, "Folder for the results. Default: runs/TIME-PROFILE.", short="-o", panel=OUTPUT)
+    force: bool = choice(False, "Replace the results in --out.", panel=OUTPUT)
+    resume: bool = choice(False, "Continue the interrupted run in --out.", panel=OUTPUT)
+    dry_run: bool = choice(False, "Say what would be done, and stop.", panel=OUTPUT)
+    json: bool = choice(False, "Print the result as one JSON document on stdout.", panel=OUTPUT)
+    quiet: bool = choice(False, "No progress.", short="-q", panel=OUTPUT)
+
+    def problems(self) -> list[Problem]:
+        """A run to continue needs its folder, and is not replaced."""
+        found = super().problems()
+        if self.resume and self.out is None:
+            found.append(Problem("resume=True needs the folder of the interrupted run", "resume", fix="add out=FOLDER"))
+        if self.resume and self.force:
+            found.append(
+                Problem("resume=True goes on with what is there, force=True replaces it", "resume", fix="leave one out")
+            )
+        return found
+
+
+def takes(**groups: type[Options]) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """A command with the flags of dataclasses: it gets one filled in for each argument named here.
+
+    Of the command's own parameters those before the ``*`` come first in the help, the others last.
+    """
+
+    def decorate(command: Callable[..., None]) -> Callable[..., None]:
+        own = [p for p in inspect.signature(command, eval_str=True).parameters.values() if p.name not in groups]
+        owner: dict[str, str] = {}
+        parameters: list[inspect.Parameter] = []
+        for group, of in groups.items():
+            for parameter in parameters_of(of):
+                owner[parameter.name] = group
+                parameters.append(parameter)
+        for parameter in own:
+            _remember(parameter)
+        # Profile and trials first, then what is chosen, then what only this command has.
+        first = [p for p in own if p.kind is p.POSITIONAL_OR_KEYWORD]
+        last = [p.replace(kind=inspect.Parameter.POSITIONAL_OR_KEYWORD) for p in own if p.kind is p.KEYWORD_ONLY]
+        parameters = [*first, *parameters, *last]
+
+        @wraps(command)
+        def filled(**given: Any) -> None:
+            values: dict[str, dict[str, Any]] = {group: {} for group in groups}
+            rest = {}
+            for name, value in given.items():
+                if name in owner:
+                    values[owner[name]][name] = value
+                else:
+                    rest[name] = value
+            made: dict[str, Options] = {}
+            problems: list[Problem] = []
+            for group, of in groups.items():
+                try:
+                    made[group] = of(**_read(of, values[group]))
+                except OptionError as error:
+                    problems += error.problems
+            if problems:
+                raise OptionError(*problems)
+            command(**rest, **made)
+
+        named = [p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in parameters]
+        filled.__signature__ = inspect.Signature(named)  # type: ignore[attr-defined]
+        filled.__annotations__ = {p.name: p.annotation for p in named}
+        filled.takes = groups  # type: ignore[attr-defined]
+        return filled
+
+    return decorate
+
+
+def _remember(parameter: inspect.Parameter) -> None:
+    """Note the flag of an option that a command has to itself."""
+    for known in get_args(parameter.annotation)[1:]:
+        if isinstance(known, OptionInfo):
+            decls = [known.default, *(known.param_decls or ())]
+            flag = next(one for one in decls if isinstance(one, str) and one.startswith("--"))
+            FLAGS.setdefault(parameter.name, flag)
+
+
+def parameters_of(of: type[Options]) -> list[inspect.Parameter]:
+    """A parameter for each field: what Typer makes a flag of."""
+    hints = get_type_hints(of)
+    defaults = {one.name: one.default for one in fields(of)}
+    found = []
+    for name, known in choices(of).items():
+        if FLAGS.setdefault(name, known.flag) != known.flag:
+            raise TypeError(f"{of.__name__}.{name} is {known.flag}, elsewhere {FLAGS[name]}")
+        kind, default = _typed(hints[name], defaults[name])
+        decls = [known.flag, *([known.short] if known.short else [])]
+        option = typer.Option(*decls, help=known.help, rich_help_panel=known.panel)
+        found.append(
+            inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=Annotated[kind, option])
+        )
+    return found
+
+
+def _typed(hint: Any, default: Any) -> tuple[Any, Any]:
+    """Type and default as Typer takes them: words in a list, numbers and intervals as one text."""
+    parts = _parts(hint)
+    if parts is None:
+        return hint, default
+    if parts == (str, ...):
+        return list[str] | None, None
+    if parts == (float, ...):
+        return str, ",".join(f"{value:g}" for value in default)
+    return str | None, None
+
+
+def _read(of: type[Options], given: dict[str, Any]) -> dict[str, Any]:
+    """Values as the dataclass has them."""
+    hints = get_type_hints(of)
+    read: dict[str, Any] = {}
+    for name, value in given.items():
+        parts = _parts(hints[name])
+        if parts == (str, ...):
+            read[name] = split(value)
+        elif parts == (float, ...):
+            read[name] = numbers_of(value, name)
+        elif parts is not None:
+            read[name] = interval_of(value, name)
+        else:
+            read[name] = value
+    return read
+
+
+def _parts(hint: Any) -> tuple[Any, ...] | None:
+    """What a tuple is of, None for other types; a tuple that may be None counts."""
+    for one in (hint, *get_args(hint)):
+        if get_origin(one) is tuple:
+            return get_args(one)
+    return None
+
+
+def split(values: list[str] | None) -> tuple[str, ...]:
+    """Values of an option that may be repeated and may hold commas."""
+    return tuple(part.strip() for value in values or () for part in value.split(",") if part.strip())
+
+
+def numbers_of(text: str, name: str) -> tuple[float, ...]:
+    """Numbers with commas between."""
+    try:
+        return tuple(float(part) for part in text.split(",") if part.strip())
+    except ValueError:
+        fix = f"write {name}=0.2,0.3,0.4,0.5,0.6"
+        raise OptionError(Problem(f"'{text}' is not a list of numbers", name, fix=fix)) from None
+
+
+def interval_of(text: str | None, name: str) -> tuple[float, float] | None:
+    """FIRST:LAST in seconds; either may be left out."""
+    if text is None:
+        return None
+    first, colon, last = text.partition(":")
+    try:
+        if not colon:
+            raise ValueError
+        return (float(first) if first else float("-inf"), float(last) if last else float("inf"))
+    except ValueError:
+        fix = f"write {name}=FIRST:LAST in seconds, such as 0:300"
+        raise OptionError(Problem(f"'{text}' is not a time {name}", name, fix=fix)) from None
+
+
+def in_flags(text: str) -> str:
+    """A text of the library as the command line says it: name=value becomes --flag value, for every option."""
+
+    def flagged(found: re.Match[str]) -> str:
+        name, value = found.groups()
+        if name not in FLAGS:
+            return found[0]
+        return FLAGS[name] if value == "True" else f"{FLAGS[name]} {value}"
+
+    return _KEYWORD.sub(flagged, text)
+
+
+_KEYWORD = re.compile(r'(?<![\w.-])([a-z]\w*)=("[^"]*"|[^\s;)?]*[^\s;,.)?])')
+"""A keyword argument in a sentence, without the sentence's own signs after it."""
+
+
+def problems_in_flags(error: MmgtuneError) -> list[Problem]:
+    """The problems of an error, with flags where the library names fields."""
+    found = []
+    for problem in error.problems:
+        where = problem.where
+        if isinstance(error, OptionError):
+            where = FLAGS.get(where, where)
+        found.append(
+            replace(
+                problem, where=where, what=in_flags(problem.what), why=in_flags(problem.why), fix=in_flags(problem.fix)
+            )
+        )
+    return found

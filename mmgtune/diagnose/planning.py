@@ -1,0 +1,41 @@
+"""What a diagnosis would do, before it does it, and about how long that takes here."""
+
+from __future__ import annotations
+
+from ..fitting.planning import Plan, evaluation_seconds, whole
+from ..fitting.run import in_pieces
+from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
+from ..model import Model
+from ..options import DiagnoseOptions
+from ..profile import with_all_effects
+from .hypotheses import hypotheses
+from .workbench import make_workbench
+
+EVALUATIONS = (100, 400)
+"""Evaluations a hypothesis costs per parameter fitted, over screening and refits, from few to many."""
+
+
+def plan_diagnosis(profile: ShipGiven, trials: TrialsGiven, options: DiagnoseOptions) -> Plan:
+    """What a diagnosis would do.  Raises OptionError for what it would refuse."""
+    ship, own = ship_of(profile), options.fit_options()
+    pieces = in_pieces(trials_of(trials), own)
+    seen = [trial for name, trial in pieces.trials.items() if name not in pieces.test]
+    wind = any("wind_speed" in trial.extra or "wind_speed_app" in trial.extra for trial in seen)
+    known = hypotheses(Model(with_all_effects(ship)), options.targets or ship.targets, options.effects, wind, [])
+    bench = make_workbench(ship, seen, options)
+    tags = list(dict.fromkeys(h.tag for h in known))
+    search = (
+        f"{len(known)} hypotheses, {options.most} causes at most, false alarm {options.level:g}, seed {options.seed}"
+    )
+    lines = (
+        *whole(ship, pieces, search, own),
+        f"effects   {', '.join(tags)}",
+        f"compares  {bench.problem.n_residuals} differences of {', '.join(bench.channels)}; back end {options.backend}",
+        f"targets   within +-{options.a_r:g} of their values: {', '.join(bench.targets)}",
+    )
+    each = evaluation_seconds(bench.problem)
+    free = len(bench.targets) + 7
+    low, high = (len(known) * n * free * each for n in EVALUATIONS)
+    return Plan(
+        lines, (low, high), ("diagnosis.json", "profile.toml", "motions.parquet", "report.html and .md", "figures")
+    )

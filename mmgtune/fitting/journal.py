@@ -1,0 +1,190 @@
+"""The journal of a long run: every finished search in it, so that a run that was stopped can be continued.
+
+A run is a function of profile, trials, options and versions.  What takes its time are solves of least squares and
+searches; each is noted in a line of a file as soon as it is done, with what it was asked.  A resumed run begins at the
+beginning and takes from the journal what is there, in order; so it comes to the same numbers, bit for bit.  Nothing in
+the file is executed on loading.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import json
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from pathlib import Path
+from typing import Any, Generic, ParamSpec, TypeVar
+
+import numpy as np
+
+from ..errors import OptionError, Problem
+from ..files import cannot_write, write_text
+from .checkpoint import differing
+
+NAME = "journal.jsonl"
+SCHEMA = 1
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+class Journal:
+    """The journal of one run folder.
+
+    identity  everything the run depends on: hashes of profile and trials, options, versions
+    stop      whether the run is being stopped: what ends after that is not as it would have been, and is not noted
+    """
+
+    def __init__(self, folder: Path, identity: dict[str, Any], stop: Callable[[], bool] = lambda: False):
+        self.path = folder / NAME
+        self.identity = identity
+        self.stop = stop
+        self._noted: list[dict[str, Any]] = []
+        self._next = 0
+        self._file: Any = None
+
+    def begin(self, resume: bool) -> None:
+        """Read what is there, or begin anew.
+
+        Raises OptionError where there is nothing to resume, or it belongs to another run.
+        """
+        header = json.dumps({"schema": SCHEMA, "identity": self.identity}, sort_keys=True) + "\n"
+        text = header
+        if resume:
+            lines = self._lines()
+            head = _parsed(lines[0]) if lines else None
+            if head is None:
+                raise OptionError(
+                    Problem("the journal cannot be read", str(self.path), "", "delete it, or run without resume=True")
+                )
+            differing(head.get("identity", {}), self.identity, self.path)
+            entries = [_parsed(line) for line in lines[1:]]
+            whole = entries.index(None) if None in entries else len(entries)  # the last may be half a line
+            self._noted = [entry for entry in entries[:whole] if entry is not None]
+            text = header + "".join(line + "\n" for line in lines[1 : 1 + whole])
+        write_text(self.path, text)
+
+    def _lines(self) -> list[str]:
+        if not self.path.is_file():
+            raise OptionError(
+                Problem(
+                    "nothing to resume",
+                    str(self.path.parent),
+                    "the folder holds no journal: the run ended, or never began",
+                    "run without resume=True",
+                )
+            )
+        return self.path.read_text(encoding="utf-8").splitlines()
+
+    def remember(self, what: str, asked: str, do: Callable[[], Any], note: Callable[[Any], Any], recall: Any) -> Any:
+        """The result of a piece of work: from the journal where it is the next there, else done, and noted.
+
+        what, asked  name of the work, and a hash of what it is to be done with
+        note, recall  a result as JSON, and back
+        """
+        if self._next < len(self._noted):
+            entry = self._noted[self._next]
+            if (entry["what"], entry["asked"]) == (what, asked):
+                self._next += 1
+                return recall(entry["result"])
+            self._forget()  # the run went another way from here; what follows is of no use
+        result = do()
+        if not self.stop():
+            entry = {"what": what, "asked": asked, "result": note(result)}
+            self._append(json.dumps(entry) + "\n")
+            self._noted.append(entry)
+            self._next += 1
+        return result
+
+    def _forget(self) -> None:
+        self._noted = self._noted[: self._next]
+        lines = self._lines()[: 1 + self._next]
+        self.close()
+        write_text(self.path, "".join(line + "\n" for line in lines))
+
+    def _append(self, line: str) -> None:
+        try:
+            if self._file is None:
+                self._file = self.path.open("a", encoding="utf-8", newline="\n")
+            self._file.write(line)
+            self._file.flush()
+            os.fsync(self._file.fileno())
+        except OSError as error:
+            raise cannot_write(self.path, error) from error
+
+    def close(self) -> None:
+        """Let go of the file."""
+        if self._file is not None:
+            self._file.close()
+            self._file = None
+
+    def remove(self) -> None:
+        """Delete the file: the run is finished."""
+        self.close()
+        self.path.unlink(missing_ok=True)
+
+
+_ACTIVE: ContextVar[Journal | None] = ContextVar("journal", default=None)
+
+
+@contextmanager
+def journalled(journal: Journal | None) -> Iterator[None]:
+    """What is searched for within this context is noted; where a journal is kept already, that one goes on."""
+    if journal is None or _ACTIVE.get() is not None:
+        yield
+        return
+    token = _ACTIVE.set(journal)
+    try:
+        yield
+    finally:
+        _ACTIVE.reset(token)
+        journal.close()
+
+
+def kept() -> bool:
+    """Whether a journal is being kept."""
+    return _ACTIVE.get() is not None
+
+
+class remembered(Generic[R]):
+    """Decorator of a function whose results a journal keeps.
+
+    asked         of its arguments: numbers and texts that say what is to be done
+    note, recall  a result as JSON, and back
+    """
+
+    def __init__(self, asked: Callable[..., list[Any]], note: Callable[[R], Any], recall: Callable[[Any], R]):
+        self.asked, self.note, self.recall = asked, note, recall
+
+    def __call__(self, do: Callable[P, R]) -> Callable[P, R]:
+        """The function, remembering where a journal is kept."""
+
+        @functools.wraps(do)
+        def through(*given: P.args, **named: P.kwargs) -> R:
+            journal = _ACTIVE.get()
+            if journal is None:
+                return do(*given, **named)
+            asked = _hash(self.asked(*given, **named))
+            result: R = journal.remember(do.__name__, asked, lambda: do(*given, **named), self.note, self.recall)
+            return result
+
+        return through
+
+
+def _hash(parts: list[Any]) -> str:
+    found = hashlib.sha256()
+    for part in parts:
+        found.update(np.ascontiguousarray(part).tobytes() if isinstance(part, np.ndarray) else repr(part).encode())
+        found.update(b"\0")
+    return found.hexdigest()[:24]
+
+
+def _parsed(line: str) -> dict[str, Any] | None:
+    try:
+        found = json.loads(line)
+    except ValueError:
+        return None
+    return found if isinstance(found, dict) else None

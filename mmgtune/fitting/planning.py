@@ -1,0 +1,120 @@
+"""What a long command would do, before it does it: the problem it would solve, and about how long that takes here."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..backends import WIDTH
+from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
+from ..options import FitOptions, LeaveOutOptions, SweepOptions
+from ..profile import ShipProfile
+from ..trial import TrialSet
+from .cmaes import LAMBDAS
+from .extending import with_effects
+from .leaving_out import leaving_out
+from .problem import FitProblem
+from .run import in_pieces, make_problem
+
+GENERATIONS = (150, 600)
+"""Generations of a restart of CMA-ES, from few to many."""
+
+ITERATIONS = (15, 60)
+"""Iterations of least squares from one start, from few to many; each is a Jacobian and some trials."""
+
+FIT_FILES = ("fit.json", "profile.toml", "history.parquet", "motions.parquet", "report.html and .md", "figures")
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What would be done, in lines, about how long it takes [s] from and to, and the files it would write."""
+
+    lines: tuple[str, ...]
+    seconds: tuple[float, float]
+    writes: tuple[str, ...]
+
+    def __str__(self) -> str:
+        """The lines, and the time."""
+        low, high = (f"{max(1.0, seconds):.2g}" for seconds in self.seconds)
+        return "\n".join([*self.lines, f"time      about {low} to {high} s on this machine"])
+
+
+def plan_fit(profile: ShipGiven, trials: TrialsGiven, options: FitOptions) -> Plan:
+    """What a fit would do.  Raises OptionError for what the fit would refuse."""
+    profile, options = with_effects(ship_of(profile), options)
+    pieces = in_pieces(trials_of(trials), options)
+    problem = make_problem(profile, pieces, options)
+    search = f"{options.method}, seed {options.seed}, {options.starts} least-squares starts"
+    lines = [*whole(profile, pieces, search, options), *_problem(problem, options)]
+    return Plan(tuple(lines), fit_seconds(problem, options), FIT_FILES)
+
+
+def plan_sweep(profile: ShipGiven, trials: TrialsGiven, options: SweepOptions) -> Plan:
+    """What a sweep would do, with the box of its narrowest fit.  Raises OptionError for what it would refuse."""
+    profile, options = with_effects(ship_of(profile), options)
+    pieces = in_pieces(trials_of(trials), options)
+    widths = sorted(options.widths)
+    problems = [make_problem(profile, pieces, options.at(a_r)) for a_r in widths]
+    one = plan_fit(profile, pieces, options.at(widths[0]))
+    low, high = fit_seconds(problems[0], options.at(widths[0]))
+    lines = (f"sweep     over a_r = {', '.join(f'{a_r:g}' for a_r in widths)}; the first:", *one.lines)
+    return Plan(lines, (len(widths) * low, len(widths) * high), ("sweep.json", "a folder for each a_r", *FIT_FILES[4:]))
+
+
+def plan_leave_out(profile: ShipGiven, trials: TrialsGiven, options: LeaveOutOptions) -> Plan:
+    """What leaving runs out would do.  Raises OptionError for what it would refuse."""
+    profile, options = with_effects(ship_of(profile), options)
+    own = options.fit_options()
+    pieces = in_pieces(trials_of(trials), own)
+    problem = make_problem(profile, pieces, own)
+    parts = sum(1 for _ in leaving_out(pieces, options.folds))
+    search = f"{parts} fits by least-squares, after one to all runs from {own.starts} starts, seed {own.seed}"
+    lines = [*whole(profile, pieces, search, own), *_problem(problem, own)]
+    low, high = fit_seconds(problem, own)
+    share = 1.0 + parts / own.starts
+    return Plan(tuple(lines), (share * low, share * high), ("leave_out.json",))
+
+
+def whole(profile: ShipProfile, trials: TrialSet, search: str, options: FitOptions) -> list[str]:
+    """Profile, trials and choices in lines."""
+    return [
+        f"profile   {profile.name} ({profile.path})",
+        f"trials    tune: {', '.join(trials.tune)}; test: {', '.join(trials.test) or 'none'} ({trials.path})",
+        f"search    {search}",
+        f"runs      {options.integrator}, initial states {options.initial}",
+    ]
+
+
+def _problem(problem: FitProblem, options: FitOptions) -> list[str]:
+    low, high = problem.box.limits
+    pre = problem.box.pre
+    return [
+        f"compares  {problem.n_residuals} differences over {problem.cases.steps} steps; back end {options.backend}",
+        f"targets   within +-{options.a_r:g} of their values:",
+        *(
+            f"  {name:<22}{low[i]:>12.5g} .. {pre[i]:>10.5g} .. {high[i]:<10.5g}"
+            for i, name in enumerate(problem.box.names)
+        ),
+    ]
+
+
+def fit_seconds(problem: FitProblem, options: FitOptions) -> tuple[float, float]:
+    """About how long a fit of the problem takes [s], from and to: what it may evaluate, timed here."""
+    extra = 0 if problem.sigma is None else 6
+    by_start = [n * (len(problem.box) + extra + 5) for n in ITERATIONS]
+    work = [options.starts * n for n in by_start]
+    if options.method == "cma-es":
+        work = [n + g * sum(LAMBDAS) for n, g in zip(work, GENERATIONS, strict=True)]
+    each = evaluation_seconds(problem)
+    return work[0] * each, work[1] * each
+
+
+def evaluation_seconds(problem: FitProblem, candidates: int = 8 * WIDTH) -> float:
+    """How long one evaluation of all trials takes [s], among many at once."""
+    middle = np.repeat(problem.box.to_unit(problem.box.pre)[:, None], candidates, axis=1)
+    problem.costs(middle[:, :1])  # compiled now, if it was not
+    began = time.perf_counter()
+    problem.costs(middle)
+    return (time.perf_counter() - began) / candidates

@@ -1,0 +1,39 @@
+"""What a user can choose, a dataclass a command: one field is the keyword, the flag, the line of help and the JSON.
+
+choice      a field that is an option, and what all such dataclasses do
+simulation  integrator, step, back end
+tuning      fit, sweep, leave-out
+diagnosis   diagnose
+scoring     validate, check
+orders      simulate
+
+Nothing here is heavy to import: the command line builds its flags from it before it knows what is wanted.
+"""
+
+from .choice import Choice, Options, again, choice, choices
+from .diagnosis import DiagnoseOptions
+from .orders import SimulateOptions
+from .scoring import CheckOptions, ValidateOptions
+from .simulation import BACKENDS, INTEGRATORS, SimulationOptions
+from .tuning import METHODS, FitOptions, LeaveOutOptions, SearchOptions, SweepOptions, TuningOptions
+
+__all__ = [
+    "BACKENDS",
+    "INTEGRATORS",
+    "METHODS",
+    "CheckOptions",
+    "Choice",
+    "DiagnoseOptions",
+    "FitOptions",
+    "LeaveOutOptions",
+    "Options",
+    "SearchOptions",
+    "SimulateOptions",
+    "SimulationOptions",
+    "SweepOptions",
+    "TuningOptions",
+    "ValidateOptions",
+    "again",
+    "choice",
+    "choices",
+]

@@ -1,0 +1,51 @@
+"""What a user can choose about a diagnosis."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..errors import Problem, closest
+from .choice import again, choice
+from .simulation import SimulationOptions
+from .tuning import FitOptions
+
+CHANNELS = ("x", "y", "psi", "u", "v", "r")
+
+
+@dataclass(frozen=True)
+class DiagnoseOptions(SimulationOptions):
+    """All choices of a diagnosis with working defaults.  A wrong integrator is itself a candidate cause."""
+
+    a_r: float = again(FitOptions, "a_r")
+    targets: tuple[str, ...] = again(FitOptions, "targets")
+    fixed: tuple[str, ...] = again(FitOptions, "fixed")
+    effects: tuple[str, ...] = choice((), "Effects to look for, comma-separated. Default: all that apply.")
+    channels: tuple[str, ...] = again(FitOptions, "channels", but="All in a diagnosis.")
+    restart: float | None = again(FitOptions, "restart")
+    most: int = choice(4, "Largest number of causes looked for.", least=1, most=8)
+    level: float = choice(0.01, "Largest probability of a false alarm over the search.", above=0, below=0.5)
+    seed: int = again(FitOptions, "seed")
+
+    def problems(self) -> list[Problem]:
+        """What makes no sense, effects and channels that do not exist among it."""
+        found = super().problems()
+        if self.effects:
+            from ..effects import effect_tags
+
+            known = effect_tags()
+            found += [
+                Problem(f"unknown effect '{tag}'", "effects", fix=closest(tag, known))
+                for tag in self.effects
+                if tag not in known
+            ]
+        for name in self.channels:
+            if name not in (*CHANNELS, "v_m"):
+                why = "every channel counts by its own noise" if ":" in name else ""
+                fix = "leave the weight out" if why else closest(name, CHANNELS)
+                found.append(Problem(f"unknown channel '{name}'", "channels", why, fix))
+        return found
+
+    def fit_options(self) -> FitOptions:
+        """The same choices as a fit knows them."""
+        shared = {name: value for name, value in self.shared_with(FitOptions).items() if name != "channels"}
+        return FitOptions(**shared, method="least-squares", initial="estimated")

@@ -1,0 +1,208 @@
+"""Standard manoeuvres or whole trials simulated, with their indices and criteria: what ``mmgtune simulate`` does."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, overload
+
+from .backends import Integrator
+from .errors import OptionError, OutputError, Problem
+from .evaluation import TrialRecord, evaluate
+from .files import exists
+from .given import ShipGiven, TrialsGiven, list_of, ship_of
+from .manoeuvres.summary import criteria_of, indices_of
+from .model import Model
+from .options import SimulateOptions
+from .orders import Helmsman, TurningOrder, ZigzagOrder, run_manoeuvre
+from .profile import ShipProfile
+from .simulation import Motion, as_trial
+from .trial import Trial, write_trial
+from .units import DEG, parse
+
+ORDERED = "rk4"
+"""How manoeuvres given as orders are simulated, at steps of their own."""
+
+RADIANS = 2.0
+"""A plain number of degrees below this is likely meant as radians."""
+
+PER_SECOND = 20.0
+"""A plain number of revolutions a minute below this is likely meant as revolutions a second."""
+
+
+@dataclass(frozen=True, eq=False)
+class Simulated(Sequence[Motion]):
+    """Simulated runs, a sequence of ``Motion``, with what they are judged by.
+
+    records  each beside the trial it is of; empty for manoeuvres given as orders
+    """
+
+    ship: ShipProfile
+    motions: tuple[Motion, ...]
+    records: tuple[TrialRecord, ...]
+    options: SimulateOptions
+
+    def __len__(self) -> int:
+        return len(self.motions)
+
+    @overload
+    def __getitem__(self, k: int) -> Motion: ...
+    @overload
+    def __getitem__(self, k: slice) -> Sequence[Motion]: ...
+    def __getitem__(self, k: int | slice) -> Motion | Sequence[Motion]:
+        return self.motions[k]
+
+    def __repr__(self) -> str:
+        """In a line."""
+        ids = [motion.id for motion in self.motions]
+        more = f" and {len(ids) - 4} more" if len(ids) > 4 else ""
+        return f"Simulated({self.ship.id}: {', '.join(ids[:4])}{more})"
+
+    def rows(self) -> list[dict[str, Any]]:
+        """Status, indices, distance to what was measured, and criteria of every run."""
+        records = self.records or (None,) * len(self.motions)
+        return [_described(self.ship, motion, record) for motion, record in zip(self.motions, records, strict=True)]
+
+    def write(self, folder: Path, *, with_forces: bool = False, overwrite: bool = False) -> list[Path]:
+        """Write every run as a trial file.  Raises OutputError where one is there already."""
+        paths = [folder / f"{motion.id}.parquet" for motion in self.motions]
+        taken = [exists(path) for path in paths if path.exists() and not overwrite]
+        if taken:
+            raise OutputError(*taken)
+        for motion, path in zip(self.motions, paths, strict=True):
+            write_trial(as_trial(self.ship, motion, with_forces=with_forces), path, overwrite=overwrite)
+        return paths
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {"schema": 1, "profile": self.ship.id, "sha256": self.ship.sha256, "runs": self.rows()}
+
+
+def simulate(
+    ship: ShipGiven | Model,
+    trials: TrialsGiven | Sequence[Trial] | None = None,
+    options: SimulateOptions = SimulateOptions(),
+    *,
+    integrator: Integrator | None = None,
+    backend: str | None = None,
+) -> Simulated:
+    """Simulate trials with their own inputs, or where there are none the manoeuvres of the options.
+
+    ship, trials  objects, paths or bundled names; ``trials`` may be a list of trials
+    integrator, backend  in place of those of the options
+    Manoeuvres by orders are integrated finely whatever the options say.  A run that diverges is marked so.
+    Raises OptionError for orders that make no sense, or given together with trials.
+    """
+    model = ship if isinstance(ship, Model) else Model(ship_of(ship))
+    profile = model.profile
+    if trials is None:
+        return Simulated(profile, tuple(_on_orders(model, options)), (), options)
+    if options.turn or options.zigzag or options.speed or options.rpm:
+        raise OptionError(
+            Problem("trials have their own inputs", "trials", fix="leave out turn, zigzag, speed and rpm")
+        )
+    records = evaluate(
+        model,
+        list_of(trials),
+        integrator=integrator or options.make_integrator(),
+        backend=backend or options.backend,
+    )
+    return Simulated(profile, tuple(record.motion for record in records), records, options)
+
+
+def _on_orders(model: Model, options: SimulateOptions) -> list[Motion]:
+    ship = model.profile
+    speed = None if options.speed is None else _quantity(options.speed, "speed", "m/s", '"12 kn"')
+    n = None if options.rpm is None else revolutions(options.rpm)
+    orders: list[tuple[str, Helmsman]] = []
+    turns = options.turn or (() if options.zigzag else ("35", "-35"))
+    for text in turns:
+        angle = rudder_angle(text)
+        orders.append((f"turn_{_signed(angle / DEG)}", TurningOrder(angle)))
+    for text in options.zigzag:
+        rudder, heading = zigzag_angles(text)
+        orders.append((f"zigzag_{_signed(rudder)}_{heading:g}", ZigzagOrder(rudder * DEG, heading * DEG)))
+    L, V = ship.L_pp, speed or (ship.approach.speed if ship.approach else 1.0)
+    # Models are quicker than ships: sample ten times per ship length travelled, once a second at most.
+    sample = min(1.0, round(L / V / 10.0, 1) or 0.1)
+    longest = max(600.0, 150.0 * L / V)
+    return [
+        run_manoeuvre(model, helmsman, id=name, speed=speed, n=n, longest=longest, sample=sample)
+        for name, helmsman in orders
+    ]
+
+
+def rudder_angle(text: str) -> float:
+    """The rudder angle [rad] of "35", "35 deg" or "0.61 rad".  Raises OptionError."""
+    written = _plain(text)
+    if written is not None and 0.0 < abs(written) < RADIANS:
+        fix = f'write {written / DEG:.3g} for degrees, "{text} rad", or "{text} deg" if that is meant'
+        raise OptionError(Problem(f"a rudder angle of {text} looks like radians", "turn", "turn is in degrees", fix))
+    angle = written * DEG if written is not None else _quantity(text, "turn", "rad", '35 or "0.61 rad"')
+    if not 0.0 < abs(angle) <= 0.5 * math.pi:
+        fix = "give an angle between -90 and 90 deg, not 0"
+        raise OptionError(Problem(f"rudder angle {angle / DEG:g} deg", "turn", fix=fix))
+    return angle
+
+
+def revolutions(text: str) -> float:
+    """Propeller revolutions [1/s] of "106", "106 rpm" or "1.77 1/s".  Raises OptionError."""
+    written = _plain(text)
+    if written is not None and 0.0 < written < PER_SECOND:
+        fix = f'write {60.0 * written:.4g} for 1/min, "{text} 1/s", or "{text} rpm" if that is meant'
+        raise OptionError(Problem(f"{text} revolutions look like 1/s", "rpm", "rpm is in 1/min", fix))
+    n = written / 60.0 if written is not None else _quantity(text, "rpm", "1/s", '106 or "1.77 1/s"')
+    if not (n > 0.0 and math.isfinite(n)):
+        raise OptionError(Problem(f"the revolutions are {text}", "rpm", fix="give a number above 0"))
+    return n
+
+
+def zigzag_angles(text: str) -> tuple[float, float]:
+    """Rudder and heading [deg] of "20/20" or "-10/10".  Raises OptionError."""
+    try:
+        rudder, heading = (float(part) for part in text.split("/"))
+        if not (0.0 < abs(rudder) <= 90.0 and 0.0 < heading <= 180.0):
+            raise ValueError
+    except ValueError:
+        fix = "write RUDDER/HEADING in degrees, such as 20/20"
+        raise OptionError(Problem(f"'{text}' is not a zigzag", "zigzag", fix=fix)) from None
+    if abs(rudder) < RADIANS or heading < RADIANS:
+        fix = "write RUDDER/HEADING in degrees, such as 20/20"
+        raise OptionError(Problem(f"a zigzag {text} looks like radians", "zigzag", "zigzag is in degrees", fix))
+    return rudder, heading
+
+
+def _plain(text: str) -> float | None:
+    """A number without a unit, None where there is one."""
+    try:
+        return float(text)
+    except ValueError:
+        return None
+
+
+def _quantity(text: str, name: str, unit: str, such_as: str) -> float:
+    try:
+        return parse(text, unit)[0]
+    except ValueError as error:
+        raise OptionError(Problem(str(error), name, fix=f"write {name}={such_as}")) from None
+
+
+def _signed(angle: float) -> str:
+    return f"{'p' if angle > 0 else 'm'}{abs(angle):g}"
+
+
+def _described(ship: ShipProfile, motion: Motion, record: TrialRecord | None) -> dict[str, Any]:
+    V = ship.approach.speed if ship.approach else float(motion.states[0, 3])
+    track = None if motion.diverged else motion.track()
+    return {
+        "id": motion.id,
+        "status": "diverged" if motion.diverged else "ok",
+        "duration_s": float(motion.t[-1]),
+        "integrator": record.method if record else ORDERED,
+        "indices": record.indices if record else indices_of(track, ship.L_pp) if track else {},
+        "measured": record.measured.indices if record else None,
+        "measures": record.measures if record and not motion.diverged else None,
+        "criteria": [criterion.to_dict() for criterion in criteria_of(track, ship.L_pp, V)] if track else [],
+    }

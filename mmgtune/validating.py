@@ -1,0 +1,146 @@
+"""Models scored on trials and compared: what ``mmgtune validate`` does."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from .errors import OptionError, Problem
+from .given import ShipGiven, TrialsGiven, ship_of, trials_of
+from .model import Model
+from .objective import spread
+from .options import ValidateOptions
+from .predictor import PhysicsPredictor, Predictor, as_predictor, words_of
+from .repeating import Repeated, document, repeat
+from .validation import L_MSE, TrialScore, score, summary
+
+Scorable = ShipGiven | Model | Predictor
+"""What can be scored: a profile, its path or bundled name, a model, or any predictor."""
+
+
+@dataclass(frozen=True, eq=False)
+class Scored:
+    """One predictor: what it was called, its scores by trial or window, and its manoeuvres repeated where asked for."""
+
+    name: str
+    predictor: Predictor
+    scores: tuple[TrialScore, ...]
+    repeated: tuple[Repeated, ...] = ()
+
+    def __repr__(self) -> str:
+        """In a line."""
+        return f"Scored({self.name}, {len(self.scores)} runs, L_MSE {L_MSE(self.scores):.4g})"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Scores over everything, by kind of manoeuvre and by run, for JSON; what diverged is null."""
+        profile = self.predictor.model.profile if isinstance(self.predictor, PhysicsPredictor) else None
+        return {
+            "profile": self.name,
+            "id": self.predictor.name,
+            "sha256": profile.sha256 if profile else None,
+            "method": self.predictor.method,
+            **summary(self.scores),
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class Validation:
+    """Predictors scored on the same trials.
+
+    trials, sigma_from  what the trials, and those whose spread is counted in, were called
+    sigma   what L_MSE divides differences of each state by [SI]
+    """
+
+    profiles: tuple[Scored, ...]
+    trials: str
+    sigma: Mapping[str, float]
+    sigma_from: str
+    options: ValidateOptions = field(default_factory=ValidateOptions)
+
+    def __repr__(self) -> str:
+        """In a line."""
+        named = ", ".join(f"{one.name} {L_MSE(one.scores):.4g}" for one in self.profiles[:4])
+        more = f" and {len(self.profiles) - 4} more" if len(self.profiles) > 4 else ""
+        return f"Validation(on {self.trials[-60:]}, L_MSE of {named}{more})"
+
+    @property
+    def method(self) -> str:
+        """How profiles were simulated, to be named beside J."""
+        return words_of(self.options.make_integrator())
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        rows = [one.to_dict() for one in self.profiles]
+        if self.options.manoeuvres:
+            for row, one in zip(rows, self.profiles, strict=True):
+                row["manoeuvres"] = document(one.repeated)
+        return {
+            "schema": 1,
+            "kind": "validate",
+            "trials": self.trials,
+            "window_s": self.options.restart,
+            "sigma": dict(self.sigma),
+            "sigma_from": self.sigma_from,
+            "integrator": self.options.integrator,
+            "substeps": self.options.substeps,
+            "options": self.options.to_dict(),
+            "profiles": rows,
+        }
+
+
+def validate(
+    profiles: Scorable | Sequence[Scorable] | Mapping[str, Scorable],
+    trials: TrialsGiven,
+    options: ValidateOptions = ValidateOptions(),
+) -> Validation:
+    """Score predictors on trials, each trial or window of it simulated from its first measured state.
+
+    profiles  one or several: profiles, models, predictors, paths or bundled names; a mapping gives each a name
+    trials    a data set, a path or a bundled name
+    Integrator and back end of the options are for profiles; a predictor has its own ways.
+    Raises OptionError for no profile, and for trials in which a state does not vary.
+    """
+    if isinstance(profiles, Mapping):
+        several = dict(profiles)
+    else:
+        given = list(profiles) if isinstance(profiles, Sequence) and not isinstance(profiles, str) else [profiles]
+        several = {_called(one): one for one in given}
+    if not several:
+        raise OptionError(Problem("there is no profile to score", "profiles", fix="name one or more"))
+    predictors = {
+        name: as_predictor(
+            ship_of(one) if isinstance(one, (str, Path)) else one,
+            integrator=options.make_integrator(),
+            backend=options.backend,
+        )
+        for name, one in several.items()
+    }
+    data = trials_of(trials)
+    called = str(trials) if isinstance(trials, (str, Path)) else str(data.path or "trials")
+    sigma = spread(list((trials_of(options.sigma_from) if options.sigma_from else data).trials.values()))
+    still = [name for name, value in sigma.items() if not value > 0.0]
+    if still:
+        raise OptionError(
+            Problem(
+                f"these trials do not vary in {', '.join(still)}",
+                "sigma_from" if options.sigma_from else called,
+                "L_MSE divides by the spread of each state",
+                "name trials that do with sigma_from=TRIALS",
+            )
+        )
+    whole = list(data.trials.values())
+    pieces = list((data.in_windows(options.restart) if options.restart else data).trials.values())
+    scored = []
+    for name, predictor in predictors.items():
+        repeated = tuple(repeat(predictor, whole)) if options.manoeuvres else ()
+        scored.append(Scored(name, predictor, tuple(score(predictor, pieces, sigma)), repeated))
+    return Validation(tuple(scored), called, sigma, options.sigma_from or called, options)
+
+
+def _called(given: Scorable) -> str:
+    """What to call something scored that was given without a name."""
+    if isinstance(given, (str, Path)):
+        return str(given)
+    return given.profile.id if isinstance(given, Model) else getattr(given, "id", "") or getattr(given, "name", "?")

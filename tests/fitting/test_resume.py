@@ -1,0 +1,158 @@
+"""Runs that were stopped: they say so, recommend nothing, and come to the same numbers when they are continued."""
+
+import json
+import signal
+
+import pytest
+
+import mmgtune
+from mmgtune.errors import OptionError
+from mmgtune.fitting import Hooks, LeaveOutOptions, SweepOptions, leave_out, sweep
+from mmgtune.fitting.journal import NAME
+from tests.command import run, run_until
+
+CLOCK = {"created", "wall_s", "evaluations", "command", "out"}
+FEW = ("hull.R_0", "wake.w_P0", "rudder.kappa")
+
+
+def same(document):
+    """A document without what may differ between two runs."""
+    if isinstance(document, dict):
+        return {key: same(value) for key, value in document.items() if key not in CLOCK}
+    return [same(one) for one in document] if isinstance(document, list) else document
+
+
+def stopping(phase):
+    """Hooks that stop the run when a phase begins whose words hold ``phase``, and those begun."""
+    begun = []
+    hooks = Hooks(on_phase=begun.append, stop=lambda: any(phase in words for words in begun))
+    return hooks, begun
+
+
+def lines(folder):
+    return (folder / NAME).read_text().splitlines()
+
+
+def test_a_stopped_leave_out_tells_what_it_has_and_goes_on(tmp_path):
+    options = LeaveOutOptions(targets=FEW, starts=1)
+    whole = leave_out("suzaku", "suzaku", options)
+    hooks, _ = stopping("leaving out turn_m")
+    cut = leave_out("suzaku", "suzaku", options, hooks=hooks, folder=tmp_path)
+    assert cut.interrupted
+    assert 0 < len(cut.parts) < cut.n_parts == len(whole.parts)
+    assert cut.rows()[0]["runs"] == len(cut.parts)
+    assert cut.to_dict()["interrupted"]
+    noted = len(lines(tmp_path))
+    assert noted == 1 + 1 + len(cut.parts)  # what it belongs to, the fit to all, a line a part
+    hooks, begun = stopping("never")
+    resumed = leave_out("suzaku", "suzaku", options, hooks=hooks, folder=tmp_path, resume=True)
+    assert same(resumed.to_dict()) == same(whole.to_dict())
+    assert not (tmp_path / NAME).exists()
+    assert len(begun) == 1 + len(whole.parts)
+
+
+def test_stopped_before_the_first_part(tmp_path):
+    """Ended in a ValueError of an array without elements."""
+    cut = leave_out("suzaku", "suzaku", LeaveOutOptions(targets=FEW, starts=1), hooks=Hooks(stop=lambda: True))
+    assert cut.interrupted
+    assert cut.rows() == []
+    json.dumps(cut.to_dict(), allow_nan=False)
+
+
+def test_a_stopped_sweep_recommends_nothing_and_goes_on(tmp_path):
+    options = SweepOptions(widths=(0.2, 0.4, 0.5), targets=FEW, starts=2, method="least-squares")
+    whole = sweep("suzaku", "suzaku", options)
+    hooks, _ = stopping("a_r = 0.4")
+    cut = sweep("suzaku", "suzaku", options, hooks=hooks, folder=tmp_path)
+    assert cut.interrupted
+    assert cut.recommended()["a_r"] is None
+    assert "stopped" in cut.recommended()["sentence"]
+    assert cut.overfitting()["found"] is None
+    assert (tmp_path / "ar_0.2" / "fit.json").exists()
+    with pytest.raises(OptionError, match="different now: options"):
+        sweep("suzaku", "suzaku", SweepOptions(widths=(0.2, 0.4), starts=2), folder=tmp_path, resume=True)
+    resumed = sweep("suzaku", "suzaku", options, folder=tmp_path, resume=True)
+    assert same(resumed.to_dict()) == same(whole.to_dict())
+    assert not (tmp_path / NAME).exists()
+
+
+def test_half_a_line_at_the_end_is_done_again(tmp_path):
+    options = LeaveOutOptions(targets=FEW, starts=1, folds=3)
+    hooks, _ = stopping("leaving out turn_p35")
+    leave_out("suzaku", "suzaku", options, hooks=hooks, folder=tmp_path)
+    text = (tmp_path / NAME).read_text()
+    (tmp_path / NAME).write_text(text[:-40])
+    resumed = leave_out("suzaku", "suzaku", options, folder=tmp_path, resume=True)
+    assert same(resumed.to_dict()) == same(leave_out("suzaku", "suzaku", options).to_dict())
+
+
+def test_nothing_to_resume(tmp_path):
+    with pytest.raises(OptionError, match="nothing to resume"):
+        leave_out("suzaku", "suzaku", folder=tmp_path, resume=True)
+
+
+def test_kill_9_of_a_diagnosis_and_resume(tmp_path):
+    asked = ("diagnose", "--effects", "speed-scale,current", "--targets", "R_0,w_P0", "--no-report", "--quiet")
+    journal = tmp_path / "cut" / NAME
+
+    def far():
+        return journal.exists() and len(lines(journal.parent)) > 6
+
+    killed = run_until(far, signal.SIGKILL, *asked, "--out", "cut", cwd=tmp_path)
+    assert killed.code == -signal.SIGKILL
+    other = run(*asked, "--seed", "3", "--resume", "--out", "cut", cwd=tmp_path)
+    assert other.code == 2
+    assert "different now: options" in other.err
+    resumed = run(*asked, "--resume", "--json", "--out", "cut", cwd=tmp_path)
+    assert resumed.code == 0, resumed.err
+    whole = run(*asked, "--json", "--out", "whole", cwd=tmp_path)
+    assert same(resumed.json()) == same(whole.json())
+
+
+def test_ctrl_c_of_a_diagnosis_concludes_nothing(tmp_path):
+    asked = ("diagnose", "--effects", "speed-scale", "--targets", "R_0,w_P0", "--quiet")
+    journal = tmp_path / "run" / NAME
+
+    def begun():
+        return journal.exists() and len(lines(journal.parent)) > 1
+
+    ended = run_until(begun, signal.SIGINT, *asked, "--json", "--out", "run", "--fail-on", "interrupted", cwd=tmp_path)
+    assert ended.code == 130, ended.err
+    document = ended.json()
+    assert document["verdict"] == "interrupted"
+    assert document["causes"] == []
+    assert "nothing can be concluded" in document["sentence"]
+    assert "stopped before its end" in (tmp_path / "run" / "report.md").read_text()
+    assert "--resume --out run continues" in ended.err
+
+
+def test_ctrl_c_of_leave_out(tmp_path):
+    asked = ("leave-out", "--targets", "R_0,w_P0,kappa", "--starts", "1", "--quiet", "--out", "run")
+    journal = tmp_path / "run" / NAME
+    ended = run_until(journal.exists, signal.SIGINT, *asked, cwd=tmp_path)
+    assert ended.code == 130, ended.err
+    assert "Traceback" not in ended.err
+    resumed = run(*asked, "--resume", "--json", cwd=tmp_path)
+    assert resumed.code == 0, resumed.err
+    assert not resumed.json()["interrupted"]
+    assert len(resumed.json()["parts"]) == resumed.json()["n_parts"]
+
+
+def test_ctrl_c_at_once_is_one_line(tmp_path):
+    for wait in (0.05, 0.4):
+        import time
+
+        began = time.monotonic()
+        ended = run_until(
+            lambda began=began, wait=wait: time.monotonic() - began > wait, signal.SIGINT, "fit", "--dry-run",
+            cwd=tmp_path,
+        )  # fmt: skip
+        if ended.code == -signal.SIGINT:  # before Python itself was up
+            continue
+        assert ended.code in (0, 130, 1), ended.err
+        if ended.code == 130:
+            assert len(ended.err.strip().splitlines()) == 1
+
+
+def test_names_do_for_objects():
+    assert mmgtune.load_profile("suzaku").id == mmgtune.simulate("suzaku", "suzaku").ship.id
