@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from .diagnose import diagnose as diagnose
     from .diagnose import write_diagnosis as write_diagnosis
     from .errors import MmgtuneError as MmgtuneError
+    from .evaluation import TrialRecord as TrialRecord
+    from .evaluation import evaluate as evaluate
     from .fitting import FitResult as FitResult
     from .fitting import LeftOut as LeftOut
     from .fitting import SweepResult as SweepResult
@@ -45,6 +47,9 @@ if TYPE_CHECKING:
     from .orders import TurningOrder as TurningOrder
     from .orders import ZigzagOrder as ZigzagOrder
     from .orders import run_manoeuvre as run_manoeuvre
+    from .predictor import PhysicsPredictor as PhysicsPredictor
+    from .predictor import Prediction as Prediction
+    from .predictor import Predictor as Predictor
     from .profile import ShipProfile as ShipProfile
     from .profile import load_profile as load_profile
     from .repeating import repeat as repeat
@@ -83,6 +88,11 @@ _WHERE = {
     "repeat": "repeating",
     "score": "validation",
     "MmgtuneError": "errors",
+    "TrialRecord": "evaluation",
+    "evaluate": "evaluation",
+    "PhysicsPredictor": "predictor",
+    "Prediction": "predictor",
+    "Predictor": "predictor",
     "FitOptions": "options",
     "FitResult": "fitting",
     "SweepResult": "fitting",

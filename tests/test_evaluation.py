@@ -13,10 +13,12 @@ from mmgtune.fitting.run import make_setting
 from mmgtune.measures import distance_measures, reference_of
 from mmgtune.metrics import METRICS
 from mmgtune.objective import make_objective, spread
+from mmgtune.options import ValidateOptions
 from mmgtune.profile import ShipProfile
 from mmgtune.simulation import simulate
 from mmgtune.trial import TrialSet, write_trial
-from mmgtune.validation import score, validate
+from mmgtune.validating import validate
+from mmgtune.validation import score
 from tests.command import run
 from tests.fitting.conftest import make_set
 
@@ -134,7 +136,7 @@ def test_nothing_warns_where_a_simulation_diverges(wild, suzaku):
         assert record.rms
         assert record.measures
         assert record.indices is not None
-    assert all(row["L_MSE"] is None for row in validate({"wild": wild}, trials, manoeuvres=True).rows)
+    assert all(row["L_MSE"] is None for row in validate({"wild": wild}, trials, ValidateOptions(manoeuvres=True)).to_dict()["profiles"])
     checked = measure(wild, every, list(METRICS))[0].values()
     assert any(value == np.inf for values in checked for value in values.values())
     left = fit_leaving_out(wild, trials, QUICK, folds=2)

@@ -14,12 +14,13 @@ from mmgtune.diagnose.evidence import short_horizon
 from mmgtune.errors import OptionError
 from mmgtune.evaluation import evaluate
 from mmgtune.metrics import METRICS
+from mmgtune.options import ValidateOptions
 from mmgtune.orders import TurningOrder, ZigzagOrder, run_manoeuvre
 from mmgtune.predictor import Prediction, Restarted, Steerable, as_predictor, portions
 from mmgtune.repeating import repeat
 from mmgtune.simulation import as_trial, simulate
 from mmgtune.trial import TrialSet
-from mmgtune.validation import validate
+from mmgtune.validating import validate
 
 RAD = math.radians(1.0)
 
@@ -32,6 +33,7 @@ class Nomoto:
     K: tuple[float, ...] = (0.02, 0.025, 0.03)
     T: float = 20.0
     name = "nomoto"
+    inputs = ("n", "delta")
     method = "euler"
     n_members = 3
 
@@ -59,7 +61,7 @@ def sailed(suzaku):
 
 
 def test_validation_and_its_document(suzaku, sailed):
-    found = validate({"physics": suzaku, "simple": Nomoto()}, sailed, manoeuvres=True)
+    found = validate({"physics": suzaku, "simple": Nomoto()}, sailed, ValidateOptions(manoeuvres=True))
     document = json.loads(json.dumps(found.to_dict(), allow_nan=False))
     physics, simple = document["profiles"]
     assert (simple["id"], simple["method"], simple["sha256"]) == ("nomoto", "euler", None)
@@ -135,7 +137,7 @@ def test_one_that_loses_itself_is_marked(sailed):
             found.diverged[:, 1] = True
             return found
 
-    document = validate({"lost": Lost()}, sailed, manoeuvres=True).to_dict()["profiles"][0]
+    document = validate({"lost": Lost()}, sailed, ValidateOptions(manoeuvres=True)).to_dict()["profiles"][0]
     assert [one["J"] is None for one in document["members"]] == [False, True, False]
     assert document["J"] is None
     assert [one["simulated"] is None for one in document["manoeuvres"]["runs"]] == 2 * [False, True, False]
