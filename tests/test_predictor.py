@@ -10,6 +10,7 @@ import pytest
 
 from mmgtune.backends import Integrator, pad
 from mmgtune.checking.measuring import measure
+from mmgtune.cli.validate import summary
 from mmgtune.diagnose.evidence import short_horizon
 from mmgtune.errors import OptionError
 from mmgtune.evaluation import evaluate
@@ -63,6 +64,9 @@ def sailed(suzaku):
 def test_validation_and_its_document(suzaku, sailed):
     found = validate({"physics": suzaku, "simple": Nomoto()}, sailed, ValidateOptions(manoeuvres=True))
     document = json.loads(json.dumps(found.to_dict(), allow_nan=False))
+    said = summary(found)
+    assert "simple (nomoto), euler" in said
+    assert "physics (suzaku), rk4" in said
     physics, simple = document["profiles"]
     assert (simple["id"], simple["method"], simple["sha256"]) == ("nomoto", "euler", None)
     assert (physics["id"], physics["method"]) == ("suzaku", "rk4")
