@@ -99,7 +99,7 @@ def test_dry_run_writes_nothing(tmp_path):
 
 
 def test_kill_9_and_resume_gives_the_same_result(tmp_path):
-    search = ("fit", "--no-report", "--quiet", "--starts", "2", "--seed", "5")
+    search = ("fit", "--integrator", "euler", "--no-report", "--quiet", "--starts", "2", "--seed", "5")
     whole = run(*search, "--json", "--out", "whole", cwd=tmp_path)
     checkpoint = tmp_path / "cut" / "checkpoint.npz"
     killed = run_until(checkpoint.exists, signal.SIGKILL, *search, "--out", "cut", cwd=tmp_path)
@@ -119,7 +119,7 @@ def test_kill_9_and_resume_gives_the_same_result(tmp_path):
 
 
 def test_ctrl_c_saves_the_best_so_far_and_can_be_continued(tmp_path):
-    search = ("fit", "--quiet", "--starts", "2", "--no-report")
+    search = ("fit", "--integrator", "euler", "--quiet", "--starts", "2", "--no-report")
     checkpoint = tmp_path / "run" / "checkpoint.npz"
     ended = run_until(checkpoint.exists, signal.SIGINT, *search, "--json", "--out", "run", cwd=tmp_path)
     assert ended.code == 130
