@@ -47,6 +47,16 @@ _SYNONYMS = {
 
 DIMENSIONLESS = ("-", "prime")
 
+_SHOWN = {"rad": "deg", "rad/s": "deg/s", "1/s": "rpm", "1/s^2": "rpm/s"}
+"""SI units that people read something else for."""
+
+
+def shown_in(unit: str) -> tuple[str, float]:
+    """The unit people read instead of an SI one, and the factor to it: degrees, revolutions per minute."""
+    shown = _SHOWN.get(unit, unit)
+    return shown, 1.0 if shown == unit else 1.0 / _FACTORS[unit][shown]
+
+
 _QUANTITY = re.compile(r"^\s*((?:[-+0-9.eE]+\s*,\s*)*[-+0-9.eE]+)\s*([^\s0-9].*?|1/.*?)?\s*$")
 
 
@@ -62,7 +72,7 @@ def parse(text: str, unit: str, infinite: bool = False) -> tuple[float, ...]:
     if match is None:
         raise ValueError(f"'{text}' is not a number with a unit, such as '{example(unit)}'")
     written = (match.group(2) or "").strip()
-    known = _FACTORS.get(unit, {})
+    known = factors(unit)
     if unit in DIMENSIONLESS:
         if written and written != "-":
             raise ValueError(f"'{text}' has a unit where a pure number belongs")
@@ -86,8 +96,11 @@ def canonical(unit: str) -> str:
 
 
 def factors(unit: str) -> dict[str, float]:
-    """Units a quantity in ``unit`` may be written in, and what a number in each is multiplied by."""
-    return dict(_FACTORS.get(unit, {}))
+    """Units a quantity in ``unit`` may be written in, and what a number in each is multiplied by.
+
+    One that is not listed, of a coefficient of one's own, may be written as it is.
+    """
+    return dict(_FACTORS.get(unit, {unit: 1.0}))
 
 
 def example(unit: str) -> str:

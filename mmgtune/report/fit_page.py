@@ -124,7 +124,7 @@ def _histories(record: RunRecord, drawings: dict[str, Drawn]) -> Section | None:
     names = [str(row["id"]) for row in record.results if str(row["id"]) in record.motions]
     if not names:
         return None
-    payload, thinned = charts.histories(names, record.motions)
+    payload, thinned = charts.histories(names, record.motions, record.inputs)
     for trial in payload["trials"]:
         trial["name"] = clean(trial["name"])
     notes = ["All motions, at full resolution, are in motions.parquet in the run folder."]
@@ -138,7 +138,7 @@ def _histories(record: RunRecord, drawings: dict[str, Drawn]) -> Section | None:
     drawings["histories"] = Drawn(
         "histories",
         "Measured and simulated time histories of the trial that fits worst",
-        lambda: tracks.draw_histories(record.motions[str(worst["id"])]),
+        lambda: tracks.draw_histories(record.motions[str(worst["id"])], record.inputs),
     )
     caption = f"The trial that fits worst after tuning: {clean(worst['id'])}."
     static = picture(drawings["histories"], "Time histories", caption)
