@@ -18,13 +18,24 @@ class Input:
 
     name   column of trial files, and field of the ``Control`` of arrangements that have it
     unit   SI unit
-    words  what people call it, with its sign
+    words  what people call it
+    sign   what a positive value does, "" where the words leave no doubt
     """
 
     name: str
     unit: str
     words: str
     role: Role
+    sign: str = ""
+
+    @property
+    def meaning(self) -> str:
+        """Words with the sign."""
+        return f"{self.words}, {self.sign}" if self.sign else self.words
+
+    def to_dict(self) -> dict[str, str]:
+        """As records of runs name it."""
+        return {"name": self.name, "unit": self.unit, "words": self.words, "role": self.role}
 
     @property
     def rate_unit(self) -> str:
@@ -36,11 +47,13 @@ INPUTS: dict[str, Input] = {
     one.name: one
     for one in (
         Input("n", "1/s", "propeller revolutions", "propeller"),
-        Input("delta", "rad", "rudder angle, to starboard: a positive angle turns the ship to starboard", "rudder"),
-        Input("delta_port", "rad", "port rudder angle", "rudder"),
-        Input("delta_stbd", "rad", "starboard rudder angle", "rudder"),
-        Input("n_bow", "1/s", "bow thruster revolutions", "thruster"),
-        Input("n_stern", "1/s", "stern thruster revolutions", "thruster"),
+        Input("n_port", "1/s", "port propeller revolutions", "propeller"),
+        Input("n_stbd", "1/s", "starboard propeller revolutions", "propeller"),
+        Input("delta", "rad", "rudder angle", "rudder", "to starboard: a positive angle turns the ship to starboard"),
+        Input("delta_port", "rad", "port rudder angle", "rudder", "turning the ship to starboard"),
+        Input("delta_stbd", "rad", "starboard rudder angle", "rudder", "turning the ship to starboard"),
+        Input("n_bow", "1/s", "bow thruster revolutions", "thruster", "pushing the bow to starboard"),
+        Input("n_stern", "1/s", "stern thruster revolutions", "thruster", "pushing the stern to starboard"),
     )
 }
 """Every input there is, by name."""

@@ -47,6 +47,16 @@ _SYNONYMS = {
 
 DIMENSIONLESS = ("-", "prime")
 
+_SHOWN = {"rad": "deg", "rad/s": "deg/s", "1/s": "rpm", "1/s^2": "rpm/s"}
+"""SI units that people read something else for."""
+
+
+def shown_in(unit: str) -> tuple[str, float]:
+    """The unit people read instead of an SI one, and the factor to it: degrees, revolutions per minute."""
+    shown = _SHOWN.get(unit, unit)
+    return shown, 1.0 if shown == unit else 1.0 / _FACTORS[unit][shown]
+
+
 _QUANTITY = re.compile(r"^\s*((?:[-+0-9.eE]+\s*,\s*)*[-+0-9.eE]+)\s*([^\s0-9].*?|1/.*?)?\s*$")
 
 

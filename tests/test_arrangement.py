@@ -1,11 +1,9 @@
 """Another arrangement is not another program: two rudders and a thruster, from outside, through everything."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from mmgtune.backends import Integrator, pad
+from mmgtune.backends import Integrator
 from mmgtune.errors import TrialError
 from mmgtune.fitting import FitOptions, fit
 from mmgtune.model import Model
@@ -14,7 +12,7 @@ from mmgtune.profile import load_profile, with_effects
 from mmgtune.simulation import as_trial, breakdown, simulate
 from mmgtune.trial import load_trials, read_trial, write_trial
 from tests.runs import states, turn
-from tests.twin import twin
+from tests.twin import sail, twin, with_controls, with_value
 
 RK4 = Integrator("rk4")
 
@@ -27,10 +25,6 @@ def ship():
 @pytest.fixture(scope="module")
 def single():
     return Model(load_profile("kvlcc2"))
-
-
-def with_controls(cases, columns):
-    return pad([cases.t[0]], [np.column_stack(columns)], [cases.initial[0]])
 
 
 @pytest.mark.parametrize("backend", ["compiled", "numpy"])
@@ -90,26 +84,7 @@ def test_a_trial_without_an_input_says_which(ship):
 
 
 def test_its_coefficients_are_fitted(ship, tmp_path):
-    for name, side in (("one", 1.0), ("two", -1.0)):
-        cases = turn(ship, 0.0, 300.0)
-        n = cases.controls[0, :, 0]
-        moving = with_controls(cases, [n, 0.3 * side + 0.0 * n, 0.2 * side + 0.0 * n, 2.0 + 0.0 * n])
-        found = states(ship, moving, integrator=RK4)[0, 0]
-        motion = replace(simulate_like(ship, moving, found), id=name)
-        write_trial(as_trial(ship.profile, motion), tmp_path / f"{name}.parquet")
+    sail(ship, tmp_path)
     wrong = with_value(ship.profile, "thruster.k", 1.4e4)
     options = FitOptions(method="least-squares", starts=2, targets=("thruster.k",), integrator="rk4")
     assert fit(wrong, load_trials(tmp_path), options).theta["thruster.k"] == pytest.approx(2e4, rel=1e-6)
-
-
-def simulate_like(model, cases, found):
-    from mmgtune.simulation import Motion
-
-    return Motion("", cases.t[0], found, cases.controls[0], False, model.inputs)
-
-
-def with_value(profile, name, value):
-    section, symbol = name.split(".")
-    old = profile.sections[section]
-    coefficients = {**old.coefficients, symbol: replace(old.coefficients[symbol], value=value)}
-    return replace(profile, sections={**profile.sections, section: replace(old, coefficients=coefficients)})

@@ -5,11 +5,17 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import NamedTuple
 
+import numpy as np
+
+from mmgtune.backends import Integrator, pad
 from mmgtune.components import Arrangement, Component, Field
 from mmgtune.model import Model
 from mmgtune.physics.kinematics import flow
 from mmgtune.physics.quantities import Flow, Force, Lanes, PropellerOut, RudderOut, WakeOut
 from mmgtune.profile import Coefficient, Section, load_profile
+from mmgtune.simulation import Motion, as_trial
+from mmgtune.trial import write_trial
+from tests.runs import states, turn
 
 
 class Control(NamedTuple):
@@ -112,3 +118,27 @@ def twin() -> Model:
         ),
     }
     return Model(replace(ship, sections=sections, arrangement=TWIN))
+
+
+def with_controls(cases, columns):
+    """The first of some cases, driven by other inputs (n_samples,) each."""
+    return pad([cases.t[0]], [np.column_stack(columns)], [cases.initial[0]])
+
+
+def sail(ship, folder):
+    """Two generated trials, ``one`` and ``two``: each rudder at an angle of its own, and the thruster turning."""
+    for name, side in (("one", 1.0), ("two", -1.0)):
+        cases = turn(ship, 0.0, 300.0)
+        n = cases.controls[0, :, 0]
+        moving = with_controls(cases, [n, 0.3 * side + 0.0 * n, 0.2 * side + 0.0 * n, 2.0 + 0.0 * n])
+        found = states(ship, moving, integrator=Integrator("rk4"))[0, 0]
+        motion = Motion(name, moving.t[0], found, moving.controls[0], False, ship.inputs)
+        write_trial(as_trial(ship.profile, motion), folder / f"{name}.parquet")
+
+
+def with_value(profile, name, value):
+    """A profile with one coefficient changed."""
+    section, symbol = name.split(".")
+    old = profile.sections[section]
+    coefficients = {**old.coefficients, symbol: replace(old.coefficients[symbol], value=value)}
+    return replace(profile, sections={**profile.sections, section: replace(old, coefficients=coefficients)})

@@ -16,7 +16,8 @@ RESULT = "diagnosis.json"
 def write_diagnosis(result: Diagnosis, folder: Path) -> dict[str, Any]:
     """Write the extended profile, the held-out motions and, last, the result.  Returns its document."""
     write_text(folder / "profile.toml", result.extended_text())
-    write_table(folder / "motions.parquet", motions_table(result.gain.compared))
+    inputs = [one.name for one in result.profile.arrangement.inputs]
+    write_table(folder / "motions.parquet", motions_table(result.gain.compared, inputs))
     document = {**result.to_dict(), "out": str(folder)}
     write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
     return document

@@ -275,6 +275,7 @@ class Diagnosis:
             "noise": {name: dict(values) for name, values in self.noise.items()},
             "chi2_per_residual": {"before": self.chi2[0], "after": self.chi2[1]},
             "theta": finite_values(self.theta),
+            "inputs": [one.to_dict() for one in self.profile.arrangement.inputs],
             "trial_results": [one.to_dict() for one in self.gain.compared],
             "assumptions": [
                 {"name": name, "value": self.profile.written(name), "note": coefficient.note}

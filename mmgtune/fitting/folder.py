@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -68,7 +68,8 @@ def write_run(result: FitResult, folder: Path) -> dict[str, Any]:
     """Write a run folder; the result last, so that its presence means the rest is there.  Returns its document."""
     write_text(folder / "profile.toml", result.tuned_text())
     write_table(folder / "history.parquet", _history(result.history))
-    write_table(folder / "motions.parquet", motions_table(result.compared))
+    inputs = [one.name for one in result.profile.arrangement.inputs]
+    write_table(folder / "motions.parquet", motions_table(result.compared, inputs))
     document = {**result.to_dict(), "out": str(folder)}
     write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
     return document
@@ -83,18 +84,19 @@ def _history(history: Iterable[Generation]) -> dict[str, Any]:
     return columns
 
 
-def motions_table(compared: Iterable[TrialComparison]) -> dict[str, Any]:
-    """Columns of motions.parquet: every trial measured, before and after."""
-    parts: dict[str, list[Any]] = {name: [] for name in ("trial", "which", "t", *STATES, "n", "delta")}
+def motions_table(compared: Iterable[TrialComparison], inputs: Sequence[str]) -> dict[str, Any]:
+    """Columns of motions.parquet: every trial measured, before and after, with what drove the ship."""
+    parts: dict[str, list[Any]] = {name: [] for name in ("trial", "which", "t", *STATES, *inputs)}
     for one in compared:
         trial = one.trial
         runs = {"measured": trial.motion, **{which: motion.states for which, motion in one.motions.items()}}
+        driven = dict(zip(inputs, trial.inputs(inputs).T, strict=True))
         for which, states in runs.items():
             parts["trial"].append(np.full(trial.n_samples, trial.id, dtype=object))
             parts["which"].append(np.full(trial.n_samples, which, dtype=object))
             for name, values in zip(STATES, states.T, strict=True):
                 parts[name].append(values)
-            for name, values in (("t", trial.t), ("n", trial.n), ("delta", trial.delta)):
+            for name, values in {"t": trial.t, **driven}.items():
                 parts[name].append(values)
     return {name: np.concatenate(values) for name, values in parts.items()}
 

@@ -219,6 +219,7 @@ class FitResult:
                 "scales": dict(self.scales),
             },
             "coefficients": self.coefficients(),
+            "inputs": [one.to_dict() for one in self.profile.arrangement.inputs],
             "trial_results": [c.to_dict() for c in self.compared],
             "J_tune_free_start": finite(self.J_free_start),
             "evaluations": self.evaluations,

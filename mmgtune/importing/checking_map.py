@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 from ..errors import closest
+from ..inputs import INPUTS
 from ..toml_reading import TomlReader
+from ..trial.schema import MAIN_INPUTS, SURROUNDINGS
 from .mapping import TABLES, LogMap
-from .quantities import CONTROLS, MEANING, QUANTITIES
+from .quantities import MEANING
 
-CONSTANT = (*CONTROLS, "delta_port", "delta_stbd", "n_bow", "n_stern", *[
-    name for name in QUANTITIES if name.startswith(("wind", "wave", "depth"))
-])  # fmt: skip
+CONSTANT = (*INPUTS, *SURROUNDINGS)
 """What a map may give as a constant."""
 IN_SENTENCES = (
     "psi", "r", "n", "delta", "delta_port", "delta_stbd", "wind_speed", "wind_dir", "wind_speed_app", "wind_dir_app",
@@ -51,8 +51,8 @@ def check(made: LogMap, reader: TomlReader) -> None:
         if source.column is None and source.value is None:
             fix = 'write column = "..." or value = "..."'
             reader.problem(f"'{name}' has neither a column nor a value", f"columns.{name}", fix=fix)
-    for name in ("psi", *CONTROLS):
-        if name not in sources:
+    for name in ("psi", *MAIN_INPUTS):
+        if name not in sources and name not in made.means:
             fix = f'write [columns.{name}] with column = "..." and unit, or value = "..." where it is constant'
             reader.problem(f"no column is named for '{name}', {MEANING[name]}", "columns", fix=fix)
     rate = sources.get("r")

@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..inputs import INPUTS
 from ..trial.motion_checks import spikes
-from .quantities import CONTROLS
+from ..trial.schema import SURROUNDINGS
 from .record import Record
 
 
@@ -16,10 +17,9 @@ def without_spikes(record: Record) -> Record:
     series, counts = {}, dict(record.spikes)
     for name, one in record.series.items():
         values = np.array(one.values)
-        controls = name in CONTROLS or name.startswith(("delta", "n_"))
-        # Wind is gusty and speeds near rest are noise: only what a trial is simulated or compared with is cleaned.
-        if not name.startswith(("wind", "wave")):
-            rows = spikes(values, share=0.2 if controls else 0.02)
+        # Wind is gusty: what jumps by nature is left as it is.
+        if name not in SURROUNDINGS or not SURROUNDINGS[name].gusty:
+            rows = spikes(values, share=0.2 if name in INPUTS else 0.02)
             if len(rows):
                 # Where few digits are printed, one step of the last of them looks like a spike.
                 steps = np.abs(np.diff(values[np.isfinite(values)]))

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import LogError, Problem
+from ..inputs import INPUTS
 from ..physics.frame import to_ship
 from ..trial.kinematics import FITS, IN_EARTH_AXES, position_misfits, turning
 from ..units import DEG
@@ -75,9 +76,9 @@ def rudder_evidence(t: FloatArray, columns: dict[str, FloatArray]) -> RudderEvid
 
 
 def settle(t: FloatArray, columns: dict[str, FloatArray], log_map: LogMap, measured: set[str], where: str) -> list[str]:
-    """Bring r, u, v and delta to the trial format's signs and axes, in place; what was found, in sentences.
+    """Bring r, u and v to the trial format's signs and axes, in place; what was found, in sentences.
 
-    columns   x, y, psi, r, n, delta and, where measured, u and v, (n_samples,)
+    columns   x, y, psi, r and, where measured, u and v, (n_samples,)
     measured  quantities that come from columns of the log, with signs it may not have stated
 
     Raises LogError with every question the motion does not answer.
@@ -100,30 +101,39 @@ def settle(t: FloatArray, columns: dict[str, FloatArray], log_map: LogMap, measu
     return said
 
 
-def settle_rudder(t: FloatArray, columns: dict[str, FloatArray], log_map: LogMap, where: str) -> list[str]:
-    """Turn delta to starboard, in place, where the map does not say how it counts; u and r must be settled.
+def settle_rudders(t: FloatArray, columns: dict[str, FloatArray], log_map: LogMap, where: str) -> list[str]:
+    """Turn every rudder to starboard, in place, where the map does not say how it counts; what was found.
 
-    Raises LogError where the motion does not tell.
+    columns  u, r and n, settled, and the rudders, (n_samples,)
+
+    Raises LogError with every rudder whose sign the motion does not tell.
     """
-    source = log_map.sources.get("delta")
-    if source is None or source.column is None or source.positive is not None:
-        return []
-    evidence = rudder_evidence(t, columns)
-    if evidence.side == 0:
-        raise LogError(
-            Problem(
-                "does a positive rudder angle turn the ship to starboard or to port?",
-                f"{where}, map {log_map.place('delta')}",
-                f"the map does not say, and this motion does not show it: {evidence}",
-                'say positive = "starboard" or positive = "port" in [columns.delta]',
+    problems: list[Problem] = []
+    said = []
+    for name, source in log_map.sources.items():
+        rudder = name in INPUTS and INPUTS[name].role == "rudder"
+        if not rudder or source.column is None or source.positive is not None:
+            continue
+        evidence = rudder_evidence(t, {**columns, "delta": columns[name]})
+        if evidence.side == 0:
+            what = "rudder angle" if name == "delta" else f"{INPUTS[name].words}, '{name}',"
+            problems.append(
+                Problem(
+                    f"does a positive {what} turn the ship to starboard or to port?",
+                    f"{where}, map {log_map.place(name)}",
+                    f"the map does not say, and this motion does not show it: {evidence}",
+                    f'say positive = "starboard" or positive = "port" in [columns.{name}]',
+                )
             )
-        )
-    if evidence.side < 0:
-        for name in ("delta", "delta_port", "delta_stbd"):
-            if name in columns and log_map.sources.get(name) is not None and log_map.sources[name].positive is None:
-                columns[name] = -columns[name]
-    side = "starboard" if evidence.side > 0 else "port"
-    return [f"rudder: a positive angle of the log turns the ship to {side}, as the motion shows ({evidence})"]
+            continue
+        if evidence.side < 0:
+            columns[name] = -columns[name]
+        side = "starboard" if evidence.side > 0 else "port"
+        which = "rudder" if name == "delta" else name
+        said.append(f"{which}: a positive angle of the log turns the ship to {side}, as the motion shows ({evidence})")
+    if problems:
+        raise LogError(*problems)
+    return said
 
 
 def _yaw(

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import LogError, Problem, TrialError
+from ..inputs import INPUTS
 from ..manoeuvres import Track, find_execute, manoeuvre_kind
 from ..manoeuvres.track import noise_level
 from ..units import DEG
@@ -14,7 +15,7 @@ from .mapping import LogMap
 from .quantities import MEASURED
 
 STANDING = 0.01
-"""Share of the largest revolutions up to which a propeller stands."""
+"""Share of its largest revolutions up to which a shaft stands."""
 MIDSHIPS = 0.5 * DEG
 """Rudder angle [rad] up to which a rudder is at zero."""
 
@@ -23,7 +24,7 @@ def kept(t: FloatArray, columns: dict[str, FloatArray], log_map: LogMap, where: 
     """The part of a stretch that a map keeps, and what was dropped, in sentences.
 
     t        (n_samples,) [s]
-    columns  x, y, psi, u, v, n, delta, (n_samples,); n and delta without gaps
+    columns  x, y, psi, u, v and inputs, (n_samples,); inputs without gaps
 
     Raises LogError where the map asks for an order and the record has none.
     """
@@ -32,10 +33,11 @@ def kept(t: FloatArray, columns: dict[str, FloatArray], log_map: LogMap, where: 
     first, last = 0.0, float(since[-1])
     said = []
     if cut.to:
-        ordered = np.flatnonzero(~_standing(columns["n"], columns["delta"]))
+        ordered = np.flatnonzero(~_standing({name: columns[name] for name in log_map.inputs}))
         if not len(ordered):
             what = "the record cannot be cut after the last order: propeller and rudder stand at zero throughout"
-            raise LogError(Problem(what, where, fix="check the columns of n and delta, or leave out [cut] to"))
+            fix = f"check the columns of {', '.join(log_map.inputs)}, or leave out [cut] to"
+            raise LogError(Problem(what, where, fix=fix))
         if last > since[ordered[-1]]:
             idle = last - float(since[ordered[-1]])
             said.append(f"the last {idle:.4g} s were dropped: propeller and rudder stand at zero there")
@@ -83,8 +85,11 @@ def pull_out(t: FloatArray, columns: dict[str, FloatArray]) -> int | None:
     return first if first >= FEWEST and len(size) - first >= FEWEST else None
 
 
-def _standing(n: FloatArray, delta: FloatArray) -> np.ndarray:
-    return np.asarray((np.abs(n) <= STANDING * np.abs(n).max()) & (np.abs(delta) <= MIDSHIPS))
+def _standing(inputs: dict[str, FloatArray]) -> np.ndarray:
+    """(n_samples,) whether nothing drives the ship: no shaft turns, and every rudder is midships."""
+    size = {name: np.abs(values) for name, values in inputs.items()}
+    limit = {name: MIDSHIPS if INPUTS[name].unit == "rad" else STANDING * size[name].max() for name in inputs}
+    return np.all([size[name] <= limit[name] for name in inputs], axis=0)
 
 
 def _track(t: FloatArray, columns: dict[str, FloatArray]) -> Track:

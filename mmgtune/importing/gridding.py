@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import LogError, Problem
 from .mapping import LogMap
-from .quantities import CONTROLS, MEANING, MEASURED
+from .quantities import MEANING, MEASURED
 from .record import Record, Series
 
 FEWEST = 20
@@ -23,7 +24,7 @@ class Grid:
     t        (n_samples,) [s], on the log's clock
     columns  (n_samples,) by quantity; NaN in holes
     step     [s]
-    bridged  number of samples interpolated over short holes of controls, by quantity
+    bridged  number of samples interpolated over short holes of inputs, by quantity
     """
 
     t: FloatArray
@@ -39,11 +40,12 @@ def on_grid(record: Record, log_map: LogMap, step: float | None) -> Grid:
     spikes of the motion; shorter ones are bridged linearly.  Where the grid is coarser than the series,
     samples are averaged.  Constants of the map are added.  The heading begins within half a turn of north.
 
-    Raises LogError where there is no time that all controls cover.
+    Raises LogError where there is no time that all inputs cover.
     """
     series = record.series
     constant = {name for name, source in log_map.sources.items() if source.value is not None}
-    absent = [name for name in ("x", "y", "psi", *CONTROLS) if name not in series and name not in constant]
+    logged = [name for name in log_map.inputs if name not in log_map.means]
+    absent = [name for name in ("x", "y", "psi", *logged) if name not in series and name not in constant]
     if absent:
         what = f"the log has fewer than two valid samples of {', '.join(MEANING[name] for name in absent)}"
         raise LogError(
@@ -54,16 +56,16 @@ def on_grid(record: Record, log_map: LogMap, step: float | None) -> Grid:
     own = float(np.median(np.diff(lead.t))) if len(lead.t) > 1 else 0.0
     chosen = step or log_map.step or own
     motion = [series[name] for name in MEASURED if name in series]
-    controls = [series[name] for name in CONTROLS if name in series]
-    begins = max(_ends(one)[0] for one in [*motion, *controls])
-    ends = min([max(_ends(one)[1] for one in motion), *(_ends(one)[1] for one in controls)])
+    inputs = [series[name] for name in logged if name in series]
+    begins = max(_ends(one)[0] for one in [*motion, *inputs])
+    ends = min([max(_ends(one)[1] for one in motion), *(_ends(one)[1] for one in inputs)])
     if finite.sum() < FEWEST or chosen <= 0.0 or ends - begins < FEWEST * chosen:
         spans = ", ".join(
             f"{name} {_ends(series[name])[0]:.6g} to {_ends(series[name])[1]:.6g} s"
-            for name in (*MEASURED, *CONTROLS)
+            for name in (*MEASURED, *logged)
             if name in series
         )
-        why = f"positions, heading and controls have {max(0.0, ends - begins):.4g} s in common: {spans}"
+        why = f"positions, heading and inputs have {max(0.0, ends - begins):.4g} s in common: {spans}"
         raise LogError(Problem(f"fewer than {FEWEST} samples to make a trial of", str(record.path), why))
     first = float(lead.t[np.searchsorted(lead.t, begins - 1e-9)])
     count = int(np.floor((ends - first) / chosen + 1e-6)) + 1
@@ -74,9 +76,9 @@ def on_grid(record: Record, log_map: LogMap, step: float | None) -> Grid:
         t = np.array(lead.t[k : k + count])
     columns, bridged = {}, {}
     for name, one in series.items():
-        control = name in CONTROLS
-        columns[name], filled = resampled(one, t, chosen, log_map.gap, keep_spikes=not control)
-        if control and filled:
+        driving = name in logged
+        columns[name], filled = resampled(one, t, chosen, log_map.gap, keep_spikes=not driving)
+        if driving and filled:
             bridged[name] = filled
     start = columns["psi"][np.isfinite(columns["psi"])][:1]
     if len(start) and abs(start[0]) > np.pi:
@@ -128,9 +130,9 @@ def resampled(one: Series, t: FloatArray, step: float, gap: float, keep_spikes: 
     return out, bridged
 
 
-def stretches(columns: dict[str, FloatArray], fewest: int = FEWEST) -> list[slice]:
-    """Parts of a grid in which every control is known, each from its first complete sample; short ones left out."""
-    good = np.all([np.isfinite(columns[name]) for name in CONTROLS], axis=0)
+def stretches(columns: dict[str, FloatArray], inputs: Sequence[str], fewest: int = FEWEST) -> list[slice]:
+    """Parts of a grid in which every input is known, each from its first complete sample; short ones left out."""
+    good = np.all([np.isfinite(columns[name]) for name in inputs], axis=0)
     complete = good & np.all([np.isfinite(columns[name]) for name in MEASURED], axis=0)
     edges = np.flatnonzero(np.diff(np.concatenate([[0], good.astype(np.int8), [0]])))
     found = []

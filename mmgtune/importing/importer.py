@@ -17,7 +17,7 @@ from ..arrays import FloatArray
 from ..errors import LogError, OutputError, Problem
 from ..files import exists, write_text
 from ..trial import Trial, write_trial
-from ..trial.schema import ATTRIBUTES, COLUMNS, DIRECTIONS, REQUIRED
+from ..trial.schema import ATTRIBUTES, COLUMNS, DIRECTIONS
 from ..trial.unusable import unusable
 from . import conventions, motion
 from .cleaning import without_spikes
@@ -26,9 +26,11 @@ from .cutting import kept, pull_out
 from .geodesy import not_mirrored, with_local_positions
 from .gridding import FEWEST, Grid, on_grid, stretches
 from .mapping import LogMap
+from .means import with_mean
 from .nmea import read_nmea
 from .parquet_log import read_parquet
 from .quality import quality_of, quality_text, same_units_throughout
+from .quantities import MEASURED
 from .record import Record, record_of, time_in_seconds
 from .table import Table
 from .text import binary, read_text, start_of
@@ -232,7 +234,7 @@ def _of_record(record: Record, log_map: LogMap, step: float | None) -> list[Piec
     record = heading_recovered(without_spikes(with_local_positions(record, log_map)), log_map)
     grid = on_grid(record, log_map, step)
     columns = dict(grid.columns)
-    measured = {name for name in record.series if name in ("u", "v", "r", "delta")}
+    measured = {name for name in record.series if name in ("u", "v", "r")}
     if {"sog", "cog"} <= set(columns):
         sog, cog = columns.pop("sog"), columns.pop("cog")
         columns["north"], columns["east"] = sog * np.cos(cog), sog * np.sin(cog)
@@ -242,32 +244,34 @@ def _of_record(record: Record, log_map: LogMap, step: float | None) -> list[Piec
         not_mirrored(columns, where)
     notes = list(record.notes)
     if grid.bridged:
-        notes.append(f"holes of up to {log_map.gap:g} steps in controls were bridged linearly")
+        notes.append(f"holes of up to {log_map.gap:g} steps in inputs were bridged linearly")
     notes += motion.at_midship(columns, log_map)
     notes += motion.with_yaw_rate(grid.t, columns)
     notes += conventions.settle(grid.t, columns, log_map, measured, where)
     notes += motion.over_ground(columns, log_map)
     notes += motion.with_velocities(grid.t, columns)
-    notes += conventions.settle_rudder(grid.t, columns, log_map, where)
+    notes += with_mean(columns, "n", log_map)
+    notes += conventions.settle_rudders(grid.t, columns, log_map, where)
+    notes += with_mean(columns, "delta", log_map)
     found = []
-    for part in stretches(columns):
+    for part in stretches(columns, log_map.inputs):
         cut = {name: values[part] for name, values in columns.items()}
         t = grid.t[part]
         inside, dropped = kept(t, cut, log_map, where)
         cut = {name: values[inside] for name, values in cut.items()}
         # What a cut begins with must be complete as well.
-        rest = stretches(cut, 1)
+        rest = stretches(cut, log_map.inputs, 1)
         if rest and len(t[inside][rest[0]]) >= FEWEST:
             begun = t[inside][rest[0]]
             cut = {name: values[rest[0]] for name, values in cut.items()}
             piece = Piece({"t": begun, **cut}, record, grid, float(begun[0]), [*notes, *dropped])
             found += _split(piece) if log_map.cut.split else [piece]
     if not found:
-        missing = [name for name in REQUIRED if name != "t" and not np.isfinite(columns[name]).any()]
+        needed = [name for name in (*MEASURED, *log_map.inputs) if not np.isfinite(columns[name]).any()]
         why = (
-            f"no sample has {', '.join(missing)}"
-            if missing
-            else "positions, heading, velocities and controls are never all there"
+            f"no sample has {', '.join(needed)}"
+            if needed
+            else "positions, heading, velocities and inputs are never all there"
         )
         raise LogError(
             Problem(

@@ -6,6 +6,9 @@ from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from pathlib import Path
 
+from ..inputs import INPUTS
+from ..trial.schema import MAIN_INPUTS
+
 FORMATS = ("csv", "parquet", "nmea")
 PROJECTIONS = ("transverse-mercator", "azimuthal-equidistant")
 TABLES = {
@@ -90,7 +93,7 @@ class Cut:
     start, end  [s], None for the record's own; an end below 0 counts back from the record's
     begin       "first-rudder-order", or None
     lead        seconds kept before that order
-    to          "last-order": without the tail in which propeller and rudder both stand at zero; or None
+    to          "last-order": without the tail in which propellers and rudders all stand at zero; or None
     split       "pull-out": what follows a turn's rudder order becomes a trial of its own; or None
     """
 
@@ -151,6 +154,27 @@ class LogMap:
     def of(self, log: Path) -> LogMap:
         """The map of one log: the first in ``some`` whose pattern its name matches, else this one."""
         return next((one for pattern, one in self.some if fnmatchcase(log.name, pattern)), self)
+
+    @property
+    def means(self) -> dict[str, tuple[str, ...]]:
+        """What the map does not name but is the mean of what it does: ``delta`` of port and starboard rudder, say."""
+        if self.format == "nmea":
+            return {}
+        made = {}
+        for name in MAIN_INPUTS:
+            others = tuple(other for other in self.inputs_of(name) if other != name)
+            if name not in self.sources and len(others) > 1:
+                made[name] = others
+        return made
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Inputs that a trial made by this map has at every sample: those every trial has, and those the map names."""
+        return tuple(name for name in INPUTS if name in MAIN_INPUTS or name in self.sources)
+
+    def inputs_of(self, name: str) -> tuple[str, ...]:
+        """The inputs the map names that are of the same role as another."""
+        return tuple(one for one in INPUTS if one in self.sources and INPUTS[one].role == INPUTS[name].role)
 
     def lever(self, point: str | None) -> tuple[float, float] | None:
         """Position (2,) of a point from midship, forward and to starboard [m]; None where it is midship."""

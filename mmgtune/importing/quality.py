@@ -11,11 +11,12 @@ from scipy.integrate import cumulative_trapezoid
 
 from ..arrays import FloatArray
 from ..errors import LogError, Problem
+from ..inputs import INPUTS
 from ..physics.frame import to_earth
 from ..trial import Trial, check_trial
-from ..trial.control_checks import fastest_change
+from ..trial.control_checks import fastest_change, looks_ordered
 from ..trial.kinematics import IN_EARTH_AXES, position_misfits, turning
-from ..units import DEG, KNOT
+from ..units import DEG, KNOT, shown_in
 from .conventions import rudder_evidence
 from .gridding import Grid
 from .mapping import LogMap
@@ -38,8 +39,6 @@ def quality_of(
     misfits = position_misfits(columns)
     findings = check_trial(trial)
     evidence = rudder_evidence(trial.t, columns)
-    rudder_step, rudder_rate = fastest_change(trial.t, trial.delta)
-    shaft_step, shaft_rate = fastest_change(trial.t, trial.n)
     return {
         "id": trial.id,
         "log": str(record.path),
@@ -71,18 +70,7 @@ def quality_of(
             "n_samples": evidence.samples,
             "side": {1: "starboard", -1: "port", 0: "in doubt"}[evidence.side],
         },
-        "controls": {
-            "delta": {
-                "fastest_deg_per_s": rudder_rate / DEG,
-                "largest_step_deg": rudder_step / DEG,
-                "orders": any("the rudder moves" in one.what for one in findings),
-            },
-            "n": {
-                "fastest_rpm_per_s": 60.0 * shaft_rate,
-                "largest_step_rpm": 60.0 * shaft_step,
-                "orders": any("the revolutions change" in one.what for one in findings),
-            },
-        },
+        "controls": {name: _changes(trial, name) for name in log_map.inputs},
         "notes": notes,
         "findings": [vars(one) for one in findings],
     }
@@ -132,11 +120,12 @@ def quality_text(quality: dict[str, Any]) -> str:
             said += f"; rounding alone {positions['rounding_x_m']:.3g} and {positions['rounding_y_m']:.3g} m"
         lines.append(said)
     lines.append(f"  rudder    turns the ship to its side: {rudder['side']}, agreement {rudder['agreement']:+.2f}")
-    delta, n = q["controls"]["delta"], q["controls"]["n"]
-    lines.append(
-        f"  controls  rudder {'ORDERS? ' if delta['orders'] else ''}up to {delta['fastest_deg_per_s']:.3g} deg/s, "
-        f"revolutions {'ORDERS? ' if n['orders'] else ''}up to {n['fastest_rpm_per_s']:.3g} rpm/s"
-    )
+    told = []
+    for name, changes in q["controls"].items():
+        unit = shown_in(INPUTS[name].unit)[0]
+        orders = "ORDERS? " if changes["orders"] else ""
+        told.append(f"{INPUTS[name].words} {orders}up to {changes[f'fastest_{unit}_per_s']:.3g} {unit}/s")
+    lines.append("  controls  " + ", ".join(told))
     lines += [f"  note      {note}" for note in q["notes"]]
     lines += [
         f"  {f['severity']}   {f['what']}"
@@ -205,6 +194,17 @@ def _residuals(trial: Trial, record: Record, began: float, log_map: LogMap) -> d
             found[f"rounding_{name}_m"] = _or_none(float(np.sqrt(np.mean(series.coarse[inside] ** 2) / 12.0)))
         found[f"residual_{name}_m"] = _or_none(float(np.nanstd(miss)))
     return found
+
+
+def _changes(trial: Trial, name: str) -> dict[str, Any]:
+    """How fast an input changes, in units people read, and whether only orders do so."""
+    step, rate = fastest_change(trial.t, trial.columns[name])
+    unit, factor = shown_in(INPUTS[name].unit)
+    return {
+        f"fastest_{unit}_per_s": rate * factor,
+        f"largest_step_{unit}": step * factor,
+        "orders": looks_ordered(trial, name),
+    }
 
 
 def _gaps(t: FloatArray, values: FloatArray, name: str) -> list[dict[str, Any]]:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..trial.schema import COLUMNS, MAIN_INPUTS, MOTION
+from ..inputs import INPUTS, Role
+from ..trial.schema import COLUMNS, MOTION, SURROUNDINGS, Column
 
 AGAINST = ("south", "west", "port", "counterclockwise", "aft", "astern")
 """Words for a positive direction that is the opposite of the trial format's."""
@@ -31,6 +32,17 @@ class Quantity:
 _SIDES = ("starboard", "port")
 _TURNS = ("clockwise", "counterclockwise")
 
+POSITIVE: dict[Role, tuple[str, ...]] = {"propeller": ("ahead", "astern"), "rudder": _SIDES, "thruster": _SIDES}
+"""Directions a map may call positive, by role of the input."""
+
+
+def _around(column: Column) -> Quantity:
+    """A quantity measured around the ship: a direction, which something comes from or goes to, or a size."""
+    if not column.counted_from:
+        return Quantity(column.unit)
+    return Quantity(column.unit, _TURNS, angle=True, origin=column.counted_from == "north", wind=True)
+
+
 QUANTITIES: dict[str, Quantity] = {
     "x": Quantity("m", ("north", "south")),
     "y": Quantity("m", ("east", "west", "starboard", "port")),
@@ -42,26 +54,12 @@ QUANTITIES: dict[str, Quantity] = {
     "sog": Quantity("m/s"),
     "cog": Quantity("rad", _TURNS, angle=True, origin=True),
     "r": Quantity("rad/s", (*_SIDES, *_TURNS)),
-    "n": Quantity("1/s", ("ahead", "astern")),
-    "delta": Quantity("rad", _SIDES),
-    "delta_port": Quantity("rad", _SIDES),
-    "delta_stbd": Quantity("rad", _SIDES),
-    "n_bow": Quantity("1/s", _SIDES),
-    "n_stern": Quantity("1/s", _SIDES),
-    "wind_speed": Quantity("m/s"),
-    "wind_dir": Quantity("rad", _TURNS, angle=True, origin=True, wind=True),
-    "wind_speed_app": Quantity("m/s"),
-    "wind_dir_app": Quantity("rad", _TURNS, angle=True, wind=True),
-    "depth": Quantity("m"),
-    "wave_height": Quantity("m"),
-    "wave_dir": Quantity("rad", _TURNS, angle=True, origin=True, wind=True),
+    **{name: Quantity(one.unit, POSITIVE[one.role]) for name, one in INPUTS.items()},
+    **{name: _around(column) for name, column in SURROUNDINGS.items()},
 }
 
 MEASURED = tuple(MOTION)
 """Motion channels of a trial, of which u, v and r can be derived."""
-
-CONTROLS = MAIN_INPUTS
-"""Channels a trial must have at every sample."""
 
 MEANING = {name: column.meaning for name, column in COLUMNS.items()} | {
     "latitude": "geographic latitude",

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ..arrays import FloatArray
-from .tracks import WORDS, onto
+from .tracks import SHOWN, WORDS, onto
 from .wording import CHANNELS, Channel
 
 if TYPE_CHECKING:
@@ -20,58 +21,74 @@ if TYPE_CHECKING:
     Array = FloatArray
     Motion = Mapping[str, Array]
 
-LEFT = ("psi", "u", "v_m", "r", "delta", "n")
-RIGHT = ("psi", "u", "v_m", "r", "x", "y")
-INPUTS = ("delta", "n")
+RESIDUALS = (*SHOWN, "x", "y")
 DASHES = {"measured": "solid", "before": "dot", "after": "8px,4px"}
 LIMIT = 5000
 _BUDGET = 600_000
 
 
-def histories(names: Sequence[str], motions: Mapping[str, Mapping[str, Motion]]) -> tuple[dict[str, Any], bool]:
+@dataclass(frozen=True)
+class Panel:
+    """One chart: a channel as it was measured and simulated, or as measured alone, or simulated minus measured."""
+
+    channel: Channel
+    shows: tuple[str, ...]
+    residual: bool = False
+
+    @property
+    def title(self) -> str:
+        """The axis title: what and unit, on two lines."""
+        return f"{self.channel.words}{' error' if self.residual else ''}<br>[{self.channel.unit}]"
+
+
+def panels(inputs: Sequence[Channel]) -> list[Panel]:
+    """Motions and the inputs there are, then the residuals."""
+    return [
+        *(Panel(CHANNELS[name], ("measured", "before", "after")) for name in SHOWN),
+        *(Panel(channel, ("measured",)) for channel in inputs),
+        *(Panel(CHANNELS[name], ("before", "after"), residual=True) for name in RESIDUALS),
+    ]
+
+
+def histories(
+    names: Sequence[str], motions: Mapping[str, Mapping[str, Motion]], inputs: Sequence[Channel]
+) -> tuple[dict[str, Any], bool]:
     """What the page's script draws from, and whether any history had to be thinned.
 
     names    the trials, in the order of the selector
+    inputs   what drove the ship, columns of the motions
     """
-    plan = _plan()
+    shown = panels(inputs)
+    plan = [(place, which) for place, panel in enumerate(shown) for which in panel.shows]
     limit = max(600, min(LIMIT, _BUDGET // (len(plan) * max(1, len(names)))))
     trials, thinned = [], False
     for name in names:
         found = motions.get(name, {})
-        pieces = [_piece(found, *panel, limit) for panel in plan]
+        pieces = [_piece(found, shown[place], which, limit) for place, which in plan]
         thinned = thinned or any(cut for _, cut in pieces)
         trials.append({"name": name, "data": [piece for piece, _ in pieces]})
     payload = {
-        "traces": [{"role": which, "trace": trace} for (_, which, _), trace in zip(plan, _traces(plan), strict=True)],
-        "wide": _layout(columns=2),
-        "narrow": _layout(columns=1),
+        "traces": [
+            {"role": which, "trace": trace} for (_, which), trace in zip(plan, _traces(plan, shown), strict=True)
+        ],
+        "wide": _layout(shown, columns=2),
+        "narrow": _layout(shown, columns=1),
         "trials": trials,
     }
     return payload, thinned
-
-
-def _plan() -> list[tuple[int, str, Channel]]:
-    """(panel, which motion, channel) of every trace; panels 0-5 are the motions, 6-11 the residuals."""
-    plan = []
-    for panel, name in enumerate(LEFT):
-        for which in ("measured",) if name in INPUTS else ("measured", "before", "after"):
-            plan.append((panel, which, CHANNELS[name]))
-    for panel, name in enumerate(RIGHT, start=len(LEFT)):
-        plan.extend((panel, which, CHANNELS[name]) for which in ("before", "after"))
-    return plan
 
 
 def _axis(panel: int) -> str:
     return "" if panel == 0 else str(panel + 1)
 
 
-def _traces(plan: list[tuple[int, str, Channel]]) -> list[dict[str, Any]]:
+def _traces(plan: list[tuple[int, str]], shown: Sequence[Panel]) -> list[dict[str, Any]]:
     """The traces without numbers, checked by plotly."""
     import plotly.graph_objects as go
 
     figure = go.Figure()
     legend: set[str] = set()
-    for panel, which, channel in plan:
+    for panel, which in plan:
         words = WORDS[which]
         figure.add_trace(
             go.Scatter(
@@ -83,7 +100,7 @@ def _traces(plan: list[tuple[int, str, Channel]]) -> list[dict[str, Any]]:
                 xaxis=f"x{_axis(panel)}",
                 yaxis=f"y{_axis(panel)}",
                 line={"dash": DASHES[which], "width": 1.7},
-                hovertemplate=f"%{{y}} {channel.unit}",
+                hovertemplate=f"%{{y}} {shown[panel].channel.unit}",
             )
         )
         legend.add(which)
@@ -91,12 +108,13 @@ def _traces(plan: list[tuple[int, str, Channel]]) -> list[dict[str, Any]]:
     return traces
 
 
-def _layout(columns: int) -> dict[str, Any]:
+def _layout(shown: Sequence[Panel], columns: int) -> dict[str, Any]:
     """The panels in two columns (motions, residuals) or one below the other, checked by plotly."""
     import plotly.graph_objects as go
 
-    panels = len(LEFT) + len(RIGHT)
-    rows = panels // columns
+    left = sum(not panel.residual for panel in shown)
+    sides = (left, len(shown) - left) if columns == 2 else (len(shown),)
+    rows = max(sides)
     row, gap = 1.0 / rows, (0.022 if columns == 2 else 0.011)
     layout: dict[str, Any] = {
         "height": 150 * rows + 60,
@@ -110,9 +128,9 @@ def _layout(columns: int) -> dict[str, Any]:
         "plot_bgcolor": "rgba(0,0,0,0)",
         "template": None,
     }
-    for panel in range(panels):
-        side, place = divmod(panel, rows) if columns == 2 else (0, panel)
-        last = place == rows - 1
+    for panel, what in enumerate(shown):
+        side, place = (1, panel - left) if columns == 2 and what.residual else (0, panel)
+        last = place == sides[side] - 1
         span = (0.0, 1.0) if columns == 1 else ((0.0, 0.465) if side == 0 else (0.545, 1.0))
         x_axis: dict[str, Any] = {
             "domain": list(span),
@@ -128,32 +146,24 @@ def _layout(columns: int) -> dict[str, Any]:
         layout[f"yaxis{_axis(panel)}"] = {
             "domain": [max(0.0, 1.0 - (place + 1) * row + gap), 1.0 - place * row - gap],
             "anchor": f"x{_axis(panel)}",
-            "zeroline": panel >= len(LEFT),
+            "zeroline": what.residual,
             "nticks": 5,
-            "title": {"text": _words(panel), "font": {"size": 11}, "standoff": 4},
+            "title": {"text": what.title, "font": {"size": 11}, "standoff": 4},
         }
     checked: dict[str, Any] = go.Figure(layout=layout).to_plotly_json()["layout"]
     checked.pop("template", None)
     return checked
 
 
-def _words(panel: int) -> str:
-    """The axis title: what and unit, on two lines."""
-    residual = panel >= len(LEFT)
-    channel = CHANNELS[RIGHT[panel - len(LEFT)] if residual else LEFT[panel]]
-    return f"{channel.words}{' error' if residual else ''}<br>[{channel.unit}]"
-
-
-def _piece(
-    found: Mapping[str, Motion], panel: int, which: str, channel: Channel, limit: int
-) -> tuple[dict[str, Any], bool]:
+def _piece(found: Mapping[str, Motion], panel: Panel, which: str, limit: int) -> tuple[dict[str, Any], bool]:
     """The numbers of one trace, and whether they were thinned."""
     import numpy as np
 
+    channel = panel.channel
     measured, motion = found.get("measured"), found.get(which)
-    if motion is None or (panel >= len(LEFT) and measured is None):
+    if motion is None or (panel.residual and measured is None):
         return {"x": [], "y": []}, False
-    if panel >= len(LEFT):
+    if panel.residual:
         assert measured is not None
         t = measured["t"]
         values = residual(motion, measured, channel.name)

@@ -11,7 +11,7 @@ from . import findings, tracks
 from .advice import shortest
 from .common import assumptions, generated_banner, picture, provenance
 from .drawing import AFTER, MUTED, Drawn, log_ticks, new_figure
-from .load import DiagnosisRecord, Kind, motions
+from .load import DiagnosisRecord, Kind, inputs_of, motions_in
 from .page import Block, Cell, Commands, Details, Page, Prose, Section, Table, Tile, cells
 from .tables import tone
 from .wording import CHANNELS, NONE, change, clean, number, percent, shown
@@ -389,7 +389,7 @@ def _share(value: Any) -> str:
 
 
 def _read(folder: Path, data: Mapping[str, Any]) -> DiagnosisRecord:
-    return DiagnosisRecord(folder, data, motions(folder))
+    return DiagnosisRecord(folder, data, motions_in(folder, inputs_of(folder, data)))
 
 
 KIND = Kind(

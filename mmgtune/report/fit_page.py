@@ -9,7 +9,7 @@ from typing import Any
 from . import advice, charts, confidence, figures, findings, tables, tables_of_motion, tracks
 from .common import assumptions, generated_banner, misfit_tile, picture, provenance, warnings
 from .drawing import Drawn
-from .load import Kind, RunRecord, history, motions
+from .load import Kind, RunRecord, history_in, inputs_of, motions_in
 from .page import Commands, Details, Histories, Page, Prose, Section, Tile
 from .wording import change, clean, count, number, percent, shown
 
@@ -124,7 +124,7 @@ def _histories(record: RunRecord, drawings: dict[str, Drawn]) -> Section | None:
     names = [str(row["id"]) for row in record.results if str(row["id"]) in record.motions]
     if not names:
         return None
-    payload, thinned = charts.histories(names, record.motions)
+    payload, thinned = charts.histories(names, record.motions, record.inputs)
     for trial in payload["trials"]:
         trial["name"] = clean(trial["name"])
     notes = ["All motions, at full resolution, are in motions.parquet in the run folder."]
@@ -138,7 +138,7 @@ def _histories(record: RunRecord, drawings: dict[str, Drawn]) -> Section | None:
     drawings["histories"] = Drawn(
         "histories",
         "Measured and simulated time histories of the trial that fits worst",
-        lambda: tracks.draw_histories(record.motions[str(worst["id"])]),
+        lambda: tracks.draw_histories(record.motions[str(worst["id"])], record.inputs),
     )
     caption = f"The trial that fits worst after tuning: {clean(worst['id'])}."
     static = picture(drawings["histories"], "Time histories", caption)
@@ -190,7 +190,8 @@ def _coefficients(record: RunRecord, drawings: dict[str, Drawn]) -> Section | No
 
 
 def _read(folder: Path, data: Mapping[str, Any]) -> RunRecord:
-    return RunRecord(folder, data, history(folder), motions(folder))
+    inputs = inputs_of(folder, data)
+    return RunRecord(folder, data, history_in(folder), motions_in(folder, inputs), inputs)
 
 
 KIND = Kind("fit", ("profile", "trials", "options", "J_tune", "coefficients", "trial_results"), _read, build)

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..arrays import FloatArray
 from ..errors import OptionError, Problem
-from .wording import clean
+from ..inputs import INPUTS, Role
+from ..physics.quantities import STATES
+from .wording import Channel, clean, input_channel
 
 if TYPE_CHECKING:
     from .page import Page
@@ -18,7 +20,10 @@ if TYPE_CHECKING:
     Motion = Mapping[str, FloatArray]
 
 SCHEMA = 1
-_COLUMNS = ("t", "x", "y", "psi", "u", "v_m", "r", "n", "delta")
+_COLUMNS = ("t", *STATES)
+_ROLES: tuple[Role, ...] = ("rudder", "propeller", "thruster")
+_EVERY_SHIP = ("n", "delta")
+"""Inputs of a run whose record does not name them: a ship with one propeller and one rudder."""
 
 
 @dataclass(frozen=True)
@@ -51,12 +56,14 @@ class RunRecord:
     data      fit.json
     history   columns of history.parquet by name; empty where no evolution strategy ran
     motions   trial -> "measured", "before" or "after" -> column -> values in SI
+    inputs    what drove the ship, columns of ``motions`` too: rudders, propellers, thrusters
     """
 
     folder: Path
     data: Mapping[str, Any]
     history: Mapping[str, FloatArray]
     motions: Mapping[str, Mapping[str, Motion]]
+    inputs: tuple[Channel, ...]
 
     @property
     def results(self) -> list[dict[str, Any]]:
@@ -144,7 +151,20 @@ def _read(path: Path, kind: Kind) -> dict[str, Any]:
     return data
 
 
-def history(folder: Path) -> dict[str, FloatArray]:
+def inputs_of(folder: Path, data: Mapping[str, Any]) -> tuple[Channel, ...]:
+    """The inputs a record names, rudders first, so that every ship's report begins alike."""
+    rows = data.get("inputs", [INPUTS[name].to_dict() for name in _EVERY_SHIP])
+    keys = ("name", "unit", "words", "role")
+    if not isinstance(rows, list) or not all(
+        isinstance(row, dict) and all(isinstance(row.get(key), str) for key in keys) for row in rows
+    ):
+        why = '"inputs" is not a list of ' + ", ".join(keys)
+        raise _problem("the run's record is not whole", folder, why, "run the fit again, or give another folder")
+    rows = sorted(rows, key=lambda row: _ROLES.index(row["role"]) if row["role"] in _ROLES else len(_ROLES))
+    return tuple(input_channel(row["name"], row["words"], row["unit"]) for row in rows)
+
+
+def history_in(folder: Path) -> dict[str, FloatArray]:
     """Columns of history.parquet by name; empty where there is none."""
     import numpy as np
 
@@ -154,7 +174,7 @@ def history(folder: Path) -> dict[str, FloatArray]:
     return {str(name): frame[name].to_numpy(dtype=np.float64) for name in frame.columns} if len(frame) else {}
 
 
-def motions(folder: Path) -> dict[str, dict[str, Motion]]:
+def motions_in(folder: Path, inputs: Sequence[Channel]) -> dict[str, dict[str, Motion]]:
     """The motions of a run folder by trial and which."""
     import numpy as np
 
@@ -164,12 +184,13 @@ def motions(folder: Path) -> dict[str, dict[str, Motion]]:
             "the run folder is not whole", path, "it lacks the measured and simulated motions", "run the fit again"
         )
     frame = _parquet(path)
-    lacking = [name for name in ("trial", "which", *_COLUMNS) if name not in frame.columns]
+    names = (*_COLUMNS, *(channel.name for channel in inputs))
+    lacking = [name for name in ("trial", "which", *names) if name not in frame.columns]
     if lacking:
         raise _problem("the motions are not whole", path, "columns lack: " + ", ".join(lacking), "run the fit again")
     found: dict[str, dict[str, Motion]] = {}
     for (trial, which), rows in frame.groupby(["trial", "which"], sort=False, observed=True):
-        columns = {name: rows[name].to_numpy(dtype=np.float64) for name in _COLUMNS}
+        columns = {name: rows[name].to_numpy(dtype=np.float64) for name in names}
         found.setdefault(str(trial), {})[str(which)] = columns
     return found
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..arrays import FloatArray
 from .drawing import LINES, MUTED, grid_of, legend_above, thinned
-from .wording import CHANNELS, clean
+from .wording import CHANNELS, Channel, clean
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 WORDS = {"measured": "measured", "before": "before tuning", "after": "after tuning"}
 ROLES = {"tune": "tuned on", "test": "test", "other": "not used"}
 PANELS = 16
+SHOWN = ("psi", "u", "v_m", "r")
+"""Motions shown over time; positions are seen in the tracks."""
 
 
 def chosen(results: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
@@ -81,14 +83,14 @@ def draw_distances(
     return figure
 
 
-def draw_histories(found: Mapping[str, Motion]) -> Figure:
+def draw_histories(found: Mapping[str, Motion], inputs: Sequence[Channel]) -> Figure:
     """Motions and inputs of one trial over time."""
-    figure, axes = grid_of(6, (3.6, 1.9))
-    for ax, name in zip(axes, ("psi", "u", "v_m", "r", "delta", "n"), strict=True):
-        channel = CHANNELS[name]
-        for which in ("measured",) if name in ("delta", "n") else ("measured", "before", "after"):
+    panels = [*(CHANNELS[name] for name in SHOWN), *inputs]
+    figure, axes = grid_of(len(panels), (3.6, 1.9))
+    for ax, channel in zip(axes, panels, strict=True):
+        for which in ("measured",) if channel in inputs else ("measured", "before", "after"):
             if which in found:
-                t, values = found[which]["t"], found[which][name] * channel.factor
+                t, values = found[which]["t"], found[which][channel.name] * channel.factor
                 part = thinned(t, 1200)
                 ax.plot(
                     t[part], values[part], **{**LINES[which], "marker": "o" if len(t) < 3 else None, "linewidth": 1.1}

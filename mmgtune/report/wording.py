@@ -8,10 +8,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from ..units import DEG
+from ..units import DEG, shown_in
 
 MINUS = "\u2212"
 NONE = "\u2013"
+_MARKUP = re.compile(r"[<>&]")
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ud800-\udfff\ufffe\uffff]")
 
 
@@ -40,10 +41,18 @@ CHANNELS: Mapping[str, Channel] = {
         Channel("u", "surge velocity", "m/s", 1.0, 3),
         Channel("v_m", "sway velocity", "m/s", 1.0, 3),
         Channel("r", "yaw rate", "deg/s", 1.0 / DEG, 3),
-        Channel("delta", "rudder angle", "deg", 1.0 / DEG, 2),
-        Channel("n", "propeller speed", "rpm", 60.0, 1),
     )
 }
+"""The motions of a ship; what drives her differs from ship to ship, and records name it."""
+
+
+def input_channel(name: str, words: str, unit: str) -> Channel:
+    """An input of a ship as people read it."""
+    shown, factor = shown_in(unit)
+    return Channel(
+        name, _MARKUP.sub("", clean(words)), _MARKUP.sub("", clean(shown)), factor, 1 if shown == "rpm" else 2
+    )
+
 
 _SUFFIXES = (
     ("_deg_per_s", "deg/s"), ("_m_per_s", "m/s"), ("_deg", "deg"), ("_kn", "kn"), ("_m", "m"), ("_s", "s"),

@@ -1,97 +1,139 @@
-"""What is odd about the inputs: sign, speed and unit of rudder and revolutions."""
+"""What is odd about the inputs: sign, speed and unit of rudders, propellers and thrusters; each by its own name."""
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import numpy as np
 
 from ..arrays import FloatArray
+from ..inputs import INPUTS, Role
 from ..units import DEG
 from .finding import Finding
 from .model import Trial
 from .motion_checks import spikes
-from .schema import DIRECTIONS
+from .schema import DIRECTIONS, MAIN_INPUTS
+
+FASTEST_THRUSTER = 100.0
+"""Revolutions [1/s] that no thruster makes, not even a model's."""
 
 
 def control_findings(trial: Trial, where: str) -> list[Finding]:
-    """Findings on propeller, rudder and directions of a trial that can be used."""
-    return [
-        *_rudder_sign(trial, f"{where}, column 'delta'"),
-        *_rudder_speed(trial, f"{where}, column 'delta'"),
-        *_shaft_speed(trial, f"{where}, column 'n'"),
-        *_per_minute(trial, f"{where}, column 'n'"),
-        *_directions(trial, where),
-    ]
+    """Findings on inputs and directions of a trial that can be used."""
+    found = []
+    for name, values in inputs_of(trial).items():
+        place = f"{where}, column '{name}'"
+        gaps = _gaps(name, values, place)
+        # Further inputs may have gaps: what needs them all along says so, and the rest cannot be judged.
+        checks = () if gaps else CHECKS[INPUTS[name].role]
+        found += [one for one in (gaps, *(check(trial, name, place) for check in checks)) if one]
+    return [*found, *_directions(trial, where)]
 
 
-def _rudder_sign(trial: Trial, where: str) -> list[Finding]:
+def inputs_of(trial: Trial) -> dict[str, FloatArray]:
+    """The inputs a trial has logged, (n_samples,) by name."""
+    columns = trial.columns
+    return {name: columns[name] for name in INPUTS if name in columns}
+
+
+def looks_ordered(trial: Trial, name: str) -> bool:
+    """Whether an input without gaps moves as orders do, and as no steering gear or engine."""
+    check = {"rudder": _rudder_speed, "propeller": _shaft_speed}.get(INPUTS[name].role)
+    return check is not None and check(trial, name, "") is not None
+
+
+def _gaps(name: str, values: FloatArray, where: str) -> Finding | None:
+    missing = ~np.isfinite(values)
+    if name in MAIN_INPUTS or not missing.any():
+        return None
+    return Finding(
+        "warning",
+        f"'{name}' is no number in {missing.sum()} rows",
+        f"{where}, row {int(np.flatnonzero(missing)[0])}",
+        f"a model driven by the {INPUTS[name].words} needs it at every sample",
+        "fill short gaps by interpolation, or cut the trial there",
+    )
+
+
+def _rudder_sign(trial: Trial, name: str, where: str) -> Finding | None:
     """A ship going ahead turns towards its rudder; only an overshoot goes the other way, and that one slows down."""
-    over = (np.abs(trial.delta) > 3.0 * DEG) & np.isfinite(trial.r) & (trial.u > 0.0) & (trial.n > 0.0)
+    delta = trial.columns[name]
+    over = (np.abs(delta) > 3.0 * DEG) & np.isfinite(trial.r) & (trial.u > 0.0) & (trial.n > 0.0)
     if over.sum() < 20:
-        return []
-    side = np.sign(trial.delta)
+        return None
+    side = np.sign(delta)
     towards = float(np.mean(side[over] * trial.r[over])) / max(float(np.mean(np.abs(trial.r[over]))), 1e-300)
     both = over[1:] & over[:-1]
     quickens = float(np.sum((side[1:] * np.diff(trial.r))[both]))
     if towards > -0.3 or (towards > -0.8 and quickens >= 0.0):
-        return []
-    return [
-        Finding(
-            "warning",
-            "the ship turns away from its rudder",
-            where,
-            f"a positive angle must turn the ship to starboard; agreement of sides {towards:.2f}, expected near 1",
-            "change the sign of 'delta'; if it is right, those of 'r', 'psi', 'v' and 'y'",
-        )
-    ]
+        return None
+    return Finding(
+        "warning",
+        "the ship turns away from its rudder",
+        where,
+        f"a positive angle must turn the ship to starboard; agreement of sides {towards:.2f}, expected near 1",
+        f"change the sign of '{name}'; if it is right, those of 'r', 'psi', 'v' and 'y'",
+    )
 
 
-def _rudder_speed(trial: Trial, where: str) -> list[Finding]:
+def _rudder_speed(trial: Trial, name: str, where: str) -> Finding | None:
     """Orders jump in one sample.  Steering gears follow the size of a ship as its yaw rate does, so that tells them."""
-    step, rate = fastest_change(trial.t, trial.delta)
+    step, rate = fastest_change(trial.t, trial.columns[name])
     yaw = np.abs(trial.r[np.isfinite(trial.r)])
     if step < 4.9 * DEG or rate < 8.0 * DEG or rate < 8.0 * np.percentile(yaw, 95.0):
-        return []
-    return [
-        Finding(
-            "warning",
-            f"the rudder moves at up to {rate / DEG:.3g} deg/s, {step / DEG:.3g} deg from one sample to the next",
-            where,
-            "no steering gear does; these may be orders, not positions",
-            "use the measured rudder angle where there is one",
-        )
-    ]
+        return None
+    return Finding(
+        "warning",
+        f"the rudder moves at up to {rate / DEG:.3g} deg/s, {step / DEG:.3g} deg from one sample to the next",
+        where,
+        "no steering gear does; these may be orders, not positions",
+        "use the measured rudder angle where there is one",
+    )
 
 
-def _shaft_speed(trial: Trial, where: str) -> list[Finding]:
+def _shaft_speed(trial: Trial, name: str, where: str) -> Finding | None:
     """Only for shafts as slow as those of ships: a model's motor can do anything."""
-    step, rate = fastest_change(trial.t, trial.n)
-    largest = float(np.percentile(np.abs(trial.n), 99.0))
+    n = trial.columns[name]
+    step, rate = fastest_change(trial.t, n)
+    largest = float(np.percentile(np.abs(n), 99.0))
     if largest > 5.0 or step < 0.25 * largest or rate < 0.3:
-        return []
-    return [
-        Finding(
-            "warning",
-            f"the revolutions change by {60.0 * step:.3g} rpm from one sample to the next",
-            where,
-            "no ship's engine does; these may be orders, not measured revolutions",
-            "use the measured revolutions where there are any",
-        )
-    ]
+        return None
+    return Finding(
+        "warning",
+        f"the revolutions change by {60.0 * step:.3g} rpm from one sample to the next",
+        where,
+        "no ship's engine does; these may be orders, not measured revolutions",
+        "use the measured revolutions where there are any",
+    )
 
 
-def _per_minute(trial: Trial, where: str) -> list[Finding]:
-    n, u = np.median(np.abs(trial.n)), np.nanmedian(np.abs(trial.u))
+def _per_minute(trial: Trial, name: str, where: str) -> Finding | None:
+    n, u = np.median(np.abs(trial.columns[name])), np.nanmedian(np.abs(trial.u))
     if n <= 30.0 or u > 0.2 * n:
-        return []
-    return [
-        Finding(
-            "warning",
-            f"{n:.4g} revolutions per second at {u:.3g} m/s",
-            where,
-            f"the ship makes only {u / n:.2g} m with each; these are probably per minute",
-            "divide 'n' by 60",
-        )
-    ]
+        return None
+    return Finding(
+        "warning",
+        f"{n:.4g} revolutions per second at {u:.3g} m/s",
+        where,
+        f"the ship makes only {u / n:.2g} m with each; these are probably per minute",
+        f"divide '{name}' by 60",
+    )
+
+
+def _thruster_per_minute(trial: Trial, name: str, where: str) -> Finding | None:
+    n = float(np.abs(trial.columns[name]).max())
+    if n <= FASTEST_THRUSTER:
+        return None
+    why = "no thruster turns as fast; these are probably per minute"
+    return Finding("warning", f"up to {n:.4g} revolutions per second", where, why, f"divide '{name}' by 60")
+
+
+CHECKS: dict[Role, tuple[Callable[[Trial, str, str], Finding | None], ...]] = {
+    "rudder": (_rudder_sign, _rudder_speed),
+    "propeller": (_shaft_speed, _per_minute),
+    "thruster": (_thruster_per_minute,),
+}
+"""What is looked at in every input of a role."""
 
 
 def _directions(trial: Trial, where: str) -> list[Finding]:

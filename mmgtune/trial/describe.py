@@ -6,10 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from ..units import shown_in
 from .model import Trial
 from .schema import COLUMNS
-
-_SHOWN = {"rad": (180.0 / np.pi, "deg"), "rad/s": (180.0 / np.pi, "deg/s"), "1/s": (60.0, "rpm")}
 
 
 def describe(trial: Trial) -> dict[str, Any]:
@@ -19,7 +18,7 @@ def describe(trial: Trial) -> dict[str, Any]:
         if name == "t":
             continue
         unit = COLUMNS[name].unit if name in COLUMNS else "-"
-        factor, shown = _SHOWN.get(unit, (1.0, unit))
+        shown, factor = shown_in(unit)
         if np.isfinite(values).any():
             ranges[name] = {
                 "min": float(np.nanmin(values) * factor),

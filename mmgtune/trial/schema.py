@@ -13,10 +13,16 @@ METADATA_KEY = b"mmgtune"
 
 @dataclass(frozen=True)
 class Column:
-    """One column: its unit and what it means."""
+    """One column: its unit and what it means.
+
+    counted_from  "north" or "bow" for a direction, "" for anything else
+    gusty         whether it jumps by nature, so that a single sample far off its neighbours is none the worse for it
+    """
 
     unit: str
     meaning: str
+    counted_from: str = ""
+    gusty: bool = False
 
 
 MOTION = {
@@ -27,7 +33,7 @@ MOTION = {
     "v": Column("m/s", "velocity over ground in ship axes at midship, to starboard"),
     "r": Column("rad/s", "yaw rate, to starboard"),
 }
-LOGGED = {name: Column(one.unit, one.words) for name, one in INPUTS.items()}
+LOGGED = {name: Column(one.unit, one.meaning) for name, one in INPUTS.items()}
 MAIN_INPUTS = ("n", "delta")
 """Revolutions and rudder angle that every trial has: manoeuvres are recognised by them."""
 
@@ -36,16 +42,18 @@ REQUIRED = {
     **MOTION,
     **{name: LOGGED[name] for name in MAIN_INPUTS},
 }
-OPTIONAL = {
-    **{name: column for name, column in LOGGED.items() if name not in MAIN_INPUTS},
-    "wind_speed": Column("m/s", "true wind speed"),
-    "wind_dir": Column("rad", "direction the true wind comes from, clockwise from north"),
-    "wind_speed_app": Column("m/s", "apparent wind speed at the ship"),
-    "wind_dir_app": Column("rad", "direction the apparent wind comes from, clockwise from the bow"),
+SURROUNDINGS = {
+    "wind_speed": Column("m/s", "true wind speed", gusty=True),
+    "wind_dir": Column("rad", "direction the true wind comes from, clockwise from north", "north", gusty=True),
+    "wind_speed_app": Column("m/s", "apparent wind speed at the ship", gusty=True),
+    "wind_dir_app": Column("rad", "direction the apparent wind comes from, clockwise from the bow", "bow", gusty=True),
     "depth": Column("m", "water depth"),
-    "wave_height": Column("m", "significant wave height"),
-    "wave_dir": Column("rad", "direction waves come from, clockwise from north"),
+    "wave_height": Column("m", "significant wave height", gusty=True),
+    "wave_dir": Column("rad", "direction waves come from, clockwise from north", "north", gusty=True),
 }
+"""What may have been measured around the ship."""
+
+OPTIONAL = {**{name: column for name, column in LOGGED.items() if name not in MAIN_INPUTS}, **SURROUNDINGS}
 COLUMNS = {**REQUIRED, **OPTIONAL}
 METADATA = ("schema", "ship", "id", "manoeuvre", "source", "noise", "note", "cut_from")
 SOURCES = ("measured", "generated")
@@ -60,7 +68,7 @@ CHANNEL_UNITS = tuple(column.unit for column in MOTION.values())
 """Units of CHANNELS, in the same order."""
 
 RUDDERS = tuple(name for name, one in INPUTS.items() if one.role == "rudder")
-DIRECTIONS = ("wind_dir", "wind_dir_app", "wave_dir")
+DIRECTIONS = tuple(name for name, column in SURROUNDINGS.items() if column.counted_from)
 
 LARGEST_RUDDER = 1.6
 """Rudder angle [rad] beyond which a column must be in degrees."""

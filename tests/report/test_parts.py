@@ -88,7 +88,8 @@ def test_simulation_on_other_times_is_compared_where_both_are() -> None:
 def test_numbers_are_no_finer_than_a_sensor() -> None:
     t = np.arange(3.0)
     motion = {name: t + 0.123456789 for name in ("x", "y", "psi", "u", "v_m", "r", "n", "delta")} | {"t": t}
-    payload, thinned = charts.histories(["a"], {"a": {"measured": motion}})
+    inputs = [wording.input_channel("delta", "rudder", "rad"), wording.input_channel("n", "shaft", "1/s")]
+    payload, thinned = charts.histories(["a"], {"a": {"measured": motion}}, inputs)
     assert not thinned
     data = payload["trials"][0]["data"]
     assert data[0] == {"y": [7.07, 64.37, 121.67], "x0": 0.0, "dx": 1.0}

@@ -1,0 +1,126 @@
+"""A report draws the inputs a ship has: two rudders and a thruster as well as one rudder."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+from mmgtune.errors import OptionError
+from mmgtune.fitting import FitOptions, fit, write_run
+from mmgtune.report import charts, render
+from mmgtune.report.kinds import KINDS
+from mmgtune.report.load import find
+from mmgtune.trial import load_trials
+from mmgtune.units import DEG
+from tests.twin import sail, twin, with_value
+
+from . import fake_run
+
+pytestmark = [pytest.mark.xdist_group("report"), pytest.mark.slow(10)]
+
+INPUTS = ["n", "delta_port", "delta_stbd", "n_bow"]
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run folder of the twin-rudder ship, with its report."""
+    folder = tmp_path_factory.mktemp("twin")
+    ship = twin()
+    (folder / "trials").mkdir()
+    sail(ship, folder / "trials")
+    options = FitOptions(method="least-squares", starts=1, targets=("thruster.k",))
+    result = fit(with_value(ship.profile, "thruster.k", 1.4e4), load_trials(folder / "trials"), options)
+    (folder / "run").mkdir()
+    write_run(result, folder / "run")
+    render(folder / "run")
+    return folder / "run"
+
+
+def payload_of(folder: Path) -> dict[str, Any]:
+    """What the charts of a report are drawn from."""
+    text = (folder / "report.html").read_text(encoding="utf-8")
+    found = re.search(r'<script type="application/json"[^>]*>(.*?)</script>', text, re.DOTALL)
+    assert found
+    payload: dict[str, Any] = json.loads(found.group(1))
+    return payload
+
+
+def test_the_record_names_the_inputs(run: Path) -> None:
+    record = json.loads((run / "fit.json").read_text(encoding="utf-8"))
+    assert [one["name"] for one in record["inputs"]] == INPUTS
+    assert record["inputs"][1] == {
+        "name": "delta_port", "unit": "rad", "words": "port rudder angle", "role": "rudder",
+    }  # fmt: skip
+    columns = pq.read_table(run / "motions.parquet").to_pydict()
+    assert [name for name in columns if name not in ("trial", "which", "t", *charts.RESIDUALS)] == INPUTS
+    port = {(name, which): value for name, which, value in zip(*(columns[k] for k in ("trial", "which", "delta_port")))}
+    assert port == {(name, which): side for name, side in (("one", 0.3), ("two", -0.3))
+                    for which in ("measured", "before", "after")}  # fmt: skip
+
+
+def test_charts_have_every_input(run: Path) -> None:
+    payload = payload_of(run)
+    for layout in (payload["wide"], payload["narrow"]):
+        titles = {key: layout[key]["title"]["text"] for key in layout if key.startswith("yaxis")}
+        assert list(titles.values()) == [
+            "heading<br>[deg]", "surge velocity<br>[m/s]", "sway velocity<br>[m/s]", "yaw rate<br>[deg/s]",
+            "port rudder angle<br>[deg]", "starboard rudder angle<br>[deg]", "propeller revolutions<br>[rpm]",
+            "bow thruster revolutions<br>[rpm]",
+            "heading error<br>[deg]", "surge velocity error<br>[m/s]", "sway velocity error<br>[m/s]",
+            "yaw rate error<br>[deg/s]", "position north error<br>[m]", "position east error<br>[m]",
+        ]  # fmt: skip
+    drawn = {trace["trace"]["yaxis"]: k for k, trace in enumerate(payload["traces"])}
+    one = payload["trials"][0]["data"]
+    for axis, value in (("y5", 0.3 / DEG), ("y6", 0.2 / DEG), ("y8", 120.0)):
+        assert one[drawn[axis]]["y"] == pytest.approx([value] * len(one[drawn[axis]]["y"]), abs=0.01)
+    # Both sides end with their own axis of time.
+    assert [axis for axis in payload["wide"] if axis.startswith("xaxis") and payload["wide"][axis]["showticklabels"]] == [
+        "xaxis8", "xaxis14",
+    ]  # fmt: skip
+    svg = (run / "figures" / "histories.svg").read_text(encoding="utf-8")
+    for words in ("port rudder angle [deg]", "starboard rudder angle [deg]", "bow thruster revolutions [rpm]"):
+        assert words in svg
+
+
+def test_panels_do_not_overlap(run: Path) -> None:
+    for layout in (payload_of(run)["wide"], payload_of(run)["narrow"]):
+        spans = [
+            (tuple(layout[f"xaxis{k}"]["domain"]), tuple(layout[f"yaxis{k}"]["domain"])) for k in ["", *range(2, 15)]
+        ]
+        for k, (across, up) in enumerate(spans):
+            assert up[0] < up[1]
+            for other_across, other_up in spans[:k]:
+                assert across != other_across or up[1] <= other_up[0]
+
+
+def test_a_record_that_names_no_inputs_has_one_rudder_and_one_propeller(tmp_path: Path) -> None:
+    folder = fake_run.make_fit(tmp_path / "old")
+    assert "inputs" not in json.loads((folder / "fit.json").read_text(encoding="utf-8"))
+    _, record = find(folder, KINDS)
+    assert [channel.title for channel in record.inputs] == ["rudder angle [deg]", "propeller revolutions [rpm]"]  # type: ignore[union-attr]
+    render(folder)
+    assert len(payload_of(folder)["traces"]) == 4 * 3 + 2 + 6 * 2
+
+
+@pytest.mark.parametrize("inputs", ["n", [{"name": "n"}], [3]])
+def test_inputs_that_make_no_sense(tmp_path: Path, inputs: object) -> None:
+    folder = fake_run.write_fit(tmp_path / "run", *fake_run.edited(inputs=inputs))
+    with pytest.raises(OptionError, match='"inputs" is not a list of name, unit, words, role'):
+        find(folder, KINDS)
+
+
+def test_an_input_that_the_motions_lack_is_named(tmp_path: Path) -> None:
+    named = [{"name": "delta_port", "unit": "rad", "words": "port <b>rudder</b>", "role": "rudder"}]
+    data, history, motions = fake_run.edited(inputs=named)
+    folder = fake_run.write_fit(tmp_path / "run", data, history, motions)
+    with pytest.raises(OptionError, match="columns lack: delta_port"):
+        find(folder, KINDS)
+    motions["delta_port"] = np.zeros(len(motions))
+    render(fake_run.write_fit(tmp_path / "run", data, history, motions))
+    assert "port brudder/b<br>[deg]" in payload_of(folder)["wide"]["yaxis5"]["title"]["text"]
