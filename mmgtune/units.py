@@ -72,7 +72,7 @@ def parse(text: str, unit: str, infinite: bool = False) -> tuple[float, ...]:
     if match is None:
         raise ValueError(f"'{text}' is not a number with a unit, such as '{example(unit)}'")
     written = (match.group(2) or "").strip()
-    known = _FACTORS.get(unit, {})
+    known = factors(unit)
     if unit in DIMENSIONLESS:
         if written and written != "-":
             raise ValueError(f"'{text}' has a unit where a pure number belongs")
@@ -96,8 +96,11 @@ def canonical(unit: str) -> str:
 
 
 def factors(unit: str) -> dict[str, float]:
-    """Units a quantity in ``unit`` may be written in, and what a number in each is multiplied by."""
-    return dict(_FACTORS.get(unit, {}))
+    """Units a quantity in ``unit`` may be written in, and what a number in each is multiplied by.
+
+    One that is not listed, of a coefficient of one's own, may be written as it is.
+    """
+    return dict(_FACTORS.get(unit, {unit: 1.0}))
 
 
 def example(unit: str) -> str:

@@ -24,7 +24,7 @@ class Cases:
     t          (n_cases, T) time [s]; padding repeats the last
     n_samples  (n_cases,) samples that count
     controls   (n_cases, T, n_inputs) logged inputs, in the order of the model's arrangement
-    around     (n_cases, T, 3) surroundings, in the order of ``Surroundings``
+    around     (n_cases, T, n_surroundings) surroundings, in the order of ``Surroundings``
     initial    (n_cases, 6) state at the first sample, as the sensors show it
     target     (n_cases, T, 6) what the motion is compared with; 0 where there is nothing
     weight     (n_cases, T, 6) weight of each squared difference in the cost; 0 where there is nothing, and at the first
@@ -75,7 +75,7 @@ def pad(
     around: Sequence[FloatArray] | None = None,
 ) -> Cases:
     """Cases out of runs: times (n_i,), controls (n_i, n_inputs), initial (6,), target and weight (n_i, 6), around
-    (n_i, 3); nothing counts where target and weight are None, and nothing was measured around where that is None."""
+    (n_i, n_surroundings); nothing counts where target and weight are None, nothing was measured where around is."""
     n_samples = np.array([len(t) for t in times], dtype=np.int64)
     T = int(n_samples.max())
 

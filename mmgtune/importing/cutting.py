@@ -89,7 +89,7 @@ def _standing(inputs: dict[str, FloatArray]) -> np.ndarray:
     """(n_samples,) whether nothing drives the ship: no shaft turns, and every rudder is midships."""
     size = {name: np.abs(values) for name, values in inputs.items()}
     limit = {name: MIDSHIPS if INPUTS[name].unit == "rad" else STANDING * size[name].max() for name in inputs}
-    return np.all([size[name] <= limit[name] for name in inputs], axis=0)
+    return np.asarray(np.all([size[name] <= limit[name] for name in inputs], axis=0))
 
 
 def _track(t: FloatArray, columns: dict[str, FloatArray]) -> Track:

@@ -111,10 +111,10 @@ class Surroundings(NamedTuple):
     wind_known: Lanes  # 1 where the wind was measured, 0 where not
 
 
-UNKNOWN = Surroundings(0.0, 0.0, 0.0)
+UNKNOWN = Surroundings(*(0.0 for _ in Surroundings._fields))
 """Nothing measured."""
 
-HELD = ("wind_known",)
+HELD = tuple(name for name in Surroundings._fields if name.endswith("_known"))
 """Surroundings that hold over a step between samples with the value at its end; the others change linearly."""
 
 HARMONICS = ("X_0", "X_1", "X_3", "X_5", "Y_1", "Y_3", "Y_5", "N_1", "N_2", "N_3")

@@ -137,7 +137,7 @@ class _Reader(TomlReader):
                 continue
             limits = self.plain(section, actuator_fields(inputs[name]))
             if limits and limits["low"] >= limits["high"]:
-                self.problem(f"'{section}.low' is not below high", section, "low")
+                self.problem(f"'{section}.low' is not below high", section, "low", fix="check numbers and units")
             elif limits:
                 found[name] = Actuator(**limits)
         return found

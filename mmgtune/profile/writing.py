@@ -15,6 +15,7 @@ from tomlkit.items import InlineTable, Table
 
 from ..components import UNTAGGED, Field
 from ..effects import Effect
+from ..inputs import INPUTS
 from ..metrics import METRICS
 from ..units import DIMENSIONLESS, shown
 from .model import Coefficient, Section, ShipProfile
@@ -50,11 +51,11 @@ def profile_text(profile: ShipProfile) -> str:
         now, was = getattr(profile, name), getattr(before, name)
         numbers = {key: getattr(now, key) for key in fields} if now else {}
         _write_numbers(document, name, numbers, {key: getattr(was, key) for key in fields} if was else {}, fields)
-    for one in profile.arrangement.inputs:
-        now, was = (
-            asdict(ship.actuators[one.name]) if one.name in ship.actuators else {} for ship in (profile, before)
-        )
-        _write_numbers(document, f"actuators.{one.name}", now, was, actuator_fields(one))
+    for name in dict.fromkeys((*before.actuators, *profile.actuators)):
+        now, was = (asdict(ship.actuators[name]) if name in ship.actuators else {} for ship in (profile, before))
+        _write_numbers(document, f"actuators.{name}", now, was, actuator_fields(INPUTS[name]))
+    if not profile.actuators:
+        _remove(document, "actuators")
     if profile.targets != before.targets:
         _table(document, "tuning")["targets"] = list(profile.targets)
     _write_numbers(document, "limits", profile.limits, before.limits, {name: limit_field(name) for name in METRICS})

@@ -38,7 +38,7 @@ class ResidualForces:
     heading  (n,) smoothed [rad], unwrapped; NaN where it was not measured
     drift    (n,) drift angle beta [rad]
     yaw_rate (n,) r' = r L / U [-]
-    rudder   (n,) logged rudder angle [rad]
+    rudder   (n,) logged rudder angle [rad], the mean where there are several rudders
     ordered  (n,) time since the last rudder order [s]; NaN before the first
     speed    (n,) U [m/s]
     tau      time scale of the smoothing [s]; what is quicker cannot be seen
@@ -117,7 +117,8 @@ def residual_forces(model: Model, trial: Trial) -> ResidualForces:
     if not len(at):
         raise ValueError(f"trial '{trial.id}' is too short, or too broken by gaps, for forces: tau {motion.tau:.3g} s")
     known = np.flatnonzero(np.isfinite(motion.states[:, 3:]).all(axis=1))
-    found = breakdown(model, motion.states[known], motion.controls[known])
+    controls = motion.alike(trial.inputs(model.inputs))
+    found = breakdown(model, motion.states[known], controls[known])
     velocities = _velocities(found)
     # A natural cubic spline through a natural cubic spline's own values at its knots is that spline.
     slopes = CubicSpline(motion.t[known], velocities, bc_type="natural")(motion.t[known], 1)
@@ -131,7 +132,7 @@ def residual_forces(model: Model, trial: Trial) -> ResidualForces:
         id=trial.id,
         sample=at,
         force=force,
-        noise=_noise(model, motion, at, slopes[inner]),
+        noise=_noise(model, motion, controls, at, slopes[inner]),
         unit=np.column_stack([unit_F, unit_F, unit_M]),
         time=trial.t[at],
         heading=motion.states[at, 2],
@@ -191,9 +192,11 @@ def time_since_order(t: FloatArray, delta: FloatArray) -> FloatArray:
     return ordered
 
 
-def _noise(model: Model, motion: Smoothed, at: npt.NDArray[np.intp], slopes: FloatArray) -> FloatArray:
+def _noise(
+    model: Model, motion: Smoothed, controls: FloatArray, at: npt.NDArray[np.intp], slopes: FloatArray
+) -> FloatArray:
     """(n, 3) deviation of residual forces from noise in u, v_m and r and, apart from it, in their slopes."""
-    states, controls = motion.states[at], motion.controls[at]
+    states, controls = motion.states[at], controls[at]
     value_noise, slope_noise = motion.value_noise[3:], motion.slope_noise[3:]
 
     def force(moved: FloatArray, change: FloatArray) -> FloatArray:

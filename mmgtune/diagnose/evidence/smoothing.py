@@ -32,12 +32,11 @@ VARIANCE_OF_SLOPE = np.sqrt(2.0) / 16.0
 
 @dataclass(frozen=True, eq=False)
 class Smoothed:
-    """A trial's motion and inputs, smoothed.
+    """A trial's motion, smoothed.
 
     t         (n_samples,) time [s]
     states    (n_samples, 6) x, y [m], psi [rad], u, v_m [m/s], r [rad/s]; NaN before the first and after the last
               measured sample, and throughout a channel with fewer than FEWEST measured samples
-    controls  (n_samples, 2) propeller revolutions [1/s], rudder angle [rad]
     tau       time scale of the splines [s]
     dt        usual time between samples [s]
     noise     (6,) deviation of the sensors' noise, SI units
@@ -47,12 +46,15 @@ class Smoothed:
 
     t: FloatArray
     states: FloatArray
-    controls: FloatArray
     tau: float
     dt: float
     noise: FloatArray
     present: BoolArray
     inner: BoolArray
+
+    def alike(self, values: FloatArray) -> FloatArray:
+        """Other columns (n_samples, n) of the trial, without gaps, blunted as the motion is."""
+        return np.column_stack([smoothed(self.t, column, self.tau, self.dt) for column in values.T])
 
     @property
     def value_noise(self) -> FloatArray:
@@ -79,9 +81,8 @@ def smooth(trial: Trial) -> Smoothed:
     noise = _noise(trial)
     tau = time_scale(t[whole], motion[whole, 3:], noise[3:], dt)
     states = np.column_stack([smoothed(t, values, tau, dt) for values in motion.T])
-    controls = np.column_stack([smoothed(t, values, tau, dt) for values in (trial.n, trial.delta)])
     present, inner = _reliable(t, whole, tau, dt)
-    return Smoothed(t, states, controls, tau, dt, noise, present, inner)
+    return Smoothed(t, states, tau, dt, noise, present, inner)
 
 
 def _noise(trial: Trial) -> FloatArray:

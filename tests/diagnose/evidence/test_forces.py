@@ -8,9 +8,12 @@ import pytest
 from mmgtune.diagnose.evidence import residual_forces
 from mmgtune.diagnose.evidence.forces import needed_force, time_since_order
 from mmgtune.diagnose.evidence.smoothing import smooth
+from mmgtune.model import Model
 from mmgtune.physics.rigid_body import accelerations
+from mmgtune.trial import load_trials
 from tests.diagnose.evidence.conftest import WIND
 from tests.diagnose.evidence.made import DEG, NOISE, make_trials, turn_order, zigzag_order
+from tests.twin import sail, twin, with_value
 
 
 def test_needed_force_undoes_accelerations(suzaku):
@@ -83,6 +86,18 @@ def test_gaps_are_bridged_or_left_out(suzaku, plain):
     # The same noise, smoothed a little differently.
     assert np.sqrt(np.mean((pair[0] - pair[1]) ** 2)) < 0.7
     assert np.sqrt(np.mean(pair[1] ** 2)) < 1.5
+
+
+def test_forces_of_a_ship_with_several_rudders(tmp_path):
+    """Her own inputs drive her, not the mean rudder: no force is missing where the model is right."""
+    ship = twin()
+    sail(ship, tmp_path)
+    trial = load_trials(tmp_path).trials["one"]
+    right = residual_forces(ship, trial)
+    without = residual_forces(Model(with_value(ship.profile, "thruster.k", 0.0)), trial)
+    pushed = 2e4 * 2.0**2  # k n^2, of a thruster that turns all along
+    assert np.median(without.dY - right.dY) == pytest.approx(pushed, rel=1e-6)
+    assert np.abs(np.median(right.dY)) < 0.05 * pushed
 
 
 def test_heading_may_be_missing(suzaku, plain):
