@@ -3,21 +3,37 @@
 from __future__ import annotations
 
 import re
+from importlib import import_module
 from typing import Any
 
 import griffe
 
-ENTRY = re.compile(r"^( *)(\S+(?:,? \S+)*?) {2,}(\S.*)$")
-"""A name or some, two spaces or more, and what it is."""
+from mmgtune.options import Options, choices
+
+ENTRY = re.compile(r"^( *)(\S+(?:,? \S+)*?)(?<!\.) {2,}(\S.*)$")
+"""A name or some, two spaces or more, and what it is; two spaces after a sentence are none of that."""
 
 
 class Aligned(griffe.Extension):
-    """Rewrites every docstring as it is read."""
+    """Rewrites every docstring as it is read, and gives options the help that stands in their fields."""
 
     def on_object(self, *, obj: Any, **_: Any) -> None:
         """Called by griffe for each object."""
+        if not obj.is_alias and obj.is_attribute and obj.path.startswith("mmgtune.options."):
+            say_what_option_means(obj)
         if not obj.is_alias and obj.docstring:
             obj.docstring.value = as_markdown(obj.docstring.value)
+
+
+def say_what_option_means(attribute: Any) -> None:
+    """Help, flag and default of the field of a dataclass of options, as the command line has them."""
+    module = import_module(attribute.module.path)
+    of = getattr(module, attribute.parent.name, None)
+    known = choices(of).get(attribute.name) if isinstance(of, type) and issubclass(of, Options) else None
+    if known is not None:
+        words = f"{known.help} One of: {', '.join(known.values)}." if known.values else known.help
+        attribute.docstring = griffe.Docstring(f"{words} Flag: ``{known.flag}``.", parent=attribute)
+        attribute.value = repr(getattr(of, attribute.name))
 
 
 def as_markdown(text: str) -> str:

@@ -10,6 +10,7 @@ then looked up lane by lane, and a case that ends before others of its block wai
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 from typing import Any
@@ -242,8 +243,8 @@ def _state(array: str) -> str:
 
 
 def _name(part: Component) -> str:
-    assert part.function is not None  # asked only of those that have one
-    return part.function.__name__
+    """What the kernel calls the function of a part: by its kind, since those of packages may be called anything."""
+    return re.sub(r"\W", "_", f"of_{part.kind}")
 
 
 def _looks_around(model: Model) -> bool:
@@ -263,7 +264,7 @@ def _imports(model: Model) -> list[str]:
     ]
     places = (ActuatorEffect, FlowEffect, ForceEffect, LagEffect, SensorEffect)
     for part in (*model.parts, *(effect for effect in model.effects if isinstance(effect, places))):
-        named.append((part.params, part.params.__name__))
+        named.append((part.params, f"{_name(part)}_params"))
         if part.function is not None:
             named.append((part.function, _name(part)))
         if isinstance(part, SensorEffect):
@@ -292,7 +293,7 @@ def _tuple(model: Model, part: Component) -> str:
     for rows, table in zip(model.fields(part), tables, strict=True):
         cells = [_cell(row) for row in rows]
         arguments.append(f"({', '.join(cells)})" if table else cells[0])
-    return f"{part.params.__name__}({', '.join(arguments)})"
+    return f"{_name(part)}_params({', '.join(arguments)})"
 
 
 def _sample(model: Model, inputs: str, around: str, shift: str) -> list[str]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..errors import MmgtuneError, OptionError, Problem, closest
-from ..options import CheckOptions
+from ..options import FORMATS, CheckOptions
 from . import common as c
 from .exitcodes import ExitCode
 from .options import problems_in_flags, takes
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from ..checking import CheckReport
 
 CI = "CI"
-FORMATS = ("text", "json", "junit", "github", "markdown")
 CODES = {"pass": ExitCode.GOOD, "regressed": ExitCode.NO, "not comparable": ExitCode.COULD_NOT_RUN}
 
 
@@ -46,7 +45,7 @@ def command(
         str | None,
         typer.Option(
             "--format",
-            help="text, json, junit, github or markdown. Default: text; on GitHub Actions annotations follow it.",
+            help=f"{', '.join(FORMATS[:-1])} or {FORMATS[-1]}. Default: text; on GitHub Actions annotations follow it.",
             rich_help_panel=c.OUTPUT,
         ),
     ] = None,
@@ -145,24 +144,24 @@ class Given:
 
     def __call__(self, report: CheckReport) -> None:
         """Print the report, and write it to the files asked for."""
-        from ..checking.renderers import RENDERERS, github, text
+        from ..checking.renderers import RENDERERS
 
         if self.format in (None, "text"):
-            print(text(report, self.everything), end="")
+            print(RENDERERS["text"](report, self.everything), end="")
             if self.format is None and os.environ.get("GITHUB_ACTIONS") == "true":
-                print(github(report), end="")
+                print(RENDERERS["github"](report), end="")
         else:
             print(RENDERERS[self.format](report), end="")
         self._write(report)
 
     def elsewhere(self, report: CheckReport) -> None:
         """A check that could not run: the problem itself goes to stderr, a machine's format to stdout."""
-        from ..checking.renderers import RENDERERS, github
+        from ..checking.renderers import RENDERERS
 
         if self.format not in (None, "text"):
             print(RENDERERS[self.format](report), end="")
         elif self.format is None and os.environ.get("GITHUB_ACTIONS") == "true":
-            print(github(report), end="")
+            print(RENDERERS["github"](report), end="")
         self._write(report)
 
     def update(self, report: CheckReport | None, path: str) -> None:
@@ -177,14 +176,14 @@ class Given:
             print(difference(report, path) if report else f"wrote {path}.\n", end="")
 
     def _write(self, report: CheckReport) -> None:
-        from ..checking.renderers import junit, markdown
+        from ..checking.renderers import RENDERERS
         from ..files import cannot_write, write_text
 
         if self.junit is not None:
-            write_text(self.junit, junit(report))
+            write_text(self.junit, RENDERERS["junit"](report))
         if self.summary is not None:
             try:
                 with self.summary.open("a", encoding="utf-8") as file:
-                    file.write(markdown(report))
+                    file.write(RENDERERS["markdown"](report))
             except OSError as error:
                 raise cannot_write(self.summary, error) from error

@@ -9,7 +9,7 @@ import typer
 
 
 def command(
-    run: Annotated[Path, typer.Argument(help="Run folder of a fit or a sweep.")],
+    run: Annotated[Path, typer.Argument(help="Run folder of a fit, a sweep or a diagnosis.")],
 ) -> None:
     """Render the report of a run again, without fitting.
 

@@ -13,12 +13,13 @@ Nothing here is heavy to import: the command line builds its flags from it befor
 from .choice import Choice, Options, again, choice, choices
 from .diagnosis import DiagnoseOptions
 from .orders import SimulateOptions
-from .scoring import CheckOptions, ValidateOptions
+from .scoring import FORMATS, CheckOptions, ValidateOptions
 from .simulation import BACKENDS, INTEGRATORS, SimulationOptions
 from .tuning import METHODS, FitOptions, LeaveOutOptions, SearchOptions, SweepOptions, TuningOptions
 
 __all__ = [
     "BACKENDS",
+    "FORMATS",
     "INTEGRATORS",
     "METHODS",
     "CheckOptions",

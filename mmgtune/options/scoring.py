@@ -12,6 +12,9 @@ from .tuning import LeaveOutOptions
 if TYPE_CHECKING:
     from ..backends import Integrator
 
+FORMATS = ("text", "json", "junit", "github", "markdown")
+"""Formats of a check's report, each a module of ``checking.renderers``."""
+
 
 @dataclass(frozen=True)
 class ValidateOptions(SimulationOptions):

@@ -1,4 +1,4 @@
-"""Reports of a fit, a sweep or a diagnosis: one HTML file, the same as Markdown, and the figures as files."""
+"""Reports of runs: one HTML file, the same as Markdown, and the figures as files."""
 
 from __future__ import annotations
 
@@ -10,25 +10,18 @@ __all__ = ["render"]
 def render(folder: Path) -> list[Path]:
     """Write the report of the run in ``folder`` into it: report.html, report.md and figures/*.svg and *.pdf.
 
-    Earlier renderings are replaced; the same run gives the same bytes.  A sweep's runs that lie in folders inside
-    it get their reports too, since the sweep's report leads to them.  Returns the files written, report.html first.
+    Earlier renderings are replaced; the same run gives the same bytes.  Runs that lie in folders inside it and
+    that its report leads to, as those of a sweep, get theirs too.  Returns the files written, report.html first.
 
     Raises OptionError for a folder that is no run folder or cannot be read, OutputError where it cannot be written.
     """
-    from . import diagnosis_page, fit_page, html, load, markdown, misfit, sweep_page
+    from . import html, load, markdown
+    from .kinds import KINDS
     from .output import write
 
-    record = load.load(folder)
-    if isinstance(record, load.RunRecord):
-        page = fit_page.build(record)
-        return write(folder, page, html.render(page), markdown.render(page))
-    if isinstance(record, load.DiagnosisRecord):
-        page = diagnosis_page.build(record)
-        return write(folder, page, html.render(page), markdown.render(page))
-    page = sweep_page.build(record)
+    kind, run = load.find(folder, KINDS)
+    page = kind.build(run)
     written = write(folder, page, html.render(page), markdown.render(page))
-    for run in record.runs:
-        name = misfit.run_folder(run)
-        if name is not None and (folder / name / "fit.json").is_file():
-            written += render(folder / name)
+    for other in kind.inside(run):
+        written += render(other)
     return written

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import findings, tracks
 from .advice import shortest
 from .common import assumptions, generated_banner, picture, provenance
 from .drawing import AFTER, MUTED, Drawn, log_ticks, new_figure
+from .load import DiagnosisRecord, Kind, inputs_of, motions_in
 from .page import Block, Cell, Commands, Details, Page, Prose, Section, Table, Tile, cells
 from .tables import tone
 from .wording import CHANNELS, NONE, change, clean, number, percent, shown
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-    from .load import DiagnosisRecord
 
 _WORDS = {
     "none": "nothing found",
@@ -386,3 +386,15 @@ def _p(value: Any) -> str:
 def _share(value: Any) -> str:
     found = number(value)
     return NONE if found is None else f"{100.0 * found:.1f} %" if abs(found) < 10.0 else f"{100.0 * found:.0f} %"
+
+
+def _read(folder: Path, data: Mapping[str, Any]) -> DiagnosisRecord:
+    return DiagnosisRecord(folder, data, motions_in(folder, inputs_of(folder, data)))
+
+
+KIND = Kind(
+    "diagnosis",
+    ("profile", "trials", "verdict", "sentence", "causes", "candidates", "gain", "trial_results"),
+    _read,
+    build,
+)

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
 
 from . import advice, charts, confidence, figures, findings, tables, tables_of_motion, tracks
 from .common import assumptions, generated_banner, misfit_tile, picture, provenance, warnings
 from .drawing import Drawn
+from .load import Kind, RunRecord, history_in, inputs_of, motions_in
 from .page import Commands, Details, Histories, Page, Prose, Section, Tile
 from .wording import change, clean, count, number, percent, shown
-
-if TYPE_CHECKING:
-    from .load import RunRecord
 
 
 def build(record: RunRecord) -> Page:
@@ -187,3 +187,11 @@ def _coefficients(record: RunRecord, drawings: dict[str, Drawn]) -> Section | No
             tables.coefficients(rows),
         ),
     )
+
+
+def _read(folder: Path, data: Mapping[str, Any]) -> RunRecord:
+    inputs = inputs_of(folder, data)
+    return RunRecord(folder, data, history_in(folder), motions_in(folder, inputs), inputs)
+
+
+KIND = Kind("fit", ("profile", "trials", "options", "J_tune", "coefficients", "trial_results"), _read, build)

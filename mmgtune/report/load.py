@@ -1,9 +1,9 @@
-"""Reading a run folder: the record of a fit or of a sweep, checked so far that a report can be made of it."""
+"""Reading a run folder: the record of a run, checked so far that a report can be made of it."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,6 +15,8 @@ from ..physics.quantities import STATES
 from .wording import Channel, clean, input_channel
 
 if TYPE_CHECKING:
+    from .page import Page
+
     Motion = Mapping[str, FloatArray]
 
 SCHEMA = 1
@@ -22,11 +24,29 @@ _COLUMNS = ("t", *STATES)
 _ROLES: tuple[Role, ...] = ("rudder", "propeller", "thruster")
 _EVERY_SHIP = ("n", "delta")
 """Inputs of a run whose record does not name them: a ship with one propeller and one rudder."""
-_NEEDED = {
-    "fit": ("profile", "trials", "options", "J_tune", "coefficients", "trial_results"),
-    "sweep": ("profile", "trials", "runs", "recommended"),
-    "diagnosis": ("profile", "trials", "verdict", "sentence", "causes", "candidates", "gain", "trial_results"),
-}
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of run that there are reports of.
+
+    name    "kind" of its record, which is the file of that name in the run folder
+    needed  keys of the record without which there can be no page
+    read    (folder, record file) -> the run as its page wants it
+    build   that -> the page
+    inside  that -> folders of further runs that the page leads to
+    """
+
+    name: str
+    needed: tuple[str, ...]
+    read: Callable[[Path, Mapping[str, Any]], Any]
+    build: Callable[[Any], Page]
+    inside: Callable[[Any], Iterable[Path]] = lambda _: ()
+
+    @property
+    def file(self) -> str:
+        """Name of the record's file: sweep.json."""
+        return f"{self.name.replace('-', '_')}.json"
 
 
 @dataclass(frozen=True)
@@ -83,27 +103,22 @@ class DiagnosisRecord:
         return list(self.data["trial_results"])
 
 
-def load(folder: Path) -> RunRecord | SweepRecord | DiagnosisRecord:
-    """The record in a run folder, told apart by the file it holds.
+def find(folder: Path, kinds: Iterable[Kind]) -> tuple[Kind, Any]:
+    """The kind of run in a folder, told by the file it holds, and the run as its page wants it.
 
     Raises OptionError for a folder that is missing, unreadable, not a run folder, or from a newer program.
     """
     if not folder.is_dir():
-        raise _problem(
-            "there is no such run folder", folder, "", "give the folder that --out of a fit or a sweep named"
-        )
-    for kind in ("diagnosis", "sweep", "fit"):
-        path = folder / f"{kind}.json"
+        raise _problem("there is no such run folder", folder, "", "give the folder that --out of a run named")
+    for kind in kinds:
+        path = folder / kind.file
         if path.is_file():
-            data = _read(path, kind)
-            if kind == "diagnosis":
-                return DiagnosisRecord(folder, data, _motions(folder, _inputs(data, path)))
-            return SweepRecord(folder, data) if kind == "sweep" else _run(path, data)
+            return kind, kind.read(folder, _read(path, kind))
     raise _problem(
         "this is not a run folder",
         folder,
-        "it holds neither fit.json nor sweep.json nor diagnosis.json",
-        "give the folder that --out of a fit or a sweep named; an interrupted run may have written neither",
+        f"it holds none of {', '.join(kind.file for kind in kinds)}",
+        "give the folder that --out of a run named; an interrupted run may have written none of them",
     )
 
 
@@ -111,15 +126,15 @@ def _problem(what: str, where: Path, why: str, fix: str) -> OptionError:
     return OptionError(Problem(what=what, where=str(where), why=why, fix=fix))
 
 
-def _read(path: Path, kind: str) -> dict[str, Any]:
+def _read(path: Path, kind: Kind) -> dict[str, Any]:
     """A record file, with its schema, kind and needed keys checked."""
     again = "run the fit again, or give another folder"
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise _problem("the run's record cannot be read", path, str(error), again) from error
-    if not isinstance(data, dict) or data.get("kind") != kind:
-        raise _problem(f"this is not the record of a {kind}", path, f'it has no "kind": "{kind}"', again)
+    if not isinstance(data, dict) or data.get("kind") != kind.name:
+        raise _problem(f"this is not the record of a {kind.name}", path, f'it has no "kind": "{kind.name}"', again)
     schema = data.get("schema")
     if not isinstance(schema, int):
         raise _problem("the run's record has no schema number", path, "it cannot be told how to read it", again)
@@ -130,13 +145,13 @@ def _read(path: Path, kind: str) -> dict[str, Any]:
             f"its record has schema {schema}; this version reads up to {SCHEMA}",
             f"update mmgtune to {clean(data.get('mmgtune', 'the version that made it'))} or later",
         )
-    lacking = [key for key in _NEEDED[kind] if key not in data]
+    lacking = [key for key in kind.needed if key not in data]
     if lacking:
         raise _problem("the run's record is not whole", path, "it lacks " + ", ".join(lacking), again)
     return data
 
 
-def _inputs(data: Mapping[str, Any], path: Path) -> tuple[Channel, ...]:
+def inputs_of(folder: Path, data: Mapping[str, Any]) -> tuple[Channel, ...]:
     """The inputs a record names, rudders first, so that every ship's report begins alike."""
     rows = data.get("inputs", [INPUTS[name].to_dict() for name in _EVERY_SHIP])
     keys = ("name", "unit", "words", "role")
@@ -144,24 +159,22 @@ def _inputs(data: Mapping[str, Any], path: Path) -> tuple[Channel, ...]:
         isinstance(row, dict) and all(isinstance(row.get(key), str) for key in keys) for row in rows
     ):
         why = '"inputs" is not a list of ' + ", ".join(keys)
-        raise _problem("the run's record is not whole", path, why, "run the fit again, or give another folder")
+        raise _problem("the run's record is not whole", folder, why, "run the fit again, or give another folder")
     rows = sorted(rows, key=lambda row: _ROLES.index(row["role"]) if row["role"] in _ROLES else len(_ROLES))
     return tuple(input_channel(row["name"], row["words"], row["unit"]) for row in rows)
 
 
-def _run(path: Path, data: Mapping[str, Any]) -> RunRecord:
+def history_in(folder: Path) -> dict[str, FloatArray]:
+    """Columns of history.parquet by name; empty where there is none."""
     import numpy as np
 
-    folder = path.parent
-    inputs = _inputs(data, path)
-    history: dict[str, FloatArray] = {}
-    if (folder / "history.parquet").is_file():
-        frame = _parquet(folder / "history.parquet")
-        history = {str(name): frame[name].to_numpy(dtype=np.float64) for name in frame.columns} if len(frame) else {}
-    return RunRecord(folder, data, history, _motions(folder, inputs), inputs)
+    if not (folder / "history.parquet").is_file():
+        return {}
+    frame = _parquet(folder / "history.parquet")
+    return {str(name): frame[name].to_numpy(dtype=np.float64) for name in frame.columns} if len(frame) else {}
 
 
-def _motions(folder: Path, inputs: Sequence[Channel]) -> dict[str, dict[str, Motion]]:
+def motions_in(folder: Path, inputs: Sequence[Channel]) -> dict[str, dict[str, Motion]]:
     """The motions of a run folder by trial and which."""
     import numpy as np
 
@@ -175,11 +188,11 @@ def _motions(folder: Path, inputs: Sequence[Channel]) -> dict[str, dict[str, Mot
     lacking = [name for name in ("trial", "which", *names) if name not in frame.columns]
     if lacking:
         raise _problem("the motions are not whole", path, "columns lack: " + ", ".join(lacking), "run the fit again")
-    motions: dict[str, dict[str, Motion]] = {}
+    found: dict[str, dict[str, Motion]] = {}
     for (trial, which), rows in frame.groupby(["trial", "which"], sort=False, observed=True):
         columns = {name: rows[name].to_numpy(dtype=np.float64) for name in names}
-        motions.setdefault(str(trial), {})[str(which)] = columns
-    return motions
+        found.setdefault(str(trial), {})[str(which)] = columns
+    return found
 
 
 def _parquet(path: Path) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
 
 def write(folder: Path, page: Page, html: str, markdown: str) -> list[Path]:
     """Write the report and its figures, and remove figures that an earlier rendering left and this one has not."""
+    drawn_before = _figures(folder / "report.md")
     written = [write_text(folder / "report.html", html), write_text(folder / "report.md", markdown)]
     for name, (svg, pdf) in page.figures.items():
         written.append(write_text(folder / "figures" / f"{name}.svg", svg))
@@ -20,20 +22,13 @@ def write(folder: Path, page: Page, html: str, markdown: str) -> list[Path]:
         with atomic(path) as part:
             part.write_bytes(pdf)
         written.append(path)
-    for name in _NAMES - set(page.figures):
+    for name in drawn_before - set(page.figures):
         for suffix in (".svg", ".pdf"):
             (folder / "figures" / f"{name}{suffix}").unlink(missing_ok=True)
     return written
 
 
-_NAMES = {
-    "tracks",
-    "distances",
-    "histories",
-    "coefficients",
-    "convergence",
-    "correlation",
-    "misfit",
-    "positions",
-    "candidates",
-}
+def _figures(report: Path) -> set[str]:
+    """Names of the figures that a report.md shows; none where there is no such file."""
+    text = report.read_text(encoding="utf-8", errors="replace") if report.is_file() else ""
+    return set(re.findall(r"^!\[.*\]\(figures/(\w+)\.svg\)$", text, re.MULTILINE))

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
 
 from . import advice, figures, misfit
 from .common import assumptions, generated_banner, misfit_tile, picture, provenance, warnings
 from .drawing import Drawn
+from .load import Kind, SweepRecord
 from .page import Cell, Commands, Page, Prose, Section, Table, Tile, cells
 from .tables import described
 from .wording import NONE, clean, coefficient_text, listing, number, short
-
-if TYPE_CHECKING:
-    from .load import SweepRecord
-
 
 _JUDGES = {"test set": "the test trials", "leave-one-trial-out": "leaving each trial out in turn"}
 
@@ -157,3 +155,14 @@ def _place_finding(names: Sequence[str], runs: Sequence[Mapping[str, Any]]) -> s
         return "No coefficient ends on the same bound in every range."
     verb = "ends" if len(stuck) == 1 else "end"
     return f"{listing(stuck, 12)} {verb} on the same bound however wide the range."
+
+
+def _inside(record: SweepRecord) -> Iterator[Path]:
+    """Folders of the sweep's runs that lie in its own."""
+    for run in record.runs:
+        name = misfit.run_folder(run)
+        if name is not None and (record.folder / name / "fit.json").is_file():
+            yield record.folder / name
+
+
+KIND = Kind("sweep", ("profile", "trials", "runs", "recommended"), SweepRecord, build, _inside)

@@ -1,16 +1,25 @@
 """One report, five renderings: each complete, and harmless whatever trials are called."""
 
 import json
+import pkgutil
 import re
+import subprocess
+import sys
 from dataclasses import replace
 from xml.etree import ElementTree as ET
 
 import pytest
 
-from mmgtune.checking import Changed, Item, could_not_run
-from mmgtune.checking.renderers import RENDERERS, as_json, github, junit, markdown, text
+from mmgtune.checking import Changed, Item, could_not_run, renderers, write_baseline
+from mmgtune.checking.renderers import RENDERERS
+from mmgtune.checking.renderers.github import render as github
+from mmgtune.checking.renderers.json import render as as_json
+from mmgtune.checking.renderers.junit import render as junit
+from mmgtune.checking.renderers.markdown import render as markdown
 from mmgtune.checking.renderers.text import difference
+from mmgtune.checking.renderers.text import render as text
 from mmgtune.errors import Problem
+from mmgtune.options import FORMATS
 
 HOSTILE = [
     "a<b>&\"'",
@@ -179,3 +188,35 @@ def test_hostile_names_in_markdown(hostile):
 
 def test_hostile_names_in_json(hostile):
     assert json.loads(as_json(hostile))["profile"] == hostile.profile
+
+
+def test_every_format_is_a_file_and_every_file_a_format():
+    files = {found.name for found in pkgutil.iter_modules(renderers.__path__)}
+    assert files - {"numbers"} == set(FORMATS) == set(RENDERERS)
+
+
+SHOUT = """
+import sys
+from mmgtune import options
+found = sys.argv.pop(1)
+options.FORMATS += ("shout",)
+import mmgtune.checking
+from importlib.util import module_from_spec, spec_from_file_location
+spec = spec_from_file_location("mmgtune.checking.renderers.shout", found)
+module = module_from_spec(spec)
+spec.loader.exec_module(module)
+sys.modules[spec.name] = module
+from mmgtune.cli import main
+main()
+"""
+
+
+def test_a_format_is_one_file_and_one_word(folder, tmp_path, baseline):
+    write_baseline(baseline, tmp_path / "check.json")
+    (tmp_path / "shout.py").write_text("def render(report):\n    return report.verdict.upper() + '!'\n")
+    command = [sys.executable, "-c", SHOUT, str(tmp_path / "shout.py"), "check"]
+    trials = [str(folder / "ship.toml"), str(folder / "trials"), "--baseline", str(folder / "check.json")]
+    done = subprocess.run([*command, *trials, "--format", "shout"], capture_output=True, text=True, check=False)
+    assert (done.stdout, done.stderr, done.returncode) == ("PASS!", "", 0)
+    told = subprocess.run([*command, "--help"], capture_output=True, text=True, check=False).stdout
+    assert "shout" in told

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import importlib.util
 import os
 import re
@@ -100,6 +101,25 @@ def test_every_command_has_its_section(site, tmp_path):
     names = re.findall(r"^│ ([a-z][a-z-]+) ", help_text, flags=re.M)
     assert {"fit", "diagnose", "trials"} <= set(names)
     assert [name for name in names if f"mmgtune {name}<" not in text] == []
+
+
+def test_every_option_says_what_it_means(site):
+    from mmgtune import options
+
+    page = re.sub(r"<[^>]*>", "", (site / "reference" / "api" / "options.html").read_text(encoding="utf-8"))
+    text = re.sub(r"\s+", " ", html.unescape(page))
+    for name in (name for name in options.__all__ if name.endswith("Options")):
+        for known in options.choices(getattr(options, name)).values():
+            assert known.help.replace("``", "") in text, (name, known.flag)
+            assert known.flag in text
+
+
+def test_two_spaces_after_a_sentence_are_no_list(site):
+    from tools.site_docstrings import as_markdown
+
+    assert as_markdown("A ship.  She sails.\n\nname  what it is") == "A ship.  She sails.\n\n- `name`: what it is"
+    for page in (site / "reference" / "api").glob("*.html"):
+        assert not re.search(r"<li>\s*<p>?<code>[^<]*\.</code>:", page.read_text(encoding="utf-8")), page.name
 
 
 def test_the_library_pages_hold_the_public_names(site):

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+# Its functions are called like a variable of the kernel and like a function of the program.
 TUG = """
 from typing import Any, NamedTuple
 from mmgtune.effects import ForceEffect, LagEffect, Parameter
@@ -15,11 +16,11 @@ from mmgtune.physics.quantities import Force, Lanes, State, Surroundings
 class Tug(NamedTuple):
     pull: Lanes
 
-def tug(state: State, around: Surroundings, found: Any, components: Any, p: Any, e: Tug) -> Force:
+def f(state: State, around: Surroundings, found: Any, components: Any, p: Any, e: Tug) -> Force:
     return Force(X=0.0 * e.pull, Y=e.pull, N=-30.0 * e.pull)
 
 TUG = ForceEffect(
-    kind="effects.tug", tag="tug", title="a tug at the stern", params=Tug, function=tug, cites=(),
+    kind="effects.tug", tag="tug", title="a tug at the stern", params=Tug, function=f, cites=(),
     fields={"pull": Parameter("pull of the tug, to starboard", "N",
                               bounds=lambda ship: (-0.02 * ship.force, 0.02 * ship.force),
                               typical=lambda ship: 0.002 * ship.force)},
@@ -33,15 +34,15 @@ class Race(NamedTuple):
 def settled(found: Any, e: Race) -> tuple[Lanes, Lanes, Lanes]:
     return found.rudder.force.N, found.rudder.force.N, found.total.X
 
-def race(found: Any, behind: tuple[Lanes, Lanes, Lanes], h: Lanes, e: Race) -> tuple[Force, tuple[Lanes, Lanes, Lanes]]:
+def memory(found: Any, behind: Any, h: Lanes, e: Race) -> tuple[Force, tuple[Lanes, Lanes, Lanes]]:
     slow, quick, total = behind
     N = found.rudder.force.N
     rates = (N - slow) / (e.slow + 4.0), (N - quick) / (e.quick + 4.0), found.total.X - total
     return Force(X=0.0 * total, Y=0.0 * slow, N=0.5 * (slow + quick) - N), rates
 
 RACE = LagEffect(
-    kind="effects.race", tag="race", title="rudder force with two memories", params=Race, function=race, start=settled,
-    states=("slow", "quick", "total"), cites=(), variants=(("slow", "quick"),), on_demand=True,
+    kind="effects.race", tag="race", title="rudder force with two memories", params=Race, function=memory,
+    start=settled, states=("slow", "quick", "total"), cites=(), variants=(("slow", "quick"),), on_demand=True,
     fields={"slow": Parameter("slow time constant", "s"), "quick": Parameter("quick time constant", "s")},
 )
 """

@@ -14,7 +14,8 @@ import pytest
 from mmgtune.errors import OptionError
 from mmgtune.fitting import FitOptions, fit, write_run
 from mmgtune.report import charts, render
-from mmgtune.report.load import load
+from mmgtune.report.kinds import KINDS
+from mmgtune.report.load import find
 from mmgtune.trial import load_trials
 from mmgtune.units import DEG
 from tests.twin import sail, twin, with_value
@@ -101,7 +102,7 @@ def test_panels_do_not_overlap(run: Path) -> None:
 def test_a_record_that_names_no_inputs_has_one_rudder_and_one_propeller(tmp_path: Path) -> None:
     folder = fake_run.make_fit(tmp_path / "old")
     assert "inputs" not in json.loads((folder / "fit.json").read_text(encoding="utf-8"))
-    record = load(folder)
+    _, record = find(folder, KINDS)
     assert [channel.title for channel in record.inputs] == ["rudder angle [deg]", "propeller revolutions [rpm]"]  # type: ignore[union-attr]
     render(folder)
     assert len(payload_of(folder)["traces"]) == 4 * 3 + 2 + 6 * 2
@@ -111,7 +112,7 @@ def test_a_record_that_names_no_inputs_has_one_rudder_and_one_propeller(tmp_path
 def test_inputs_that_make_no_sense(tmp_path: Path, inputs: object) -> None:
     folder = fake_run.write_fit(tmp_path / "run", *fake_run.edited(inputs=inputs))
     with pytest.raises(OptionError, match='"inputs" is not a list of name, unit, words, role'):
-        load(folder)
+        find(folder, KINDS)
 
 
 def test_an_input_that_the_motions_lack_is_named(tmp_path: Path) -> None:
@@ -119,7 +120,7 @@ def test_an_input_that_the_motions_lack_is_named(tmp_path: Path) -> None:
     data, history, motions = fake_run.edited(inputs=named)
     folder = fake_run.write_fit(tmp_path / "run", data, history, motions)
     with pytest.raises(OptionError, match="columns lack: delta_port"):
-        load(folder)
+        find(folder, KINDS)
     motions["delta_port"] = np.zeros(len(motions))
     render(fake_run.write_fit(tmp_path / "run", data, history, motions))
     assert "port brudder/b<br>[deg]" in payload_of(folder)["wide"]["yaxis5"]["title"]["text"]

@@ -41,12 +41,16 @@ def test_least_squares_only(tmp_path: Path) -> None:
 
 
 def test_no_history_file_and_a_figure_left_from_before(tmp_path: Path) -> None:
-    data, _, motions = fake_run.edited()
-    folder = fake_run.write_fit(tmp_path / "run", data, None, motions)
-    (folder / "figures").mkdir()
-    (folder / "figures" / "convergence.svg").write_text("old")
+    data, history, motions = fake_run.edited()
+    folder = fake_run.write_fit(tmp_path / "run", data, history, motions)
+    render(folder)
+    (folder / "figures" / "mine.svg").write_text("somebody's own")
+    assert (folder / "figures" / "convergence.svg").exists()
+    (folder / "history.parquet").unlink()
     render(folder)
     assert not (folder / "figures" / "convergence.svg").exists()
+    assert not (folder / "figures" / "convergence.pdf").exists()
+    assert (folder / "figures" / "mine.svg").exists()
 
 
 def test_little_is_known(tmp_path: Path) -> None:

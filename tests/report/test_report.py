@@ -15,7 +15,9 @@ from pathlib import Path
 import pytest
 
 from mmgtune.errors import OptionError
-from mmgtune.report import render
+from mmgtune.report import kinds, render
+from mmgtune.report.load import Kind
+from mmgtune.report.page import Page, Prose, Section
 
 from . import fake_run
 from .conftest import read
@@ -196,3 +198,24 @@ def test_importing_costs_nothing() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+
+
+def test_a_page_is_one_entry(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def build(data: dict[str, str]) -> Page:
+        return Page("A voyage", "a test", data["verdict"], sections=(Section("all", "All", (Prose(("Calm.",)),)),))
+
+    kind = Kind("sea-voyage", ("verdict",), lambda _, data: data, build, lambda _: [tmp_path / "leg"])
+    monkeypatch.setattr(kinds, "KINDS", (kind, *kinds.KINDS))
+    fake_run.make_fit(tmp_path / "leg")
+    (tmp_path / "sea_voyage.json").write_text('{"kind": "sea-voyage", "schema": 1, "verdict": "It went well."}')
+    written = render(tmp_path)
+    assert "<h1>It went well.</h1>" in read(tmp_path)
+    assert (tmp_path / "report.md").read_text().startswith("# It went well.")
+    assert tmp_path / "leg" / "report.html" in written
+    (tmp_path / "sea_voyage.json").write_text('{"kind": "sea-voyage", "schema": 1}')
+    with pytest.raises(OptionError, match="lacks verdict"):
+        render(tmp_path)
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    with pytest.raises(OptionError, match=r"sea_voyage\.json, diagnosis\.json, sweep\.json, fit\.json"):
+        render(empty)

@@ -1,29 +1,14 @@
-"""A check's report for those who read it: a terminal, a machine, a CI server, a pull request."""
+"""A check's report for those who read it: a terminal, a machine, a CI server, a pull request.
+
+A further format is one file here with a function ``render``, and one word in ``options.FORMATS``.
+"""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping
+from importlib import import_module
 
-from ..result import CheckReport
-from .github import github
-from .junit import junit
-from .markdown import markdown
-from .text import text
+from ...options import FORMATS
 
-
-def as_json(report: CheckReport) -> str:
-    """One JSON document."""
-    return json.dumps(report.to_dict(), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
-
-
-RENDERERS: Mapping[str, Callable[[CheckReport], str]] = {
-    "text": text,
-    "json": as_json,
-    "junit": junit,
-    "github": github,
-    "markdown": markdown,
-}
-"""Functions from a report to text, by the name of the format."""
-
-__all__ = ["RENDERERS", "as_json", "github", "junit", "markdown", "text"]
+RENDERERS: Mapping[str, Callable[..., str]] = {name: import_module(f".{name}", __name__).render for name in FORMATS}
+"""Functions from a ``CheckReport`` to text, by the name of the format."""

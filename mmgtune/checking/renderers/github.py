@@ -9,7 +9,7 @@ MOST = 9
 """Annotations of a kind written; GitHub shows ten of each kind in a step, and the verdict is one."""
 
 
-def github(report: CheckReport) -> str:
+def render(report: CheckReport) -> str:
     """One line per annotation; those of regressions point at the coefficient most responsible, where one is known."""
     file = {"file": report.profile_file} if report.profile_file else {}
     line = next((str(one.line) for one in report.changed if one.line and (one.share or 0.0) > 0.0), "")

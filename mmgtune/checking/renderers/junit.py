@@ -11,7 +11,7 @@ from .numbers import told
 _ILLEGAL = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
-def junit(report: CheckReport) -> str:
+def render(report: CheckReport) -> str:
     """The document; characters XML cannot hold are replaced."""
     root = ET.Element("testsuites", name="mmgtune check")
     suites = {trial: [item for item in report.items if item.trial == trial] for trial in report.trial_ids}

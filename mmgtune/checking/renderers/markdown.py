@@ -12,7 +12,7 @@ LONGEST = 500
 """Rows of a table; a summary page takes no more than a megabyte."""
 
 
-def markdown(report: CheckReport) -> str:
+def render(report: CheckReport) -> str:
     """The verdict, what is wrong or better, what changed, everything else folded away, and how to repeat it."""
     parts = [f"### {escaped(report.sentence())}"]
     parts += [f"- {escaped(str(problem))}" for problem in report.problems]

@@ -14,7 +14,7 @@ MOST_CHANGED = 10
 SHOWN = ("regressed", "not comparable", "improved")
 
 
-def text(report: CheckReport, everything: bool = False) -> str:
+def render(report: CheckReport, everything: bool = False) -> str:
     """Lines of at most a screen's width, the verdict last.
 
     everything  also what passed
