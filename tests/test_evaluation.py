@@ -136,10 +136,7 @@ def test_nothing_warns_where_a_simulation_diverges(wild, suzaku):
         assert record.rms
         assert record.measures
         assert record.indices is not None
-    assert all(
-        row["L_MSE"] is None
-        for row in validate({"wild": wild}, trials, ValidateOptions(manoeuvres=True)).to_dict()["profiles"]
-    )
+    assert all(row["L_MSE"] is None for row in validate({"wild": wild}, trials, ValidateOptions(manoeuvres=True)).to_dict()["profiles"])
     checked = measure(wild, every, list(METRICS))[0].values()
     assert any(value == np.inf for values in checked for value in values.values())
     left = fit_leaving_out(wild, trials, QUICK, folds=2)
