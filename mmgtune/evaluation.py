@@ -173,7 +173,8 @@ class TrialRecord:
     def _sums(self, weight: FloatArray) -> FloatArray:
         """(6,) sums of weighted squares; a sample without weight may be anything."""
         with np.errstate(over="ignore"):
-            return np.asarray(np.sum(weight * np.where(weight > 0.0, self.residuals, 0.0) ** 2, axis=0))
+            counted = np.where(weight > 0.0, self.residuals, 0.0)
+            return np.asarray(np.einsum("ij,ij,ij->j", weight, counted, counted))
 
 
 def evaluate(

@@ -19,8 +19,8 @@ from .model import Model
 from .profile import ShipProfile
 from .trial import Trial, surroundings
 
-AT_ONCE = 400_000
-"""Samples times members predicted at one time, but for those of a single case; bounds the memory (20 MB of states)."""
+AT_ONCE = 200_000
+"""Samples times members predicted at one time, but for those of a single case; bounds the memory (10 MB of states)."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,7 +18,7 @@ from mmgtune.evaluation import evaluate
 from mmgtune.metrics import METRICS
 from mmgtune.options import ValidateOptions
 from mmgtune.orders import TurningOrder, ZigzagOrder, run_manoeuvre
-from mmgtune.predictor import Prediction, Restarted, Steerable, as_predictor, portions
+from mmgtune.predictor import AT_ONCE, Prediction, Restarted, Steerable, as_predictor, portions
 from mmgtune.profile import with_effects
 from mmgtune.repeating import repeat
 from mmgtune.simulation import as_trial, simulate
@@ -190,6 +190,6 @@ def test_portions_hold_every_case_once_and_little_at_a_time():
     lengths = [1200] * 1000
     cut = list(portions(lengths, 1))
     assert [k for part in cut for k in range(part.start, part.stop)] == list(range(1000))
-    assert max(part.stop - part.start for part in cut) * 1200 * 8 <= 400_000
+    assert max(part.stop - part.start for part in cut) * 1200 <= AT_ONCE
     assert list(portions([10**7], 1)) == [slice(0, 1)]
     assert list(portions([], 1)) == []

@@ -63,6 +63,11 @@ class Trial:
         shape = (len(self.t),)
         for name in ATTRIBUTES.values():
             object.__setattr__(self, name, _frozen(name, getattr(self, name), shape))
+        motion = np.column_stack([getattr(self, name) for name in CHANNELS])
+        motion.setflags(write=False)
+        object.__setattr__(self, "_motion", motion)
+        for name, column in zip(CHANNELS, motion.T, strict=True):  # one copy of each
+            object.__setattr__(self, name, column)
         repeated = sorted(set(self.extra) & {*ATTRIBUTES, *ATTRIBUTES.values()})
         if repeated:
             raise ValueError(f"extra columns repeat required ones: {', '.join(repeated)}")
@@ -96,8 +101,9 @@ class Trial:
 
     @property
     def motion(self) -> FloatArray:
-        """(n_samples, 6) x, y, psi, u, v_m, r."""
-        return np.column_stack([getattr(self, name) for name in CHANNELS])
+        """(n_samples, 6) x, y, psi, u, v_m, r; read-only."""
+        found: FloatArray = self.__dict__["_motion"]
+        return found
 
     def inputs(self, names: Sequence[str]) -> FloatArray:
         """(n_samples, n_inputs) what drove the ship, by names of ``inputs.INPUTS``.

@@ -20,6 +20,8 @@ SOURCES: dict[tuple[str, ...], Callable[[Trial], FloatArray]] = {
 def surroundings(trial: Trial) -> FloatArray:
     """(n_samples, n_surroundings) in the order of ``Surroundings``; 0 where nothing was measured."""
     found = np.zeros((trial.n_samples, len(Surroundings._fields)))
+    if not trial.extra:
+        return found
     for names, source in SOURCES.items():
         found[:, [Surroundings._fields.index(name) for name in names]] = source(trial)
     return found
