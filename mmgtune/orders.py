@@ -16,9 +16,9 @@ from .arrays import FloatArray
 from .backends import LaneModel
 from .backends.cases import Integrator
 from .errors import OptionError, Problem
+from .given import ShipGiven, ship_of
 from .model import Model
 from .physics.quantities import UNKNOWN, State
-from .profile import ShipProfile
 from .simulation import Motion
 
 FINE = 0.01
@@ -103,7 +103,7 @@ class ZigzagOrder:
 
 
 def run_manoeuvre(
-    ship: ShipProfile | Model,
+    ship: ShipGiven | Model,
     helmsman: Helmsman,
     *,
     id: str = "run",
@@ -121,6 +121,7 @@ def run_manoeuvre(
     The order goes to every rudder, the revolutions to every propeller, each moved by its actuator in the profile;
     thrusters rest.
 
+    ship     object, path or bundled name
     speed    approach speed [m/s], the profile's where None
     n        propeller revolutions [1/s], the profile's where None
     heading  approach heading [rad]
@@ -130,7 +131,7 @@ def run_manoeuvre(
     theta    (n_rows, 1) coefficients, those of the profile where None
     Raises OptionError where the profile has no approach condition and none is given.
     """
-    model = ship if isinstance(ship, Model) else Model(ship)
+    model = ship if isinstance(ship, Model) else Model(ship_of(ship))
     profile = model.profile
     if (speed is None or n is None) and profile.approach is None:
         raise OptionError(

@@ -12,6 +12,7 @@ import numpy as np
 from .arrays import FloatArray
 from .backends import STATES, Integrator, LaneModel
 from .errors import OptionError, Problem, TrialError
+from .given import ShipGiven, ship_of
 from .inputs import INPUTS, Role
 from .manoeuvres import Track, manoeuvre_kind, zigzag_indices
 from .manoeuvres.summary import indices_of
@@ -103,16 +104,16 @@ def motions(predictor: Predictor, trials: Sequence[Trial], offsets: FloatArray |
                 yield Motion(trial.id, trial.t, states, controls, bool(found.diverged[i, k]), inputs, k)
 
 
-def breakdown(ship: ShipProfile | Model, states: FloatArray, controls: FloatArray) -> Any:
+def breakdown(ship: ShipGiven | Model, states: FloatArray, controls: FloatArray) -> Any:
     """Forces and intermediates along a run, by the very functions the simulation uses.
 
-    states (n_samples, 6), controls (n_samples, n_inputs) as in ``Motion``
+    ship object, path or bundled name, states (n_samples, 6), controls (n_samples, n_inputs) as in ``Motion``
     -> the breakdown of the profile's arrangement, of arrays (n_samples,).
 
     Effects of the profile have acted; forces they add are in the total only.  What depends on the past or on measured
     wind is left out: lags count as settled.
     """
-    model = ship if isinstance(ship, Model) else Model(ship)
+    model = ship if isinstance(ship, Model) else Model(ship_of(ship))
     lanes = LaneModel(model, np.repeat(model.matrix(), len(states), axis=1))
     logged = model.arrangement.control(*controls.T)
     control = lanes.moved([], logged, None, np.zeros(len(states)))[-1]

@@ -53,7 +53,7 @@ class Cases:
         """Of all of it."""
         found = hashlib.sha256()
         for one in fields(self):
-            found.update(np.ascontiguousarray(getattr(self, one.name)))
+            found.update(np.asarray(getattr(self, one.name)).tobytes())
         return found.hexdigest()
 
     @property
