@@ -8,10 +8,13 @@ import os
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
 
 from mmgtune.resources import folder
+from mmgtune.trial import read_trial, write_trial
+from mmgtune.trial.schema import ATTRIBUTES
 from tests.command import QUICK, run
 from tests.docs.test_docs import ROOT, code
 
@@ -57,10 +60,11 @@ def desk(tmp_path):
 
 
 def own_trials(desk, name):
-    """A small set of trials under that name."""
-    (desk / name).mkdir(exist_ok=True)
+    """A small set of trials under that name: the bundled ones, every other sample of them."""
     for trial in TRIALS:
-        shutil.copy(folder("trials") / "suzaku" / f"{trial}.parquet", desk / name)
+        whole = read_trial(folder("trials") / "suzaku" / f"{trial}.parquet")
+        thin = {channel: getattr(whole, channel)[::2] for channel in ATTRIBUTES.values()}
+        write_trial(replace(whole, **thin), desk / name / f"{trial}.parquet", overwrite=True)
 
 
 SECONDS = {"README.md": 150, "calibrate.md": 70}
