@@ -7,6 +7,7 @@ import pytest
 
 from mmgtune.errors import OptionError
 from mmgtune.fitting import FitOptions, Hooks, LeaveOutOptions, SweepOptions, fit, leave_out, make_problem, sweep
+from mmgtune.fitting.box import make_box
 from mmgtune.fitting.cmaes import from_box, search, to_box
 from mmgtune.fitting.least_squares import bounded_step, solve
 from mmgtune.trial import load_trials
@@ -218,7 +219,9 @@ def test_cma_es_and_least_squares_agree_on_the_bundled_trials(suzaku, a_r):
 
 def test_a_start_whose_neighbours_diverge_does_not_stop_the_others(suzaku, noisy):
     """A box so wide that parts of it blow up: those starts are given up, the others reach an optimum."""
-    problem = make_problem(suzaku.profile, noisy, FitOptions(targets=("hull.X_vvvv", "hull.N_r"), a_r=400.0))
+    names = ("hull.X_vvvv", "hull.N_r")
+    problem = make_problem(suzaku.profile, noisy, FitOptions(targets=names))
+    problem = problem.with_targets(problem.model, make_box(problem.model, names, 400.0))
     starts = np.array([[0.5, 0.0, 1.0, 0.75], [0.5, 1.0, 1.0, 0.3]])
     before = problem.costs(starts)
     assert not np.isfinite(before).all()
