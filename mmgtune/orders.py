@@ -16,9 +16,9 @@ from .arrays import FloatArray
 from .backends import LaneModel
 from .backends.cases import Integrator
 from .errors import OptionError, Problem
+from .given import ShipGiven, ship_of
 from .model import Model
 from .physics.quantities import UNKNOWN, State
-from .profile import ShipProfile
 from .simulation import Motion
 
 FINE = 0.01
@@ -103,7 +103,7 @@ class ZigzagOrder:
 
 
 def run_manoeuvre(
-    ship: ShipProfile | Model,
+    ship: ShipGiven | Model,
     helmsman: Helmsman,
     *,
     id: str = "run",
@@ -121,6 +121,7 @@ def run_manoeuvre(
     The order goes to every rudder, the revolutions to every propeller, each moved by its actuator in the profile;
     thrusters rest.
 
+    ship     object, path or bundled name
     speed    approach speed [m/s], the profile's where None
     n        propeller revolutions [1/s], the profile's where None
     heading  approach heading [rad]
@@ -130,7 +131,7 @@ def run_manoeuvre(
     theta    (n_rows, 1) coefficients, those of the profile where None
     Raises OptionError where the profile has no approach condition and none is given.
     """
-    model = ship if isinstance(ship, Model) else Model(ship)
+    model = ship if isinstance(ship, Model) else Model(ship_of(ship))
     profile = model.profile
     if (speed is None or n is None) and profile.approach is None:
         raise OptionError(
@@ -145,34 +146,34 @@ def run_manoeuvre(
     n_0 = n if n is not None else profile.approach.n  # type: ignore[union-attr]
     if not (U_0 > 0.0 and math.isfinite(U_0)):
         raise OptionError(Problem(f"the approach speed is {U_0:g} m/s", "speed", fix="give a speed above 0"))
-    ship_now = LaneModel(model, model.matrix() if theta is None else theta)
-    start = State(*np.array([[0.0], [0.0], [heading], [U_0], [0.0], [0.0]]))
+    ship_now = LaneModel(model, (model.matrix() if theta is None else theta)[:, 0])
+    start = State(*np.array([0.0, 0.0, heading, U_0, 0.0, 0.0]))
     inputs = model.arrangement.inputs
     actuators = [profile.actuator(one.name) for one in inputs]
     driven = [n_0 if one.role == "propeller" else 0.0 for one in inputs]
 
     def control() -> Any:
-        return model.arrangement.control(*(np.array([value]) for value in driven))
+        return model.arrangement.control(*map(np.float64, driven))
 
     run = ship_now.start(start, control())
     longest_step = step or min(LONGEST_STEP, FINE * model.L_pp / U_0)
     steps = max(1, math.ceil(sample / longest_step - 1e-9))
     h = sample / steps
-    rows: list[FloatArray] = [np.array(run.shown)[:, 0]]
+    rows: list[FloatArray] = [np.array(run.shown)]
     controls = [tuple(driven)]
     diverged = False
     for i in range(round(longest / sample)):
         for k in range(steps):
             t = i * sample + k * h
-            seen = float(run.shown.psi[0])
-            share = 1.0 if engine is None else engine(math.hypot(run.s[3, 0], run.s[4, 0]) / U_0)
+            seen = float(run.shown.psi)
+            share = 1.0 if engine is None else engine(math.hypot(run.s[3], run.s[4]) / U_0)
             orders = {"rudder": helmsman.order(t, seen - heading), "propeller": n_0 * share, "thruster": 0.0}
             for place, (one, actuator) in enumerate(zip(inputs, actuators, strict=True)):
                 order = orders[one.role]
                 driven[place] = actuator.moved(driven[place], order, h) if actuator else order
             with np.errstate(all="ignore"):
-                run.step(control(), UNKNOWN, np.array([h]), RK4)
-        rows.append(np.array(run.shown)[:, 0])
+                run.step(control(), UNKNOWN, h, RK4)
+        rows.append(np.array(run.shown))
         controls.append(tuple(driven))
         diverged = not bool(np.isfinite(run.s).all())
         if diverged or helmsman.finished(float(rows[-1][2] - heading)):

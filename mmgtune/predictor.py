@@ -182,6 +182,11 @@ def as_predictor(
     return ship
 
 
+def profile_of(predictor: Predictor) -> ShipProfile | None:
+    """The profile a predictor computes by, None where it is no physics model."""
+    return predictor.model.profile if isinstance(predictor, PhysicsPredictor) else None
+
+
 def words_of(integrator: Integrator) -> str:
     """The integrator as it is named beside J: "rk4", "euler, 2 substeps"."""
     return integrator.name + (f", {integrator.substeps} substeps" if integrator.substeps > 1 else "")

@@ -6,7 +6,6 @@ option is given.
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,6 +16,7 @@ if TYPE_CHECKING:
     from .checking import CheckReport, Item
 
 KEYS = ("profile", "trials", "baseline", "metrics", "backend")
+LIST = "a list of names"
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -50,20 +50,34 @@ class CheckFile(pytest.File):
 
     def collect(self) -> Iterator[CheckNode]:
         """One node per [[check]]."""
+        from .errors import OptionError
+        from .toml_reading import toml_of
+
         try:
-            data = tomllib.loads(self.path.read_text(encoding="utf-8"))
+            data = toml_of(self.path.read_text(encoding="utf-8"), "the file of checks", str(self.path), OptionError)
+        except OptionError as error:
+            raise self.CollectError("\n".join(map(str, error.problems))) from None
         except (OSError, ValueError) as error:
-            raise self.CollectError(f"{self.path} is not valid TOML: {error}") from None
+            raise self.CollectError(f"{self.path} cannot be read: {error}") from None
         checks = data.get("check")
         if not isinstance(checks, list) or not checks or not all(isinstance(one, dict) for one in checks):
             raise self.CollectError(f"{self.path} has no [[check]] with profile, trials and baseline")
         for k, one in enumerate(checks, 1):
             unknown = [key for key in one if key not in KEYS]
             missing = [key for key in ("profile", "trials") if key not in one]
-            if unknown or missing:
+            wrong = [key for key, value in one.items() if key in KEYS and not _is(key, value)]
+            if unknown or missing or wrong:
                 told = [f"unknown key '{key}'" for key in unknown] + [f"'{key}' is missing" for key in missing]
+                told += [f"'{key}' is {one[key]!r}, not {LIST if key == 'metrics' else 'text'}" for key in wrong]
                 raise self.CollectError(f"{self.path}, [[check]] {k}: {', '.join(told)}; keys: {', '.join(KEYS)}")
             yield CheckNode.from_parent(self, name=f"{Path(one['profile']).stem}-{Path(one['trials']).name}", asked=one)
+
+
+def _is(key: str, value: Any) -> bool:
+    """Whether a value is of the kind its key takes."""
+    if key == "metrics":
+        return isinstance(value, list) and all(isinstance(one, str) for one in value)
+    return isinstance(value, str)
 
 
 class CheckNode(pytest.Collector):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, overload
 
@@ -17,6 +17,7 @@ from .manoeuvres.summary import criteria_of, indices_of
 from .model import Model
 from .options import SimulateOptions
 from .orders import Helmsman, TurningOrder, ZigzagOrder, run_manoeuvre
+from .predictor import PhysicsPredictor, Predictor, as_predictor, profile_of
 from .profile import ShipProfile
 from .simulation import Motion, as_trial
 from .trial import Trial, write_trial
@@ -34,12 +35,12 @@ PER_SECOND = 20.0
 
 @dataclass(frozen=True, eq=False)
 class Simulated(Sequence[Motion]):
-    """Simulated runs, a sequence of ``Motion``, with what they are judged by.
+    """Simulated runs, a sequence of ``Motion``, with what they are judged by: trial by trial, of each all members.
 
     records  each beside the trial it is of; empty for manoeuvres given as orders
     """
 
-    ship: ShipProfile
+    predictor: Predictor
     motions: tuple[Motion, ...]
     records: tuple[TrialRecord, ...]
     options: SimulateOptions
@@ -58,30 +59,63 @@ class Simulated(Sequence[Motion]):
         """In a line."""
         ids = [motion.id for motion in self.motions]
         more = f" and {len(ids) - 4} more" if len(ids) > 4 else ""
-        return f"Simulated({self.ship.id}: {', '.join(ids[:4])}{more})"
+        return f"Simulated({self.predictor.name}: {', '.join(ids[:4])}{more})"
+
+    @property
+    def ship(self) -> ShipProfile | None:
+        """The profile, None of a predictor that has none."""
+        return profile_of(self.predictor)
 
     def rows(self) -> list[dict[str, Any]]:
         """Status, indices, distance to what was measured, and criteria of every run."""
         records = self.records or (None,) * len(self.motions)
-        return [_described(self.ship, motion, record) for motion, record in zip(self.motions, records, strict=True)]
+        return [self._described(motion, record) for motion, record in zip(self.motions, records, strict=True)]
 
     def write(self, folder: Path, *, with_forces: bool = False, overwrite: bool = False) -> list[Path]:
-        """Write every run as a trial file.  Raises OutputError where one is there already."""
-        paths = [folder / f"{motion.id}.parquet" for motion in self.motions]
+        """Write every run as a trial file, with its number in the name where there are several members.
+
+        Raises OutputError where one is there already, OptionError for forces of a predictor that has none.
+        """
+        several = self.predictor.n_members > 1
+        ids = [f"{motion.id}_{motion.member}" if several else motion.id for motion in self.motions]
+        paths = [folder / f"{id}.parquet" for id in ids]
         taken = [exists(path) for path in paths if path.exists() and not overwrite]
         if taken:
             raise OutputError(*taken)
-        for motion, path in zip(self.motions, paths, strict=True):
-            write_trial(as_trial(self.ship, motion, with_forces=with_forces), path, overwrite=overwrite)
+        for id, motion, path in zip(ids, self.motions, paths, strict=True):
+            trial = as_trial(self.predictor, replace(motion, id=id), with_forces=with_forces)
+            write_trial(trial, path, overwrite=overwrite)
         return paths
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
-        return {"schema": 1, "profile": self.ship.id, "sha256": self.ship.sha256, "runs": self.rows()}
+        ship = self.ship
+        return {
+            "schema": 1,
+            "profile": self.predictor.name,
+            "sha256": ship.sha256 if ship else None,
+            "runs": self.rows(),
+        }
+
+    def _described(self, motion: Motion, record: TrialRecord | None) -> dict[str, Any]:
+        ship, L_pp = self.ship, self.predictor.L_pp
+        V = ship.approach.speed if ship and ship.approach else float(motion.states[0, 3])
+        track = None if motion.diverged else motion.track()
+        return {
+            "id": motion.id,
+            **({"member": motion.member} if self.predictor.n_members > 1 else {}),
+            "status": "diverged" if motion.diverged else "ok",
+            "duration_s": float(motion.t[-1]),
+            "integrator": record.method if record else ORDERED,
+            "indices": record.indices if record else indices_of(track, L_pp) if track else {},
+            "measured": record.measured.indices if record else None,
+            "measures": record.measures if record and not motion.diverged else None,
+            "criteria": [criterion.to_dict() for criterion in criteria_of(track, L_pp, V)] if track else [],
+        }
 
 
 def simulate(
-    ship: ShipGiven | Model,
+    ship: ShipGiven | Model | Predictor,
     trials: TrialsGiven | Sequence[Trial] | None = None,
     options: SimulateOptions = SimulateOptions(),
     *,
@@ -90,30 +124,33 @@ def simulate(
 ) -> Simulated:
     """Simulate trials with their own inputs, or where there are none the manoeuvres of the options.
 
-    ship, trials  objects, paths or bundled names; ``trials`` may be a list of trials
-    integrator, backend  in place of those of the options
+    ship, trials  objects, paths or bundled names; ``ship`` may be any predictor, ``trials`` a list of trials
+    integrator, backend  in place of those of the options; a predictor has its own ways
     Manoeuvres by orders are integrated finely whatever the options say.  A run that diverges is marked so.
-    Raises OptionError for orders that make no sense, or given together with trials.
+    Raises OptionError for orders that make no sense or are given together with trials, and for a predictor without a
+    profile that is given no trials.
     """
-    model = ship if isinstance(ship, Model) else Model(ship_of(ship))
-    profile = model.profile
+    predictor = as_predictor(
+        ship_of(ship) if isinstance(ship, (str, Path)) else ship,
+        integrator=integrator or options.make_integrator(),
+        backend=backend or options.backend,
+    )
     if trials is None:
-        return Simulated(profile, tuple(_on_orders(model, options)), (), options)
+        return Simulated(predictor, tuple(_on_orders(predictor, options)), (), options)
     if options.turn or options.zigzag or options.speed or options.rpm:
         raise OptionError(
             Problem("trials have their own inputs", "trials", fix="leave out turn, zigzag, speed and rpm")
         )
-    records = evaluate(
-        model,
-        list_of(trials),
-        integrator=integrator or options.make_integrator(),
-        backend=backend or options.backend,
-    )
-    return Simulated(profile, tuple(record.motion for record in records), records, options)
+    records = evaluate(predictor, list_of(trials))
+    return Simulated(predictor, tuple(record.motion for record in records), records, options)
 
 
-def _on_orders(model: Model, options: SimulateOptions) -> list[Motion]:
-    ship = model.profile
+def _on_orders(predictor: Predictor, options: SimulateOptions) -> list[Motion]:
+    if not isinstance(predictor, PhysicsPredictor) or predictor.n_members > 1:
+        what = f"'{predictor.name}' is given no trials"
+        why = "orders are for a profile: they need its approach condition and its steering gear"
+        raise OptionError(Problem(what, "trials", why, "name trials, whose inputs drive it"))
+    model, ship = predictor.model, predictor.model.profile
     speed = None if options.speed is None else _quantity(options.speed, "speed", "m/s", '"12 kn"')
     n = None if options.rpm is None else revolutions(options.rpm)
     orders: list[tuple[str, Helmsman]] = []
@@ -129,7 +166,7 @@ def _on_orders(model: Model, options: SimulateOptions) -> list[Motion]:
     sample = min(1.0, round(L / V / 10.0, 1) or 0.1)
     longest = max(600.0, 150.0 * L / V)
     return [
-        run_manoeuvre(model, helmsman, id=name, speed=speed, n=n, longest=longest, sample=sample)
+        run_manoeuvre(model, helmsman, id=name, speed=speed, n=n, longest=longest, sample=sample, theta=predictor.theta)
         for name, helmsman in orders
     ]
 
@@ -191,18 +228,3 @@ def _quantity(text: str, name: str, unit: str, such_as: str) -> float:
 
 def _signed(angle: float) -> str:
     return f"{'p' if angle > 0 else 'm'}{abs(angle):g}"
-
-
-def _described(ship: ShipProfile, motion: Motion, record: TrialRecord | None) -> dict[str, Any]:
-    V = ship.approach.speed if ship.approach else float(motion.states[0, 3])
-    track = None if motion.diverged else motion.track()
-    return {
-        "id": motion.id,
-        "status": "diverged" if motion.diverged else "ok",
-        "duration_s": float(motion.t[-1]),
-        "integrator": record.method if record else ORDERED,
-        "indices": record.indices if record else indices_of(track, ship.L_pp) if track else {},
-        "measured": record.measured.indices if record else None,
-        "measures": record.measures if record and not motion.diverged else None,
-        "criteria": [criterion.to_dict() for criterion in criteria_of(track, ship.L_pp, V)] if track else [],
-    }

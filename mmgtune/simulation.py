@@ -11,13 +11,14 @@ import numpy as np
 
 from .arrays import FloatArray
 from .backends import STATES, Integrator, LaneModel
-from .errors import TrialError
+from .errors import OptionError, Problem, TrialError
+from .given import ShipGiven, ship_of
 from .inputs import INPUTS, Role
 from .manoeuvres import Track, manoeuvre_kind, zigzag_indices
 from .manoeuvres.summary import indices_of
 from .model import Model
 from .physics.quantities import Force, State
-from .predictor import Predictor, as_predictor, cases_from, portions
+from .predictor import Predictor, as_predictor, cases_from, portions, profile_of
 from .profile import ShipProfile
 from .trial import Trial
 from .trial.schema import MAIN_INPUTS
@@ -103,16 +104,16 @@ def motions(predictor: Predictor, trials: Sequence[Trial], offsets: FloatArray |
                 yield Motion(trial.id, trial.t, states, controls, bool(found.diverged[i, k]), inputs, k)
 
 
-def breakdown(ship: ShipProfile | Model, states: FloatArray, controls: FloatArray) -> Any:
+def breakdown(ship: ShipGiven | Model, states: FloatArray, controls: FloatArray) -> Any:
     """Forces and intermediates along a run, by the very functions the simulation uses.
 
-    states (n_samples, 6), controls (n_samples, n_inputs) as in ``Motion``
+    ship object, path or bundled name, states (n_samples, 6), controls (n_samples, n_inputs) as in ``Motion``
     -> the breakdown of the profile's arrangement, of arrays (n_samples,).
 
     Effects of the profile have acted; forces they add are in the total only.  What depends on the past or on measured
     wind is left out: lags count as settled.
     """
-    model = ship if isinstance(ship, Model) else Model(ship)
+    model = ship if isinstance(ship, Model) else Model(ship_of(ship))
     lanes = LaneModel(model, np.repeat(model.matrix(), len(states), axis=1))
     logged = model.arrangement.control(*controls.T)
     control = lanes.moved([], logged, None, np.zeros(len(states)))[-1]
@@ -150,19 +151,25 @@ def trial_indices(trial: Trial, L_pp: float) -> dict[str, Any]:
     return indices_of(track, L_pp)
 
 
-def as_trial(ship: ShipProfile, motion: Motion, *, with_forces: bool = False) -> Trial:
+def as_trial(ship: ShipProfile | Predictor, motion: Motion, *, with_forces: bool = False) -> Trial:
     """A simulated run as a trial, labelled generated.
 
     with_forces  adds forces [N], moments [N m] and intermediates as columns: hull_X, propeller_X, rudder_Y, w_P, ...
+    Raises OptionError for forces of a predictor that has no profile to compute them by.
     """
+    profile = ship if isinstance(ship, ShipProfile) else profile_of(ship)
+    id = profile.id if profile else ship.name
+    by = f"profile '{id}', sha256 {profile.sha256}" if profile else f"predictor '{id}'"
     extra: dict[str, FloatArray] = {}
     if with_forces:
-        extra = _columns(breakdown(ship, motion.states, motion.controls))
+        if profile is None:
+            raise OptionError(Problem(f"'{id}' has no forces", "with_forces", "only a ship profile has them"))
+        extra = _columns(breakdown(profile, motion.states, motion.controls))
     own = {name: motion.controls[:, k] for k, name in enumerate(motion.inputs) if name not in MAIN_INPUTS}
     x, y, psi, u, v_m, r = motion.states.T
     return Trial(
         id=motion.id,
-        ship=ship.id,
+        ship=id,
         manoeuvre=manoeuvre_kind(motion.track()),
         source="generated",
         t=motion.t,
@@ -176,7 +183,7 @@ def as_trial(ship: ShipProfile, motion: Motion, *, with_forces: bool = False) ->
         delta=motion.mean_of("rudder"),
         extra={**own, **extra},
         noise={},
-        note=f"Simulated by mmgtune with profile '{ship.id}', sha256 {ship.sha256}.",
+        note=f"Simulated by mmgtune with {by}.",
         path=None,
         sha256="",
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ from .given import ShipGiven, TrialsGiven, ship_of, trials_of
 from .model import Model
 from .objective import spread
 from .options import ValidateOptions
-from .predictor import PhysicsPredictor, Predictor, as_predictor, words_of
+from .predictor import Predictor, as_predictor, profile_of, words_of
 from .repeating import Repeated, document, repeat
 from .validation import L_MSE, TrialScore, score, summary
 
@@ -35,7 +36,7 @@ class Scored:
 
     def to_dict(self) -> dict[str, Any]:
         """Scores over everything, by kind of manoeuvre and by run, for JSON; what diverged is null."""
-        profile = self.predictor.model.profile if isinstance(self.predictor, PhysicsPredictor) else None
+        profile = profile_of(self.predictor)
         return {
             "profile": self.name,
             "id": self.predictor.name,
@@ -97,26 +98,27 @@ def validate(
 ) -> Validation:
     """Score predictors on trials, each trial or window of it simulated from its first measured state.
 
-    profiles  one or several: profiles, models, predictors, paths or bundled names; a mapping gives each a name
+    profiles  one or several: profiles, models, predictors, paths or bundled names; a mapping gives each a name, of
+              others the second of the same name is called "name (2)"
     trials    a data set, a path or a bundled name
     Integrator and back end of the options are for profiles; a predictor has its own ways.
     Raises OptionError for no profile, and for trials in which a state does not vary.
     """
     if isinstance(profiles, Mapping):
-        several = dict(profiles)
+        several = list(profiles.items())
     else:
         given = list(profiles) if isinstance(profiles, Sequence) and not isinstance(profiles, str) else [profiles]
-        several = {_called(one): one for one in given}
+        several = list(zip(_told_apart([_called(one) for one in given]), given, strict=True))
     if not several:
         raise OptionError(Problem("there is no profile to score", "profiles", fix="name one or more"))
-    predictors = {
-        name: as_predictor(
+    predictors = [
+        as_predictor(
             ship_of(one) if isinstance(one, (str, Path)) else one,
             integrator=options.make_integrator(),
             backend=options.backend,
         )
-        for name, one in several.items()
-    }
+        for _, one in several
+    ]
     data = trials_of(trials)
     called = str(trials) if isinstance(trials, (str, Path)) else str(data.path or "trials")
     sigma = spread(list((trials_of(options.sigma_from) if options.sigma_from else data).trials.values()))
@@ -133,7 +135,7 @@ def validate(
     whole = list(data.trials.values())
     pieces = list((data.in_windows(options.restart) if options.restart else data).trials.values())
     scored = []
-    for name, predictor in predictors.items():
+    for (name, _), predictor in zip(several, predictors, strict=True):
         repeated = tuple(repeat(predictor, whole)) if options.manoeuvres else ()
         scored.append(Scored(name, predictor, tuple(score(predictor, pieces, sigma)), repeated))
     return Validation(tuple(scored), called, sigma, options.sigma_from or called, options)
@@ -144,3 +146,12 @@ def _called(given: Scorable) -> str:
     if isinstance(given, (str, Path)):
         return str(given)
     return given.profile.id if isinstance(given, Model) else getattr(given, "id", "") or getattr(given, "name", "?")
+
+
+def _told_apart(names: Sequence[str]) -> list[str]:
+    """The same names, with (2), (3) behind those that stand there already: a ship and what was tuned share an id."""
+    found: list[str] = []
+    for name in names:
+        again = (f"{name} ({k})" for k in count(2))
+        found.append(name if name not in found else next(one for one in again if one not in found))
+    return found

@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+import mmgtune
 from mmgtune.backends import Integrator, pad
 from mmgtune.checking.measuring import measure
 from mmgtune.cli.validate import summary
@@ -18,10 +19,12 @@ from mmgtune.metrics import METRICS
 from mmgtune.options import ValidateOptions
 from mmgtune.orders import TurningOrder, ZigzagOrder, run_manoeuvre
 from mmgtune.predictor import AT_ONCE, Prediction, Restarted, Steerable, as_predictor, portions
+from mmgtune.profile import with_effects
 from mmgtune.repeating import repeat
 from mmgtune.simulation import as_trial, simulate
 from mmgtune.trial import TrialSet
 from mmgtune.validating import validate
+from mmgtune.validation import L_MSE
 
 RAD = math.radians(1.0)
 
@@ -106,6 +109,33 @@ def test_evidence_and_simulation_take_it(sailed):
     assert [motion.member for motion in simulate(Nomoto(), trials)] == [0, 1, 2, 0, 1, 2]
     rms = [short_horizon(Nomoto(), trials, window=30.0, member=k).pooled_rms[5] for k in (0, 2)]
     assert rms[0] != rms[1]
+
+
+def test_the_front_of_the_package_simulates_it_and_writes_every_member(sailed, tmp_path):
+    found = mmgtune.simulate(Nomoto(), sailed)
+    document = json.loads(json.dumps(found.to_dict(), allow_nan=False))
+    assert (document["profile"], document["sha256"]) == ("nomoto", None)
+    assert [(row["id"], row["member"]) for row in document["runs"]] == [(i, k) for i in sailed.trials for k in range(3)]
+    paths = found.write(tmp_path)
+    assert len(set(paths)) == 6
+    back = mmgtune.read_trial(tmp_path / "turn_2.parquet")
+    assert (back.id, back.ship) == ("turn_2", "nomoto")
+    assert np.array_equal(back.psi, found[2].channel("psi"))
+    with pytest.raises(OptionError, match="has no forces"):
+        found.write(tmp_path / "more", with_forces=True)
+    with pytest.raises(OptionError, match="no trials"):
+        mmgtune.simulate(Nomoto())
+
+
+def test_two_of_one_name_are_both_scored(suzaku, sailed):
+    """A ship and what was tuned of it share their id."""
+    other = with_effects(suzaku.profile, {"current": {"north": 0.3}}, "test")
+    both = validate([suzaku.profile, other, suzaku.profile], sailed, ValidateOptions(manoeuvres=True))
+    assert [one.name for one in both.profiles] == ["suzaku", "suzaku (2)", "suzaku (3)"]
+    one, two, three = (L_MSE(one.scores) for one in both.profiles)
+    assert one == three != two
+    named = summary(validate(["suzaku", "suzaku"], sailed, ValidateOptions(manoeuvres=True)))
+    assert "suzaku (2) (suzaku), rk4" in named
 
 
 def test_a_physics_model_begun_anew_each_step_steers_as_one_that_goes_on(suzaku):

@@ -19,3 +19,8 @@ def test_from_profile_to_verdict(tmp_path):
     assert not motion.diverged
     mmgtune.write_run(result, tmp_path / "run")
     assert mmgtune.render(tmp_path / "run")[0].name == "report.html"
+
+
+def test_a_manoeuvre_of_a_bundled_ship_and_its_forces():
+    motion = mmgtune.run_manoeuvre("suzaku", mmgtune.TurningOrder(0.6), longest=60.0)
+    assert mmgtune.breakdown("suzaku", motion.states, motion.controls).total.X.shape == motion.t.shape

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Protocol
 
@@ -46,6 +47,14 @@ class Cases:
 
     def __len__(self) -> int:
         return len(self.t)
+
+    @cached_property
+    def sha256(self) -> str:
+        """Of all of it."""
+        found = hashlib.sha256()
+        for one in fields(self):
+            found.update(np.asarray(getattr(self, one.name)).tobytes())
+        return found.hexdigest()
 
     @property
     def steps(self) -> int:

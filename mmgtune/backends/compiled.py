@@ -64,7 +64,7 @@ def make_blocks(cases: Cases, n_candidates: int) -> Blocks:
     return Blocks(case_of, candidate_of, thetas, theta_of.reshape(-1), mixed=True)
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=16)
 def _blocks_of_one_case(n_cases: int, n_candidates: int) -> Blocks:
     per_case = -(-n_candidates // WIDTH)
     thetas = np.minimum(np.arange(per_case * WIDTH), n_candidates - 1).reshape(per_case, WIDTH)

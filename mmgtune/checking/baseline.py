@@ -71,22 +71,18 @@ class Baseline:
         return of.get("relative", 0.0) * abs(value) + of.get("absolute", 0.0)
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON; a metric of a simulation that diverged is null."""
+        """For JSON; a metric of a simulation that diverged is null, and so is a coefficient at infinity."""
         return {
             "schema": SCHEMA,
             "kind": KIND,
             "made_by": self.made_by,
-            "profile": {"id": self.ship, "sha256": self.sha256, "coefficients": dict(self.coefficients)},
+            "profile": {"id": self.ship, "sha256": self.sha256, "coefficients": _finite(self.coefficients)},
             "integrator": self.integrator,
             "substeps": self.substeps,
             "backend": self.backend,
             "tolerances": {name: dict(of) for name, of in self.tolerances.items()},
             "trials": {
-                name: {
-                    "sha256": trial.sha256,
-                    "metrics": {key: v if math.isfinite(v) else None for key, v in trial.metrics.items()},
-                }
-                for name, trial in self.trials.items()
+                name: {"sha256": trial.sha256, "metrics": _finite(trial.metrics)} for name, trial in self.trials.items()
             },
         }
 
@@ -127,20 +123,24 @@ def _parsed(data: dict[str, Any]) -> Baseline:
     return Baseline(
         ship=str(profile["id"]),
         sha256=str(profile["sha256"]),
-        coefficients={name: float(value) for name, value in profile["coefficients"].items()},
+        coefficients=_with_infinity(profile["coefficients"]),
         integrator=str(data["integrator"]),
         substeps=int(data["substeps"]),
         backend=str(data["backend"]),
         made_by=str(data["made_by"]),
         tolerances={name: {key: float(value) for key, value in of.items()} for name, of in data["tolerances"].items()},
         trials={
-            name: Recorded(
-                str(of["sha256"]),
-                {key: math.inf if v is None else float(v) for key, v in of["metrics"].items()},
-            )
-            for name, of in data["trials"].items()
+            name: Recorded(str(of["sha256"]), _with_infinity(of["metrics"])) for name, of in data["trials"].items()
         },
     )
+
+
+def _finite(values: Mapping[str, float]) -> dict[str, float | None]:
+    return {name: value if math.isfinite(value) else None for name, value in values.items()}
+
+
+def _with_infinity(values: Mapping[str, float | None]) -> dict[str, float]:
+    return {name: math.inf if value is None else float(value) for name, value in values.items()}
 
 
 def _wrong(baseline: Baseline, where: str) -> list[Problem]:

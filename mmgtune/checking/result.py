@@ -91,14 +91,14 @@ class Changed:
     share: float | None
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
-        return {**self.__dict__}
+        """For JSON; a coefficient at infinity is null."""
+        return {**self.__dict__, "baseline": finite(self.baseline), "now": finite(self.now)}
 
     def __str__(self) -> str:
         if self.baseline is None or self.now is None:
             return f"{self.name}: " + (f"new, {self.now:g}" if self.now is not None else f"gone, was {self.baseline:g}")
         text = f"{self.name}: {self.baseline:g} -> {self.now:g}"
-        if self.baseline:
+        if self.baseline and math.isfinite(self.baseline) and math.isfinite(self.now):
             text += f" ({100.0 * (self.now / self.baseline - 1.0):+.3g} %)"
         if self.share is not None and self.share >= 0.005:
             text += f", its old value undoes {100.0 * self.share:.0f} % of the loss in J"

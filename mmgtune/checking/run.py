@@ -13,8 +13,6 @@ from ..errors import OptionError, Problem, closest
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..metrics import METRICS
 from ..model import Model
-from ..profile import ShipProfile
-from ..trial import TrialSet
 from .baseline import Baseline, Recorded, read_baseline, write_baseline
 from .blame import changed_coefficients
 from .measuring import Values, applicable, default_tolerances, measure
@@ -24,8 +22,8 @@ BaselineGiven = Baseline | str | Path | None
 
 
 def record_baseline(
-    profile: ShipProfile,
-    trials: TrialSet,
+    profile: ShipGiven,
+    trials: TrialsGiven,
     metrics: Sequence[str] = (),
     *,
     before: Baseline | None = None,
@@ -34,10 +32,12 @@ def record_baseline(
 ) -> Baseline:
     """The baseline of a profile on trials as they are now.
 
+    profile, trials  objects, paths or bundled names
     metrics  of METRICS; where empty those of ``before``, or all that any trial shows
     before   the baseline this one takes the place of: its tolerances stay
     Raises OptionError for an unknown metric.
     """
+    profile, trials = ship_of(profile), trials_of(trials)
     model = Model(profile)
     names = _known(metrics) or (before.metrics if before else list(METRICS))
     (found,) = measure(model, list(trials.trials.values()), names, integrator=integrator, backend=backend)

@@ -61,13 +61,14 @@ def sensitivity(
     """Whether a check against the model as it is would notice each coefficient changed by +-share of itself.
 
     Tolerances, metrics and integrator are the baseline's; values are compared with those of the profile now, so that
-    an old baseline does not blur the answer.  Coefficients that are zero, and words, are left out.
+    an old baseline does not blur the answer.  Coefficients that are zero or infinite, and words, are left
+    out.
     Raises OptionError for a share that is none.
     """
     if not 0.0 < share < 1.0:
         raise OptionError(Problem(f"a change by {share:g} of itself", "sensitivity", fix="write 0.02 for 2 %"))
     model = Model(profile)
-    names = [name for name in model.rows if model.base[model.rows[name]] != 0.0 and _is_number(profile, name)]
+    names = [name for name in model.rows if _can_change(model, name)]
     here = np.array([model.base[model.rows[name]] for name in names])
     n = len(names)
     values = np.repeat(here[:, None], 2 * n + 1, axis=1)
@@ -135,8 +136,9 @@ def _worse(item: Item) -> float:
     return (abs(item.now) - abs(item.baseline)) / room if room > 0.0 else np.inf
 
 
-def _is_number(profile: ShipProfile, name: str) -> bool:
-    """Whether it is a quantity, not a word that stands for one."""
+def _can_change(model: Model, name: str) -> bool:
+    """Whether it is a quantity with a share of itself, not a word that stands for one."""
+    value = model.base[model.rows[name]]
     section, _, symbol = name.rpartition(".")
-    field = profile.sections[section].component.fields.get(symbol.partition("[")[0])
-    return field is None or not field.choices
+    field = model.profile.sections[section].component.fields.get(symbol.partition("[")[0])
+    return bool(value != 0.0 and np.isfinite(value)) and (field is None or not field.choices)

@@ -7,6 +7,9 @@ from dataclasses import dataclass
 
 from ..effects import Effect
 from ..model import Model
+from ..options import DiagnoseOptions
+from ..profile import ShipProfile, with_all_effects
+from ..trial import Trial, has_measured_wind
 
 INTEGRATION_STEP = "integration-step"
 
@@ -35,6 +38,14 @@ class Hypothesis:
     def label(self) -> str:
         """Effect, and its parameters where it could have others."""
         return self.tag if len(self.effect.variants) == 1 else f"{self.tag} ({', '.join(self.variant)})"
+
+
+def known_causes(profile: ShipProfile, trials: Sequence[Trial], options: DiagnoseOptions) -> list[Hypothesis]:
+    """What a diagnosis of a profile on these trials looks for."""
+    present = [f"{effect.kind}.{name}" for effect in Model(profile).effects for name in effect.parameters]
+    wind = any(has_measured_wind(trial) for trial in trials)
+    whole = Model(with_all_effects(profile))
+    return hypotheses(whole, options.targets or profile.targets, options.effects, wind, present)
 
 
 def hypotheses(

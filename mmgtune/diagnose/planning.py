@@ -5,10 +5,8 @@ from __future__ import annotations
 from ..fitting.planning import Plan, evaluation_seconds, whole
 from ..fitting.run import in_pieces
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
-from ..model import Model
 from ..options import DiagnoseOptions
-from ..profile import with_all_effects
-from .hypotheses import hypotheses
+from .hypotheses import known_causes
 from .workbench import make_workbench
 
 EVALUATIONS = (100, 400)
@@ -20,8 +18,7 @@ def plan_diagnosis(profile: ShipGiven, trials: TrialsGiven, options: DiagnoseOpt
     ship, own = ship_of(profile), options.fit_options()
     pieces = in_pieces(trials_of(trials), own)
     seen = [trial for name, trial in pieces.trials.items() if name not in pieces.test]
-    wind = any("wind_speed" in trial.extra or "wind_speed_app" in trial.extra for trial in seen)
-    known = hypotheses(Model(with_all_effects(ship)), options.targets or ship.targets, options.effects, wind, [])
+    known = known_causes(ship, seen, options)
     bench = make_workbench(ship, seen, options)
     tags = list(dict.fromkeys(h.tag for h in known))
     search = (

@@ -19,13 +19,13 @@ from ..fitting.run import Hooks, identity_of, in_pieces, make_provenance
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..model import Model
 from ..options import DiagnoseOptions
-from ..profile import ShipProfile, with_all_effects
+from ..profile import ShipProfile
 from ..threads import blas_on_one_thread
-from ..trial import Trial, TrialSet, has_measured_wind
+from ..trial import Trial, TrialSet
 from ..trial.smoothing import FEWEST
 from .evidence import explain_forces, noise_share, residual_forces, short_horizon
 from .gain import J_of, held_out
-from .hypotheses import INTEGRATION_STEP, Hypothesis, hypotheses
+from .hypotheses import INTEGRATION_STEP, Hypothesis, known_causes
 from .intervals import Estimate, estimates
 from .leftover import Leftover, leftover
 from .linear import typical
@@ -84,14 +84,7 @@ def _diagnose(
     trials = in_pieces(trials, options.fit_options())
     seen = _in_order([trial for name, trial in trials.trials.items() if name not in trials.test])
     test = _in_order([trials.trials[name] for name in trials.test])
-    own = Model(profile)
-    known = hypotheses(
-        Model(with_all_effects(profile)),
-        options.targets or profile.targets,
-        options.effects,
-        any(has_measured_wind(trial) for trial in seen),
-        [f"{effect.kind}.{name}" for effect in own.effects for name in effect.parameters],
-    )
+    known = known_causes(profile, seen, options)
     bench = make_workbench(profile, seen, options, [name for h in known for name in h.names])
     known = [h for h in known if not set(h.names) & set(bench.targets)]
     known = [h for h in known if not {h.effect.absorbed.get(v) for v in h.variant} & set(bench.targets)]

@@ -81,8 +81,7 @@ class Search:
 
 def _asked(problem: FitProblem, seed: int, start: FloatArray, **named: Any) -> list[Any]:
     """What tells one search from another."""
-    box = (problem.box.names, problem.box.low, problem.box.high)
-    return ["search", *box, problem.offsets, seed, start, named.get("tolerance"), named.get("populations")]
+    return ["search", *problem.asked(), seed, start, named.get("tolerance"), named.get("populations")]
 
 
 def _noted(found: Search) -> dict[str, Any]:

@@ -17,10 +17,11 @@ T = TypeVar("T", bound=TuningOptions)
 def with_effects(profile: ShipProfile, options: T) -> tuple[ShipProfile, T]:
     """The profile with the effects of the options written into it at their null, and options that tune them too.
 
-    Both are returned as they are where that has been done already.  Raises OptionError for an unknown effect, or one
-    that does not apply.
+    An effect that the profile has begins where it is.  Both are returned as they are where that has been done already.
+    Raises OptionError for an unknown effect, or one that does not apply.
     """
     added: dict[str, dict[str, float]] = {}
+    names: list[str] = []
     for tag in options.with_effects:
         effect = find_effect(tag)
         if effect is None:
@@ -37,8 +38,8 @@ def with_effects(profile: ShipProfile, options: T) -> tuple[ShipProfile, T]:
             )
         if effect.kind not in profile.sections:
             added[tag] = {name: parameter.null for name, parameter in effect.parameters.items()}
-    names = tuple(f"effects.{tag}.{name}" for tag, parameters in added.items() for name in parameters)
-    if not names:
-        return profile, options
-    extended = put_in(profile, added, "put in to be tuned")
-    return extended, replace(options, targets=(*(options.targets or profile.targets), *names))
+        names += [f"{effect.kind}.{name}" for name in effect.parameters]
+    targets = tuple(dict.fromkeys((*(options.targets or profile.targets), *names)))
+    if targets != (options.targets or profile.targets):
+        options = replace(options, targets=targets)
+    return put_in(profile, added, "put in to be tuned") if added else profile, options

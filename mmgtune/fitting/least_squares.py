@@ -48,11 +48,10 @@ class LeastSquaresResult:
 
 def _asked(problem: FitProblem, starts: FloatArray, *given: Any, **named: Any) -> list[Any]:
     """What tells one solve from another."""
-    named = {name: value for name, value in named.items() if not callable(value)}
+    named = {name: "a function" if callable(value) else value for name, value in named.items()}
     anchor = named.pop("anchor", None)
     plain = [value for value in given if not callable(value)]
-    box = (problem.box.names, problem.box.low, problem.box.high)
-    return ["solve", *box, problem.offsets, starts, anchor, repr(plain), repr(sorted(named.items()))]
+    return ["solve", *problem.asked(), starts, anchor, repr(plain), repr(sorted(named.items()))]
 
 
 def _noted(ends: list[LeastSquaresResult]) -> list[Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
@@ -93,6 +93,12 @@ class FitProblem:
     def evaluations(self) -> int:
         """How often this problem and those it shares its counter with simulated the whole set for one candidate."""
         return self.counter.evaluations
+
+    def asked(self) -> list[Any]:
+        """What tells this problem from another, as numbers and texts."""
+        box = (self.box.names, self.box.low, self.box.high)
+        method = (self.model.tags, self.backend.name, self.integrator)
+        return [*box, *method, self.model.base, self.cases.sha256, self.sigma, self.offsets, self.prior]
 
     @property
     def n_residuals(self) -> int:

@@ -22,7 +22,8 @@ from .journal import Journal, journalled
 from .least_squares import fit_offsets, solve
 from .leaving_out import leaving_out
 from .result import FitResult
-from .run import Hooks, fit, identity_of, in_pieces, make_problem, make_provenance
+from .robust import weigh_down
+from .run import Hooks, edge_ridge, fit, identity_of, in_pieces, make_problem, make_provenance
 
 RESULT = "sweep.json"
 
@@ -237,13 +238,20 @@ def _named(hooks: Hooks, a_r: float) -> Hooks:
 
 
 def _leave_one_out(profile: ShipProfile, trials: TrialSet, run: FitResult, hooks: Hooks) -> float:
-    """J summed over the tune trials, each simulated with coefficients fitted to the others; NaN where stopped."""
+    """J summed over the tune trials, each simulated with coefficients fitted to the others as the run was to all.
+
+    NaN where stopped.
+    """
     total = 0.0
-    start = run.unit[:, None]
+    start, before = run.unit[:, None], run.box.to_unit(run.box.pre)
+    ridge = edge_ridge(make_problem(profile, trials, run.options), run.options, before)
     for left_out, others in leaving_out(trials):
         if hooks.stop():
             return float("nan")
-        fitted = min(solve(make_problem(profile, trials, run.options, others), start), key=lambda end: end.J)
+        part = make_problem(profile, trials, run.options, others)
+        fitted = solve(part, start, ridge=ridge, anchor=before, stop=hooks.stop)[0]
+        if run.options.loss == "huber" and not hooks.stop():
+            _, fitted = weigh_down(part, fitted, ridge, before)
         alone = make_problem(profile, trials, run.options, left_out)
         offsets = None if alone.sigma is None else fit_offsets(alone, fitted.unit)[:, None]
         total += float(alone.costs(fitted.unit[:, None], offsets)[0])

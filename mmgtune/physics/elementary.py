@@ -30,4 +30,4 @@ def arctan2(y, x):
 
 def where(condition, a, b):
     """a where the condition holds, else b; both are evaluated, so guard their arguments."""
-    return np.where(condition, a, b)
+    return np.where(condition, a, b)[()]  # a number of numbers, not an array without axes

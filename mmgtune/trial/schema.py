@@ -64,9 +64,6 @@ ATTRIBUTES = {name: "v_m" if name == "v" else name for name in REQUIRED}
 CHANNELS = STATES
 """Motion channels in the order of ``Trial.motion``."""
 
-CHANNEL_UNITS = tuple(column.unit for column in MOTION.values())
-"""Units of CHANNELS, in the same order."""
-
 RUDDERS = tuple(name for name, one in INPUTS.items() if one.role == "rudder")
 DIRECTIONS = tuple(name for name, column in SURROUNDINGS.items() if column.counted_from)
 

@@ -18,7 +18,7 @@ from mmgtune.fitting import FitOptions, fit
 from mmgtune.measures import distance_measures, reference_of
 from mmgtune.metrics import METRICS
 from mmgtune.model import Model
-from mmgtune.profile import parse_profile
+from mmgtune.profile import parse_profile, with_effects
 from mmgtune.simulation import simulate
 from mmgtune.trial import load_trials
 
@@ -68,6 +68,23 @@ def test_a_regression_is_named_with_what_it_is_owed_to(worse):
     lines = Path(worse.profile_file).read_text(encoding="utf-8").splitlines()
     assert lines[first.line - 1].startswith("N_r = -0.057")
     assert "hull.N_r" in str(first)
+
+
+def test_an_effect_that_has_faded_away_goes_into_a_baseline(ship, data, tmp_path):
+    """Some effects are none at infinity, a number that JSON does not have."""
+    faded = with_effects(ship, {"rudder-stall": {}}, "test")
+    there = with_effects(ship, {"rudder-stall": {"angle": 0.3}}, "test")
+    assert np.isinf(faded.value("effects.rudder-stall.angle"))
+    path = tmp_path / "baseline.json"
+    write_baseline(record_baseline(faded, data), path)
+    baseline = read_baseline(path)
+    same = check(faded, data, baseline)
+    assert (same.verdict, same.changed) == ("pass", ())
+    (changed,) = check(there, data, baseline).changed
+    assert str(changed).startswith("effects.rudder-stall.angle: inf -> 0.3")
+    assert "%" not in str(changed).partition(",")[0]
+    assert changed.to_dict()["baseline"] is None
+    assert "effects.rudder-stall.angle" not in pairs(sensitivity(faded, data, baseline, 0.02))
 
 
 def test_an_improvement_fails_nothing(ship, data, baseline, changed):

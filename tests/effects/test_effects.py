@@ -196,6 +196,26 @@ def test_ordered_manoeuvres_have_the_effects_too(ship):
     assert drifting.channel("y")[200] > still.channel("y")[200] + 50.0
 
 
+def test_one_lane_of_numbers_is_bit_equal_to_an_array_of_one(ship):
+    from mmgtune.backends import LaneModel
+
+    model = Model(with_effects(ship, {tag: STRONG[tag] for tag in TAGS}, "test"))
+    start = np.array([0.0, 0.0, 0.3, 5.0, 0.4, 0.01])
+
+    def end(theta, of):
+        def inputs(k):
+            return model.arrangement.control(of(1.5), of(0.4 * np.sin(0.3 * k)))
+
+        run = LaneModel(model, theta).start(State(*map(of, start)), inputs(0))
+        for k in range(1, 60):
+            run.step(inputs(k), Surroundings(3.0, 1.0, 1.0), of(0.5), Integrator())
+        return np.array(run.shown).ravel()
+
+    numbers = end(model.matrix()[:, 0], np.float64)
+    assert np.isfinite(numbers).all()
+    assert np.array_equal(numbers, end(model.matrix(), lambda value: np.array([value])))
+
+
 def test_parameters_are_targets_with_boxes_of_their_own(ship):
     model = Model(with_all_effects(ship))
     names = ("effects.current.north", "effects.shallow-water.depth", "effects.wind.speed", "effects.wind.direction")

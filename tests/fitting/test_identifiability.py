@@ -1,8 +1,11 @@
 """What no trial can tell is found from the numbers alone, named, and not given a standard error."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from mmgtune.backends import STATES
 from mmgtune.fitting import FitOptions, fit, make_problem
 from mmgtune.fitting.identifiability import analyse
 from mmgtune.fitting.whitening import estimate_whitening
@@ -85,9 +88,7 @@ def test_standard_errors_cover_the_truth(suzaku):
         trials = make_set(suzaku, noise=0.0)
         for name, trial in trials.trials.items():
             noisy_motion = trial.motion + conftest.NOISE * rng.standard_normal(trial.motion.shape)
-            for k, channel in enumerate(("x", "y", "psi", "u", "v_m", "r")):
-                object.__setattr__(trial, channel, noisy_motion[:, k])
-            trials.trials[name] = trial
+            trials.trials[name] = replace(trial, **dict(zip(STATES, noisy_motion.T, strict=True)))
         fitted = fit(suzaku.profile, trials, FitOptions(method="least-squares", starts=2, initial="estimated"))
         for name in names:
             error = fitted.identifiability.stderr[name]

@@ -2,13 +2,19 @@
 
 import json
 import signal
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import mmgtune
+from mmgtune.backends import Integrator
 from mmgtune.errors import OptionError
-from mmgtune.fitting import Hooks, LeaveOutOptions, SweepOptions, leave_out, sweep
-from mmgtune.fitting.journal import NAME
+from mmgtune.fitting import FitOptions, Hooks, LeaveOutOptions, SweepOptions, leave_out, sweep
+from mmgtune.fitting.journal import NAME, _hash
+from mmgtune.fitting.least_squares import _asked
+from mmgtune.fitting.run import make_setting
+from mmgtune.trial import load_trials
 from tests.command import run, run_until
 
 CLOCK = {"created", "wall_s", "evaluations", "command", "out"}
@@ -74,6 +80,27 @@ def test_a_stopped_sweep_recommends_nothing_and_goes_on(tmp_path):
     resumed = sweep("suzaku", "suzaku", options, folder=tmp_path, resume=True)
     assert same(resumed.to_dict()) == same(whole.to_dict())
     assert not (tmp_path / NAME).exists()
+
+
+def test_the_journal_tells_problems_apart(suzaku):
+    """Of one fit with parts left out, the box and the starts are the same throughout."""
+    trials = load_trials("suzaku")
+    options = FitOptions(targets=FEW)
+    setting = make_setting(suzaku.profile, trials, options)
+    problem = setting.problem(("turn_p35", "turn_m35"))
+    problems = [
+        problem,
+        setting.problem(("turn_p35", "turn_p10")),
+        problem.with_integrator(Integrator("euler")),
+        problem.with_cases(replace(problem.cases, weight=2.0 * problem.cases.weight)),
+        problem.estimated(np.full((2, 6), 0.1)),
+        problem.with_offsets(np.full((2, 6), 0.1)),
+    ]
+    starts = np.full((3, 1), 0.5)
+    asked = {_hash(_asked(one, starts, ridge=0.0)) for one in problems}
+    asked |= {_hash(_asked(problem, starts, ridge=0.1)), _hash(_asked(problem, starts, whiten=abs, ridge=0.0))}
+    assert len(asked) == len(problems) + 2
+    assert _hash(_asked(setting.problem(("turn_p35", "turn_m35")), starts, ridge=0.0)) in asked
 
 
 def test_half_a_line_at_the_end_is_done_again(tmp_path):

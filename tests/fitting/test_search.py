@@ -1,10 +1,13 @@
 """Search: bounds reached exactly, seeds, replay, certificate, sweep."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from mmgtune.errors import OptionError
-from mmgtune.fitting import FitOptions, Hooks, SweepOptions, fit, make_problem, sweep
+from mmgtune.fitting import FitOptions, Hooks, LeaveOutOptions, SweepOptions, fit, leave_out, make_problem, sweep
+from mmgtune.fitting.box import make_box
 from mmgtune.fitting.cmaes import from_box, search, to_box
 from mmgtune.fitting.least_squares import bounded_step, solve
 from mmgtune.trial import load_trials
@@ -174,6 +177,18 @@ def test_without_test_trials_one_trial_is_left_out_at_a_time(suzaku):
     assert swept.recommended()["a_r"] == 0.4  # the truth lies beyond 0.2
 
 
+@pytest.mark.parametrize("choice", [{"regularise": 0.5}, {"loss": "huber"}])
+def test_trials_left_out_by_a_sweep_and_by_leave_out_are_judged_alike(choice):
+    """A sweep left out trials without the regularisation and the loss it fitted with."""
+    trials = load_trials("suzaku")
+    names = tuple(trials.trials)[:3]
+    trials = replace(trials, trials={name: trials.trials[name] for name in names}, tune=names, test=())
+    same = {"targets": ("hull.R_0", "wake.w_P0", "rudder.kappa"), "starts": 2, **choice}
+    swept = sweep("suzaku", trials, SweepOptions(widths=(0.4,), method="least-squares", **same))
+    left = leave_out("suzaku", trials, LeaveOutOptions(a_r=0.4, **same))
+    assert swept.leave_one_out == pytest.approx([sum(one.J for one in left.after)], rel=1e-3)
+
+
 def test_over_fitting_is_named(swept):
     """Doctored: a wider box that fits the tune trials better and the others worse."""
 
@@ -204,7 +219,9 @@ def test_cma_es_and_least_squares_agree_on_the_bundled_trials(suzaku, a_r):
 
 def test_a_start_whose_neighbours_diverge_does_not_stop_the_others(suzaku, noisy):
     """A box so wide that parts of it blow up: those starts are given up, the others reach an optimum."""
-    problem = make_problem(suzaku.profile, noisy, FitOptions(targets=("hull.X_vvvv", "hull.N_r"), a_r=400.0))
+    names = ("hull.X_vvvv", "hull.N_r")
+    problem = make_problem(suzaku.profile, noisy, FitOptions(targets=names))
+    problem = problem.with_targets(problem.model, make_box(problem.model, names, 400.0))
     starts = np.array([[0.5, 0.0, 1.0, 0.75], [0.5, 1.0, 1.0, 0.3]])
     before = problem.costs(starts)
     assert not np.isfinite(before).all()

@@ -8,6 +8,7 @@ import pytest
 
 from mmgtune.fitting import FitOptions, fit
 from mmgtune.fitting.box import make_box
+from mmgtune.fitting.extending import with_effects as put_in
 from mmgtune.model import Model
 from mmgtune.profile import load_profile, parse_profile, with_effects
 from mmgtune.trial import TrialSet, load_trials
@@ -15,6 +16,9 @@ from tests.command import run
 
 RATE = np.radians(2.32)
 """Of the steering gear of the bundled trials [rad/s]."""
+
+SOME = ("wake.*", "rudder.eps", "rudder.kappa", "rudder.l_R_", "rudder.gamma_*")
+"""Enough to follow the trials; with all of the rudder, whose coefficients trade, four turns do not tell its rate."""
 
 TIME_CONSTANT = "effects.steering-lag.time_constant"
 RATE_LIMIT = "effects.steering-lag.rate_limit"
@@ -37,6 +41,17 @@ def ordered():
     return TrialSet(trials, tuple(trials), (), licence="CC BY-NC 4.0", citation="Who Measured 2020")
 
 
+def test_an_effect_that_is_there_already_is_tuned_too():
+    """It was left as it is, without a word."""
+    there = with_effects(load_profile("suzaku"), {"current": {"north": 0.2}}, "tuned before")
+    profile, options = put_in(there, FitOptions(with_effects=("current", "rpm-scale")))
+    assert profile.value("effects.current.north") == 0.2
+    assert options.targets[: len(there.targets)] == there.targets
+    assert {"effects.current.north", "effects.current.east"} < set(options.targets)
+    assert put_in(profile, options) == (profile, options)
+    assert put_in(there, FitOptions()) == (there, FitOptions())
+
+
 def test_a_null_at_infinity_is_a_point_of_the_box(ship):
     box = make_box(Model(ship), ["hull.R_0", RATE_LIMIT], 0.5)
     start = box.to_unit(box.pre)
@@ -50,7 +65,7 @@ def test_a_null_at_infinity_is_a_point_of_the_box(ship):
     "options",
     [
         # A time constant does nearly the same to a single order, so it is held.
-        FitOptions(method="least-squares", starts=2, initial="estimated", targets=("rudder.*", "wake.*", RATE_LIMIT)),
+        FitOptions(method="least-squares", starts=3, initial="estimated", targets=(*SOME, RATE_LIMIT)),
         FitOptions(starts=2, initial="estimated", targets=("wake.w_P0", "rudder.eps", "rudder.l_R_", RATE_LIMIT)),
     ],
     ids=["least-squares", "cma-es"],

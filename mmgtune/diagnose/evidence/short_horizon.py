@@ -44,11 +44,6 @@ class ShortHorizon:
         return np.array([_rms(values) for values in self.residuals])
 
     @property
-    def rms_in_noise(self) -> FloatArray:
-        """(n_trials, 6) the same in deviations of the noise; NaN where there is no noise."""
-        return np.array([_rms(values) for values in self._in_noise])
-
-    @property
     def pooled_rms(self) -> FloatArray:
         """(6,) root mean square over all trials, in the units of ``residuals``; NaN without samples."""
         return _rms(np.concatenate(self.residuals))
