@@ -18,7 +18,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-ROUNDS = 5
+ROUNDS = 3
 
 LANES = """
 import sys, time

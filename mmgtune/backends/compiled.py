@@ -12,9 +12,13 @@ from itertools import pairwise
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
+from ..effects import LagEffect
 from ..model import Model
+from ..physics.quantities import State
 from .cases import Cases, Integrator, LaneResult, finish
 from .kernel_source import N_STATES, WIDTH, functions_of, kernel_source
+from .logged import Logged
+from .numpy_lanes import LaneModel
 
 WORTH_A_THREAD = 20_000
 """Lane-steps (under a millisecond of work) below which starting a second thread costs more than it saves."""
@@ -72,6 +76,24 @@ def _blocks_of_one_case(n_cases: int, n_candidates: int) -> Blocks:
     return Blocks(case_of, np.tile(thetas, (n_cases, 1)), thetas, np.tile(np.arange(per_case), n_cases), mixed=False)
 
 
+def first_states(model: Model, theta: FloatArray, cases: Cases, initial: FloatArray | None) -> FloatArray:
+    """(n_cases, n_candidates, n_states) where lanes start: the state as the sensors show it, then what lags remember.
+
+    The latter is worked out by the reference, once a run: a kernel would need all forces a second time for it.
+    """
+    n_candidates = theta.shape[1]
+    if initial is None:
+        initial = np.broadcast_to(cases.initial[:, None], (len(cases), n_candidates, N_STATES))
+    if not model.acting(LagEffect):
+        return initial
+    with np.errstate(all="ignore"):
+        ship = LaneModel(model, np.tile(theta, len(cases)))
+        log = Logged(model, cases, n_candidates, ship.shift)
+        shown = State(*initial.reshape(-1, N_STATES).T)
+        behind = ship.start(shown, log.inputs(1, 0.0), log.around(1, 0.0)).s[N_STATES:]
+    return np.concatenate([initial, behind.T.reshape(len(cases), n_candidates, -1)], axis=2)
+
+
 class Compiled:
     """Runs kernels made by ``kernel_source``; one per combination of components, kept in memory and on disk."""
 
@@ -104,9 +126,7 @@ class Compiled:
         n_cases, n_candidates = len(cases), theta.shape[1]
         blocks = make_blocks(cases, n_candidates)
         n_blocks = len(blocks.case_of)
-        start = (
-            cases.initial[blocks.case_of] if initial is None else initial[blocks.case_of, blocks.candidate_of]
-        ).transpose(0, 2, 1)
+        start = first_states(model, theta, cases, initial)[blocks.case_of, blocks.candidate_of].transpose(0, 2, 1)
         cost, fastest2 = np.empty((n_blocks, WIDTH)), np.empty((n_blocks, WIDTH))
         end = np.empty((n_blocks, N_STATES * WIDTH))
         states = np.empty((n_cases, n_candidates, cases.t.shape[1], N_STATES) if keep_states else (1, 1, 1, 1))
@@ -118,7 +138,7 @@ class Compiled:
         fixed = (
             np.ascontiguousarray(thetas),
             blocks.theta_of,
-            np.ascontiguousarray(start).reshape(n_blocks, N_STATES * WIDTH),
+            np.ascontiguousarray(start).reshape(n_blocks, -1),
             blocks.case_of,
             blocks.candidate_of,
             blocks.mixed,

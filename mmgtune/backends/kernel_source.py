@@ -75,7 +75,6 @@ def kernel(
         i, f = 1, 0.0
 {sample_now}
 {start_actuators}
-{start_lags}
         for i in range(1, longest):
             if mixed:
                 for l in range({W}):
@@ -199,15 +198,18 @@ def kernel_source(model: Model) -> str:
         any_shifted=_lines(8, _ANY_SHIFTED.format(W=WIDTH, shift=shift).splitlines()) if shift else "",
         from_initial=", ".join(f"initial[block, {k * WIDTH} + l]" for k in range(N_STATES)),
         unsense=_lines(12, [f"state = {_name(e)}_inverse(state, {_tuple(model, e)})" for e in reversed(sensors)]),
-        store_state=_lines(12, [f"{_slot('s', k)} = state.{name}" for k, name in enumerate(STATES)]),
+        store_state=_lines(
+            12,
+            [f"{_slot('s', k)} = state.{name}" for k, name in enumerate(STATES)]
+            + [f"{_slot('s', k)} = initial[block, {k * WIDTH} + l]" for k in range(N_STATES, n_states)],
+        ),
         sample_now=_lines(8, _sample(model, "now", "here", shift)),
         start_actuators=_per_lane(8, _actuate(model, "now", first=True)),
-        start_lags=_per_lane(8, _start_lags(model)),
         sample_then=_lines(16, _sample(model, "then", "there", shift)),
         actuators=_per_lane(16, _actuate(model, "then", first=False)),
         at_stage=control,
         z=_state("z"),
-        around=_lines(24, _around(stage=True)) if _looks_around(model) else "",
+        around=_lines(24, _around()) if _looks_around(model) else "",
         forces=_lines(24, _forces(model)),
         added=_lines(24, [*_added(model), *_lagging(model)]),
         update=_lines(24, _update(model)),
@@ -269,8 +271,6 @@ def _imports(model: Model) -> list[str]:
             named.append((part.function, _name(part)))
         if isinstance(part, SensorEffect):
             named.append((part.inverse, f"{_name(part)}_inverse"))
-        if isinstance(part, LagEffect):
-            named.append((part.start, f"{_name(part)}_start"))
     imports = []
     for what, name in named:
         own = what.__name__
@@ -327,12 +327,12 @@ def _sample(model: Model, inputs: str, around: str, shift: str) -> list[str]:
     return lines
 
 
-def _around(*, stage: bool) -> list[str]:
-    """What was measured around lane l at this stage of a step, or at the first sample."""
+def _around() -> list[str]:
+    """What was measured around lane l at this stage of a step."""
     slots = []
     for k, name in enumerate(Surroundings._fields):
         here, there = _slot("here", k), _slot("there", k)
-        slots.append(here if not stage else there if name in HELD else f"between({here}, {there}, at)")
+        slots.append(there if name in HELD else f"between({here}, {there}, at)")
     return [f"around = Surroundings({', '.join(slots)})"]
 
 
@@ -403,26 +403,4 @@ def _update(model: Model) -> list[str]:
     for k, slope in enumerate(slopes):
         s, z, total = (_slot(array, k) for array in ("s", "z", "total"))
         lines += [f"{total} = with_stage({total}, part, {slope})", f"{z} = at_stage({s}, ahead, h[l], {slope})"]
-    return lines
-
-
-def _start_lags(model: Model) -> list[str]:
-    """What lags remember at the first state."""
-    lags = model.acting(LagEffect)
-    if not lags:
-        return []
-    n_inputs = len(model.inputs)
-    last = n_inputs * len(model.acting(ActuatorEffect))
-    lines = [
-        f"control = Control({', '.join(_slot('now', last + k) for k in range(n_inputs))})",
-        f"state = State({_state('s')})",
-        *(_around(stage=False) if _looks_around(model) else []),
-        *_forces(model),
-        *_added(model),
-    ]
-    at = N_STATES
-    for lag in lags:
-        lines += [f"behind = {_name(lag)}_start(found, {_tuple(model, lag)})"]
-        lines += [f"{_slot('s', at + j)} = behind[{j}]" for j in range(len(lag.states))]
-        at += len(lag.states)
     return lines

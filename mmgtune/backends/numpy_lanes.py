@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, Generic, TypeVar
 
 import numpy as np
@@ -14,6 +13,7 @@ from ..physics.integration import after_step, at_stage, between, with_stage
 from ..physics.mmg import rates, through_water
 from ..physics.quantities import HELD, STATES, UNKNOWN, Force, State, Surroundings
 from .cases import Cases, Integrator, LaneResult, finish
+from .logged import Logged
 
 E = TypeVar("E", bound=Effect)
 
@@ -49,28 +49,15 @@ class NumpyLanes:
         if states is not None:
             states[:, :, 0] = initial
 
-        def per_lane(values: FloatArray) -> FloatArray:
-            return np.repeat(values, n_candidates)
-
-        def logged(k: int, f: float) -> Any:
-            inputs = range(cases.controls.shape[2])
-            return model.arrangement.control(*(_at(cases, k, f, column, ship.shift, per_lane) for column in inputs))
-
-        def around(k: int, f: float) -> Surroundings:
-            found = between(cases.around[:, k - 1], cases.around[:, k], f)
-            for name in HELD:
-                column = Surroundings._fields.index(name)
-                found[:, column] = cases.around[:, k, column]
-            return Surroundings(*(per_lane(values) for values in found.T))
-
+        log = Logged(model, cases, n_candidates, ship.shift)
         with np.errstate(all="ignore"):
-            run = ship.start(State(*initial.reshape(-1, N_STATES).T), logged(1, 0.0), around(1, 0.0))
+            run = ship.start(State(*initial.reshape(-1, N_STATES).T), log.inputs(1, 0.0), log.around(1, 0.0))
             fastest2 = np.zeros(n_cases * n_candidates)
             for k in range(1, T):
-                h = per_lane((cases.t[:, k] - cases.t[:, k - 1]) / integrator.substeps)
+                h = log.per_lane((cases.t[:, k] - cases.t[:, k - 1]) / integrator.substeps)
                 for sub in range(integrator.substeps):
                     f = (sub + 1) / integrator.substeps
-                    run.step(logged(k, f), around(k, f), h, integrator)
+                    run.step(log.inputs(k, f), log.around(k, f), h, integrator)
                 fastest2 = np.fmax(fastest2, run.s[3] * run.s[3] + run.s[4] * run.s[4])
                 now_states = np.array(run.shown).T.reshape(n_cases, n_candidates, N_STATES)
                 difference = now_states - cases.target[:, None, k]
@@ -228,24 +215,3 @@ def _between(before: Surroundings, after: Surroundings, f: float) -> Surrounding
 
 def _sum(a: Force, b: Force) -> Force:
     return Force(*(one + other for one, other in zip(a, b, strict=True)))
-
-
-def _at(
-    cases: Cases,
-    k: int,
-    f: float,
-    column: int,
-    shift: FloatArray | None,
-    per_lane: Callable[[FloatArray], FloatArray],
-) -> FloatArray:
-    """A logged input at the share f of the step that ends at sample k, each lane ``shift`` [s] later."""
-    value = per_lane(between(cases.controls[:, k - 1, column], cases.controls[:, k, column], f))
-    if shift is None:
-        return np.asarray(value)
-    time = per_lane(between(cases.t[:, k - 1], cases.t[:, k], f)) + shift
-    late = time.reshape(len(cases), -1)
-    moved = [
-        np.interp(late[case], cases.t[case, :n], cases.controls[case, :n, column])
-        for case, n in enumerate(cases.n_samples)
-    ]
-    return np.where(shift == 0.0, value, np.concatenate(moved))

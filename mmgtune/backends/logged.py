@@ -1,0 +1,55 @@
+"""What the log says to every lane: inputs and surroundings at any share of a step between samples."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..model import Model
+from ..physics.integration import between
+from ..physics.quantities import HELD, Surroundings
+from .cases import Cases
+
+
+class Logged:
+    """Inputs and surroundings of n_cases * n_candidates lanes, candidates of a case side by side.
+
+    shift  (n_lanes,) how late the log of the inputs is [s], None where no lane's is
+    """
+
+    def __init__(self, model: Model, cases: Cases, n_candidates: int, shift: FloatArray | None):
+        self.control = model.arrangement.control
+        self.cases = cases
+        self.n_candidates = n_candidates
+        self.shift = shift
+
+    def per_lane(self, values: FloatArray) -> FloatArray:
+        """(n_lanes,) of (n_cases,)."""
+        return np.repeat(values, self.n_candidates)
+
+    def inputs(self, k: int, f: float) -> Any:
+        """The inputs at the share f of the step that ends at sample k."""
+        return self.control(*(self._input(k, f, column) for column in range(self.cases.controls.shape[2])))
+
+    def around(self, k: int, f: float) -> Surroundings:
+        """The surroundings there."""
+        found = between(self.cases.around[:, k - 1], self.cases.around[:, k], f)
+        for name in HELD:
+            column = Surroundings._fields.index(name)
+            found[:, column] = self.cases.around[:, k, column]
+        return Surroundings(*(self.per_lane(values) for values in found.T))
+
+    def _input(self, k: int, f: float, column: int) -> FloatArray:
+        cases, shift = self.cases, self.shift
+        value = self.per_lane(between(cases.controls[:, k - 1, column], cases.controls[:, k, column], f))
+        if shift is None:
+            return value
+        time = self.per_lane(between(cases.t[:, k - 1], cases.t[:, k], f)) + shift
+        late = time.reshape(len(cases), -1)
+        moved = [
+            np.interp(late[case], cases.t[case, :n], cases.controls[case, :n, column])
+            for case, n in enumerate(cases.n_samples)
+        ]
+        return np.where(shift == 0.0, value, np.concatenate(moved))
