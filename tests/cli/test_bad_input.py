@@ -145,7 +145,7 @@ def test_time_that_does_not_increase(tmp_path, data, step, words):
         ('tune = ["turn_p35"]\ntest = ["turn_p35"]', ("is both in 'tune' and in 'test'",)),
         ('tune = ["turn_p53"]', ("which is not there", "did you mean 'turn_p35'")),
         ('tunes = ["turn_p35"]', ("unknown key 'tunes'", "did you mean 'tune'")),
-        ("tune = [", ("cannot be read",)),
+        ("tune = [", ("not valid TOML", "correct the line")),
         ('tune = ["turn_p35"]\nship = "kvlcc2"', ("of ship 'suzaku'",)),
     ],
 )

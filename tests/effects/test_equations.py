@@ -2,6 +2,7 @@
 
 import math
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -133,12 +134,14 @@ def test_a_stalled_rudder_keeps_the_force_of_the_angle_it_stalled_at(added, delt
 
 def test_memory_is_a_lag_of_first_order():
     e = find_effect("memory").params(6.0)
-    force, Y_dot, N_dot = find_effect("memory").function(Force(1.0, 10.0, 100.0), 4.0, 130.0, 0.1, e)
+    found = SimpleNamespace(hull=Force(1.0, 10.0, 100.0))
+    assert find_effect("memory").start(found, e) == (10.0, 100.0)
+    force, (Y_dot, N_dot) = find_effect("memory").function(found, (4.0, 130.0), 0.1, e)
     assert force == pytest.approx((0.0, -6.0, 30.0))
     assert (Y_dot, N_dot) == pytest.approx((1.0, -5.0))
     # A lag shorter than the step can follow acts in part.
     short = find_effect("memory").params(0.25 * STIFF * 0.1)
-    force, *_ = find_effect("memory").function(Force(1.0, 10.0, 100.0), 4.0, 130.0, 0.1, short)
+    force, _ = find_effect("memory").function(found, (4.0, 130.0), 0.1, short)
     assert force == pytest.approx((0.0, -1.5, 7.5))
 
 
@@ -151,7 +154,7 @@ def test_flow_effects_are_velocities_over_ground_seen_from_the_ship():
     # A share of the wind along it and to its right.
     effect, air = find_effect("wind-drift"), Surroundings(-4.0, 3.0, 1.0)
     u, v = effect.function(MOVING, air, effect.params(0.03, 0.01))
-    wind = complex(air.north, air.east)
+    wind = complex(air.wind_north, air.wind_east)
     drift = wind * complex(0.03, 0.01) * np.exp(-1j * MOVING.psi)
     assert (u, v) == pytest.approx((drift.real, drift.imag))
     assert effect.function(MOVING, air._replace(known=0.0), effect.params(0.03, 0.01)) == pytest.approx((0.0, 0.0))

@@ -121,9 +121,9 @@ def test_effects_are_put_in_to_be_tuned(tmp_path, clean):
     assert run("profile", "validate", "out/profile.toml", cwd=tmp_path).code == 0
 
 
-@pytest.mark.parametrize(("tag", "said"), [("curent", "current"), ("steering-lag", "infinity")])
-def test_effects_that_cannot_be_put_in(tag, said, tmp_path):
-    ended = run("fit", "--with-effects", tag, "--dry-run", cwd=tmp_path)
+@pytest.mark.parametrize(("arguments", "said"), [(("curent",), "current"), (("flap", "-p", "kvlcc2"), "rudder.flap")])
+def test_effects_that_cannot_be_put_in(arguments, said, tmp_path):
+    ended = run("fit", "--with-effects", *arguments, "--dry-run", cwd=tmp_path)
     assert ended.code == 2
     assert said in ended.err
 

@@ -4,6 +4,7 @@ import os
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -91,6 +92,6 @@ def test_another_is_one_field_and_one_source(tmp_path):
 def test_wind_of_a_trial_is_in_its_surroundings():
     trial = made()
     blown = {"wind_speed": np.full(trial.n_samples, 8.0), "wind_dir": np.full(trial.n_samples, np.pi)}
-    found = surroundings(type(trial)(**{**vars(trial), "extra": blown}))
+    found = surroundings(replace(trial, extra=blown))
     assert found[:, Surroundings._fields.index("wind_north")] == pytest.approx(8.0)
     assert (found[:, Surroundings._fields.index("wind_known")] == 1.0).all()
