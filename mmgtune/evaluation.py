@@ -31,10 +31,15 @@ from .trial import Trial
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """A trial, and what is computed of it once for all members; L_pp [m]."""
+    """A trial, and what is computed of it once for all members.
+
+    L_pp    [m]
+    weight  (n_samples, 6) of each squared residual in J
+    """
 
     trial: Trial
     L_pp: float
+    weight: FloatArray
 
     @cached_property
     def motion(self) -> FloatArray:
@@ -96,13 +101,11 @@ class TrialRecord:
 
     measured   the trial
     motion     what the member made of it
-    objective  what J counts
     method     how it was simulated, to be named beside J
     """
 
     measured: Measured
     motion: Motion
-    objective: Objective
     method: str
 
     @property
@@ -145,8 +148,8 @@ class TrialRecord:
 
     @cached_property
     def J(self) -> float:
-        """Weighted sum of squared residuals, see ``Objective``; inf where it diverged."""
-        return float(self._sums(self.objective.weight(self.trial)).sum())
+        """Sum of squared residuals, each with the weight of its objective; inf where it diverged."""
+        return float(self._sums(self.measured.weight).sum())
 
     @cached_property
     def rms(self) -> dict[str, float]:
@@ -210,10 +213,9 @@ def records(
 ) -> Iterator[TrialRecord]:
     """As ``evaluate``, one record after the other: who keeps numbers only never holds the states of all trials."""
     chosen = make_objective(predictor.L_pp) if objective is None else objective
-    for trial in trials:
-        weights_of([trial], chosen)
     about: Measured | None = None
     for k, motion in enumerate(motions(predictor, trials, offsets)):
         if about is None or motion.member == 0:
-            about = Measured(trials[k // predictor.n_members], predictor.L_pp)
-        yield TrialRecord(about, motion, chosen, predictor.method)
+            trial = trials[k // predictor.n_members]
+            about = Measured(trial, predictor.L_pp, weights_of([trial], chosen)[0])
+        yield TrialRecord(about, motion, predictor.method)

@@ -16,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import tracemalloc
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -23,27 +24,32 @@ from typing import Any
 
 import numpy as np
 
-from mmgtune.backends import get_backend, pad
+from mmgtune.backends import Integrator, get_backend, pad
 from mmgtune.backends.compiled import cores
 from mmgtune.files import write_text
 from mmgtune.fitting.cmaes import _strategy
 from mmgtune.model import Model
+from mmgtune.objective import spread
+from mmgtune.orders import TurningOrder, run_manoeuvre
 from mmgtune.profile import load_profile
+from mmgtune.simulation import as_trial
 from mmgtune.trial import load_trials, write_trial
+from mmgtune.validation import score
 
 STEPS = 600
 LANES = (1, 48, 512, 4096)
+EULER, RK4 = Integrator("euler"), Integrator("rk4")
 COMMANDS = {
     "fit --ar 0.5": ["fit", "--ar", "0.5", "--no-report"],
     "fit --ar 0.5, with report": ["fit", "--ar", "0.5"],
     "fit --ar 0.5 --method least-squares": ["fit", "--ar", "0.5", "--method", "least-squares", "--no-report"],
-    "sweep, five values": ["sweep", "--no-report"],
     "sweep, five values, --method least-squares": ["sweep", "--method", "least-squares", "--no-report"],
+    "diagnose": ["diagnose", "--no-report"],
 }
 
 
 def lane_steps() -> list[dict[str, Any]]:
-    """Nanoseconds per lane and step of SUZAKU in a 35 deg turn, Euler, costs only."""
+    """Nanoseconds per lane and step of SUZAKU in a 35 deg turn, costs only."""
     model = Model(load_profile("suzaku"))
     t = np.arange(STEPS + 1.0)
     controls = np.column_stack([np.full(len(t), 106.0 / 60.0), np.full(len(t), np.radians(35.0))])
@@ -53,14 +59,32 @@ def lane_steps() -> list[dict[str, Any]]:
     for lanes in LANES:
         theta = model.matrix(["hull.R_0"], np.linspace(0.012, 0.02, lanes)[None])
         row: dict[str, Any] = {"lanes": lanes}
-        for name, repeats in (("numpy", 3), ("compiled", 30)):
+        for name, integrator, repeats in (("numpy", RK4, 1), ("compiled", RK4, 30), ("compiled", EULER, 30)):
             backend = get_backend(name)
-            backend.run(model, theta, cases)
-            best = min(timed(lambda b=backend, c=theta: b.run(model, c, cases)) for _ in range(repeats))
-            row[f"{name}_ns"] = round(best / (lanes * STEPS) * 1e9, 1)
-        row["ratio"] = round(row["numpy_ns"] / row["compiled_ns"], 1)
+
+            def run(b: Any = backend, c: Any = theta, i: Integrator = integrator) -> None:
+                b.run(model, c, cases, integrator=i)
+
+            run()
+            best = min(timed(run) for _ in range(repeats))
+            row[f"{name}_{integrator.name}_ns"] = round(best / (lanes * STEPS) * 1e9, 1)
+        row["ratio"] = round(row["numpy_rk4_ns"] / row["compiled_rk4_ns"], 1)
         rows.append(row)
     return rows
+
+
+def windows() -> dict[str, Any]:
+    """Scores of one model on a thousand windows of 120 s at 10 Hz: seconds, and memory besides the windows [MB]."""
+    model = Model(load_profile("suzaku"))
+    trial = as_trial(model.profile, run_manoeuvre(model, TurningOrder(0.3), longest=120.0, sample=0.1))
+    many = [replace(trial, id=str(k)) for k in range(1000)]
+    sigma = spread([trial])
+    seconds = min(timed(lambda: score(model, many, sigma)) for _ in range(3))
+    tracemalloc.start()
+    score(model, many, sigma)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    return {"windows": len(many), "samples": trial.n_samples, "seconds": round(seconds, 3), "mb": round(peak / 1e6)}
 
 
 def search_overhead() -> list[dict[str, Any]]:
@@ -148,7 +172,7 @@ def machine() -> dict[str, Any]:
 
 def as_markdown(found: dict[str, Any]) -> str:
     """The page for people."""
-    m = found["machine"]
+    m, w = found["machine"], found["windows"]
     lines = [
         "# Benchmarks",
         "",
@@ -158,11 +182,20 @@ def as_markdown(found: dict[str, Any]) -> str:
         "",
         "## One step of one lane",
         "",
-        f"SUZAKU, {STEPS} Euler steps of a 35 deg turn, cost only; ns per lane and step, call overhead included.",
+        f"SUZAKU, {STEPS} steps of a 35 deg turn, cost only; ns per lane and step, call overhead included.",
         "",
-        "| lanes | NumPy | compiled | ratio |",
-        "|---:|---:|---:|---:|",
-        *(f"| {r['lanes']} | {r['numpy_ns']:,} | {r['compiled_ns']:,} | {r['ratio']} |" for r in found["lane_steps"]),
+        "| lanes | NumPy, rk4 | compiled, rk4 | ratio | compiled, euler |",
+        "|---:|---:|---:|---:|---:|",
+        *(
+            f"| {r['lanes']} | {r['numpy_rk4_ns']:,} | {r['compiled_rk4_ns']:,} | {r['ratio']} "
+            f"| {r['compiled_euler_ns']:,} |"
+            for r in found["lane_steps"]
+        ),
+        "",
+        "## Many windows",
+        "",
+        f"Scores of one model on {w['windows']} windows of {w['samples']} samples, rk4: {w['seconds']} s, {w['mb']} MB",
+        "besides the windows themselves.",
         "",
         "## CMA-ES itself",
         "",
@@ -189,6 +222,7 @@ if __name__ == "__main__":
     results = {
         "machine": machine(),
         "lane_steps": lane_steps(),
+        "windows": windows(),
         "search_overhead": search_overhead(),
         "commands": commands(),
     }
