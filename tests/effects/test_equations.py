@@ -157,7 +157,7 @@ def test_flow_effects_are_velocities_over_ground_seen_from_the_ship():
     wind = complex(air.wind_north, air.wind_east)
     drift = wind * complex(0.03, 0.01) * np.exp(-1j * MOVING.psi)
     assert (u, v) == pytest.approx((drift.real, drift.imag))
-    assert effect.function(MOVING, air._replace(known=0.0), effect.params(0.03, 0.01)) == pytest.approx((0.0, 0.0))
+    assert effect.function(MOVING, air._replace(wind_known=0.0), effect.params(0.03, 0.01)) == pytest.approx((0.0, 0.0))
 
 
 def earth(state):
