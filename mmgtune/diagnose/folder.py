@@ -8,6 +8,7 @@ from typing import Any
 
 from ..files import write_text
 from ..fitting.folder import motions_table, write_table
+from ..fitting.journal import finished
 from .result import Diagnosis
 
 RESULT = "diagnosis.json"
@@ -20,4 +21,6 @@ def write_diagnosis(result: Diagnosis, folder: Path) -> dict[str, Any]:
     write_table(folder / "motions.parquet", motions_table(result.gain.compared, inputs))
     document = {**result.to_dict(), "out": str(folder)}
     write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+    if not result.interrupted:
+        finished(folder)
     return document

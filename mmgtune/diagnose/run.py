@@ -14,7 +14,7 @@ import numpy as np
 from ..backends import STATES
 from ..components import split_name
 from ..fitting.box import parameter_of
-from ..fitting.journal import Journal, journalled
+from ..fitting.journal import journalled
 from ..fitting.run import Hooks, identity_of, in_pieces, make_provenance
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..model import Model
@@ -62,15 +62,9 @@ def diagnose(
     """
     profile, trials = ship_of(profile), trials_of(trials)
     provenance = make_provenance(profile, trials, command)
-    journal = None
-    if folder is not None:
-        journal = Journal(folder, identity_of(profile, trials, options, provenance), hooks.stop)
-        journal.begin(resume)
-    with journalled(journal):
-        found = _diagnose(profile, trials, options, hooks, provenance)
-    if journal is not None and not found.interrupted:
-        journal.remove()
-    return found
+    identity = identity_of(profile, trials, options, provenance)
+    with journalled(folder, identity, hooks.stop, resume=resume):
+        return _diagnose(profile, trials, options, hooks, provenance)
 
 
 def _diagnose(

@@ -71,10 +71,6 @@ class Checkpoint:
         differing(identity, self.identity, self.path)
         return parts
 
-    def remove(self) -> None:
-        """Delete the file: the fit is finished."""
-        self.path.unlink(missing_ok=True)
-
 
 def differing(recorded: dict[str, Any], now: dict[str, Any], path: Path) -> None:
     """Raises OptionError where what a file was made from is not what the run is of now."""

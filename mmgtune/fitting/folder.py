@@ -15,6 +15,7 @@ from ..errors import OutputError, Problem
 from ..files import atomic, cannot_write, exists, write_text
 from .cmaes import Generation
 from .comparison import TrialComparison
+from .journal import finished
 from .result import FitResult
 
 RESULT = "fit.json"
@@ -72,6 +73,8 @@ def write_run(result: FitResult, folder: Path) -> dict[str, Any]:
     write_table(folder / "motions.parquet", motions_table(result.compared, inputs))
     document = {**result.to_dict(), "out": str(folder)}
     write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+    if not result.interrupted:
+        finished(folder)
     return document
 
 

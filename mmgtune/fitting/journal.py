@@ -22,6 +22,7 @@ import numpy as np
 
 from ..errors import OptionError, Problem
 from ..files import cannot_write, write_text
+from .checkpoint import NAME as CHECKPOINT
 from .checkpoint import differing
 
 NAME = "journal.jsonl"
@@ -121,21 +122,24 @@ class Journal:
             self._file.close()
             self._file = None
 
-    def remove(self) -> None:
-        """Delete the file: the run is finished."""
-        self.close()
-        self.path.unlink(missing_ok=True)
-
 
 _ACTIVE: ContextVar[Journal | None] = ContextVar("journal", default=None)
 
 
 @contextmanager
-def journalled(journal: Journal | None) -> Iterator[None]:
-    """What is searched for within this context is noted; where a journal is kept already, that one goes on."""
-    if journal is None or _ACTIVE.get() is not None:
+def journalled(
+    folder: Path | None, identity: dict[str, Any], stop: Callable[[], bool], *, resume: bool
+) -> Iterator[None]:
+    """What is searched for within this context is noted in the folder; part of a longer run is noted in its journal.
+
+    The journal stays until the result of the run is written: see ``finished``.
+    Raises OptionError where there is nothing to resume, or it belongs to another run.
+    """
+    if folder is None or _ACTIVE.get() is not None:
         yield
         return
+    journal = Journal(folder, identity, stop)
+    journal.begin(resume)
     token = _ACTIVE.set(journal)
     try:
         yield
@@ -144,9 +148,10 @@ def journalled(journal: Journal | None) -> Iterator[None]:
         journal.close()
 
 
-def kept() -> bool:
-    """Whether a journal is being kept."""
-    return _ACTIVE.get() is not None
+def finished(folder: Path) -> None:
+    """Delete what a run in this folder would be continued from: its result is written."""
+    for name in (CHECKPOINT, NAME):
+        (folder / name).unlink(missing_ok=True)
 
 
 class remembered(Generic[R]):

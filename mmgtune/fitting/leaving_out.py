@@ -23,7 +23,7 @@ from ..trial import Trial, TrialSet
 from ..validation import L_MSE, TrialScore, by_manoeuvre, improvement, score
 from .comparison import finite, finite_values
 from .extending import with_effects
-from .journal import Journal, journalled
+from .journal import finished, journalled
 from .least_squares import solve
 from .robust import weigh_down
 from .run import (
@@ -169,21 +169,17 @@ def leave_out(
     profile, trials = ship_of(profile), trials_of(trials)
     profile, options = with_effects(profile, options)
     provenance = make_provenance(profile, trials, command)
-    journal = None
-    if folder is not None:
-        journal = Journal(folder, identity_of(profile, trials, options, provenance), hooks.stop)
-        journal.begin(resume)
-    with journalled(journal):
-        found = _leave_out(profile, trials, options, hooks, provenance)
-    if journal is not None and not found.interrupted:
-        journal.remove()
-    return found
+    identity = identity_of(profile, trials, options, provenance)
+    with journalled(folder, identity, hooks.stop, resume=resume):
+        return _leave_out(profile, trials, options, hooks, provenance)
 
 
 def write_left_out(result: LeftOut, folder: Path) -> dict[str, Any]:
     """Write the result.  Returns its document."""
     document = {**result.to_dict(), "out": str(folder)}
     write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+    if not result.interrupted:
+        finished(folder)
     return document
 
 

@@ -30,7 +30,7 @@ from .comparison import compare, total
 from .extending import with_effects
 from .identifiability import analyse
 from .initial import deviations
-from .journal import Journal, journalled, kept
+from .journal import journalled
 from .least_squares import LeastSquaresResult, fit_offsets, solve
 from .problem import FitProblem
 from .result import FitResult
@@ -159,17 +159,10 @@ def fit(
         return _fit(profile, trials, options, hooks, None, resume, more_starts, provenance)
     identity = identity_of(profile, trials, options, provenance)
     checkpoint = Checkpoint(checkpoint_folder, identity)
-    if kept():  # part of a longer run, whose journal knows what is finished
-        return _fit(profile, trials, options, hooks, checkpoint, resume, more_starts, provenance)
-    journal = Journal(checkpoint_folder, identity, hooks.stop)
     if resume and checkpoint.path.is_file():
         checkpoint.load()  # says first what is wrong with the larger part
-    journal.begin(resume)
-    with journalled(journal):
-        result = _fit(profile, trials, options, hooks, checkpoint, resume, more_starts, provenance)
-    if not result.interrupted:
-        journal.remove()
-    return result
+    with journalled(checkpoint_folder, identity, hooks.stop, resume=resume):
+        return _fit(profile, trials, options, hooks, checkpoint, resume, more_starts, provenance)
 
 
 def _fit(
@@ -318,10 +311,7 @@ def _search(
         stop=hooks.stop,
     )
     if checkpoint:
-        if found.finished:
-            checkpoint.remove()
-        else:
-            checkpoint.save(found.costs)
+        checkpoint.save(found.costs)
     return found
 
 

@@ -18,7 +18,7 @@ from ..trial import TrialSet
 from .comparison import finite_values
 from .extending import with_effects
 from .folder import write_run
-from .journal import Journal, journalled
+from .journal import finished, journalled
 from .least_squares import fit_offsets, solve
 from .leaving_out import leaving_out
 from .result import FitResult
@@ -176,20 +176,16 @@ def sweep(
     """
     profile, trials = ship_of(profile), trials_of(trials)
     profile, options = with_effects(profile, options)
-    journal = None
-    if folder is not None:
-        identity = identity_of(profile, trials, options, make_provenance(profile, trials, command))
-        journal = Journal(folder, identity, hooks.stop)
-        journal.begin(resume)
-    with journalled(journal):
+    identity = identity_of(profile, trials, options, make_provenance(profile, trials, command))
+    with journalled(folder, identity, hooks.stop, resume=resume):
         swept = _sweep(profile, trials, options, hooks, folder, resume, command)
     if folder is not None:
         write_text(
             folder / RESULT,
             json.dumps({**swept.to_dict(), "out": str(folder)}, indent=1, allow_nan=False, ensure_ascii=False) + "\n",
         )
-    if journal is not None and not swept.interrupted:
-        journal.remove()
+        if not swept.interrupted:
+            finished(folder)
     return swept
 
 

@@ -10,7 +10,8 @@ import pytest
 import mmgtune
 from mmgtune.backends import Integrator
 from mmgtune.errors import OptionError
-from mmgtune.fitting import FitOptions, Hooks, LeaveOutOptions, SweepOptions, leave_out, sweep
+from mmgtune.fitting import FitOptions, Hooks, LeaveOutOptions, SweepOptions, leave_out, sweep, write_left_out
+from mmgtune.fitting import folder as run_folder
 from mmgtune.fitting.journal import NAME, _hash
 from mmgtune.fitting.least_squares import _asked
 from mmgtune.fitting.run import make_setting
@@ -53,8 +54,10 @@ def test_a_stopped_leave_out_tells_what_it_has_and_goes_on(tmp_path):
     hooks, begun = stopping("never")
     resumed = leave_out("suzaku", "suzaku", options, hooks=hooks, folder=tmp_path, resume=True)
     assert same(resumed.to_dict()) == same(whole.to_dict())
-    assert not (tmp_path / NAME).exists()
     assert len(begun) == 1 + len(whole.parts)
+    assert (tmp_path / NAME).exists()  # as long as its result is nowhere else
+    write_left_out(resumed, tmp_path)
+    assert not (tmp_path / NAME).exists()
 
 
 def test_stopped_before_the_first_part(tmp_path):
@@ -183,3 +186,26 @@ def test_ctrl_c_at_once_is_one_line(tmp_path):
 
 def test_names_do_for_objects():
     assert mmgtune.load_profile("suzaku").id == mmgtune.simulate("suzaku", "suzaku").ship.id
+
+
+def test_nothing_is_lost_between_the_end_of_a_run_and_its_result(tmp_path, monkeypatch):
+    """The journal was gone before the result was written: a kill in between cost the whole run."""
+
+    def killed(*_):
+        raise KeyboardInterrupt
+
+    options = FitOptions(targets=FEW, starts=1)
+    whole = mmgtune.fit("suzaku", "suzaku", options, checkpoint_folder=tmp_path)
+    with monkeypatch.context() as patched:
+        patched.setattr(run_folder, "write_text", killed)
+        with pytest.raises(KeyboardInterrupt):
+            mmgtune.write_run(whole, tmp_path)
+    resumed = mmgtune.fit("suzaku", "suzaku", options, checkpoint_folder=tmp_path, resume=True)
+    assert same(resumed.to_dict()) == same(whole.to_dict())
+    mmgtune.write_run(resumed, tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} == {
+        "fit.json",
+        "profile.toml",
+        "history.parquet",
+        "motions.parquet",
+    }
