@@ -144,12 +144,24 @@ def _basis(values: FloatArray, periodic: bool) -> FloatArray:
 
 def _predicted(y: FloatArray, basis: FloatArray, member: npt.NDArray[np.intp], weight: FloatArray) -> float:
     """Share of variance predicted for each block from all others; nodes that others do not know stay at the mean."""
-    error = spread = 0.0
-    for block in range(int(member.max()) + 1):
-        test = member == block
-        B, w = basis[~test], weight[~test]
-        mean = float(np.average(y[~test], weights=w))
-        nodes = np.linalg.solve((B.T * w) @ B + np.eye(B.shape[1]), (B.T * w) @ (y[~test] - mean))
-        error += float(np.sum(weight[test] * (y[test] - mean - basis[test] @ nodes) ** 2))
-        spread += float(np.sum(weight[test] * (y[test] - mean) ** 2))
+    n_blocks = int(member.max()) + 1
+    order = np.argsort(member, kind="stable")
+    rows_of = np.split(order, np.searchsorted(member[order], np.arange(1, n_blocks)))
+
+    def others(values: FloatArray) -> FloatArray:
+        """(n_blocks, ...) sums of (n, ...) over all samples but those of each block."""
+        own = np.zeros((n_blocks, *values.shape[1:]))
+        for block, rows in enumerate(rows_of):
+            own[block] = values[rows].sum(axis=0)
+        return np.asarray(own.sum(axis=0) - own)
+
+    weighed = basis * weight[:, None]
+    sums, total = others(weighed), others(weight)
+    mean = others(weight * y) / total
+    products = others(weighed[:, :, None] * basis[:, None, :]) + np.eye(basis.shape[1])
+    right = others(weighed * y[:, None]) - mean[:, None] * sums
+    nodes = np.linalg.solve(products, right[:, :, None])[:, :, 0]
+    centred = y - mean[member]
+    spread = float(np.sum(weight * centred**2))
+    error = float(np.sum(weight * (centred - np.sum(basis * nodes[member], axis=1)) ** 2))
     return 1.0 - error / spread if spread > 0.0 else 0.0
