@@ -1,4 +1,8 @@
-"""The command line as a user runs it: a process with its own folder, its own output and its own exit code."""
+"""The command line as a user runs it: a process with its own folder, its own output and its own exit code.
+
+Most commands are forked from a process that has imported everything (``tests.forked``), which saves the second or two
+that Python takes to start; those that are to be interrupted, or are about the start itself, get a new interpreter.
+"""
 
 from __future__ import annotations
 
@@ -7,11 +11,15 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
+
+ROOT = Path(__file__).parent.parent
 
 
 @dataclass(frozen=True)
@@ -32,18 +40,52 @@ def start(*arguments: str | Path, cwd: Path, env: dict[str, str] | None = None) 
     return subprocess.Popen(
         [sys.executable, "-m", "mmgtune", *map(str, arguments)],
         cwd=cwd,
-        env={**os.environ, "COLUMNS": "200", "NO_COLOR": "1", **(env or {})},
+        env=_environment(env),
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
     )
 
 
-def run(*arguments: str | Path, cwd: Path, env: dict[str, str] | None = None) -> Ended:
-    """Run ``mmgtune`` in a folder to its end."""
-    process = start(*arguments, cwd=cwd, env=env)
-    out, err = process.communicate(timeout=300)
-    return Ended(process.returncode, out, err)
+def run(*arguments: str | Path, cwd: Path, env: dict[str, str] | None = None, fresh: bool = False) -> Ended:
+    """Run ``mmgtune`` in a folder to its end.
+
+    fresh  in a new interpreter; always so where ``env`` says where Python finds its modules
+    """
+    if fresh or not hasattr(os, "fork") or "PYTHONPATH" in (env or {}):
+        process = start(*arguments, cwd=cwd, env=env)
+        out, err = process.communicate(timeout=300)
+        return Ended(process.returncode, out, err)
+    return _forked([str(argument) for argument in arguments], cwd, _environment(env))
+
+
+def _environment(more: dict[str, str] | None) -> dict[str, str]:
+    return {**os.environ, "COLUMNS": "200", "NO_COLOR": "1", **(more or {})}
+
+
+@lru_cache(maxsize=1)
+def _server() -> subprocess.Popen[str]:
+    """The process that forks, one for each process that runs tests; it ends with its input."""
+    return subprocess.Popen(
+        [sys.executable, "-m", "tests.forked"],
+        cwd=ROOT,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+
+
+def _forked(arguments: list[str], cwd: Path, env: dict[str, str]) -> Ended:
+    server = _server()
+    assert server.stdin is not None
+    assert server.stdout is not None
+    with tempfile.TemporaryDirectory(prefix="mmgtune-test-") as folder:
+        out, err = Path(folder, "out"), Path(folder, "err")
+        request = {"arguments": arguments, "cwd": str(cwd), "env": env, "out": str(out), "err": str(err)}
+        server.stdin.write(json.dumps(request) + "\n")
+        server.stdin.flush()
+        code = int(server.stdout.readline())
+        return Ended(code, out.read_text(encoding="utf-8"), err.read_text(encoding="utf-8"))
 
 
 def run_until(ready: Callable[[], bool], sent: signal.Signals, *arguments: str | Path, cwd: Path) -> Ended:

@@ -32,6 +32,10 @@ def _pool() -> ThreadPoolExecutor:
     return ThreadPoolExecutor(max_workers=cores(), thread_name_prefix="mmgtune")
 
 
+if hasattr(os, "register_at_fork"):  # threads stay behind in the parent
+    os.register_at_fork(after_in_child=_pool.cache_clear)
+
+
 @lru_cache(maxsize=1)
 def cores() -> int:
     """Cores this process may use: MMGTUNE_THREADS of them where that is set, for many processes side by side."""

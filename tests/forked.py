@@ -1,0 +1,76 @@
+"""A process that has imported everything and forks itself for each command: a command without the start of Python.
+
+    python -m tests.forked
+
+Reads requests, a line of JSON each, and answers each with a line that holds the exit code.  A child is a process like
+any other: folder, environment, output and exit of its own.  Tests of the start itself use a new interpreter.
+"""
+
+from __future__ import annotations
+
+import gc
+import io
+import json
+import os
+import signal
+import sys
+from contextlib import redirect_stdout
+from importlib import import_module
+
+SECONDS = 300
+"""After which a command counts as stuck and is ended."""
+
+IMPORTED = (
+    "cma", "matplotlib.backends.backend_pdf", "matplotlib.backends.backend_svg", "matplotlib.figure", "pandas",
+    "pyarrow.parquet", "scipy.interpolate", "scipy.linalg", "scipy.optimize", "scipy.stats", "mmgtune.checking",
+    "mmgtune.report.fit_page",
+)  # fmt: skip
+
+
+def _warm() -> None:
+    """Import what commands import on their way, and read the compiled simulator that most of them use."""
+    for name in IMPORTED:
+        import_module(name)
+    import mmgtune.cli
+
+    with redirect_stdout(io.StringIO()):
+        mmgtune.cli.app(["validate", "suzaku", "trials/suzaku/turn_p10.parquet"], standalone_mode=False)
+
+
+def _become(request: dict[str, object]) -> None:
+    """Turn this child into the command that was asked for."""
+    signal.alarm(SECONDS)
+    os.chdir(str(request["cwd"]))
+    os.environ.clear()
+    os.environ.update(request["env"])  # type: ignore[call-overload]
+    for descriptor, key, flags in (
+        (0, os.devnull, os.O_RDONLY),
+        (1, str(request["out"]), os.O_WRONLY | os.O_CREAT),
+        (2, str(request["err"]), os.O_WRONLY | os.O_CREAT),
+    ):
+        os.dup2(os.open(key, flags, 0o600), descriptor)
+    sys.argv = ["mmgtune", *request["arguments"]]  # type: ignore[misc]
+
+
+def main() -> None:
+    """Serve until the requests end."""
+    _warm()
+    gc.freeze()
+    requests, answers = os.dup(0), os.dup(1)
+    with os.fdopen(requests) as lines, os.fdopen(answers, "w") as told:
+        for line in iter(lines.readline, ""):
+            child = os.fork()
+            if child == 0:
+                _become(json.loads(line))
+                break
+            told.write(f"{os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])}\n")
+            told.flush()
+        else:
+            return
+    from mmgtune.__main__ import main as command
+
+    command()
+
+
+if __name__ == "__main__":
+    main()
