@@ -69,6 +69,7 @@ def _server() -> subprocess.Popen[str]:
     return subprocess.Popen(
         [sys.executable, "-m", "tests.forked"],
         cwd=ROOT,
+        env=_environment(None),  # some libraries look at it when they are imported
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         text=True,

@@ -16,6 +16,7 @@ import signal
 import sys
 from contextlib import redirect_stdout
 from importlib import import_module
+from runpy import run_module
 
 SECONDS = 300
 """After which a command counts as stuck and is ended."""
@@ -67,9 +68,7 @@ def main() -> None:
             told.flush()
         else:
             return
-    from mmgtune.__main__ import main as command
-
-    command()
+    run_module("mmgtune", run_name="__main__", alter_sys=True)
 
 
 if __name__ == "__main__":

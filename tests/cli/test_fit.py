@@ -19,6 +19,9 @@ PROMISED = {
 # What may differ between two runs of the same fit.
 CLOCK = {"created", "wall_s", "evaluations", "command", "out"}
 
+FEW = ("--integrator", "euler", "--targets", "R_0,w_P0,kappa,N_r,Y_v")
+"""A search of seconds."""
+
 
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory):
@@ -99,7 +102,7 @@ def test_dry_run_writes_nothing(tmp_path):
 
 
 def test_kill_9_and_resume_gives_the_same_result(tmp_path):
-    search = ("fit", "--integrator", "euler", "--no-report", "--quiet", "--starts", "2", "--seed", "5")
+    search = ("fit", *FEW, "--no-report", "--quiet", "--starts", "2", "--seed", "5")
     whole = run(*search, "--json", "--out", "whole", cwd=tmp_path)
     checkpoint = tmp_path / "cut" / "checkpoint.npz"
     killed = run_until(checkpoint.exists, signal.SIGKILL, *search, "--out", "cut", cwd=tmp_path)
@@ -119,7 +122,7 @@ def test_kill_9_and_resume_gives_the_same_result(tmp_path):
 
 
 def test_ctrl_c_saves_the_best_so_far_and_can_be_continued(tmp_path):
-    search = ("fit", "--integrator", "euler", "--quiet", "--starts", "2", "--no-report")
+    search = ("fit", *FEW, "--quiet", "--starts", "2", "--no-report")
     checkpoint = tmp_path / "run" / "checkpoint.npz"
     ended = run_until(checkpoint.exists, signal.SIGINT, *search, "--json", "--out", "run", cwd=tmp_path)
     assert ended.code == 130

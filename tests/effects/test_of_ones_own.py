@@ -112,7 +112,7 @@ def test_diagnose_names_it_and_writes_it(environment, tmp_path):
     trials, out = tmp_path / "trials", tmp_path / "out"
     trials.mkdir()
     python(environment, "-c", FOUND, str(trials))
-    asked = ("--effects", "tug,rudder-offset,current,propeller-side-force")
+    asked = ("--effects", "tug,rudder-offset,current,propeller-side-force", "--targets", "R_0,w_P0,N_r,Y_v")
     said = python(
         environment, "-m", "mmgtune", "diagnose", "-p", "suzaku", "-t", str(trials), *asked, "--out", str(out),
         "--quiet", "--json",
