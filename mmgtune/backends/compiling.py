@@ -33,7 +33,7 @@ from ..physics.integration import between
 from . import vector_math
 from .vector_math import OPTIONS, select, vector_arctan2, vector_cos, vector_exp, vector_sin
 
-__all__ = ["carray", "load_kernel", "logged_control", "njit", "stack"]
+__all__ = ["carray", "lane", "load_kernel", "logged_control", "njit", "stack"]
 
 
 @intrinsic(prefer_literal=True)
@@ -46,6 +46,38 @@ def stack(context: Any, size: Any) -> Any:
         return builder.bitcast(room, ir.DoubleType().as_pointer())
 
     return types.CPointer(types.float64)(size), generate
+
+
+def lane(of: type, rows: Sequence[int | Sequence[int]], width: int) -> Any:
+    """A function of an array of the stack and a lane: the named tuple ``of`` with the lane's numbers of these rows.
+
+    rows   of each field; several where the field is a table
+    width  lanes of a row
+
+    To the same effect as indexing the array for each field, for which numba would take seconds to work out the types.
+    """
+    tables = [[row] if isinstance(row, int) else row for row in rows]
+    kinds = [types.float64 if isinstance(row, int) else types.UniTuple(types.float64, len(row)) for row in rows]
+    made = types.NamedUniTuple(kinds[0], len(kinds), of) if len(set(kinds)) == 1 else types.NamedTuple(kinds, of)
+
+    @intrinsic
+    def load(_context: Any, array: Any, lane: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
+
+            def number(row: int) -> Any:
+                at = builder.add(arguments[1], ir.Constant(ir.IntType(64), row * width))
+                return builder.load(builder.gep(data, [at]))
+
+            values = []
+            for kind, table in zip(kinds, tables, strict=True):
+                numbers = [number(row) for row in table]
+                values.append(numbers[0] if kind == types.float64 else context.make_tuple(builder, kind, numbers))
+            return context.make_tuple(builder, made, values)
+
+        return made(array, types.int64), generate
+
+    return load
 
 
 @njit(**OPTIONS)
