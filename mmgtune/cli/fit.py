@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..options import FitOptions
+from ..options import FitOptions, in_flags
 from . import common as c
 from .exitcodes import ExitCode
-from .options import RunOptions, in_flags, takes
+from .options import RunOptions, takes
 from .progress import Progress
 
 if TYPE_CHECKING:

@@ -1,9 +1,8 @@
-"""Dataclasses of options as flags of commands, and what the library says of fields said in flags."""
+"""Dataclasses of options as flags of commands, and problems that name fields said in flags."""
 
 from __future__ import annotations
 
 import inspect
-import re
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from functools import wraps
@@ -14,11 +13,8 @@ import typer
 from typer.models import OptionInfo
 
 from ..errors import MmgtuneError, OptionError, Problem
-from ..options import Options, choice, choices
+from ..options import FLAGS, Options, choice, flags_of, in_flags
 from ..options.choice import OUTPUT
-
-FLAGS: dict[str, str] = {}
-"""The flag of every field of every dataclass that a command takes."""
 
 
 @dataclass(frozen=True)
@@ -108,9 +104,7 @@ def parameters_of(of: type[Options]) -> list[inspect.Parameter]:
     hints = get_type_hints(of)
     defaults = {one.name: one.default for one in fields(of)}
     found = []
-    for name, known in choices(of).items():
-        if FLAGS.setdefault(name, known.flag) != known.flag:
-            raise TypeError(f"{of.__name__}.{name} is {known.flag}, elsewhere {FLAGS[name]}")
+    for name, known in flags_of(of).items():
         kind, default = _typed(hints[name], defaults[name])
         decls = [known.flag, *([known.short] if known.short else [])]
         option = typer.Option(*decls, help=known.help, rich_help_panel=known.panel)
@@ -183,22 +177,6 @@ def interval_of(text: str | None, name: str) -> tuple[float, float] | None:
     except ValueError:
         fix = f"write {name}=FIRST:LAST in seconds, such as 0:300"
         raise OptionError(Problem(f"'{text}' is not a time {name}", name, fix=fix)) from None
-
-
-def in_flags(text: str) -> str:
-    """A text of the library as the command line says it: name=value becomes --flag value, for every option."""
-
-    def flagged(found: re.Match[str]) -> str:
-        name, value = found.groups()
-        if name not in FLAGS:
-            return found[0]
-        return FLAGS[name] if value == "True" else f"{FLAGS[name]} {value}"
-
-    return _KEYWORD.sub(flagged, text)
-
-
-_KEYWORD = re.compile(r'(?<![\w.-])([a-z]\w*)=("[^"]*"|[^\s;)?]*[^\s;,.)?])')
-"""A keyword argument in a sentence, without the sentence's own signs after it."""
 
 
 def problems_in_flags(error: MmgtuneError) -> list[Problem]:

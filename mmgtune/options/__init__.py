@@ -6,12 +6,14 @@ tuning      fit, sweep, leave-out
 diagnosis   diagnose
 scoring     validate, check
 orders      simulate
+flags       what fields are called on the command line
 
 Nothing here is heavy to import: the command line builds its flags from it before it knows what is wanted.
 """
 
 from .choice import Choice, Options, again, choice, choices
 from .diagnosis import DiagnoseOptions
+from .flags import FLAGS, flags_of, in_flags
 from .orders import SimulateOptions
 from .scoring import FORMATS, CheckOptions, ValidateOptions
 from .simulation import BACKENDS, INTEGRATORS, SimulationOptions
@@ -19,6 +21,7 @@ from .tuning import METHODS, FitOptions, LeaveOutOptions, SearchOptions, SweepOp
 
 __all__ = [
     "BACKENDS",
+    "FLAGS",
     "FORMATS",
     "INTEGRATORS",
     "METHODS",
@@ -37,4 +40,9 @@ __all__ = [
     "again",
     "choice",
     "choices",
+    "flags_of",
+    "in_flags",
 ]
+
+for _of in (CheckOptions, DiagnoseOptions, FitOptions, LeaveOutOptions, SimulateOptions, SweepOptions, ValidateOptions):
+    flags_of(_of)

@@ -10,7 +10,7 @@ from .advice import shortest
 from .drawing import Drawn
 from .page import Details, Picture, Prose, Section, Table, Tile
 from .tables import pairs, tone
-from .wording import NONE, change, clean, number, percent, shown
+from .wording import NONE, change, clean, number, percent, sentence, shown
 
 
 def generated_banner(trials: Mapping[str, Any]) -> tuple[str, ...]:
@@ -32,7 +32,7 @@ def generated_banner(trials: Mapping[str, Any]) -> tuple[str, ...]:
 def warnings(data: Mapping[str, Any]) -> tuple[str, ...]:
     """What a reader must know, less what the banner says already."""
     said = bool(generated_banner(data["trials"]))
-    found = (clean(text) for text in data.get("warnings") or ())
+    found = (sentence(text) for text in data.get("warnings") or ())
     return tuple(text for text in found if not (said and text.endswith("trials are generated, not measured.")))
 
 

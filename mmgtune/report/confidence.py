@@ -9,7 +9,7 @@ from . import figures, findings, tables
 from .common import picture
 from .drawing import Drawn
 from .page import Block, Details, Prose, Section, Table
-from .wording import clean, count, number, short, shown
+from .wording import count, number, sentence, short, shown
 
 if TYPE_CHECKING:
     from .load import RunRecord
@@ -19,7 +19,7 @@ def best_fit(record: RunRecord, drawings: dict[str, Drawn]) -> Section:
     """Convergence, agreement of methods, and what the bounds cost."""
     data, blocks = record.data, list[Block]()
     certificate = data.get("certificate") or {}
-    said = [clean(text) for text in certificate.get("sentences") or ()]
+    said = [sentence(text) for text in certificate.get("sentences") or ()]
     blocks.append(Prose(tuple(said or findings.agreement(data)), listed=True))
     active = certificate.get("active") or []
     if active:
@@ -65,8 +65,8 @@ def running(history: Any) -> FloatArray:
 def identifiability(record: RunRecord, drawings: dict[str, Drawn]) -> Section | None:
     found = record.data.get("identifiability") or {}
     blocks = list[Block]()
-    said = [clean(text) for text in found.get("sentences") or ()]
-    said += [clean(row["sentence"]) for row in found.get("null_directions") or () if row.get("sentence")]
+    said = [sentence(text) for text in found.get("sentences") or ()]
+    said += [sentence(row["sentence"]) for row in found.get("null_directions") or () if row.get("sentence")]
     if said:
         blocks.append(Prose(tuple(dict.fromkeys(said)), listed=True))
     combinations = found.get("combinations") or []

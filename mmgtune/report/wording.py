@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from ..options import in_flags
 from ..units import DEG, shown_in
 
 MINUS = "\u2212"
@@ -147,6 +148,11 @@ def percent(value: float | None) -> str:
 def clean(text: Any) -> str:
     """Text from a file without control characters, which neither XML nor a terminal can hold."""
     return _CONTROL.sub("\ufffd", str(text))
+
+
+def sentence(text: Any) -> str:
+    """A sentence of the library for a reader of the report: without control characters, options as flags."""
+    return in_flags(clean(text))
 
 
 def index_words(key: str) -> tuple[str, str]:

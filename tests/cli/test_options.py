@@ -12,9 +12,9 @@ import typer.main
 import mmgtune
 from mmgtune import backends, options
 from mmgtune.cli import app
-from mmgtune.cli.options import FLAGS, RunOptions, in_flags, parameters_of, problems_in_flags
+from mmgtune.cli.options import RunOptions, parameters_of, problems_in_flags
 from mmgtune.errors import OptionError, Problem
-from mmgtune.options import FitOptions, choice, choices
+from mmgtune.options import FLAGS, FitOptions, choice, choices, in_flags
 from mmgtune.options.simulation import BACKENDS, INTEGRATORS
 from mmgtune.simulating import revolutions, rudder_angle
 from tests.command import run

@@ -173,7 +173,8 @@ def fit_data(a_r: float = 0.5) -> tuple[dict[str, Any], pd.DataFrame, pd.DataFra
             "sentences": ["These trials determine 11 of the 12 coefficients."]},
         "verdict": (f"Within ±{100 * a_r:.0f} % of their pre-determined values, twelve coefficients bring the "
                     "simulated turns of M.V. SUZAKU onto the measured ones: the tracks now lie within a ship length."),
-        "warnings": ["6 of 12 coefficients end on a bound; a wider range may fit better but is less credible."],
+        "warnings": ["6 of 12 coefficients end on a bound; a wider range may fit better but is less credible.",
+                     "Trials start at noisy samples; initial=estimated removes that."],
         "assumptions": [{"name": "flap", "value": "monotone odd table", "note": "the figure is not at hand"},
                         {"name": "K_T in u_R", "value": "converted", "note": "consistent reading"}],
         "citations": ["Suyama et al. 2024, Ocean Engineering 298, 117323", "Okuda et al. 2023, Applied Ocean Research"],

@@ -109,6 +109,11 @@ def test_numbers_of_the_record_are_on_the_page(fit_folder: Path, page: str) -> N
     assert "mmgtune sweep -p ship_profiles/suzaku.toml -t trials/suzaku" in page
 
 
+def test_options_are_named_as_a_reader_types_them(fit_folder: Path, page: str) -> None:
+    assert "--initial estimated removes that." in page
+    assert "--initial estimated removes that." in (fit_folder / "report.md").read_text(encoding="utf-8")
+
+
 def test_same_run_same_bytes(fit_folder: Path, tmp_path: Path) -> None:
     again = tmp_path / "elsewhere"
     shutil.copytree(fit_folder, again, ignore=shutil.ignore_patterns("report*", "figures"))
