@@ -53,6 +53,8 @@ class Drawn:
     def __init__(self, name: str, alt: str, draw: Callable[[], Figure]):
         import matplotlib as mpl
         from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.backends.backend_pdf import FigureCanvasPdf
+        from matplotlib.backends.backend_svg import FigureCanvasSVG
 
         style: dict[Any, Any] = {**mpl.rcParamsDefault, **_STYLE, "backend": "agg"}
         with mpl.rc_context(style):
@@ -61,8 +63,11 @@ class Drawn:
             figure.draw_without_rendering()
             figure.set_layout_engine("none")  # the layout is done; each format would do it again
             text, portable = io.StringIO(), io.BytesIO()
-            figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
-            figure.savefig(portable, format="pdf", metadata={"CreationDate": None, "Creator": None})
+            # Without savefig, which draws every figure of a layout once more for each format.
+            svg: Any = FigureCanvasSVG(figure)
+            svg.print_svg(text, metadata={"Date": None, "Creator": None})
+            pdf: Any = FigureCanvasPdf(figure)
+            pdf.print_pdf(portable, metadata={"CreationDate": None, "Creator": None})
         self.name = name
         self.svg = text.getvalue()
         self.pdf = portable.getvalue()

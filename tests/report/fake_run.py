@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -200,17 +201,17 @@ def make_fit(folder: Path, a_r: float = 0.5) -> Path:
     return write_fit(folder, *fit_data(a_r))
 
 
-def make_renamed_fit(folder: Path, old: str, new: str) -> Path:
-    """A run folder whose trial ``old`` has the name ``new``, which also names the ship and a coefficient."""
+def make_renamed_fit(folder: Path, names: Sequence[str]) -> Path:
+    """A run folder whose first trials, and coefficients, have these names, which stand in every text besides."""
     data, history, motions = fit_data()
-    data = json.loads(json.dumps(data).replace(json.dumps(old), json.dumps(new)))
-    data["profile"]["name"] = new
-    data["coefficients"][0]["label"] = new
-    data["verdict"] += " " + new
-    data["warnings"].append(new)
-    data["command"] += " " + new
-    data["trial_results"][0]["manoeuvre"] = new
-    motions["trial"] = motions["trial"].replace(old, new)
+    for k, (old, new) in enumerate(zip([row["id"] for row in data["trial_results"]], names, strict=False)):
+        data = json.loads(json.dumps(data).replace(json.dumps(old), json.dumps(new)))
+        data["coefficients"][k]["label"] = new
+        data["verdict"] += " " + new
+        data["warnings"].append(new)
+        data["trial_results"][k]["manoeuvre"] = new
+        motions["trial"] = motions["trial"].replace(old, new)
+    data["profile"]["name"] = data["command"] = " ".join(names)
     return write_fit(folder, data, history, motions)
 
 

@@ -213,16 +213,16 @@ def test_colour_scheme_can_change_while_open(browser: Any, fit_folder: Path) -> 
         assert visit.complaints == []
 
 
-@pytest.mark.parametrize("name", ["</script><img src=x onerror=alert(1)>", '"><svg onload=alert(1)>', "x" * 300])
-def test_hostile_names_are_harmless(browser: Any, tmp_path: Path, name: str) -> None:
-    folder = fake_run.make_renamed_fit(tmp_path / "run", "turn_p10", name)
+def test_hostile_names_are_harmless(browser: Any, tmp_path: Path) -> None:
+    names = ["</script><img src=x onerror=alert(1)>", '"><svg onload=alert(1)>', "x" * 300]
+    folder = fake_run.make_renamed_fit(tmp_path / "run", names)
     render(folder)
     with Visit(browser, folder / "report.html", viewport={"width": 360, "height": 800}) as visit:
         assert visit.complaints == []
         assert visit.requests == [visit.url]
         assert visit.page.locator("img").count() == 0
-        assert visit.page.locator("#trials-table tbody th").first.text_content() == name
-        assert visit.page.locator("#trial option").first.text_content() == name
+        assert visit.page.locator("#trials-table tbody th").all_text_contents()[:3] == names
+        assert visit.page.locator("#trial option").all_text_contents()[:3] == names
         assert visit.page.evaluate(OVERFLOW) == 0
 
 
