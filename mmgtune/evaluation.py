@@ -173,10 +173,17 @@ class TrialRecord:
             return {}
         return self.measured.indices_of(self.motion.track())
 
+    @cached_property
+    def _counted(self) -> FloatArray:
+        """(n_samples, 6) residuals where they count, 0 where they do not and may be anything."""
+        return np.where(self.measured.counted > 0.0, self.residuals, 0.0)
+
     def _sums(self, weight: FloatArray) -> FloatArray:
-        """(6,) sums of weighted squares; a sample without weight may be anything."""
+        """(6,) sums of weighted squares; no weight may stand where nothing counts."""
+        counted = self._counted
+        if self.diverged:  # infinite, and a weight of 0 leaves it out
+            counted = np.where(weight > 0.0, counted, 0.0)
         with np.errstate(over="ignore"):
-            counted = np.where(weight > 0.0, self.residuals, 0.0)
             return np.asarray(np.einsum("ij,ij,ij->j", weight, counted, counted))
 
 

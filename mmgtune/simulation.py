@@ -96,11 +96,12 @@ def motions(predictor: Predictor, trials: Sequence[Trial], offsets: FloatArray |
         start = None
         if offsets is not None:
             start = [trial.motion[0] + own for trial, own in zip(some, offsets[portion], strict=True)]
-        found = predictor.predict(cases_from(some, inputs, initial=start))
+        cases = cases_from(some, inputs, initial=start)
+        found = predictor.predict(cases)
         for i, trial in enumerate(some):
-            controls = trial.inputs(inputs)
+            controls = np.array(cases.controls[i, : trial.n_samples])  # copies: a view would hold all of them
             for k in range(predictor.n_members):
-                states = np.array(found.states[i, k, : trial.n_samples])  # a copy: a view would hold all of them
+                states = np.array(found.states[i, k, : trial.n_samples])
                 yield Motion(trial.id, trial.t, states, controls, bool(found.diverged[i, k]), inputs, k)
 
 
