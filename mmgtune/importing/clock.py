@@ -227,8 +227,9 @@ def _order(line: Timeline, place: Any) -> None:
     kept = np.setdiff1d(np.arange(len(t)), off)
     bounds = [0, *cuts, len(t)]
     repeated: list[int] = []
-    for first, last in itertools.pairwise(bounds):
-        inside = kept[(kept >= first) & (kept < last)]
+    edges = np.searchsorted(kept, bounds).tolist()
+    for first, last in itertools.pairwise(edges):
+        inside = kept[first:last]
         if len(inside):
             highest = np.maximum.accumulate(t[inside])
             late = inside[1:][t[inside[1:]] <= highest[:-1]]

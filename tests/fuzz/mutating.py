@@ -171,5 +171,5 @@ def _scaled(cells: list[str], k: int, written: str, factor: float) -> None:
 def several(rng: np.random.Generator, value: One, changes: Sequence[Callable[[np.random.Generator, One], One]]) -> One:
     """One to three changes, one after the other."""
     for _ in range(int(rng.integers(1, 4))):
-        value = pick(rng, changes)(rng, value)
+        value = pick(rng, changes)(rng, value) if value else value
     return value

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import faulthandler
 import resource
 import shutil
 import signal
@@ -111,22 +112,30 @@ def campaign(kind: Kind, count: int, seed: int, keep: Path | None = None, second
         if time.monotonic() - began > seconds:
             break
         files = files_of(kind, seed, number)
+        if keep is not None:
+            _keep(keep / kind.name / "running", files)
+            # Compiled code that never returns cannot be stopped otherwise: its case is then the one left there.
+            faulthandler.dump_traceback_later(20.0 * SECONDS, exit=True)
         outcome = run_files(kind, files)
         found.ends[outcome.end] += 1
         found.longest = max(found.longest, outcome.seconds)
         if outcome.failed:
             found.failures[number] = outcome
             if keep is not None:
-                _keep(keep / kind.name / f"{seed}-{number}", files, outcome)
+                folder = keep / kind.name / f"{seed}-{number}"
+                _keep(folder, files)
+                Path(f"{folder}.txt").write_text(f"{outcome.end}\n{outcome.said}\n", encoding="utf-8")
+    if keep is not None:
+        faulthandler.cancel_dump_traceback_later()
+        shutil.rmtree(keep / kind.name / "running", ignore_errors=True)
     return found
 
 
-def _keep(folder: Path, files: Files, outcome: Outcome) -> None:
+def _keep(folder: Path, files: Files) -> None:
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     for name, content in files.items():
         (folder / name).write_bytes(content)
-    (folder.parent / f"{folder.name}.txt").write_text(f"{outcome.end}\n{outcome.said}\n", encoding="utf-8")
 
 
 @contextlib.contextmanager

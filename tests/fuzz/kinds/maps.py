@@ -25,6 +25,38 @@ WORDS = (
 )  # fmt: skip
 
 
+STEPS = ('"1e-9 s"', '"1e-300 s"', '"0.01 s"', '"0.1 s"', '"3 s"', '"1e9 s"', '"1e300 s"')
+FITTING = (
+    ("resample", "step", STEPS),
+    ("resample", "gap", ("1.0", "2.5", "1e9", "1e300")),
+    ("time", "step", STEPS),
+    ("time", "scale", ("1e9", "1e-9", "1e300", "1e-300", "-1.0", "60")),
+    ("time", "recover", ('"uniform"', '"never"', '"auto"')),
+    ("time", "format", ('"iso"', '"clock"', '"number"')),
+    ("cut", "start", ('"10 s"', '"1e9 s"', '"-5 s"')),
+    ("cut", "end", ('"100 s"', '"-20 s"', '"-1e9 s"', '"1e300 s"')),
+    ("cut", "from", ('"first-rudder-order"',)),
+    ("cut", "to", ('"last-order"',)),
+    ("cut", "split", ('"pull-out"',)),
+    ("velocity", "shifted", ('"earth-axes"',)),
+    ("velocity", "point", ('{ x = "3 m", y = "0 m" }', '{ x = "1e300 m", y = "-1e300 m" }')),
+    ("antenna", 'x = "3 m"\ny', ('"0 m"', '"1e300 m"', '"1e9 m"')),
+    ("log", "missing", ('["-999", "n/a"]', '["0"]', '[""]')),
+    ("log", "delimiter", ('","', '";"', '"space"', '"tab"')),
+    ("log", "decimal", ('","',)),
+    ("log", "skip", ("0", "1", "50")),
+    ("log", "header", ("false", "true")),
+    ("log", "encoding", ('"utf-16"', '"cp1252"', '"utf-8-sig"', '"cp037"', '"utf-7"', '"iso2022_jp"')),
+    ("trial", "id", ('"{stem}-{parent}"', '"../../x"', '"."', '"{x}"')),
+    ("trial", "noise", ('{ x = "0.5 m" }', '{ u = "1e300 m/s" }')),
+    ("columns.x", 'column = "north"\nunit = "m"\nrecover', ('"print-resolution"',)),
+    ("columns.psi", 'column = "heading"\nunit = "deg"\nrecover', ('"yaw-rate"',)),
+    ("columns.delta", 'column = "rudder"\nunit = "deg"\nscale', ("1.0", "1e-9", "-1", "1e300")),
+    ("columns.n", "value", ('"100 rpm"', '"0 rpm"', '"-1e300 rpm"')),
+)
+"""Table, key and values that a map may have."""
+
+
 @functools.cache
 def lines() -> tuple[str, ...]:
     """A good map with a table of each name."""
@@ -49,6 +81,15 @@ def _key(rng: np.random.Generator, lines: list[str]) -> list[str]:
         at = lines.index(f"[{name}]") + 1
         return [*lines[:at], added, *lines[at:]]
     return [added, *lines] if not name else [*lines, f"[{name}]", added]
+
+
+def _fitting(rng: np.random.Generator, lines: list[str]) -> list[str]:
+    """A key with a value that it may have, however unwise."""
+    name, key, values = pick(rng, FITTING)
+    added = f"{key} = {pick(rng, values)}"
+    lines = [line for line in lines if not line.startswith(f"{name.removeprefix('columns.')} = {{")]
+    at = lines.index(f"[{name}]") + 1 if f"[{name}]" in lines else len(lines)
+    return [*lines[:at], added, *lines[at:]] if at < len(lines) else [*lines, f"[{name}]", added]
 
 
 def _column(rng: np.random.Generator, lines: list[str]) -> list[str]:
@@ -76,8 +117,13 @@ def _any(rng: np.random.Generator) -> str:
 
 def make(rng: np.random.Generator) -> Files:
     """A good log with a map that is not."""
-    changes = [_value, _value, _key, _key, _column, _entry, line_removed, line_doubled, line_emptied]
-    content = encoded("\n".join(several(rng, list(lines()), changes)))
+    written = list(lines())
+    if rng.random() < 0.5:
+        written = several(rng, written, [_fitting])
+    else:
+        changes = [_value, _value, _key, _key, _column, _entry, line_removed, line_doubled, line_emptied]
+        written = several(rng, written, changes)
+    content = encoded("\n".join(written))
     if rng.random() < 0.15:
         content = mutated_bytes(rng, content)
     if rng.random() < 0.05:

@@ -23,6 +23,8 @@ def odd_values(rng: np.random.Generator, columns: dict[str, Any]) -> dict[str, A
     """Some rows of a column, or all from somewhere on, of an odd value or scaled."""
     name = pick(rng, list(columns))
     values = np.array(columns[name])
+    if not len(values):
+        return columns
     first = int(rng.integers(len(values)))
     rows = slice(first, first + int(pick(rng, (1, 2, len(values)))))
     if values.dtype.kind == "f":
