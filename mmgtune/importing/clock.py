@@ -11,6 +11,7 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..errors import LogError, Problem
+from ..trial.schema import impossible
 from .mapping import TimeSource
 
 DAY = 86400.0
@@ -124,7 +125,7 @@ def put_right(t: FloatArray, source: TimeSource, place: Any) -> Timeline:
 
     Raises LogError where fewer than 2 rows have a stamp, or stamps are in no order.
     """
-    known = np.isfinite(t)
+    known = np.isfinite(t) & ~impossible(t, "s")
     if known.sum() < 2:
         raise LogError(Problem("fewer than two rows have a time", place(0) if len(t) else "", fix="check [time]"))
     line = Timeline(known.copy(), np.array(t))

@@ -7,11 +7,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from .. import limits, units
 from ..errors import LogError, Problem, brief, closest
 from ..resources import import_map_names, import_maps
 from ..toml_reading import TomlReader, finite, toml_of
-from ..trial.schema import COLUMNS, SOURCES
+from ..trial.schema import COLUMNS, SOURCES, impossible
 from .checking_map import check
 from .mapping import FORMATS, PROJECTIONS, TABLES, Cut, LogMap, Source, TimeSource
 from .quantities import MEANING, QUANTITIES
@@ -242,6 +244,9 @@ class _Reader(TomlReader):
         value = values[0]
         if not math.isfinite(value) or (least is not None and value <= least):
             self.problem(f"'{name}.{key}' is {written}", name, key, fix=f"it must be above {least or 0:g} {unit}")
+            return None
+        if impossible(np.array([value]), unit).any():
+            self.problem(f"'{name}.{key}' is {brief(written)}, which nothing about a ship is", name, key)
             return None
         return value
 
