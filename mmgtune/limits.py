@@ -60,6 +60,7 @@ GRID_FREE = 20_000
 TRIAL_SAMPLES = Limit(2_000_000, "samples", "a trial", "cut it into several, or give fewer samples a second")
 TRIAL_VALUES = Limit(40_000_000, "values", "a trial", "leave out columns that nothing uses, or cut it into several")
 TRIAL_BYTES = Limit(1 << 30, "bytes", "a trial file", "leave out columns that nothing uses, or cut it into several")
+PARQUET_BYTES = Limit(4 << 30, "bytes", "a Parquet file", "write only the columns that are needed, or split it")
 FOOTER_VALUES = Limit(100_000, "column chunks", "a Parquet file", "write it with fewer columns and longer row groups")
 
 ROWS_PER_BYTE = 8

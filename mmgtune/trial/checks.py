@@ -73,6 +73,16 @@ def _facts(trial: Trial, where: str) -> list[Finding]:
             )
     for name in trial.ignored:
         found.append(Finding("note", f"column '{name}' holds no numbers and is ignored", f"{where}, column '{name}'"))
+    if trial.path is not None and not trial.sealed:
+        found.append(
+            Finding(
+                "note",
+                "the file holds no digest of its data",
+                where,
+                "damage that leaves readable numbers would not be noticed",
+                "write it with mmgtune.trial.write_trial, which adds one",
+            )
+        )
     if trial.source == "generated":
         found.append(Finding("note", "generated, not measured", where))
     elif not trial.source:
