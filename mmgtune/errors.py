@@ -84,7 +84,7 @@ def brief(value: object) -> str:
 
     class Short(reprlib.Repr):
         def repr_int(self, x: int, level: int) -> str:
-            return repr(x) if abs(x) < 10**40 else f"a number of {int(x.bit_length() * 0.30103) + 1} digits"
+            return repr(x) if abs(x) < 10**40 else f"a number of {int((x.bit_length() - 1) * 0.30103) + 1} digits"
 
     short = Short()
     short.maxlevel, short.maxstring, short.maxother = 3, 80, 80

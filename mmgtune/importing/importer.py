@@ -115,7 +115,9 @@ def import_logs(
     problems: list[Problem] = []
     for log in dict.fromkeys(Path(one) for one in logs):
         try:
-            made = _trials(log, log_map.of(log), step)
+            # Damaged numbers overflow on their way to where they are found out.
+            with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+                made = _trials(log, log_map.of(log), step)
         except LogError as error:
             problems += error.problems
             continue

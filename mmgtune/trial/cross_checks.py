@@ -174,7 +174,7 @@ def way_by_axis(trial: Trial, where: str) -> list[Finding]:
                 f"a factor or a unit of '{name}' is wrong{fits}"
                 if right
                 else "a unit of positions or velocities is wrong",
-                f"divide '{name}' by {factor:.4g} if that is a known factor, such as 10, 60 or 1.944; import it again",
+                f"divide '{name}' by {factor:.3g} if that is a known factor, such as 10, 60 or 1.944; import it again",
             )
         )
     return found
