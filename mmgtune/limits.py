@@ -70,8 +70,11 @@ FREE_ROWS = 1_000_000
 
 def content(path: Path, limit: Limit, error: type[MmgtuneError]) -> bytes:
     """A file's bytes, never more than the limit.  Raises ``error`` beyond it, and OSError."""
+    # Block by block: one read would take all of the limit at once, and not everything that is opened has a size.
+    found = bytearray()
     with path.open("rb") as file:
-        found = file.read(limit.most + 1)
+        while len(found) <= limit.most and (block := file.read(1 << 20)):
+            found += block
     if len(found) > limit.most:
         raise error(Problem(f"{limit.of} of more than {limit.most} bytes", str(path), "that is the limit", limit.fix))
-    return found
+    return bytes(found)

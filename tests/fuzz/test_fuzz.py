@@ -11,7 +11,7 @@ from .running import campaign, files_of, run_folder
 
 CORPUS = Path(__file__).parent / "corpus"
 KINDS = kinds()
-SECONDS = 10.0
+SECONDS = 7.0
 """For all kinds together."""
 
 
