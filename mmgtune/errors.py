@@ -69,10 +69,27 @@ def closest(name: str, known: list[str] | tuple[str, ...]) -> str:
     """A sentence naming the nearest known names, or what is known if nothing is near."""
     import difflib
 
-    near = difflib.get_close_matches(name, known, n=3, cutoff=0.5)
+    # Names may come from files: comparing grows with the product of lengths.
+    short = [other for other in known[:1000] if len(other) <= 80]
+    near = difflib.get_close_matches(name[:80], short, n=3, cutoff=0.5)
     if near:
         return "did you mean " + " or ".join(f"'{other}'" for other in near) + "?"
-    return "known here: " + ", ".join(known)
+    more = f" and {len(known) - 40} more" if len(known) > 40 else ""
+    return "known here: " + ", ".join(other if len(other) <= 80 else f"{other[:80]}..." for other in known[:40]) + more
+
+
+def brief(value: object) -> str:
+    """A value from a file as messages show it: short, whatever it is and however deep."""
+    import reprlib
+
+    class Short(reprlib.Repr):
+        def repr_int(self, x: int, level: int) -> str:
+            return repr(x) if abs(x) < 10**40 else f"a number of {int((x.bit_length() - 1) * 0.30103) + 1} digits"
+
+    short = Short()
+    short.maxlevel, short.maxstring, short.maxother = 3, 80, 80
+    short.maxlist = short.maxdict = short.maxtuple = 8
+    return short.repr(value)
 
 
 def cannot_write_reason(error: OSError) -> str:

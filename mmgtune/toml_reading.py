@@ -2,20 +2,51 @@
 
 from __future__ import annotations
 
+import math
 import re
 import tomllib
 from typing import Any
 
 from . import units
-from .errors import MmgtuneError, Problem, closest
+from .errors import MmgtuneError, Problem, brief, closest
+from .limits import NESTING
 
 
 def toml_of(text: str, what: str, where: str, error: type[MmgtuneError]) -> dict[str, Any]:
-    """The tables written in ``text``.  Raises ``error`` where ``what``, such as "the profile", is not TOML."""
+    """The tables written in ``text``.  Raises ``error`` where ``what``, such as "the profile", is not TOML.
+
+    A byte-order mark in front is passed over.
+    """
     try:
-        return tomllib.loads(text)
+        found = tomllib.loads(text.removeprefix("\ufeff"))
     except tomllib.TOMLDecodeError as why:
         raise error(Problem(f"{what} is not valid TOML", where, str(why), "correct the line named")) from why
+    except RecursionError as why:
+        raise error(Problem(f"{what} is nested too deeply", where, fix=NESTING.fix)) from why
+    except ValueError as why:  # a number of thousands of digits
+        raise error(Problem(f"{what} has a number that cannot be read", where, str(why), "write it shorter")) from why
+    NESTING.hold(depth(found), where, error)
+    return found
+
+
+def depth(value: object) -> int:
+    """How many tables and lists lie in each other."""
+    levels, inside = 0, [value]
+    while inside := [one for one in inside if isinstance(one, (dict, list))]:
+        levels += 1
+        inside = [two for one in inside for two in (one.values() if isinstance(one, dict) else one)]
+    return levels
+
+
+def finite(value: object) -> float | None:
+    """A number as a file gives it; None for a truth value, anything else, and what no float can hold."""
+    if not isinstance(value, (int, float)) or isinstance(value, bool):
+        return None
+    try:
+        number = float(value)
+    except OverflowError:
+        return None
+    return number if math.isfinite(number) else None
 
 
 def line_index(text: str) -> dict[tuple[str, str], int]:
@@ -61,7 +92,7 @@ class TomlReader:
     def schema(self, number: int) -> None:
         """The version of the format, which must be ``number``."""
         if self.data.get("schema") != number:
-            what = f"schema is {self.data.get('schema')!r}, not {number}"
+            what = f"schema is {brief(self.data.get('schema'))}, not {number}"
             self.problem(what, "", "schema", fix=f"write 'schema = {number}' on top")
 
     def unknown(self, name: str, table: dict[str, Any], known: tuple[str, ...]) -> None:
@@ -75,7 +106,7 @@ class TomlReader:
         value = table.get(key, "")
         if isinstance(value, str):
             return value
-        self.problem(f"'{named(name, key)}' is {value!r}, not text", name, key, fix=f'write {key} = "..."')
+        self.problem(f"'{named(name, key)}' is {brief(value)}, not text", name, key, fix=f'write {key} = "..."')
         return ""
 
     def choice(self, name: str, table: dict[str, Any], key: str, allowed: tuple[str, ...]) -> str | None:
@@ -85,7 +116,7 @@ class TomlReader:
         if isinstance(table[key], str) and table[key] in allowed:
             return str(table[key])
         words = ", ".join(repr(one) for one in dict.fromkeys(allowed))
-        self.problem(f"'{named(name, key)}' is {table[key]!r}", name, key, fix=f"one of: {words}")
+        self.problem(f"'{named(name, key)}' is {brief(table[key])}", name, key, fix=f"one of: {words}")
         return None
 
     def quantities(
@@ -100,10 +131,12 @@ class TomlReader:
                 self.problem(f"'{shown}': {error}", name, key)
         elif not isinstance(written, (int, float)) or isinstance(written, bool):
             fix = f"write {key} = {units.example(unit)}"
-            self.problem(f"'{shown}' is {written!r}, not a number", name, key, fix=fix)
+            self.problem(f"'{shown}' is {brief(written)}, not a number", name, key, fix=fix)
         elif unit not in units.DIMENSIONLESS:
-            fix = f'write {key} = "{written} {unit}"'
-            self.problem(f"'{shown}' = {written} has no unit", name, key, fix=fix)
+            fix = f'write {key} = "{brief(written)} {unit}"'
+            self.problem(f"'{shown}' = {brief(written)} has no unit", name, key, fix=fix)
+        elif isinstance(written, int) and finite(written) is None:
+            self.problem(f"'{shown}' is {brief(written)}, more than a number can be", name, key)
         else:
             return (float(written),)
         return None

@@ -60,6 +60,8 @@ def shown_in(unit: str) -> tuple[str, float]:
 _QUANTITY = re.compile(r"^\s*((?:[-+0-9.eE]+\s*,\s*)*[-+0-9.eE]+)\s*([^\s0-9].*?|1/.*?)?\s*$")
 
 
+LONGEST = 2000
+"""Characters a quantity may have."""
 _INFINITE = re.compile(r"^\s*(inf)\s+(\S.*?)\s*$")
 
 
@@ -68,6 +70,8 @@ def parse(text: str, unit: str, infinite: bool = False) -> tuple[float, ...]:
 
     Raises ValueError with a sentence saying what was expected.
     """
+    if len(text) > LONGEST:
+        raise ValueError(f"'{text[:40]}...' is too long for a number with a unit, such as '{example(unit)}'")
     match = (_INFINITE.match(text) if infinite else None) or _QUANTITY.match(text)
     if match is None:
         raise ValueError(f"'{text}' is not a number with a unit, such as '{example(unit)}'")

@@ -30,10 +30,14 @@ def check(
 
       mmgtune trials check my_trials/
     """
+    from ..profile import load_profile
+    from ..resources import profile_names
     from ..trial import check_trial, load_trials
 
     data = load_trials(trials)
-    found = {name: check_trial(trial) for name, trial in data.trials.items()}
+    # The trials of a ship with a bundled profile are checked against her length.
+    L_pp = load_profile(data.ship).L_pp if data.ship in profile_names() else None
+    found = {name: check_trial(trial, L_pp) for name, trial in data.trials.items()}
     if json:
         c.print_json({"schema": 1, "trials": {name: [vars(f) for f in findings] for name, findings in found.items()}})
     else:

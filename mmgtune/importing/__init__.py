@@ -5,6 +5,7 @@ headers         names and units in logs
 table           columns of a log; text, parquet_log: reading them; clock: time put right
 record          quantities in the program's units, each with its own time; nmea: reading sentences
 digits          made up for where too few are printed; yaw: the heading from its rate; cleaning: spikes
+jumps           records cut where time jumps forward
 geodesy         latitude and longitude to metres; gridding: one uniform time
 motion          midship, ship axes, and velocities that were not measured
 conventions     signs and axes a map does not state

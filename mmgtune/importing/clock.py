@@ -11,6 +11,7 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..errors import LogError, Problem
+from ..trial.schema import impossible
 from .mapping import TimeSource
 
 DAY = 86400.0
@@ -124,7 +125,7 @@ def put_right(t: FloatArray, source: TimeSource, place: Any) -> Timeline:
 
     Raises LogError where fewer than 2 rows have a stamp, or stamps are in no order.
     """
-    known = np.isfinite(t)
+    known = np.isfinite(t) & ~impossible(t, "s")
     if known.sum() < 2:
         raise LogError(Problem("fewer than two rows have a time", place(0) if len(t) else "", fix="check [time]"))
     line = Timeline(known.copy(), np.array(t))
@@ -227,8 +228,9 @@ def _order(line: Timeline, place: Any) -> None:
     kept = np.setdiff1d(np.arange(len(t)), off)
     bounds = [0, *cuts, len(t)]
     repeated: list[int] = []
-    for first, last in itertools.pairwise(bounds):
-        inside = kept[(kept >= first) & (kept < last)]
+    edges = np.searchsorted(kept, bounds).tolist()
+    for first, last in itertools.pairwise(edges):
+        inside = kept[first:last]
         if len(inside):
             highest = np.maximum.accumulate(t[inside])
             late = inside[1:][t[inside[1:]] <= highest[:-1]]

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import LogError, Problem
+from ..limits import GRID_FREE, GRID_PER_ROW, GRID_SAMPLES
 from .mapping import LogMap
 from .quantities import MEANING, MEASURED
 from .record import Record, Series
@@ -40,7 +41,8 @@ def on_grid(record: Record, log_map: LogMap, step: float | None) -> Grid:
     spikes of the motion; shorter ones are bridged linearly.  Where the grid is coarser than the series,
     samples are averaged.  Constants of the map are added.  The heading begins within half a turn of north.
 
-    Raises LogError where there is no time that all inputs cover.
+    Raises LogError where there is no time that all inputs cover, and where the step would make more samples than there
+    may be.
     """
     series = record.series
     constant = {name for name, source in log_map.sources.items() if source.value is not None}
@@ -68,6 +70,12 @@ def on_grid(record: Record, log_map: LogMap, step: float | None) -> Grid:
         why = f"positions, heading and inputs have {max(0.0, ends - begins):.4g} s in common: {spans}"
         raise LogError(Problem(f"fewer than {FEWEST} samples to make a trial of", str(record.path), why))
     first = float(lead.t[np.searchsorted(lead.t, begins - 1e-9)])
+    rows = max(len(one.t) for one in series.values())
+    most = min(GRID_SAMPLES.most, GRID_FREE + GRID_PER_ROW * rows)
+    asked = (ends - first) / chosen
+    if not asked < most:
+        what = f"{asked:.4g} samples would be made of {rows} rows, with a step of {chosen:.4g} s"
+        raise LogError(Problem(what, str(record.path), f"the limit is {most} samples", GRID_SAMPLES.fix))
     count = int(np.floor((ends - first) / chosen + 1e-6)) + 1
     t: FloatArray = first + chosen * np.arange(count, dtype=np.float64)
     # A log that is uniform already keeps its own stamps, to the last bit.

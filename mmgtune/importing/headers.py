@@ -2,24 +2,31 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 
 from ..units import canonical
 
-_UNIT = re.compile(r"^(.*?)\s*(?:\[([^\[\]]+)\]|\(([^()]+)\))\s*$")
-
 
 def unit_in(header: str) -> str | None:
     """The unit in a header such as "u_velo [m/s]" or "speed (kn)"; None where it has none."""
-    match = _UNIT.match(header)
-    return canonical(match.group(2) or match.group(3)) if match else None
+    unit = _divided(header)[1]
+    return canonical(unit) if unit else None
 
 
 def bare(header: str) -> str:
     """A header without its unit."""
-    match = _UNIT.match(header)
-    return (match.group(1) if match else header).strip()
+    return _divided(header)[0].strip()
+
+
+def _divided(header: str) -> tuple[str, str]:
+    """Name and unit, "" where it has none."""
+    text = header.rstrip()
+    for opening, closing in ("[]", "()"):
+        if text.endswith(closing):
+            name, mark, unit = text[:-1].rpartition(opening)
+            if mark and unit and closing not in unit:
+                return name, unit
+    return header, ""
 
 
 def find_column(wanted: str | int, names: Sequence[str]) -> int | None:

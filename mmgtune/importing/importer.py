@@ -25,6 +25,7 @@ from .clock import put_right
 from .cutting import kept, pull_out
 from .geodesy import not_mirrored, with_local_positions
 from .gridding import FEWEST, Grid, on_grid, stretches
+from .jumps import cut_at_jumps
 from .mapping import LogMap
 from .means import with_mean
 from .nmea import read_nmea
@@ -114,7 +115,9 @@ def import_logs(
     problems: list[Problem] = []
     for log in dict.fromkeys(Path(one) for one in logs):
         try:
-            made = _trials(log, log_map.of(log), step)
+            # Damaged numbers overflow on their way to where they are found out.
+            with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+                made = _trials(log, log_map.of(log), step)
         except LogError as error:
             problems += error.problems
             continue
@@ -154,10 +157,13 @@ def _name(template: str, log: Path) -> str:
 
 def _trials(log: Path, log_map: LogMap, step: float | None) -> list[tuple[Trial, dict[str, Any]]]:
     """The trials of one log with their quality.  Raises LogError."""
-    records = _records(log, log_map)
+    records = [part for record in _records(log, log_map) for part in cut_at_jumps(record, log_map, step)]
     made = []
     short = 0
     for record in records:
+        if len(records) > 1 and max(len(one.t) for one in record.series.values()) < FEWEST:
+            short += 1
+            continue
         try:
             made += _of_record(record, log_map, step)
         except LogError:
@@ -165,6 +171,10 @@ def _trials(log: Path, log_map: LogMap, step: float | None) -> list[tuple[Trial,
             if len(records) == 1 or max(len(one.t) for one in record.series.values()) > FEWEST:
                 raise
             short += 1
+    if not made:
+        what = f"each of the {len(records)} parts of the log has fewer than {FEWEST} rows to make a trial of"
+        why = "; ".join(dict.fromkeys(records[0].notes[-2:]))
+        raise LogError(Problem(what, str(log), why, "correct the clock's stamps in the log, or give another log"))
     name = _name(log_map.id, log)
     found = []
     count = sum(not piece.follows for piece in made)
@@ -186,7 +196,11 @@ def _records(log: Path, log_map: LogMap) -> list[Record]:
     """A log in the program's units, in parts where its clock was set back."""
     content = start_of(log)
     form = log_map.format or (
-        "parquet" if content.startswith(b"PAR1") else "nmea" if re.match(rb"\s*[$!][A-Z]{4,},", content) else "csv"
+        "parquet"
+        if content.startswith(b"PAR1")
+        else "nmea"
+        if re.match(rb"\s*[$!][A-Z]{4,},", content.removeprefix(b"\xef\xbb\xbf"))
+        else "csv"
     )
     if form == "nmea":
         if binary(content):
@@ -194,7 +208,8 @@ def _records(log: Path, log_map: LogMap) -> list[Record]:
                 Problem("the log is binary, not NMEA 0183", str(log), fix="convert it with its logger's software")
             )
         return read_nmea(log, log_map)
-    if form == "csv" and binary(content):
+    wide = log_map.encoding.lower().replace("_", "-").startswith(("utf-16", "utf-32"))
+    if form == "csv" and binary(content) and not (wide and log_map.format in (None, "csv")):
         kind = "a Parquet file" if content.startswith(b"PAR1") else "binary"
         fix = "convert it to CSV, Parquet or NMEA 0183 with its logger's own software; or say the right encoding"
         raise LogError(Problem(f"the log is {kind}, not text", str(log), "it has zero bytes in it", fix))

@@ -16,10 +16,11 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import LogError, Problem
+from ..trial.schema import impossible
 from ..units import DEG, KNOT, factors
 from .clock import DAY, put_right
 from .mapping import LogMap, TimeSource
-from .quantities import AGAINST, QUANTITIES
+from .quantities import AGAINST, MEANING, QUANTITIES
 from .record import Record, Series, unwrapped
 from .table import MOST_ROWS
 
@@ -28,10 +29,16 @@ SENTENCES = {
     "ROT": "yaw rate", "RSA": "rudder", "RPM": "revolutions", "MWV": "wind", "MWD": "wind", "ZDA": "date",
 }  # fmt: skip
 POSITIONS = ("GGA", "RMC", "GLL")
-_SPEED = {letter: factors("m/s")[unit] for letter, unit in (("K", "km/h"), ("M", "m/s"), ("N", "kn"))}
+_SPEED = {letter: factors("m/s")[unit] for letter, unit in (("K", "km/h"), ("M", "m/s"), ("N", "kn"))} | {"S": 0.44704}
+"""Letters of units of speed; S is for statute miles per hour."""
 _PER_MINUTE = factors("rad/s")["deg/min"]
 _RPM = factors("1/s")["rpm"]
-_LINE = re.compile(rb"[$!]([A-Z]{2}|P[A-Z]*)([A-Z]{3}),([^*\r\n]*)(?:\*([0-9A-Fa-f]{2}))?\s*$")
+_LINE = re.compile(rb"[$!]([A-Z]{2}|P[A-Z]*)([A-Z]{3}),([^*\r\n]*+)(?:\*([0-9A-Fa-f]{2}))?\s*$")
+_NUMBER = re.compile(r"[-+]?(\d{1,12}\.?\d{0,30}|\.\d{1,30})")
+LINE = 4096
+"""Bytes of a line that are looked at; sentences have 82 at most."""
+WAITING = 10_000
+"""Sentences of a kind that may wait for the time of the next position."""
 
 
 def checksum(body: bytes) -> int:
@@ -75,7 +82,7 @@ class _Parser:
         self.first_bad = 0
         self.unsigned = 0
         self.no_fix = 0
-        self.malformed = 0
+        self.malformed: Counter[str] = Counter()
         self.epoch = math.nan
         self.lasting = 0.0
         self.day = 0.0
@@ -100,31 +107,31 @@ class _Parser:
         try:
             self.sentence(kind, fields)
             self.counts[kind] += 1
-        except (ValueError, IndexError):
-            self.malformed += 1
+        except (ValueError, IndexError, KeyError):
+            self.malformed[kind] += 1
 
     def sentence(self, kind: str, f: list[str]) -> None:
-        """Take one sentence.  Raises ValueError or IndexError where it is not what the standard says."""
+        """Take one sentence.  Raises ValueError, IndexError or KeyError where it is not what the standard says."""
         if kind in POSITIONS:
             self.position(kind, f)
         elif kind == "VTG" and f[0] and f[4]:
-            self.velocity(float(f[4]) * KNOT, float(f[0]) * DEG)
+            self.velocity(_number(f[4]) * KNOT, _number(f[0]) * DEG)
         elif (kind == "HDT" and f[0]) or (kind == "THS" and f[0] and f[1] != "V"):
-            self.wait("psi", float(f[0]) * DEG)
+            self.wait(psi=_number(f[0]) * DEG)
         elif kind == "ROT" and f[0] and f[1] == "A":
-            self.wait("r", float(f[0]) * _PER_MINUTE)
+            self.wait(r=_number(f[0]) * _PER_MINUTE)
         elif kind == "RSA":
             self.rudder(f)
         elif kind == "RPM" and f[2] and f[4] == "A":
-            self.wait(f"n {f[0]}{f[1]}", float(f[2]) * _RPM)
+            if f[0] not in ("S", "E") or not re.fullmatch(r"\d{0,2}", f[1]):
+                raise ValueError
+            self.wait(**{f"n {f[0]}{f[1]}": _number(f[2]) * _RPM})
         elif kind == "MWV" and f[0] and f[2] and f[4] == "A" and f[1] == "R":
-            self.wait("wind_dir_app", float(f[0]) * DEG)
-            self.wait("wind_speed_app", float(f[2]) * _SPEED[f[3]])
+            self.wait(wind_dir_app=_number(f[0]) * DEG, wind_speed_app=_number(f[2]) * _SPEED[f[3]])
         elif kind == "MWD" and f[0] and (f[6] or f[4]):
-            self.wait("wind_dir", float(f[0]) * DEG)
-            self.wait("wind_speed", float(f[6]) if f[6] else float(f[4]) * KNOT)
+            self.wait(wind_dir=_number(f[0]) * DEG, wind_speed=_number(f[6]) if f[6] else _number(f[4]) * KNOT)
         elif kind == "ZDA" and not self.date and f[1]:
-            self.date = f"{f[3]}-{f[2]}-{f[1]}"
+            self.date = _date(f[3], f[2], f[1])
 
     def position(self, kind: str, f: list[str]) -> None:
         if kind == "GGA":
@@ -135,15 +142,21 @@ class _Parser:
             # Receivers of before 1992 write no status.
             time, at, good = f[4], 0, len(f) < 6 or f[5] == "A"
         if kind == self.primary and time:
-            self.begin(3600.0 * int(time[:2]) + 60.0 * int(time[2:4]) + float(time[4:]))
+            self.begin(_of_day(time))
             self.no_fix += not good
-            self.add("latitude", self.epoch, _degrees(f[at], f[at + 1]) if good else math.nan)
-            self.add("longitude", self.epoch, _degrees(f[at + 2], f[at + 3]) if good else math.nan)
+            place = (math.nan, math.nan)
+            try:
+                if good:
+                    place = (_degrees(f[at], f[at + 1], "NS", 90.0), _degrees(f[at + 2], f[at + 3], "EW", 180.0))
+            finally:
+                # Its time counts even where the place cannot be read: other sentences take theirs from it.
+                self.add("latitude", self.epoch, place[0])
+                self.add("longitude", self.epoch, place[1])
         if kind == "RMC":
             if not self.date and len(f) > 8 and len(f[8]) == 6:
-                self.date = f"20{f[8][4:]}-{f[8][2:4]}-{f[8][:2]}"
+                self.date = _date(f"20{f[8][4:]}", f[8][2:4], f[8][:2])
             if not self.with_vtg and f[1] == "A" and f[6] and f[7]:
-                self.velocity(float(f[6]) * KNOT, float(f[7]) * DEG)
+                self.velocity(_number(f[6]) * KNOT, _number(f[7]) * DEG)
 
     def begin(self, of_day: float) -> None:
         """A new epoch: what was waiting belongs to the one before."""
@@ -169,20 +182,23 @@ class _Parser:
         self.waiting = {}
 
     def velocity(self, speed: float, course: float) -> None:
-        self.wait("north", speed * math.cos(course))
-        self.wait("east", speed * math.sin(course))
+        self.wait(north=speed * math.cos(course), east=speed * math.sin(course))
 
     def rudder(self, f: list[str]) -> None:
         """The single or starboard sensor, and the port one where there is one."""
-        angles = [float(f[k]) * DEG for k in (0, 2) if len(f) > k + 1 and f[k] and f[k + 1] == "A"]
+        angles = [_number(f[k]) * DEG for k in (0, 2) if len(f) > k + 1 and f[k] and f[k + 1] == "A"]
         if angles:
-            self.wait("delta", sum(angles) / len(angles))
+            self.wait(delta=sum(angles) / len(angles))
         if len(angles) == 2:
-            self.wait("delta_stbd", angles[0])
-            self.wait("delta_port", angles[1])
+            self.wait(delta_stbd=angles[0], delta_port=angles[1])
 
-    def wait(self, name: str, value: float) -> None:
-        self.waiting.setdefault(name, []).append(value)
+    def wait(self, **values: float) -> None:
+        """Keep values until the time of the next position is known; all of a sentence were read by then."""
+        for name, value in values.items():
+            waiting = self.waiting.setdefault(name, [])
+            if len(waiting) >= WAITING:
+                raise ValueError
+            waiting.append(value)
 
     def add(self, name: str, t: float, value: float) -> None:
         channel = self.channels.get(name)
@@ -221,10 +237,13 @@ def read_nmea(path: Path, log_map: LogMap) -> list[Record]:
         raise LogError(*problems)
     parser = _Parser(primary or "GGA", bool(kinds["VTG"]))
     with path.open("rb") as file:
-        for number, raw in enumerate(file, start=1):
+        number = 1
+        while raw := file.readline(LINE):
             parser.line(number, raw)
-    if not parser.channels:
-        raise LogError(Problem("the log has no position with a good checksum", str(path), f"{parser.bad} are bad"))
+            number += raw.endswith(b"\n")
+    if "latitude" not in parser.channels:
+        why = f"{parser.bad} sentences have a bad checksum, {parser.malformed.total()} are not as the standard says"
+        raise LogError(Problem("the log has no position that can be read", str(path), why, "check its receiver"))
     usual = np.diff(np.array(parser.channels["latitude"].t))
     parser.spread(parser.epoch + (float(np.median(usual)) if len(usual) else 1.0))
     return _records(parser, path, log_map)
@@ -236,7 +255,7 @@ def _kinds(path: Path) -> Counter[str]:
     found: Counter[str] = Counter()
     with path.open("rb") as file:
         while block := file.read(1 << 22):
-            block += file.readline()
+            block += file.readline(LINE)
             found.update(kind.decode() for kind in pattern.findall(block))
     return Counter({kind: count for kind, count in found.items() if kind in SENTENCES})
 
@@ -253,7 +272,9 @@ def _records(parser: _Parser, path: Path, log_map: LogMap) -> list[Record]:
     if parser.unsigned:
         notes.append(f"{parser.unsigned} sentences have no checksum and were taken as they are")
     if parser.malformed:
-        notes.append(f"{parser.malformed} sentences are not as the standard says and were dropped")
+        kinds = ", ".join(f"{count} {kind}" for kind, count in parser.malformed.most_common())
+        total = parser.malformed.total()
+        notes.append(f"{total} sentences are not as the standard says and were dropped: {kinds}")
     if parser.no_fix:
         notes.append(f"{parser.no_fix} positions are marked as invalid and left out")
     channels = parser.channels
@@ -282,6 +303,10 @@ def _records(parser: _Parser, path: Path, log_map: LogMap) -> list[Record]:
         if source is not None and source.value is None:
             values = values * source.scale * (-1.0 if source.positive in AGAINST else 1.0) + source.offset
         quantity = QUANTITIES.get(name)
+        beyond = impossible(values, quantity.unit if quantity is not None else "m/s")
+        if beyond.any():
+            notes.append(f"{beyond.sum()} values of {MEANING.get(name, 'velocity')} are impossible; taken as gaps")
+            values = np.where(beyond, np.nan, values)
         if quantity is not None and quantity.angle:
             values = unwrapped(values, 360.0 if quantity.unit == "deg" else 2.0 * np.pi)
         t = t[line.keep]
@@ -294,8 +319,34 @@ def _records(parser: _Parser, path: Path, log_map: LogMap) -> list[Record]:
     return [Record(path, {name: found[k] for name, found in pieces.items()}, notes=list(notes)) for k in range(parts)]
 
 
-def _degrees(text: str, side: str) -> float:
-    """ "3512.345", "S" as -35.20575."""
+def _number(text: str) -> float:
+    """A plain number.  Raises ValueError where it is none: Python reads more than sentences may hold."""
+    if not _NUMBER.fullmatch(text):
+        raise ValueError
+    return float(text)
+
+
+def _of_day(time: str) -> float:
+    """ "123519.50" as seconds of the day.  Raises ValueError."""
+    h, m, s = _number(time[:2]), _number(time[2:4]), _number(time[4:])
+    if not (0.0 <= h < 24.0 and 0.0 <= m < 60.0 and 0.0 <= s < 61.0):
+        raise ValueError
+    return 3600.0 * h + 60.0 * m + s
+
+
+def _date(year: str, month: str, day: str) -> str:
+    """ "2024-05-01".  Raises ValueError where these are no numbers."""
+    if not re.fullmatch(r"\d{4}-\d{1,2}-\d{1,2}", found := f"{year}-{month}-{day}"):
+        raise ValueError
+    return found
+
+
+def _degrees(text: str, side: str, sides: str, most: float) -> float:
+    """ "3512.345", "S" as -35.20575.  Raises ValueError where it is no place on earth."""
+    _number(text)
     point = text.index(".") if "." in text else len(text)
-    degrees = float(text[: point - 2] or 0) + float(text[point - 2 :]) / 60.0
-    return -degrees if side in ("S", "W") else degrees
+    degrees, minutes = float(text[: max(0, point - 2)] or 0), float(text[max(0, point - 2) :])
+    found = degrees + minutes / 60.0
+    if side not in sides or not side or minutes > 60.0 or not 0.0 <= found <= most:
+        raise ValueError
+    return -found if side == sides[1] else found

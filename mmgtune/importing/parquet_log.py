@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ..errors import LogError, Problem
+from ..limits import LOG_COLUMNS
+from ..trial.footer import rows_of
 from .clock import Stamps
 from .mapping import LogMap
 from .table import TIME, Cells, Collector, Table
 from .text import columns_named
 
 BATCH = 100_000
+LONGEST = 200
+"""Characters of a text that are looked at: numbers and times have fewer."""
 
 
 def read_parquet(path: Path, log_map: LogMap) -> Table:
@@ -22,15 +27,22 @@ def read_parquet(path: Path, log_map: LogMap) -> Table:
 
     try:
         # No worker threads: one still starting when the program ends would abort it.
-        file = pq.ParquetFile(path, pre_buffer=False)
+        file = pq.ParquetFile(path, pre_buffer=False, page_checksum_verification=True)
         names = list(file.schema_arrow.names)
+        LOG_COLUMNS.hold(len(names), str(path), LogError)
+        rows_of(file.metadata, path.stat().st_size, str(path), LogError)
         wanted = columns_named(log_map, names, path, str(path))
         order = list(wanted)
         collector, cells, stamps = Collector(order), Cells(log_map), Stamps(log_map.time, path)
         row = 1
+        _readable(file.schema_arrow, wanted, path)
         columns = sorted({names[k] for k in wanted.values()})
+        texts = [name for name in columns if _is_text(file.schema_arrow.field(name).type)]
+        # A text stands in a file once, however many rows repeat it: it is cut before it is repeated.
+        file = pq.ParquetFile(path, pre_buffer=False, page_checksum_verification=True, read_dictionary=texts)
         for batch in file.iter_batches(BATCH, columns=columns, use_threads=False):
-            block = batch.to_pandas(use_threads=False)
+            block = pa.RecordBatch.from_arrays([_cut(one) for one in batch.columns], batch.schema.names)
+            block = block.to_pandas(use_threads=False)
             rows = np.arange(row, row + len(block), dtype=np.int64)
             row += len(block)
             t = stamps.of(block[names[wanted[TIME]]], rows)
@@ -45,3 +57,41 @@ def read_parquet(path: Path, log_map: LogMap) -> Table:
     table = Table(path, t, found, numbers, headers, stamps.clock, "row", [*stamps.notes, *collector.notes()])
     cells.judge(table, log_map, len(t))
     return table
+
+
+def _readable(schema: Any, wanted: dict[str, int], path: Path) -> None:
+    """Raise LogError where a column needed is of a type that holds no numbers, times or texts, or is there twice."""
+    import pyarrow as pa
+
+    kinds = pa.types
+    can = (kinds.is_floating, kinds.is_integer, kinds.is_decimal, kinds.is_boolean, kinds.is_null, kinds.is_temporal)
+    problems = []
+    for name, k in wanted.items():
+        kind, header = schema.field(k).type, schema.names[k]
+        if not _is_text(kind) and not any(one(kind) for one in can):
+            what = f"column '{header}' holds {str(kind)[:80]}, not numbers"
+            problems.append(Problem(what, str(path), f"the map says it is '{name}'", "name another column"))
+        if schema.names.count(header) > 1:
+            problems.append(Problem(f"column '{header}' is there twice", str(path), fix="remove one of them"))
+    if problems:
+        raise LogError(*dict.fromkeys(problems))
+
+
+def _is_text(kind: Any) -> bool:
+    import pyarrow as pa
+
+    value = kind.value_type if pa.types.is_dictionary(kind) else kind
+    return bool(pa.types.is_string(value) or pa.types.is_large_string(value))
+
+
+def _cut(column: Any) -> Any:
+    """A column with the length of its texts bounded."""
+    import pyarrow as pa
+    import pyarrow.compute as pc
+
+    if not _is_text(column.type):
+        return column
+    if not pa.types.is_dictionary(column.type):
+        return pc.utf8_slice_codeunits(column, 0, LONGEST)
+    short = pc.utf8_slice_codeunits(column.dictionary.cast(pa.string()), 0, LONGEST)
+    return short.take(column.indices)

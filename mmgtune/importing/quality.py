@@ -113,10 +113,10 @@ def quality_text(quality: dict[str, Any]) -> str:
             f"  positions missed by u, v, psi by {100 * positions['ship_axes']:.2g} % of the distance; "
             f"read in earth axes by {100 * positions['earth_axes']:.2g} %"
         )
-    if positions["residual_x_m"] is not None:
+    if positions["residual_x_m"] is not None and positions["residual_y_m"] is not None:
         said = f"  residual  integrated velocities leave x by {positions['residual_x_m']:.3g} m rms, y by "
         said += f"{positions['residual_y_m']:.3g} m"
-        if positions["rounding_x_m"] is not None:
+        if positions["rounding_x_m"] is not None and positions["rounding_y_m"] is not None:
             said += f"; rounding alone {positions['rounding_x_m']:.3g} and {positions['rounding_y_m']:.3g} m"
         lines.append(said)
     lines.append(f"  rudder    turns the ship to its side: {rudder['side']}, agreement {rudder['agreement']:+.2f}")

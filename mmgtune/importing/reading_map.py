@@ -7,11 +7,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from .. import units
-from ..errors import LogError, Problem, closest
+import numpy as np
+
+from .. import limits, units
+from ..errors import LogError, Problem, brief, closest
 from ..resources import import_map_names, import_maps
-from ..toml_reading import TomlReader, toml_of
-from ..trial.schema import COLUMNS, SOURCES
+from ..toml_reading import TomlReader, finite, toml_of
+from ..trial.schema import COLUMNS, SOURCES, impossible
 from .checking_map import check
 from .mapping import FORMATS, PROJECTIONS, TABLES, Cut, LogMap, Source, TimeSource
 from .quantities import MEANING, QUANTITIES
@@ -20,6 +22,9 @@ SCHEMA = 1
 COLUMN_KEYS = ("column", "value", "unit", "positive", "zero", "direction", "scale", "offset", "recover")
 RECOVER = {"x": ("print-resolution",), "y": ("print-resolution",), "psi": ("yaw-rate",)}
 """What a map may have made up for where few digits are printed."""
+MOST_COUNT = 1000
+"""Lines that may be skipped: they are looked for in the beginning of a log."""
+NO_CHARSETS = ("idna", "punycode", "undefined", "unicode_escape", "raw_unicode_escape", "mbcs", "oem")
 DELIMITERS = {",": ",", ";": ";", "|": "|", "tab": "\t", "\t": "\t", "space": " ", " ": " "}
 
 
@@ -32,8 +37,8 @@ def load_map(name: str | Path, preset: bool = False) -> LogMap:
     if preset and str(name) not in import_map_names():
         raise LogError(Problem(f"no preset is called '{name}'", "--preset", fix=closest(str(name), import_map_names())))
     try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
+        text = limits.content(path, limits.MAP_BYTES, LogError).decode("utf-8-sig")
+    except (OSError, ValueError) as error:
         fix = f"give a TOML file in UTF-8, or --preset with one of: {', '.join(import_map_names())}"
         raise LogError(Problem("cannot read the map", str(path), str(error), fix)) from error
     return parse_map(text, path)
@@ -48,6 +53,7 @@ def parse_map(text: str, path: Path = Path("map")) -> LogMap:
     if not isinstance(some, list) or not all(isinstance(one, dict) for one in some):
         reader.problem("'logs' is not a list of tables", "logs", fix='write [[logs]] with name = "*_turn_*"')
         some = []
+    limits.MAP_ENTRIES.hold(len(some), str(path), LogError)
     parts = []
     for number, table in enumerate(some, start=1):
         part = _part(data, table, number, text, path, reader.problems)
@@ -98,6 +104,23 @@ def _merged(data: dict[str, Any], own: dict[str, Any]) -> dict[str, Any]:
     return out
 
 
+def is_charset(name: str) -> bool:
+    """Whether a name is of an encoding that text is written in, and no other kind of codec."""
+    import codecs
+
+    # Python has more under such names: compression, escapes, and names of hosts, which take long to decode.
+    try:
+        found = codecs.lookup(name).name
+        return found not in NO_CHARSETS and isinstance("a".encode(found), bytes)
+    except (LookupError, ValueError):
+        return False
+
+
+def canonical(unit: object) -> str | None:
+    """A unit of a map by the name the program knows it by, a word for none where it is no text; None without."""
+    return None if unit is None else units.canonical(unit) if isinstance(unit, str) else "?"
+
+
 class _Reader(TomlReader):
     """One pass over a parsed map."""
 
@@ -138,7 +161,7 @@ class _Reader(TomlReader):
             gap=self.number("resample", self.table("resample"), "gap", 5.0, least=1.0),
             cut=self.cut(),
             ship=self.text_of("trial", trial, "ship"),
-            id=self.text_of("trial", trial, "id") or "{stem}",
+            id=self.id(trial),
             manoeuvre=self.text_of("trial", trial, "manoeuvre"),
             source=self.choice("trial", trial, "source", SOURCES) or "measured",
             note=self.text_of("trial", trial, "note"),
@@ -160,35 +183,52 @@ class _Reader(TomlReader):
             return {}
         return table
 
+    def id(self, trial: dict[str, Any]) -> str:
+        """Names of trials, before what stands for the log's name is put in."""
+        template = self.text_of("trial", trial, "id") or "{stem}"
+        problem = limits.NAME.problem(len(template), "")
+        if problem is not None:
+            self.problem(problem.what, "trial", "id", problem.why, problem.fix)
+        return template
+
     def texts(self, table: dict[str, Any], key: str) -> tuple[str, ...]:
         value = table.get(key, [])
         if not isinstance(value, list):
             self.problem(f"'log.{key}' is not a list of texts", "log", key, fix=f'write {key} = ["-999", "n/a"]')
             return ()
+        odd = [one for one in value if not isinstance(one, str) and finite(one) is None]
+        if odd:
+            self.problem(f"'log.{key}' has {brief(odd[0])} in it, no text and no number", "log", key)
+            return ()
         return tuple(str(one) for one in value)
 
     def count(self, table: dict[str, Any], key: str) -> int:
         value = table.get(key, 0)
-        if isinstance(value, bool) or not isinstance(value, int) or value < 0:
-            self.problem(f"'log.{key}' is {value!r}, not a whole number", "log", key, fix=f"write {key} = 3")
+        if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= MOST_COUNT:
+            self.problem(
+                f"'log.{key}' is {brief(value)}, not a whole number up to {MOST_COUNT}",
+                "log",
+                key,
+                fix=f"write {key} = 3",
+            )
             return 0
         return value
 
     def flag(self, table: dict[str, Any], key: str) -> bool:
         value = table.get(key, True)
         if not isinstance(value, bool):
-            self.problem(f"'log.{key}' is {value!r}", "log", key, fix=f"write {key} = true or {key} = false")
+            self.problem(f"'log.{key}' is {brief(value)}", "log", key, fix=f"write {key} = true or {key} = false")
             return True
         return value
 
     def number(self, name: str, table: dict[str, Any], key: str, default: float, least: float | None = None) -> float:
         value = table.get(key, default)
-        good = isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
-        if not good or value == 0.0 or (least is not None and value < least):
+        number = finite(value)
+        if not number or (least is not None and number < least):
             bound = "" if least is None else f" of at least {least:g}"
-            self.problem(f"'{name}.{key}' is {value!r}", name, key, fix=f"write a number{bound}, not 0")
+            self.problem(f"'{name}.{key}' is {brief(value)}", name, key, fix=f"write a number{bound}, not 0")
             return default
-        return float(value)
+        return number
 
     def quantity(self, name: str, key: str, unit: str, least: float | None = None) -> float | None:
         table = self.table(name)
@@ -205,31 +245,32 @@ class _Reader(TomlReader):
         if not math.isfinite(value) or (least is not None and value <= least):
             self.problem(f"'{name}.{key}' is {written}", name, key, fix=f"it must be above {least or 0:g} {unit}")
             return None
+        if impossible(np.array([value]), unit).any():
+            self.problem(f"'{name}.{key}' is {brief(written)}, which nothing about a ship is", name, key)
+            return None
         return value
 
     def encoding(self, table: dict[str, Any]) -> str:
-        import codecs
-
         name = table.get("encoding", "utf-8")
-        try:
-            codecs.lookup(name)
-        except (LookupError, TypeError):
-            self.problem(f"unknown encoding {name!r}", "log", "encoding", fix='such as "utf-8", "cp1252", "utf-16"')
-            return "utf-8"
-        return str(name)
+        if isinstance(name, str) and is_charset(name):
+            return name
+        fix = 'such as "utf-8", "cp1252", "utf-16"'
+        self.problem(f"unknown encoding {brief(name)}", "log", "encoding", fix=fix)
+        return "utf-8"
 
     # what the tables mean
 
     def time(self) -> TimeSource:
         table = self.table("time")
-        unit = table.get("unit")
-        if unit is not None and units.canonical(str(unit)) not in units.factors("s"):
-            self.problem(f"unit of time is {unit!r}", "time", "unit", fix=f"one of: {', '.join(units.factors('s'))}")
+        unit = canonical(table.get("unit"))
+        if unit is not None and unit not in units.factors("s"):
+            what = f"unit of time is {brief(table['unit'])}"
+            self.problem(what, "time", "unit", fix=f"one of: {', '.join(units.factors('s'))}")
         recover = self.choice("time", table, "recover", ("auto", "uniform", "never")) or "auto"
         return TimeSource(
             column=self.column("time", table),
             format=self.choice("time", table, "format", ("number", "iso", "clock")),
-            unit=None if unit is None else units.canonical(str(unit)),
+            unit=unit,
             scale=self.number("time", table, "scale", 1.0),
             recover=recover,
             step=self.quantity("time", "step", "s", least=0.0),
@@ -239,9 +280,9 @@ class _Reader(TomlReader):
         value = table.get("column")
         if value is None or (isinstance(value, str) and value.strip()):
             return value
-        if isinstance(value, int) and not isinstance(value, bool) and value >= 1:
+        if isinstance(value, int) and not isinstance(value, bool) and 1 <= value <= limits.LOG_COLUMNS.most:
             return value
-        what = f"'{name}.column' is {value!r}"
+        what = f"'{name}.column' is {brief(value)}"
         self.problem(what, name, "column", fix="write the column's name, or its number counted from 1")
         return None
 
@@ -254,7 +295,7 @@ class _Reader(TomlReader):
                 self.problem(f"unknown column '{name}'", where, fix=fix)
             elif not isinstance(table, dict):
                 fix = f'write [columns.{name}] with column = "..." and unit = "..."'
-                self.problem(f"'{where}' is {table!r}, not a table", "columns", name, fix=fix)
+                self.problem(f"'{where}' is {brief(table)}, not a table", "columns", name, fix=fix)
             else:
                 found[name] = self.one(name, where, table)
         return found
@@ -263,12 +304,11 @@ class _Reader(TomlReader):
         quantity = QUANTITIES[name]
         self.unknown(where, table, COLUMN_KEYS)
         known = units.factors(quantity.unit)
-        unit = table.get("unit")
-        if unit is not None:
-            unit = units.canonical(str(unit))
-            if unit not in known:
-                self.problem(f"unit of '{name}' is {table['unit']!r}", where, "unit", fix=f"one of: {', '.join(known)}")
-                unit = None
+        unit = canonical(table.get("unit"))
+        if unit is not None and unit not in known:
+            fix = f"one of: {', '.join(known)}"
+            self.problem(f"unit of '{name}' is {brief(table['unit'])}", where, "unit", fix=fix)
+            unit = None
         for key, can in (("positive", quantity.positive), ("zero", quantity.origin), ("direction", quantity.wind)):
             if key in table and not can:
                 self.problem(f"'{where}.{key}' has no meaning for {MEANING[name]}", where, key, fix="remove it")
@@ -325,12 +365,13 @@ class _Reader(TomlReader):
         value = table.get("origin")
         if value is None:
             return None
-        numbers = isinstance(value, list) and len(value) == 2 and all(isinstance(one, (int, float)) for one in value)
-        if not numbers or abs(value[0]) > 90.0 or abs(value[1]) > 360.0:
+        pair = [finite(one) for one in value] if isinstance(value, list) else []
+        latitude, longitude = pair if len(pair) == 2 else (None, None)
+        if latitude is None or longitude is None or abs(latitude) > 90.0 or abs(longitude) > 360.0:
             fix = "write origin = [latitude, longitude] in degrees"
-            self.problem(f"'position.origin' is {value!r}", "position", "origin", fix=fix)
+            self.problem(f"'position.origin' is {brief(value)}", "position", "origin", fix=fix)
             return None
-        return float(value[0]), float(value[1])
+        return latitude, longitude
 
     def cut(self) -> Cut:
         table = self.table("cut")

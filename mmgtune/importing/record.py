@@ -10,6 +10,7 @@ import numpy as np
 from .. import units
 from ..arrays import FloatArray
 from ..errors import LogError, Problem
+from ..trial.schema import impossible
 from .digits import print_step, within_digits
 from .headers import unit_in
 from .mapping import LogMap, Source
@@ -115,10 +116,10 @@ def record_of(table: Table, log_map: LogMap, t: FloatArray, rows: slice) -> Reco
             continue
         try:
             unit = unit_of(name, table, source.unit, QUANTITIES[name].unit, values, log_map.place(name))
+            printed = possible(name, values[rows], source, unit, table, notes)
         except LogError as error:
             problems += error.problems
             continue
-        printed = values[rows]
         if not source.recover:
             series[name] = Series(t[rows], converted(name, printed, source, unit))
             continue
@@ -142,6 +143,26 @@ def record_of(table: Table, log_map: LogMap, t: FloatArray, rows: slice) -> Reco
     if problems:
         raise LogError(*problems)
     return Record(table.path, series, notes=notes)
+
+
+def possible(name: str, values: FloatArray, source: Source, unit: str, table: Table, notes: list[str]) -> FloatArray:
+    """Numbers of a log (n_samples,) with NaN for those that nothing about a ship can have; ``notes`` says how many.
+
+    Raises LogError where most are such.
+    """
+    quantity = QUANTITIES[name]
+    with np.errstate(over="ignore"):
+        size = values * (units.factors(quantity.unit)[unit] * source.scale) + source.offset
+    beyond = impossible(size, quantity.unit)
+    if not beyond.any():
+        return values
+    said = f"{beyond.sum()} of {len(values)} values of '{table.headers[name]}' are impossible for {MEANING[name]}"
+    largest = f"up to {np.abs(size[beyond]).max():.3g} {quantity.unit}"
+    if beyond.sum() > 0.5 * np.isfinite(values).sum():
+        fix = "check unit, scale and offset of the column in the map"
+        raise LogError(Problem(said, f"{table.path}, column '{table.headers[name]}'", largest, fix))
+    notes.append(f"{said}, {largest}; taken as gaps")
+    return np.where(beyond, np.nan, values)
 
 
 def converted(name: str, values: FloatArray, source: Source, unit: str) -> FloatArray:

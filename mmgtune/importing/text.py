@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import LogError, Problem, closest
+from ..limits import LOG_BYTES, LOG_COLUMNS, LOG_LINE
 from .clock import Stamps
 from .headers import find_column
 from .mapping import LogMap
@@ -21,8 +22,10 @@ from .table import TIME, Cells, Collector, Table
 
 BLOCK = 50_000
 """Rows read at a time."""
+CELLS = 2_000_000
+"""Cells read at a time, of all columns: wide logs are read in smaller blocks."""
 
-PEEK = 1 << 16
+PEEK = LOG_LINE.most
 """Bytes looked at to find out how a log is written."""
 
 
@@ -33,6 +36,7 @@ def read_text(path: Path, log_map: LogMap) -> Table:
     """
     import pandas as pd
 
+    LOG_BYTES.hold(path.stat().st_size, str(path), LogError)
     layout = look(path, log_map)
     wanted = columns_named(log_map, layout.names, path, layout.where)
     names = list(wanted)
@@ -40,10 +44,10 @@ def read_text(path: Path, log_map: LogMap) -> Table:
     line = layout.first + 1
     dropped: list[str] = []
     try:
-        with warnings.catch_warnings(record=True) as said:
+        with warnings.catch_warnings(record=True) as said, io.BufferedReader(_Lines(path), 1 << 16) as file:
             warnings.simplefilter("always", pd.errors.ParserWarning)
             reader = pd.read_csv(
-                path,
+                file,
                 header=None,
                 names=range(len(layout.names)),
                 index_col=False,
@@ -55,7 +59,7 @@ def read_text(path: Path, log_map: LogMap) -> Table:
                 skip_blank_lines=False,
                 skipinitialspace=True,
                 on_bad_lines="warn",
-                chunksize=BLOCK,
+                chunksize=max(1, min(BLOCK, CELLS // len(layout.names))),
                 low_memory=False,
             )
             with reader:
@@ -68,7 +72,7 @@ def read_text(path: Path, log_map: LogMap) -> Table:
         dropped = [str(one.message) for one in said if issubclass(one.category, pd.errors.ParserWarning)]
     except (UnicodeDecodeError, UnicodeError) as error:
         raise _undecodable(path, log_map, error) from error
-    except (pd.errors.ParserError, pd.errors.EmptyDataError) as error:
+    except (pd.errors.ParserError, pd.errors.EmptyDataError, csv.Error) as error:
         fix = "say delimiter, skip and header in [log] of the map"
         raise LogError(Problem("the log cannot be read as a table", str(path), str(error).strip(), fix)) from error
     if not collector.seen:
@@ -85,6 +89,29 @@ def read_text(path: Path, log_map: LogMap) -> Table:
             raise _too_wide(path, bad[0], why)
     cells.judge(table, log_map, len(t))
     return table
+
+
+class _Lines(io.RawIOBase):
+    """The bytes of a log, whose lines may be no longer than the limit: a line is held in memory as a whole."""
+
+    def __init__(self, path: Path):
+        self.path, self.file, self.since = path, path.open("rb", buffering=0), 0
+
+    def readable(self) -> bool:
+        return True
+
+    def readinto(self, buffer: Any) -> int:
+        n = self.file.readinto(buffer) or 0
+        block = bytes(buffer[:n])
+        first = min((at for at in (block.find(b"\n"), block.find(b"\r")) if at >= 0), default=n)
+        LOG_LINE.hold(self.since + first, str(self.path), LogError)
+        last = max(block.rfind(b"\n"), block.rfind(b"\r"))
+        self.since = self.since + n if last < 0 else n - 1 - last
+        return n
+
+    def close(self) -> None:
+        self.file.close()
+        super().close()
 
 
 @dataclass(frozen=True)
@@ -104,14 +131,17 @@ def look(path: Path, log_map: LogMap) -> Layout:
         text = content.decode(log_map.encoding, errors="strict" if len(content) < PEEK else "replace")
     except (UnicodeDecodeError, UnicodeError) as error:
         raise _undecodable(path, log_map, error) from error
-    lines = text.lstrip("\ufeff").splitlines()[: log_map.skip + 50]
+    # Not ``splitlines``, which also divides at marks that are no ends of lines to the reader of rows.
+    lines = re.split(r"\r\n|\n|\r", text.lstrip("\ufeff"))[: log_map.skip + 50]
     at = log_map.skip
     if len(lines) <= at or not any(line.strip() for line in lines[at:]):
         why = f"it has {len(lines)} lines, of which {at} are to be skipped"
         raise LogError(Problem("the log has no rows", str(path), why, "check 'skip' in [log], and the file"))
+    LOG_LINE.hold(max(len(line) for line in lines) + 1, str(path), LogError)
     delimiter = log_map.delimiter or _delimiter(lines[at:])
     if log_map.header:
         names = _fields(lines[at], delimiter)
+        LOG_COLUMNS.hold(len(names), f"{path}, line {at + 1}", LogError)
         if all(_is_number(name) for name in names):
             why = f"the line is '{lines[at][:60]}'"
             fix = "say header = false in [log] and give columns by number, or correct 'skip'"
@@ -125,6 +155,7 @@ def look(path: Path, log_map: LogMap) -> Layout:
                 raise _too_wide(path, number, f"it has {len(fields)} fields, the header has {len(names)}")
         return Layout(names, at + 1, delimiter, f"{path}, line {at + 1}")
     width = max(len(_fields(line, delimiter)) for line in lines[at : at + 20])
+    LOG_COLUMNS.hold(width, f"{path}, line {at + 1}", LogError)
     if log_map.fields not in (None, width):
         why = f"its rows have {width} fields, and the map is for rows of {log_map.fields}"
         fix = "use the map or preset made for this log, or correct delimiter, skip and fields in [log]"
@@ -191,7 +222,7 @@ def _delimiter(lines: list[str]) -> str:
 def _fields(line: str, delimiter: str) -> list[str]:
     if delimiter == " ":
         return line.split()
-    return [field.strip() for field in next(csv.reader(io.StringIO(line), delimiter=delimiter), [])]
+    return [field.strip() for field in next(csv.reader([line], delimiter=delimiter), [])]
 
 
 def _is_number(text: str) -> bool:

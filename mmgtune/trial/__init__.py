@@ -2,10 +2,10 @@
 
 schema          columns of a file, their units and meaning
 model           a trial in memory
-parquet         reading and writing a file; metadata: the facts in it
+parquet         reading and writing a file; metadata: the facts in it; digest: told from damage; footer: its size
 dataset         folders of files; split: which of them tune and which test
 unusable        what forbids using a trial
-checks          everything odd about one: motion_checks, control_checks; kinematics: what they measure
+checks          everything odd about one: motion_checks, control_checks, cross_checks; kinematics: what they measure
 pieces          long trials cut into windows
 wind            the wind it was measured in; surroundings: all that was measured around the ship
 smoothing       channels without their noise

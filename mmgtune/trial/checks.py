@@ -7,9 +7,10 @@ import difflib
 import numpy as np
 
 from .control_checks import control_findings
+from .cross_checks import cross_findings
 from .finding import SEVERITIES, Finding
 from .model import Trial
-from .motion_checks import motion_findings
+from .motion_checks import CONTRADICTED, motion_findings
 from .schema import COLUMNS, OPTIONAL
 from .unusable import unusable
 from .wind import WIND_PAIRS
@@ -17,8 +18,10 @@ from .wind import WIND_PAIRS
 __all__ = ["Finding", "check_trial"]
 
 
-def check_trial(trial: Trial) -> list[Finding]:
+def check_trial(trial: Trial, L_pp: float | None = None) -> list[Finding]:
     """Everything a user should know about a trial, worst first.
+
+    L_pp  of the ship [m], where it is known: speeds and revolutions are then held against it
 
     Where there are errors the trial cannot be used, and nothing but them is reported: ``read_trial`` raises them as
     TrialError, so they are seen here only for trials made in memory.
@@ -28,9 +31,15 @@ def check_trial(trial: Trial) -> list[Finding]:
     if errors:
         return [Finding("error", problem.what, problem.where, problem.why, problem.fix) for problem in errors]
     with np.errstate(all="ignore"):
-        found = (
-            motion_findings(trial, where) + control_findings(trial, where) + _wind(trial, where) + _facts(trial, where)
-        )
+        motion = motion_findings(trial, where)
+        contradicted = any(one.what == CONTRADICTED for one in motion)
+        found = [
+            *motion,
+            *control_findings(trial, where),
+            *cross_findings(trial, where, L_pp, contradicted),
+            *_wind(trial, where),
+            *_facts(trial, where),
+        ]
     return sorted(found, key=lambda finding: SEVERITIES.index(finding.severity))
 
 
@@ -73,6 +82,16 @@ def _facts(trial: Trial, where: str) -> list[Finding]:
             )
     for name in trial.ignored:
         found.append(Finding("note", f"column '{name}' holds no numbers and is ignored", f"{where}, column '{name}'"))
+    if trial.path is not None and not trial.sealed:
+        found.append(
+            Finding(
+                "note",
+                "the file holds no digest of its data",
+                where,
+                "damage that leaves readable numbers would not be noticed",
+                "write it with mmgtune.trial.write_trial, which adds one",
+            )
+        )
     if trial.source == "generated":
         found.append(Finding("note", "generated, not measured", where))
     elif not trial.source:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from ..errors import Problem, closest
+from ..errors import Problem, brief, closest
+from ..limits import FACTS_BYTES, NAME, NESTING
+from ..toml_reading import depth, finite
 from .schema import COLUMNS, METADATA, SCHEMA, SOURCES
 
 
@@ -20,35 +21,42 @@ def facts_of(raw: bytes | None, path: Path, columns: Sequence[str]) -> tuple[dic
     if raw is None:
         return {}, []
     where = f"{path}, metadata 'mmgtune'"
+    problem = FACTS_BYTES.problem(len(raw), where)
+    if problem is not None:
+        return {}, [problem]
     try:
         facts = json.loads(raw)
         if not isinstance(facts, dict):
             raise ValueError(f"it is a {type(facts).__name__}")
+        if depth(facts) > NESTING.most:
+            raise ValueError(f"it is nested more than {NESTING.most} levels deep")
     except (ValueError, RecursionError) as error:
         fix = 'write an object such as {"schema": 1, "ship": "...", "id": "..."}, or leave the metadata out'
         return {}, [Problem("the metadata is not a JSON object", where, str(error), fix)]
     problems = [
-        Problem(f"unknown key '{key}'", where, fix=closest(key, METADATA)) for key in facts if key not in METADATA
+        Problem(f"unknown key {brief(key)}", where, fix=closest(key, METADATA)) for key in facts if key not in METADATA
     ]
     if facts.get("schema", SCHEMA) != SCHEMA:
         fix = "update mmgtune, or write the file again"
-        problems.append(Problem(f"schema is {facts['schema']!r}, not {SCHEMA}", where, fix=fix))
+        problems.append(Problem(f"schema is {brief(facts['schema'])}, not {SCHEMA}", where, fix=fix))
     for key in ("id", "ship", "manoeuvre", "source", "note", "cut_from"):
-        if key in facts and not isinstance(facts[key], str):
-            problems.append(Problem(f"'{key}' is {facts[key]!r}, not text", where, fix=f'write "{key}": "..."'))
+        if key in facts and not _is_text(facts[key]):
+            problems.append(Problem(f"'{key}' is {brief(facts[key])}, not text", where, fix=f'write "{key}": "..."'))
     name = facts.get("id", "")
     if isinstance(name, str) and (name in (".", "..") or any(letter in "/\\" or letter < " " for letter in name)):
         problems.append(
             Problem(
-                f"id {name!r} cannot be the name of a file",
+                f"id {brief(name)} cannot be the name of a file",
                 where,
                 "results of a trial are written to files named after it",
                 "use letters, digits, '_' and '-'",
             )
         )
+    too_long = NAME.problem(len(name), where) if isinstance(name, str) else None
+    problems += [too_long] if too_long else []
     source = facts.get("source", "")
     if isinstance(source, str) and source not in ("", *SOURCES):
-        problems.append(Problem(f"source is {source!r}", where, fix=f"one of: {', '.join(SOURCES)}"))
+        problems.append(Problem(f"source is {brief(source)}", where, fix=f"one of: {', '.join(SOURCES)}"))
     return facts, problems + _noise(facts.get("noise", {}), where, columns)
 
 
@@ -60,9 +68,20 @@ def _noise(noise: object, where: str, columns: Sequence[str]) -> list[Problem]:
     known = list(dict.fromkeys([*COLUMNS, *columns]))
     for name, value in noise.items():
         if name not in known:
-            problems.append(Problem(f"noise of unknown column '{name}'", where, fix=closest(name, known)))
-        number = isinstance(value, (int, float)) and not isinstance(value, bool)
-        if not number or not math.isfinite(value) or value < 0.0:
-            what = f"noise of '{name}' is {value!r}, not a standard deviation"
+            problems.append(Problem(f"noise of unknown column {brief(name)}", where, fix=closest(name, known)))
+        number = finite(value)
+        if number is None or number < 0.0:
+            what = f"noise of {brief(name)} is {brief(value)}, not a standard deviation"
             problems.append(Problem(what, where, fix="write a number, zero or more, in the column's unit"))
     return problems
+
+
+def _is_text(value: object) -> bool:
+    """Whether a value is text that can be written again: JSON can name halves of characters, which cannot."""
+    if not isinstance(value, str):
+        return False
+    try:
+        value.encode("utf-8")
+    except UnicodeEncodeError:
+        return False
+    return True

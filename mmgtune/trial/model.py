@@ -30,6 +30,7 @@ class Trial:
     noise      standard deviations of sensor noise by file column, where known
     path       the file it was read from, None where it was made in memory
     sha256     of that file, "" where there is none
+    sealed     whether the file holds a digest of columns and facts, which agreed with them
     ignored    columns of the file that hold no numbers and were left out
     part_of    id of the trial this is a window of, "" for a whole trial
     cut_from   name of the run that this and other trials were cut from, "" where it is a run of its own
@@ -55,6 +56,7 @@ class Trial:
     note: str = ""
     path: Path | None = None
     sha256: str = ""
+    sealed: bool = False
     ignored: tuple[str, ...] = ()
     part_of: str = ""
     cut_from: str = ""

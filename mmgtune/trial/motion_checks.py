@@ -13,6 +13,8 @@ from .kinematics import FITS, IN_DEGREES, IN_EARTH_AXES, position_misfits, turni
 from .model import Trial
 from .schema import LARGEST_YAW_RATE, MOTION
 
+CONTRADICTED = "u, v and heading do not integrate to the positions"
+
 
 def motion_findings(trial: Trial, where: str) -> list[Finding]:
     """Findings on the motion channels of a trial that can be used."""
@@ -147,7 +149,7 @@ def _positions(trial: Trial, where: str) -> list[Finding]:
     return [
         Finding(
             "warning",
-            "u, v and heading do not integrate to the positions",
+            CONTRADICTED,
             f"{where}, columns 'x', 'y', 'psi', 'u' and 'v'",
             f"read in ship axes they miss by {100 * asked:.0f} % of the distance; {fits}",
             "give velocities over ground (not through the water), in ship axes, at midship, in m/s",

@@ -5,14 +5,19 @@ from __future__ import annotations
 import hashlib
 import json
 from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from .. import limits
 from ..arrays import FloatArray
 from ..errors import Problem, TrialError
 from ..files import atomic
+from .digest import DIGEST_KEY, digest
+from .footer import rows_of
 from .metadata import facts_of
 from .model import Trial
 from .schema import ATTRIBUTES, COLUMNS, METADATA_KEY, REQUIRED, SCHEMA
@@ -26,13 +31,14 @@ def read_trial(path: Path | str) -> Trial:
     they do not.  Raises TrialError with everything that is wrong in the file.
     """
     path = Path(path)
-    content, table = _table(path)
-    raw = table.schema.metadata or {}
-    columns, ignored, problems = _columns(table, path)
-    facts, wrong = facts_of(raw.get(METADATA_KEY), path, table.column_names)
-    problems = wrong + problems
+    held = _read(path)
+    columns = held.columns
+    facts, problems = facts_of(held.metadata.get(METADATA_KEY), path, held.names)
+    problems = problems + held.problems
+    if not problems:
+        problems = _unsealed(columns, held.metadata, path)
     # A column that holds no numbers has been reported; that it is missing as well would be the same news twice.
-    unreadable = [name for name in REQUIRED if name in table.column_names and name not in columns]
+    unreadable = [name for name in REQUIRED if name in held.names and name not in columns]
     problems += [
         problem
         for problem in unusable(columns, str(path))
@@ -52,8 +58,9 @@ def read_trial(path: Path | str) -> Trial:
         note=facts.get("note", ""),
         cut_from=facts.get("cut_from", ""),
         path=path,
-        sha256=hashlib.sha256(content).hexdigest(),
-        ignored=ignored,
+        sha256=held.sha256,
+        sealed=DIGEST_KEY in held.metadata,
+        ignored=held.ignored,
     )
 
 
@@ -82,40 +89,93 @@ def write_trial(trial: Trial, path: Path | str, overwrite: bool = False) -> Path
     }
     if trial.cut_from:
         facts["cut_from"] = trial.cut_from
-    schema = pa.schema(fields, metadata={METADATA_KEY: json.dumps(facts).encode()})
+    written = json.dumps(facts).encode()
+    schema = pa.schema(fields, metadata={METADATA_KEY: written, DIGEST_KEY: digest(values, written)})
     table = pa.table([pa.array(column) for column in values.values()], schema=schema)
     with atomic(path, overwrite) as part:
-        pq.write_table(table, part, compression="zstd")
+        pq.write_table(table, part, compression="zstd", write_page_checksum=True)
     return path
 
 
 def id_in(path: Path) -> str | None:
     """Id of a trial file that may be unusable otherwise; None where even that cannot be read."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
     try:
-        raw = _table(path)[1].schema.metadata or {}
-    except TrialError:
+        raw = pq.ParquetFile(path, pre_buffer=False).schema_arrow.metadata or {}
+    except (OSError, ValueError, pa.ArrowException):
         return None
     facts, _ = facts_of(raw.get(METADATA_KEY), path, ())
     written = facts.get("id")
     return written if isinstance(written, str) and written else path.stem
 
 
-def _table(path: Path) -> tuple[bytes, Any]:
-    """Content of the file and the table in it.  Raises TrialError."""
+def _unsealed(columns: dict[str, FloatArray], raw: Mapping[bytes, bytes], path: Path) -> list[Problem]:
+    """What is wrong where the file's digest is not that of what was read; nothing where it has none."""
+    if DIGEST_KEY not in raw or raw[DIGEST_KEY] == digest(columns, raw.get(METADATA_KEY, b"")):
+        return []
+    return [
+        Problem(
+            "the trial is not what was written: its columns or facts do not have the digest that the file holds",
+            f"{path}, metadata '{DIGEST_KEY.decode()}'",
+            "the file is damaged, or something other than mmgtune changed it and kept the digest",
+            "copy it again from where it was made; after a change that was meant, remove that key of the metadata",
+        )
+    ]
+
+
+@dataclass(frozen=True)
+class _Held:
+    """What a file holds.
+
+    columns   of numbers (n_samples,) by name
+    names     of all columns; ignored: of those that hold no numbers and are not of a trial
+    problems  with the columns
+    sha256    of the file
+    """
+
+    columns: dict[str, FloatArray]
+    names: list[str]
+    ignored: tuple[str, ...]
+    metadata: Mapping[bytes, bytes]
+    problems: list[Problem]
+    sha256: str
+
+
+def _read(path: Path) -> _Held:
+    """Read a file, nothing of it that is beyond the limits.  Raises TrialError."""
     import pyarrow as pa
     import pyarrow.parquet as pq
 
+    where = str(path)
     try:
-        content = path.read_bytes()
+        content = limits.content(path, limits.TRIAL_BYTES, TrialError)
     except OSError as error:
         fix = "check the path, and that you may read the file"
         raise TrialError(
-            Problem("the trial file cannot be opened", str(path), error.strerror or str(error), fix)
+            Problem("the trial file cannot be opened", where, error.strerror or str(error), fix)
         ) from error
     try:
         # Without worker threads: one still starting when a command fails quickly would abort the process at its exit.
         # ``read_table`` starts one whatever it is told.
-        return content, pq.ParquetFile(pa.BufferReader(content), pre_buffer=False).read(use_threads=False)
+        file = pq.ParquetFile(pa.BufferReader(content), pre_buffer=False, page_checksum_verification=True)
+        rows = rows_of(file.metadata, len(content), where, TrialError)
+        limits.TRIAL_SAMPLES.hold(rows, where, TrialError)
+        kinds = [(one.name, one.type) for one in file.schema_arrow]
+        names = [name for name, _ in kinds]
+        # Columns without numbers are named, never read.
+        numeric = [name for name, kind in kinds if pa.types.is_floating(kind) or pa.types.is_integer(kind)]
+        limits.TRIAL_VALUES.hold(rows * len(numeric), where, TrialError)
+        twice = sorted(name for name, count in Counter(names).items() if count > 1)
+        problems = [Problem(f"column '{name}' is there twice", where, fix="remove one of them") for name in twice]
+        for name, kind in kinds:
+            if name in COLUMNS and name not in numeric:
+                fix = f"write it as float64, in {COLUMNS[name].unit}"
+                problems.append(Problem(f"column '{name}' holds {str(kind)[:80]}, not numbers", where, fix=fix))
+        wanted = [name for name in numeric if name not in twice]
+        table = file.read(columns=wanted, use_threads=False)
+        columns = {name: _numbers(table.column(name)) for name in wanted}
     except (OSError, ValueError, pa.ArrowException) as error:
         if not content:
             what, fix = "the file is empty", "copy it again from where it was made"
@@ -124,7 +184,10 @@ def _table(path: Path) -> tuple[bytes, Any]:
         else:
             what, fix = "the file is not Parquet", "trials are Parquet files; convert it, for example with pandas"
         why = (str(error).splitlines() or [""])[0]
-        raise TrialError(Problem(what, str(path), why, fix)) from error
+        raise TrialError(Problem(what, where, why, fix)) from error
+    ignored = tuple(name for name in names if name not in numeric and name not in COLUMNS)
+    metadata = file.schema_arrow.metadata or {}
+    return _Held(columns, names, ignored, metadata, problems, hashlib.sha256(content).hexdigest())
 
 
 def _numbers(column: Any) -> FloatArray:
@@ -137,25 +200,3 @@ def _numbers(column: Any) -> FloatArray:
     if whole.null_count:
         whole = whole.fill_null(np.nan)
     return np.array(np.from_dlpack(whole))
-
-
-def _columns(table: Any, path: Path) -> tuple[dict[str, FloatArray], tuple[str, ...], list[Problem]]:
-    """Columns of numbers (n_samples,) by name, names of other columns, and problems."""
-    import pyarrow as pa
-
-    columns: dict[str, FloatArray] = {}
-    ignored: list[str] = []
-    problems: list[Problem] = []
-    twice = {name for name, count in Counter(table.column_names).items() if count > 1}
-    for name in sorted(twice):
-        problems.append(Problem(f"column '{name}' is there twice", str(path), fix="remove one of them"))
-    for k, name in enumerate(table.column_names):
-        kind = table.schema.field(k).type
-        if pa.types.is_floating(kind) or pa.types.is_integer(kind):
-            columns[name] = _numbers(table.column(k))
-        elif name in COLUMNS:
-            fix = f"write it as float64, in {COLUMNS[name].unit}"
-            problems.append(Problem(f"column '{name}' holds {kind}, not numbers", str(path), fix=fix))
-        else:
-            ignored.append(name)
-    return columns, tuple(ignored), problems

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
+from ..arrays import BoolArray, FloatArray
 from ..inputs import INPUTS
 from ..physics.quantities import STATES
 
@@ -66,6 +69,15 @@ CHANNELS = STATES
 
 RUDDERS = tuple(name for name, one in INPUTS.items() if one.role == "rudder")
 DIRECTIONS = tuple(name for name, column in SURROUNDINGS.items() if column.counted_from)
+
+LARGEST = {"s": 1e11, "m": 1e9, "rad": 1e6, "deg": 1e6, "m/s": 1e4, "rad/s": 1e4, "1/s": 1e5}
+"""Sizes by unit that nothing about a ship has, not even written in another unit: such numbers are damage."""
+
+
+def impossible(values: FloatArray, unit: str) -> BoolArray:
+    """Which values (n,) are beyond what anything about a ship can be; NaN is not."""
+    return np.asarray(np.abs(values) > LARGEST.get(unit, np.inf))
+
 
 LARGEST_RUDDER = 1.6
 """Rudder angle [rad] beyond which a column must be in degrees."""

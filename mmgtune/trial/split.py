@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
+from .. import limits
 from ..errors import Problem, TrialError, closest
 from ..toml_reading import TomlReader, toml_of
 
@@ -32,9 +33,9 @@ def read_split(path: Path, known: Iterable[str] | None) -> tuple[Split, list[Pro
     known  ids of the trials there are; None where that is not known because a file cannot be read
     """
     try:
-        text = path.read_text(encoding="utf-8")
+        text = limits.content(path, limits.SPLIT_BYTES, TrialError).decode("utf-8-sig")
         data = toml_of(text, "the split", str(path), TrialError)
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, ValueError) as error:
         return Split(), [Problem("the split cannot be read", str(path), str(error), "it must be UTF-8 text")]
     except TrialError as error:
         return Split(), list(error.problems)

@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import Problem, closest
 from .kinematics import FITS, IN_DEGREES, position_misfits, turning
-from .schema import COLUMNS, LARGEST_RUDDER, MAIN_INPUTS, MOTION, REQUIRED, RUDDERS
+from .schema import COLUMNS, LARGEST, LARGEST_RUDDER, MAIN_INPUTS, MOTION, REQUIRED, RUDDERS, impossible
 
 
 def unusable(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
@@ -24,13 +24,11 @@ def unusable(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
         what = "the trial has no samples" if samples == 0 else "the trial has one sample"
         return [*problems, Problem(what, where, "a motion needs two or more", "write the whole record")]
     with np.errstate(all="ignore"):
-        return (
-            problems
-            + _time(columns, where)
-            + _values(columns, where)
-            + _rudder(columns, where)
-            + _degrees(columns, where)
+        problems += _time(columns, where) + _values(columns, where) + _rudder(columns, where)
+        damaged = any(
+            impossible(values, COLUMNS[name].unit).any() for name, values in columns.items() if name in COLUMNS
         )
+        return problems if damaged else problems + _degrees(columns, where)
 
 
 def increasing(t: FloatArray) -> bool:
@@ -81,6 +79,16 @@ def _values(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
 
     for name, values in columns.items():
         infinite, missing = np.isinf(values), np.isnan(values)
+        damaged = impossible(values, COLUMNS[name].unit) & ~infinite if name in COLUMNS else infinite & ~infinite
+        if damaged.any():
+            unit = COLUMNS[name].unit
+            say(
+                f"'{name}' is up to {np.abs(values[damaged]).max():.3g} {unit} in {damaged.sum()} rows",
+                name,
+                _first(damaged),
+                f"nothing about a ship is beyond {LARGEST[unit]:g} {unit}: the file or its source is damaged",
+                "copy or make the file again; mark samples that were never measured as NaN",
+            )
         if name == "t":
             continue
         if infinite.any():

@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 
 from mmgtune.errors import OutputError, TrialError
 from mmgtune.trial import Trial, read_trial, write_trial
-from mmgtune.trial.schema import ATTRIBUTES
+from mmgtune.trial.schema import COLUMNS, LARGEST
 
 from .made import changed, made, problems_of, with_value, write_raw
 
@@ -53,7 +53,7 @@ names = st.text("abcdefghijklmnopqrstuvwxyz_0123456789", min_size=1, max_size=12
 
 @st.composite
 def trials(draw: st.DrawFn) -> Trial:
-    """Any numbers that a file may hold: gaps in the motion, uneven time, extremes of floating point."""
+    """Any numbers that a file may hold: gaps in the motion, uneven time, extremes of what a ship and a float may be."""
     samples = draw(st.integers(2, 12))
 
     def column(low: float, high: float, gaps: bool = False) -> np.ndarray:
@@ -64,10 +64,10 @@ def trials(draw: st.DrawFn) -> Trial:
         )
         return np.array(first + rest)
 
-    limits = {"x": 1e300, "y": 1e300, "psi": 0.09, "u": 1e9, "v_m": 1e9, "r": 1e-3}
+    limits = {"x": LARGEST["m"], "y": LARGEST["m"], "psi": 0.09, "u": LARGEST["m/s"], "v_m": LARGEST["m/s"], "r": 1e-3}
     motion = {name: column(-limit, limit, gaps=True) for name, limit in limits.items()}
     steps = draw(st.lists(st.floats(1e-3, 10.0), min_size=samples, max_size=samples))
-    extra = draw(st.dictionaries(names.filter(lambda name: name not in {*ATTRIBUTES, "v_m"}), st.none(), max_size=3))
+    extra = draw(st.dictionaries(names.filter(lambda name: name not in {*COLUMNS, "v_m"}), st.none(), max_size=3))
     return Trial(
         id=draw(names),
         ship=draw(st.text(max_size=8)),
@@ -75,9 +75,9 @@ def trials(draw: st.DrawFn) -> Trial:
         source=draw(st.sampled_from(["measured", "generated", ""])),
         t=np.cumsum(steps),
         **motion,
-        n=column(-1e300, 1e300),
+        n=column(-LARGEST["1/s"], LARGEST["1/s"]),
         delta=column(-1.5, 1.5),
-        extra={name: column(-1.5, 1.5, gaps=True) for name in extra},
+        extra={name: column(-1e300, 1e300, gaps=True) for name in extra},
         noise=draw(st.dictionaries(st.sampled_from(["x", "psi", "v"]), st.floats(0.0, 1e9))),
         note=draw(st.text(max_size=20)),
     )

@@ -1,0 +1,80 @@
+"""How much files and options may ask for: every limit, and the error that names it.
+
+What is read or made in proportion to something written in a file is held against its limit before it is made, so that
+no file and no option fills the machine.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from .errors import MmgtuneError, Problem
+
+
+@dataclass(frozen=True)
+class Limit:
+    """The most of something.
+
+    most  the limit, in ``unit``
+    of    what it is of, as messages name it
+    fix   what to do beyond it
+    """
+
+    most: int
+    unit: str
+    of: str
+    fix: str
+
+    def problem(self, asked: float, where: str, why: str = "") -> Problem | None:
+        """What to say where ``asked`` is more than there may be, else None."""
+        if asked <= self.most:
+            return None
+        size = f"{asked:.0f}" if asked < 1e15 else f"{asked:.3g}"
+        why = f"the limit is {self.most}" + (f"; {why}" if why else "")
+        return Problem(f"{self.of} of {size} {self.unit}: too many", where, why, self.fix)
+
+    def hold(self, asked: float, where: str, error: type[MmgtuneError], why: str = "") -> None:
+        """Raise ``error`` where ``asked`` is more than there may be."""
+        problem = self.problem(asked, where, why)
+        if problem is not None:
+            raise error(problem)
+
+
+MAP_BYTES = Limit(256 << 10, "bytes", "a map", "give the map of a log: a TOML file of a page or two")
+MAP_ENTRIES = Limit(100, "entries", "[[logs]]", "use wider patterns, or several maps")
+SPLIT_BYTES = Limit(1 << 20, "bytes", "a split", "give a TOML file with the ids that tune and test")
+NESTING = Limit(32, "levels", "tables and lists in each other", "write it flat")
+NAME = Limit(120, "characters", "an id", "ids are names of files: give a shorter one")
+FACTS_BYTES = Limit(1 << 20, "bytes", "metadata", "write only ids, sources and a note into it")
+
+LOG_BYTES = Limit(4 << 30, "bytes", "a text log", "split it, a file a day or less")
+LOG_LINE = Limit(128 << 10, "bytes", "a line", "give a log with a row a line: this one is damaged, or of another kind")
+LOG_COLUMNS = Limit(4096, "columns", "a log", "write only those that are needed")
+LOG_PARTS = Limit(200, "parts", "a record", "correct the clock's stamps in the log, or split it")
+GRID_SAMPLES = Limit(1_000_000, "samples", "a trial", "give a longer step, or cut the log")
+GRID_PER_ROW = 200
+"""Samples that a row of a log may become, beyond GRID_FREE of all: short steps add none that were measured."""
+GRID_FREE = 20_000
+
+TRIAL_SAMPLES = Limit(2_000_000, "samples", "a trial", "cut it into several, or give fewer samples a second")
+TRIAL_VALUES = Limit(40_000_000, "values", "a trial", "leave out columns that nothing uses, or cut it into several")
+TRIAL_BYTES = Limit(1 << 30, "bytes", "a trial file", "leave out columns that nothing uses, or cut it into several")
+PARQUET_BYTES = Limit(4 << 30, "bytes", "a Parquet file", "write only the columns that are needed, or split it")
+FOOTER_VALUES = Limit(100_000, "column chunks", "a Parquet file", "write it with fewer columns and longer row groups")
+
+ROWS_PER_BYTE = 8
+"""Rows that a byte of a Parquet file may stand for beyond FREE_ROWS: measured rows do not compress further."""
+FREE_ROWS = 1_000_000
+
+
+def content(path: Path, limit: Limit, error: type[MmgtuneError]) -> bytes:
+    """A file's bytes, never more than the limit.  Raises ``error`` beyond it, and OSError."""
+    # Block by block: one read would take all of the limit at once, and not everything that is opened has a size.
+    found = bytearray()
+    with path.open("rb") as file:
+        while len(found) <= limit.most and (block := file.read(1 << 20)):
+            found += block
+    if len(found) > limit.most:
+        raise error(Problem(f"{limit.of} of more than {limit.most} bytes", str(path), "that is the limit", limit.fix))
+    return bytes(found)

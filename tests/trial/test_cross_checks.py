@@ -1,0 +1,131 @@
+"""Channels against each other: factors, signs and columns that were never measured; and nothing said of good ones."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mmgtune.importing import import_logs, load_map
+from mmgtune.profile import load_profile
+from mmgtune.trial import Trial, check_trial, load_trials
+
+from .made import DEG, made, said
+
+DATA = Path(os.environ.get("MMGTUNE_DATA", Path(__file__).parents[2].parent / "shared" / "data"))
+L_PP = 83.0
+SUZAKU = load_trials("suzaku").trials
+
+
+def warnings_of(trial: Trial, L_pp: float | None = L_PP) -> list[str]:
+    return [f"{f.what}: {f.why}; {f.fix}" for f in check_trial(trial, L_pp) if f.severity == "warning"]
+
+
+@pytest.mark.parametrize("name", SUZAKU)
+@pytest.mark.parametrize("factor", [10.0, 60.0, 1.944, 0.1])
+@pytest.mark.parametrize("axis", ["x", "y"])
+def test_positions_of_one_axis(name: str, axis: str, factor: float) -> None:
+    trial = SUZAKU[name]
+    warnings = warnings_of(replace(trial, **{axis: factor * getattr(trial, axis)}))
+    assert len(warnings) >= 1
+    if factor > 10.0:
+        found = [re.match(rf"'{axis}' goes ([\d.]+) times as far as", one) for one in warnings]
+        assert any(one and float(one[1]) == pytest.approx(factor, rel=0.02) for one in found) or any(
+            "do not integrate to the positions" in one for one in warnings
+        )
+
+
+def test_a_factor_that_noise_hides_from_the_whole_is_found_by_axis() -> None:
+    trial = made(zigzag=True, seed=1)
+    (warning,) = warnings_of(replace(trial, x=60.0 * trial.x))
+    assert "'x' goes 60 times as far as 'u', 'v' and 'psi' say" in warning
+    assert "divide 'x' by 60" in warning
+
+
+def change_n(change: Callable[[np.ndarray], np.ndarray]) -> Callable[[Trial], Trial]:
+    return lambda trial: replace(trial, n=change(np.array(trial.n)))
+
+
+@pytest.mark.parametrize("name", [name for name in SUZAKU if "40" not in name])
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        (change_n(lambda n: 0.0 * n), "the propeller stands all the time, and the ship keeps her way"),
+        (change_n(lambda n: -n), "the propeller turns astern, and the ship keeps going ahead"),
+        (change_n(lambda n: 10.0 * n), "of her length: too little"),
+        (change_n(lambda n: 0.1 * n), "of her length: too much"),
+    ],
+)
+def test_revolutions(name: str, change: Callable[[Trial], Trial], expected: str) -> None:
+    (warning,) = warnings_of(change(SUZAKU[name]))
+    assert expected in warning
+
+
+def test_revolutions_without_a_length() -> None:
+    trial = made(zigzag=True, seed=1)
+    assert "the propeller stands" in said(replace(trial, n=0.0 * trial.n))
+    assert "turns astern" in said(replace(trial, n=-trial.n))
+
+
+def test_a_ship_that_runs_out_has_a_propeller_that_stands() -> None:
+    t = np.arange(600.0)
+    u = 3.0 / (1.0 + 0.1 * 3.0 * t / L_PP)
+    zero = np.zeros(600)
+    x = np.concatenate([[0.0], np.cumsum(0.5 * (u[1:] + u[:-1]))])
+    trial = Trial("a", "", "", "measured", t=t, x=x, y=zero, psi=zero, u=u, v_m=zero, r=zero, n=zero, delta=zero)
+    assert not warnings_of(trial)
+    assert not warnings_of(trial, None)
+    assert not warnings_of(replace(trial, n=zero - 1.0))
+
+
+@pytest.mark.parametrize("seed", [None, 1])
+@pytest.mark.parametrize("angle", [0.0, 5.0 * DEG, -0.4 * DEG])
+def test_a_rudder_that_stands_while_the_ship_is_steered(seed: int | None, angle: float) -> None:
+    trial = made(zigzag=True, seed=seed)
+    (warning,) = warnings_of(replace(trial, delta=np.full(trial.n_samples, angle)))
+    assert f"the rudder stands at {angle / DEG:.3g} deg all the time, and the ship is steered" in warning
+    assert "deg/s to starboard and" in warning
+    # A ship may turn for ever with her rudder over.
+    turn = made(seed=seed)
+    assert not warnings_of(replace(turn, delta=np.full(turn.n_samples, 20.0 * DEG)))
+    assert "'delta' was not measured" in said(replace(turn, delta=0.0 * turn.delta))
+
+
+def test_a_rudder_far_over() -> None:
+    trial = made(angle=35.0 * DEG)
+    assert not warnings_of(trial)
+    (warning,) = warnings_of(replace(trial, delta=1.944 * trial.delta))
+    assert "the rudder is over by 68 deg" in warning
+
+
+def test_speed_against_length() -> None:
+    trial = made()
+    scaled = replace(trial, **{name: 12.0 * getattr(trial, name) for name in ("x", "y", "u", "v_m")}, n=12.0 * trial.n)
+    assert "a Froude number of" in "\n".join(warnings_of(scaled))
+    assert not warnings_of(trial)
+
+
+@pytest.mark.parametrize(
+    ("folder", "preset", "ship", "step"),
+    [
+        ("esso-osaka-frt", "frt-ds-esso", "esso_osaka_3m", None),
+        ("kvlcc2-marin", "simman-marin", "kvlcc2", 1.0),
+        ("kvlcc2-hsva", "simman-hsva", "kvlcc2_l7", None),
+    ],
+)
+def test_nothing_is_said_of_what_was_measured(folder: str, preset: str, ship: str, step: float | None) -> None:
+    logs = sorted([*(DATA / folder).glob("**/*.csv"), *(DATA / folder).glob("*.dat")])
+    if not logs:
+        pytest.skip(f"no measured data at {DATA / folder}; MMGTUNE_DATA names their folder")
+    L_pp = load_profile(ship).L_pp
+    # Real logs have gaps and spikes, and what is logged as the rudder of this model are orders.
+    known = ("has gaps", "spikes", "rudder moves at up to")
+    for trial in import_logs(logs, load_map(preset, preset=True), ".", step, dry_run=True).trials:
+        for length in (L_pp, None):
+            odd = [one for one in warnings_of(trial, length) if not any(word in one for word in known)]
+            assert not odd, (trial.id, odd)
