@@ -10,9 +10,11 @@ Everything listed here is what the commands call; it is imported when first used
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
 
+TYPE_CHECKING = False  # as type checkers know it; ``typing`` takes most of the time that this module would
 if TYPE_CHECKING:
+    from typing import Any
+
     from .checking import CheckReport as CheckReport
     from .checking import check as check
     from .checking import read_baseline as read_baseline
