@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 import tomllib
 from typing import Any
 
@@ -13,9 +14,19 @@ from .errors import MmgtuneError, Problem, closest
 def toml_of(text: str, what: str, where: str, error: type[MmgtuneError]) -> dict[str, Any]:
     """The tables written in ``text``.  Raises ``error`` where ``what``, such as "the profile", is not TOML."""
     try:
-        return tomllib.loads(text)
+        return tomllib.loads(text.removeprefix("\ufeff"))
     except tomllib.TOMLDecodeError as why:
         raise error(Problem(f"{what} is not valid TOML", where, str(why), "correct the line named")) from why
+    except RecursionError:
+        raise error(Problem(f"{what} is nested too deeply", where, fix="it takes tables and lists, not more")) from None
+    except ValueError as why:  # an integer of thousands of digits
+        raise error(Problem(f"{what} holds what cannot be read", where, str(why))) from why
+
+
+def short(value: Any) -> str:
+    """A value as messages show it: written as in Python, the middle left out where that is long."""
+    text = repr(value)
+    return text if len(text) <= 80 else f"{text[:50]} ... {text[-20:]}"
 
 
 def line_index(text: str) -> dict[tuple[str, str], int]:
@@ -61,7 +72,7 @@ class TomlReader:
     def schema(self, number: int) -> None:
         """The version of the format, which must be ``number``."""
         if self.data.get("schema") != number:
-            what = f"schema is {self.data.get('schema')!r}, not {number}"
+            what = f"schema is {short(self.data.get('schema'))}, not {number}"
             self.problem(what, "", "schema", fix=f"write 'schema = {number}' on top")
 
     def unknown(self, name: str, table: dict[str, Any], known: tuple[str, ...]) -> None:
@@ -75,7 +86,7 @@ class TomlReader:
         value = table.get(key, "")
         if isinstance(value, str):
             return value
-        self.problem(f"'{named(name, key)}' is {value!r}, not text", name, key, fix=f'write {key} = "..."')
+        self.problem(f"'{named(name, key)}' is {short(value)}, not text", name, key, fix=f'write {key} = "..."')
         return ""
 
     def choice(self, name: str, table: dict[str, Any], key: str, allowed: tuple[str, ...]) -> str | None:
@@ -85,7 +96,7 @@ class TomlReader:
         if isinstance(table[key], str) and table[key] in allowed:
             return str(table[key])
         words = ", ".join(repr(one) for one in dict.fromkeys(allowed))
-        self.problem(f"'{named(name, key)}' is {table[key]!r}", name, key, fix=f"one of: {words}")
+        self.problem(f"'{named(name, key)}' is {short(table[key])}", name, key, fix=f"one of: {words}")
         return None
 
     def quantities(
@@ -100,10 +111,12 @@ class TomlReader:
                 self.problem(f"'{shown}': {error}", name, key)
         elif not isinstance(written, (int, float)) or isinstance(written, bool):
             fix = f"write {key} = {units.example(unit)}"
-            self.problem(f"'{shown}' is {written!r}, not a number", name, key, fix=fix)
+            self.problem(f"'{shown}' is {short(written)}, not a number", name, key, fix=fix)
         elif unit not in units.DIMENSIONLESS:
-            fix = f'write {key} = "{written} {unit}"'
-            self.problem(f"'{shown}' = {written} has no unit", name, key, fix=fix)
+            fix = f'write {key} = "{short(written)} {unit}"'
+            self.problem(f"'{shown}' = {short(written)} has no unit", name, key, fix=fix)
+        elif abs(written) > sys.float_info.max and isinstance(written, int):
+            self.problem(f"'{shown}' is {short(written)}, which is no number a computer can count with", name, key)
         else:
             return (float(written),)
         return None
