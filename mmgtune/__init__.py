@@ -7,6 +7,23 @@
 What there is stands in ``__init__.pyi``: what the commands call, imported when first used.
 """
 
-import lazy_loader
+_front = None
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+
+def _attached():  # type: ignore[no-untyped-def]
+    """How to get a name, and which there are; imported late, as a command must answer Ctrl-C from its first moment."""
+    global _front
+    if _front is None:
+        import lazy_loader
+
+        _front = lazy_loader.attach_stub(__name__, __file__)
+    return _front
+
+
+def __getattr__(name: str) -> object:
+    get, _, names = _attached()
+    return names if name == "__all__" else get(name)
+
+
+def __dir__() -> list[str]:
+    return list(_attached()[2])

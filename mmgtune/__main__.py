@@ -1,19 +1,19 @@
-"""``python -m mmgtune``, and the command itself: Ctrl-C has its exit code from the first moment."""
+"""``python -m mmgtune``, and the command itself: Ctrl-C and SIGTERM have their exit codes from the first moment."""
 
+import _signal  # type: ignore[import-not-found]  # what ``signal`` wraps; to import that takes longer than all else before the handlers are there
 import os
-import signal
-import sys
-from typing import Any
 
 
-def _too_early(_signal: int, _frame: Any) -> None:
-    os.write(sys.stderr.fileno(), b"interrupted: nothing was begun\n")
-    os._exit(130)
+def _too_early(number: int, _frame: object) -> None:
+    word = b"interrupted" if number == _signal.SIGINT else b"terminated"
+    os.write(2, word + b": nothing was begun\n")
+    os._exit(128 + number)
 
 
 def main() -> None:
     """Run the command line."""
-    signal.signal(signal.SIGINT, _too_early)
+    _signal.signal(_signal.SIGINT, _too_early)
+    _signal.signal(_signal.SIGTERM, _too_early)
     from .cli import main as command_line
 
     command_line()

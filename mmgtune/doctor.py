@@ -6,6 +6,7 @@ import os
 import platform
 import sys
 import time
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
@@ -96,16 +97,18 @@ def _backends() -> list[Finding]:
 
 
 def _cache() -> Finding:
-    from .backends.compiling import cache_folder
+    from .backends.kernel_folder import KernelFolderWarning, kernel_folder, wanted_folder
 
-    path = cache_folder()
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always", KernelFolderWarning)
+        path = kernel_folder()
     kernels = list(path.glob("mmgtune_kernel_*.py"))
     size = sum(file.stat().st_size for file in path.rglob("*") if file.is_file()) / 1e6
     text = f"{path}: {len(kernels)} kernels, {size:.1f} MB"
-    chosen = os.environ.get("MMGTUNE_CACHE")
-    lasting = path.name == "kernels"
-    fix = "" if lasting else "every run compiles anew (10-40 s): set MMGTUNE_CACHE to a folder you may write to"
-    return Finding("compile cache", text + (" (MMGTUNE_CACHE)" if chosen and lasting else ""), fix=fix)
+    lasting = path == wanted_folder()
+    fix = "" if lasting else "every run compiles anew (10-40 s): set MMGTUNE_CACHE to a folder only you may write to"
+    chosen = " (MMGTUNE_CACHE)" if os.environ.get("MMGTUNE_CACHE") and lasting else ""
+    return Finding("compile cache", text + chosen + "".join(f"; {one.message}" for one in said), fix=fix)
 
 
 def _data() -> list[Finding]:

@@ -61,10 +61,6 @@ class OutputError(MmgtuneError):
     """A result cannot be written."""
 
 
-class Interrupted(MmgtuneError):
-    """Stopped by the user; the best result so far has been saved where the message says.  Exit code 130."""
-
-
 def closest(name: str, known: list[str] | tuple[str, ...]) -> str:
     """A sentence naming the nearest known names, or what is known if nothing is near."""
     import difflib

@@ -4,11 +4,19 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
+import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
 from .errors import OutputError, Problem
+
+_PARTS: set[Path] = set()
+"""Temporary files of this process."""
+
+_LEFT = re.compile(r"\..+\.[a-z0-9_]{8}\.part")
+"""What ``atomic`` calls its temporary files."""
 
 
 @contextlib.contextmanager
@@ -19,6 +27,17 @@ def atomic(path: Path, overwrite: bool = True) -> Iterator[Path]:
     """
     if not overwrite and path.exists():
         raise OutputError(exists(path))
+    with half(path) as part:
+        yield part
+        with part.open("rb") as file:
+            os.fsync(file.fileno())
+        os.chmod(part, 0o644)
+        os.replace(part, path)
+
+
+@contextlib.contextmanager
+def half(path: Path) -> Iterator[Path]:
+    """A temporary file beside ``path``, gone when the block ends.  Raises OutputError where the system refuses."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
@@ -26,16 +45,63 @@ def atomic(path: Path, overwrite: bool = True) -> Iterator[Path]:
     except OSError as error:
         raise cannot_write(path, error) from error
     part = Path(name)
+    _PARTS.add(part)
     try:
         yield part
-        with part.open("rb") as file:
-            os.fsync(file.fileno())
-        os.chmod(part, 0o644)
-        os.replace(part, path)
     except OSError as error:
         raise cannot_write(path, error) from error
     finally:
         part.unlink(missing_ok=True)
+        _PARTS.discard(part)
+
+
+def abandon() -> None:
+    """Remove what this process has half-written, before it ends at once."""
+    for part in tuple(_PARTS):
+        with contextlib.suppress(OSError):
+            part.unlink()
+
+
+def is_left_over(path: Path) -> bool:
+    """Whether a file is the half of one, left by a process that was killed while it wrote."""
+    return _LEFT.fullmatch(path.name) is not None
+
+
+def remove_left_overs(folder: Path) -> None:
+    """Remove halves of files from a folder and the folders in it; nobody else may be writing there."""
+    for path in (*folder.glob(".*.part"), *folder.glob("*/.*.part")):
+        if is_left_over(path):
+            with contextlib.suppress(OSError):
+                path.unlink()
+
+
+@contextlib.contextmanager
+def alone_in(folder: Path) -> Iterator[None]:
+    """No other process is inside for the same folder, where there are such locks; a lock dies with its holder.
+
+    Raises OutputError where another is.
+    """
+    if sys.platform == "win32":
+        yield
+        return
+    import fcntl
+
+    try:
+        handle = os.open(folder, os.O_RDONLY)
+    except OSError as error:
+        raise cannot_write(folder, error) from error
+    try:
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            why = "each would write over what the other has found"
+            fix = "choose another folder, or wait for the other run to end"
+            raise OutputError(Problem("another run is writing there", str(folder), why, fix)) from None
+        except OSError:  # some network folders have no locks
+            pass
+        yield
+    finally:
+        os.close(handle)
 
 
 def write_text(path: Path, text: str, overwrite: bool = True) -> Path:

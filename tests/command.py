@@ -6,6 +6,8 @@ that Python takes to start; those that are to be interrupted, or are about the s
 
 from __future__ import annotations
 
+import contextlib
+import io
 import json
 import os
 import signal
@@ -18,6 +20,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
+
+import pytest
 
 ROOT = Path(__file__).parent.parent
 
@@ -100,6 +104,24 @@ def run_until(ready: Callable[[], bool], sent: signal.Signals, *arguments: str |
     process.send_signal(sent)
     out, err = process.communicate(timeout=120)
     return Ended(process.returncode, out, err)
+
+
+def typed(*arguments: str | Path) -> Ended:
+    """Run ``mmgtune`` in this process and folder, which takes a second less; for what does not end in a signal."""
+    from mmgtune.cli import main
+
+    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    before = sys.argv
+    sys.argv = ["mmgtune", *map(str, arguments)]
+    out, err = io.StringIO(), io.StringIO()
+    try:
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), pytest.raises(SystemExit) as end:
+            main()
+    finally:
+        sys.argv = before
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
+    return Ended(int(end.value.code or 0), out.getvalue(), err.getvalue())
 
 
 QUICK = ("--method", "least-squares", "--starts", "2", "--no-report", "--quiet")

@@ -36,16 +36,17 @@ Made from the commands themselves when this site was built; `mmgtune COMMAND --h
 | 1 | ran, and the answer is no (`check`, `--strict`, `--fail-on`) |
 | 2 | could not run: an option, a file or the output; the message says what, where, why and the fix |
 | 3 | a bug; a file with the traceback is named |
-| 130 | interrupted; what takes long has saved the best so far, `--resume --out FOLDER` continues it |
+| 130 | interrupted by Ctrl-C; what takes long has saved the best so far, `--resume --out FOLDER` continues it |
+| 143 | the same, by SIGTERM: what a scheduler or a container sends before it ends a job |
 
 ## What all commands share
 
 A profile or a data set is a file, a folder, or the name of one that travels with the program. `--json` prints one JSON
 document on stdout and nothing else; [its keys](../formats.md) are documented. `--dry-run` of a command that takes long
-says what would be done, and about how long it takes. Ctrl-C once finishes the step at hand and saves, twice stops at
-once; a run that is resumed comes to the numbers of one that was never stopped. An option of the same name means the
-same in every command.
-Results are never replaced without `--force`.
+says what would be done, and about how long it takes. Ctrl-C or SIGTERM once finishes the step at hand and saves, twice
+stops at once; one line says what is saved. A run that is resumed comes to the numbers of one that was never stopped. An
+option of the same name means the same in every command.
+Results are never replaced without `--force`, and a folder belongs to one run at a time.
 """
 
 
@@ -55,6 +56,7 @@ def on_files(files: Files, config: Any) -> Files:
         ("reference/commands.md", COMMANDS + commands()),
         ("changelog.md", from_root("CHANGELOG.md")),
         ("contributing.md", from_root("CONTRIBUTING.md")),
+        ("security.md", from_root("SECURITY.md")),
     ):
         files.append(File.generated(config, uri, content=text))
     return files

@@ -7,14 +7,12 @@ folder, named by a hash of everything they were made from, so that numba's own c
 from __future__ import annotations
 
 import hashlib
-import importlib.util
+import importlib
 import inspect
-import os
 import pkgutil
 import sys
-import tempfile
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from functools import lru_cache
 from pathlib import Path
 from types import ModuleType
@@ -28,9 +26,11 @@ from numba.extending import intrinsic, overload, register_jitable
 
 from .. import physics
 from ..effects import effects
+from ..files import write_text
 from ..physics import elementary
 from ..physics.integration import between
 from . import vector_math
+from .kernel_folder import Entry, alone, kernel_folder
 from .vector_math import OPTIONS, select, vector_arctan2, vector_cos, vector_exp, vector_sin
 
 __all__ = ["carray", "lane", "load_kernel", "logged_control", "njit", "stack"]
@@ -152,42 +152,21 @@ def _source_hash() -> str:
     return digest.hexdigest()
 
 
-def cache_folder() -> Path:
-    """Where kernels are kept: MMGTUNE_CACHE, else the user's cache folder, else a new temporary one."""
-    from platformdirs import user_cache_path
+def _compiled_once(function: Any, path: Path) -> Callable[..., None]:
+    """The same function; of several processes that call it first, one compiles and the others read what it wrote.
 
-    chosen = os.environ.get("MMGTUNE_CACHE")
-    folder = (Path(chosen) if chosen else user_cache_path("mmgtune")) / "kernels"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        if os.access(folder, os.W_OK):
-            return folder
-    except OSError:
-        pass
-    return Path(tempfile.mkdtemp(prefix="mmgtune-"))
-
-
-@contextmanager
-def _alone(path: Path) -> Iterator[None]:
-    """No other process is inside for the same path, where there are such locks; a lock dies with its holder."""
-    with path.open("w") as file:
-        if sys.platform != "win32":
-            import fcntl
-
-            with suppress(OSError):  # some network folders have none: then a kernel may be compiled twice
-                fcntl.flock(file, fcntl.LOCK_EX)
-        yield
-
-
-def _compiled_once(function: Any, lock: Path) -> Callable[..., None]:
-    """The same function; of several processes that call it first, one compiles and the others read what it wrote."""
+    path  of its text; what is kept of it lies in a folder beside
+    """
     ready = False
+    kept = Entry(Path(function.stats.cache_path), path.stem)
 
     def kernel(*args: Any) -> None:
         nonlocal ready
         if not ready:
-            with _alone(lock):
+            with alone(path.with_suffix(".lock")):
+                kept.clean()
                 function.compile(tuple(map(function.typeof_pyval, args)))
+                kept.seal()
             ready = True
         function(*args)
 
@@ -205,15 +184,24 @@ def load_kernel(text: str, functions: Sequence[Callable[..., Any]] = ()) -> Call
             _register(module)
             digest.update(Path(str(module.__file__)).read_bytes())
     name = "mmgtune_kernel_" + digest.hexdigest()[:16]
-    path = cache_folder() / f"{name}.py"
-    if not path.exists() or path.read_text(encoding="utf-8") != text:
-        part = path.with_suffix(f".{os.getpid()}.part")
-        part.write_text(text, encoding="utf-8")
-        part.replace(path)
-    spec = importlib.util.spec_from_file_location(name, path)
-    assert spec is not None  # a .py path always has a loader
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
+    path = kernel_folder() / f"{name}.py"
+    if not path.exists() or path.read_bytes() != text.encode():
+        write_text(path, text)
+    module = ModuleType(name)
+    module.__file__ = str(path)
     sys.modules[name] = module
-    spec.loader.exec_module(module)
-    return _compiled_once(module.kernel, path.with_suffix(".lock"))
+    with _kept_beside():
+        # Run from the text, not through the import system, which would believe a file of byte code in the folder.
+        exec(compile(text, path, "exec"), vars(module))
+    return _compiled_once(module.kernel, path)
+
+
+@contextmanager
+def _kept_beside() -> Iterator[None]:
+    """What is decorated now is kept beside its file, wherever the user has the compiler keep other functions."""
+    chosen = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = ""
+    try:
+        yield
+    finally:
+        numba.config.CACHE_DIR = chosen

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ from ..backends import Integrator
 from ..errors import OptionError, Problem, closest
 from ..files import write_text
 from ..metrics import METRICS
+from ..options import SimulationOptions
 from .measuring import Values
 
 SCHEMA = 1
@@ -109,7 +110,7 @@ def read_baseline(path: Path) -> Baseline:
         raise OptionError(Problem(what, str(path), fix="update mmgtune, or write the baseline anew"))
     try:
         baseline = _parsed(data)
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
+    except (ArithmeticError, KeyError, TypeError, ValueError, AttributeError) as error:
         why = f"no {error}" if isinstance(error, KeyError) else str(error)
         raise OptionError(Problem("the baseline is not complete", str(path), why, again)) from None
     problems = _wrong(baseline, str(path))
@@ -160,6 +161,10 @@ def _wrong(baseline: Baseline, where: str) -> list[Problem]:
             if metric not in baseline.tolerances:
                 what = f"metric '{metric}' of trial '{trial}' has no tolerance"
                 problems.append(Problem(what, where, fix=f'add "{metric}" to "tolerances", or write the baseline anew'))
+    try:
+        SimulationOptions(integrator=baseline.integrator, substeps=baseline.substeps, backend=baseline.backend)
+    except OptionError as error:
+        problems += [replace(problem, where=where) for problem in error.problems]
     if not baseline.trials:
         problems.append(Problem("the baseline names no trial", where))
     return problems

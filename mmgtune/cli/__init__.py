@@ -5,24 +5,58 @@ Nothing heavy is imported until a command runs, so that ``mmgtune --help`` is qu
 
 from __future__ import annotations
 
-import signal
 import sys
 import tempfile
 import traceback
+import warnings
+from typing import Any
 
 import typer
+from typer.core import TyperGroup
 
-from ..errors import Interrupted, MmgtuneError, OutputError, Problem, cannot_write_reason
-from . import check, cite, diagnose, doctor, fit, leave_out, profiles, report, simulate, sweep, trials, validate
+from ..errors import MmgtuneError, OptionError, OutputError, Problem, cannot_write_reason
+from . import (
+    check,
+    cite,
+    diagnose,
+    doctor,
+    fit,
+    interrupts,
+    leave_out,
+    profiles,
+    report,
+    simulate,
+    sweep,
+    trials,
+    validate,
+)
 from .exitcodes import ExitCode
-from .interrupts import Stopped, stop_at_once
 from .options import problems_in_flags
+from .output import say, show
 from .pipes import Piped, ReaderGone, say_no_more
 
-EPILOG = "Exit codes: 0 good; 1 the answer is no; 2 could not run; 3 bug; 130 interrupted, best so far saved."
+EPILOG = (
+    "Exit codes: 0 good; 1 the answer is no; 2 could not run; 3 bug; 130 or 143 interrupted or terminated, best so far "
+    "saved."
+)
+
+
+class Commands(TyperGroup):
+    """The commands; what Click would take for a user's answer at a prompt is none here."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run a command."""
+        try:
+            return super().invoke(ctx)
+        except EOFError as error:
+            raise RuntimeError(f"the end of a file came too early: {error}") from error
+        except BrokenPipeError as error:  # of a file: those of the streams are ReaderGone
+            raise OutputError(Problem(cannot_write_reason(error))) from error
+
 
 app = typer.Typer(
     name="mmgtune",
+    cls=Commands,
     help="Calibrate MMG manoeuvring models of ships against measured trials.",
     epilog=EPILOG,
     no_args_is_help=True,
@@ -35,7 +69,7 @@ def _version(wanted: bool) -> None:
     if wanted:
         from importlib.metadata import version
 
-        print(version("mmgtune"))
+        show(version("mmgtune"))
         raise typer.Exit
 
 
@@ -64,32 +98,62 @@ app.add_typer(profiles.app, name="profile", epilog=EPILOG)
 
 def main() -> None:
     """Run the command line; every way out has its exit code."""
-    signal.signal(signal.SIGINT, stop_at_once)
-    stdout = sys.stdout
-    sys.stdout = Piped(stdout)
+    interrupts.handle(interrupts.stop_at_once("nothing was left half-written"))
+    streams = sys.stdout, sys.stderr
+    sys.stdout, sys.stderr = Piped(sys.stdout), Piped(sys.stderr)
+    try:
+        with warnings.catch_warnings():
+            warnings.showwarning = _say_warning  # type: ignore[assignment]
+            sys.exit(_run())
+    finally:
+        interrupts.over()
+        sys.stdout, sys.stderr = streams
+
+
+def _run() -> int:
+    """The exit code of the command that was typed; what went wrong is said."""
     try:
         try:
+            _understand(sys.argv[1:])
             app()
-        finally:
+        except SystemExit as end:
             sys.stdout.flush()
+            return int(end.code or 0)
+        except MmgtuneError as error:
+            for problem in problems_in_flags(error):
+                say(f"error: {_in_its_lines(problem)}")
+            return ExitCode.COULD_NOT_RUN
+        except OSError as error:  # a full disk, say, anywhere the library did not expect one
+            say(f"error: {OutputError(Problem(cannot_write_reason(error)))}")
+            return ExitCode.COULD_NOT_RUN
+        except Exception:
+            with tempfile.NamedTemporaryFile(
+                "w", prefix="mmgtune-", suffix=".log", delete=False, encoding="utf-8", errors="backslashreplace"
+            ) as file:
+                file.write(f"{' '.join(sys.argv)}\n{traceback.format_exc()}")
+            say(f"bug: {sys.exc_info()[1]!r}\n  the full traceback is in {file.name}; please report it")
+            return ExitCode.BUG
     except ReaderGone:
         say_no_more()
-        sys.exit(ExitCode.GOOD)
-    except (Stopped, Interrupted) as error:
-        signal.signal(signal.SIGINT, signal.SIG_IGN)  # no second line from a second Ctrl-C
-        print(f"interrupted: {error}", file=sys.stderr)
-        sys.exit(ExitCode.INTERRUPTED)
-    except MmgtuneError as error:
-        for problem in problems_in_flags(error):
-            print(f"error: {problem}", file=sys.stderr)
-        sys.exit(ExitCode.COULD_NOT_RUN)
-    except OSError as error:  # a full disk, say, anywhere the library did not expect one
-        print(f"error: {OutputError(Problem(cannot_write_reason(error)))}", file=sys.stderr)
-        sys.exit(ExitCode.COULD_NOT_RUN)
-    except Exception:
-        with tempfile.NamedTemporaryFile("w", prefix="mmgtune-", suffix=".log", delete=False) as file:
-            file.write(f"{' '.join(sys.argv)}\n{traceback.format_exc()}")
-        print(f"bug: {sys.exc_info()[1]!r}\n  the full traceback is in {file.name}; please report it", file=sys.stderr)
-        sys.exit(ExitCode.BUG)
-    finally:
-        sys.stdout = stdout
+        return ExitCode.GOOD
+    return ExitCode.GOOD
+
+
+def _say_warning(message: Warning | str, *_where: Any) -> None:
+    """A warning of the program or a library in a line, without the place in the source."""
+    say(f"warning: {message}")
+
+
+def _understand(arguments: list[str]) -> None:
+    """Raises OptionError for an argument that is no text: no file that is written could name it."""
+    for one in arguments:
+        try:
+            one.encode()
+        except UnicodeEncodeError:
+            what = f"the argument {one!a} is not UTF-8 text"
+            raise OptionError(Problem(what, "command line", fix="rename the file or folder")) from None
+
+
+def _in_its_lines(problem: Problem) -> Problem:
+    """A problem without line breaks from files: none of them can say a line of its own."""
+    return Problem(*(" ".join(part.splitlines()) for part in problem.to_dict().values()))

@@ -130,7 +130,7 @@ def _sensitivity(
     if json:
         c.print_json({"schema": 1, "kind": "check-sensitivity", "share": share, "rows": [r.to_dict() for r in rows]})
     else:
-        print(table(rows, share), end="")
+        c.show(table(rows, share), end="")
 
 
 @dataclass(frozen=True)
@@ -147,11 +147,11 @@ class Given:
         from ..checking.renderers import RENDERERS
 
         if self.format in (None, "text"):
-            print(RENDERERS["text"](report, self.everything), end="")
+            c.show(RENDERERS["text"](report, self.everything), end="")
             if self.format is None and os.environ.get("GITHUB_ACTIONS") == "true":
-                print(RENDERERS["github"](report), end="")
+                c.show(RENDERERS["github"](report), end="", commands=True)
         else:
-            print(RENDERERS[self.format](report), end="")
+            c.show(RENDERERS[self.format](report), end="", commands=self.format == "github")
         self._write(report)
 
     def elsewhere(self, report: CheckReport) -> None:
@@ -159,9 +159,9 @@ class Given:
         from ..checking.renderers import RENDERERS
 
         if self.format not in (None, "text"):
-            print(RENDERERS[self.format](report), end="")
+            c.show(RENDERERS[self.format](report), end="", commands=self.format == "github")
         elif self.format is None and os.environ.get("GITHUB_ACTIONS") == "true":
-            print(RENDERERS["github"](report), end="")
+            c.show(RENDERERS["github"](report), end="", commands=True)
         self._write(report)
 
     def update(self, report: CheckReport | None, path: str) -> None:
@@ -173,7 +173,7 @@ class Given:
                 {"schema": 1, "kind": "check-update", "wrote": path, "difference": report and report.to_dict()}
             )
         else:
-            print(difference(report, path) if report else f"wrote {path}.\n", end="")
+            c.show(difference(report, path) if report else f"wrote {path}.\n", end="")
 
     def _write(self, report: CheckReport) -> None:
         from ..checking.renderers import RENDERERS

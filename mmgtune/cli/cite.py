@@ -57,10 +57,10 @@ def command(
             }
         )
         return
-    print("\n    ".join((ship.name, ship.source, *c.terms(ship))))
+    c.show("\n    ".join((ship.name, ship.source, *c.terms(ship))))
     for heading, of in (("Components", parts), ("Methods, where you used them", METHODS)):
-        print(f"\n{heading}")
+        c.show(f"\n{heading}")
         for name, papers in of.items():
-            print(f"  {name}")
+            c.show(f"  {name}")
             for paper in papers:
-                print(f"    {paper}")
+                c.show(f"    {paper}")

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from datetime import datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ..options.choice import INPUT, OUTPUT
+from .output import print_json as print_json
+from .output import say as say
+from .output import show as show
 
 if TYPE_CHECKING:
     from ..fitting import Plan
@@ -74,22 +76,12 @@ def warn_of_another_ship(ship: ShipProfile, data: TrialSet) -> None:
 
 def print_plan(plan: Plan, folder: Path) -> None:
     """What a command would do, with what it would leave where."""
-    print(f"{plan}\nwrites    {folder}: {', '.join(plan.writes)}")
+    show(f"{plan}\nwrites    {folder}: {', '.join(plan.writes)}")
 
 
 def default_out(profile: ShipProfile) -> Path:
     """A folder under runs/ that does not exist yet."""
     return Path("runs") / f"{datetime.now():%Y%m%d-%H%M%S}-{profile.id}"
-
-
-def say(text: str) -> None:
-    """A line for people, on stderr: stdout is data."""
-    print(text, file=sys.stderr, flush=True)
-
-
-def print_json(document: dict[str, Any]) -> None:
-    """One JSON document on stdout."""
-    print(json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False))
 
 
 def command_line() -> str:

@@ -47,7 +47,7 @@ def command(
       mmgtune diagnose -p my_ship.toml -t my_trials/ --fail-on found,unexplained
     """
     from ..diagnose import VERDICTS, diagnose, plan_diagnosis, write_diagnosis
-    from ..fitting import prepare
+    from ..fitting import claimed
     from ..report import render
 
     failing = split(fail_on)
@@ -62,19 +62,19 @@ def command(
     if run.dry_run:
         c.print_plan(plan, folder)
         return
-    prepare(folder, force=run.force, resume=run.resume)
-    with Progress(run.quiet, folder) as progress:
+    with claimed(folder, force=run.force, resume=run.resume), Progress(run.quiet, folder) as progress:
         result = diagnose(
             ship, data, options, hooks=progress.hooks(), folder=folder, resume=run.resume, command=c.command_line()
         )
         document = write_diagnosis(result, folder)
+        progress.saved(result.interrupted)
         if not no_report:
             render(folder)
     if run.json:
         c.print_json(document)
     else:
-        print(summary(result, str(folder), report=not no_report))
-    progress.leave(result.interrupted)
+        c.show(summary(result, str(folder), report=not no_report))
+    progress.leave()
     if result.verdict in failing:
         raise typer.Exit(ExitCode.NO)
 

@@ -30,10 +30,10 @@ def command(json: c.Json = False) -> None:
     else:
         width = max(len(one.name) for one in found) + 2
         for one in found:
-            print(f"{'' if one.ok else 'WRONG  '}{one.name:<{width}}{one.value}")
+            c.show(f"{'' if one.ok else 'WRONG  '}{one.name:<{width}}{one.value}")
             if one.fix:
-                print(f"  fix: {one.fix}")
+                c.show(f"  fix: {one.fix}")
         wrong = sum(not one.ok for one in found)
-        print("all is well" if good else f"{wrong} things are wrong")
+        c.show("all is well" if good else f"{wrong} things are wrong")
     if not good:
         raise typer.Exit(ExitCode.NO)

@@ -11,4 +11,5 @@ class ExitCode(IntEnum):
     NO = 1  # ran correctly, and the answer is no
     COULD_NOT_RUN = 2
     BUG = 3
-    INTERRUPTED = 130
+    INTERRUPTED = 130  # by Ctrl-C
+    TERMINATED = 143  # by SIGTERM

@@ -39,7 +39,7 @@ def command(
 
       mmgtune fit --ar 0.5 --json --out runs/today | jq .J_test
     """
-    from ..fitting import fit, plan_fit, prepare, write_run
+    from ..fitting import claimed, fit, plan_fit, write_run
     from ..report import render
 
     ship, data = c.load(profile, trials)
@@ -48,8 +48,7 @@ def command(
     if run.dry_run:
         c.print_plan(plan, folder)
         return
-    prepare(folder, force=run.force, resume=run.resume)
-    with Progress(run.quiet, folder) as progress:
+    with claimed(folder, force=run.force, resume=run.resume), Progress(run.quiet, folder) as progress:
         result = fit(
             ship,
             data,
@@ -60,13 +59,14 @@ def command(
             command=c.command_line(),
         )
         document = write_run(result, folder)
+        progress.saved(result.interrupted)
         if not no_report:
             render(folder)
     if run.json:
         c.print_json(document)
     else:
-        print(summary(result, str(folder), report=not no_report))
-    progress.leave(result.interrupted)
+        c.show(summary(result, str(folder), report=not no_report))
+    progress.leave()
     if strict and not result.converged:
         raise typer.Exit(ExitCode.NO)
 

@@ -1,14 +1,55 @@
-"""Ctrl-C: whenever it comes, exit code 130 and one line that says what is saved."""
+"""Ctrl-C and SIGTERM: whenever they come, exit code 130 or 143 and one line that says what is saved.
+
+A handler ends the process itself.  An exception raised by one may come anywhere, in a destructor too, and be lost.
+"""
 
 from __future__ import annotations
 
-from typing import Any
+import contextlib
+import os
+import signal
+from collections.abc import Callable
+from typing import Any, NoReturn
+
+from ..files import abandon
+from .exitcodes import ExitCode
+from .output import harmless
+
+NAMES = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated"}
+CODES = {signal.SIGINT: ExitCode.INTERRUPTED, signal.SIGTERM: ExitCode.TERMINATED}
+
+Handler = Callable[[int, Any], None]
 
 
-class Stopped(BaseException):
-    """Stopped at once by the user; the line to say.  No ``except Exception`` on the way swallows it."""
+def handle(handler: Handler) -> None:
+    """Have a function called on Ctrl-C and SIGTERM from now on."""
+    for number in NAMES:
+        signal.signal(number, handler)
 
 
-def stop_at_once(_signal: int, _frame: Any) -> None:
-    """What Ctrl-C does where there is nothing to finish."""
-    raise Stopped("nothing was left half-written")
+def stop_at_once(words: str) -> Handler:
+    """What Ctrl-C does where there is nothing to finish: end, saying ``words``."""
+
+    def handler(number: int, _frame: Any) -> None:
+        leave(number, words)
+
+    return handler
+
+
+def leave(number: int, words: str) -> NoReturn:
+    """End the process at once; of files half-written nothing stays."""
+    abandon()
+    tell(f"{NAMES[signal.Signals(number)]}: {words}")
+    os._exit(CODES[signal.Signals(number)])
+
+
+def tell(line: str) -> None:
+    """A line on stderr from a handler, past the stream, which may be in the middle of writing."""
+    with contextlib.suppress(OSError):  # nobody reads it
+        os.write(2, f"{harmless(line)}\n".encode())
+
+
+def over() -> None:
+    """The exit code is settled: what comes now is too late to change it."""
+    for number in NAMES:
+        signal.signal(number, signal.SIG_IGN)

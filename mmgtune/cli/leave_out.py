@@ -31,7 +31,7 @@ def command(
 
       mmgtune leave-out -p my_ship.toml -t my_trials/ --restart 100 --objective standardised --folds 5
     """
-    from ..fitting import leave_out, plan_leave_out, prepare, write_left_out
+    from ..fitting import claimed, leave_out, plan_leave_out, write_left_out
 
     ship, data = c.load(profile, trials)
     folder = run.out or c.default_out(ship)
@@ -39,17 +39,17 @@ def command(
     if run.dry_run:
         c.print_plan(plan, folder)
         return
-    prepare(folder, force=run.force, resume=run.resume)
-    with Progress(run.quiet, folder) as progress:
+    with claimed(folder, force=run.force, resume=run.resume), Progress(run.quiet, folder) as progress:
         result = leave_out(
             ship, data, options, hooks=progress.hooks(), folder=folder, resume=run.resume, command=c.command_line()
         )
         document = write_left_out(result, folder)
+        progress.saved(result.interrupted)
     if run.json:
         c.print_json(document)
     else:
-        print(summary(result, str(folder)))
-    progress.leave(result.interrupted)
+        c.show(summary(result, str(folder)))
+    progress.leave()
 
 
 def summary(result: LeftOut, folder: str) -> str:

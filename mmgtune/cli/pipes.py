@@ -1,9 +1,9 @@
-"""Standard output into a pipe: whoever reads it, such as ``head``, may have seen enough before the end."""
+"""Standard streams into a pipe: whoever reads it, such as ``head``, may have seen enough before the end."""
 
 from __future__ import annotations
 
+import io
 import os
-import sys
 from typing import Any
 
 
@@ -12,10 +12,10 @@ class ReaderGone(BaseException):
 
 
 class Piped:
-    """A stream that raises ReaderGone where nobody reads it any more."""
+    """A stream that raises ReaderGone where nobody reads it any more; one that was closed from the start takes all."""
 
     def __init__(self, stream: Any):
-        self._stream = stream
+        self._stream = io.StringIO() if stream is None else stream
 
     def write(self, text: str) -> int:
         """Write; returns the number of characters."""
@@ -37,4 +37,6 @@ class Piped:
 
 def say_no_more() -> None:
     """Let what is still to be written go nowhere, the last flush of the interpreter too."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    for stream in (1, 2):
+        os.dup2(nowhere, stream)

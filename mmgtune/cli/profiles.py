@@ -20,7 +20,7 @@ def list_profiles() -> None:
     from ..resources import profile_names
 
     for name in profile_names():
-        print(f"{name:<24}{load_profile(name).name}")
+        c.show(f"{name:<24}{load_profile(name).name}")
 
 
 @app.command("show")
@@ -54,12 +54,12 @@ def show(profile: Name, json: c.Json = False) -> None:
         told = {key: getattr(ship, key) for key in ("id", "name", "source", "licence", "citation")}
         c.print_json({"schema": 1, **told, "coefficients": finite})
         return
-    print("\n".join((ship.name, ship.source, *c.terms(ship), "")))
+    c.show("\n".join((ship.name, ship.source, *c.terms(ship), "")))
     for row in rows:
         value = row["value"]
         text = ", ".join(f"{v:.4g}" for v in value) if isinstance(value, list) else f"{value:g}"
         mark = "  ASSUMPTION" + (f": {row['note']}" if row["note"] else "") if row["assumption"] else ""
-        print(f"{row['name']:<24}{text:>12} {row['unit']:<8} {row['label']}{mark}")
+        c.show(f"{row['name']:<24}{text:>12} {row['unit']:<8} {row['label']}{mark}")
 
 
 @app.command("validate")
@@ -68,4 +68,4 @@ def validate(profile: Name) -> None:
     from ..profile import load_profile
 
     ship = load_profile(profile)
-    print(f"{ship.path}: {ship.name}, {len(ship.names())} coefficients, {len(ship.assumptions())} of them assumptions")
+    c.show(f"{ship.path}: {ship.name}, {len(ship.names())} coefficients, {len(ship.assumptions())} of them assumptions")

@@ -1,19 +1,19 @@
-"""Progress on stderr, and Ctrl-C: once to finish with the best so far, twice to stop at once."""
+"""Progress on stderr, and Ctrl-C or SIGTERM: once to finish with the best so far, twice to stop at once."""
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 import time
 from pathlib import Path
-from types import FrameType, TracebackType
+from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 import typer
 
-from .common import say
-from .exitcodes import ExitCode
-from .interrupts import Stopped
+from . import interrupts
+from .output import harmless, say
 
 if TYPE_CHECKING:
     from ..fitting import Hooks
@@ -32,12 +32,17 @@ class Progress:
     def __init__(self, quiet: bool, folder: Path):
         self.quiet = quiet
         self.folder = folder
-        self.stopped = False
+        self._signal: int | None = None
+        self._saved = ""
         self._phase = ""
         self._began = time.monotonic()
         self._last_line = 0.0
         self._status: Any = None
-        self._previous: Any = None
+
+    @property
+    def stopped(self) -> bool:
+        """Whether the user asked to stop."""
+        return self._signal is not None
 
     def hooks(self) -> Hooks:
         """What to hand to the fit."""
@@ -46,7 +51,7 @@ class Progress:
         return Hooks(on_phase=self._on_phase, on_generation=self._on_generation, stop=lambda: self.stopped)
 
     def __enter__(self) -> Progress:
-        self._previous = signal.signal(signal.SIGINT, self._interrupt)
+        interrupts.handle(self._interrupt)
         if not self.quiet and sys.stderr.isatty():
             from rich.console import Console
 
@@ -59,26 +64,36 @@ class Progress:
     ) -> None:
         if self._status is not None:
             self._status.stop()
-        signal.signal(signal.SIGINT, self._previous)
+            self._status = None
+        interrupts.handle(interrupts.stop_at_once(self._saved or "nothing was left half-written"))
 
-    def leave(self, interrupted: bool) -> None:
-        """End with the exit code of an interrupted command, where it was; called when everything is written.
+    def saved(self, interrupted: bool) -> None:
+        """Note that the result is written.
 
-        interrupted  whether the result is less than was asked for; Ctrl-C may also come when it is complete
+        interrupted  whether it is less than was asked for; Ctrl-C may also come when it is complete
         """
-        if not self.stopped:
-            return
-        if interrupted:
-            say(f"interrupted: the best so far is in {self.folder}; --resume --out {self.folder} continues")
-        else:
-            say(f"interrupted: the results in {self.folder} were complete by then")
-        raise typer.Exit(ExitCode.INTERRUPTED)
+        self._saved = (
+            f"the best so far is in {self.folder}; --resume --out {self.folder} continues"
+            if interrupted
+            else f"the results in {self.folder} were complete by then"
+        )
 
-    def _interrupt(self, _signal: int, _frame: FrameType | None) -> None:
+    def leave(self) -> None:
+        """End with the exit code of a command that was stopped, where it was; called when everything is said."""
+        if self._signal is None:
+            return
+        number = signal.Signals(self._signal)
+        say(f"{interrupts.NAMES[number]}: {self._saved}")
+        raise typer.Exit(interrupts.CODES[number])
+
+    def _interrupt(self, number: int, _frame: Any) -> None:
         if self.stopped:
-            raise Stopped(f"stopped at once; --resume --out {self.folder} continues from the last checkpoint")
-        self.stopped = True
-        say("finishing this step, then saving the best so far; press Ctrl-C again to stop at once")
+            if self._status is not None:
+                os.write(2, b"\x1b[?25h")  # the cursor, which the status line hides
+            last = f"stopped at once; --resume --out {self.folder} continues from the last checkpoint"
+            interrupts.leave(number, self._saved or last)
+        self._signal = number
+        interrupts.tell("finishing this step, then saving the best so far; press Ctrl-C again to stop at once")
 
     def _on_phase(self, words: str) -> None:
         self._phase = words
@@ -103,7 +118,9 @@ class Progress:
         if self.quiet:
             return
         if self._status is not None:
-            self._status.update(text)
+            from rich.text import Text
+
+            self._status.update(Text(harmless(text)))
         elif line or time.monotonic() - self._last_line > LINE_EVERY:
             self._last_line = time.monotonic()
             say(text)

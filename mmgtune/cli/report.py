@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from . import common as c
+
 
 def command(
     run: Annotated[Path, typer.Argument(help="Run folder of a fit, a sweep or a diagnosis.")],
@@ -20,4 +22,4 @@ def command(
     from ..report import render
 
     for path in render(run):
-        print(path)
+        c.show(str(path))

@@ -63,7 +63,7 @@ def command(
         c.print_json({**result.to_dict(), "files": [str(f) for f in files]})
         return
     for row in result.rows():
-        print(_text(row))
+        c.show(_text(row))
     for file in files:
         c.say(f"wrote {file}")
 

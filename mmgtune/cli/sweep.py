@@ -30,7 +30,7 @@ def command(
 
       mmgtune sweep --method least-squares --out runs/sweep
     """
-    from ..fitting import plan_sweep, prepare, sweep
+    from ..fitting import claimed, plan_sweep, sweep
     from ..report import render
 
     ship, data = c.load(profile, trials)
@@ -39,18 +39,18 @@ def command(
     if run.dry_run:
         c.print_plan(plan, folder)
         return
-    prepare(folder, force=run.force, resume=run.resume)
-    with Progress(run.quiet, folder) as progress:
+    with claimed(folder, force=run.force, resume=run.resume), Progress(run.quiet, folder) as progress:
         result = sweep(
             ship, data, options, hooks=progress.hooks(), folder=folder, resume=run.resume, command=c.command_line()
         )
+        progress.saved(result.interrupted)
         if not no_report:
             render(folder)
     if run.json:
         c.print_json({**result.to_dict(), "out": str(folder)})
     else:
-        print(summary(result, str(folder), report=not no_report))
-    progress.leave(result.interrupted)
+        c.show(summary(result, str(folder), report=not no_report))
+    progress.leave()
 
 
 def summary(result: SweepResult, folder: str, report: bool) -> str:

@@ -43,13 +43,13 @@ def check(
     else:
         for findings in found.values():
             for f in findings:
-                print(
+                c.show(
                     f"{f.severity}: {f.what} ({f.where})"
                     + (f"\n  why: {f.why}" if f.why else "")
                     + (f"\n  fix: {f.fix}" if f.fix else "")
                 )
         warnings = sum(f.severity == "warning" for findings in found.values() for f in findings)
-        print(f"{len(found)} trials can be used, {warnings} warnings; tune {len(data.tune)}, test {len(data.test)}")
+        c.show(f"{len(found)} trials can be used, {warnings} warnings; tune {len(data.tune)}, test {len(data.test)}")
     if strict and any(f.severity == "warning" for findings in found.values() for f in findings):
         raise typer.Exit(ExitCode.NO)
 
@@ -96,17 +96,17 @@ def inspect(
         c.print_json({"schema": 1, "L_pp_m": L_pp, "trials": rows})
         return
     for row in rows:
-        print(
+        c.show(
             f"{row['id']}  {row['ship']} {row['manoeuvre']} ({row['source'] or 'source not stated'}), "
             f"{row['role']}, {row['n_samples']} samples, {row['duration_s']:g} s"
         )
         for channel, span in row["ranges"].items():
-            print(f"  {channel:<8}{span['min']:>12.4g} .. {span['max']:<12.4g} {span['unit']}")
+            c.show(f"  {channel:<8}{span['min']:>12.4g} .. {span['max']:<12.4g} {span['unit']}")
         for index, value in row["indices"].items():
             if isinstance(value, float | str):
-                print(f"  {index:<34}{value if isinstance(value, str) else f'{value:.4g}'}")
+                c.show(f"  {index:<34}{value if isinstance(value, str) else f'{value:.4g}'}")
         if row["note"]:
-            print(f"  {row['note']}")
+            c.show(f"  {row['note']}")
 
 
 def _complete_map(incomplete: str) -> list[str]:
@@ -169,6 +169,6 @@ def import_(
     if json:
         c.print_json(imported.to_dict())
         return
-    print(imported.text())
+    c.show(imported.text())
     done = "would be written" if dry_run else f"written to {out}"
-    print(f"{len(imported.trials)} trials {done}")
+    c.show(f"{len(imported.trials)} trials {done}")

@@ -54,7 +54,7 @@ def command(
     if json:
         c.print_json(result.to_dict())
     else:
-        print(summary(result))
+        c.show(summary(result))
 
 
 def summary(result: Validation) -> str:

@@ -17,7 +17,7 @@ from ..arrays import FloatArray
 from ..backends import STATES
 from ..physics.frame import to_earth
 from ..trial import Trial
-from .evidence import share_explained
+from .evidence import FEWEST_BLOCKS, share_explained
 from .linear import linearise
 from .noise import rows_of_channels
 from .workbench import Point, Workbench
@@ -156,7 +156,7 @@ def _alike(trials: Sequence[Trial], residuals: Sequence[FloatArray], window: flo
 def _explained(
     bench: Workbench, residuals: Sequence[FloatArray], channels: Sequence[str]
 ) -> dict[str, tuple[str, float]]:
-    """By channel, the quantity that explains most of the slow part of its residual."""
+    """By channel, the quantity that explains most of the slow part of its residual; none where windows are short."""
     lengths = [max(2, round(BLOCK / float(np.median(np.diff(trial.t))))) for trial in bench.trials]
 
     def means(values: Sequence[FloatArray]) -> FloatArray:
@@ -177,6 +177,8 @@ def _explained(
     found = {}
     for name in channels:
         y = means([r[:, STATES.index(name)] for r in residuals])
+        if len(np.unique(blocks[np.isfinite(y)])) < FEWEST_BLOCKS:  # short windows: nothing to predict one from
+            continue
         shares = share_explained(y, states, blocks=blocks)
         best = max(shares, key=lambda one: shares[one])
         found[name] = (best, float(shares[best]))

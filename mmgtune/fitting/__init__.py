@@ -1,7 +1,7 @@
 """Calibration: search, least squares, certificate, identifiability, sweep and run folders."""
 
 from ..options import METHODS, FitOptions, LeaveOutOptions, SweepOptions
-from .folder import prepare, write_run
+from .folder import claimed, prepare, write_run
 from .leaving_out import LeftOut, leave_out, write_left_out
 from .planning import Plan, plan_fit, plan_leave_out, plan_sweep
 from .result import FitResult
@@ -18,6 +18,7 @@ __all__ = [
     "Plan",
     "SweepOptions",
     "SweepResult",
+    "claimed",
     "fit",
     "in_pieces",
     "leave_out",

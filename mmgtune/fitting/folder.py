@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ import numpy as np
 
 from ..backends import STATES
 from ..errors import OutputError, Problem
-from ..files import atomic, cannot_write, exists, write_text
+from ..files import alone_in, atomic, cannot_write, exists, half, is_left_over, remove_left_overs, write_text
 from .cmaes import Generation
 from .comparison import TrialComparison
 from .journal import finished
@@ -36,12 +37,13 @@ OWN_FILES = (
 def prepare(folder: Path, *, force: bool = False, resume: bool = False) -> Path:
     """Make sure results can be written to ``folder``, before any work is done.
 
+    What a run that was killed left half-written counts for nothing.
     Raises OutputError where it holds results already (unless ``force`` or ``resume``), is a file, or cannot be
     written to.
     """
     if folder.exists() and not folder.is_dir():
         raise OutputError(Problem("the output is a file, not a folder", str(folder), fix="choose another folder"))
-    taken = folder.is_dir() and any(folder.iterdir())
+    taken = folder.is_dir() and any(not is_left_over(one) for one in folder.iterdir())
     if taken and not (force or resume):
         raise OutputError(exists(folder))
     if taken and force and not any((folder / name).exists() for name in OWN_FILES):
@@ -53,16 +55,35 @@ def prepare(folder: Path, *, force: bool = False, resume: bool = False) -> Path:
                 "choose another folder",
             )
         )
+    _make(folder)
+    if not os.access(folder, os.W_OK):
+        raise cannot_write(folder, PermissionError(13, "permission denied"))
+    with half(folder / "writable"):
+        pass
+    return folder
+
+
+def _make(folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise cannot_write(folder, error) from error
-    if not os.access(folder, os.W_OK):
-        raise cannot_write(folder, PermissionError(13, "permission denied"))
-    with atomic(folder / ".writable") as part:
-        part.write_text("", encoding="utf-8")
-    (folder / ".writable").unlink(missing_ok=True)
-    return folder
+
+
+@contextlib.contextmanager
+def claimed(folder: Path, *, force: bool = False, resume: bool = False) -> Iterator[Path]:
+    """The folder made ready as by ``prepare``, and no other run's while the context lasts.
+
+    Raises OutputError as ``prepare`` does, and where another run is writing there.
+    """
+    if not folder.exists():
+        _make(folder)
+    elif not folder.is_dir():
+        prepare(folder)  # says what is wrong
+    with alone_in(folder):
+        prepare(folder, force=force, resume=resume)
+        remove_left_overs(folder)
+        yield folder
 
 
 def write_run(result: FitResult, folder: Path) -> dict[str, Any]:

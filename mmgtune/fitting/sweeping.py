@@ -153,8 +153,9 @@ class SweepResult:
 
 
 def folder_name(a_r: float) -> str:
-    """Sub-folder of one run of a sweep."""
-    return f"ar_{a_r:g}"
+    """Sub-folder of one run of a sweep; no two half widths share one."""
+    short = f"{a_r:g}"
+    return f"ar_{short if float(short) == a_r else repr(a_r)}"
 
 
 def sweep(

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import functools
 import math
+import textwrap
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
+from numbers import Integral, Real
 from pathlib import Path
-from typing import Any
+from types import NoneType, UnionType
+from typing import Any, get_args, get_type_hints
 
 from ..errors import OptionError, Problem, closest
 
@@ -45,7 +49,7 @@ class Choice:
 
     def problems(self, name: str, value: Any) -> list[Problem]:
         """What is wrong with a value; None is never wrong, each part of a tuple is looked at."""
-        if isinstance(value, tuple):
+        if isinstance(value, (tuple, list)):
             return [problem for part in value for problem in self.problems(name, part)]
         if value is None or isinstance(value, bool):
             return []
@@ -55,19 +59,20 @@ class Choice:
             return [Problem(f"unknown {self.called or name} '{value}'", name, fix=closest(str(value), self.values))]
         if self._limits and not self.allows(value):
             unit = f" {self.unit}" if self.unit else ""
-            shown = f"{value:g}" if isinstance(value, (int, float)) else repr(value)
+            shown = f"{value:g}" if isinstance(value, float) else _short(value)
             return [Problem(f"{name} is {shown}{unit}", name, fix=self._fix(name, value))]
         return []
 
     def allows(self, value: Any) -> bool:
         """Whether a number is finite and within the limits."""
+        if not isinstance(value, Real) or not (isinstance(value, Integral) or math.isfinite(value)):
+            return False
+        number: Any = value
         return (
-            isinstance(value, (int, float))
-            and math.isfinite(value)
-            and (self.least is None or value >= self.least)
-            and (self.above is None or value > self.above)
-            and (self.most is None or value <= self.most)
-            and (self.below is None or value < self.below)
+            (self.least is None or number >= self.least)
+            and (self.above is None or number > self.above)
+            and (self.most is None or number <= self.most)
+            and (self.below is None or number < self.below)
         )
 
     @property
@@ -77,7 +82,8 @@ class Choice:
         return [words.format(limit) for words, limit in ends if limit is not None]
 
     def _fix(self, name: str, value: Any) -> str:
-        if isinstance(value, (int, float)) and self.most and value > self.most and self.allows(value / 100.0):
+        percent = isinstance(value, (int, float)) and self.most is not None and self.most <= 10.0
+        if percent and value > self.most and self.allows(value / 100.0):
             return f"did you mean {name}={value / 100.0:g}?"
         of = f" in {self.unit}" if self.unit else ""
         return f"give a number{of}, {' and '.join(self._limits)}"
@@ -116,7 +122,7 @@ class Options:
 
     def __post_init__(self) -> None:
         """Raises OptionError with everything that makes no sense; it names fields."""
-        problems = self.problems()
+        problems = self._of_other_kinds() or self.problems()
         if problems:
             raise OptionError(*problems)
 
@@ -128,6 +134,14 @@ class Options:
             for problem in known.problems(name, getattr(self, name))
         ]
 
+    def _of_other_kinds(self) -> list[Problem]:
+        hints: dict[str, Any] = _hints(type(self))  # type: ignore[arg-type]  # classes can be hashed
+        return [
+            problem
+            for name in choices(type(self))
+            for problem in _of_another_kind(name, getattr(self, name), hints[name])
+        ]
+
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
         return {key: _plain(value) for key, value in asdict(self).items()}
@@ -135,6 +149,44 @@ class Options:
     def shared_with(self, of: type[Options]) -> dict[str, Any]:
         """Values of the choices that another dataclass has too, by field."""
         return {name: getattr(self, name) for name in choices(of) if hasattr(self, name)}
+
+
+_KINDS: dict[type, tuple[type, str]] = {
+    bool: (bool, "True or False"),
+    int: (Integral, "a whole number"),
+    float: (Real, "a number"),
+    str: (str, "a text"),
+    Path: (Path, "a path"),
+}
+"""What a value of a type may be, and what that is called."""
+
+
+@functools.cache
+def _hints(of: Any) -> dict[str, Any]:
+    return get_type_hints(of)
+
+
+def _of_another_kind(name: str, value: Any, hint: Any) -> list[Problem]:
+    """The problem of a value that is not of the type of its field; a list does for a tuple, None where it may be."""
+    kinds = get_args(hint) if isinstance(hint, UnionType) else (hint,)
+    if value is None and NoneType in kinds:
+        return []
+    (kind,) = [one for one in kinds if one is not NoneType]
+    parts = get_args(kind)
+    if parts:
+        if isinstance(value, str) or not isinstance(value, Sequence):
+            return [Problem(f"{name} is {_short(value)}", name, fix=f"give a tuple, each part {_KINDS[parts[0]][1]}")]
+        if ... not in parts and len(value) != len(parts):
+            return [Problem(f"{name} is {_short(value)}", name, fix=f"give {len(parts)} numbers")]
+        return [problem for part in value for problem in _of_another_kind(name, part, parts[0])][:1]
+    known, words = _KINDS[kind]
+    if isinstance(value, known) and (kind is bool or not isinstance(value, bool)):
+        return []
+    return [Problem(f"{name} is {_short(value)}", name, fix=f"give {words}")]
+
+
+def _short(value: Any) -> str:
+    return textwrap.shorten(repr(value), 60, placeholder=" ...")
 
 
 def _plain(value: Any) -> Any:

@@ -19,7 +19,7 @@ class SimulationOptions(Options):
     """How trials are simulated."""
 
     integrator: str = choice("rk4", "Method of integration: rk4, or euler as the paper does.", values=INTEGRATORS)
-    substeps: int = choice(1, "Integration steps between two samples.", least=1)
+    substeps: int = choice(1, "Integration steps between two samples.", least=1, most=1000)
     backend: str = choice("compiled", "compiled or numpy.", values=BACKENDS, called="back end")
 
     def make_integrator(self) -> Integrator:

@@ -13,6 +13,8 @@ OBJECTIVES = ("paper", "standardised")
 LOSSES = ("squares", "huber")
 METHODS = ("cma-es", "least-squares")
 INITIAL = ("measured", "estimated")
+SHORTEST = 0.01
+"""Least time between samples that count, and of windows [s]."""
 
 
 @dataclass(frozen=True)
@@ -37,14 +39,15 @@ class TuningOptions(SimulationOptions):
         values=OBJECTIVES,
     )
     restart: float | None = choice(
-        None, "Cut trials into windows this long (s), each begun anew from a measured state.", unit="s", above=0
+        None, "Cut trials into windows this long (s), each begun anew from a measured state.", unit="s", least=SHORTEST
     )
-    every: float | None = choice(None, "Compare samples this far apart (s); default all.", unit="s", above=0)
+    every: float | None = choice(None, "Compare samples this far apart (s); default all.", unit="s", least=SHORTEST)
     loss: str = choice("squares", "squares, or huber: outliers count by size; with least-squares.", values=LOSSES)
     regularise: float = choice(
         0.0,
         "Cost of moving one coefficient to the edge of its box, as a share of J before; with least-squares.",
         least=0,
+        most=1e6,
     )
     initial: str = choice(
         "measured",
@@ -52,8 +55,10 @@ class TuningOptions(SimulationOptions):
         values=INITIAL,
         called="kind of initial state",
     )
-    starts: int = choice(20, "Starts of the least-squares solve: the values before, the rest at random.", least=1)
-    seed: int = choice(1, "Seed of every random number, 1 or more.", panel=REPRODUCE, least=1)
+    starts: int = choice(
+        20, "Starts of the least-squares solve: the values before, the rest at random.", least=1, most=1000
+    )
+    seed: int = choice(1, "Seed of every random number, 1 or more.", panel=REPRODUCE, least=1, most=2**63 - 1)
 
 
 @dataclass(frozen=True)
@@ -112,7 +117,7 @@ class LeaveOutOptions(TuningOptions):
     """All choices of leaving runs out: those of a fit by least squares, and how runs are dealt out."""
 
     a_r: float = again(FitOptions, "a_r")
-    folds: int = choice(0, "Parts the runs are dealt out to; 0: each run alone.", least=0)
+    folds: int = choice(0, "Parts the runs are dealt out to; 0: each run alone.", least=0, most=1000)
     starts: int = again(TuningOptions, "starts", 4)
     manoeuvres: bool = choice(
         False,

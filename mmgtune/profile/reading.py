@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, TypeVar
 
 from .. import units
 from ..components import ARRANGEMENTS, KINDS, UNTAGGED, Arrangement, Component, Field, find, find_arrangement, tags
 from ..effects import Effect, Parameter, effect_tags, find_effect
-from ..errors import Problem, ProfileError, closest
+from ..errors import Problem, ProfileError, brief, closest
 from ..inputs import Input
 from ..metrics import METRICS
 from ..physics.regressions.fujiwara1998 import wind_harmonics
@@ -27,6 +28,8 @@ REGRESSION = "Fujiwara, Ueno & Nimura 1998, regression on the geometry"
 DEFAULT = "default of the program"
 STEERING_GEAR = {"max_angle": Field("", "rad", low=0.0, high=1.6), "rate": Field("", "rad/s", low=0.0)}
 APPROACH = {"speed": Field("", "m/s", low=0.0), "n": Field("", "1/s")}
+IDENTIFIER = re.compile(r"\w[\w. -]{0,79}")
+"""What a ship's id may be."""
 VALUE_KEYS = ("value", "source", "assumption", "note", "bounds", "pre_determined", "stderr")
 
 
@@ -50,7 +53,7 @@ def load_profile(name: str | Path) -> ShipProfile:
     """Read and validate a profile by path or bundled name.  Raises ProfileError with everything wrong in it."""
     path = find_profile(name)
     try:
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8-sig")  # some editors begin a file with a mark
     except (OSError, UnicodeDecodeError) as error:
         raise ProfileError(
             Problem("cannot read the profile", str(path), str(error), "check the file; it must be UTF-8 text")
@@ -66,6 +69,9 @@ def parse_profile(text: str, path: Path | None = None) -> ShipProfile:
     if reader.problems:
         raise ProfileError(*reader.problems)
     return profile
+
+
+Fact = TypeVar("Fact", str, bool)
 
 
 class _Reader(TomlReader):
@@ -89,7 +95,7 @@ class _Reader(TomlReader):
             sections["above_water"] = with_wind_coefficients(sections)
         gear, approach = self.plain("steering_gear", STEERING_GEAR), self.plain("approach", APPROACH)
         profile = ShipProfile(
-            id=self.word("ship", ship, "id"),
+            id=self.identifier(ship),
             name=self.word("ship", ship, "name"),
             source=self.word("ship", ship, "source"),
             sections=sections,
@@ -119,7 +125,7 @@ class _Reader(TomlReader):
         found = find_arrangement(model) if isinstance(model, str) else None
         if found is None:
             known = tuple(one.tag for one in ARRANGEMENTS)
-            self.problem(f"unknown arrangement {model!r}", "arrangement", "model", fix=closest(str(model), known))
+            self.problem(f"unknown arrangement {brief(model)}", "arrangement", "model", fix=closest(str(model), known))
         return found or ARRANGEMENTS[0]
 
     def actuators(self, arrangement: Arrangement) -> dict[str, Actuator]:
@@ -169,6 +175,14 @@ class _Reader(TomlReader):
             self.problem(f"'{key}' of [{section}] is missing or not text", section, key, fix=f'write {key} = "..."')
         return ""
 
+    def identifier(self, ship: dict[str, Any]) -> str:
+        """The ship's id: results lie in folders named after it."""
+        found = self.word("ship", ship, "id")
+        if found and not IDENTIFIER.fullmatch(found):
+            what = f"'id' of [ship] is {brief(found)}"
+            self.problem(what, "ship", "id", "folders are named after it", 'write letters, digits, ".", "_" and "-"')
+        return found
+
     def component(self, kind: str) -> Section | None:
         if kind.partition(".")[0] not in self.data:
             self.table(kind)
@@ -181,11 +195,13 @@ class _Reader(TomlReader):
             model = table.get("model")
             component = find(kind, model) if isinstance(model, str) else None
             if component is None:
-                what = f"unknown {kind} model '{model}'" if model else f"[{kind}] names no model"
+                what = f"unknown {kind} model {brief(model)}" if model else f"[{kind}] names no model"
                 self.problem(what, kind, "model", fix=f"{kind} models: {', '.join(tags(kind))}")
                 return None
         # Effects are often tried out by hand, so a source is welcome there but not asked for.
-        source = str(table.get("source", "not stated")) if "." in kind else self.word(kind, table, "source")
+        source = (
+            self.text_of(kind, table, "source") or "not stated" if "." in kind else self.word(kind, table, "source")
+        )
         known = ("source", *(("model",) if tagged else ()), *component.fields)
         self.unknown(kind, table, known)
         coefficients: dict[str, Coefficient] = {}
@@ -222,9 +238,10 @@ class _Reader(TomlReader):
         facts: dict[str, Any] = {"source": source}
         if isinstance(written, dict):
             self.unknown_value_keys(kind, symbol, written)
-            facts["source"] = written.get("source", source)
-            facts["assumption"] = bool(written.get("assumption", False))
-            facts["note"] = str(written.get("note", ""))
+            for key in ("source", "note"):
+                if key in written:
+                    facts[key] = self.fact(kind, symbol, written, key, str)
+            facts["assumption"] = bool("assumption" in written and self.fact(kind, symbol, written, "assumption", bool))
             for key in ("pre_determined", "stderr"):
                 if key in written:
                     plain = replace(field, low=None, high=None, choices={}, table=0)
@@ -245,6 +262,17 @@ class _Reader(TomlReader):
             self.problem(f"'{kind}.{symbol}' = {value} lies outside its own bounds {list(bounds)}", kind, symbol)
         return Coefficient(value, **facts)
 
+    def fact(self, kind: str, symbol: str, written: dict[str, Any], key: str, of: type[Fact]) -> Fact:
+        """What is said of a coefficient, of its type; nothing after reporting another."""
+        value = written[key]
+        if isinstance(value, of):
+            return value
+        what, fix = ("text", '"..."') if of is str else ("true or false", "true")
+        self.problem(
+            f"{key} of '{kind}.{symbol}' is {brief(value)}, not {what}", kind, symbol, fix=f"write {key} = {fix}"
+        )
+        return of()
+
     def unknown_value_keys(self, kind: str, symbol: str, written: dict[str, Any]) -> None:
         for key in written:
             if key not in VALUE_KEYS:
@@ -264,9 +292,9 @@ class _Reader(TomlReader):
         """The value(s) in the field's unit, None after reporting what is wrong."""
         name = f"{kind}.{symbol}"
         if field.choices:
-            if written in field.choices:
+            if isinstance(written, str) and written in field.choices:
                 return (field.choices[written],)
-            self.problem(f"'{name}' is {written!r}", kind, symbol, fix=f"one of: {', '.join(field.choices)}")
+            self.problem(f"'{name}' is {brief(written)}", kind, symbol, fix=f"one of: {', '.join(field.choices)}")
             return None
         numbers = self.quantities(kind, symbol, written, field.unit, infinite=_may_be_infinite(field))
         if numbers is None:
@@ -318,9 +346,16 @@ class _Reader(TomlReader):
 
     def targets(self, sections: dict[str, Section]) -> tuple[str, ...]:
         table = self.data.get("tuning", {})
+        if not isinstance(table, dict):
+            self.problem("'tuning' is not a table", "", "tuning", fix='write [tuning] and targets = ["hull.R_0"]')
+            return ()
         self.unknown("tuning", table, ("targets", "source"))
         known = [f"{kind}.{symbol}" for kind, section in sections.items() for symbol in section.component.fields]
         targets = table.get("targets", [])
+        if not isinstance(targets, list) or not all(isinstance(name, str) for name in targets):
+            fix = 'write targets = ["hull.R_0"]'
+            self.problem(f"'tuning.targets' is {brief(targets)}, not a list of names", "tuning", "targets", fix=fix)
+            return ()
         for name in targets:
             if name not in known:
                 self.problem(f"unknown target '{name}'", "tuning", "targets", fix=closest(name, known))

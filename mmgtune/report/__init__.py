@@ -19,9 +19,13 @@ def render(folder: Path) -> list[Path]:
     from .kinds import KINDS
     from .output import write
 
-    kind, run = load.find(folder, KINDS)
-    page = kind.build(run)
-    written = write(folder, page, html.render(page), markdown.render(page))
-    for other in kind.inside(run):
+    kind, path = load.find(folder, KINDS)
+    with load.whole(path):
+        run = kind.read(folder, load.read(path, kind))
+        page = kind.build(run)
+        rendered = html.render(page), markdown.render(page)
+        others = list(kind.inside(run))
+    written = write(folder, page, *rendered)
+    for other in others:
         written += render(other)
     return written

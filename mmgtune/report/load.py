@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Mapping, Sequence
+import traceback
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -103,17 +105,17 @@ class DiagnosisRecord:
         return list(self.data["trial_results"])
 
 
-def find(folder: Path, kinds: Iterable[Kind]) -> tuple[Kind, Any]:
-    """The kind of run in a folder, told by the file it holds, and the run as its page wants it.
+def find(folder: Path, kinds: Iterable[Kind]) -> tuple[Kind, Path]:
+    """The kind of run in a folder, told by the file it holds, and that file.
 
-    Raises OptionError for a folder that is missing, unreadable, not a run folder, or from a newer program.
+    Raises OptionError for a folder that is missing or not a run folder.
     """
     if not folder.is_dir():
         raise _problem("there is no such run folder", folder, "", "give the folder that --out of a run named")
     for kind in kinds:
         path = folder / kind.file
         if path.is_file():
-            return kind, kind.read(folder, _read(path, kind))
+            return kind, path
     raise _problem(
         "this is not a run folder",
         folder,
@@ -126,12 +128,30 @@ def _problem(what: str, where: Path, why: str, fix: str) -> OptionError:
     return OptionError(Problem(what=what, where=str(where), why=why, fix=fix))
 
 
-def _read(path: Path, kind: Kind) -> dict[str, Any]:
-    """A record file, with its schema, kind and needed keys checked."""
+@contextmanager
+def whole(path: Path) -> Iterator[None]:
+    """Where a page is made of a record.
+
+    Raises OptionError where it does not hold what records hold: any program may have written it.
+    """
+    try:
+        yield
+    except (ArithmeticError, AttributeError, LookupError, RecursionError, TypeError, ValueError) as error:
+        # Deep in the page, so the innermost place says which part of it that was.
+        part = traceback.extract_tb(error.__traceback__)[-1].name.strip("_").replace("_", " ")
+        fix = "run it again; if nothing but mmgtune wrote there, please report it"
+        raise _problem("no report can be made of the run's record", path, f"{error!r} in '{part}'", fix) from error
+
+
+def read(path: Path, kind: Kind) -> dict[str, Any]:
+    """A record file, with its schema, kind and needed keys checked.
+
+    Raises OptionError where it is unreadable, of another kind, not whole, or from a newer program.
+    """
     again = "run the fit again, or give another folder"
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         raise _problem("the run's record cannot be read", path, str(error), again) from error
     if not isinstance(data, dict) or data.get("kind") != kind.name:
         raise _problem(f"this is not the record of a {kind.name}", path, f'it has no "kind": "{kind.name}"', again)

@@ -20,7 +20,7 @@ PAGES = [
     *ROOT.glob("*/README.md"),
 ]
 
-MADE = {"commands.md", "changelog.md", "contributing.md"}
+MADE = {"commands.md", "changelog.md", "contributing.md", "security.md"}
 """Pages that are made when the site is built, which checks links to them."""
 
 
@@ -77,6 +77,13 @@ def test_links_lead_somewhere():
         for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8")):
             if not target.startswith("http") and Path(target).name not in MADE:
                 assert (page.parent / target).exists(), (page.name, target)
+
+
+def test_every_promise_of_security_has_its_test():
+    named = re.findall(r"`(tests/[\w/.]+)`", (ROOT / "SECURITY.md").read_text(encoding="utf-8"))
+    assert len(named) > 10
+    for name in named:
+        assert (ROOT / name).exists(), name
 
 
 def test_nomenclature_is_current():

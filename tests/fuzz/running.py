@@ -23,8 +23,6 @@ from mmgtune.errors import MmgtuneError
 
 from .kinds import Files, Kind
 
-SECONDS = 2.0
-"""CPU time a case may take; waiting counts tenfold less, as others may have the processor."""
 BYTES = 1 << 30
 """Memory a case may ask for on top of what the process has."""
 
@@ -84,7 +82,7 @@ def run_folder(kind: Kind, folder: Path) -> Outcome:
         return Outcome(end, said, time.process_time() - began)
 
     try:
-        with warnings.catch_warnings(), limited():
+        with warnings.catch_warnings(), limited(kind.seconds):
             warnings.simplefilter("ignore")
             said = kind.run(folder)
         outcome = ended("good", said)
@@ -99,7 +97,7 @@ def run_folder(kind: Kind, folder: Path) -> Outcome:
             raise
         outcome = ended("crash", traceback.format_exc())
     # A signal waits for compiled code to return: what took too long there is seen here.
-    if not outcome.failed and outcome.seconds > SECONDS:
+    if not outcome.failed and outcome.seconds > kind.seconds:
         return Outcome("time", f"{outcome.seconds:.1f} s; {outcome.said}", outcome.seconds)
     return outcome
 
@@ -115,7 +113,7 @@ def campaign(kind: Kind, count: int, seed: int, keep: Path | None = None, second
         if keep is not None:
             _keep(keep / kind.name / "running", files)
             # Compiled code that never returns cannot be stopped otherwise: its case is then the one left there.
-            faulthandler.dump_traceback_later(20.0 * SECONDS, exit=True)
+            faulthandler.dump_traceback_later(20.0 * kind.seconds, exit=True)
         outcome = run_files(kind, files)
         found.ends[outcome.end] += 1
         found.longest = max(found.longest, outcome.seconds)
@@ -139,7 +137,7 @@ def _keep(folder: Path, files: Files) -> None:
 
 
 @contextlib.contextmanager
-def limited() -> Iterator[None]:
+def limited(seconds: float) -> Iterator[None]:
     """Limits of time and memory while the block runs."""
 
     def stop(*_: Any) -> None:
@@ -150,8 +148,8 @@ def limited() -> Iterator[None]:
     pages = int(Path("/proc/self/statm").read_text().split()[0])
     most = pages * resource.getpagesize() + BYTES
     resource.setrlimit(resource.RLIMIT_AS, (most if soft == resource.RLIM_INFINITY else min(soft, most), hard))
-    signal.setitimer(signal.ITIMER_PROF, SECONDS)
-    signal.setitimer(signal.ITIMER_REAL, 10.0 * SECONDS)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+    signal.setitimer(signal.ITIMER_REAL, 10.0 * seconds)
     try:
         yield
     finally:

@@ -6,11 +6,12 @@ short_horizon  residuals of simulations restarted every window
 explained      the share of a residual that one variable alone explains, and the share that is noise
 """
 
-from .explained import explain_forces, noise_share, share_explained
+from .explained import FEWEST_BLOCKS, explain_forces, noise_share, share_explained
 from .forces import ResidualForces, residual_forces
 from .short_horizon import ShortHorizon, short_horizon
 
 __all__ = [
+    "FEWEST_BLOCKS",
     "ResidualForces",
     "ShortHorizon",
     "explain_forces",

@@ -27,11 +27,13 @@ class Kind:
     run   uses the files of a case, written to a folder of their own, as the program would, and says what came of it
           in a word or two.  An MmgtuneError is a good end; any other exception is a failure.  What it writes goes into
           the folder ``out`` beside the files.
+    seconds  CPU time a case may take; waiting counts tenfold less, as others may have the processor
     """
 
     name: str
     make: Callable[[np.random.Generator], Files]
     run: Callable[[Path], str]
+    seconds: float = 2.0
 
 
 def kinds() -> dict[str, Kind]:

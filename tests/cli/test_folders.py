@@ -1,0 +1,99 @@
+"""The run folder: one run at a time, and what a killed run left is no obstacle."""
+
+import fcntl
+import multiprocessing
+import os
+
+import pytest
+
+from mmgtune.errors import OutputError, ProfileError
+from mmgtune.files import atomic
+from mmgtune.fitting import claimed, prepare
+from mmgtune.fitting.sweeping import folder_name
+from mmgtune.profile import load_profile, parse_profile
+from tests.command import typed
+
+
+def killed_while_writing(path):
+    """What SIGKILL leaves of a file."""
+    with atomic(path) as part:
+        part.write_text("half")
+        os.link(part, str(part) + ".kept")
+    path.unlink()
+    os.rename(str(part) + ".kept", part)
+    return part
+
+
+def test_a_folder_belongs_to_one_run(tmp_path):
+    second = claimed(tmp_path / "run", force=True)
+    with claimed(tmp_path / "run"), pytest.raises(OutputError, match="another run is writing there"):
+        second.__enter__()
+    with claimed(tmp_path / "run"):
+        pass
+    assert list((tmp_path / "run").iterdir()) == []
+
+
+@pytest.mark.parametrize("command", ["fit", "sweep", "leave-out", "diagnose"])
+def test_every_long_command_claims_its_folder(tmp_path, command):
+    (tmp_path / "run").mkdir()
+    handle = os.open(tmp_path / "run", os.O_RDONLY)
+    fcntl.flock(handle, fcntl.LOCK_EX)
+    ended = typed(command, "--targets", "R_0,w_P0", "--out", tmp_path / "run")
+    os.close(handle)
+    assert ended.code == 2
+    assert "another run is writing there" in ended.err
+    assert list((tmp_path / "run").iterdir()) == []
+
+
+def _claim(folder, barrier, results):
+    barrier.wait()
+    try:
+        with claimed(folder):
+            results.put("claimed")
+            (folder / "fit.json").write_text("{}")
+    except OutputError as error:
+        results.put(error.problems[0].what)
+
+
+def test_of_many_at_once_one_gets_it(tmp_path):
+    """Also where the folder has to be made."""
+    context = multiprocessing.get_context("fork")
+    for k in range(10):
+        barrier, results = context.Barrier(4), context.Queue()
+        folder = tmp_path / str(k)
+        started = [context.Process(target=_claim, args=(folder, barrier, results)) for _ in range(4)]
+        for one in started:
+            one.start()
+        said = [results.get(timeout=20) for _ in started]
+        for one in started:
+            one.join()
+        assert said.count("claimed") == 1, said
+
+
+@pytest.mark.parametrize("how", [{}, {"force": True}, {"resume": True}])
+def test_half_a_file_of_a_killed_run_is_no_obstacle(tmp_path, how):
+    part = killed_while_writing(tmp_path / "checkpoint.npz")
+    assert part.exists()
+    with claimed(tmp_path, **how):
+        assert not part.exists()
+
+
+def test_files_of_others_are(tmp_path):
+    (tmp_path / ".mine.part").write_text("mine")
+    with pytest.raises(OutputError, match="exists already"):
+        prepare(tmp_path)
+
+
+def test_each_half_width_has_its_folder():
+    widths = (0.2, 0.20000001, 0.3, 1.0, 1 / 3, 0.333333)
+    assert len({folder_name(one) for one in widths}) == len(widths)
+    assert folder_name(0.2) == "ar_0.2"
+    assert folder_name(1.0) == "ar_1"
+
+
+@pytest.mark.parametrize("name", ["x/../../y", "..", "/etc", "a\\nb", "\\u001b[2J", "a" * 200, " "])
+def test_an_id_stays_inside_runs(name):
+    text = load_profile("suzaku").text
+    assert 'id = "suzaku"' in text
+    with pytest.raises(ProfileError, match=r"'id' of \[ship\]"):
+        parse_profile(text.replace('id = "suzaku"', f'id = "{name}"', 1))

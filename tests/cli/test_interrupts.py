@@ -1,0 +1,97 @@
+"""Ctrl-C and SIGTERM at any moment: an exit code of their own, one line, and never a traceback."""
+
+import signal
+import subprocess
+import sys
+
+import pytest
+
+pytestmark = pytest.mark.slow(2)
+
+WATCHED = """
+import os, signal, sys
+
+class Watch:
+    def find_spec(self, name, *_):
+        if name == {name!r}:
+            {when}
+        return None
+
+def sent():
+    os.kill(os.getpid(), {number})
+
+class Gone:
+    def __del__(self):
+        sent()
+
+sys.meta_path.insert(0, Watch())
+sys.argv = ["mmgtune", *{arguments!r}]
+from mmgtune.__main__ import main
+{before}
+main()
+"""
+
+
+def ended(folder, *arguments, number=signal.SIGINT, name="", when="sent()", before=""):
+    """A command that gets a signal when it imports a module, or from what ``before`` puts in its way."""
+    code = WATCHED.format(name=name, when=when, number=int(number), arguments=arguments, before=before)
+    return subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True, timeout=120)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("name", ["mmgtune.cli", "typer", "mmgtune.trial", "pyarrow"])
+def test_at_start(tmp_path, name, number):
+    found = ended(tmp_path, "trials", "check", "suzaku", number=number, name=name)
+    assert found.returncode == 128 + number
+    word = "interrupted: " if number == signal.SIGINT else "terminated: "
+    assert found.stderr.startswith(word)
+    assert len(found.stderr.splitlines()) == 1
+    assert found.stdout == ""
+
+
+def test_in_a_destructor(tmp_path):
+    """An exception raised there is printed, and lost: the command went on to its end."""
+    found = ended(tmp_path, "trials", "check", "suzaku", name="pyarrow", when="Gone()")
+    assert found.returncode == 130
+    assert found.stderr == "interrupted: nothing was left half-written\n"
+
+
+def test_at_exit(tmp_path):
+    before = "import atexit, time; atexit.register(lambda: (sent(), time.sleep(0.05)))"
+    found = ended(tmp_path, "profile", "list", before=before)
+    assert found.returncode == 0
+    assert found.stderr == ""
+
+
+FEW = ("--targets", "R_0,w_P0", "--method", "least-squares", "--starts", "1", "--no-report", "--quiet", "--out", "run")
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_when_the_result_is_written(tmp_path, number):
+    """What is said then names the folder with the results."""
+    before = "import mmgtune.cli.sweep as sweep; sweep.summary = lambda *_, **__: sent()"
+    found = ended(tmp_path, "sweep", "--ar", "0.2", *FEW, number=number, before=before)
+    assert found.returncode == 128 + number
+    assert found.stderr.splitlines()[-1].endswith("the results in run were complete by then")
+    assert (tmp_path / "run" / "sweep.json").exists()
+
+
+def test_twice_while_it_works(tmp_path):
+    """The second ends it at once; halves of files do not stay."""
+    before = """
+import mmgtune.fitting as fitting
+from pathlib import Path
+from mmgtune.files import atomic
+def interrupted(*_, **__):
+    with atomic(Path("run/fit.json")) as part:
+        part.write_text("half")
+        sent(), sent()
+fitting.fit = interrupted
+"""
+    found = ended(tmp_path, "fit", *FEW, before=before)
+    assert found.returncode == 130
+    assert "finishing this step" in found.stderr
+    assert found.stderr.splitlines()[-1] == (
+        "interrupted: stopped at once; --resume --out run continues from the last checkpoint"
+    )
+    assert list((tmp_path / "run").iterdir()) == []

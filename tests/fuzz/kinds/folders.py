@@ -1,0 +1,142 @@
+"""Run folders, baselines and what a stopped run left: records that do not hold what they should."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import json
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tests.command import typed
+
+from ..mutating import mutated_bytes, pick, several
+from ..small import trials
+from ..trees import as_json, mutated
+from . import Files, Kind
+
+FEW = ("--trials", "trials", "--targets", "R_0,w_P0", "--quiet", "--no-report")
+RUNS = {
+    "fit": ("fit", *FEW, "--method", "least-squares", "--starts", "1"),
+    "sweep": ("sweep", *FEW, "--method", "least-squares", "--starts", "1", "--ar", "0.2,0.3"),
+    "diagnose": ("diagnose", *FEW, "--effects", "speed-scale"),
+    "leave-out": ("leave-out", "--trials", "trials", "--targets", "R_0", "--quiet", "--starts", "1"),
+}
+IN_FOLDER = "%"
+"""Between the names of a folder and of a file in it: files of a case lie side by side."""
+
+
+def _lay(files: Files, folder: Path) -> None:
+    for name, content in files.items():
+        path = folder / name.replace(IN_FOLDER, "/")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+
+
+def _collected(folder: Path) -> dict[str, bytes]:
+    return {
+        str(path.relative_to(folder)).replace("/", IN_FOLDER): path.read_bytes()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+    }
+
+
+@functools.cache
+def whole() -> dict[str, dict[str, bytes]]:
+    """Folders that runs leave, finished and stopped, and a baseline; times in them taken out."""
+    found = {}
+    with tempfile.TemporaryDirectory() as name, contextlib.chdir(name):
+        _lay({f"trials/{name}": content for name, content in trials().items()}, Path(name))
+        for kind, line in RUNS.items():
+            assert typed(*line, "--out", kind).code == 0
+            found[kind] = {key: _timeless(content) for key, content in _collected(Path(kind)).items()}
+            stopped = _stopped(line)
+            if stopped:
+                found[f"{kind} stopped"] = stopped
+        assert typed("check", "suzaku", "trials", "-b", "check.json", "--update-baseline").code == 0
+        found["check"] = {"check.json": Path("check.json").read_bytes()}
+    return found
+
+
+def _stopped(line: tuple[str, ...]) -> dict[str, bytes]:
+    """The folder of a run in which nothing is finished but what its journal holds."""
+    from mmgtune.fitting.journal import Journal
+
+    remove = Journal.remove
+    Journal.remove = Journal.close  # type: ignore[method-assign]
+    try:
+        assert typed(*line, "--out", "stopped", "--force").code in (0, 2) or True
+        kept = {
+            name: content for name, content in _collected(Path("stopped")).items() if name.endswith(("jsonl", "npz"))
+        }
+    finally:
+        Journal.remove = remove  # type: ignore[method-assign]
+    import shutil
+
+    shutil.rmtree("stopped")
+    return kept
+
+
+def _timeless(content: bytes) -> bytes:
+    try:
+        document = json.loads(content)
+    except ValueError:
+        return content
+    _fix(document)
+    return as_json(document)
+
+
+def _fix(document: Any) -> None:
+    if isinstance(document, dict):
+        for key, value in document.items():
+            if key in ("created", "wall_s"):
+                document[key] = "2026-01-01T00:00:00+00:00" if key == "created" else 1.0
+            else:
+                _fix(value)
+    elif isinstance(document, list):
+        for one in document:
+            _fix(one)
+
+
+def make(rng: np.random.Generator) -> Files:
+    """A folder with something wrong in one of its files, or with one missing."""
+    kind = pick(rng, list(whole()))
+    files = dict(whole()[kind])
+    name = pick(rng, list(files)) if rng.random() < 0.3 else pick(rng, [one for one in files if "json" in one])
+    content = files[name]
+    how = rng.random()
+    if how < 0.1:
+        del files[name]
+    elif how < 0.7 and name.endswith(".json"):
+        files[name] = as_json(several(rng, json.loads(content), [mutated]))
+    elif how < 0.7 and name.endswith(".jsonl"):
+        lines = [json.loads(one) for one in content.splitlines()]
+        files[name] = b"".join(json.dumps(one).encode() + b"\n" for one in several(rng, lines, [mutated]))
+    else:
+        files[name] = several(rng, content, [mutated_bytes])
+    return {**files, "what": kind.encode()}
+
+
+def run(folder: Path) -> str:
+    """Report on it, check against it, or go on with it."""
+    files = {path.name: path.read_bytes() for path in folder.iterdir()}
+    kind = files.pop("what").decode()
+    out = folder / "out"
+    _lay({f"run/{name}": content for name, content in files.items()}, out)
+    _lay({f"trials/{name}": content for name, content in trials().items()}, out)
+    with contextlib.chdir(out):
+        if kind == "check":
+            line: tuple[str, ...] = ("check", "suzaku", "trials", "-b", "run/check.json")
+        elif kind.endswith("stopped"):
+            line = (*RUNS[kind.split()[0]], "--out", "run", "--resume")
+        else:
+            line = ("report", "run")
+        ended = typed(*line)
+    assert ended.code in (0, 2) or (ended.code == 1 and kind == "check"), ended.err
+    return f"{kind}: exit {ended.code}"
+
+
+KIND = Kind("folders", make, run, seconds=20.0)

@@ -1,0 +1,54 @@
+"""Profiles as an attacker, an editor or a machine would write them: refused with a reason, or read."""
+
+import pytest
+
+from mmgtune.errors import OptionError, ProfileError
+from mmgtune.profile import load_profile
+from mmgtune.profile.reading import parse_profile
+from mmgtune.toml_reading import toml_of
+
+TEXT = load_profile("suzaku").text
+LONG = "9" * 400
+
+
+def changed(before, after):
+    assert before in TEXT
+    return TEXT.replace(before, after, 1)
+
+
+TUNING = TEXT[TEXT.index("[tuning]") : TEXT.index("]", TEXT.index("targets = [")) + 1]
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (changed(TUNING, "").replace("schema = 1", "schema = 1\ntuning = 3", 1), "'tuning' is not a table"),
+        (changed(TUNING, "[tuning]\ntargets = [3]"), "not a list of names"),
+        (changed(TUNING, "[tuning]\ntargets = [[]]"), "not a list of names"),
+        (changed(TUNING, "[tuning]\ntargets = 3"), "not a list of names"),
+        (changed("t_P = 0.080", f"t_P = {LONG}"), "no number a computer can count with"),
+        (changed("t_P = 0.080", f"t_P = {'9' * 5000}"), "cannot be read"),
+        (changed("t_P = 0.080", f"t_P = '{LONG}'"), "is inf"),
+        (changed("schema = 1", f"schema = {LONG}"), "schema is 999"),
+        (changed("schema = 1", f"schema = {'[' * 5000}{']' * 5000}"), "nested too deeply"),
+        (changed("schema = 1", f"schema = {'[' * 300}{']' * 300}"), "schema is [[["),
+        (changed('value = "converted"', "value = []"), "one of: converted"),
+        (changed('value = "converted"', "value = {}"), "one of: converted"),
+        (changed("t_P = 0.080", "t_P = { value = 0.08, source = nan }"), "source of 'propeller.t_P' is nan, not text"),
+        (changed("t_P = 0.080", "t_P = { value = 0.08, note = [1] }"), "note of 'propeller.t_P' is [1], not text"),
+        (changed("t_P = 0.080", "t_P = { value = 0.08, assumption = 'no' }"), "is 'no', not true or false"),
+    ],
+    ids=range(15),
+)
+def test_refused(text, words):
+    with pytest.raises(ProfileError) as error:
+        parse_profile(text)
+    assert words in str(error.value)
+    assert all(len(line) < 500 for line in str(error.value).splitlines())
+
+
+def test_a_mark_at_the_beginning(tmp_path):
+    (tmp_path / "ship.toml").write_text(TEXT, encoding="utf-8-sig")
+    found = load_profile(tmp_path / "ship.toml")
+    assert found.sha256 == load_profile("suzaku").sha256
+    assert toml_of("\ufeffa = 1", "it", "here", OptionError) == {"a": 1}

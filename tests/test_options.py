@@ -1,0 +1,91 @@
+"""Choices as a program gives them: of their kind, and within what a machine can do."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from mmgtune.diagnose.leftover import _explained
+from mmgtune.errors import OptionError
+from mmgtune.options import (
+    CheckOptions,
+    DiagnoseOptions,
+    FitOptions,
+    LeaveOutOptions,
+    SimulateOptions,
+    SweepOptions,
+    ValidateOptions,
+)
+from mmgtune.trial import load_trials
+
+
+@pytest.mark.parametrize(
+    ("of", "given"),
+    [
+        (FitOptions, {"starts": 2.5}),
+        (FitOptions, {"starts": "2"}),
+        (FitOptions, {"starts": True}),
+        (FitOptions, {"seed": 1.0}),
+        (FitOptions, {"substeps": 1.5}),
+        (FitOptions, {"substeps": None}),
+        (FitOptions, {"a_r": "0.5"}),
+        (FitOptions, {"a_r": None}),
+        (FitOptions, {"identifiable": 1}),
+        (FitOptions, {"method": 3}),
+        (FitOptions, {"method": ["cma-es"]}),
+        (FitOptions, {"targets": "R_0"}),
+        (FitOptions, {"targets": (3,)}),
+        (FitOptions, {"window": (1.0,)}),
+        (FitOptions, {"window": ("a", "b")}),
+        (SweepOptions, {"widths": 0.5}),
+        (SweepOptions, {"widths": ("0.5",)}),
+        (LeaveOutOptions, {"folds": 2.5}),
+        (DiagnoseOptions, {"most": 2.5}),
+        (DiagnoseOptions, {"effects": "current"}),
+        (ValidateOptions, {"restart": "100"}),
+        (SimulateOptions, {"turn": (35,)}),
+        (CheckOptions, {"metrics": ("J", 1)}),
+    ],
+)
+def test_of_another_kind(of, given):
+    (name,) = given
+    with pytest.raises(OptionError) as error:
+        of(**given)
+    assert error.value.problems[0].where == name
+    assert "give" in error.value.problems[0].fix
+
+
+def test_of_a_kind_that_does():
+    found = FitOptions(
+        starts=np.int64(3), a_r=1, restart=np.float32(100.0), targets=["R_0"], window=[0, math.inf], every=None
+    )
+    assert found.starts == 3
+    SweepOptions(widths=[0.2, 1])
+
+
+@pytest.mark.parametrize(
+    ("of", "given", "limit"),
+    [
+        (FitOptions, {"starts": 10**9}, "1000 or less"),
+        (FitOptions, {"substeps": 10**9}, "1000 or less"),
+        (FitOptions, {"regularise": 1e308, "method": "least-squares"}, "1e+06 or less"),
+        (FitOptions, {"restart": 1e-308}, "0.01 or more"),
+        (FitOptions, {"every": 1e-308}, "0.01 or more"),
+        (FitOptions, {"seed": 10**400}, "or less"),
+        (LeaveOutOptions, {"folds": 10**9}, "1000 or less"),
+        (DiagnoseOptions, {"restart": 1e-308}, "0.01 or more"),
+        (ValidateOptions, {"substeps": 10**400}, "1000 or less"),
+    ],
+)
+def test_work_without_end_is_refused_with_its_limit(of, given, limit):
+    with pytest.raises(OptionError) as error:
+        of(**given)
+    assert limit in error.value.problems[0].fix
+
+
+def test_windows_too_short_for_slow_errors():
+    """Whether one part of the time explains another cannot be said of them; it ended a diagnosis as a bug."""
+    trials = list(load_trials("suzaku").in_windows(2.0).trials.values())
+    residuals = [np.ones((trial.n_samples, 6)) for trial in trials]
+    assert _explained(SimpleNamespace(trials=trials), residuals, ["x", "psi"]) == {}
