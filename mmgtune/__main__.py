@@ -1,6 +1,7 @@
 """``python -m mmgtune``, and the command itself: Ctrl-C and SIGTERM have their exit codes from the first moment."""
 
-import _signal  # type: ignore[import-not-found]  # what ``signal`` wraps; to import that takes longer than all else before the handlers are there
+# What ``signal`` wraps: to import that takes longer than all else before the handlers are there.
+import _signal  # type: ignore[import-not-found]
 import os
 
 

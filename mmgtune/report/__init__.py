@@ -19,9 +19,8 @@ def render(folder: Path) -> list[Path]:
     from .kinds import KINDS
     from .output import write
 
-    kind, path = load.find(folder, KINDS)
-    with load.whole(path):
-        run = kind.read(folder, load.read(path, kind))
+    kind, run = load.find(folder, KINDS)
+    with load.whole(folder / kind.file):
         page = kind.build(run)
         rendered = html.render(page), markdown.render(page)
         others = list(kind.inside(run))

@@ -105,17 +105,18 @@ class DiagnosisRecord:
         return list(self.data["trial_results"])
 
 
-def find(folder: Path, kinds: Iterable[Kind]) -> tuple[Kind, Path]:
-    """The kind of run in a folder, told by the file it holds, and that file.
+def find(folder: Path, kinds: Iterable[Kind]) -> tuple[Kind, Any]:
+    """The kind of run in a folder, told by the file it holds, and the run as its page wants it.
 
-    Raises OptionError for a folder that is missing or not a run folder.
+    Raises OptionError for a folder that is missing, unreadable, not a run folder, or from a newer program.
     """
     if not folder.is_dir():
         raise _problem("there is no such run folder", folder, "", "give the folder that --out of a run named")
     for kind in kinds:
         path = folder / kind.file
         if path.is_file():
-            return kind, path
+            with whole(path):
+                return kind, kind.read(folder, _read(path, kind))
     raise _problem(
         "this is not a run folder",
         folder,
@@ -143,11 +144,8 @@ def whole(path: Path) -> Iterator[None]:
         raise _problem("no report can be made of the run's record", path, f"{error!r} in '{part}'", fix) from error
 
 
-def read(path: Path, kind: Kind) -> dict[str, Any]:
-    """A record file, with its schema, kind and needed keys checked.
-
-    Raises OptionError where it is unreadable, of another kind, not whole, or from a newer program.
-    """
+def _read(path: Path, kind: Kind) -> dict[str, Any]:
+    """A record file, with its schema, kind and needed keys checked."""
     again = "run the fit again, or give another folder"
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
