@@ -38,6 +38,8 @@ from .text import binary, read_text, start_of
 from .yaw import heading_recovered
 
 REPORT = "import-report.json"
+QUICKEST = 1e-7
+"""Time between rows [s] that no logger comes near."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -218,6 +220,10 @@ def _records(log: Path, log_map: LogMap) -> list[Record]:
     line = put_right(time_in_seconds(table, log_map), log_map.time, table.place)
     table.columns = {name: values[line.keep] for name, values in table.columns.items()}
     t = line.t[line.keep]
+    usual = float(np.median(np.abs(np.diff(t)))) if len(t) > 1 else 1.0
+    if usual < QUICKEST:
+        what, why = f"the rows are {usual:.3g} s apart", "no logger is as quick"
+        raise LogError(Problem(what, table.place(0), why, "check unit and scale in [time] of the map"))
     bounds = [0, *line.parts, len(t)]
     records = []
     for first, last in itertools.pairwise(bounds):

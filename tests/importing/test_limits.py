@@ -170,6 +170,14 @@ def test_wide_characters_without_a_mark_of_byte_order(log, columns):
     assert imported(log, MAP.replace("[time]", '[log]\nencoding = "utf-16-le"\n[time]')).n_samples == 400
 
 
+def test_rows_that_no_logger_writes_as_quickly(log, columns):
+    text = MAP.replace('unit = "s"\n[vel', 'unit = "s"\nscale = 1e-300\n[vel') + "[cut]\n"
+    text = text.replace('"north", unit = "m"', '"north", unit = "m", recover = "print-resolution"')
+    answer = refusal(lambda: said(write_csv(log, columns), text))
+    assert "the rows are 1e-300 s apart" in answer
+    assert "check unit and scale in [time]" in answer
+
+
 # NMEA 0183
 
 
