@@ -57,13 +57,13 @@ class Journal:
         if resume:
             lines = self._lines()
             head = _parsed(lines[0]) if lines else None
-            if head is None:
+            if head is None or not isinstance(head.get("identity"), dict):
                 raise OptionError(
                     Problem("the journal cannot be read", str(self.path), "", "delete it, or run without resume=True")
                 )
-            differing(head.get("identity", {}), self.identity, self.path)
-            entries = [_parsed(line) for line in lines[1:]]
-            whole = entries.index(None) if None in entries else len(entries)  # the last may be half a line
+            differing(head["identity"], self.identity, self.path)
+            entries = [_entry(line) for line in lines[1:]]
+            whole = entries.index(None) if None in entries else len(entries)  # up to half a line, or a damaged one
             self._noted = [entry for entry in entries[:whole] if entry is not None]
             text = header + "".join(line + "\n" for line in lines[1 : 1 + whole])
         write_text(self.path, text)
@@ -78,7 +78,7 @@ class Journal:
                     "run without resume=True",
                 )
             )
-        return self.path.read_text(encoding="utf-8").splitlines()
+        return self.path.read_text(encoding="utf-8", errors="replace").splitlines()
 
     def remember(self, what: str, asked: str, do: Callable[[], Any], note: Callable[[Any], Any], recall: Any) -> Any:
         """The result of a piece of work: from the journal where it is the next there, else done, and noted.
@@ -95,7 +95,7 @@ class Journal:
         result = do()
         if not self.stop():
             entry = {"what": what, "asked": asked, "result": note(result)}
-            self._append(json.dumps(entry) + "\n")
+            self._append(_line(entry))
             self._noted.append(entry)
             self._next += 1
         return result
@@ -185,6 +185,22 @@ def _hash(parts: list[Any]) -> str:
         found.update(np.ascontiguousarray(part).tobytes() if isinstance(part, np.ndarray) else repr(part).encode())
         found.update(b"\0")
     return found.hexdigest()[:24]
+
+
+def _line(entry: dict[str, Any]) -> str:
+    """A line of the file, with a sum that tells whether it is as it was written."""
+    text = json.dumps(entry)
+    return f"{_sum(text)} {text}\n"
+
+
+def _entry(line: str) -> dict[str, Any] | None:
+    """The entry of a line; None where it is not as it was written."""
+    noted, _, text = line.partition(" ")
+    return _parsed(text) if noted == _sum(text) else None
+
+
+def _sum(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def _parsed(line: str) -> dict[str, Any] | None:

@@ -116,6 +116,20 @@ def test_half_a_line_at_the_end_is_done_again(tmp_path):
     assert same(resumed.to_dict()) == same(leave_out("suzaku", "suzaku", options).to_dict())
 
 
+def test_a_changed_line_is_done_again_and_so_is_what_follows(tmp_path):
+    """A digit changed in a result, as by a bad disk, went into the numbers of the run without a word."""
+    options = LeaveOutOptions(targets=FEW, starts=1, folds=3)
+    whole = leave_out("suzaku", "suzaku", options, folder=tmp_path)
+    kept = (tmp_path / NAME).read_bytes()
+    at = kept.index(b"0.", kept.index(b"\n") + 200)
+    for damaged in (kept[: at + 3] + b"7" + kept[at + 4 :], kept[:at] + b"\xff" + kept[at + 1 :]):
+        assert damaged != kept
+        (tmp_path / NAME).write_bytes(damaged)
+        resumed = leave_out("suzaku", "suzaku", options, folder=tmp_path, resume=True)
+        assert same(resumed.to_dict()) == same(whole.to_dict())
+        assert (tmp_path / NAME).read_bytes() == kept
+
+
 def test_nothing_to_resume(tmp_path):
     with pytest.raises(OptionError, match="nothing to resume"):
         leave_out("suzaku", "suzaku", folder=tmp_path, resume=True)
