@@ -6,11 +6,13 @@ BIN := $(VENV)/bin
 RUNTIME := $(VENV)/.installed
 DEV := $(VENV)/.installed-dev
 DEMO := runs/demo
+COUNT ?= 1000
+SEED ?= 1
 PYTEST := $(BIN)/pytest -n auto --maxprocesses 8 --dist loadgroup --no-loadscope-reorder
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help install demo test quick lint types arch check regression docs bench signs hidden trials browser constraints clean
+.PHONY: help install demo test quick lint types arch check regression docs bench fuzz signs hidden trials browser constraints clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-11s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -59,6 +61,10 @@ hidden: $(RUNTIME) ## the full study of hidden effects, some hours; goes on wher
 
 signs: $(DEV) ## turn round every sign in the equations: do the tests notice? Half an hour; goes on where it was stopped
 	$(BIN)/python tools/mutate_signs.py
+
+fuzz: $(DEV) ## hostile inputs, kills and interrupts: COUNT of each kind (1000), SEED (1); half an hour
+	$(BIN)/python -m tests.fuzz --count $(COUNT) --seed $(SEED)
+	$(BIN)/python -m tests.fuzz.interruptions --count $$(( $(COUNT) / 10 )) --seed $(SEED)
 
 bench: $(RUNTIME) ## time the simulation and the fit
 	$(BIN)/python tools/bench.py

@@ -32,12 +32,12 @@ def check(
     """
     from ..profile import load_profile
     from ..resources import profile_names
-    from ..trial import check_trial, load_trials
+    from ..trial import check_trials, load_trials
 
     data = load_trials(trials)
     # The trials of a ship with a bundled profile are checked against her length.
     L_pp = load_profile(data.ship).L_pp if data.ship in profile_names() else None
-    found = {name: check_trial(trial, L_pp) for name, trial in data.trials.items()}
+    found = check_trials(data.trials, L_pp)
     if json:
         c.print_json({"schema": 1, "trials": {name: [vars(f) for f in findings] for name, findings in found.items()}})
     else:

@@ -6,6 +6,7 @@ parquet         reading and writing a file; metadata: the facts in it; digest: t
 dataset         folders of files; split: which of them tune and which test
 unusable        what forbids using a trial
 checks          everything odd about one: motion_checks, control_checks, cross_checks; kinematics: what they measure
+set_checks      what is odd about one among others of the same ship
 pieces          long trials cut into windows
 wind            the wind it was measured in; surroundings: all that was measured around the ship
 smoothing       channels without their noise
@@ -18,6 +19,7 @@ from .finding import Finding
 from .model import Trial
 from .parquet import read_trial, write_trial
 from .pieces import windows
+from .set_checks import check_trials
 from .surroundings import surroundings
 from .wind import has_measured_wind, measured_wind
 
@@ -26,6 +28,7 @@ __all__ = [
     "Trial",
     "TrialSet",
     "check_trial",
+    "check_trials",
     "has_measured_wind",
     "load_trials",
     "measured_wind",

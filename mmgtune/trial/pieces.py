@@ -32,7 +32,7 @@ def windows(trial: Trial, length: float, every: float | None = None) -> list[Tri
             pieces[-1] = (pieces[-1][0], trial.n_samples - 1)
             break
         until = trial.t[first] + length
-        at = int(np.searchsorted(trial.t[whole], until - 1e-9))
+        at = max(at + 1, int(np.searchsorted(trial.t[whole], until - 1e-9)))  # shorter than a step, it is one
         at = at if compared is None else max(at, int(np.searchsorted(whole, compared)))
         if len(whole) - at < FEWEST:
             at = len(whole)

@@ -13,7 +13,7 @@ import pytest
 
 from mmgtune.importing import import_logs, load_map
 from mmgtune.profile import load_profile
-from mmgtune.trial import Trial, check_trial, load_trials
+from mmgtune.trial import Trial, check_trial, check_trials, load_trials
 
 from .made import DEG, made, said
 
@@ -24,6 +24,32 @@ SUZAKU = load_trials("suzaku").trials
 
 def warnings_of(trial: Trial, L_pp: float | None = L_PP) -> list[str]:
     return [f"{f.what}: {f.why}; {f.fix}" for f in check_trial(trial, L_pp) if f.severity == "warning"]
+
+
+def warnings_of_set(trials: dict[str, Trial]) -> list[str]:
+    found = check_trials(trials)
+    return [f"{name}: {f.what}" for name, findings in found.items() for f in findings if f.severity == "warning"]
+
+
+@pytest.mark.parametrize("name", SUZAKU)
+@pytest.mark.parametrize(("channels", "factor"), [("n", 1.944), ("n", 1 / 1.944), ("n", 10.0), ("uv_m", 0.514)])
+def test_one_of_a_set_in_another_unit(name: str, channels: str, factor: float) -> None:
+    parts = {"n": ("n",), "uv_m": ("u", "v_m")}[channels]
+    wrong = replace(SUZAKU[name], **{part: factor * getattr(SUZAKU[name], part) for part in parts})
+    found = [one for one in warnings_of_set(SUZAKU | {name: wrong}) if "on her approach the ship makes" in one]
+    assert [one.split(":")[0] for one in found] == [name]
+
+
+def test_sets_that_agree_or_cannot_tell() -> None:
+    assert warnings_of_set(SUZAKU) == []
+    first, second = list(SUZAKU)[:2]
+    wrong = replace(SUZAKU[first], n=1.944 * SUZAKU[first].n)
+    assert warnings_of_set({first: wrong, second: SUZAKU[second]}) == []
+    half = {
+        name: replace(SUZAKU[name], n=1.944 * SUZAKU[name].n) if k % 2 else SUZAKU[name]
+        for k, name in enumerate(SUZAKU)
+    }
+    assert warnings_of_set(half) == []
 
 
 @pytest.mark.parametrize("name", SUZAKU)
@@ -125,7 +151,9 @@ def test_nothing_is_said_of_what_was_measured(folder: str, preset: str, ship: st
     L_pp = load_profile(ship).L_pp
     # Real logs have gaps and spikes, and what is logged as the rudder of this model are orders.
     known = ("has gaps", "spikes", "rudder moves at up to")
-    for trial in import_logs(logs, load_map(preset, preset=True), ".", step, dry_run=True).trials:
+    trials = import_logs(logs, load_map(preset, preset=True), ".", step, dry_run=True).trials
+    assert not any("on her approach" in one for one in warnings_of_set({trial.id: trial for trial in trials}))
+    for trial in trials:
         for length in (L_pp, None):
             odd = [one for one in warnings_of(trial, length) if not any(word in one for word in known)]
             assert not odd, (trial.id, odd)

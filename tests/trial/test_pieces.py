@@ -18,6 +18,13 @@ def test_windows_cover_the_trial_and_meet_in_one_sample():
     assert pieces[-1].duration < 30.0
 
 
+def test_a_length_shorter_than_a_step_comes_to_an_end():
+    """Began at the same sample for ever."""
+    trial = made(samples=50)
+    for length in (1e-12, 1e-9, 0.3):
+        assert all(piece.n_samples > 2 for piece in windows(trial, length))
+
+
 def test_a_window_begins_behind_a_gap():
     trial = with_value(made(samples=100), "x", slice(28, 35), np.nan)
     pieces = windows(trial, 30.0)

@@ -1,0 +1,64 @@
+"""Trials of one ship against each other: what is wrong in one of them alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ..units import DEG
+from .checks import check_trial
+from .finding import SEVERITIES, Finding
+from .model import Trial
+
+AMIDSHIPS = 3.0 * DEG
+"""Rudder angle below which a ship goes about straight on."""
+FEWEST = 5
+"""Samples of an approach that say anything."""
+STEADY = 0.1
+"""Spread of the way per turn within an approach, as a share, beyond which the ship gathers or loses speed."""
+APART = 1.3
+"""Factor between trials that neither currents nor the weather make, but wrong units do."""
+
+
+def check_trials(trials: Mapping[str, Trial], L_pp: float | None = None) -> dict[str, list[Finding]]:
+    """Everything a user should know about each trial of a set, worst first; arguments as for ``check_trial``.
+
+    Three or more approaches are held against each other besides: a unit that is wrong in one trial shows there.
+    """
+    found = {name: check_trial(trial, L_pp) for name, trial in trials.items()}
+    for name, finding in _ways(trials).items():
+        found[name] = sorted([*found[name], finding], key=lambda one: SEVERITIES.index(one.severity))
+    return found
+
+
+def way_per_turn(trial: Trial) -> float | None:
+    """Metres ahead with each turn of the propeller on the straight course a trial begins with; None where none is."""
+    with np.errstate(all="ignore"):
+        straight = (np.abs(trial.delta) < AMIDSHIPS) & (trial.u > 0.0) & (trial.n > 0.3 * np.abs(trial.n).max())
+        end = len(straight) if straight.all() else int(np.argmin(straight))
+        if end < FEWEST:
+            return None
+        low, usual, high = np.percentile(trial.u[:end] / trial.n[:end], [10.0, 50.0, 90.0])
+    return float(usual) if high - low < STEADY * usual else None
+
+
+def _ways(trials: Mapping[str, Trial]) -> dict[str, Finding]:
+    ways = {name: way for name, trial in trials.items() if (way := way_per_turn(trial)) is not None}
+    found = {}
+    for name, way in ways.items():
+        others = [one for other, one in ways.items() if other != name]
+        if len(others) < 2:
+            continue
+        usual = float(np.median(others))
+        alike = sum(1.0 / APART < one / usual < APART for one in others)
+        if not 1.0 / APART < way / usual < APART and alike > 0.75 * len(others):
+            found[name] = Finding(
+                "warning",
+                f"on her approach the ship makes {way:.3g} m with each turn of the propeller, {usual:.3g} m in others",
+                f"{trials[name].path or name}, columns 'n' and 'u'",
+                f"{way / usual:.3g} times as much as in {alike} of the other trials: the unit of one of them is wrong, "
+                "or the propeller or its gear was another",
+                "compare how 'n' and 'u' of this trial were logged with the others",
+            )
+    return found
