@@ -1,8 +1,9 @@
 """Commands killed and interrupted at random moments: ``python -m tests.fuzz.interruptions --count 50 --seed 1``.
 
 Each command is run to its end once.  Then it is started again and again, gets SIGKILL, SIGINT or SIGTERM at a moment
-between its start and a little after its end, or two of them at once begin on one folder; then it is continued, or begun
-again where it says that there is nothing to continue, and must come to the same numbers, bit for bit.
+between its start and a little after its end, finds the disk full at one of its writes, or two of them at once begin on
+one folder; then it is continued, or begun again where it says that there is nothing to continue, and must come to the
+same numbers, bit for bit.
 """
 
 from __future__ import annotations
@@ -60,6 +61,22 @@ COMMANDS = (
 )
 DEATHS = (signal.SIGKILL, signal.SIGINT, signal.SIGTERM)
 
+FULL = """
+import errno, os
+from pathlib import Path
+whole, at, count = os.fsync, int(os.environ["FULL_AT"]), Path(os.environ["FULL_COUNT"])
+done = 0
+def fsync(handle):
+    global done
+    done += 1
+    count.write_text(str(done))
+    if done == at:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    whole(handle)
+os.fsync = fsync
+"""
+"""A disk that is full at write FULL_AT: all that the program keeps is synchronised before it has its name."""
+
 
 @dataclass
 class Found:
@@ -81,8 +98,11 @@ def disturb(count: int, seed: int, names: tuple[str, ...] = ()) -> Found:
             wanted, seconds = wholes[command.name]
             here = Path(place) / str(number)
             _lay(here)
-            if command.resumes and rng.random() < 0.15:
+            kind = rng.random()
+            if command.resumes and kind < 0.1:
                 _two_at_once(command, here, wanted, found)
+            elif kind < 0.25:
+                _disk_full(command, here, wanted, rng, found)
             else:
                 death = DEATHS[int(rng.integers(len(DEATHS)))]
                 # As often at start-up and at the end as in the middle.
@@ -150,6 +170,32 @@ def _one(command: Command, here: Path, wanted: Any, death: signal.Signals, after
         f"{label}: leaves {_halves(here)}",
         found,
     )
+
+
+def _disk_full(command: Command, here: Path, wanted: Any, rng: np.random.Generator, found: Found) -> None:
+    """The disk is full at one write; there is room again when the command is continued."""
+    (here / "hook").mkdir()
+    (here / "hook" / "sitecustomize.py").write_text(FULL)
+    count = here / "count"
+    paths = os.pathsep.join([str(here / "hook"), *filter(None, [os.environ.get("PYTHONPATH")])])
+    env = {"PYTHONPATH": paths, "FULL_COUNT": str(count)}
+    whole = run(*_line(command), cwd=here, env={**env, "FULL_AT": "0"})
+    writes = int(count.read_text())
+    _expect(whole.code == 0 and writes > 0, f"{command.name}: {writes} writes: {whole.err}", found)
+    shutil.rmtree(here / OUT)
+    at = int(rng.integers(1, writes + 1))
+    label = f"{command.name}, disk full at write {at} of {writes}"
+    ended = run(*_line(command), cwd=here, env={**env, "FULL_AT": str(at)})
+    found.counts[f"disk full: exit {ended.code}"] += 1
+    _expect(ended.code == 2, f"{label}: exit {ended.code}: {ended.err}", found)
+    _expect("Traceback" not in ended.err and "o space left" in ended.err, f"{label}: {ended.err}", found)
+    _expect(not _halves(here), f"{label}: halves of files stay: {_halves(here)}", found)
+    if command.resumes:
+        _continue(command, here, wanted, label, found)
+    else:
+        again = run(*_line(command), *(("--force",) if command.name != "check" else ()), cwd=here)
+        _expect(again.code == 0, f"{label}: not done again: {again.err}", found)
+        _expect(_read(here, command) == wanted, f"{label}: done again differs", found)
 
 
 def _judge(
