@@ -41,6 +41,9 @@ class Limit:
             raise error(problem)
 
 
+PROFILE_BYTES = Limit(1 << 20, "bytes", "a profile", "give the TOML file of a ship: some hundred lines")
+CHECKS_BYTES = Limit(1 << 20, "bytes", "a file of checks", "give a TOML file of [[check]] tables")
+RECORD_BYTES = Limit(1 << 28, "bytes", "a record", "give the folder of a run, or a baseline, as it was written")
 MAP_BYTES = Limit(256 << 10, "bytes", "a map", "give the map of a log: a TOML file of a page or two")
 MAP_ENTRIES = Limit(100, "entries", "[[logs]]", "use wider patterns, or several maps")
 SPLIT_BYTES = Limit(1 << 20, "bytes", "a split", "give a TOML file with the ids that tune and test")
@@ -66,6 +69,14 @@ FOOTER_VALUES = Limit(100_000, "column chunks", "a Parquet file", "write it with
 ROWS_PER_BYTE = 8
 """Rows that a byte of a Parquet file may stand for beyond FREE_ROWS: measured rows do not compress further."""
 FREE_ROWS = 1_000_000
+
+
+def text(path: Path, limit: Limit, error: type[MmgtuneError]) -> str:
+    """A file's text, its lines ended as on any system, a byte-order mark in front passed over.
+
+    Raises ``error`` beyond the limit, OSError, and ValueError where it is not UTF-8.
+    """
+    return content(path, limit, error).decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
 
 
 def content(path: Path, limit: Limit, error: type[MmgtuneError]) -> bytes:

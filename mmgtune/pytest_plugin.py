@@ -50,11 +50,13 @@ class CheckFile(pytest.File):
 
     def collect(self) -> Iterator[CheckNode]:
         """One node per [[check]]."""
+        from . import limits
         from .errors import OptionError
         from .toml_reading import toml_of
 
         try:
-            data = toml_of(self.path.read_text(encoding="utf-8"), "the file of checks", str(self.path), OptionError)
+            text = limits.text(self.path, limits.CHECKS_BYTES, OptionError)
+            data = toml_of(text, "the file of checks", str(self.path), OptionError)
         except OptionError as error:
             raise self.CollectError("\n".join(map(str, error.problems))) from None
         except (OSError, ValueError) as error:

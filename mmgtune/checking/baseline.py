@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from .. import limits
 from ..backends import Integrator
 from ..errors import OptionError, Problem, closest
 from ..files import write_text
@@ -97,7 +98,7 @@ def read_baseline(path: Path) -> Baseline:
     """The baseline in a file.  Raises OptionError with everything that is wrong in it."""
     again = "write it anew with update_baseline=True, or take it from the repository"
     try:
-        data = json.loads(path.read_text(encoding="utf-8"))
+        data = json.loads(limits.text(path, limits.RECORD_BYTES, OptionError))
     except FileNotFoundError:
         fix = "write one with update_baseline=True, and commit it"
         raise OptionError(Problem("there is no baseline", str(path), fix=fix)) from None

@@ -9,7 +9,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, TypeVar
 
-from .. import units
+from .. import limits, units
 from ..components import ARRANGEMENTS, KINDS, UNTAGGED, Arrangement, Component, Field, find, find_arrangement, tags
 from ..effects import Effect, Parameter, effect_tags, find_effect
 from ..errors import Problem, ProfileError, brief, closest
@@ -53,8 +53,8 @@ def load_profile(name: str | Path) -> ShipProfile:
     """Read and validate a profile by path or bundled name.  Raises ProfileError with everything wrong in it."""
     path = find_profile(name)
     try:
-        text = path.read_text(encoding="utf-8-sig")  # some editors begin a file with a mark
-    except (OSError, UnicodeDecodeError) as error:
+        text = limits.text(path, limits.PROFILE_BYTES, ProfileError)
+    except (OSError, ValueError) as error:
         raise ProfileError(
             Problem("cannot read the profile", str(path), str(error), "check the file; it must be UTF-8 text")
         ) from error

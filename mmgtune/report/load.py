@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from .. import limits
 from ..arrays import FloatArray
 from ..errors import OptionError, Problem
 from ..inputs import INPUTS, Role
@@ -148,7 +149,7 @@ def _read(path: Path, kind: Kind) -> dict[str, Any]:
     """A record file, with its schema, kind and needed keys checked."""
     again = "run the fit again, or give another folder"
     try:
-        data = json.loads(path.read_text(encoding="utf-8"))
+        data = json.loads(limits.text(path, limits.RECORD_BYTES, OptionError))
     except (OSError, ValueError, RecursionError) as error:
         raise _problem("the run's record cannot be read", path, str(error), again) from error
     if not isinstance(data, dict) or data.get("kind") != kind.name:

@@ -52,3 +52,16 @@ def test_a_mark_at_the_beginning(tmp_path):
     found = load_profile(tmp_path / "ship.toml")
     assert found.sha256 == load_profile("suzaku").sha256
     assert toml_of("\ufeffa = 1", "it", "here", OptionError) == {"a": 1}
+
+
+def test_more_than_a_profile_is_refused_before_it_is_read_whole(tmp_path):
+    path = tmp_path / "ship.toml"
+    path.write_text(TEXT + "#" * (2 << 20))
+    with pytest.raises(ProfileError, match="a profile of more than 1048576 bytes"):
+        load_profile(path)
+
+
+def test_lines_ended_as_on_another_system(tmp_path):
+    path = tmp_path / "ship.toml"
+    path.write_bytes(b"\xef\xbb\xbf" + TEXT.replace("\n", "\r\n").encode())
+    assert load_profile(path).text == TEXT
