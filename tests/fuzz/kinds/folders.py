@@ -98,6 +98,13 @@ def _fix(document: Any) -> None:
             _fix(one)
 
 
+def _lines(tree: Any) -> bytes:
+    """A journal of sums and entries, whatever was made of them."""
+    rows = [one if isinstance(one, list) else [one] for one in (tree if isinstance(tree, list) else [tree])]
+    text = (" ".join(part if isinstance(part, str) else json.dumps(part) for part in row).strip() for row in rows)
+    return "".join(f"{line}\n" for line in text).encode()
+
+
 def make(rng: np.random.Generator) -> Files:
     """A folder with something wrong in one of its files, or with one missing."""
     kind = pick(rng, list(whole()))
@@ -110,8 +117,10 @@ def make(rng: np.random.Generator) -> Files:
     elif how < 0.7 and name.endswith(".json"):
         files[name] = as_json(several(rng, json.loads(content), [mutated]))
     elif how < 0.7 and name.endswith(".jsonl"):
-        lines = [json.loads(one) for one in content.splitlines()]
-        files[name] = b"".join(json.dumps(one).encode() + b"\n" for one in several(rng, lines, [mutated]))
+        # What lines say is changed and their sums are not, as on a bad disk.
+        head, *entries = content.decode().splitlines()
+        tree = [["", json.loads(head)], *([line[:16], json.loads(line[17:])] for line in entries)]
+        files[name] = _lines(several(rng, tree, [mutated]))
     else:
         files[name] = several(rng, content, [mutated_bytes])
     return {**files, "what": kind.encode()}
