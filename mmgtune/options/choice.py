@@ -82,8 +82,8 @@ class Choice:
         return [words.format(limit) for words, limit in ends if limit is not None]
 
     def _fix(self, name: str, value: Any) -> str:
-        percent = isinstance(value, (int, float)) and self.most is not None and self.most <= 10.0
-        if percent and value > self.most and self.allows(value / 100.0):
+        most = self.most if self.most is not None and self.most <= 10.0 else 0.0
+        if isinstance(value, (int, float)) and most < value <= 100.0 * most and self.allows(value / 100.0):
             return f"did you mean {name}={value / 100.0:g}?"
         of = f" in {self.unit}" if self.unit else ""
         return f"give a number{of}, {' and '.join(self._limits)}"
