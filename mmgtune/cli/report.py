@@ -12,14 +12,19 @@ from . import common as c
 
 def command(
     run: Annotated[Path, typer.Argument(help="Run folder of a fit, a sweep or a diagnosis.")],
+    pdf: Annotated[
+        bool, typer.Option("--pdf", help="Write the figures as PDF files too, as papers want them.")
+    ] = False,
 ) -> None:
     """Render the report of a run again, without fitting.
 
     Example:
 
       mmgtune report runs/today
+
+      mmgtune report runs/today --pdf
     """
     from ..report import render
 
-    for path in render(run):
+    for path in render(run, pdf=pdf):
         c.show(str(path))

@@ -7,8 +7,10 @@ from pathlib import Path
 __all__ = ["render"]
 
 
-def render(folder: Path) -> list[Path]:
-    """Write the report of the run in ``folder`` into it: report.html, report.md and figures/*.svg and *.pdf.
+def render(folder: Path, *, pdf: bool = False) -> list[Path]:
+    """Write the report of the run in ``folder`` into it: report.html, report.md and figures/*.svg.
+
+    pdf  write figures/*.pdf too, which takes nearly as long again
 
     Earlier renderings are replaced; the same run gives the same bytes.  Runs that lie in folders inside it and
     that its report leads to, as those of a sweep, get theirs too.  Returns the files written, report.html first.
@@ -24,7 +26,7 @@ def render(folder: Path) -> list[Path]:
         page = kind.build(run)
         rendered = html.render(page), markdown.render(page)
         others = list(kind.inside(run))
-    written = write(folder, page, *rendered)
+    written = write(folder, page, *rendered, pdf)
     for other in others:
-        written += render(other)
+        written += render(other, pdf=pdf)
     return written

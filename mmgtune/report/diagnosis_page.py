@@ -69,7 +69,7 @@ def build(record: DiagnosisRecord) -> Page:
         warnings=("The search was interrupted; this is what was known by then.",) if data.get("interrupted") else (),
         tiles=_tiles(data),
         sections=tuple(section for section in sections if section is not None),
-        figures={name: (drawn.svg, drawn.pdf) for name, drawn in drawings.items()},
+        figures=drawings,
     )
 
 

@@ -9,6 +9,7 @@ import io
 import re
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any
 
 from ..arrays import FloatArray
@@ -48,30 +49,41 @@ _HEX = re.compile(r"#[0-9a-f]{6}")
 
 
 class Drawn:
-    """A finished figure: SVG text and PDF bytes for files, and SVG to stand inside a page."""
+    """A finished figure: SVG text for a file, and SVG to stand inside a page that has a dark mode."""
 
     def __init__(self, name: str, alt: str, draw: Callable[[], Figure]):
-        import matplotlib as mpl
         from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.backends.backend_pdf import FigureCanvasPdf
         from matplotlib.backends.backend_svg import FigureCanvasSVG
 
-        style: dict[Any, Any] = {**mpl.rcParamsDefault, **_STYLE, "backend": "agg"}
-        with mpl.rc_context(style):
-            figure = draw()
-            FigureCanvasAgg(figure)
-            figure.draw_without_rendering()
-            figure.set_layout_engine("none")  # the layout is done; each format would do it again
-            text, portable = io.StringIO(), io.BytesIO()
+        with _in_style():
+            self._figure = draw()
+            FigureCanvasAgg(self._figure)
+            self._figure.draw_without_rendering()
+            self._figure.set_layout_engine("none")  # the layout is done; each format would do it again
+            text = io.StringIO()
             # Without savefig, which draws every figure of a layout once more for each format.
-            svg: Any = FigureCanvasSVG(figure)
-            svg.print_svg(text, metadata={"Date": None, "Creator": None})
-            pdf: Any = FigureCanvasPdf(figure)
-            pdf.print_pdf(portable, metadata={"CreationDate": None, "Creator": None})
+            canvas: Any = FigureCanvasSVG(self._figure)
+            canvas.print_svg(text, metadata={"Date": None, "Creator": None})
         self.name = name
         self.svg = text.getvalue()
-        self.pdf = portable.getvalue()
         self.inline = _inline(self.svg, name, alt)
+
+    def pdf(self) -> bytes:
+        """The figure as a PDF file, its letters as letters of an embedded font."""
+        from matplotlib.backends.backend_pdf import FigureCanvasPdf
+
+        portable = io.BytesIO()
+        with _in_style():
+            canvas: Any = FigureCanvasPdf(self._figure)
+            canvas.print_pdf(portable, metadata={"CreationDate": None, "Creator": None})
+        return portable.getvalue()
+
+
+def _in_style() -> AbstractContextManager[None]:
+    import matplotlib as mpl
+
+    style: dict[Any, Any] = {**mpl.rcParamsDefault, **_STYLE, "backend": "agg"}
+    return mpl.rc_context(style)
 
 
 def new_figure(width: float, height: float) -> Figure:

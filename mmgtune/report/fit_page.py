@@ -41,7 +41,7 @@ def build(record: RunRecord) -> Page:
         warnings=warnings(data),
         tiles=_tiles(record),
         sections=tuple(section for section in sections if section is not None),
-        figures={name: (drawn.svg, drawn.pdf) for name, drawn in drawings.items()},
+        figures=drawings,
     )
 
 

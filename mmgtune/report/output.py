@@ -12,16 +12,20 @@ if TYPE_CHECKING:
     from .page import Page
 
 
-def write(folder: Path, page: Page, html: str, markdown: str) -> list[Path]:
-    """Write the report and its figures, and remove figures that an earlier rendering left and this one has not."""
+def write(folder: Path, page: Page, html: str, markdown: str, pdf: bool) -> list[Path]:
+    """Write the report and its figures, and remove figures that an earlier rendering left and this one has not.
+
+    pdf  figures as PDF files too; those that are there are written anew in any case
+    """
     drawn_before = _figures(folder / "report.md")
     written = [write_text(folder / "report.html", html), write_text(folder / "report.md", markdown)]
-    for name, (svg, pdf) in page.figures.items():
-        written.append(write_text(folder / "figures" / f"{name}.svg", svg))
+    for name, drawn in page.figures.items():
+        written.append(write_text(folder / "figures" / f"{name}.svg", drawn.svg))
         path = folder / "figures" / f"{name}.pdf"
-        with atomic(path) as part:
-            part.write_bytes(pdf)
-        written.append(path)
+        if pdf or path.exists():
+            with atomic(path) as part:
+                part.write_bytes(drawn.pdf())
+            written.append(path)
     for name in drawn_before - set(page.figures):
         for suffix in (".svg", ".pdf"):
             (folder / "figures" / f"{name}{suffix}").unlink(missing_ok=True)

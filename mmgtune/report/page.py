@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
+
+if TYPE_CHECKING:
+    from .drawing import Drawn
 
 
 @dataclass(frozen=True)
@@ -119,8 +122,8 @@ class Page:
     warnings: tuple[str, ...] = ()
     tiles: tuple[Tile, ...] = ()
     sections: tuple[Section, ...] = ()
-    figures: Mapping[str, tuple[str, bytes]] = field(default_factory=dict)
-    """Figure files by name: SVG text and PDF bytes."""
+    figures: Mapping[str, Drawn] = field(default_factory=dict)
+    """What becomes files, by name."""
 
     def histories(self) -> Sequence[Histories]:
         """The interactive parts, of which a page may have none."""

@@ -47,7 +47,7 @@ def build(record: SweepRecord) -> Page:
         warnings=warnings(data),
         tiles=_tiles(data, runs, best),
         sections=tuple(section for section in sections if section is not None),
-        figures={drawn.name: (drawn.svg, drawn.pdf) for drawn in drawings},
+        figures={drawn.name: drawn for drawn in drawings},
     )
 
 

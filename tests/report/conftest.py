@@ -15,7 +15,7 @@ from . import fake_run
 def fit_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A rendered run folder of a good fit."""
     folder = fake_run.make_fit(tmp_path_factory.mktemp("fit") / "run")
-    render(folder)
+    render(folder, pdf=True)
     return folder
 
 

@@ -43,14 +43,16 @@ def test_least_squares_only(tmp_path: Path) -> None:
 def test_no_history_file_and_a_figure_left_from_before(tmp_path: Path) -> None:
     data, history, motions = fake_run.edited()
     folder = fake_run.write_fit(tmp_path / "run", data, history, motions)
-    render(folder)
+    render(folder, pdf=True)
     (folder / "figures" / "mine.svg").write_text("somebody's own")
     assert (folder / "figures" / "convergence.svg").exists()
+    tracks = (folder / "figures" / "tracks.pdf").read_bytes()
     (folder / "history.parquet").unlink()
     render(folder)
     assert not (folder / "figures" / "convergence.svg").exists()
     assert not (folder / "figures" / "convergence.pdf").exists()
     assert (folder / "figures" / "mine.svg").exists()
+    assert (folder / "figures" / "tracks.pdf").read_bytes() == tracks  # written again, as it was there
 
 
 def test_little_is_known(tmp_path: Path) -> None:
