@@ -56,9 +56,7 @@ def summary(result: LeftOut, folder: str) -> str:
     """The result as a person wants to read it in a terminal."""
     from .repeated import table
 
-    head = (
-        f"{'left out':<20}{'runs':>6}{'L_MSE before':>14}{'after':>10}{'J before':>12}{'after':>10}   removed of L_MSE"
-    )
+    head = f"{'left out':<20}{'runs':>6}{'L_MSE before':>14}{'after':>10}{'J before':>12}{'after':>10}"
     lines = [f"{head}   removed of L_MSE"] if result.parts else []
     for row in result.rows():
         interval = row["share_removed_ci95"]
