@@ -59,7 +59,7 @@ hidden: $(RUNTIME) ## the full study of hidden effects, some hours; goes on wher
 	$(BIN)/python -m tests.hidden.study
 	$(BIN)/python -m tests.hidden.table
 
-signs: $(DEV) ## turn round every sign in the equations: do the tests notice? Half an hour; goes on where it was stopped
+signs: $(DEV) ## turn round every sign in the equations: do the tests notice? Takes long; goes on where it was stopped
 	$(BIN)/python tools/mutate_signs.py
 
 fuzz: $(DEV) ## hostile inputs, kills and interrupts: COUNT of each kind (1000), SEED (1); half an hour

@@ -1,5 +1,7 @@
 """The library as a notebook user meets it."""
 
+import pytest
+
 import mmgtune
 
 
@@ -10,6 +12,7 @@ def test_everything_listed_can_be_had_twice():
         assert callable(first)
 
 
+@pytest.mark.slow(8)
 def test_from_profile_to_verdict(tmp_path):
     profile = mmgtune.load_profile("suzaku")
     trials = mmgtune.load_trials("suzaku")

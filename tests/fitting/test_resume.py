@@ -18,6 +18,8 @@ from mmgtune.fitting.run import make_setting
 from mmgtune.trial import load_trials
 from tests.command import run, run_until
 
+pytestmark = pytest.mark.slow(8)
+
 CLOCK = {"created", "wall_s", "evaluations", "command", "out"}
 FEW = ("hull.R_0", "wake.w_P0", "rudder.kappa")
 

@@ -15,6 +15,7 @@ SECONDS = 7.0
 """For all kinds together."""
 
 
+@pytest.mark.slow(3)
 @pytest.mark.parametrize("name", KINDS)
 def test_hostile_inputs(name: str) -> None:
     found = campaign(KINDS[name], 60, seed=20, seconds=SECONDS / len(KINDS))

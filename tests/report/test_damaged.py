@@ -9,6 +9,8 @@ from mmgtune.report import render
 
 from . import fake_run
 
+pytestmark = pytest.mark.slow(5)
+
 
 @pytest.mark.parametrize(
     "changes",
