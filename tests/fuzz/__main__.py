@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import resource
 import sys
 import tempfile
 from pathlib import Path
@@ -30,7 +31,8 @@ def main() -> int:
     for name in there if asked.kind == "all" else [asked.kind]:
         found = campaign(there[name], asked.count, asked.seed, keep)
         ends = ", ".join(f"{count} {end}" for end, count in sorted(found.ends.items()))
-        print(f"{name}: {ends}; the longest took {found.longest:.2f} s", flush=True)
+        peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024
+        print(f"{name}: {ends}; the longest took {found.longest:.2f} s; the process had {peak} MB at most", flush=True)
         for number, outcome in found.failures.items():
             print(f"  case {number}: {outcome.end}: {outcome.said.strip().splitlines()[-1][:200]}")
         bad += len(found.failures)
