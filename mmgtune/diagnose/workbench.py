@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
 from ..arrays import FloatArray
 from ..backends import STATES, Integrator, get_backend
+from ..effects import Effect
 from ..fitting.box import Box, choose_targets, make_box
 from ..fitting.least_squares import LeastSquaresResult, solve
 from ..fitting.problem import FitProblem
@@ -66,7 +68,6 @@ class Workbench:
     noise: NoiseModel
     own_effects: tuple[str, ...] = ()
     refits: int = field(default=0)
-    _models: dict[frozenset[str], Model] = field(default_factory=dict)
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -74,20 +75,22 @@ class Workbench:
         return tuple(self.noise.channels)
 
     def model_of(self, names: Sequence[str]) -> Model:
-        """A model that holds these parameters, what the profile has, and the effects that cost nothing."""
-        on_demand = [effect.tag for effect in self.model.effects if effect.on_demand]
-        asked = [
-            tag
-            for tag in on_demand
-            if tag in self.own_effects or any(name.startswith(f"effects.{tag}.") for name in names)
-        ]
-        left_out = frozenset(on_demand) - frozenset(asked)
-        if len(asked) > 1:  # one model for every combination: compiling another takes longer than running this one
-            left_out = frozenset()
-        if left_out not in self._models:
-            sections = {kind: s for kind, s in self.model.profile.sections.items() if kind[8:] not in left_out}
-            self._models[left_out] = Model(replace(self.model.profile, sections=sections))
-        return self._models[left_out]
+        """The model with every effect where one of these parameters needs it, else one without those that cost time.
+
+        Two models, not one for each set of effects: to compile another takes longer than what it would save.
+        """
+        asked = {name.split(".")[1] for name in names if name.startswith("effects.")} | set(self.own_effects)
+        return self.model if asked & {effect.tag for effect in self._on_demand} else self._quick_model
+
+    @property
+    def _on_demand(self) -> list[Effect]:
+        return [effect for effect in self.model.effects if effect.on_demand]
+
+    @cached_property
+    def _quick_model(self) -> Model:
+        left_out = {effect.kind for effect in self._on_demand}
+        sections = {kind: s for kind, s in self.model.profile.sections.items() if kind not in left_out}
+        return Model(replace(self.model.profile, sections=sections))
 
     def sub_box(self, names: Sequence[str]) -> Box:
         """The box of some of its names, in their order."""
