@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from datetime import datetime
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -81,7 +82,9 @@ def print_plan(plan: Plan, folder: Path) -> None:
 
 def default_out(profile: ShipProfile) -> Path:
     """A folder under runs/ that does not exist yet."""
-    return Path("runs") / f"{datetime.now():%Y%m%d-%H%M%S}-{profile.id}"
+    name = f"{datetime.now():%Y%m%d-%H%M%S}-{profile.id}"
+    tries = (Path("runs") / (f"{name}-{k}" if k > 1 else name) for k in count(1))
+    return next(folder for folder in tries if not folder.exists())
 
 
 def command_line() -> str:

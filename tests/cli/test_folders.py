@@ -3,6 +3,8 @@
 import fcntl
 import multiprocessing
 import os
+from datetime import datetime
+from pathlib import Path
 
 import pytest
 
@@ -97,3 +99,21 @@ def test_an_id_stays_inside_runs(name):
     assert 'id = "suzaku"' in text
     with pytest.raises(ProfileError, match=r"'id' of \[ship\]"):
         parse_profile(text.replace('id = "suzaku"', f'id = "{name}"', 1))
+
+
+def test_two_runs_within_a_second_have_a_folder_each(tmp_path, monkeypatch):
+    """The second ended with "the output exists already", though nobody had named it."""
+    from mmgtune.cli import common
+
+    class Clock(datetime):
+        @classmethod
+        def now(cls):
+            return cls(2026, 1, 1)
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(common, "datetime", Clock)
+    ship = load_profile("suzaku")
+    for k in range(3):
+        folder = common.default_out(ship)
+        assert folder == Path("runs") / f"20260101-000000-suzaku{f'-{k + 1}' if k else ''}"
+        folder.mkdir(parents=True)

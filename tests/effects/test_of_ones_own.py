@@ -40,7 +40,8 @@ def memory(found: Any, behind: Any, h: Lanes, e: Race) -> tuple[Force, tuple[Lan
     slow, quick, total = behind
     N = found.rudder.force.N
     rates = (N - slow) / (e.slow + 4.0), (N - quick) / (e.quick + 4.0), found.total.X - total
-    return Force(X=0.0 * total, Y=0.0 * slow, N=0.5 * (slow + quick) - N), rates
+    share = e.slow * e.quick / (1.0 + e.slow * e.quick)  # none at its null
+    return Force(X=0.0 * total, Y=0.0 * slow, N=share * (0.5 * (slow + quick) - N)), rates
 
 RACE = LagEffect(
     kind="effects.race", tag="race", title="rudder force with two memories", params=Race, function=memory,
