@@ -113,7 +113,7 @@ def campaign(kind: Kind, count: int, seed: int, keep: Path | None = None, second
             break
         files = files_of(kind, seed, number)
         if keep is not None:
-            _keep(keep / kind.name / "running", files)
+            _keep(keep / kind.name / f"{seed}-running", files)
             # Compiled code that never returns cannot be stopped otherwise: its case is then the one left there.
             faulthandler.dump_traceback_later(20.0 * kind.seconds, exit=True)
         outcome = run_files(kind, files)
@@ -127,7 +127,7 @@ def campaign(kind: Kind, count: int, seed: int, keep: Path | None = None, second
                 Path(f"{folder}.txt").write_text(f"{outcome.end}\n{outcome.said}\n", encoding="utf-8")
     if keep is not None:
         faulthandler.cancel_dump_traceback_later()
-        shutil.rmtree(keep / kind.name / "running", ignore_errors=True)
+        shutil.rmtree(keep / kind.name / f"{seed}-running", ignore_errors=True)
     return found
 
 
