@@ -13,29 +13,17 @@ import pytest
 
 from mmgtune.backends import kernel_folder
 from mmgtune.backends.kernel_folder import KernelFolderWarning, distrusted, wanted_folder
+from tests.backends.kernels import LOAD
 
-CODE = """
-import sys
-import numpy as np
-from mmgtune.backends.compiling import load_kernel
-from numba.core.event import install_recorder
-
-TEXT = '''
-from mmgtune.backends.compiling import njit
-
-
-@njit(cache=True)
-def kernel(x):
-    for i in range(len(x)):
-        x[i] = 2.0 * x[i]
-'''
-kernel = load_kernel(TEXT)
-x = np.ones(3)
+CODE = (
+    LOAD
+    + """
 with install_recorder("numba:compile") as recorded:
     kernel(x)
 assert x.tolist() == [2.0, 2.0, 2.0]
 print(len(recorded.buffer) > 0)
 """
+)
 
 
 def compiles(cache, **surroundings):

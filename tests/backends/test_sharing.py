@@ -4,22 +4,11 @@ import os
 import subprocess
 import sys
 
-CODE = """
-import numpy as np
-from mmgtune.backends.compiling import load_kernel
-from numba.core.event import install_recorder
+from tests.backends.kernels import LOAD
 
-TEXT = '''
-from mmgtune.backends.compiling import njit
-
-
-@njit(cache=True)
-def kernel(x):
-    for i in range(len(x)):
-        x[i] = 2.0 * x[i]
-'''
-kernel = load_kernel(TEXT)
-x = np.ones(3)
+CODE = (
+    LOAD
+    + """
 print("ready", flush=True)
 input()
 with install_recorder("numba:compile") as recorded:
@@ -28,6 +17,7 @@ with install_recorder("numba:compile") as recorded:
 assert x.tolist() == [4.0, 4.0, 4.0]
 print(len(recorded.buffer))
 """
+)
 
 
 def test_of_processes_that_want_a_kernel_at_once_one_compiles_it(tmp_path):

@@ -14,16 +14,6 @@ from mmgtune.units import DEG
 from tests.importing.made import MAP, close, imported, logged, nmea, refusal, said, sentence, suzaku, turn, write_csv
 
 
-@pytest.fixture
-def columns():
-    return {name: values.copy() for name, values in logged(turn()).items()}
-
-
-@pytest.fixture
-def log(tmp_path):
-    return tmp_path / "log.csv"
-
-
 def refused(log, *words, text=MAP):
     answer = refusal(lambda: said(log, text))
     for word in words:

@@ -12,17 +12,7 @@ import pytest
 
 from mmgtune.errors import LogError
 from mmgtune.importing import import_logs, load_map, parse_map
-from tests.importing.made import MAP, imported, logged, nmea, refusal, said, sentence, turn, write_csv
-
-
-@pytest.fixture
-def columns():
-    return {name: values.copy() for name, values in logged(turn()).items()}
-
-
-@pytest.fixture
-def log(tmp_path):
-    return tmp_path / "log.csv"
+from tests.importing.made import MAP, imported, nmea, refusal, said, sentence, turn, write_csv
 
 
 @contextmanager
