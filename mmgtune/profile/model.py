@@ -18,7 +18,14 @@ ABSENT = "absent"
 
 @dataclass(frozen=True)
 class Coefficient:
-    """One number (or table) of a profile with what is known of it; value in the unit of its field."""
+    """One number (or table) of a profile with what is known of it; value in the unit of its field.
+
+    bounds          where a fit may look for it, whatever a_r is
+    pre_determined  before any tuning
+    stderr          standard error, of one that was tuned
+    scatter         how far ships lie about the formula that gives it, one standard deviation
+    warning         why it may be wrong, such as a formula used outside its range
+    """
 
     value: float | tuple[float, ...]
     source: str
@@ -27,6 +34,8 @@ class Coefficient:
     bounds: tuple[float, float] | None = None
     pre_determined: float | None = None
     stderr: float | None = None
+    scatter: float | None = None
+    warning: str = ""
 
 
 @dataclass(frozen=True)
@@ -182,6 +191,15 @@ class ShipProfile:
             for symbol, coefficient in section.coefficients.items()
             if coefficient.assumption
         ]
+
+    def warnings(self) -> list[tuple[str, str]]:
+        """What is doubtful about its numbers: names of those that share a warning, and the warning."""
+        names: dict[str, list[str]] = {}
+        for kind, section in self.sections.items():
+            for symbol, coefficient in section.coefficients.items():
+                if coefficient.warning:
+                    names.setdefault(coefficient.warning, []).append(f"{kind}.{symbol}")
+        return [(", ".join(of), warning) for warning, of in names.items()]
 
     def cites(self) -> list[str]:
         """The papers behind the components in use, each once."""

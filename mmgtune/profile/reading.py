@@ -30,7 +30,7 @@ STEERING_GEAR = {"max_angle": Field("", "rad", low=0.0, high=1.6), "rate": Field
 APPROACH = {"speed": Field("", "m/s", low=0.0), "n": Field("", "1/s")}
 IDENTIFIER = re.compile(r"\w[\w. -]{0,79}")
 """What a ship's id may be."""
-VALUE_KEYS = ("value", "source", "assumption", "note", "bounds", "pre_determined", "stderr")
+VALUE_KEYS = ("value", "source", "assumption", "note", "bounds", "pre_determined", "stderr", "scatter", "warning")
 
 
 def find_profile(name: str | Path) -> Path:
@@ -238,15 +238,23 @@ class _Reader(TomlReader):
         facts: dict[str, Any] = {"source": source}
         if isinstance(written, dict):
             self.unknown_value_keys(kind, symbol, written)
-            for key in ("source", "note"):
+            for key in ("source", "note", "warning"):
                 if key in written:
                     facts[key] = self.fact(kind, symbol, written, key, str)
             facts["assumption"] = bool("assumption" in written and self.fact(kind, symbol, written, "assumption", bool))
-            for key in ("pre_determined", "stderr"):
+            for key in ("pre_determined", "stderr", "scatter"):
                 if key in written:
                     plain = replace(field, low=None, high=None, choices={}, table=0)
                     numbers = self.numbers(kind, symbol, plain, written[key])
                     facts[key] = numbers[0] if numbers else None
+            if facts.get("scatter") is not None and facts["scatter"] <= 0.0:
+                self.problem(
+                    f"scatter of '{kind}.{symbol}' is {facts['scatter']:g}",
+                    kind,
+                    symbol,
+                    why="it is a standard deviation, above 0",
+                    fix="correct it, or leave it out",
+                )
             if "bounds" in written:
                 facts["bounds"] = self.bounds(kind, symbol, field, written["bounds"])
             if "value" not in written:

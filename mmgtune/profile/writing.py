@@ -136,7 +136,7 @@ def _facts(now: Coefficient, source: str, field: Field, written: Any, was: Coeff
     """What is known of a coefficient by key; value and bounds as they were written if they are the same."""
     old = written if isinstance(written, Mapping) else {"value": written}
     facts: dict[str, Any] = {"value": _plain(old["value"]) if was and now.value == was.value else _value(now, field)}
-    for key in ("pre_determined", "stderr"):
+    for key in ("pre_determined", "stderr", "scatter"):
         number = getattr(now, key)
         if number is not None:
             facts[key] = _plain(old[key]) if was and number == getattr(was, key) else _number(number, field.unit)
@@ -144,8 +144,9 @@ def _facts(now: Coefficient, source: str, field: Field, written: Any, was: Coeff
         facts["source"] = now.source
     if now.assumption:
         facts["assumption"] = True
-    if now.note:
-        facts["note"] = now.note
+    for key in ("note", "warning"):
+        if getattr(now, key):
+            facts[key] = getattr(now, key)
     if now.bounds is not None:
         same = was and now.bounds == was.bounds
         facts["bounds"] = _plain(old["bounds"]) if same else [_number(end, field.unit) for end in now.bounds]
