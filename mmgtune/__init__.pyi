@@ -6,10 +6,15 @@ from .checking import read_baseline as read_baseline
 from .checking import record_baseline as record_baseline
 from .checking import update_baseline as update_baseline
 from .checking import write_baseline as write_baseline
+from .comparing import Comparison as Comparison
+from .comparing import compare as compare
 from .diagnose import Diagnosis as Diagnosis
 from .diagnose import diagnose as diagnose
 from .diagnose import write_diagnosis as write_diagnosis
 from .errors import MmgtuneError as MmgtuneError
+from .estimating import Particulars as Particulars
+from .estimating import estimate as estimate
+from .estimating import read_particulars as read_particulars
 from .evaluation import TrialRecord as TrialRecord
 from .evaluation import evaluate as evaluate
 from .fitting import FitResult as FitResult
@@ -26,6 +31,7 @@ from .manoeuvres.summary import indices_of as indices_of
 from .measures import distance_measures as distance_measures
 from .model import Model as Model
 from .options import DiagnoseOptions as DiagnoseOptions
+from .options import EstimateOptions as EstimateOptions
 from .options import FitOptions as FitOptions
 from .options import LeaveOutOptions as LeaveOutOptions
 from .options import SimulateOptions as SimulateOptions

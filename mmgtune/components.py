@@ -13,6 +13,7 @@ from typing import Any
 from .inputs import INPUTS, Input, Role
 from .physics.arrangements import single_propeller_single_rudder
 from .physics.hull.cubic import CubicHull, cubic_hull
+from .physics.hull.derivatives import DerivativesHull, derivatives_hull
 from .physics.hull.unified import UnifiedHull, unified_hull
 from .physics.propeller.four_quadrant import FourQuadrantPropeller, four_quadrant_propeller
 from .physics.propeller.open_water import OpenWaterPropeller, open_water_propeller
@@ -21,6 +22,7 @@ from .physics.quantities import HARMONICS, AboveWater, Ship
 from .physics.rudder.flapped import FlappedRudder, flapped_rudder
 from .physics.rudder.plain import PlainRudder, plain_rudder
 from .physics.rudder.reversible import ReversibleRudder, reversible_rudder
+from .physics.rudder.slip import SlipRudder, slip_rudder
 from .physics.wake.asymmetric import AsymmetricWake, asymmetric_wake
 from .physics.wake.exponential import ExponentialWake, exponential_wake
 from .physics.wake.quadratic import QuadraticWake, quadratic_wake
@@ -128,6 +130,9 @@ YASUKAWA = "Yasukawa & Yoshimura 2015, J. Marine Science and Technology 20, 37-5
 YOSHIMURA = (
     "Yoshimura, Nakao & Ishibashi 2009, unified mathematical model for ocean and harbour manoeuvring, MARSIM 2009"
 )
+INOUE = "Inoue, Hirano & Kijima 1981, Int. Shipbuilding Progress 28, 112-125"
+KIJIMA = "Kijima et al. 1990, J. Society of Naval Architects of Japan 168, 247-256"
+MATHIOUDAKIS = "Mathioudakis et al., Towards real-world validation of a physics-based ship motion prediction model"
 MIYAUCHI = "Miyauchi et al. 2022, J. Marine Science and Technology, doi 10.1007/s00773-022-00889-3"
 
 SHIP = Component(
@@ -170,6 +175,32 @@ CUBIC_HULL = Component(
             for term in terms
             for name in (f"{symbol}_{term}",)
         },
+    },
+)
+
+DERIVATIVES_HULL = Component(
+    kind="hull",
+    tag="derivatives",
+    title="hydrodynamic derivatives: linear terms, squares with their sign, v^2 r and v r^2",
+    params=DerivativesHull,
+    function=derivatives_hull,
+    cites=(MATHIOUDAKIS, INOUE, KIJIMA),
+    fields={
+        "R_0": Field("resistance going straight", "prime", low=0.0),
+        "X_vr": Field("surge force, vr term", "prime"),
+        "Y_v": Field("sway force, v term", "prime"),
+        "Y_r": Field("sway force, r term", "prime"),
+        "Y_vv": Field("sway force, v|v| term", "prime"),
+        "Y_vr": Field("sway force, v|r| term", "prime"),
+        "Y_rr": Field("sway force, r|r| term", "prime"),
+        "Y_vvr": Field("sway force, vvr term", "prime"),
+        "Y_vrr": Field("sway force, vrr term", "prime"),
+        "N_v": Field("yaw moment, v term", "prime"),
+        "N_r": Field("yaw moment, r term", "prime"),
+        "N_vv": Field("yaw moment, v|v| term", "prime"),
+        "N_rr": Field("yaw moment, r|r| term", "prime"),
+        "N_vvr": Field("yaw moment, vvr term", "prime"),
+        "N_vrr": Field("yaw moment, vrr term", "prime"),
     },
 )
 
@@ -392,6 +423,31 @@ REVERSIBLE_RUDDER = Component(
     },
 )
 
+SLIP_RUDDER = Component(
+    kind="rudder",
+    tag="slip",
+    title="rudder in a slipstream counted by slip, with generic lift, drag and stall",
+    params=SlipRudder,
+    function=slip_rudder,
+    cites=(
+        MATHIOUDAKIS,
+        KIJIMA,
+        "Kijima & Nakiri 2002, Trans. West-Japan Society of Naval Architects 105, 21-31",
+        "Soding in Brix 1993, Manoeuvring Technical Manual, Seehafen Verlag",
+    ),
+    fields={
+        **_RUDDER_GEOMETRY,
+        "pitch_": Field("pitch of the propeller over its diameter", low=0.0, high=5.0),
+        "C_port": Field("gain of the slipstream, rudder to port", low=0.0, high=5.0),
+        "C_stbd": Field("gain of the slipstream, rudder to starboard", low=0.0, high=5.0),
+        **_RUDDER_INFLOW,
+        "C_Q": Field("cross-flow coefficient of the rudder", low=-1e-12, high=5.0),
+        "C_D0": Field("drag of the rudder at zero lift", low=-1e-12, high=1.0),
+        "alpha_stall": Field("inflow angle at which lift begins to be lost", "rad", low=0.0, high=1.5),
+        "stall_loss": Field("share of the circulatory lift that is lost in stall", low=-1e-12, high=1.0),
+    },
+)
+
 WIND_FORCES = {"X": "surge force", "Y": "sway force", "N": "yaw moment"}
 HARMONIC_WORDS = (
     "mean over the angle of the wind",
@@ -427,6 +483,7 @@ ABOVE_WATER = Component(
 COMPONENTS = (
     SHIP,
     CUBIC_HULL,
+    DERIVATIVES_HULL,
     UNIFIED_HULL,
     EXPONENTIAL_WAKE,
     ASYMMETRIC_WAKE,
@@ -437,6 +494,7 @@ COMPONENTS = (
     FLAPPED_RUDDER,
     PLAIN_RUDDER,
     REVERSIBLE_RUDDER,
+    SLIP_RUDDER,
     ABOVE_WATER,
 )
 """Every component there is, in the order documentation lists them."""

@@ -18,6 +18,16 @@ def profile_names() -> list[str]:
     return sorted(path.stem for path in folder("ship_profiles").glob("*.toml"))
 
 
+def particulars_names() -> list[str]:
+    """Names of the bundled files of particulars."""
+    return sorted(path.stem for path in particulars().glob("*.toml"))
+
+
+def particulars() -> Path:
+    """The folder of the bundled files of particulars."""
+    return folder("ship_profiles") / "particulars"
+
+
 def trial_set_names() -> list[str]:
     """Names of the bundled data sets."""
     return sorted(path.name for path in folder("trials").glob("*") if path.is_dir())

@@ -113,5 +113,15 @@ def example(unit: str) -> str:
 
 
 def shown(value: float, unit: str) -> str:
-    """A quantity as profiles hold it: the shortest text that reads back to the same number."""
-    return f"{value!r} {unit}" if unit not in DIMENSIONLESS else repr(value)
+    """A quantity as profiles hold it: text that reads back to the same number.
+
+    It is in the unit people read, degrees, knots or rpm, where the number itself has more digits than anybody wrote.
+    """
+    if unit in DIMENSIONLESS:
+        return repr(value)
+    if math.isfinite(value) and float(f"{value:.6g}") != value:
+        for other in (_SHOWN.get(unit), "kn" if unit == "m/s" else None):
+            text = f"{value / _FACTORS[unit][other]:.6g} {other}" if other else ""
+            if text and parse(text, unit) == (value,):
+                return text
+    return f"{value!r} {unit}"

@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ..errors import OptionError, OutputError, Problem
+from ..options import EstimateOptions
 from . import common as c
+from .options import takes
 
-app = typer.Typer(help="Look at ship profiles.", no_args_is_help=True)
+if TYPE_CHECKING:
+    from ..comparing import Comparison
+    from ..estimating import Particulars
+    from ..profile import ShipProfile
+
+app = typer.Typer(help="Look at ship profiles, make one from main dimensions, compare two.", no_args_is_help=True)
 
 Name = Annotated[str, typer.Argument(help="A TOML file or a bundled name.", autocompletion=c.complete_profile)]
 
@@ -69,3 +79,165 @@ def validate(profile: Name) -> None:
 
     ship = load_profile(profile)
     c.show(f"{ship.path}: {ship.name}, {len(ship.names())} coefficients, {len(ship.assumptions())} of them assumptions")
+    for line in doubts(ship):
+        c.show(line)
+
+
+@app.command("new")
+@takes(options=EstimateOptions)
+def new(
+    file: Annotated[Path, typer.Argument(help="The profile to write, a TOML file.")],
+    particulars: Annotated[
+        str,
+        typer.Option(
+            "--from",
+            metavar="FILE",
+            help="Particulars: a TOML file or a bundled name. Default: they are asked for.",
+            rich_help_panel=c.INPUT,
+        ),
+    ] = "particulars",
+    *,
+    options: EstimateOptions,
+    force: Annotated[bool, typer.Option("--force", help="Replace the file.", rich_help_panel=c.OUTPUT)] = False,
+    json: c.Json = False,
+) -> None:
+    """Make a whole profile from main dimensions, by published formulas.
+
+    Every number names its formula, the range of that, and the scatter of ships about it, which is the box and the prior
+    of a fit. What is not known comes from rules of thumb, marked as assumptions.
+
+    Examples:
+
+      mmgtune profile new my_ship.toml
+
+      mmgtune profile new my_ship.toml --from particulars.toml --form fam
+    """
+    from ..estimating import estimate, read_particulars
+    from ..files import exists, write_text
+    from ..units import KNOT
+
+    if file.exists() and not force:
+        raise OutputError(exists(file))
+    asked = particulars == "particulars" and not Path(particulars).exists()
+    ship = estimate(_asked() if asked else read_particulars(particulars), options)
+    write_text(file, ship.text, overwrite=force)
+    if json:
+        facts = {"schema": 1, "file": str(file), "id": ship.id, "sha256": ship.sha256, "options": options.to_dict()}
+        warnings = [{"of": names, "warning": warning} for names, warning in ship.warnings()]
+        c.print_json({**facts, "coefficients": len(ship.names()), "targets": list(ship.targets), "warnings": warnings})
+        return
+    c.show(f"wrote {file}: {ship.name}, {len(ship.names())} coefficients, {len(ship.targets)} of them free in a fit")
+    assert ship.approach is not None  # particulars have a speed
+    speed, n = ship.approach.speed / KNOT, ship.approach.n * 60.0
+    c.show(f"approach at {speed:.4g} kn with {n:.4g} rpm")
+    for line in doubts(ship):
+        c.show(line)
+
+
+@app.command("compare")
+def compare(
+    a: Name,
+    b: Name,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", "-o", help="Folder for the comparison and its report.", rich_help_panel=c.OUTPUT),
+    ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Replace the results in --out.", rich_help_panel=c.OUTPUT)
+    ] = False,
+    json: c.Json = False,
+) -> None:
+    """Compare two profiles: coefficients, forces over drift, yaw rate and rudder angle, indices of manoeuvres.
+
+    Examples:
+
+      mmgtune profile compare suzaku suzaku_fam
+
+      mmgtune profile compare before.toml after.toml --out compared
+    """
+    from ..comparing import compare as compared
+
+    found = compared(a, b)
+    if out is not None:
+        from ..report import render
+
+        c.say(f"wrote {found.write(out, overwrite=force)}")
+        for path in render(out):
+            c.say(f"wrote {path}")
+    if json:
+        c.print_json(found.to_dict())
+    else:
+        c.show(_side_by_side(found))
+
+
+def doubts(ship: ShipProfile) -> list[str]:
+    """What is doubtful about a profile's numbers, a line each."""
+    return [f"outside its range: {warning} ({names})" for names, warning in ship.warnings()]
+
+
+def _asked() -> Particulars:
+    """Particulars from somebody at a terminal; what is answered with nothing is left to formulas."""
+    from ..components import Field
+    from ..estimating import QUESTIONS, parse_particulars
+    from ..estimating.particulars import FIELDS, NEEDED
+    from ..units import example, parse
+
+    if not sys.stdin.isatty():
+        raise OptionError(
+            Problem(
+                "there is nobody to ask for particulars",
+                "--from",
+                "standard input is no terminal",
+                "write them to a TOML file and name it with --from FILE; the guide 'A profile' shows one",
+            )
+        )
+
+    def answer(section: str, name: str, known: Field) -> str:
+        needed = name in NEEDED.get(section, ())
+        unit = "" if known.unit == "-" else f", such as {example(known.unit)}"
+        words = {("approach", "speed"): "approach speed", ("approach", "n"): "revolutions at that speed"}
+        label = known.label or words.get((section, name), name)
+        while True:
+            typed: str = typer.prompt(
+                f"{label}{unit}" + ("" if needed else " (Enter where not known)"),
+                default=None if needed else "",
+                show_default=False,
+            )
+            if not typed.strip():
+                return ""
+            try:
+                if known.unit == "-":
+                    return repr(float(typed))
+                parse(typed, known.unit)
+                return '"' + typed.strip() + '"'
+            except ValueError as error:
+                c.say(f"{error}; once more")
+
+    name = typer.prompt("name of the ship").replace('"', "'").replace("\\", "/")
+    id = "".join(sign if sign.isalnum() else "_" for sign in name.lower()).strip("_") or "ship"
+    text = f'schema = 1\n[ship]\nname = "{name}"\nid = "{id}"\n'
+    before = ""
+    for section, key in QUESTIONS:
+        written = answer(section, key, FIELDS[section][key])
+        if written:
+            text += ("" if section == before else f"[{section}]\n") + f"{key} = {written}\n"
+            before = section
+    return parse_particulars(text)
+
+
+def _side_by_side(found: Comparison) -> str:
+    """Coefficients and indices of two profiles in columns."""
+    names = [name[-22:] for name in found.profiles]
+    lines = [f"{'':<40}{names[0]:>24}{names[1]:>24}"]
+
+    def number(value: float | None) -> str:
+        return f"{'-':>24}" if value is None else f"{value:>24.4g}"
+
+    for row in found.data["coefficients"]:
+        if row["a"] != row["b"]:
+            unit = "" if row["unit"] in ("-", "prime") else f" [{row['unit']}]"
+            lines.append(f"{row['name'] + unit:<40}{number(row['a'])}{number(row['b'])}")
+    lines.append("")
+    for row in found.data["manoeuvres"]["indices"]:
+        lines.append(f"{row['manoeuvre'] + ' ' + row['index']:<40}{number(row['a'])}{number(row['b'])}")
+    return "\n".join(lines)

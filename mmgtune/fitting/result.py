@@ -113,6 +113,10 @@ class FitResult:
             found.append("The fit was interrupted; these are the best values so far, not an optimum.")
         if self.diverged:
             found.append(f"{self.diverged} candidates diverged during the search and were given up.")
+        found += [
+            f"Coefficients {names} are outside the range of their formula: {why}."
+            for names, why in self.profile.warnings()
+        ]
         generated = sorted({c.trial.id for c in self.compared if c.trial.source == "generated"})
         if generated:
             found.append(f"{len(generated)} of {len(self.compared)} trials are generated, not measured.")

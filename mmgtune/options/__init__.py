@@ -6,6 +6,7 @@ tuning      fit, sweep, leave-out
 diagnosis   diagnose
 scoring     validate, check
 orders      simulate
+estimating  profile new
 flags       what fields are called on the command line
 
 Nothing here is heavy to import: the command line builds its flags from it before it knows what is wanted.
@@ -13,6 +14,7 @@ Nothing here is heavy to import: the command line builds its flags from it befor
 
 from .choice import Choice, Options, again, choice, choices
 from .diagnosis import DiagnoseOptions
+from .estimating import EstimateOptions
 from .flags import FLAGS, flags_of, in_flags
 from .orders import SimulateOptions
 from .scoring import FORMATS, CheckOptions, ValidateOptions
@@ -28,6 +30,7 @@ __all__ = [
     "CheckOptions",
     "Choice",
     "DiagnoseOptions",
+    "EstimateOptions",
     "FitOptions",
     "LeaveOutOptions",
     "Options",
@@ -44,5 +47,14 @@ __all__ = [
     "in_flags",
 ]
 
-for _of in (CheckOptions, DiagnoseOptions, FitOptions, LeaveOutOptions, SimulateOptions, SweepOptions, ValidateOptions):
+for _of in (
+    CheckOptions,
+    DiagnoseOptions,
+    EstimateOptions,
+    FitOptions,
+    LeaveOutOptions,
+    SimulateOptions,
+    SweepOptions,
+    ValidateOptions,
+):
     flags_of(_of)

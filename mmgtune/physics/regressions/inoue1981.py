@@ -5,6 +5,13 @@ from typing import NamedTuple
 import numpy as np
 
 from ..quantities import Lanes
+from .formula import Formula
+
+FORMULA = Formula(
+    "Inoue, Hirano & Kijima 1981, Int. Shipbuilding Progress 28, 112-125; as used in published implementations",
+    {"C_b": (0.5, 0.85), "C_b B/L": (0.07, 0.17), "2 d/L": (0.06, 0.16)},
+    "limits of the charts, from memory",
+)
 
 
 class LinearDerivatives(NamedTuple):

@@ -1,0 +1,256 @@
+"""The report of two profiles side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .common import picture
+from .drawing import AFTER, BEFORE, Drawn, new_figure
+from .load import Kind
+from .page import Cell, Page, Prose, Section, Table, Tile, cells
+from .wording import NONE, clean, coefficient_text, number, percent, shown
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_STYLES: dict[str, dict[str, Any]] = {
+    "a": {"color": BEFORE, "linestyle": "-", "linewidth": 1.5},
+    "b": {"color": AFTER, "linestyle": (0, (6, 2.2)), "linewidth": 1.5},
+}
+_FORCES = (
+    ("over_drift", "beta_deg", "drift angle [°]", "hull, not turning", ("X", "Y", "N")),
+    ("over_yaw_rate", "r_prime", "yaw rate r′ [–]", "hull, no drift", ("X", "Y", "N")),
+    (
+        "over_rudder",
+        "delta_deg",
+        "rudder angle [°]",
+        "rudder with the hull's reaction, straight ahead",
+        ("X", "Y", "N"),
+    ),
+)
+_WORDS = {
+    "advance_over_L": "advance [L_pp]",
+    "transfer_over_L": "transfer [L_pp]",
+    "tactical_diameter_over_L": "tactical diameter [L_pp]",
+    "steady_diameter_over_L": "steady diameter [L_pp]",
+    "speed_ratio_360": "speed after a full turn, over the approach speed [–]",
+    "steady_drift_angle_deg": "steady drift angle [°]",
+    "overshoot_1_deg": "first overshoot [°]",
+    "overshoot_2_deg": "second overshoot [°]",
+    "initial_turning_distance_over_L": "initial turning distance [L_pp]",
+    "period_s": "period [s]",
+}
+
+
+@dataclass(frozen=True)
+class ComparisonRecord:
+    """A comparison as its folder holds it: comparison.json."""
+
+    folder: Path
+    data: Mapping[str, Any]
+
+    @property
+    def names(self) -> tuple[str, str]:
+        """What the profiles were called."""
+        a, b = self.data["profiles"]
+        return clean(a["name"]), clean(b["name"])
+
+
+def build(record: ComparisonRecord) -> Page:
+    """Everything the report of a comparison says."""
+    data, names = record.data, record.names
+    manoeuvres = data["manoeuvres"]
+    drawings = [
+        Drawn(
+            "forces",
+            "Hull and rudder forces of both profiles",
+            lambda: _draw_forces(names, data["forces"]),
+        )
+    ]
+    sections: list[Section] = []
+    if manoeuvres["indices"]:
+        tracks = Drawn("turns", "Turning circles of both profiles", lambda: _draw_turns(names, manoeuvres["tracks"]))
+        drawings.insert(0, tracks)
+        blocks = (
+            picture(tracks, "Turning circles", _circles(names, manoeuvres["indices"])),
+            _indices(names, manoeuvres),
+        )
+        sections.append(Section("manoeuvres", "Standard manoeuvres", blocks))
+    caption = f"Prime system, at {shown(data['speed_mps'], 3)} m/s. X forward, Y and N to starboard."
+    sections.append(Section("forces", "Forces", (picture(drawings[-1], "Forces", caption),)))
+    sections.append(Section("coefficients", "Coefficients", (_coefficients(names, data["coefficients"]),)))
+    sections.append(_made(data["profiles"]))
+    titles = [clean(one["title"]) for one in data["profiles"]]
+    return Page(
+        title=f"{names[0]} and {names[1]} side by side",
+        eyebrow=" · ".join(dict.fromkeys(titles)),
+        verdict=_verdict(names, manoeuvres["indices"]),
+        warnings=tuple(
+            f"{clean(one['name'])}: outside its range: {clean(row['warning'])} ({clean(row['of'])})."
+            for one in data["profiles"]
+            for row in one["warnings"]
+        ),
+        tiles=_tiles(names, manoeuvres["indices"]),
+        sections=tuple(sections),
+        figures={drawn.name: drawn for drawn in drawings},
+    )
+
+
+def _find(rows: Sequence[Mapping[str, Any]], manoeuvre: str, index: str) -> tuple[float, float] | None:
+    for row in rows:
+        if (row["manoeuvre"], row["index"]) == (manoeuvre, index):
+            a, b = number(row["a"]), number(row["b"])
+            return None if a is None or b is None else (a, b)
+    return None
+
+
+def _verdict(names: tuple[str, str], rows: Sequence[Mapping[str, Any]]) -> str:
+    found = _find(rows, "turn_p35", "tactical_diameter_over_L")
+    if found is None:
+        return "The profiles say no approach or steering gear, so that no manoeuvres are compared."
+    a, b = found
+    size = f"{shown(abs(b - a), 2)} L_pp {'wider' if b > a else 'tighter'}"
+    return (
+        f"At 35° to starboard {names[1]} turns {size} than {names[0]}: tactical diameter {shown(b, 3)} against "
+        f"{shown(a, 3)} L_pp."
+    )
+
+
+def _tiles(names: tuple[str, str], rows: Sequence[Mapping[str, Any]]) -> tuple[Tile, ...]:
+    wanted = (
+        ("Advance, 35° to starboard", "turn_p35", "advance_over_L", "L_pp"),
+        ("Tactical diameter, 35° to starboard", "turn_p35", "tactical_diameter_over_L", "L_pp"),
+        ("Tactical diameter, 35° to port", "turn_m35", "tactical_diameter_over_L", "L_pp"),
+        ("First overshoot, zigzag 10/10", "zigzag_p10_10", "overshoot_1_deg", "°"),
+    )
+    tiles = []
+    for label, manoeuvre, index, unit in wanted:
+        found = _find(rows, manoeuvre, index)
+        if found is not None:
+            a, b = found
+            change = percent(100.0 * (b - a) / a) if a else ""
+            tiles.append(Tile(label, f"{shown(a, 3)} → {shown(b, 3)} {unit}", change, f"{names[0]} → {names[1]}"))
+    return tuple(tiles)
+
+
+def _circles(names: tuple[str, str], rows: Sequence[Mapping[str, Any]]) -> str:
+    parts = []
+    for k, name in enumerate(names):
+        both = [_find(rows, id, "tactical_diameter_over_L") for id in ("turn_p35", "turn_m35")]
+        if both[0] and both[1]:
+            stbd, port = both[0][k], both[1][k]
+            wider = "as wide to port as to starboard"
+            if abs(stbd - port) > 0.005 * port:
+                side = "starboard" if stbd > port else "port"
+                wider = f"{percent(100.0 * abs(stbd - port) / min(stbd, port)).lstrip('+')} wider to {side}"
+            parts.append(f"{name} turns {wider}")
+    return "; ".join(parts) + "." if parts else "Tracks in lengths of each ship."
+
+
+def _draw_turns(names: tuple[str, str], tracks: Mapping[str, Any]) -> Figure:
+    ids = list(tracks)
+    figure = new_figure(7.6, 4.2)
+    axes = figure.subplots(1, 2)
+    for ax, angle in zip(axes, ("35", "10"), strict=True):
+        for key in "ab":
+            for id in (one for one in ids if one.endswith(angle)):
+                if key in tracks[id]:
+                    ax.plot(tracks[id][key]["east"], tracks[id][key]["north"], **_STYLES[key])
+        ax.set_aspect("equal", adjustable="datalim")
+        ax.set_title(f"rudder ±{angle}°")
+        ax.set_xlabel("east [L_pp]")
+        ax.set_ylabel("north [L_pp]")
+    _legend(figure, names)
+    return figure
+
+
+def _draw_forces(names: tuple[str, str], forces: Mapping[str, Any]) -> Figure:
+    shown_ones = [one for one in _FORCES if forces[one[0]]["a"] is not None]
+    figure = new_figure(7.6, 2.3 * len(shown_ones) + 0.4)
+    grid = figure.subplots(len(shown_ones), 3, squeeze=False)
+    for line, (name, key, words, of, parts) in zip(grid, shown_ones, strict=True):
+        for ax, part in zip(line, parts, strict=True):
+            _force(ax, forces[name], key, part)
+            ax.set_xlabel(words)
+            ax.set_ylabel(f"{part}′ [–]")
+        line[0].set_title(of)
+    _legend(figure, names)
+    return figure
+
+
+def _force(ax: Axes, found: Mapping[str, Any], key: str, part: str) -> None:
+    for which in "ab":
+        ax.plot(found[key], found[which][part], **_STYLES[which])
+
+
+def _legend(figure: Figure, names: tuple[str, str]) -> None:
+    from matplotlib.lines import Line2D
+
+    handles = [Line2D([], [], label=name, **_STYLES[key]) for key, name in zip("ab", names, strict=True)]
+    figure.legend(handles=handles, loc="outside upper left", ncols=2, handlelength=3.6)
+
+
+def _indices(names: tuple[str, str], manoeuvres: Mapping[str, Any]) -> Table:
+    rows = []
+    for row in manoeuvres["indices"]:
+        a, b = number(row["a"]), number(row["b"])
+        moved = percent(100.0 * (b - a) / a) if a and b is not None else NONE
+        rows.append(
+            cells(clean(row["manoeuvre"]), _WORDS.get(row["index"], row["index"]), shown(a, 4), shown(b, 4), moved)
+        )
+    return Table(
+        "indices-table",
+        "Indices of standard manoeuvres",
+        ("manoeuvre", "index", *names, "change"),
+        tuple(rows),
+        numeric=(2, 3, 4),
+    )
+
+
+def _coefficients(names: tuple[str, str], rows: Sequence[Mapping[str, Any]]) -> Table | Prose:
+    lines = []
+    for row in rows:
+        a, b, scatter = number(row["a"]), number(row["b"]), number(row["scatter"])
+        if a == b:
+            continue
+        both = a is not None and b is not None and row["same_model"]
+        away = f"{abs(b - a) / scatter:.1f}" if both and scatter and a is not None and b is not None else NONE
+        lines.append(
+            cells(
+                clean(row["name"]),
+                f"{clean(row['label'])} [{clean(row['unit'])}]",
+                Cell(NONE if a is None else coefficient_text(a)),
+                Cell(NONE if b is None else coefficient_text(b)),
+                away,
+            )
+        )
+    if not lines:
+        return Prose(("All coefficients are the same.",))
+    return Table(
+        "coefficients-table",
+        "Coefficients that differ; a dash where a profile has none such. Distance in scatters of the formula that "
+        "one of them comes from, where its model is the same",
+        ("name", "meaning", *names, "distance"),
+        tuple(lines),
+        numeric=(2, 3, 4),
+    )
+
+
+def _made(profiles: Sequence[Mapping[str, Any]]) -> Section:
+    kinds = list(dict.fromkeys(kind for one in profiles for kind in one["models"]))
+    rows = [
+        cells("id", *(clean(one["id"]) for one in profiles)),
+        *(cells(clean(kind), *(clean(one["models"].get(kind, NONE)) for one in profiles)) for kind in kinds),
+        cells("assumptions", *(str(one["assumptions"]) for one in profiles)),
+        cells("SHA-256", *(clean(one["sha256"]) for one in profiles)),
+    ]
+    title = "What was compared"
+    table = Table("profiles-table", title, ("", *(clean(one["name"]) for one in profiles)), tuple(rows))
+    return Section("profiles", "Profiles", (table,))
+
+
+KIND = Kind("comparison", ("profiles", "coefficients", "forces", "manoeuvres"), ComparisonRecord, build)

@@ -1,0 +1,48 @@
+"""Two profiles side by side."""
+
+import pytest
+
+from mmgtune import compare, load_profile
+from mmgtune.profile import tuned
+from mmgtune.report import render
+
+
+def test_a_profile_against_itself_differs_in_nothing():
+    found = compare("kvlcc2", "kvlcc2")
+    assert found.profiles == ("kvlcc2 (1)", "kvlcc2 (2)")
+    assert all(row["a"] == row["b"] for row in found.data["coefficients"])
+    assert all(row["a"] == row["b"] for row in found.data["manoeuvres"]["indices"])
+    assert found.data["forces"]["over_drift"]["a"] == found.data["forces"]["over_drift"]["b"]
+
+
+def test_forces_are_those_of_the_equations():
+    """Y_v and N_r of KVLCC2 are the slopes at the origin."""
+    found = compare("kvlcc2", "suzaku").data["forces"]
+    drift, yaw = found["over_drift"], found["over_yaw_rate"]
+    middle = len(drift["beta_deg"]) // 2
+    step = drift["beta_deg"][middle + 1] * 3.14159265 / 180.0
+    assert (drift["a"]["Y"][middle + 1] - drift["a"]["Y"][middle - 1]) / (2 * step) == pytest.approx(0.315, abs=2e-3)
+    middle = len(yaw["r_prime"]) // 2
+    slope = (yaw["a"]["N"][middle + 1] - yaw["a"]["N"][middle - 1]) / (2 * yaw["r_prime"][middle + 1])
+    assert slope == pytest.approx(-0.049, abs=1e-3)
+
+
+def test_distance_counts_in_scatters_of_the_formula(tmp_path):
+    fam = load_profile("suzaku_fam")
+    scatter = fam.coefficient("hull.N_v").scatter
+    other = tuned(fam, {"hull.N_v": fam.value("hull.N_v") - 2.0 * scatter}, {}, {})
+    found = compare(fam, other)
+    (row,) = [row for row in found.data["coefficients"] if row["a"] != row["b"]]
+    assert row["name"] == "hull.N_v"
+    assert (row["a"] - row["b"]) / row["scatter"] == pytest.approx(2.0)
+    found.write(tmp_path)
+    text = (render(tmp_path)[1]).read_text()
+    (line,) = [line for line in text.splitlines() if line.startswith(r"| hull.N\_v ")]
+    assert line.endswith("| 2.0 |")
+
+
+def test_the_page_names_both_and_says_which_turns_wider(tmp_path):
+    compare("suzaku", "suzaku_fam").write(tmp_path)
+    html, markdown = (path.read_text() for path in render(tmp_path)[:2])
+    assert "suzaku_fam turns 1.3 L_pp wider than suzaku" in html
+    assert "wider to starboard" in markdown
