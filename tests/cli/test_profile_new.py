@@ -1,0 +1,81 @@
+"""``mmgtune profile new`` and ``profile compare`` as a user types them."""
+
+import io
+
+import pytest
+
+from mmgtune.cli import profiles
+from mmgtune.profile import load_profile
+from tests.command import run
+
+ANSWERS = ("M.V. Ask Me", "83 m", "13.5 m", "3.8 m", "0.737", "12 kn", "", "", "", "", "")
+
+
+class Terminal(io.StringIO):
+    """Somebody who answers."""
+
+    def isatty(self):
+        return True
+
+
+def test_a_profile_from_a_file(tmp_path):
+    ended = run("profile", "new", "ship.toml", "--from", "suzaku", "--form", "fam", cwd=tmp_path)
+    assert ended.code == 0, ended.err
+    assert "68 coefficients, 26 of them free in a fit" in ended.out
+    assert "approach at 6 kn with 106 rpm" in ended.out
+    assert load_profile(tmp_path / "ship.toml").sections["hull"].component.tag == "derivatives"
+    again = run("profile", "new", "ship.toml", "--from", "suzaku", cwd=tmp_path)
+    assert again.code == 2
+    assert "--force" in again.err
+
+
+def test_a_profile_by_questions(monkeypatch, tmp_path):
+    monkeypatch.setattr("sys.stdin", Terminal("\n".join((*ANSWERS[:4], "seven", *ANSWERS[4:])) + "\n"))
+    ship = profiles._asked()
+    assert (ship.name, ship.id) == ("M.V. Ask Me", "m_v__ask_me")
+    assert ship["particulars", "C_b"] == 0.737
+    assert ship["approach", "speed"] == pytest.approx(12 * 1852 / 3600)
+    assert ship.get("approach", "n") is None
+    assert "propeller" not in ship.values
+
+
+def test_nobody_to_ask_is_said(tmp_path):
+    ended = run("profile", "new", "ship.toml", cwd=tmp_path)
+    assert ended.code == 2
+    assert "there is nobody to ask for particulars" in ended.err
+    assert not (tmp_path / "ship.toml").exists()
+
+
+def test_what_is_wrong_with_particulars_leaves_nothing(tmp_path):
+    (tmp_path / "p.toml").write_text('schema = 1\n[ship]\nname = "x"\nid = "x"\n[particulars]\nC_b = 1.4\n')
+    ended = run("profile", "new", "ship.toml", "--from", "p.toml", cwd=tmp_path)
+    assert ended.code == 2
+    assert "'particulars.C_b' = 1.4 is impossible" in ended.err
+    assert "'particulars.L_pp' is missing (length between perpendiculars [m])" in ended.err
+    assert "p.toml, line 6" in ended.err
+    assert not (tmp_path / "ship.toml").exists()
+
+
+def test_other_formulas_by_flag(tmp_path):
+    ended = run(
+        "profile", "new", "a.toml", "--from", "kvlcc2", "--form", "mmg", "--derivatives", "kijima", cwd=tmp_path
+    )
+    assert ended.code == 2
+    assert "--derivatives" in ended.err
+    made = run(
+        "profile", "new", "a.toml", "--from", "kvlcc2", "--form", "fam", "--derivatives", "clarke",
+        "--added-mass", "clarke", "--holtrop", "1982", "--json", cwd=tmp_path,
+    )  # fmt: skip
+    assert made.json()["options"]["holtrop"] == "1982"
+    ship = load_profile(tmp_path / "a.toml")
+    assert "Clarke" in ship.coefficient("hull.N_r").source
+    assert "1982" in ship.coefficient("wake.w_P0").source
+
+
+def test_two_profiles_compared(tmp_path):
+    ended = run("profile", "compare", "suzaku", "suzaku_fam", "--out", "both", cwd=tmp_path)
+    assert ended.code == 0, ended.err
+    assert "turn_p35 tactical_diameter_over_L" in ended.out
+    assert (tmp_path / "both" / "report.html").is_file()
+    again = run("profile", "compare", "suzaku", "suzaku_fam", "--out", "both", cwd=tmp_path)
+    assert again.code == 2
