@@ -87,11 +87,6 @@ def rudder_interaction(L, B, C_b):
     )
 
 
-def taylor_wake(C_b):
-    """Wake fraction of a single-screw ship at model scale: Taylor's 0.5 C_b - 0.05, as Kijima et al. 1990 use it."""
-    return 0.5 * C_b - 0.05
-
-
 class ShallowRatios(NamedTuple):
     """Linear hull derivatives over those in deep water [-]."""
 
