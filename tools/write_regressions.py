@@ -42,9 +42,9 @@ SETS = {
 
 FOOT = """
 SUZAKU's captive rudder has a flap, which no formula here knows: her hull forces by formula lie close to those of the
-tests (`mmgtune profile compare suzaku suzaku_fam` draws them), her rudder force is half of what it was, and she turns as
-much too wide. What a captive test buys over formulas is the rudder behind this hull and propeller first, the nonlinear
-terms next; linear terms and added masses are had for nothing.
+tests (`mmgtune profile compare suzaku suzaku_fam` draws them), her rudder force is half of what it was, and she turns
+as much too wide. What a captive test buys over formulas is the rudder behind this hull and propeller first, the
+nonlinear terms next; linear terms and added masses are had for nothing.
 
 The full-scale resistance by Holtrop's formulas is less than the captive $R_0'$, which is of a model.
 """
