@@ -31,7 +31,7 @@ import numpy as np
 
 from mmgtune.backends.compiling import carray, lane, logged_control, njit, stack
 from mmgtune.physics.integration import after_step, at_stage, between, with_stage
-from mmgtune.physics.mmg import rates, through_water
+from mmgtune.physics.mmg import carried, rates, through_water
 from mmgtune.physics.quantities import Force, State, Surroundings
 {imports}
 
@@ -105,7 +105,7 @@ def kernel(
 {forces}
 {added}
                         rate = rates(state, u_c, v_c, Force(X, Y, N), coefficients.ship)
-{update}
+{carried}{update}
                 for l in range({W}):
 {finish}
                 for k in range({n_control} * {W}):
@@ -216,6 +216,7 @@ def kernel_source(model: Model) -> str:
         around=_lines(24, _around()) if _looks_around(model) else "",
         forces=_lines(24, _forces(model)),
         added=_lines(24, [*_added(model), *_lagging(model)]),
+        carried="".join(line + "\n" for line in _lines(24, _carried(model)).splitlines()),
         update=_lines(24, _update(model)),
         finish=_lines(
             20, [f"{_slot('s', k)} = after_step({_slot('s', k)}, h[l], {_slot('total', k)})" for k in range(n_states)]
@@ -275,6 +276,8 @@ def _imports(model: Model) -> list[str]:
             named.append((part.function, _name(part)))
         if isinstance(part, SensorEffect):
             named.append((part.inverse, f"{_name(part)}_inverse"))
+        if isinstance(part, FlowEffect) and part.rate is not None:
+            named.append((part.rate, f"{_name(part)}_rate"))
     imports = []
     for what, name in named:
         own = what.__name__
@@ -286,7 +289,7 @@ def functions_of(model: Model) -> list[Callable[..., Any]]:
     """Functions outside the program's own physics and effects that the kernel of ``model`` calls."""
     found: list[Any] = [model.arrangement.forces]
     for part in (*model.parts, *model.effects):
-        found += [part.function, getattr(part, "inverse", None), getattr(part, "start", None)]
+        found += [part.function, *(getattr(part, name, None) for name in ("inverse", "start", "rate"))]
     return [function for function in found if function is not None]
 
 
@@ -407,6 +410,12 @@ def _lagging(model: Model) -> list[str]:
         lines += [f"more, slopes{k} = {_name(lag)}(found, ({behind}), h[l], {_tuple(lag)})", _PLUS]
         at += len(lag.states)
     return lines
+
+
+def _carried(model: Model) -> list[str]:
+    """The rates of the state in water that gains velocity."""
+    flows = [effect for effect in model.acting(FlowEffect) if effect.rate is not None]
+    return [f"rate = carried(rate, *{_name(effect)}_rate(state, around, {_tuple(effect)}))" for effect in flows]
 
 
 def _update(model: Model) -> list[str]:

@@ -10,7 +10,7 @@ from ..arrays import FloatArray
 from ..effects import ActuatorEffect, Effect, FlowEffect, ForceEffect, LagEffect, SensorEffect
 from ..model import Model
 from ..physics.integration import after_step, at_stage, between, with_stage
-from ..physics.mmg import rates, through_water
+from ..physics.mmg import carried, rates, through_water
 from ..physics.quantities import HELD, STATES, UNKNOWN, Force, State, Surroundings
 from .cases import Cases, Integrator, LaneResult, finish
 from .logged import Logged
@@ -155,7 +155,11 @@ class LaneModel:
             total = _sum(total, more)
             slopes += own
             at += len(behind)
-        return np.array([*rates(state, *self.water(state, around), total, self.p.ship), *slopes])
+        rate = rates(state, *self.water(state, around), total, self.p.ship)
+        for moving in self.flows:
+            if moving.effect.rate is not None:
+                rate = carried(rate, *moving.effect.rate(state, around, moving.e))
+        return np.array([*rate, *slopes])
 
     def sensed(self, state: State) -> State:
         """The state as the sensors show it."""

@@ -30,6 +30,7 @@ from . import (
     speed_scale,
     steering_lag,
     wave_drift,
+    waves,
     wind,
     wind_drift,
 )
@@ -80,6 +81,7 @@ BUILT_IN: tuple[Effect, ...] = tuple(
         loading,
         resistance,
         wind,
+        waves,
         wave_drift,
         rudder_stall,
         hull_term,

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from mmgtune.resources import trial_set_names
-from mmgtune.trial import Trial, check_trial, has_measured_wind, load_trials
+from mmgtune.trial import Trial, check_trial, load_trials, measured_around
 
 from .made import DEG, changed, made, said, with_value
 
@@ -123,14 +123,14 @@ def test_half_a_wind(pair: tuple[str, str]) -> None:
     columns = {name: np.full(500, 2.0) for name in pair}
     whole = replace(made(), extra=columns)
     only(whole)
-    assert has_measured_wind(whole)
+    assert measured_around(whole) == {"wind"}
     for kept, missing in (pair, pair[::-1]):
         half = replace(made(), extra={kept: columns[kept]})
         only(half, f"there is '{kept}' without '{missing}'")
-        assert not has_measured_wind(half)
+        assert not measured_around(half)
     never_both = [np.where(np.arange(500) < 200, np.nan, 2.0), np.where(np.arange(500) < 200, 2.0, np.nan)]
-    assert not has_measured_wind(replace(made(), extra=dict(zip(pair, never_both, strict=True))))
-    assert not has_measured_wind(made())
+    assert not measured_around(replace(made(), extra=dict(zip(pair, never_both, strict=True))))
+    assert not measured_around(made())
 
 
 def test_notes() -> None:

@@ -19,8 +19,10 @@ ROOT = Path(__file__).parents[2]
 FIELD = ("physics/quantities.py", "    wind_known: Lanes", "    stream_east: Lanes\n    wind_known: Lanes")
 SOURCE = (
     "trial/surroundings.py",
-    "): measured_wind,\n",
-    '): measured_wind,\n    ("stream_east",): lambda trial: trial.extra.get("stream", 0.0 * trial.t)[:, None],\n',
+    "measured_waves(trial),\n",
+    """measured_waves(trial),
+    ("stream_east",): lambda trial, _: trial.extra.get("stream", 0.0 * trial.t)[:, None],
+""",
 )
 
 STREAM = """
@@ -64,9 +66,9 @@ if __name__ == "__main__":
 def test_each_field_has_one_source():
     """In some order, none twice and none left out; nothing measured is 0 throughout."""
     assert sorted(name for names in SOURCES for name in names) == sorted(Surroundings._fields)
-    assert (surroundings(made()) == 0.0).all()
+    assert (surroundings(made(), None) == 0.0).all()
     assert set(UNKNOWN) == {0.0}
-    assert HELD == ("wind_known",)
+    assert {name for name in Surroundings._fields if name.endswith(("known", "rate"))} == set(HELD)
 
 
 @pytest.mark.slow(30)
@@ -92,6 +94,6 @@ def test_another_is_one_field_and_one_source(tmp_path):
 def test_wind_of_a_trial_is_in_its_surroundings():
     trial = made()
     blown = {"wind_speed": np.full(trial.n_samples, 8.0), "wind_dir": np.full(trial.n_samples, np.pi)}
-    found = surroundings(replace(trial, extra=blown))
+    found = surroundings(replace(trial, extra=blown), None)
     assert found[:, Surroundings._fields.index("wind_north")] == pytest.approx(8.0)
     assert (found[:, Surroundings._fields.index("wind_known")] == 1.0).all()
