@@ -15,6 +15,7 @@ WORDS = {
     "wind": ("wind", "still air"),
     "current": ("current", "still water"),
     "wave": ("waves", "no waves"),
+    "depth": ("depth", "deep water"),
 }
 """What is measured, and what there is where it is not, by names of ``quantities.KNOWN``."""
 
@@ -53,11 +54,16 @@ def _missing(
     """That an effect acts on what some trials have not measured; "" where they have, or where it does not act."""
     of_name = [f"{effect.kind}.{one}" for one, other in effect.of_measured.items() if other == name]
     stands_in = [f"{effect.kind}.{one}" for one in effect.stand_in]
+    null = {f"{effect.kind}.{one}": parameter.null for one, parameter in effect.parameters.items()}
+
+    def acts(one: str) -> bool:
+        return numbers[one] != null[one] or one in free
+
     lacking = sum(name not in found for found in measured.values())
-    if not lacking or not any(numbers[one] != 0.0 or one in free for one in of_name):
+    if not lacking or not any(acts(one) for one in of_name):
         return ""
     what, still = WORDS[name]
-    if any(numbers[one] != 0.0 or one in free for one in stands_in):
+    if any(acts(one) for one in stands_in):
         if lacking == len(measured):  # nothing but the steady one was meant
             return ""
         still = f"the steady {what} of [{effect.kind}]"

@@ -46,10 +46,14 @@ def states(
     return result.states
 
 
-def measured(t: FloatArray, **around: tuple[FloatArray | float, FloatArray | float]) -> FloatArray:
-    """(n_samples, n_surroundings) measured at t (n_samples,): north and east of wind, current or wave by name."""
+def measured(
+    t: FloatArray, depth: FloatArray | None = None, **around: tuple[FloatArray | float, FloatArray | float]
+) -> FloatArray:
+    """(n_samples, n_surroundings) measured at t (n_samples,): depth, and north and east of wind, current or wave."""
     found = np.zeros((len(t), len(Surroundings._fields)))
     at = Surroundings._fields.index
+    if depth is not None:
+        found[:, at("depth")], found[:, at("depth_known")] = depth, 1.0
     for name, components in around.items():
         found[:, at(f"{name}_known")] = 1.0
         for axis, values in zip(("north", "east"), components, strict=True):

@@ -16,7 +16,7 @@ from functools import lru_cache
 from typing import Any
 
 from ..components import Component
-from ..effects import ActuatorEffect, FlowEffect, ForceEffect, LagEffect, SensorEffect
+from ..effects import ActuatorEffect, FactorsEffect, FlowEffect, ForceEffect, LagEffect, SensorEffect
 from ..model import Model
 from ..physics.quantities import HELD, STATES, Surroundings
 
@@ -251,12 +251,12 @@ def _name(part: Component) -> str:
 
 def _looks_around(model: Model) -> bool:
     """Whether anything in the model depends on what was measured around the ship."""
-    return bool(model.acting(FlowEffect) or model.acting(ForceEffect))
+    return bool(model.acting(FlowEffect) or model.acting(ForceEffect) or model.acting(FactorsEffect))
 
 
 def _called(model: Model) -> list[Component]:
     """Components, and effects that have a place in the kernel."""
-    places = (ActuatorEffect, FlowEffect, ForceEffect, LagEffect, SensorEffect)
+    places = (ActuatorEffect, FlowEffect, FactorsEffect, ForceEffect, LagEffect, SensorEffect)
     return [*model.parts, *(effect for effect in model.effects if isinstance(effect, places))]
 
 
@@ -375,14 +375,36 @@ def _forces(model: Model) -> list[str]:
         lines += [f"u_c{k}, v_c{k} = {_name(effect)}(state, around, {_tuple(effect)})"]
         lines += [f"u_c, v_c = u_c + u_c{k}, v_c + v_c{k}" if k else f"u_c, v_c = u_c{k}, v_c{k}"]
     functions = ", ".join(_name(part) for part in model.parts if part.function is not None)
+    factors, changed = _factored(model)
     lines += [
+        *factors,
         f"components = Components({functions})",
         "coefficients = Coefficients(",
-        *(f"    {_tuple(part)}," for part in model.parts),
+        *(f"    {changed.get(part.kind, _tuple(part))}," for part in model.parts),
         ")",
         "found = forces(through_water(state, u_c, v_c), control, components, coefficients)",
     ]
     return lines
+
+
+def _factored(model: Model) -> tuple[list[str], dict[str, str]]:
+    """Lines that work out the factors on coefficients in these surroundings, and the tuple of each part they change."""
+    lines = []
+    factors: dict[str, list[str]] = {}
+    for k, effect in enumerate(model.acting(FactorsEffect)):
+        lines.append(f"factors{k} = {_name(effect)}(around, {_tuple(effect)})")
+        for j, name in enumerate(effect.changes):
+            factors.setdefault(name, []).append(f"factors{k}[{j}]")
+    changed = {}
+    for part in model.parts:
+        if any(f"{part.kind}.{symbol}" in factors for symbol in part.params._fields):
+            lines.append(f"own_{part.kind} = {_tuple(part)}")
+            own = (
+                " * ".join([f"own_{part.kind}.{symbol}", *factors.get(f"{part.kind}.{symbol}", ())])
+                for symbol in part.params._fields
+            )
+            changed[part.kind] = f"{_name(part)}_params({', '.join(own)})"
+    return lines, changed
 
 
 _PLUS = "X, Y, N = X + more.X, Y + more.Y, N + more.N"

@@ -57,7 +57,7 @@ class Effect(Component):
     on_demand  costs simulation time where it is absent: a search has it only in models that ask for it
     one_of_many  its variants are many of one kind, of which chance finds the best: a search charges for the choice
     of_measured  parameters that act on what was measured around the ship, {parameter: one of ``quantities.KNOWN``}
-    stand_in   parameters that say what there is where that was not measured; none where they are 0
+    stand_in   parameters that say what there is where that was not measured; none where they are at their null
     beyond     what to say where surroundings are beyond what the effect holds for, from {section.symbol: number} and
                the surroundings of samples (n_samples,) each; "" where they are not, None where it holds in any
     """
@@ -157,6 +157,29 @@ class CoefficientsEffect(Effect):
     function: CoefficientsFunction
 
 
+class FactorsFunction(Protocol):
+    """Factors on coefficients where the ship is, in the order of ``changes``."""
+
+    def __call__(self, around: Surroundings, e: Any, /) -> tuple[Lanes, ...]: ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class FactorsEffect(Effect):
+    """Coefficients that change on the way, with what is measured around the ship.
+
+    changes  what is multiplied, by name: section.symbol, of the components of the arrangement
+    """
+
+    place = "factors"
+    function: FactorsFunction
+    changes: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if any(name.startswith("particulars.") for name in self.changes):
+            raise TypeError(f"effect '{self.tag}': particulars of the ship do not change on the way")
+
+
 class ForceFunction(Protocol):
     """Force that is added; found is the arrangement's breakdown, components and p its functions and coefficients."""
 
@@ -216,6 +239,7 @@ EFFECTS_BY_PLACE: tuple[type[Effect], ...] = (
     ActuatorEffect,
     FlowEffect,
     CoefficientsEffect,
+    FactorsEffect,
     ForceEffect,
     LagEffect,
     SensorEffect,

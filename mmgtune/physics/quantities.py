@@ -117,6 +117,8 @@ class Surroundings(NamedTuple):
     wave_north: Lanes  # significant height times the unit vector to where waves come from, north [m]
     wave_east: Lanes  # and east [m]
     wave_known: Lanes  # 1 where waves were measured, 0 where not
+    depth: Lanes  # of the water [m]
+    depth_known: Lanes  # 1 where the depth was measured, 0 where not
 
 
 UNKNOWN = Surroundings(*(0.0 for _ in Surroundings._fields))

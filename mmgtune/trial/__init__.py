@@ -8,7 +8,7 @@ unusable        what forbids using a trial
 checks          everything odd about one: motion_checks, control_checks, cross_checks; kinematics: what they measure
 set_checks      what is odd about one among others of the same ship
 pieces          long trials cut into windows
-wind            the wind it was measured in; current, waves: the others; gaps: what bridges theirs
+wind            the wind it was measured in; current, waves, depth: the others; gaps: what bridges theirs
 surroundings    all that was measured around the ship; surroundings_checks: what is odd about it
 smoothing       channels without their noise
 describe        what a trial holds, in numbers

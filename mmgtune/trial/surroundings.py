@@ -9,6 +9,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..physics.quantities import KNOWN, Surroundings
 from .current import measured_current
+from .depth import measured_depth
 from .model import Trial
 from .waves import measured_waves
 from .wind import measured_wind
@@ -17,6 +18,7 @@ SOURCES: dict[tuple[str, ...], Callable[[Trial, float | None], FloatArray]] = {
     ("wind_north", "wind_east", "wind_known"): lambda trial, _: measured_wind(trial),
     ("current_north", "current_east", "current_north_rate", "current_east_rate", "current_known"): measured_current,
     ("wave_north", "wave_east", "wave_known"): lambda trial, _: measured_waves(trial),
+    ("depth", "depth_known"): lambda trial, _: measured_depth(trial),
 }
 """Where each field of ``Surroundings`` comes from: functions of a trial and the ship's draught [m], None where nobody
 knows it, that return (n_samples, n_fields)."""

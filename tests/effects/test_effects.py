@@ -58,6 +58,7 @@ def blown(model, seconds=900):
         wind=(5.0 * np.cos(t / 80.0), 6.0 * np.sin(t / 50.0)),
         current=(0.3 * np.cos(t / 60.0), 0.2 * np.sin(t / 40.0)),
         wave=(0.8 * np.cos(t / 90.0), 0.6 * np.sin(t / 70.0)),
+        depth=8.0 + 2.0 * np.sin(t / 30.0),
     )
     return pad([t], [cases.controls[0]], [cases.initial[0]], around=[around])
 

@@ -240,7 +240,8 @@ def numbers(suzaku):
 def test_shallow_water(numbers):
     """Kijima et al. 1990, with the numbers of SUZAKU at a depth of 8 m."""
     effect = find_effect("shallow-water")
-    found = effect.function(numbers, effect.params(8.0))
+    ship = [numbers[f"particulars.{name}"] for name in ("L_pp", "B", "d", "C_b")]
+    found = effect.function(STILL, effect.params(8.0, 1.0, *ship))
     h, b = 3.8 / 8.0, 0.737 * 13.5 / 3.8
 
     def deep(n):
@@ -250,8 +251,17 @@ def test_shallow_water(numbers):
     cubic += (37.0 * b**2 - 185.0 * b + 230.0) * h**2 + (-38.0 * b**2 + 197.0 * b - 250.0) * h**3
     factors = {"Y_v": deep(0.40 * b), "N_v": deep(0.425 * b), "N_r": deep(1.5 - 14.28 * 3.8 / 83.0), "Y_r": cubic}
     for name, factor in factors.items():
-        assert found[f"hull.{name}"] == pytest.approx(factor * numbers[f"hull.{name}"]), name
-    assert len(found) == len(factors)
+        assert getattr(found, name) == pytest.approx(factor), name
+    assert tuple(f"hull.{name}" for name in found._fields) == effect.changes
+    logged = UNKNOWN._replace(depth=8.0, depth_known=1.0)
+    assert effect.function(logged, effect.params(math.inf, 1.0, *ship)) == pytest.approx(found)
+    # Half of the draught over the depth is twice the depth; none of it is deep water.
+    assert effect.function(logged, effect.params(5.0, 0.5, *ship)) == pytest.approx(
+        effect.function(STILL, effect.params(16.0, 1.0, *ship))
+    )
+    assert tuple(effect.function(logged, effect.params(math.inf, 0.0, *ship))) == (1.0, 1.0, 1.0, 1.0)
+    aground = effect.function(logged._replace(depth=1.0), effect.params(math.inf, 1.0, *ship))
+    assert aground == pytest.approx(effect.function(STILL, effect.params(1.05 * 3.8, 1.0, *ship)))
 
 
 def test_loading(numbers):
