@@ -8,12 +8,13 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
+from .circumstances import notes_on
 from .errors import OptionError, Problem
 from .given import ShipGiven, TrialsGiven, ship_of, trials_of
 from .model import Model
 from .objective import spread
 from .options import ValidateOptions
-from .predictor import Predictor, as_predictor, profile_of, words_of
+from .predictor import PhysicsPredictor, Predictor, as_predictor, profile_of, words_of
 from .repeating import Repeated, document, repeat
 from .validation import L_MSE, TrialScore, score, summary
 
@@ -23,12 +24,14 @@ Scorable = ShipGiven | Model | Predictor
 
 @dataclass(frozen=True, eq=False)
 class Scored:
-    """One predictor: what it was called, its scores by trial or window, and its manoeuvres repeated where asked for."""
+    """One predictor: what it was called, its scores by trial or window, its manoeuvres repeated where asked for, and
+    notes on what was around the ship."""
 
     name: str
     predictor: Predictor
     scores: tuple[TrialScore, ...]
     repeated: tuple[Repeated, ...] = ()
+    notes: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         """In a line."""
@@ -43,6 +46,7 @@ class Scored:
             "sha256": profile.sha256 if profile else None,
             "method": self.predictor.method,
             **summary(self.scores),
+            "notes": list(self.notes),
         }
 
 
@@ -137,7 +141,8 @@ def validate(
     scored = []
     for (name, _), predictor in zip(several, predictors, strict=True):
         repeated = tuple(repeat(predictor, whole)) if options.manoeuvres else ()
-        scored.append(Scored(name, predictor, tuple(score(predictor, pieces, sigma)), repeated))
+        notes = notes_on(predictor.model, whole) if isinstance(predictor, PhysicsPredictor) else ()
+        scored.append(Scored(name, predictor, tuple(score(predictor, pieces, sigma)), repeated, tuple(notes)))
     return Validation(tuple(scored), called, sigma, options.sigma_from or called, options)
 
 

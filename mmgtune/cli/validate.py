@@ -55,6 +55,8 @@ def command(
         c.print_json(result.to_dict())
     else:
         c.show(summary(result))
+        for note in dict.fromkeys(note for one in result.profiles for note in one.notes):
+            c.say(f"note: {note}")
 
 
 def summary(result: Validation) -> str:

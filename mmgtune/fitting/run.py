@@ -91,7 +91,7 @@ class Setting:
         Raises OptionError where the window leaves one without a sample.
         """
         chosen = [self.trials.trials[name] for name in ids or self.trials.tune]
-        cases = cases_of(chosen, self.objective, self.model.inputs)
+        cases = cases_of(chosen, self.objective, self.model.inputs, self.model.draught)
         sigma = self.deviations(ids) if self.estimated else None
         return FitProblem.of(self.model, cases, self.box, self.backend, self.integrator, sigma)
 

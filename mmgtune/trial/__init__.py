@@ -8,7 +8,8 @@ unusable        what forbids using a trial
 checks          everything odd about one: motion_checks, control_checks, cross_checks; kinematics: what they measure
 set_checks      what is odd about one among others of the same ship
 pieces          long trials cut into windows
-wind            the wind it was measured in; surroundings: all that was measured around the ship
+wind            the wind it was measured in; current, waves, depth: the others; gaps: what bridges theirs
+surroundings    all that was measured around the ship; surroundings_checks: what is odd about it
 smoothing       channels without their noise
 describe        what a trial holds, in numbers
 """
@@ -20,8 +21,8 @@ from .model import Trial
 from .parquet import read_trial, write_trial
 from .pieces import windows
 from .set_checks import check_trials
-from .surroundings import surroundings
-from .wind import has_measured_wind, measured_wind
+from .surroundings import measured_around, surroundings
+from .wind import measured_wind
 
 __all__ = [
     "Finding",
@@ -29,8 +30,8 @@ __all__ = [
     "TrialSet",
     "check_trial",
     "check_trials",
-    "has_measured_wind",
     "load_trials",
+    "measured_around",
     "measured_wind",
     "read_trial",
     "surroundings",

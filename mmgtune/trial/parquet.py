@@ -20,7 +20,7 @@ from .digest import DIGEST_KEY, digest
 from .footer import rows_of
 from .metadata import facts_of
 from .model import Trial
-from .schema import ATTRIBUTES, COLUMNS, METADATA_KEY, REQUIRED, SCHEMA
+from .schema import ATTRIBUTES, METADATA_KEY, REQUIRED, SCHEMA, known_column
 from .unusable import unusable
 
 
@@ -75,7 +75,7 @@ def write_trial(trial: Trial, path: Path | str, overwrite: bool = False) -> Path
     path = Path(path)
     values = trial.columns
     fields = [
-        pa.field(name, pa.float64(), metadata={"unit": COLUMNS[name].unit} if name in COLUMNS else None)
+        pa.field(name, pa.float64(), metadata={"unit": known.unit} if (known := known_column(name)) else None)
         for name in values
     ]
     facts = {
@@ -170,8 +170,9 @@ def _read(path: Path) -> _Held:
         twice = sorted(name for name, count in Counter(names).items() if count > 1)
         problems = [Problem(f"column '{name}' is there twice", where, fix="remove one of them") for name in twice]
         for name, kind in kinds:
-            if name in COLUMNS and name not in numeric:
-                fix = f"write it as float64, in {COLUMNS[name].unit}"
+            known = known_column(name)
+            if known and name not in numeric:
+                fix = f"write it as float64, in {known.unit}"
                 problems.append(Problem(f"column '{name}' holds {str(kind)[:80]}, not numbers", where, fix=fix))
         wanted = [name for name in numeric if name not in twice]
         table = file.read(columns=wanted, use_threads=False)
@@ -185,7 +186,7 @@ def _read(path: Path) -> _Held:
             what, fix = "the file is not Parquet", "trials are Parquet files; convert it, for example with pandas"
         why = (str(error).splitlines() or [""])[0]
         raise TrialError(Problem(what, where, why, fix)) from error
-    ignored = tuple(name for name in names if name not in numeric and name not in COLUMNS)
+    ignored = tuple(name for name in names if name not in numeric and known_column(name) is None)
     metadata = file.schema_arrow.metadata or {}
     return _Held(columns, names, ignored, metadata, problems, hashlib.sha256(content).hexdigest())
 

@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import Problem, closest
 from .kinematics import FITS, IN_DEGREES, position_misfits, turning
-from .schema import COLUMNS, LARGEST, LARGEST_RUDDER, MAIN_INPUTS, MOTION, REQUIRED, RUDDERS, impossible
+from .schema import COLUMNS, LARGEST, LARGEST_RUDDER, MAIN_INPUTS, MOTION, REQUIRED, RUDDERS, impossible, known_column
 
 
 def unusable(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
@@ -25,9 +25,7 @@ def unusable(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
         return [*problems, Problem(what, where, "a motion needs two or more", "write the whole record")]
     with np.errstate(all="ignore"):
         problems += _time(columns, where) + _values(columns, where) + _rudder(columns, where)
-        damaged = any(
-            impossible(values, COLUMNS[name].unit).any() for name, values in columns.items() if name in COLUMNS
-        )
+        damaged = any(impossible(values, _unit(name)).any() for name, values in columns.items())
         return problems if damaged else problems + _degrees(columns, where)
 
 
@@ -79,9 +77,9 @@ def _values(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
 
     for name, values in columns.items():
         infinite, missing = np.isinf(values), np.isnan(values)
-        damaged = impossible(values, COLUMNS[name].unit) & ~infinite if name in COLUMNS else infinite & ~infinite
+        damaged = impossible(values, _unit(name)) & ~infinite
         if damaged.any():
-            unit = COLUMNS[name].unit
+            unit = _unit(name)
             say(
                 f"'{name}' is up to {np.abs(values[damaged]).max():.3g} {unit} in {damaged.sum()} rows",
                 name,
@@ -162,6 +160,12 @@ def _in_degrees(column: str, where: str, why: str) -> Problem:
     unit = "degrees" if column == "psi" else "degrees per second"
     what = f"'{column}' is in {unit}, not {COLUMNS[column].unit}"
     return Problem(what, f"{where}, column '{column}'", why, f"multiply '{column}' by pi/180")
+
+
+def _unit(name: str) -> str:
+    """The unit of a column, "" of one that the program does not know."""
+    known = known_column(name)
+    return known.unit if known else ""
 
 
 def _first(condition: np.ndarray) -> int:
