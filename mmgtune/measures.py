@@ -58,7 +58,8 @@ def distance_measures(measured: FloatArray, simulated: FloatArray, reference: Re
     if not whole.any():
         raise ValueError("no complete sample to compare")
     found = distances(measured[None], simulated[None])
-    parts = cvdm_parts(found.mean, *(np.array([one]) for one in (reference.length, reference.speed)), reference.r_max)
+    length, speed = np.array([reference.length]), np.array([reference.speed])
+    parts = cvdm_parts(found.mean, length, speed, reference.r_max)
     named = {name: float(values[0]) for name, values in found.measures.items()}
     return {**named, "cVDM": float(sum(values[0] for values in parts.values()))}
 
@@ -80,7 +81,7 @@ def distances(measured: FloatArray, simulated: FloatArray) -> Distances:
 
     Samples with a NaN do not count, so shorter trajectories end in NaN.  NaN for one without a complete sample.
     """
-    whole = ~(np.isnan(measured).any(axis=2) | np.isnan(simulated).any(axis=2))
+    whole = np.asarray(~(np.isnan(measured).any(axis=2) | np.isnan(simulated).any(axis=2)))
     d = np.where(whole[:, :, None], np.abs(simulated - measured), 0.0)
     pose = np.where(whole[:, :, None], measured, 0.0)[:, :, :4]
     four = d[:, :, :4]
@@ -126,7 +127,7 @@ def references(measured: FloatArray) -> tuple[FloatArray, FloatArray]:
 
     As ``reference_of``: samples with a NaN do not count, and the path goes straight past them.
     """
-    whole = ~np.isnan(measured).any(axis=2)
+    whole = np.asarray(~np.isnan(measured).any(axis=2))
     n_samples = measured.shape[1]
     first = np.argmax(whole, axis=1)
     latest = np.maximum.accumulate(np.where(whole, np.arange(n_samples), first[:, None]), axis=1)

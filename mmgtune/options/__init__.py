@@ -4,7 +4,7 @@ choice      a field that is an option, and what all such dataclasses do
 simulation  integrator, step, back end
 tuning      fit, sweep, leave-out
 diagnosis   diagnose
-scoring     validate, check
+scoring     validate, on trials and on voyages, and check
 orders      simulate
 flags       what fields are called on the command line
 
@@ -15,7 +15,7 @@ from .choice import Choice, Options, again, choice, choices
 from .diagnosis import DiagnoseOptions
 from .flags import FLAGS, flags_of, in_flags
 from .orders import SimulateOptions
-from .scoring import FORMATS, CheckOptions, ValidateOptions
+from .scoring import FORMATS, CheckOptions, ValidateOptions, VoyageOptions
 from .simulation import BACKENDS, INTEGRATORS, SimulationOptions
 from .tuning import METHODS, FitOptions, LeaveOutOptions, SearchOptions, SweepOptions, TuningOptions
 
@@ -37,6 +37,7 @@ __all__ = [
     "SweepOptions",
     "TuningOptions",
     "ValidateOptions",
+    "VoyageOptions",
     "again",
     "choice",
     "choices",
@@ -44,5 +45,5 @@ __all__ = [
     "in_flags",
 ]
 
-for _of in (CheckOptions, DiagnoseOptions, FitOptions, LeaveOutOptions, SimulateOptions, SweepOptions, ValidateOptions):
+for _of in (CheckOptions, DiagnoseOptions, FitOptions, LeaveOutOptions, SimulateOptions, SweepOptions, VoyageOptions):
     flags_of(_of)

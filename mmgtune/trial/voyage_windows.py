@@ -42,6 +42,7 @@ class Cutting:
     used      rows in windows
     gaps      of these, rows with incomplete motion, which do not count in any comparison
     left_out  rows in no window, by reason
+    shared    whether the next row is also the last of the window before it
     """
 
     rows: int = 0
@@ -49,8 +50,7 @@ class Cutting:
     used: int = 0
     gaps: int = 0
     left_out: dict[str, int] = field(default_factory=lambda: dict.fromkeys(LEFT_OUT, 0))
-    _shared: bool = False
-    """Whether the next row is the last of the window before it, too."""
+    shared: bool = False
 
 
 def voyage_windows(
@@ -63,8 +63,8 @@ def voyage_windows(
     counted  filled with what became of the rows
 
     The voyage falls into stretches, wherever a longer gap is or an input is not known; each is cut by itself, from its
-    first complete sample.  A window that lasts less than LEAST of its length, at the end of a stretch, is left out.  Row
-    groups of the file and blocks that are read make no difference.
+    first complete sample.  A window that lasts less than LEAST of its length, at the end of a stretch, is left out.
+    Row groups of the file and blocks that are read make no difference.
 
     Raises TrialError as ``Voyage.blocks`` does, where the voyage lacks an input, and where headings are in degrees.
     """
@@ -105,7 +105,7 @@ def _cut(
     good = np.flatnonzero(complete)
     windows: list[Window] = []
     covered = np.zeros(len(t), dtype=bool)
-    covered[0] = told._shared
+    covered[0] = told.shared
     end = len(t)
     for k, stretch in enumerate(stretches := _stretches(t, good, known, gap)):
         _sound_headings(voyage, block, stretch)
@@ -120,7 +120,7 @@ def _cut(
             if t[first + stop] - t[first + start] >= LEAST * length:
                 windows.append(_window(voyage, block, first + start, first + stop))
                 covered[first + start : first + stop + 1] = True
-    told._shared = end < len(t) and bool(covered[end])
+    told.shared = end < len(t) and bool(covered[end])
     told.windows += len(windows)
     _count(told, covered[:end], known[:end], complete[:end])
     if end == len(t):
@@ -176,7 +176,7 @@ def _without(voyage: Voyage, name: str) -> Problem:
 
 def _finite(block: Block, names: tuple[str, ...]) -> BoolArray:
     """(n_rows,) whether all of these columns have a value."""
-    return np.logical_and.reduce([np.isfinite(block.columns[name]) for name in names])
+    return np.asarray(np.logical_and.reduce([np.isfinite(block.columns[name]) for name in names]))
 
 
 def _joined(one: Block, other: Block) -> Block:

@@ -1,0 +1,46 @@
+"""The run folder of a validation on voyages: each file whole or not there."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..backends import STATES
+from ..files import write_text
+from ..fitting.folder import write_table
+from .result import VoyageValidation
+
+RESULT = "voyages.json"
+
+
+def write_voyages(result: VoyageValidation, folder: Path) -> dict[str, Any]:
+    """Write the windows, those that are drawn and, last, the result.  Returns its document."""
+    if result.table is not None:
+        write_table(folder / "windows.parquet", result.columns())
+        write_table(folder / "drawn.parquet", _drawn(result))
+    document = {**result.to_dict(), "out": str(folder)}
+    write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+    return document
+
+
+def _drawn(result: VoyageValidation) -> dict[str, Any]:
+    """Columns of drawn.parquet: the windows that are drawn, as measured and as every model has them."""
+    assert result.table is not None
+    parts: dict[str, list[Any]] = {name: [] for name in ("window", "model", "measured", "t", *STATES, "delta")}
+    for one in result.drawn:
+        for name, states, is_measured in (
+            ("", one.measured, True),
+            *((name, states, False) for name, states in one.states.items()),
+        ):
+            n = len(one.t)
+            parts["window"].append(np.full(n, result.table.ids[one.place], dtype=object))
+            parts["model"].append(np.full(n, name, dtype=object))
+            parts["measured"].append(np.full(n, is_measured))
+            parts["t"].append(one.t)
+            for state, values in zip(STATES, states[:n].T, strict=True):
+                parts[state].append(values)
+            parts["delta"].append(one.delta)
+    return {name: np.concatenate(values) for name, values in parts.items() if values}
