@@ -2,8 +2,8 @@
 
     python -m tools.generate_voyage FOLDER [HOURS]
 
-The rudder follows a programme, mostly a few degrees and now and then a turn; the ship is simulated open loop, hour after
-hour, by the equations that judge her later.  All of it is generated; nothing is measured.
+The rudder follows a programme, mostly a few degrees and now and then a turn; the ship is simulated open loop, hour
+after hour, by the equations that judge her later.  All of it is generated; nothing is measured.
 """
 
 from __future__ import annotations

@@ -65,9 +65,7 @@ def missing_columns(columns: Mapping[str, object], where: str) -> list[Problem]:
     ]
 
 
-def _time(
-    columns: Mapping[str, FloatArray], where: str, before: float = -np.inf, first_row: int = 0
-) -> list[Problem]:
+def _time(columns: Mapping[str, FloatArray], where: str, before: float = -np.inf, first_row: int = 0) -> list[Problem]:
     t = columns.get("t")
     if t is None or (increasing(t) and (not len(t) or t[0] > before)):
         return []
@@ -89,9 +87,7 @@ def _time(
     ]
 
 
-def _values(
-    columns: Mapping[str, FloatArray], where: str, first_row: int = 0, *, gaps: bool = False
-) -> list[Problem]:
+def _values(columns: Mapping[str, FloatArray], where: str, first_row: int = 0, *, gaps: bool = False) -> list[Problem]:
     """gaps: whether any column may have some."""
     problems: list[Problem] = []
 

@@ -316,7 +316,7 @@ class VoyageValidation:
             found[f"cVDM_{part}"] = np.concatenate([one.parts[part] for one in models])
         found["J"] = np.concatenate([one.J for one in models])
         found["L_MSE"] = np.concatenate([table.L_MSE_each(name, self.sigma) for name in names])
-        labels = np.array([*CLASSES, None], dtype=object)
+        labels = np.array([*CLASSES, ""], dtype=object)
         found["class"] = np.concatenate([labels[classed(one.cVDM, self.options.classes)] for one in models])
         found["diverged"] = np.concatenate([one.diverged for one in models])
         return found
@@ -346,4 +346,3 @@ def _mean(values: FloatArray) -> float:
 
 def _json(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None
-

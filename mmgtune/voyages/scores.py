@@ -78,9 +78,7 @@ def score_windows(predictor: Predictor, windows: Windows, cases: Cases) -> tuple
     Each sample of each channel after the first counts where it was measured, as in ``evaluation``.
     """
     found = predictor.predict(cases)
-    members = [
-        _score(predictor, windows, found.states[:, k], found.diverged[:, k]) for k in range(predictor.n_members)
-    ]
+    members = [_score(predictor, windows, found.states[:, k], found.diverged[:, k]) for k in range(predictor.n_members)]
     return _mean_over(members), found.states[:, 0]
 
 

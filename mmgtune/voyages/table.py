@@ -86,9 +86,7 @@ class WindowTable:
         """The standardised error over windows, all where None; NaN where a state has no spread."""
         return sum(self.L_MSE_by_state(model, sigma, some).values())
 
-    def L_MSE_by_state(
-        self, model: str, sigma: Mapping[str, float], some: BoolArray | None = None
-    ) -> dict[str, float]:
+    def L_MSE_by_state(self, model: str, sigma: Mapping[str, float], some: BoolArray | None = None) -> dict[str, float]:
         """Its parts: the mean over all samples of each state that was measured."""
         rows = slice(None) if some is None else some
         squares, counts = self.models[model].squares[rows].sum(axis=0), self.counts[rows].sum(axis=0)

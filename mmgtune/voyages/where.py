@@ -126,9 +126,7 @@ def _by(table: WindowTable, model: str, feature: Feature, draws: Draws) -> ByFea
     return ByFeature(feature, tuple(bins), explained(np.log(scored.cVDM[positive]), which[positive].astype(np.int64)))
 
 
-def _bin(
-    table: WindowTable, model: str, some: BoolArray, draws: Draws, low: float, high: float, name: str
-) -> Bin:
+def _bin(table: WindowTable, model: str, some: BoolArray, draws: Draws, low: float, high: float, name: str) -> Bin:
     scored = table.models[model]
     sound = some & np.isfinite(scored.cVDM)
     mean, interval = draws.mean(scored.cVDM, sound)
