@@ -70,7 +70,7 @@ def _backends() -> list[Finding]:
     try:
         model = Model(load_profile("suzaku"))
         trials = list(load_trials("suzaku").trials.values())[:1]
-        cases = cases_of(trials, make_objective(model.L_pp), model.inputs)
+        cases = cases_of(trials, make_objective(model.L_pp), model.inputs, model.draught)
     except MmgtuneError as error:
         return [Finding("back ends", f"cannot be tried: {error.problems[0].what}", ok=False)]
     found, states = [], []

@@ -63,6 +63,9 @@ GRID_FREE = 20_000
 TRIAL_SAMPLES = Limit(2_000_000, "samples", "a trial", "cut it into several, or give fewer samples a second")
 TRIAL_VALUES = Limit(40_000_000, "values", "a trial", "leave out columns that nothing uses, or cut it into several")
 TRIAL_BYTES = Limit(1 << 30, "bytes", "a trial file", "leave out columns that nothing uses, or cut it into several")
+VOYAGE_ROWS = Limit(100_000_000, "rows", "a voyage", "cut it into several files, or give fewer samples a second")
+VOYAGE_COLUMNS = Limit(100, "columns of numbers", "a voyage", "leave out columns that nothing uses")
+VOYAGE_BYTES = Limit(64 << 30, "bytes", "a voyage", "leave out columns that nothing uses, or cut it into several files")
 PARQUET_BYTES = Limit(4 << 30, "bytes", "a Parquet file", "write only the columns that are needed, or split it")
 FOOTER_VALUES = Limit(100_000, "column chunks", "a Parquet file", "write it with fewer columns and longer row groups")
 

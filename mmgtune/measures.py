@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .arrays import FloatArray
+from .arrays import BoolArray, FloatArray
 
 UNITS = {"MMD": "m", "MED": "m", "ASD": "mixed", "MSD": "mixed", "PMD": "%", "PED": "%", "cVDM": "%"}
 """Unit of each measure; "mixed" adds metres, radians and their rates as they are."""
@@ -57,24 +57,88 @@ def distance_measures(measured: FloatArray, simulated: FloatArray, reference: Re
     whole = ~(np.isnan(measured).any(axis=1) | np.isnan(simulated).any(axis=1))
     if not whole.any():
         raise ValueError("no complete sample to compare")
-    d = np.abs(simulated[whole] - measured[whole])
-    dx, dy, dpsi, du, dv, dr = d.T
-    four, pose = d[:, :4], measured[whole, :4]
+    found = distances(measured[None], simulated[None])
+    length, speed = np.array([reference.length]), np.array([reference.speed])
+    parts = cvdm_parts(found.mean, length, speed, reference.r_max)
+    named = {name: float(values[0]) for name, values in found.measures.items()}
+    return {**named, "cVDM": float(sum(values[0] for values in parts.values()))}
+
+
+@dataclass(frozen=True, eq=False)
+class Distances:
+    """How far many trajectories are apart, (n_trajectories,) and more each.
+
+    measures  the six measures that need no reference, by name
+    mean      (n_trajectories, 6) mean absolute difference of each state, over complete samples
+    """
+
+    measures: dict[str, FloatArray]
+    mean: FloatArray
+
+
+def distances(measured: FloatArray, simulated: FloatArray) -> Distances:
+    """The measures of many trajectories at once, (n_trajectories, n_samples, 6) each, as ``distance_measures``.
+
+    Samples with a NaN do not count, so shorter trajectories end in NaN.  NaN for one without a complete sample.
+    """
+    whole = np.asarray(~(np.isnan(measured).any(axis=2) | np.isnan(simulated).any(axis=2)))
+    d = np.where(whole[:, :, None], np.abs(simulated - measured), 0.0)
+    pose = np.where(whole[:, :, None], measured, 0.0)[:, :, :4]
+    four = d[:, :, :4]
+    dx, dy = d[:, :, 0], d[:, :, 1]
+
+    def mean(values: FloatArray) -> FloatArray:
+        return _mean_where(values, whole)
+
+    def share(part: FloatArray, of: FloatArray) -> FloatArray:
+        some = whole & (of > 0.0)
+        return 100.0 * _mean_where(np.divide(part, of, out=np.zeros_like(part), where=some), some)
+
+    measures = {
+        "MMD": mean(dx + dy),
+        "MED": mean(np.hypot(dx, dy)),
+        "ASD": mean(np.sum(d, axis=2)),
+        "MSD": mean(np.sqrt(np.sum(d * d, axis=2))),
+        "PMD": share(np.sum(four, axis=2), np.sum(np.abs(pose), axis=2)),
+        "PED": share(np.sqrt(np.sum(four**2, axis=2)), np.sqrt(np.sum(pose**2, axis=2))),
+    }
+    return Distances(measures, np.stack([mean(d[:, :, k]) for k in range(6)], axis=1))
+
+
+def cvdm_parts(mean: FloatArray, length: FloatArray, speed: FloatArray, r_max: float) -> dict[str, FloatArray]:
+    """What cVDM is the sum of, by part [%], (n_trajectories,) each.
+
+    mean    (n_trajectories, 6) mean absolute differences, see ``Distances``
+    length, speed  (n_trajectories,) path length [m] and mean speed [m/s] of the measured trajectories
+    r_max   the ship's largest yaw rate [rad/s]
+    """
+    x, y, psi, u, v, r = mean.T
     return {
-        "MMD": float(np.mean(dx + dy)),
-        "MED": float(np.mean(np.hypot(dx, dy))),
-        "ASD": float(np.mean(np.sum(d, axis=1))),
-        "MSD": float(np.mean(np.sqrt(np.sum(d * d, axis=1)))),
-        "PMD": 100.0 * _mean_share(np.sum(four, axis=1), np.sum(np.abs(pose), axis=1)),
-        "PED": 100.0 * _mean_share(np.sqrt(np.sum(four**2, axis=1)), np.sqrt(np.sum(pose**2, axis=1))),
-        "cVDM": 100.0
-        * float(
-            np.mean((dx + dy) / reference.length + dpsi / np.pi + (du + dv) / reference.speed + dr / reference.r_max)
-        ),
+        "position": 100.0 * (x + y) / length,
+        "heading": 100.0 * psi / np.pi,
+        "surge": 100.0 * u / speed,
+        "sway": 100.0 * v / speed,
+        "yaw": 100.0 * r / r_max,
     }
 
 
-def _mean_share(part: FloatArray, whole: FloatArray) -> float:
-    """Mean of part / whole over samples where the whole is not zero."""
-    some = whole > 0.0
-    return float(np.mean(part[some] / whole[some])) if some.any() else float("nan")
+def references(measured: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Path length [m] and mean speed [m/s] of trajectories (n_trajectories, n_samples, 6), (n_trajectories,) each.
+
+    As ``reference_of``: samples with a NaN do not count, and the path goes straight past them.
+    """
+    whole = np.asarray(~np.isnan(measured).any(axis=2))
+    n_samples = measured.shape[1]
+    first = np.argmax(whole, axis=1)
+    latest = np.maximum.accumulate(np.where(whole, np.arange(n_samples), first[:, None]), axis=1)
+    path = np.take_along_axis(measured[:, :, :2], latest[:, :, None], axis=1)
+    steps = np.diff(path, axis=1)
+    length = np.sum(np.hypot(steps[:, :, 0], steps[:, :, 1]), axis=1)
+    speed = np.hypot(np.where(whole, measured[:, :, 3], 0.0), np.where(whole, measured[:, :, 4], 0.0))
+    return length, _mean_where(speed, whole)
+
+
+def _mean_where(values: FloatArray, some: BoolArray) -> FloatArray:
+    """(n,) means of rows (n, n_samples) over some of their samples, the others being 0; NaN where there are none."""
+    count = some.sum(axis=1)
+    return np.where(count > 0, np.sum(values, axis=1) / np.maximum(count, 1), np.nan)

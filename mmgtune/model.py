@@ -60,6 +60,11 @@ class Model:
         """Length between perpendiculars [m]."""
         return self.profile.L_pp
 
+    @cached_property
+    def draught(self) -> float:
+        """Draught of the profile [m]."""
+        return self.profile.value("particulars.d")
+
     def numbers(self) -> dict[str, float]:
         """Every number of the profile by name, those of tables one by one."""
         return {name: float(self.base[row]) for name, row in self.rows.items()}

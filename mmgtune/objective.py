@@ -118,16 +118,17 @@ def make_objective(
     return Objective(scales=scales or default_scales(L_pp), weights=weights, window=window, every=every)
 
 
-def cases_of(trials: Sequence[Trial], objective: Objective, inputs: Sequence[str]) -> Cases:
+def cases_of(trials: Sequence[Trial], objective: Objective, inputs: Sequence[str], draught: float | None) -> Cases:
     """Trials as cases to simulate: driven by the measured inputs from the first measured state.
 
-    inputs  what drives the ship, see ``Model.inputs``
+    inputs   what drives the ship, see ``Model.inputs``
+    draught  of the ship [m], see ``surroundings``; None where nobody knows it
     Raises TrialError for a trial without one of them, OptionError where the window or gaps leave a trial without a
     sample to compare.
     """
     weight = weights_of(trials, objective)
     target = [np.nan_to_num(trial.motion, nan=0.0) for trial in trials]
-    return cases_from(trials, inputs, target=target, weight=weight)
+    return cases_from(trials, inputs, draught, target=target, weight=weight)
 
 
 def weights_of(trials: Sequence[Trial], objective: Objective) -> list[FloatArray]:

@@ -187,6 +187,11 @@ def profile_of(predictor: Predictor) -> ShipProfile | None:
     return predictor.model.profile if isinstance(predictor, PhysicsPredictor) else None
 
 
+def draught_of(predictor: Predictor) -> float | None:
+    """Draught of the ship [m], None of a predictor that is no physics model."""
+    return predictor.model.draught if isinstance(predictor, PhysicsPredictor) else None
+
+
 def words_of(integrator: Integrator) -> str:
     """The integrator as it is named beside J: "rk4", "euler, 2 substeps"."""
     return integrator.name + (f", {integrator.substeps} substeps" if integrator.substeps > 1 else "")
@@ -195,6 +200,7 @@ def words_of(integrator: Integrator) -> str:
 def cases_from(
     trials: Sequence[Trial],
     inputs: Sequence[str],
+    draught: float | None,
     *,
     parts: Sequence[slice] | None = None,
     initial: Sequence[FloatArray] | None = None,
@@ -204,6 +210,7 @@ def cases_from(
     """Trials as cases, driven by their measured inputs, in what was measured around them.
 
     inputs   what drives the predictor
+    draught  of the ship [m], see ``surroundings``; None of a predictor that has none
     parts    samples of each that are meant, all where None
     initial  (6,) state each starts from, that of its first sample where None
     target, weight  (n_samples, 6) as in ``Cases``
@@ -217,7 +224,7 @@ def cases_from(
         [trial.motion[part.start] for trial, part in both] if initial is None else initial,
         target,
         weight,
-        [surroundings(trial)[part] for trial, part in both],
+        [surroundings(trial, draught)[part] for trial, part in both],
     )
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, overload
 
 from .backends import Integrator
+from .circumstances import notes_on
 from .errors import OptionError, OutputError, Problem
 from .evaluation import TrialRecord, evaluate
 from .files import exists
@@ -38,12 +39,14 @@ class Simulated(Sequence[Motion]):
     """Simulated runs, a sequence of ``Motion``, with what they are judged by: trial by trial, of each all members.
 
     records  each beside the trial it is of; empty for manoeuvres given as orders
+    notes    on what was around the ship
     """
 
     predictor: Predictor
     motions: tuple[Motion, ...]
     records: tuple[TrialRecord, ...]
     options: SimulateOptions
+    notes: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.motions)
@@ -95,6 +98,7 @@ class Simulated(Sequence[Motion]):
             "profile": self.predictor.name,
             "sha256": ship.sha256 if ship else None,
             "runs": self.rows(),
+            "notes": list(self.notes),
         }
 
     def _described(self, motion: Motion, record: TrialRecord | None) -> dict[str, Any]:
@@ -141,8 +145,10 @@ def simulate(
         raise OptionError(
             Problem("trials have their own inputs", "trials", fix="leave out turn, zigzag, speed and rpm")
         )
-    records = evaluate(predictor, list_of(trials))
-    return Simulated(predictor, tuple(record.motion for record in records), records, options)
+    several = list_of(trials)
+    records = evaluate(predictor, several)
+    notes = notes_on(predictor.model, several) if isinstance(predictor, PhysicsPredictor) else ()
+    return Simulated(predictor, tuple(record.motion for record in records), records, options, tuple(notes))
 
 
 def _on_orders(predictor: Predictor, options: SimulateOptions) -> list[Motion]:

@@ -18,7 +18,7 @@ from .manoeuvres import Track, manoeuvre_kind, zigzag_indices
 from .manoeuvres.summary import indices_of
 from .model import Model
 from .physics.quantities import Force, State
-from .predictor import Predictor, as_predictor, cases_from, portions, profile_of
+from .predictor import Predictor, as_predictor, cases_from, draught_of, portions, profile_of
 from .profile import ShipProfile
 from .trial import Trial
 from .trial.schema import MAIN_INPUTS
@@ -96,7 +96,7 @@ def motions(predictor: Predictor, trials: Sequence[Trial], offsets: FloatArray |
         start = None
         if offsets is not None:
             start = [trial.motion[0] + own for trial, own in zip(some, offsets[portion], strict=True)]
-        cases = cases_from(some, inputs, initial=start)
+        cases = cases_from(some, inputs, draught_of(predictor), initial=start)
         found = predictor.predict(cases)
         for i, trial in enumerate(some):
             controls = np.array(cases.controls[i, : trial.n_samples])  # copies: a view would hold all of them

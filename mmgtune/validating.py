@@ -8,12 +8,13 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
+from .circumstances import notes_on
 from .errors import OptionError, Problem
 from .given import ShipGiven, TrialsGiven, ship_of, trials_of
 from .model import Model
 from .objective import spread
-from .options import ValidateOptions
-from .predictor import Predictor, as_predictor, profile_of, words_of
+from .options import SimulationOptions, ValidateOptions
+from .predictor import PhysicsPredictor, Predictor, as_predictor, profile_of, words_of
 from .repeating import Repeated, document, repeat
 from .validation import L_MSE, TrialScore, score, summary
 
@@ -23,12 +24,14 @@ Scorable = ShipGiven | Model | Predictor
 
 @dataclass(frozen=True, eq=False)
 class Scored:
-    """One predictor: what it was called, its scores by trial or window, and its manoeuvres repeated where asked for."""
+    """One predictor: what it was called, its scores by trial or window, its manoeuvres repeated where asked for, and
+    notes on what was around the ship."""
 
     name: str
     predictor: Predictor
     scores: tuple[TrialScore, ...]
     repeated: tuple[Repeated, ...] = ()
+    notes: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         """In a line."""
@@ -43,6 +46,7 @@ class Scored:
             "sha256": profile.sha256 if profile else None,
             "method": self.predictor.method,
             **summary(self.scores),
+            "notes": list(self.notes),
         }
 
 
@@ -104,21 +108,7 @@ def validate(
     Integrator and back end of the options are for profiles; a predictor has its own ways.
     Raises OptionError for no profile, and for trials in which a state does not vary.
     """
-    if isinstance(profiles, Mapping):
-        several = list(profiles.items())
-    else:
-        given = list(profiles) if isinstance(profiles, Sequence) and not isinstance(profiles, str) else [profiles]
-        several = list(zip(_told_apart([_called(one) for one in given]), given, strict=True))
-    if not several:
-        raise OptionError(Problem("there is no profile to score", "profiles", fix="name one or more"))
-    predictors = [
-        as_predictor(
-            ship_of(one) if isinstance(one, (str, Path)) else one,
-            integrator=options.make_integrator(),
-            backend=options.backend,
-        )
-        for _, one in several
-    ]
+    several = predictors_of(profiles, options)
     data = trials_of(trials)
     called = str(trials) if isinstance(trials, (str, Path)) else str(data.path or "trials")
     sigma = spread(list((trials_of(options.sigma_from) if options.sigma_from else data).trials.values()))
@@ -135,10 +125,32 @@ def validate(
     whole = list(data.trials.values())
     pieces = list((data.in_windows(options.restart) if options.restart else data).trials.values())
     scored = []
-    for (name, _), predictor in zip(several, predictors, strict=True):
+    for name, predictor in several.items():
         repeated = tuple(repeat(predictor, whole)) if options.manoeuvres else ()
-        scored.append(Scored(name, predictor, tuple(score(predictor, pieces, sigma)), repeated))
+        notes = notes_on(predictor.model, whole) if isinstance(predictor, PhysicsPredictor) else ()
+        scored.append(Scored(name, predictor, tuple(score(predictor, pieces, sigma)), repeated, tuple(notes)))
     return Validation(tuple(scored), called, sigma, options.sigma_from or called, options)
+
+
+def predictors_of(
+    profiles: Scorable | Sequence[Scorable] | Mapping[str, Scorable], options: SimulationOptions
+) -> dict[str, Predictor]:
+    """What is to be scored, by what it is called; see ``validate``.  Raises OptionError where there is nothing."""
+    if isinstance(profiles, Mapping):
+        several = list(profiles.items())
+    else:
+        given = list(profiles) if isinstance(profiles, Sequence) and not isinstance(profiles, str) else [profiles]
+        several = list(zip(_told_apart([_called(one) for one in given]), given, strict=True))
+    if not several:
+        raise OptionError(Problem("there is no profile to score", "profiles", fix="name one or more"))
+    return {
+        name: as_predictor(
+            ship_of(one) if isinstance(one, (str, Path)) else one,
+            integrator=options.make_integrator(),
+            backend=options.backend,
+        )
+        for name, one in several
+    }
 
 
 def _called(given: Scorable) -> str:

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from mmgtune.backends import Cases, Integrator, get_backend, pad
 from mmgtune.model import Model
+from mmgtune.physics.quantities import Surroundings
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -43,3 +44,20 @@ def states(
     )
     assert result.states is not None
     return result.states
+
+
+def measured(
+    t: FloatArray, depth: FloatArray | None = None, **around: tuple[FloatArray | float, FloatArray | float]
+) -> FloatArray:
+    """(n_samples, n_surroundings) measured at t (n_samples,): depth, and north and east of wind, current or wave."""
+    found = np.zeros((len(t), len(Surroundings._fields)))
+    at = Surroundings._fields.index
+    if depth is not None:
+        found[:, at("depth")], found[:, at("depth_known")] = depth, 1.0
+    for name, components in around.items():
+        found[:, at(f"{name}_known")] = 1.0
+        for axis, values in zip(("north", "east"), components, strict=True):
+            found[:, at(f"{name}_{axis}")] = values
+            if name == "current":
+                found[1:, at(f"{name}_{axis}_rate")] = np.diff(found[:, at(f"{name}_{axis}")]) / np.diff(t)
+    return found

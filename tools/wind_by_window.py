@@ -41,7 +41,7 @@ def best_factors(model: Model, windows: list[Trial]) -> FloatArray:
     """(n_windows,) factor on the wind with the least standardised error; all factors are lanes of one call."""
     names = [name for name in SCALED if name in model.rows]
     values = np.outer([model.base[model.rows[name]] for name in names], FACTORS)
-    cases = cases_of(windows, make_objective(model.L_pp, STATES, scales=spread(windows)), model.inputs)
+    cases = cases_of(windows, make_objective(model.L_pp, STATES, scales=spread(windows)), model.inputs, model.draught)
     found = get_backend().run(model, model.matrix(names, values), cases, integrator=Integrator("rk4"))
     return np.asarray(FACTORS[np.argmin(found.cost, axis=1)])
 

@@ -31,7 +31,7 @@ from ..physics import elementary
 from ..physics.integration import between
 from . import vector_math
 from .kernel_folder import Entry, alone, kernel_folder
-from .vector_math import OPTIONS, select, vector_arctan2, vector_cos, vector_exp, vector_sin
+from .vector_math import OPTIONS, select, vector_arctan2, vector_cos, vector_exp, vector_log, vector_sin
 
 __all__ = ["carray", "lane", "load_kernel", "logged_control", "njit", "stack"]
 
@@ -130,6 +130,7 @@ def _register_all() -> None:
         overload(function, jit_options=OPTIONS)(by)
 
     replace(elementary.exp, lambda x: lambda x: vector_exp(x))
+    replace(elementary.log, lambda x: lambda x: vector_log(x))
     replace(elementary.sin, lambda x: lambda x: vector_sin(x))
     replace(elementary.cos, lambda x: lambda x: vector_cos(x))
     replace(elementary.arctan2, lambda y, x: lambda y, x: vector_arctan2(y, x))

@@ -16,7 +16,7 @@ from functools import lru_cache
 from typing import Any
 
 from ..components import Component
-from ..effects import ActuatorEffect, FlowEffect, ForceEffect, LagEffect, SensorEffect
+from ..effects import ActuatorEffect, FactorsEffect, FlowEffect, ForceEffect, LagEffect, SensorEffect
 from ..model import Model
 from ..physics.quantities import HELD, STATES, Surroundings
 
@@ -31,7 +31,7 @@ import numpy as np
 
 from mmgtune.backends.compiling import carray, lane, logged_control, njit, stack
 from mmgtune.physics.integration import after_step, at_stage, between, with_stage
-from mmgtune.physics.mmg import rates, through_water
+from mmgtune.physics.mmg import carried, rates, through_water
 from mmgtune.physics.quantities import Force, State, Surroundings
 {imports}
 
@@ -105,7 +105,7 @@ def kernel(
 {forces}
 {added}
                         rate = rates(state, u_c, v_c, Force(X, Y, N), coefficients.ship)
-{update}
+{carried}{update}
                 for l in range({W}):
 {finish}
                 for k in range({n_control} * {W}):
@@ -216,6 +216,7 @@ def kernel_source(model: Model) -> str:
         around=_lines(24, _around()) if _looks_around(model) else "",
         forces=_lines(24, _forces(model)),
         added=_lines(24, [*_added(model), *_lagging(model)]),
+        carried="".join(line + "\n" for line in _lines(24, _carried(model)).splitlines()),
         update=_lines(24, _update(model)),
         finish=_lines(
             20, [f"{_slot('s', k)} = after_step({_slot('s', k)}, h[l], {_slot('total', k)})" for k in range(n_states)]
@@ -250,12 +251,12 @@ def _name(part: Component) -> str:
 
 def _looks_around(model: Model) -> bool:
     """Whether anything in the model depends on what was measured around the ship."""
-    return bool(model.acting(FlowEffect) or model.acting(ForceEffect))
+    return bool(model.acting(FlowEffect) or model.acting(ForceEffect) or model.acting(FactorsEffect))
 
 
 def _called(model: Model) -> list[Component]:
     """Components, and effects that have a place in the kernel."""
-    places = (ActuatorEffect, FlowEffect, ForceEffect, LagEffect, SensorEffect)
+    places = (ActuatorEffect, FlowEffect, FactorsEffect, ForceEffect, LagEffect, SensorEffect)
     return [*model.parts, *(effect for effect in model.effects if isinstance(effect, places))]
 
 
@@ -275,6 +276,8 @@ def _imports(model: Model) -> list[str]:
             named.append((part.function, _name(part)))
         if isinstance(part, SensorEffect):
             named.append((part.inverse, f"{_name(part)}_inverse"))
+        if isinstance(part, FlowEffect) and part.rate is not None:
+            named.append((part.rate, f"{_name(part)}_rate"))
     imports = []
     for what, name in named:
         own = what.__name__
@@ -286,7 +289,7 @@ def functions_of(model: Model) -> list[Callable[..., Any]]:
     """Functions outside the program's own physics and effects that the kernel of ``model`` calls."""
     found: list[Any] = [model.arrangement.forces]
     for part in (*model.parts, *model.effects):
-        found += [part.function, getattr(part, "inverse", None), getattr(part, "start", None)]
+        found += [part.function, *(getattr(part, name, None) for name in ("inverse", "start", "rate"))]
     return [function for function in found if function is not None]
 
 
@@ -372,14 +375,36 @@ def _forces(model: Model) -> list[str]:
         lines += [f"u_c{k}, v_c{k} = {_name(effect)}(state, around, {_tuple(effect)})"]
         lines += [f"u_c, v_c = u_c + u_c{k}, v_c + v_c{k}" if k else f"u_c, v_c = u_c{k}, v_c{k}"]
     functions = ", ".join(_name(part) for part in model.parts if part.function is not None)
+    factors, changed = _factored(model)
     lines += [
+        *factors,
         f"components = Components({functions})",
         "coefficients = Coefficients(",
-        *(f"    {_tuple(part)}," for part in model.parts),
+        *(f"    {changed.get(part.kind, _tuple(part))}," for part in model.parts),
         ")",
         "found = forces(through_water(state, u_c, v_c), control, components, coefficients)",
     ]
     return lines
+
+
+def _factored(model: Model) -> tuple[list[str], dict[str, str]]:
+    """Lines that work out the factors on coefficients in these surroundings, and the tuple of each part they change."""
+    lines = []
+    factors: dict[str, list[str]] = {}
+    for k, effect in enumerate(model.acting(FactorsEffect)):
+        lines.append(f"factors{k} = {_name(effect)}(around, {_tuple(effect)})")
+        for j, name in enumerate(effect.changes):
+            factors.setdefault(name, []).append(f"factors{k}[{j}]")
+    changed = {}
+    for part in model.parts:
+        if any(f"{part.kind}.{symbol}" in factors for symbol in part.params._fields):
+            lines.append(f"own_{part.kind} = {_tuple(part)}")
+            own = (
+                " * ".join([f"own_{part.kind}.{symbol}", *factors.get(f"{part.kind}.{symbol}", ())])
+                for symbol in part.params._fields
+            )
+            changed[part.kind] = f"{_name(part)}_params({', '.join(own)})"
+    return lines, changed
 
 
 _PLUS = "X, Y, N = X + more.X, Y + more.Y, N + more.N"
@@ -407,6 +432,12 @@ def _lagging(model: Model) -> list[str]:
         lines += [f"more, slopes{k} = {_name(lag)}(found, ({behind}), h[l], {_tuple(lag)})", _PLUS]
         at += len(lag.states)
     return lines
+
+
+def _carried(model: Model) -> list[str]:
+    """The rates of the state in water that gains velocity."""
+    flows = [effect for effect in model.acting(FlowEffect) if effect.rate is not None]
+    return [f"rate = carried(rate, *{_name(effect)}_rate(state, around, {_tuple(effect)}))" for effect in flows]
 
 
 def _update(model: Model) -> list[str]:

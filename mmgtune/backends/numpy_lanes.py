@@ -7,10 +7,10 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 
 from ..arrays import FloatArray
-from ..effects import ActuatorEffect, Effect, FlowEffect, ForceEffect, LagEffect, SensorEffect
+from ..effects import ActuatorEffect, Effect, FactorsEffect, FlowEffect, ForceEffect, LagEffect, SensorEffect
 from ..model import Model
 from ..physics.integration import after_step, at_stage, between, with_stage
-from ..physics.mmg import rates, through_water
+from ..physics.mmg import carried, rates, through_water
 from ..physics.quantities import HELD, STATES, UNKNOWN, Force, State, Surroundings
 from .cases import Cases, Integrator, LaneResult, finish
 from .logged import Logged
@@ -96,7 +96,7 @@ class LaneModel:
             return [Acting(effect, model.parameters(effect, theta)) for effect in model.acting(kind)]
 
         self.actuators, self.flows, self.forces = acting(ActuatorEffect), acting(FlowEffect), acting(ForceEffect)
-        self.lags, self.sensors = acting(LagEffect), acting(SensorEffect)
+        self.lags, self.sensors, self.factors = acting(LagEffect), acting(SensorEffect), acting(FactorsEffect)
         self.acts_on = [self.arrangement.of_role(one.effect.of) for one in self.actuators]
         shifts = [model.parameters(effect, theta)[0] for effect in model.clocks]
         self.shift: FloatArray | None = sum(shifts[1:], shifts[0]) if shifts else None
@@ -126,13 +126,23 @@ class LaneModel:
             u_c, v_c = u_c + du, v_c + dv
         return u_c, v_c
 
+    def here(self, around: Surroundings) -> Any:
+        """The coefficients in these surroundings."""
+        p = self.p
+        for one in self.factors:
+            for name, factor in zip(one.effect.changes, one.effect.function(around, one.e), strict=True):
+                section, _, symbol = name.partition(".")
+                part = getattr(p, section)
+                p = p._replace(**{section: part._replace(**{symbol: getattr(part, symbol) * factor})})
+        return p
+
     def breakdown(self, state: State, control: Any, around: Surroundings = UNKNOWN) -> Any:
         """Forces of the components, and in the total those that effects add."""
-        through = through_water(state, *self.water(state, around))
-        found = self.arrangement.forces(through, control, self.components, self.p)
+        through, p = through_water(state, *self.water(state, around)), self.here(around)
+        found = self.arrangement.forces(through, control, self.components, p)
         total = found.total
         for one in self.forces:
-            total = _sum(total, one.effect.function(state, around, found, self.components, self.p, one.e))
+            total = _sum(total, one.effect.function(state, around, found, self.components, p, one.e))
         return found._replace(total=total)
 
     def behind(self, state: State, control: Any, around: Surroundings) -> list[Any]:
@@ -155,7 +165,11 @@ class LaneModel:
             total = _sum(total, more)
             slopes += own
             at += len(behind)
-        return np.array([*rates(state, *self.water(state, around), total, self.p.ship), *slopes])
+        rate = rates(state, *self.water(state, around), total, self.p.ship)
+        for moving in self.flows:
+            if moving.effect.rate is not None:
+                rate = carried(rate, *moving.effect.rate(state, around, moving.e))
+        return np.array([*rate, *slopes])
 
     def sensed(self, state: State) -> State:
         """The state as the sensors show it."""

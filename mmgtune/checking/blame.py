@@ -49,7 +49,7 @@ def _shares(
     here = model.base[[model.rows[name] for name in names]]
     values = np.repeat(here[:, None], len(names) + 1, axis=1)
     values[np.arange(len(names)), np.arange(len(names)) + 1] = list(then.values())
-    cases = cases_of(comparable, make_objective(model.L_pp), model.inputs)
+    cases = cases_of(comparable, make_objective(model.L_pp), model.inputs, model.draught)
     result = get_backend(backend).run(model, model.matrix(names, values), cases, integrator=integrator)
     J = result.cost.sum(axis=0)
     loss = J[0] - sum(baseline.trials[trial.id].metrics["J"] for trial in comparable)

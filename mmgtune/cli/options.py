@@ -13,7 +13,7 @@ import typer
 from typer.models import OptionInfo
 
 from ..errors import MmgtuneError, OptionError, Problem
-from ..options import FLAGS, Options, choice, flags_of, in_flags
+from ..options import FLAGS, Options, again, choice, flags_of, in_flags
 from ..options.choice import OUTPUT
 
 
@@ -38,6 +38,15 @@ class RunOptions(Options):
                 Problem("resume=True goes on with what is there, force=True replaces it", "resume", fix="leave one out")
             )
         return found
+
+
+@dataclass(frozen=True)
+class WrittenOptions(Options):
+    """What a command that cannot go on where it was stopped can be told about what it leaves behind."""
+
+    out: Path | None = again(RunOptions, "out")
+    force: bool = again(RunOptions, "force")
+    quiet: bool = again(RunOptions, "quiet")
 
 
 def takes(**groups: type[Options]) -> Callable[[Callable[..., None]], Callable[..., None]]:

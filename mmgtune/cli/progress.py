@@ -26,12 +26,14 @@ LINE_EVERY = 5.0
 class Progress:
     """A context in which a long command reports what it does, can be interrupted, and writes its results.
 
-    folder  where the results go, for messages
+    folder     where the results go, for messages
+    resumable  whether the command can go on where it was stopped
     """
 
-    def __init__(self, quiet: bool, folder: Path):
+    def __init__(self, quiet: bool, folder: Path, *, resumable: bool = True):
         self.quiet = quiet
         self.folder = folder
+        self.resumable = resumable
         self._signal: int | None = None
         self._saved = ""
         self._phase = ""
@@ -72,11 +74,12 @@ class Progress:
 
         interrupted  whether it is less than was asked for; Ctrl-C may also come when it is complete
         """
-        self._saved = (
-            f"the best so far is in {self.folder}; --resume --out {self.folder} continues"
-            if interrupted
-            else f"the results in {self.folder} were complete by then"
-        )
+        if not interrupted:
+            self._saved = f"the results in {self.folder} were complete by then"
+        elif self.resumable:
+            self._saved = f"the best so far is in {self.folder}; --resume --out {self.folder} continues"
+        else:
+            self._saved = f"what is done so far is in {self.folder}"
 
     def leave(self) -> None:
         """End with the exit code of a command that was stopped, where it was; called when everything is said."""
@@ -91,14 +94,22 @@ class Progress:
             if self._status is not None:
                 os.write(2, b"\x1b[?25h")  # the cursor, which the status line hides
             last = f"stopped at once; --resume --out {self.folder} continues from the last checkpoint"
+            last = last if self.resumable else "stopped at once; nothing is saved"
             interrupts.leave(number, self._saved or last)
         self._signal = number
-        interrupts.tell("finishing this step, then saving the best so far; press Ctrl-C again to stop at once")
+        what = "the best so far" if self.resumable else "what is done so far"
+        interrupts.tell(f"finishing this step, then saving {what}; press Ctrl-C again to stop at once")
 
     def _on_phase(self, words: str) -> None:
         self._phase = words
         self._began = time.monotonic()
         self._show(words, line=True)
+
+    def on_share(self, done: int, total: int, words: str) -> None:
+        """A share of the work is done: tell it, with the time that is left."""
+        elapsed = time.monotonic() - self._began
+        left = f", about {elapsed * (total / done - 1.0):.0f} s left" if done else ""
+        self._show(f"{words}: {100.0 * done / max(total, 1):.0f} %{left}")
 
     def _on_generation(self, state: Search) -> None:
         from ..fitting.cmaes import LAMBDAS

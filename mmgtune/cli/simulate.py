@@ -64,6 +64,8 @@ def command(
         return
     for row in result.rows():
         c.show(_text(row))
+    for note in result.notes:
+        c.say(f"note: {note}")
     for file in files:
         c.say(f"wrote {file}")
 

@@ -2,34 +2,43 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ..errors import OptionError, Problem
-from ..options import ValidateOptions
+from ..options import ValidateOptions, VoyageOptions
 from . import common as c
-from .options import takes
+from .options import WrittenOptions, takes
 
 if TYPE_CHECKING:
     from ..validating import Validation
 
+OF_VOYAGES = 'a log that says manoeuvre "voyage" or lasts more than an hour'
 
-@takes(options=ValidateOptions)
+
+@takes(options=VoyageOptions, run=WrittenOptions)
 def command(
     names: Annotated[
         list[str],
         typer.Argument(metavar="PROFILE... TRIALS", help="Profiles, then the trials: files, folders or bundled names."),
     ],
     *,
-    options: ValidateOptions,
+    options: VoyageOptions,
+    run: WrittenOptions,
     formerly: Annotated[str | None, typer.Option("--window", hidden=True)] = None,
     json: c.Json = False,
+    no_report: c.NoReport = False,
 ) -> None:
     """Score profiles on trials: J and the standardised error L_MSE, per trial and per kind of manoeuvre.
 
     Each trial, or window of it, is simulated from its first measured state with its measured inputs. L_MSE is the mean
     over time of the sum over all six states of squared differences over their variances (Wakita et al. 2022, eq. 26).
+
+    Logs of hours and days are voyages: they say manoeuvre "voyage", or last more than an hour. They are cut into
+    windows of 120 s, or --restart, and seven distance measures tell how far each model is off, and where its error
+    lives. That has a run folder and a report.
 
     Examples:
 
@@ -38,7 +47,10 @@ def command(
       mmgtune validate before.toml after.toml my_trials/ --restart 100 --json
 
       mmgtune validate suzaku suzaku --manoeuvres
+
+      mmgtune validate before.toml after.toml voyages/ --out runs/voyages
     """
+    from ..trial import holds_voyages
     from ..validating import validate
 
     if formerly is not None:
@@ -50,11 +62,39 @@ def command(
         raise OptionError(
             Problem("a profile or the trials are missing", "PROFILE... TRIALS", fix="write mmgtune validate suzaku DIR")
         )
-    result = validate(names[:-1], names[-1], options)
+    if holds_voyages(names[-1]):
+        from .voyages import on_voyages
+
+        on_voyages(names[:-1], names[-1], options, run, json=json, no_report=no_report)
+        return
+    _refuse(options, run, no_report)
+    result = validate(names[:-1], names[-1], ValidateOptions(**options.shared_with(ValidateOptions)))
     if json:
         c.print_json(result.to_dict())
     else:
         c.show(summary(result))
+        for note in dict.fromkeys(note for one in result.profiles for note in one.notes):
+            c.say(f"note: {note}")
+
+
+def _refuse(options: VoyageOptions, run: WrittenOptions, no_report: bool) -> None:
+    """Raises OptionError for what was asked of voyages where there are none."""
+    own = {one.name for one in fields(VoyageOptions)} - {one.name for one in fields(ValidateOptions)}
+    asked = [name for name in sorted(own) if getattr(options, name) != getattr(VoyageOptions, name)]
+    asked += [one.name for one in fields(run) if getattr(run, one.name) != one.default]
+    asked += ["no_report"] if no_report else []
+    if asked:
+        raise OptionError(
+            *(
+                Problem(
+                    "these trials are no voyages",
+                    name,
+                    "of trials the scores are printed, and nothing is written",
+                    f"leave it out, or give {OF_VOYAGES}",
+                )
+                for name in asked
+            )
+        )
 
 
 def summary(result: Validation) -> str:

@@ -186,7 +186,7 @@ def J_of(bench: Workbench, point: Point, test: Sequence[Trial]) -> float | None:
 def _problem(bench: Workbench, point: Point, trials: Sequence[Trial], objective: Objective) -> FitProblem:
     own = bench.problem_of(point.names, point.integrator)
     sigma = np.repeat(bench.sigma[None], len(trials), axis=0)
-    cases = cases_of(list(trials), objective, own.model.inputs)
+    cases = cases_of(list(trials), objective, own.model.inputs, own.model.draught)
     return FitProblem.of(own.model, cases, own.box, own.backend, own.integrator, sigma)
 
 

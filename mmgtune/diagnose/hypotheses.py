@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from ..effects import Effect
 from ..model import Model
 from ..options import DiagnoseOptions
 from ..profile import ShipProfile, with_all_effects
-from ..trial import Trial, has_measured_wind
+from ..trial import Trial, measured_around
 
 INTEGRATION_STEP = "integration-step"
 
@@ -43,19 +43,20 @@ class Hypothesis:
 def known_causes(profile: ShipProfile, trials: Sequence[Trial], options: DiagnoseOptions) -> list[Hypothesis]:
     """What a diagnosis of a profile on these trials looks for."""
     present = [f"{effect.kind}.{name}" for effect in Model(profile).effects for name in effect.parameters]
-    wind = any(has_measured_wind(trial) for trial in trials)
+    measured = frozenset[str]().union(*(measured_around(trial) for trial in trials))
     whole = Model(with_all_effects(profile))
-    return hypotheses(whole, options.targets or profile.targets, options.effects, wind, present)
+    return hypotheses(whole, options.targets or profile.targets, options.effects, measured, present)
 
 
 def hypotheses(
-    model: Model, targets: Sequence[str], tags: Sequence[str], wind_measured: bool, present: Sequence[str]
+    model: Model, targets: Sequence[str], tags: Sequence[str], measured: Collection[str], present: Sequence[str]
 ) -> list[Hypothesis]:
     """Hypotheses for a model that holds every effect that applies.
 
     targets        coefficients that are tuned: what does the same as one of them cannot be told from it
     tags           effects asked for; empty for all
-    wind_measured  whether any trial has wind; only then do parameters act that take it from there
+    measured       what any trial has of wind, current and so on; only then do parameters act that take it from there,
+                   and those that stand in for it do not
     present        parameters that the profile itself has already
     """
     found = []
@@ -64,8 +65,8 @@ def hypotheses(
             continue
         for variant in effect.variants:
             taken = any(effect.absorbed.get(name) in targets for name in variant)
-            of_log = bool(set(variant) & set(effect.of_measured_wind))
-            idle = of_log != wind_measured if effect.of_measured_wind else False
+            of_log = bool(set(variant) & set(effect.of_measured))
+            idle = of_log != bool(set(effect.of_measured.values()) & set(measured)) if effect.of_measured else False
             hypothesis = Hypothesis(effect, variant)
             if not taken and not idle and not set(hypothesis.names) & {*targets, *present}:
                 found.append(hypothesis)

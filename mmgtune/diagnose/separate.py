@@ -122,5 +122,5 @@ def suggest(bench: Workbench, rivals: Sequence[tuple[str, Point]]) -> Suggestion
 
 def _predicted(bench: Workbench, point: Point, motion: Motion, objective: Objective) -> FloatArray:
     problem = bench.problem_of(point.names, point.integrator)
-    cases = cases_of([as_trial(bench.model.profile, motion)], objective, problem.model.inputs)
+    cases = cases_of([as_trial(bench.model.profile, motion)], objective, problem.model.inputs, problem.model.draught)
     return np.asarray(problem.predictor(point.unit[:, None]).predict(cases).states[0, 0])

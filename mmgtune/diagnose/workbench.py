@@ -179,7 +179,7 @@ def make_workbench(
     sigma = noise_levels(trials)
     channels = [c for c in STATES if not options.channels or c in {"v_m" if o == "v" else o for o in options.channels}]
     objective = Objective(dict(zip(STATES, sigma, strict=True)), dict.fromkeys(channels, 1.0))
-    cases = cases_of(list(trials), objective, model.inputs)
+    cases = cases_of(list(trials), objective, model.inputs, model.draught)
     box = make_box(model, (*targets, *(name for name in names if name not in targets)), options.a_r)
     problem = FitProblem.of(
         model=model,

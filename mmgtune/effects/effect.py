@@ -8,7 +8,7 @@ from typing import Any, ClassVar, NamedTuple, Protocol
 
 from ..components import Component, Field
 from ..inputs import Role
-from ..physics.quantities import Force, Lanes, State, Surroundings
+from ..physics.quantities import KNOWN, Force, Lanes, State, Surroundings
 
 
 class Scale(NamedTuple):
@@ -56,7 +56,10 @@ class Effect(Component):
     of_parts   parts of the arrangement's breakdown it works on; it does not apply to a ship without them
     on_demand  costs simulation time where it is absent: a search has it only in models that ask for it
     one_of_many  its variants are many of one kind, of which chance finds the best: a search charges for the choice
-    of_measured_wind  parameters that act on measured wind; others of the same effect stand in where there is none
+    of_measured  parameters that act on what was measured around the ship, {parameter: one of ``quantities.KNOWN``}
+    stand_in   parameters that say what there is where that was not measured; none where they are at their null
+    beyond     what to say where surroundings are beyond what the effect holds for, from {section.symbol: number} and
+               the surroundings of samples (n_samples,) each; "" where they are not, None where it holds in any
     """
 
     place: ClassVar[str]
@@ -69,11 +72,16 @@ class Effect(Component):
     of_parts: tuple[str, ...] = ()
     on_demand: bool = False
     one_of_many: bool = False
-    of_measured_wind: tuple[str, ...] = ()
+    of_measured: Mapping[str, str] = field(default_factory=dict)
+    stand_in: tuple[str, ...] = ()
+    beyond: Callable[[Mapping[str, float], Surroundings], str] | None = None
 
     def __post_init__(self) -> None:
         if (*self.fields, *self.borrowed) != self.params._fields:
             raise TypeError(f"effect '{self.tag}': {(*self.fields, *self.borrowed)} are not {self.params._fields}")
+        unknown = set(self.of_measured.values()) - {*KNOWN}
+        if unknown:
+            raise TypeError(f"effect '{self.tag}': {', '.join(sorted(unknown))} is not one of {KNOWN}")
         if self.kind != f"effects.{self.tag}":
             raise TypeError(f"effect '{self.tag}': its kind is '{self.kind}', not 'effects.{self.tag}'")
 
@@ -125,10 +133,14 @@ class FlowFunction(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class FlowEffect(Effect):
-    """Water that moves."""
+    """Water that moves.
+
+    rate  how that velocity changes over ground, turned into the ship's axes [m/s^2]; None where the water is steady
+    """
 
     place = "flow"
     function: FlowFunction
+    rate: FlowFunction | None = None
 
 
 class CoefficientsFunction(Protocol):
@@ -143,6 +155,29 @@ class CoefficientsEffect(Effect):
 
     place = "coefficients"
     function: CoefficientsFunction
+
+
+class FactorsFunction(Protocol):
+    """Factors on coefficients where the ship is, in the order of ``changes``."""
+
+    def __call__(self, around: Surroundings, e: Any, /) -> tuple[Lanes, ...]: ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class FactorsEffect(Effect):
+    """Coefficients that change on the way, with what is measured around the ship.
+
+    changes  what is multiplied, by name: section.symbol, of the components of the arrangement
+    """
+
+    place = "factors"
+    function: FactorsFunction
+    changes: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if any(name.startswith("particulars.") for name in self.changes):
+            raise TypeError(f"effect '{self.tag}': particulars of the ship do not change on the way")
 
 
 class ForceFunction(Protocol):
@@ -204,6 +239,7 @@ EFFECTS_BY_PLACE: tuple[type[Effect], ...] = (
     ActuatorEffect,
     FlowEffect,
     CoefficientsEffect,
+    FactorsEffect,
     ForceEffect,
     LagEffect,
     SensorEffect,

@@ -3,28 +3,51 @@
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from ..physics.quantities import Lanes
-from ..physics.regressions.kijima1990 import shallow_ratios
-from .effect import CoefficientsEffect, Parameter
+import numpy as np
+
+from ..physics.elementary import where
+from ..physics.quantities import Lanes, Surroundings
+from ..physics.regressions.kijima1990 import LEAST, ShallowRatios, shallow_ratios
+from .effect import FactorsEffect, Parameter
+
+AFLOAT = 1.05
+"""Depth over draught [-] that measured depths count as where they are less: the formulas have no end there."""
 
 
 class ShallowWater(NamedTuple):
-    """See the parameters below."""
+    """See the parameters below; then what the formulas need of the ship."""
 
     depth: Lanes
+    measured: Lanes
+    L_pp: Lanes
+    B: Lanes
+    d: Lanes
+    C_b: Lanes
 
 
-def shallow_water(values: Mapping[str, Lanes], e: ShallowWater) -> dict[str, Lanes]:
-    """Linear hull derivatives in water of depth [m].
+def shallow_water(around: Surroundings, e: ShallowWater) -> ShallowRatios:
+    """Factors on the linear hull derivatives in water of some depth [m].
 
-    Added masses, wake and rudder are left as they are (assumption).
+    Where the trial has measured depth it counts, the draught over it times ``measured``; else the steady one.  Added
+    masses, wake and rudder are left as they are, and the water as deep under the whole ship (assumptions).
     """
-    L, B, d, C_b = (values[f"particulars.{name}"] for name in ("L_pp", "B", "d", "C_b"))
-    ratios = shallow_ratios(L, B, d, C_b, e.depth)
-    return {f"hull.{name}": values[f"hull.{name}"] * ratio for name, ratio in ratios._asdict().items()}
+    by_log = around.depth_known * e.measured > 0.0
+    h = np.minimum(e.measured * e.d / np.maximum(around.depth, 1e-6), 1.0 / AFLOAT)
+    ratios: ShallowRatios = shallow_ratios(e.L_pp, e.B, e.d, e.C_b, where(by_log, h, e.d / e.depth))
+    return ratios
 
 
-EFFECT = CoefficientsEffect(
+def beyond(values: Mapping[str, float], around: Surroundings) -> str:
+    """What to say of water too shallow for the formulas; "" where it is not."""
+    measured = around.depth_known * values["effects.shallow-water.measured"] > 0.0
+    depth = np.where(measured, around.depth, values["effects.shallow-water.depth"])
+    over = float(np.min(depth)) / values["particulars.d"]
+    if over >= LEAST:
+        return ""
+    return f"water is down to {over:.3g} draughts deep, and the formulas of shallow water hold down to {LEAST:g}"
+
+
+EFFECT = FactorsEffect(
     kind="effects.shallow-water",
     tag="shallow-water",
     title="shallow water",
@@ -33,17 +56,37 @@ EFFECT = CoefficientsEffect(
     cites=("Kijima et al. 1990, J. Society of Naval Architects of Japan 168, 247-256",),
     fields={
         "depth": Parameter(
-            "depth of the water",
+            "depth of the water where the trial has no measured depth",
             "m",
             null=float("inf"),
             low=0.0,
             chart="reciprocal",
-            bounds=lambda ship: (0.0, 1.0 / (1.2 * ship.d)),
+            bounds=lambda ship: (0.0, 1.0 / (LEAST * ship.d)),
             typical=lambda ship: 0.3 / ship.d,
             bounds_source="formula valid down to a depth of 1.2 draughts",
-        )
+        ),
+        "measured": Parameter(
+            "factor on the draught over the depth measured in the trial",
+            default=1.0,
+            low=-1e-12,
+            high=5.0,
+            null=0.0,
+            bounds=lambda _: (0.0, 1.5),
+            typical=lambda _: 0.3,
+            bounds_source="from deep water to half as shallow again as measured",
+        ),
     },
-    variants=(("depth",),),
-    sentence=lambda v: f"The ship sailed in shallow water, as if {v['depth']} deep",
+    borrowed={name: f"particulars.{name}" for name in ("L_pp", "B", "d", "C_b")},
+    variants=(("depth",), ("measured",)),
+    sentence=lambda v: (
+        f"The depth measured in the trials acts on the ship, her draught over it times {v['measured']}"
+        if "measured" in v
+        else f"The ship sailed in shallow water, as if {v['depth']} deep"
+    ),
     needs=("hull.Y_v", "hull.Y_r", "hull.N_v", "hull.N_r"),
+    on_demand=True,
+    of_measured={"measured": "depth"},
+    stand_in=("depth",),
+    beyond=beyond,
+    changes=("hull.Y_v", "hull.Y_r", "hull.N_v", "hull.N_r"),
 )

@@ -84,5 +84,6 @@ EFFECT = ForceEffect(
     ),
     on_demand=True,
     needs=("above_water.A_T",),
-    of_measured_wind=("measured",),
+    of_measured={"measured": "wind"},
+    stand_in=("speed",),
 )

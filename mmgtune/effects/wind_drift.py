@@ -17,7 +17,8 @@ class WindDrift(NamedTuple):
 def wind_drift(state: State, around: Surroundings, e: WindDrift) -> tuple[Lanes, Lanes]:
     """Velocity of the water in the ship's axes: a share of the wind measured in the trial, turned to its right.
 
-    Wind-driven surface currents are a few hundredths of the wind's speed; in a basin the water returns below.
+    Wind-driven surface currents are a few hundredths of the wind's speed; in a basin the water returns below.  Water
+    does not follow gusts: it counts as steady from one moment to the next (assumption).
     """
     north = around.wind_known * (e.along * around.wind_north - e.across * around.wind_east)
     east = around.wind_known * (e.along * around.wind_east + e.across * around.wind_north)
@@ -44,7 +45,7 @@ EFFECT = FlowEffect(
     fields={"along": _share("along it"), "across": _share("to the right of it")},
     variants=(("along", "across"),),
     on_demand=True,
-    of_measured_wind=("along", "across"),
+    of_measured={"along": "wind", "across": "wind"},
     sentence=lambda v: (
         f"The water moved with {v['along']} of the measured wind along it and {v['across']} to the right of it"
     ),

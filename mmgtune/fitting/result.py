@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray
+from ..circumstances import notes_on
 from ..components import split_name
+from ..model import Model
 from ..options import FitOptions
 from ..predictor import words_of
 from ..profile import ShipProfile, tuned
@@ -125,6 +127,9 @@ class FitResult:
                 f"Of J = {self.J:.4g} on the tune trials {self.J - self.J_free_start:.4g} comes from starting "
                 "each trial at its noisy first sample; initial=estimated removes that."
             )
+        trials = [c.trial for c in self.compared]
+        around = notes_on(Model(self.profile), trials, self.theta, self.box.names)
+        found += [f"{note[0].upper()}{note[1:]}." for note in around]
         gaps = [c.trial.id for c in self.compared if np.isnan(c.trial.motion).any()]
         if gaps:
             found.append(f"Gaps in these trials do not count: {', '.join(gaps)}.")

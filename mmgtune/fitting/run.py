@@ -91,7 +91,7 @@ class Setting:
         Raises OptionError where the window leaves one without a sample.
         """
         chosen = [self.trials.trials[name] for name in ids or self.trials.tune]
-        cases = cases_of(chosen, self.objective, self.model.inputs)
+        cases = cases_of(chosen, self.objective, self.model.inputs, self.model.draught)
         sigma = self.deviations(ids) if self.estimated else None
         return FitProblem.of(self.model, cases, self.box, self.backend, self.integrator, sigma)
 
@@ -335,8 +335,8 @@ def identity_of(
     }
 
 
-def make_provenance(profile: ShipProfile, trials: TrialSet, command: str) -> dict[str, Any]:
-    """What a fit was made from, and with which versions."""
+def made_by(command: str) -> dict[str, Any]:
+    """Which program made a result, when, how, and with which versions."""
     versions = {"python": platform.python_version()}
     for package in ("numpy", "scipy", "numba", "cma"):
         try:
@@ -347,15 +347,17 @@ def make_provenance(profile: ShipProfile, trials: TrialSet, command: str) -> dic
         "mmgtune": _own_version(),
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
         "command": command,
-        "profile": {
-            "id": profile.id,
-            "name": profile.name,
-            "path": str(profile.path) if profile.path else "",
-            "sha256": profile.sha256,
-            "source": profile.source,
-            "licence": profile.licence,
-            "citation": profile.citation,
-        },
+        "environment": versions,
+    }
+
+
+def make_provenance(profile: ShipProfile, trials: TrialSet, command: str) -> dict[str, Any]:
+    """What a fit was made from, and with which versions."""
+    made = made_by(command)
+    environment = made.pop("environment")
+    return {
+        **made,
+        "profile": facts_of_profile(profile),
         "trials": {
             "path": str(trials.path) if trials.path else "",
             "ship": trials.ship,
@@ -366,7 +368,20 @@ def make_provenance(profile: ShipProfile, trials: TrialSet, command: str) -> dic
             "sha256": trials.hashes(),
             "source": {name: trial.source for name, trial in trials.trials.items()},
         },
-        "environment": versions,
+        "environment": environment,
+    }
+
+
+def facts_of_profile(profile: ShipProfile) -> dict[str, str]:
+    """What a profile was read from, and on what terms."""
+    return {
+        "id": profile.id,
+        "name": profile.name,
+        "path": str(profile.path) if profile.path else "",
+        "sha256": profile.sha256,
+        "source": profile.source,
+        "licence": profile.licence,
+        "citation": profile.citation,
     }
 
 

@@ -7,12 +7,10 @@ from typing import Any
 from ..errors import closest
 from ..inputs import INPUTS
 from ..toml_reading import TomlReader
-from ..trial.schema import MAIN_INPUTS, SURROUNDINGS
+from ..trial.schema import MAIN_INPUTS, surrounding
 from .mapping import TABLES, LogMap
-from .quantities import MEANING
+from .quantities import meaning
 
-CONSTANT = (*INPUTS, *SURROUNDINGS)
-"""What a map may give as a constant."""
 IN_SENTENCES = (
     "psi", "r", "n", "delta", "delta_port", "delta_stbd", "wind_speed", "wind_dir", "wind_speed_app", "wind_dir_app",
 )  # fmt: skip
@@ -23,8 +21,8 @@ def check(made: LogMap, reader: TomlReader) -> None:
     """Note every contradiction in what was read, and everything it leaves open."""
     sources = made.sources
     for name, source in sources.items():
-        if source.value is not None and name not in CONSTANT:
-            what = f"'{name}', {MEANING[name]}, is given as a constant"
+        if source.value is not None and name not in INPUTS and surrounding(name) is None:
+            what = f"'{name}', {meaning(name)}, is given as a constant"
             reader.problem(what, f"columns.{name}", "value", "it is what a trial measures", "name its column")
     if made.shifted and made.point not in ("antenna", "stated"):
         reader.problem(
@@ -54,7 +52,7 @@ def check(made: LogMap, reader: TomlReader) -> None:
     for name in ("psi", *MAIN_INPUTS):
         if name not in sources and name not in made.means:
             fix = f'write [columns.{name}] with column = "..." and unit, or value = "..." where it is constant'
-            reader.problem(f"no column is named for '{name}', {MEANING[name]}", "columns", fix=fix)
+            reader.problem(f"no column is named for '{name}', {meaning(name)}", "columns", fix=fix)
     rate = sources.get("r")
     if "psi" in sources and sources["psi"].recover and (rate is None or rate.column is None or not rate.positive):
         reader.problem(

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..inputs import INPUTS
 from ..trial.motion_checks import spikes
-from ..trial.schema import SURROUNDINGS
+from ..trial.schema import surrounding
 from .record import Record
 
 
@@ -18,7 +18,8 @@ def without_spikes(record: Record) -> Record:
     for name, one in record.series.items():
         values = np.array(one.values)
         # Wind is gusty: what jumps by nature is left as it is.
-        if name not in SURROUNDINGS or not SURROUNDINGS[name].gusty:
+        around = surrounding(name)
+        if around is None or not around.gusty:
             rows = spikes(values, share=0.2 if name in INPUTS else 0.02)
             if len(rows):
                 # Where few digits are printed, one step of the last of them looks like a spike.

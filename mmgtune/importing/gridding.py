@@ -11,7 +11,7 @@ from ..arrays import FloatArray
 from ..errors import LogError, Problem
 from ..limits import GRID_FREE, GRID_PER_ROW, GRID_SAMPLES
 from .mapping import LogMap
-from .quantities import MEANING, MEASURED
+from .quantities import MEASURED, meaning
 from .record import Record, Series
 
 FEWEST = 20
@@ -49,7 +49,7 @@ def on_grid(record: Record, log_map: LogMap, step: float | None) -> Grid:
     logged = [name for name in log_map.inputs if name not in log_map.means]
     absent = [name for name in ("x", "y", "psi", *logged) if name not in series and name not in constant]
     if absent:
-        what = f"the log has fewer than two valid samples of {', '.join(MEANING[name] for name in absent)}"
+        what = f"the log has fewer than two valid samples of {', '.join(meaning(name) for name in absent)}"
         raise LogError(
             Problem(what, str(record.path), "a trial needs them", "log them, or give n and delta as constants")
         )

@@ -17,7 +17,7 @@ from ..arrays import FloatArray
 from ..errors import LogError, OutputError, Problem
 from ..files import exists, write_text
 from ..trial import Trial, write_trial
-from ..trial.schema import ATTRIBUTES, COLUMNS, DIRECTIONS
+from ..trial.schema import ATTRIBUTES, directions, known_column
 from ..trial.unusable import unusable
 from . import conventions, motion
 from .cleaning import without_spikes
@@ -338,16 +338,15 @@ def _trial(id: str, piece: Piece, notes: list[str], log_map: LogMap, cut_from: s
         raise LogError(*problems)
     kept = {ATTRIBUTES.get(name, name): values for name, values in columns.items()}
     required: Any = {name: kept.pop(name) for name in ATTRIBUTES.values()}
-    for name in DIRECTIONS:
-        if name in kept:
-            kept[name] = np.mod(kept[name], 2.0 * np.pi)
+    for name in directions(kept):
+        kept[name] = np.mod(kept[name], 2.0 * np.pi)
     trial = Trial(
         id=id,
         ship=log_map.ship,
         manoeuvre=piece.follows or log_map.manoeuvre.replace("{parent}", record.path.resolve().parent.name),
         source=log_map.source,
         **required,
-        extra={name: values for name, values in kept.items() if name in COLUMNS},
+        extra={name: values for name, values in kept.items() if known_column(name)},
         noise=log_map.noise,
         note="; ".join([*([log_map.note] if log_map.note else []), f"imported with the map {log_map.name}", *notes]),
         cut_from=cut_from,

@@ -46,7 +46,7 @@ class Source:
     unit       unit of the column, None where the log's header has to say it
     positive   direction the log counts as positive, None where the map does not say
     zero       "north" or "east": where angles are counted from
-    direction  "from" or "to", of wind and waves; None for other quantities
+    direction  "from" or "to", of wind, current and waves; None for other quantities
     scale      factor on the log's numbers, before the unit
     offset     added after unit and sign, in the program's unit
     recover    where few digits are printed. "print-resolution": smoothed within them; "yaw-rate": the integral of r,

@@ -20,7 +20,7 @@ from ..trial.schema import impossible
 from ..units import DEG, KNOT, factors
 from .clock import DAY, put_right
 from .mapping import LogMap, TimeSource
-from .quantities import AGAINST, MEANING, QUANTITIES
+from .quantities import AGAINST, meaning, quantity_of
 from .record import Record, Series, unwrapped
 from .table import MOST_ROWS
 
@@ -302,10 +302,10 @@ def _records(parser: _Parser, path: Path, log_map: LogMap) -> list[Record]:
         source = log_map.sources.get(name)
         if source is not None and source.value is None:
             values = values * source.scale * (-1.0 if source.positive in AGAINST else 1.0) + source.offset
-        quantity = QUANTITIES.get(name)
+        quantity = quantity_of(name)
         beyond = impossible(values, quantity.unit if quantity is not None else "m/s")
         if beyond.any():
-            notes.append(f"{beyond.sum()} values of {MEANING.get(name, 'velocity')} are impossible; taken as gaps")
+            notes.append(f"{beyond.sum()} values of {meaning(name) or 'velocity'} are impossible; taken as gaps")
             values = np.where(beyond, np.nan, values)
         if quantity is not None and quantity.angle:
             values = unwrapped(values, 360.0 if quantity.unit == "deg" else 2.0 * np.pi)

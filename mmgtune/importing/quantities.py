@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..inputs import INPUTS, Role
-from ..trial.schema import COLUMNS, MOTION, SURROUNDINGS, Column
+from ..trial.schema import MOTION, SURROUNDINGS, Column, known_column, surrounding
 
 AGAINST = ("south", "west", "port", "counterclockwise", "aft", "astern")
 """Words for a positive direction that is the opposite of the trial format's."""
@@ -19,14 +19,15 @@ class Quantity:
     positive  directions a map may call positive, the trial format's first; () where the sign is no question
     angle     whether it comes back to itself after a full turn
     origin    whether a map may say which way its zero points
-    wind      whether a map must say if it is a direction something comes from or goes to
+    points    "from" or "to" as the trial format counts a direction something comes from or goes to, where a map must
+              say which; "" for anything else
     """
 
     unit: str
     positive: tuple[str, ...] = ()
     angle: bool = False
     origin: bool = False
-    wind: bool = False
+    points: str = ""
 
 
 _SIDES = ("starboard", "port")
@@ -40,7 +41,7 @@ def _around(column: Column) -> Quantity:
     """A quantity measured around the ship: a direction, which something comes from or goes to, or a size."""
     if not column.counted_from:
         return Quantity(column.unit)
-    return Quantity(column.unit, _TURNS, angle=True, origin=column.counted_from == "north", wind=True)
+    return Quantity(column.unit, _TURNS, angle=True, origin=column.counted_from == "north", points=column.points)
 
 
 QUANTITIES: dict[str, Quantity] = {
@@ -61,10 +62,29 @@ QUANTITIES: dict[str, Quantity] = {
 MEASURED = tuple(MOTION)
 """Motion channels of a trial, of which u, v and r can be derived."""
 
-MEANING = {name: column.meaning for name, column in COLUMNS.items()} | {
+GEOGRAPHIC = {
     "latitude": "geographic latitude",
     "longitude": "geographic longitude",
     "sog": "speed over ground",
     "cog": "course over ground",
 }
-"""What each quantity is, in words."""
+"""What trials do not have, in words."""
+
+
+def quantity_of(name: str) -> Quantity | None:
+    """A quantity by name, one of a layer of the water too; None where there is none of that name."""
+    column = surrounding(name)
+    return QUANTITIES.get(name) or (_around(column) if column else None)
+
+
+def known_quantity(name: str) -> Quantity:
+    """The same of a name that is known to be one."""
+    found = quantity_of(name)
+    assert found is not None
+    return found
+
+
+def meaning(name: str) -> str:
+    """What a quantity is, in words; "" where there is none of that name."""
+    column = known_column(name)
+    return column.meaning if column else GEOGRAPHIC.get(name, "")

@@ -13,10 +13,10 @@ from .. import limits, units
 from ..errors import LogError, Problem, brief, closest
 from ..resources import import_map_names, import_maps
 from ..toml_reading import TomlReader, finite, toml_of
-from ..trial.schema import COLUMNS, SOURCES, impossible
+from ..trial.schema import COLUMNS, SOURCES, impossible, known_column
 from .checking_map import check
 from .mapping import FORMATS, PROJECTIONS, TABLES, Cut, LogMap, Source, TimeSource
-from .quantities import MEANING, QUANTITIES
+from .quantities import QUANTITIES, known_quantity, meaning, quantity_of
 
 SCHEMA = 1
 COLUMN_KEYS = ("column", "value", "unit", "positive", "zero", "direction", "scale", "offset", "recover")
@@ -290,7 +290,7 @@ class _Reader(TomlReader):
         found = {}
         for name, table in self.table("columns").items():
             where = f"columns.{name}"
-            if name not in QUANTITIES:
+            if quantity_of(name) is None:
                 fix = "[time] says where time is" if name in ("t", "time") else closest(name, tuple(QUANTITIES))
                 self.problem(f"unknown column '{name}'", where, fix=fix)
             elif not isinstance(table, dict):
@@ -301,7 +301,7 @@ class _Reader(TomlReader):
         return found
 
     def one(self, name: str, where: str, table: dict[str, Any]) -> Source:
-        quantity = QUANTITIES[name]
+        quantity = known_quantity(name)
         self.unknown(where, table, COLUMN_KEYS)
         known = units.factors(quantity.unit)
         unit = canonical(table.get("unit"))
@@ -309,9 +309,9 @@ class _Reader(TomlReader):
             fix = f"one of: {', '.join(known)}"
             self.problem(f"unit of '{name}' is {brief(table['unit'])}", where, "unit", fix=fix)
             unit = None
-        for key, can in (("positive", quantity.positive), ("zero", quantity.origin), ("direction", quantity.wind)):
+        for key, can in (("positive", quantity.positive), ("zero", quantity.origin), ("direction", quantity.points)):
             if key in table and not can:
-                self.problem(f"'{where}.{key}' has no meaning for {MEANING[name]}", where, key, fix="remove it")
+                self.problem(f"'{where}.{key}' has no meaning for {meaning(name)}", where, key, fix="remove it")
         value = self.parsed(where, "value", table["value"], quantity.unit) if "value" in table else None
         if "value" in table and set(table) & {"column", "unit", "scale", "positive", "zero", "offset", "recover"}:
             fix = "a constant is its value with a unit, in the trial format's conventions; nothing else"
@@ -320,8 +320,8 @@ class _Reader(TomlReader):
         if "recover" in table and name not in RECOVER:
             what = f"'{where}.recover' is for positions x and y and for the heading"
             self.problem(what, where, "recover", fix="remove it")
-        direction = self.choice(where, table, "direction", ("from", "to")) if quantity.wind else None
-        if quantity.wind and "direction" not in table and "value" not in table and "column" in table:
+        direction = self.choice(where, table, "direction", ("from", "to")) if quantity.points else None
+        if quantity.points and "direction" not in table and "value" not in table and "column" in table:
             self.problem(
                 f"is '{name}' the direction it comes from or goes to?",
                 where,
@@ -400,10 +400,11 @@ class _Reader(TomlReader):
             return {}
         found = {}
         for name, written in noise.items():
-            if name not in COLUMNS:
+            column = known_column(name)
+            if column is None:
                 self.problem(f"noise of unknown column '{name}'", "trial", "noise", fix=closest(name, tuple(COLUMNS)))
                 continue
-            value = self.parsed("trial", f"noise.{name}", written, COLUMNS[name].unit, least=0.0)
+            value = self.parsed("trial", f"noise.{name}", written, column.unit, least=0.0)
             if value is not None:
                 found[name] = value
         return found

@@ -14,7 +14,7 @@ from ..trial.schema import impossible
 from .digits import print_step, within_digits
 from .headers import unit_in
 from .mapping import LogMap, Source
-from .quantities import AGAINST, MEANING, QUANTITIES
+from .quantities import AGAINST, known_quantity, meaning
 from .table import TIME, Table
 
 
@@ -44,7 +44,7 @@ class Series:
 class Record:
     """What a log holds, or a part of one between two settings of its clock.
 
-    series   by quantity (``quantities.QUANTITIES``), angles unwrapped
+    series   by quantity (``quantities.quantity_of``), angles unwrapped
     spikes   number of samples taken out, by quantity
     notes    what was done, in sentences
     """
@@ -90,7 +90,7 @@ def unit_of(name: str, table: Table, stated: str | None, target: str, values: Fl
         Problem(
             f"is '{header}' in {' or '.join(short)}?",
             place,
-            f"neither the map nor the header says the unit of {MEANING.get(name, 'time')}; {span}",
+            f"neither the map nor the header says the unit of {meaning(name) or 'time'}; {span}",
             f'say its unit, such as unit = "{first}"',
         )
     )
@@ -110,12 +110,12 @@ def record_of(table: Table, log_map: LogMap, t: FloatArray, rows: slice) -> Reco
         source = log_map.sources[name]
         if not np.isfinite(values).any():
             place = f"{table.path}, column '{table.headers[name]}'"
-            why = f"the map says it holds {MEANING[name]}"
+            why = f"the map says it holds {meaning(name)}"
             fix = "name another column, or leave it out of the map where it is not needed"
             problems.append(Problem("the column has no numbers at all", place, why, fix))
             continue
         try:
-            unit = unit_of(name, table, source.unit, QUANTITIES[name].unit, values, log_map.place(name))
+            unit = unit_of(name, table, source.unit, known_quantity(name).unit, values, log_map.place(name))
             printed = possible(name, values[rows], source, unit, table, notes)
         except LogError as error:
             problems += error.problems
@@ -135,7 +135,7 @@ def record_of(table: Table, log_map: LogMap, t: FloatArray, rows: slice) -> Reco
             continue
         coarsest = f"{np.nanmax(steps):.3g} {unit}"
         notes.append(f"{name} is printed with {digits} significant digits, in steps of up to {coarsest}{how}")
-        factor = units.factors(QUANTITIES[name].unit)[unit] * abs(source.scale)
+        factor = units.factors(known_quantity(name).unit)[unit] * abs(source.scale)
         as_printed = converted(name, printed, source, unit)
         series[name] = Series(
             t[rows], converted(name, recovered, source, unit) if how else as_printed, as_printed, steps * factor
@@ -150,13 +150,13 @@ def possible(name: str, values: FloatArray, source: Source, unit: str, table: Ta
 
     Raises LogError where most are such.
     """
-    quantity = QUANTITIES[name]
+    quantity = known_quantity(name)
     with np.errstate(over="ignore"):
         size = values * (units.factors(quantity.unit)[unit] * source.scale) + source.offset
     beyond = impossible(size, quantity.unit)
     if not beyond.any():
         return values
-    said = f"{beyond.sum()} of {len(values)} values of '{table.headers[name]}' are impossible for {MEANING[name]}"
+    said = f"{beyond.sum()} of {len(values)} values of '{table.headers[name]}' are impossible for {meaning(name)}"
     largest = f"up to {np.abs(size[beyond]).max():.3g} {quantity.unit}"
     if beyond.sum() > 0.5 * np.isfinite(values).sum():
         fix = "check unit, scale and offset of the column in the map"
@@ -167,7 +167,7 @@ def possible(name: str, values: FloatArray, source: Source, unit: str, table: Ta
 
 def converted(name: str, values: FloatArray, source: Source, unit: str) -> FloatArray:
     """Numbers of a log (n_samples,) in the program's unit and directions, angles unwrapped."""
-    quantity = QUANTITIES[name]
+    quantity = known_quantity(name)
     turn = 360.0 if quantity.unit == "deg" else 2.0 * np.pi
     # A factor of exactly 1 leaves every bit as it is.
     factor = units.factors(quantity.unit)[unit] * source.scale
@@ -177,7 +177,7 @@ def converted(name: str, values: FloatArray, source: Source, unit: str) -> Float
     if quantity.origin and source.zero == "east":
         # Counted from east, north lies a quarter turn back, whichever way angles grow.
         out = out + turn / 4.0
-    if source.direction == "to":
+    if source.direction and source.direction != quantity.points:
         out = out + turn / 2.0
     if source.offset:
         out = out + source.offset

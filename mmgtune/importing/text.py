@@ -17,7 +17,7 @@ from ..limits import LOG_BYTES, LOG_COLUMNS, LOG_LINE
 from .clock import Stamps
 from .headers import find_column
 from .mapping import LogMap
-from .quantities import MEANING
+from .quantities import meaning
 from .table import TIME, Cells, Collector, Table
 
 BLOCK = 50_000
@@ -189,14 +189,14 @@ def columns_named(log_map: LogMap, names: list[str], path: Path, where: str) -> 
     for name, column in asked.items():
         k = find_column(column, names)
         if k is None:
-            meaning = "time" if name == TIME else MEANING[name]
+            holds = "time" if name == TIME else meaning(name)
             if isinstance(column, int):
                 what, fix = f"the log has no column {column}", f"it has {len(names)} columns"
             else:
                 what = f"column '{column}' is missing from the log"
                 near = closest(column, names)
                 fix = near
-            problems.append(Problem(what, where, f"the map says it holds {meaning}", fix))
+            problems.append(Problem(what, where, f"the map says it holds {holds}", fix))
         else:
             found[name] = k
     if problems:

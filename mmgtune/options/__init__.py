@@ -4,7 +4,7 @@ choice      a field that is an option, and what all such dataclasses do
 simulation  integrator, step, back end
 tuning      fit, sweep, leave-out
 diagnosis   diagnose
-scoring     validate, check
+scoring     validate, on trials and on voyages, and check
 orders      simulate
 estimating  profile new
 flags       what fields are called on the command line
@@ -17,7 +17,7 @@ from .diagnosis import DiagnoseOptions
 from .estimating import EstimateOptions
 from .flags import FLAGS, flags_of, in_flags
 from .orders import SimulateOptions
-from .scoring import FORMATS, CheckOptions, ValidateOptions
+from .scoring import FORMATS, CheckOptions, ValidateOptions, VoyageOptions
 from .simulation import BACKENDS, INTEGRATORS, SimulationOptions
 from .tuning import METHODS, FitOptions, LeaveOutOptions, SearchOptions, SweepOptions, TuningOptions
 
@@ -40,6 +40,7 @@ __all__ = [
     "SweepOptions",
     "TuningOptions",
     "ValidateOptions",
+    "VoyageOptions",
     "again",
     "choice",
     "choices",
@@ -55,6 +56,6 @@ for _of in (
     LeaveOutOptions,
     SimulateOptions,
     SweepOptions,
-    ValidateOptions,
+    VoyageOptions,
 ):
     flags_of(_of)

@@ -5,12 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ..errors import Problem
 from .choice import INPUT, again, choice
 from .simulation import SimulationOptions
 from .tuning import LeaveOutOptions
 
 if TYPE_CHECKING:
     from ..backends import Integrator
+
+VOYAGES = "Voyages"
+"""Panel of the help."""
 
 FORMATS = ("text", "json", "junit", "github", "markdown")
 """Formats of a check's report, each a module of ``checking.renderers``."""
@@ -25,6 +29,43 @@ class ValidateOptions(SimulationOptions):
         None, "Trials whose spread L_MSE is counted in. Default: the trials scored.", panel=INPUT
     )
     manoeuvres: bool = again(LeaveOutOptions, "manoeuvres")
+
+
+WINDOW = 120.0
+"""Seconds of the windows that voyages are cut into (Mathioudakis et al.: 2-minute trajectories)."""
+
+
+@dataclass(frozen=True)
+class VoyageOptions(ValidateOptions):
+    """All choices of a validation on voyages: those of any, and what only windows of voyages have."""
+
+    r_max: float | None = choice(
+        None,
+        "Largest yaw rate of the ship, which cVDM is relative to. Default: that of the first model.",
+        unit="deg/s",
+        above=0.0,
+        panel=VOYAGES,
+    )
+    classes: tuple[float, ...] = choice(
+        (1.3, 4.1), "Voyages: cVDM [%] up to which a window is optimal, and satisfactory.", above=0.0, panel=VOYAGES
+    )
+    gap: float = choice(
+        10.0, "Voyages: longest gap that a window may hold; longer ones end it.", unit="s", above=0.0, panel=VOYAGES
+    )
+
+    @property
+    def window(self) -> float:
+        """Length of the windows [s]."""
+        return WINDOW if self.restart is None else self.restart
+
+    def problems(self) -> list[Problem]:
+        """Two limits in order; manoeuvres are repeated on trials only."""
+        found = super().problems()
+        if len(self.classes) != 2 or not self.classes[0] < self.classes[1]:
+            shown = ",".join(f"{limit:g}" for limit in self.classes)
+            fix = "write classes=1.3,4.1"
+            found.append(Problem(f"classes {shown} are not two limits in order", "classes", fix=fix))
+        return found
 
 
 @dataclass(frozen=True)

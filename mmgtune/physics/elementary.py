@@ -13,6 +13,11 @@ def exp(x):
     return np.exp(x)
 
 
+def log(x):
+    """Natural logarithm of x > 0 [-]."""
+    return np.log(x)
+
+
 def sin(x):
     """Sine of an angle [rad]."""
     return np.sin(x)

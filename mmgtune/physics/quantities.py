@@ -109,13 +109,26 @@ class Surroundings(NamedTuple):
     wind_north: Lanes  # velocity of the air over ground, north [m/s]
     wind_east: Lanes  # and east [m/s]
     wind_known: Lanes  # 1 where the wind was measured, 0 where not
+    current_north: Lanes  # velocity of the water over ground, north [m/s]
+    current_east: Lanes  # and east [m/s]
+    current_north_rate: Lanes  # of that velocity over the step that ends here [m/s^2]
+    current_east_rate: Lanes
+    current_known: Lanes  # 1 where the current was measured, 0 where not
+    wave_north: Lanes  # significant height times the unit vector to where waves come from, north [m]
+    wave_east: Lanes  # and east [m]
+    wave_known: Lanes  # 1 where waves were measured, 0 where not
+    depth: Lanes  # of the water [m]
+    depth_known: Lanes  # 1 where the depth was measured, 0 where not
 
 
 UNKNOWN = Surroundings(*(0.0 for _ in Surroundings._fields))
 """Nothing measured."""
 
-HELD = tuple(name for name in Surroundings._fields if name.endswith("_known"))
+HELD = tuple(name for name in Surroundings._fields if name.endswith(("_known", "_rate")))
 """Surroundings that hold over a step between samples with the value at its end; the others change linearly."""
+
+KNOWN = tuple(name.removesuffix("_known") for name in Surroundings._fields if name.endswith("_known"))
+"""What may have been measured around a ship, by name: "wind" for the fields that begin with it."""
 
 HARMONICS = ("X_0", "X_1", "X_3", "X_5", "Y_1", "Y_3", "Y_5", "N_1", "N_2", "N_3")
 """Harmonics of the wind force over the angle of the apparent wind."""

@@ -214,6 +214,22 @@ def motions_in(folder: Path, inputs: Sequence[Channel]) -> dict[str, dict[str, M
     return found
 
 
+def columns_in(path: Path, names: Sequence[str], texts: Sequence[str] = ()) -> dict[str, Any]:
+    """Columns of a file of the run folder by name, (n_rows,): of numbers, and of texts."""
+    import numpy as np
+
+    if not path.is_file():
+        raise _problem("the run folder is not whole", path, "a file of its results is missing", "run it again")
+    frame = _parquet(path)
+    lacking = [name for name in names if name not in frame.columns]
+    if lacking:
+        raise _problem("the run's data are not whole", path, "columns lack: " + ", ".join(lacking), "run it again")
+    return {
+        name: frame[name].to_numpy(dtype=object) if name in texts else frame[name].to_numpy(dtype=np.float64)
+        for name in names
+    }
+
+
 def _parquet(path: Path) -> Any:
     """A parquet file as a data frame."""
     import pandas as pd

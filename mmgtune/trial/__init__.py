@@ -8,7 +8,9 @@ unusable        what forbids using a trial
 checks          everything odd about one: motion_checks, control_checks, cross_checks; kinematics: what they measure
 set_checks      what is odd about one among others of the same ship
 pieces          long trials cut into windows
-wind            the wind it was measured in; surroundings: all that was measured around the ship
+voyage          logs of days, read block by block; voyage_windows: cut as they are read; voyage_set: folders of them
+wind            the wind it was measured in; current, waves, depth: the others; gaps: what bridges theirs
+surroundings    all that was measured around the ship; surroundings_checks: what is odd about it
 smoothing       channels without their noise
 describe        what a trial holds, in numbers
 """
@@ -20,20 +22,31 @@ from .model import Trial
 from .parquet import read_trial, write_trial
 from .pieces import windows
 from .set_checks import check_trials
-from .surroundings import surroundings
-from .wind import has_measured_wind, measured_wind
+from .surroundings import measured_around, surroundings
+from .voyage import Voyage, open_voyage
+from .voyage_set import VoyageSet, holds_voyages, load_voyages
+from .voyage_windows import Cutting, voyage_windows, window_at
+from .wind import measured_wind
 
 __all__ = [
+    "Cutting",
     "Finding",
     "Trial",
     "TrialSet",
+    "Voyage",
+    "VoyageSet",
     "check_trial",
     "check_trials",
-    "has_measured_wind",
+    "holds_voyages",
     "load_trials",
+    "load_voyages",
+    "measured_around",
     "measured_wind",
+    "open_voyage",
     "read_trial",
     "surroundings",
+    "voyage_windows",
+    "window_at",
     "windows",
     "write_trial",
 ]

@@ -11,9 +11,9 @@ from .cross_checks import cross_findings
 from .finding import SEVERITIES, Finding
 from .model import Trial
 from .motion_checks import CONTRADICTED, motion_findings
-from .schema import COLUMNS, OPTIONAL
+from .schema import OPTIONAL, known_column
+from .surroundings_checks import surroundings_findings
 from .unusable import unusable
-from .wind import WIND_PAIRS
 
 __all__ = ["Finding", "check_trial"]
 
@@ -37,29 +37,10 @@ def check_trial(trial: Trial, L_pp: float | None = None) -> list[Finding]:
             *motion,
             *control_findings(trial, where),
             *cross_findings(trial, where, L_pp, contradicted),
-            *_wind(trial, where),
+            *surroundings_findings(trial, where),
             *_facts(trial, where),
         ]
     return sorted(found, key=lambda finding: SEVERITIES.index(finding.severity))
-
-
-def _wind(trial: Trial, where: str) -> list[Finding]:
-    """Half a wind is none, and nothing uses it."""
-    found = []
-    for pair in WIND_PAIRS:
-        there = [name for name in pair if name in trial.extra]
-        if len(there) == 1:
-            (missing,) = set(pair) - set(there)
-            found.append(
-                Finding(
-                    "warning",
-                    f"there is '{there[0]}' without '{missing}'",
-                    f"{where}, column '{there[0]}'",
-                    "the trial counts as one without measured wind",
-                    f"add '{missing}', {COLUMNS[missing].meaning} [{COLUMNS[missing].unit}]",
-                )
-            )
-    return found
 
 
 def _facts(trial: Trial, where: str) -> list[Finding]:
@@ -69,7 +50,7 @@ def _facts(trial: Trial, where: str) -> list[Finding]:
     if dt.max() > 1.01 * dt.min():
         found.append(Finding("note", f"the time step varies between {dt.min():.4g} and {dt.max():.4g} s", where))
     for name in trial.extra:
-        near = [] if name in COLUMNS else difflib.get_close_matches(name, list(OPTIONAL), n=1, cutoff=0.8)
+        near = [] if known_column(name) else difflib.get_close_matches(name, list(OPTIONAL), n=1, cutoff=0.8)
         if near:
             found.append(
                 Finding(
@@ -77,7 +58,7 @@ def _facts(trial: Trial, where: str) -> list[Finding]:
                     f"column '{name}' is not known to the program",
                     f"{where}, column '{name}'",
                     "it is kept, but nothing uses it",
-                    f"rename it if it is meant to be '{near[0]}' [{COLUMNS[near[0]].unit}]",
+                    f"rename it if it is meant to be '{near[0]}' [{OPTIONAL[near[0]].unit}]",
                 )
             )
     for name in trial.ignored:

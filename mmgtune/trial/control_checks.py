@@ -12,7 +12,7 @@ from ..units import DEG
 from .finding import Finding
 from .model import Trial
 from .motion_checks import spikes
-from .schema import DIRECTIONS, MAIN_INPUTS
+from .schema import MAIN_INPUTS, directions
 
 FASTEST_THRUSTER = 100.0
 """Revolutions [1/s] that no thruster makes, not even a model's."""
@@ -138,8 +138,8 @@ CHECKS: dict[Role, tuple[Callable[[Trial, str, str], Finding | None], ...]] = {
 
 def _directions(trial: Trial, where: str) -> list[Finding]:
     found = []
-    for name in DIRECTIONS:
-        values = trial.extra.get(name, np.zeros(1))
+    for name in directions(trial.extra):
+        values = trial.extra[name]
         largest = np.abs(values[np.isfinite(values)]).max(initial=0.0)
         if largest > 4.0 * np.pi:
             found.append(

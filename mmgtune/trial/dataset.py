@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from .model import Trial
 from .parquet import id_in, read_trial
 from .pieces import windows
 from .split import SPLIT, Split, read_split
+from .voyage import Voyage
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,12 +73,7 @@ def load_trials(name: str | Path) -> TrialSet:
     Without ``split.toml`` every trial tunes.  Raises TrialError with everything wrong in any of the files.
     """
     path = find_trials(name)
-    files = [path]
-    if path.is_dir():
-        files = sorted(file for file in path.glob("*.parquet") if not file.name.startswith("."))
-    if not files:
-        fix = "put *.parquet files there, one a trial"
-        raise TrialError(Problem("the folder has no trial files", str(path), fix=fix))
+    files = files_of(path)
     trials: dict[str, Trial] = {}
     problems: list[Problem] = []
     ids: list[str | None] = []
@@ -99,12 +96,23 @@ def load_trials(name: str | Path) -> TrialSet:
     if path.is_dir() and split.is_file():
         said, wrong = read_split(split, None if None in ids else [one for one in ids if one is not None])
         problems += wrong
-    problems += _ships(trials, said.ship, split)
+    problems += of_another_ship(list(trials.values()), said.ship, split)
     if problems:
         raise TrialError(*problems)
     ships = [trial.ship for trial in trials.values() if trial.ship]
     ship = said.ship or (ships[0] if ships else "")
     return TrialSet(trials, said.tune, said.test, ship, path, said.licence, said.citation)
+
+
+def files_of(path: Path) -> list[Path]:
+    """The trial files of a folder, by name, or the file itself.  Raises TrialError where a folder has none."""
+    files = [path]
+    if path.is_dir():
+        files = sorted(file for file in path.glob("*.parquet") if not file.name.startswith("."))
+    if not files:
+        fix = "put *.parquet files there, one a trial"
+        raise TrialError(Problem("the folder has no trial files", str(path), fix=fix))
+    return files
 
 
 def find_trials(name: str | Path) -> Path:
@@ -120,9 +128,9 @@ def find_trials(name: str | Path) -> Path:
     raise TrialError(Problem("no such trials", str(name), fix=fix))
 
 
-def _ships(trials: dict[str, Trial], ship: str, split: Path) -> list[Problem]:
+def of_another_ship(trials: Sequence[Trial | Voyage], ship: str, split: Path) -> list[Problem]:
     """Trials of another ship than the split's, or of several ships where it names none."""
-    ships = Counter(trial.ship for trial in trials.values() if trial.ship)
+    ships = Counter(trial.ship for trial in trials if trial.ship)
     if not ships:
         return []
     asked = ship or ships.most_common(1)[0][0]
@@ -134,6 +142,6 @@ def _ships(trials: dict[str, Trial], ship: str, split: Path) -> list[Problem]:
             f"{says} '{asked}', and a data set is of one ship",
             "move it to a folder of its own, or correct 'ship' where it is wrong",
         )
-        for trial in trials.values()
+        for trial in trials
         if trial.ship and trial.ship != asked
     ]

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..units import shown_in
 from .model import Trial
-from .schema import COLUMNS
+from .schema import known_column
 
 
 def describe(trial: Trial) -> dict[str, Any]:
@@ -17,8 +17,8 @@ def describe(trial: Trial) -> dict[str, Any]:
     for name, values in trial.columns.items():
         if name == "t":
             continue
-        unit = COLUMNS[name].unit if name in COLUMNS else "-"
-        shown, factor = shown_in(unit)
+        known = known_column(name)
+        shown, factor = shown_in(known.unit if known else "-")
         if np.isfinite(values).any():
             ranges[name] = {
                 "min": float(np.nanmin(values) * factor),

@@ -5,13 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 from ..errors import MmgtuneError, Problem
-from ..limits import FOOTER_VALUES, FREE_ROWS, PARQUET_BYTES, ROWS_PER_BYTE
+from ..limits import FOOTER_VALUES, FREE_ROWS, PARQUET_BYTES, ROWS_PER_BYTE, Limit
 
 
-def rows_of(metadata: Any, size: int, where: str, error: type[MmgtuneError]) -> int:
+def rows_of(metadata: Any, size: int, where: str, error: type[MmgtuneError], unpacked: Limit = PARQUET_BYTES) -> int:
     """The rows of a file, from its footer (``pyarrow.parquet.FileMetaData``).
 
-    size  of the file [bytes]
+    size      of the file [bytes]
+    unpacked  the most it may expand to
 
     Raises ``error`` where the file would expand beyond the limits; ValueError where the footer contradicts itself.
     """
@@ -26,5 +27,5 @@ def rows_of(metadata: Any, size: int, where: str, error: type[MmgtuneError]) -> 
         raise error(
             Problem("the file expands far beyond what it can hold", where, why, "do not use it: ask its source")
         )
-    PARQUET_BYTES.hold(sum(one.total_byte_size for one in groups), where, error, "unpacked")
+    unpacked.hold(sum(one.total_byte_size for one in groups), where, error, "unpacked")
     return rows

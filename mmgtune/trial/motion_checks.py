@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray
 from ..inputs import INPUTS
 from ..units import DEG
 from .finding import Finding
@@ -49,9 +49,14 @@ def _gaps(trial: Trial, where: str) -> list[Finding]:
     return found
 
 
+def full_turns(psi: FloatArray) -> BoolArray:
+    """(n_samples - 1,) where a heading [rad] jumps by a full turn from one sample to the next."""
+    return np.asarray(np.abs(np.abs(np.diff(psi)) - 2.0 * np.pi) < 1.0)
+
+
 def _jumps(trial: Trial, where: str) -> list[Finding]:
     """Heading that is not unwrapped; a gap hides how far the ship turned in it, so jumps across gaps do not count."""
-    jumps = np.abs(np.abs(np.diff(trial.psi)) - 2.0 * np.pi) < 1.0
+    jumps = full_turns(trial.psi)
     if not jumps.any():
         return []
     row = int(np.flatnonzero(jumps)[0]) + 1

@@ -20,8 +20,11 @@ from .digest import DIGEST_KEY, digest
 from .footer import rows_of
 from .metadata import facts_of
 from .model import Trial
-from .schema import ATTRIBUTES, COLUMNS, METADATA_KEY, REQUIRED, SCHEMA
+from .schema import ATTRIBUTES, METADATA_KEY, REQUIRED, SCHEMA, known_column
 from .unusable import unusable
+
+GROUP_ROWS = 65_536
+"""Rows of a row group that is written: a log of days can be read group by group."""
 
 
 def read_trial(path: Path | str) -> Trial:
@@ -38,11 +41,11 @@ def read_trial(path: Path | str) -> Trial:
     if not problems:
         problems = _unsealed(columns, held.metadata, path)
     # A column that holds no numbers has been reported; that it is missing as well would be the same news twice.
-    unreadable = [name for name in REQUIRED if name in held.names and name not in columns]
+    reported = [name for name in REQUIRED if name in held.names and name not in columns]
     problems += [
         problem
         for problem in unusable(columns, str(path))
-        if not any(problem.what == f"column '{name}' is missing" for name in unreadable)
+        if not any(problem.what == f"column '{name}' is missing" for name in reported)
     ]
     if problems:
         raise TrialError(*problems)
@@ -75,7 +78,7 @@ def write_trial(trial: Trial, path: Path | str, overwrite: bool = False) -> Path
     path = Path(path)
     values = trial.columns
     fields = [
-        pa.field(name, pa.float64(), metadata={"unit": COLUMNS[name].unit} if name in COLUMNS else None)
+        pa.field(name, pa.float64(), metadata={"unit": known.unit} if (known := known_column(name)) else None)
         for name in values
     ]
     facts = {
@@ -93,7 +96,7 @@ def write_trial(trial: Trial, path: Path | str, overwrite: bool = False) -> Path
     schema = pa.schema(fields, metadata={METADATA_KEY: written, DIGEST_KEY: digest(values, written)})
     table = pa.table([pa.array(column) for column in values.values()], schema=schema)
     with atomic(path, overwrite) as part:
-        pq.write_table(table, part, compression="zstd", write_page_checksum=True)
+        pq.write_table(table, part, compression="zstd", write_page_checksum=True, row_group_size=GROUP_ROWS)
     return path
 
 
@@ -115,14 +118,17 @@ def _unsealed(columns: dict[str, FloatArray], raw: Mapping[bytes, bytes], path: 
     """What is wrong where the file's digest is not that of what was read; nothing where it has none."""
     if DIGEST_KEY not in raw or raw[DIGEST_KEY] == digest(columns, raw.get(METADATA_KEY, b"")):
         return []
-    return [
-        Problem(
-            "the trial is not what was written: its columns or facts do not have the digest that the file holds",
-            f"{path}, metadata '{DIGEST_KEY.decode()}'",
-            "the file is damaged, or something other than mmgtune changed it and kept the digest",
-            "copy it again from where it was made; after a change that was meant, remove that key of the metadata",
-        )
-    ]
+    return [another_digest(path)]
+
+
+def another_digest(path: Path) -> Problem:
+    """The problem of a file whose digest is not that of what it holds."""
+    return Problem(
+        "the trial is not what was written: its columns or facts do not have the digest that the file holds",
+        f"{path}, metadata '{DIGEST_KEY.decode()}'",
+        "the file is damaged, or something other than mmgtune changed it and kept the digest",
+        "copy it again from where it was made; after a change that was meant, remove that key of the metadata",
+    )
 
 
 @dataclass(frozen=True)
@@ -162,39 +168,69 @@ def _read(path: Path) -> _Held:
         file = pq.ParquetFile(pa.BufferReader(content), pre_buffer=False, page_checksum_verification=True)
         rows = rows_of(file.metadata, len(content), where, TrialError)
         limits.TRIAL_SAMPLES.hold(rows, where, TrialError)
-        kinds = [(one.name, one.type) for one in file.schema_arrow]
-        names = [name for name, _ in kinds]
-        # Columns without numbers are named, never read.
-        numeric = [name for name, kind in kinds if pa.types.is_floating(kind) or pa.types.is_integer(kind)]
-        limits.TRIAL_VALUES.hold(rows * len(numeric), where, TrialError)
-        twice = sorted(name for name, count in Counter(names).items() if count > 1)
-        problems = [Problem(f"column '{name}' is there twice", where, fix="remove one of them") for name in twice]
-        for name, kind in kinds:
-            if name in COLUMNS and name not in numeric:
-                fix = f"write it as float64, in {COLUMNS[name].unit}"
-                problems.append(Problem(f"column '{name}' holds {str(kind)[:80]}, not numbers", where, fix=fix))
-        wanted = [name for name in numeric if name not in twice]
+        layout = layout_of(file.schema_arrow, where)
+        limits.TRIAL_VALUES.hold(rows * layout.n_numeric, where, TrialError)
+        wanted = layout.wanted
         table = file.read(columns=wanted, use_threads=False)
-        columns = {name: _numbers(table.column(name)) for name in wanted}
+        columns = {name: numbers(table.column(name).combine_chunks()) for name in wanted}
     except (OSError, ValueError, pa.ArrowException) as error:
-        if not content:
-            what, fix = "the file is empty", "copy it again from where it was made"
-        elif content.startswith(b"PAR1"):
-            what, fix = "the Parquet file is damaged", "copy it again from where it was made: it may be cut off"
-        else:
-            what, fix = "the file is not Parquet", "trials are Parquet files; convert it, for example with pandas"
-        why = (str(error).splitlines() or [""])[0]
-        raise TrialError(Problem(what, where, why, fix)) from error
-    ignored = tuple(name for name in names if name not in numeric and name not in COLUMNS)
+        raise unreadable(content[:4], where, error) from error
     metadata = file.schema_arrow.metadata or {}
-    return _Held(columns, names, ignored, metadata, problems, hashlib.sha256(content).hexdigest())
+    sha256 = hashlib.sha256(content).hexdigest()
+    return _Held(columns, layout.names, layout.ignored, metadata, layout.problems, sha256)
 
 
-def _numbers(column: Any) -> FloatArray:
-    """A column of numbers (n_samples,), NaN where a row has none; its own ``to_numpy`` would load pandas for this."""
+@dataclass(frozen=True)
+class Layout:
+    """What columns a file has.
+
+    names      of all of them; ignored: of those that hold no numbers and are not of a trial
+    wanted     of those that are read
+    n_numeric  how many hold numbers
+    problems   with them
+    """
+
+    names: list[str]
+    wanted: list[str]
+    n_numeric: int
+    ignored: tuple[str, ...]
+    problems: list[Problem]
+
+
+def layout_of(schema: Any, where: str) -> Layout:
+    """The columns of a file, from its schema (``pyarrow.Schema``); those without numbers are named, never read."""
     import pyarrow as pa
 
-    whole = column.combine_chunks()
+    kinds = [(one.name, one.type) for one in schema]
+    names = [name for name, _ in kinds]
+    numeric = [name for name, kind in kinds if pa.types.is_floating(kind) or pa.types.is_integer(kind)]
+    twice = sorted(name for name, count in Counter(names).items() if count > 1)
+    problems = [Problem(f"column '{name}' is there twice", where, fix="remove one of them") for name in twice]
+    for name, kind in kinds:
+        known = known_column(name)
+        if known and name not in numeric:
+            fix = f"write it as float64, in {known.unit}"
+            problems.append(Problem(f"column '{name}' holds {str(kind)[:80]}, not numbers", where, fix=fix))
+    wanted = [name for name in numeric if name not in twice]
+    ignored = tuple(name for name in names if name not in numeric and known_column(name) is None)
+    return Layout(names, wanted, len(numeric), ignored, problems)
+
+
+def unreadable(begins: bytes, where: str, error: Exception) -> TrialError:
+    """The error for a file that does not read as Parquet; ``begins`` are its first bytes."""
+    if not begins:
+        what, fix = "the file is empty", "copy it again from where it was made"
+    elif begins.startswith(b"PAR1"):
+        what, fix = "the Parquet file is damaged", "copy it again from where it was made: it may be cut off"
+    else:
+        what, fix = "the file is not Parquet", "trials are Parquet files; convert it, for example with pandas"
+    return TrialError(Problem(what, where, (str(error).splitlines() or [""])[0], fix))
+
+
+def numbers(whole: Any) -> FloatArray:
+    """An Arrow array as (n_samples,), NaN where a row has none; its own ``to_numpy`` would load pandas for this."""
+    import pyarrow as pa
+
     if whole.type != pa.float64():
         whole = whole.cast(pa.float64(), safe=False)
     if whole.null_count:

@@ -23,23 +23,40 @@ def windows(trial: Trial, length: float, every: float | None = None) -> list[Tri
     is the trial's own id.
     """
     whole = np.flatnonzero(np.isfinite(trial.motion).all(axis=1))
+    pieces, _ = cuts(trial.t, whole, length, every)
+    return [_piece(trial, first, last + 1) for first, last in pieces]
+
+
+def cuts(
+    t: FloatArray, whole: IntArray, length: float, every: float | None = None, *, more: bool = False
+) -> tuple[list[tuple[int, int]], int]:
+    """First and last sample of each piece, as ``windows`` cuts them, and the sample at which what is left begins.
+
+    t      (n_samples,) time [s]
+    whole  samples that are complete
+    more   whether further samples follow, without ``every``: a piece that these could change is left, to be cut
+           together with them
+    """
     pieces: list[tuple[int, int]] = []
+    times = t[whole]
     at = 0
     while at < len(whole):
         first = int(whole[at])
-        compared = _first_compared(trial.t, whole[at:], length, every)
+        compared = _first_compared(t, whole[at:], length, every)
         if pieces and compared is None:
-            pieces[-1] = (pieces[-1][0], trial.n_samples - 1)
+            pieces[-1] = (pieces[-1][0], len(t) - 1)
             break
-        until = trial.t[first] + length
-        at = max(at + 1, int(np.searchsorted(trial.t[whole], until - 1e-9)))  # shorter than a step, it is one
+        until = t[first] + length
+        at = max(at + 1, int(np.searchsorted(times, until - 1e-9)))  # shorter than a step, it is one
         at = at if compared is None else max(at, int(np.searchsorted(whole, compared)))
         if len(whole) - at < FEWEST:
             at = len(whole)
-        last = int(whole[at]) if at < len(whole) else trial.n_samples - 1
+        if more and at == len(whole):  # what follows may join it, or begin another
+            return pieces, first
+        last = int(whole[at]) if at < len(whole) else len(t) - 1
         if last > first + 1:  # two samples are no motion
             pieces.append((first, last))
-    return [_piece(trial, first, last + 1) for first, last in pieces]
+    return pieces, len(t)
 
 
 def _first_compared(t: FloatArray, whole: IntArray, length: float, every: float | None) -> int | None:
@@ -65,12 +82,17 @@ def counting(t: FloatArray, every: float | None) -> BoolArray:
     return counts
 
 
+def named(id: str, begins: float) -> str:
+    """The id of a piece that begins so many seconds after its trial."""
+    return f"{id}@{begins:.10g}"
+
+
 def _piece(trial: Trial, first: int, end: int) -> Trial:
     columns = {name: getattr(trial, name)[first:end] for name in ATTRIBUTES.values()}
     columns["t"] = columns["t"] - columns["t"][0]
     return replace(
         trial,
-        id=f"{trial.id}@{trial.t[first] - trial.t[0]:g}",
+        id=named(trial.id, float(trial.t[first] - trial.t[0])),
         part_of=trial.part_of or trial.id,
         extra={name: values[first:end] for name, values in trial.extra.items()},
         **columns,

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -19,13 +22,18 @@ class Column:
     """One column: its unit and what it means.
 
     counted_from  "north" or "bow" for a direction, "" for anything else
+    points        "from" for a direction something comes from, "to" for one it goes to, "" for anything else
     gusty         whether it jumps by nature, so that a single sample far off its neighbours is none the worse for it
+    low, high     beyond these it is doubted
     """
 
     unit: str
     meaning: str
     counted_from: str = ""
+    points: str = ""
     gusty: bool = False
+    low: float = -np.inf
+    high: float = np.inf
 
 
 MOTION = {
@@ -45,19 +53,62 @@ REQUIRED = {
     **MOTION,
     **{name: LOGGED[name] for name in MAIN_INPUTS},
 }
+
+
+def _speed(meaning: str, most: float, gusty: bool = False) -> Column:
+    return Column("m/s", meaning, gusty=gusty, low=0.0, high=most)
+
+
+def _direction(meaning: str, points: str, counted_from: str = "north", gusty: bool = False) -> Column:
+    return Column(
+        "rad",
+        f"{meaning}, clockwise from {'the bow' if counted_from == 'bow' else 'north'}",
+        counted_from,
+        points,
+        gusty,
+    )
+
+
 SURROUNDINGS = {
-    "wind_speed": Column("m/s", "true wind speed", gusty=True),
-    "wind_dir": Column("rad", "direction the true wind comes from, clockwise from north", "north", gusty=True),
-    "wind_speed_app": Column("m/s", "apparent wind speed at the ship", gusty=True),
-    "wind_dir_app": Column("rad", "direction the apparent wind comes from, clockwise from the bow", "bow", gusty=True),
-    "depth": Column("m", "water depth"),
-    "wave_height": Column("m", "significant wave height", gusty=True),
-    "wave_dir": Column("rad", "direction waves come from, clockwise from north", "north", gusty=True),
+    "wind_speed": _speed("true wind speed", 120.0, gusty=True),
+    "wind_dir": _direction("direction the true wind comes from", "from", gusty=True),
+    "wind_speed_app": _speed("apparent wind speed at the ship", 150.0, gusty=True),
+    "wind_dir_app": _direction("direction the apparent wind comes from", "from", "bow", gusty=True),
+    "current_speed": _speed("speed of the current over ground", 15.0),
+    "current_dir": _direction("direction the current sets towards", "to"),
+    "depth": Column("m", "water depth", low=0.0, high=12e3),
+    "wave_height": Column("m", "significant wave height", gusty=True, low=0.0, high=30.0),
+    "wave_dir": _direction("direction waves come from", "from", gusty=True),
 }
 """What may have been measured around the ship."""
 
+LAYER = re.compile(r"(current_speed|current_dir)_at_(\d+(?:\.\d+)?)m")
+"""Columns of the current in a layer of the water: what is measured, and how far below the surface [m]."""
+
+
+def surrounding(name: str) -> Column | None:
+    """What a column says of the surroundings, one of a layer of the water too; None where it says nothing of them."""
+    layer = LAYER.fullmatch(name)
+    if layer is None:
+        return SURROUNDINGS.get(name)
+    whole = SURROUNDINGS[layer[1]]
+    return replace(whole, meaning=f"{whole.meaning}, {float(layer[2]):g} m below the surface")
+
+
 OPTIONAL = {**{name: column for name, column in LOGGED.items() if name not in MAIN_INPUTS}, **SURROUNDINGS}
 COLUMNS = {**REQUIRED, **OPTIONAL}
+
+
+def known_column(name: str) -> Column | None:
+    """What is known of a column; None for one that the program does not know."""
+    return COLUMNS.get(name) or surrounding(name)
+
+
+def directions(columns: Mapping[str, Any]) -> list[str]:
+    """Those of some columns that are directions of what is around the ship."""
+    return [name for name in columns if (found := surrounding(name)) is not None and found.counted_from]
+
+
 METADATA = ("schema", "ship", "id", "manoeuvre", "source", "noise", "note", "cut_from")
 SOURCES = ("measured", "generated")
 
@@ -68,7 +119,6 @@ CHANNELS = STATES
 """Motion channels in the order of ``Trial.motion``."""
 
 RUDDERS = tuple(name for name, one in INPUTS.items() if one.role == "rudder")
-DIRECTIONS = tuple(name for name, column in SURROUNDINGS.items() if column.counted_from)
 
 LARGEST = {"s": 1e11, "m": 1e9, "rad": 1e6, "deg": 1e6, "m/s": 1e4, "rad/s": 1e4, "1/s": 1e5}
 """Sizes by unit that nothing about a ship has, not even written in another unit: such numbers are damage."""

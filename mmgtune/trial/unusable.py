@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import Problem, closest
 from .kinematics import FITS, IN_DEGREES, position_misfits, turning
-from .schema import COLUMNS, LARGEST, LARGEST_RUDDER, MAIN_INPUTS, MOTION, REQUIRED, RUDDERS, impossible
+from .schema import COLUMNS, LARGEST, LARGEST_RUDDER, MAIN_INPUTS, MOTION, REQUIRED, RUDDERS, impossible, known_column
 
 
 def unusable(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
@@ -18,17 +18,15 @@ def unusable(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
     columns  arrays (n_samples,) by their name in the file; required ones may be missing, which is a problem
     where    the file, for messages
     """
-    problems = _missing(columns, where)
+    problems = missing_columns(columns, where)
     samples = max((len(values) for values in columns.values()), default=0)
     if samples < 2:
         what = "the trial has no samples" if samples == 0 else "the trial has one sample"
         return [*problems, Problem(what, where, "a motion needs two or more", "write the whole record")]
     with np.errstate(all="ignore"):
         problems += _time(columns, where) + _values(columns, where) + _rudder(columns, where)
-        damaged = any(
-            impossible(values, COLUMNS[name].unit).any() for name, values in columns.items() if name in COLUMNS
-        )
-        return problems if damaged else problems + _degrees(columns, where)
+        damaged = any(impossible(values, _unit(name)).any() for name, values in columns.items())
+        return problems if damaged else problems + in_degrees(columns, where)
 
 
 def increasing(t: FloatArray) -> bool:
@@ -36,7 +34,22 @@ def increasing(t: FloatArray) -> bool:
     return bool(np.isfinite(t).all() and (np.diff(t) > 0.0).all())
 
 
-def _missing(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
+def unusable_part(columns: Mapping[str, FloatArray], where: str, before: float, row: int) -> list[Problem]:
+    """Every reason why rows out of the middle of a record cannot be used: time and numbers that are damaged.
+
+    columns  arrays (n_rows,) by name, ``t`` among them
+    before   time of the row before these [s], -inf where there is none
+    row      number of the first of these
+
+    Gaps are none of them: a record of days has some, and they are cut out of it.
+    """
+    with np.errstate(all="ignore"):
+        problems = _time(columns, where, before, row) + _values(columns, where, row, gaps=True)
+        return problems + _rudder(columns, where)
+
+
+def missing_columns(columns: Mapping[str, object], where: str) -> list[Problem]:
+    """Required columns that are not there; ``columns`` by their name in the file."""
     others = [name for name in columns if name not in REQUIRED]
     return [
         Problem(
@@ -50,38 +63,41 @@ def _missing(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
     ]
 
 
-def _time(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
+def _time(columns: Mapping[str, FloatArray], where: str, before: float = -np.inf, first_row: int = 0) -> list[Problem]:
     t = columns.get("t")
-    if t is None or increasing(t):
+    if t is None or (increasing(t) and (not len(t) or t[0] > before)):
         return []
     if not np.isfinite(t).all():
         bad = ~np.isfinite(t)
-        return [Problem(f"time is no number in {bad.sum()} rows", f"{where}, row {_first(bad)}", "", "drop these rows")]
-    bad = np.diff(t) <= 0.0
-    row = _first(bad) + 1
+        place = f"{where}, row {first_row + _first(bad)}"
+        return [Problem(f"time is no number in {bad.sum()} rows", place, "", "drop these rows")]
+    earlier = np.concatenate([[before], t[:-1]])
+    bad = t <= earlier
+    row = _first(bad)
     more = f", and in {bad.sum() - 1} rows more" if bad.sum() > 1 else ""
     return [
         Problem(
-            "time repeats" if t[row] == t[row - 1] else "time goes back",
-            f"{where}, row {row}: t = {t[row]:.10g} s after {t[row - 1]:.10g} s{more}",
+            "time repeats" if t[row] == earlier[row] else "time goes back",
+            f"{where}, row {first_row + row}: t = {t[row]:.10g} s after {earlier[row]:.10g} s{more}",
             "each step of the simulation goes from one sample to the next",
             "sort the rows by time and drop repeated ones",
         )
     ]
 
 
-def _values(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
+def _values(columns: Mapping[str, FloatArray], where: str, first_row: int = 0, *, gaps: bool = False) -> list[Problem]:
+    """gaps: whether any column may have some."""
     problems: list[Problem] = []
 
     def say(what: str, name: str, row: int | None, why: str, fix: str) -> None:
-        place = f"{where}, column '{name}'" + ("" if row is None else f", row {row}")
+        place = f"{where}, column '{name}'" + ("" if row is None else f", row {first_row + row}")
         problems.append(Problem(what, place, why, fix))
 
     for name, values in columns.items():
         infinite, missing = np.isinf(values), np.isnan(values)
-        damaged = impossible(values, COLUMNS[name].unit) & ~infinite if name in COLUMNS else infinite & ~infinite
+        damaged = impossible(values, _unit(name)) & ~infinite
         if damaged.any():
-            unit = COLUMNS[name].unit
+            unit = _unit(name)
             say(
                 f"'{name}' is up to {np.abs(values[damaged]).max():.3g} {unit} in {damaged.sum()} rows",
                 name,
@@ -93,6 +109,8 @@ def _values(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
             continue
         if infinite.any():
             say(f"'{name}' is infinite in {infinite.sum()} rows", name, _first(infinite), "", "mark gaps as NaN")
+        if gaps:
+            continue
         if name in MAIN_INPUTS and missing.any():
             say(
                 f"'{name}' is no number in {missing.sum()} rows",
@@ -134,7 +152,7 @@ def _rudder(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
     return problems
 
 
-def _degrees(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
+def in_degrees(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
     """Heading or yaw rate in degrees, told by each other and by the positions."""
     if not {"t", "psi"} <= set(columns) or not increasing(columns["t"]):
         return []
@@ -162,6 +180,12 @@ def _in_degrees(column: str, where: str, why: str) -> Problem:
     unit = "degrees" if column == "psi" else "degrees per second"
     what = f"'{column}' is in {unit}, not {COLUMNS[column].unit}"
     return Problem(what, f"{where}, column '{column}'", why, f"multiply '{column}' by pi/180")
+
+
+def _unit(name: str) -> str:
+    """The unit of a column, "" of one that the program does not know."""
+    known = known_column(name)
+    return known.unit if known else ""
 
 
 def _first(condition: np.ndarray) -> int:

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..physics.frame import to_earth
+from .gaps import bridged
 from .model import Trial
 
 WIND_PAIRS = (("wind_speed", "wind_dir"), ("wind_speed_app", "wind_dir_app"))
@@ -27,13 +28,7 @@ def measured_wind(trial: Trial) -> FloatArray:
         north, east = to_earth(trial.psi, ahead, abeam)
     else:
         return np.zeros((trial.n_samples, 3))
-    whole = np.isfinite(north) & np.isfinite(east)
-    if not whole.any():
+    found = bridged(trial.t, north, east)
+    if found is None:
         return np.zeros((trial.n_samples, 3))
-    bridged = [np.interp(trial.t, trial.t[whole], values[whole]) for values in (north, east)]
-    return np.column_stack([*bridged, np.ones(trial.n_samples)])
-
-
-def has_measured_wind(trial: Trial) -> bool:
-    """Whether ``measured_wind`` finds any: speed and direction, both known in one sample at least."""
-    return bool(measured_wind(trial)[:, 2].any())
+    return np.column_stack([found, np.ones(trial.n_samples)])

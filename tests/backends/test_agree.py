@@ -12,7 +12,7 @@ from mmgtune.components import COMPONENTS, KINDS
 from mmgtune.model import Model
 from mmgtune.profile import load_profile, with_effects
 from mmgtune.resources import profile_names
-from tests.runs import states, turn
+from tests.runs import measured, states, turn
 
 
 def zigzag_like(model, seconds=900):
@@ -29,7 +29,7 @@ def backing(model, seconds=400):
     t = np.arange(0.0, seconds, 0.5)
     n = model.profile.approach.n * np.clip(1.3 * np.cos(t / 40.0), -1.0, 1.0)
     delta = np.radians(30.0) * np.sin(t / 17.0)
-    wind = np.column_stack([0.4 * np.cos(t / 90.0), 0.4 + 0.0 * t, np.ones(len(t))])
+    wind = measured(t, wind=(0.4 * np.cos(t / 90.0), 0.4))
     initial = np.array([0.0, 0.0, 1.0, model.profile.approach.speed, 0.0, 0.0])
     return pad([t], [np.column_stack([n, delta])], [initial], around=[wind])
 

@@ -13,14 +13,19 @@ from mmgtune.effects.hull_term import TERMS
 from mmgtune.effects.memory import STIFF
 from mmgtune.model import Model
 from mmgtune.physics.arrangements.single_propeller_single_rudder import Control, forces
-from mmgtune.physics.quantities import Force, State, Surroundings, WindCoefficients
+from mmgtune.physics.quantities import UNKNOWN, Force, State, WindCoefficients
 from mmgtune.physics.wind import wind_shape
 from mmgtune.profile import load_profile, with_effects
 
 L, D, RHO = 83.0, 3.8, 1025.0
-STILL = Surroundings(0.0, 0.0, 0.0)
+STILL = UNKNOWN
 STEERED = Control(1.7, 0.3)
 MOVING = State(x=120.0, y=-40.0, psi=0.7, u=2.5, v_m=-0.4, r=0.012)
+
+
+def blowing(north, east):
+    """Measured wind, and nothing else."""
+    return UNKNOWN._replace(wind_north=north, wind_east=east, wind_known=1.0)
 
 
 def lanes(group):
@@ -87,7 +92,7 @@ def test_wind(added, suzaku, come_from):
     expected = bearing_forces(9.0, come_from, suzaku.profile)
     steady, _ = added("wind", {"speed": 9.0, "direction": come_from, "measured": 1.0, **shape})
     np.testing.assert_allclose(steady, expected, rtol=1e-3)
-    flow = Surroundings(-9.0 * math.cos(come_from), -9.0 * math.sin(come_from), 1.0)
+    flow = blowing(-9.0 * math.cos(come_from), -9.0 * math.sin(come_from))
     measured, _ = added("wind", {"speed": 3.0, "direction": 0.0, "measured": 1.0, **shape}, air=flow)
     np.testing.assert_allclose(measured, steady, rtol=1e-9)
     # Wind from starboard pushes to port.
@@ -147,12 +152,12 @@ def test_memory_is_a_lag_of_first_order():
 
 def test_flow_effects_are_velocities_over_ground_seen_from_the_ship():
     north, east = 0.3, -0.2
-    u, v = find_effect("current").function(MOVING, STILL, find_effect("current").params(north, east))
+    u, v = find_effect("current").function(MOVING, STILL, find_effect("current").params(north, east, 1.0))
     towards = math.atan2(east, north) - MOVING.psi
     speed = math.hypot(north, east)
     assert (u, v) == pytest.approx((speed * math.cos(towards), speed * math.sin(towards)))
     # A share of the wind along it and to its right.
-    effect, air = find_effect("wind-drift"), Surroundings(-4.0, 3.0, 1.0)
+    effect, air = find_effect("wind-drift"), blowing(-4.0, 3.0)
     u, v = effect.function(MOVING, air, effect.params(0.03, 0.01))
     wind = complex(air.wind_north, air.wind_east)
     drift = wind * complex(0.03, 0.01) * np.exp(-1j * MOVING.psi)
@@ -235,7 +240,8 @@ def numbers(suzaku):
 def test_shallow_water(numbers):
     """Kijima et al. 1990, with the numbers of SUZAKU at a depth of 8 m."""
     effect = find_effect("shallow-water")
-    found = effect.function(numbers, effect.params(8.0))
+    ship = [numbers[f"particulars.{name}"] for name in ("L_pp", "B", "d", "C_b")]
+    found = effect.function(STILL, effect.params(8.0, 1.0, *ship))
     h, b = 3.8 / 8.0, 0.737 * 13.5 / 3.8
 
     def deep(n):
@@ -245,8 +251,17 @@ def test_shallow_water(numbers):
     cubic += (37.0 * b**2 - 185.0 * b + 230.0) * h**2 + (-38.0 * b**2 + 197.0 * b - 250.0) * h**3
     factors = {"Y_v": deep(0.40 * b), "N_v": deep(0.425 * b), "N_r": deep(1.5 - 14.28 * 3.8 / 83.0), "Y_r": cubic}
     for name, factor in factors.items():
-        assert found[f"hull.{name}"] == pytest.approx(factor * numbers[f"hull.{name}"]), name
-    assert len(found) == len(factors)
+        assert getattr(found, name) == pytest.approx(factor), name
+    assert tuple(f"hull.{name}" for name in found._fields) == effect.changes
+    logged = UNKNOWN._replace(depth=8.0, depth_known=1.0)
+    assert effect.function(logged, effect.params(math.inf, 1.0, *ship)) == pytest.approx(found)
+    # Half of the draught over the depth is twice the depth; none of it is deep water.
+    assert effect.function(logged, effect.params(5.0, 0.5, *ship)) == pytest.approx(
+        effect.function(STILL, effect.params(16.0, 1.0, *ship))
+    )
+    assert tuple(effect.function(logged, effect.params(math.inf, 0.0, *ship))) == (1.0, 1.0, 1.0, 1.0)
+    aground = effect.function(logged._replace(depth=1.0), effect.params(math.inf, 1.0, *ship))
+    assert aground == pytest.approx(effect.function(STILL, effect.params(1.05 * 3.8, 1.0, *ship)))
 
 
 def test_loading(numbers):

@@ -6,7 +6,7 @@ import pytest
 from mmgtune.importing import conventions, parse_map
 from mmgtune.importing.mapping import Source
 from mmgtune.importing.record import converted, unwrapped
-from mmgtune.units import DEG
+from mmgtune.units import DEG, KNOT
 from tests.importing.made import MAP, imported, logged, refusal, said, suzaku, turn, write_csv
 
 
@@ -28,6 +28,51 @@ def test_heading(source, printed, expected):
 def test_wind_to_is_wind_from_turned_round():
     (angle,) = converted("wind_dir", np.array([90.0]), Source(direction="to"), "deg")
     assert np.mod(angle, 2.0 * np.pi) == pytest.approx(270.0 * DEG)
+
+
+@pytest.mark.parametrize("name", ["current_dir", "current_dir_at_4m"])
+@pytest.mark.parametrize(("direction", "towards"), [("to", 90.0), ("from", 270.0)])
+def test_a_current_is_counted_by_where_it_sets(name, direction, towards):
+    (angle,) = converted(name, np.array([90.0]), Source(direction=direction), "deg")
+    assert np.mod(angle, 2.0 * np.pi) == pytest.approx(towards * DEG)
+
+
+def test_what_is_around_the_ship_is_imported(tmp_path):
+    """Knots, degrees that start at east, feet, a current that comes from somewhere, layers and a constant."""
+    trial = turn()
+    columns = logged(trial)
+    columns["drift"] = 1.0 + 0.5 * np.sin(trial.t / 60.0)
+    columns["drift from"] = np.mod(350.0 + trial.t / 10.0, 360.0)
+    columns["at 2 m"] = np.full(trial.n_samples, 0.4)
+    columns["sounder"] = 12.0 + 0.01 * trial.t
+    columns["sea"] = np.full(trial.n_samples, 1.25)
+    columns["sea from east"] = np.full(trial.n_samples, 30.0)
+    text = (
+        MAP
+        + """
+current_speed = { column = "drift", unit = "kn" }
+current_dir = { column = "drift from", unit = "deg", direction = "from" }
+"current_speed_at_2.0m" = { column = "at 2 m", unit = "m/s" }
+"current_dir_at_2.0m" = { value = "90 deg" }
+depth = { column = "sounder", unit = "m" }
+wave_height = { column = "sea", unit = "m" }
+wave_dir = { column = "sea from east", unit = "deg", zero = "east", direction = "from" }
+"""
+    )
+    extra = imported(write_csv(tmp_path / "log.csv", columns), text).extra
+    assert extra["current_speed"] == pytest.approx(columns["drift"] * KNOT)
+    off = extra["current_dir"] - columns["drift from"] * DEG - np.pi
+    assert np.mod(off + 1.0, 2.0 * np.pi) == pytest.approx(1.0)
+    assert extra["current_speed_at_2.0m"] == pytest.approx(0.4)
+    assert extra["current_dir_at_2.0m"] == pytest.approx(np.pi / 2.0)
+    assert extra["depth"] == pytest.approx(columns["sounder"])
+    assert extra["wave_height"] == pytest.approx(1.25)
+    assert extra["wave_dir"] == pytest.approx(120.0 * DEG)
+
+
+def test_where_a_current_sets_must_be_said():
+    text = MAP + 'current_dir = { column = "set", unit = "deg" }\n'
+    assert "is 'current_dir' the direction it comes from or goes to?" in refusal(lambda: parse_map(text))
 
 
 def test_unwrapping_sees_over_gaps():

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from mmgtune.resources import trial_set_names
-from mmgtune.trial import Trial, check_trial, has_measured_wind, load_trials
+from mmgtune.trial import Trial, check_trial, load_trials, measured_around
+from mmgtune.trial.schema import known_column
 
 from .made import DEG, changed, made, said, with_value
 
@@ -123,14 +124,54 @@ def test_half_a_wind(pair: tuple[str, str]) -> None:
     columns = {name: np.full(500, 2.0) for name in pair}
     whole = replace(made(), extra=columns)
     only(whole)
-    assert has_measured_wind(whole)
+    assert measured_around(whole) == {"wind"}
     for kept, missing in (pair, pair[::-1]):
         half = replace(made(), extra={kept: columns[kept]})
         only(half, f"there is '{kept}' without '{missing}'")
-        assert not has_measured_wind(half)
+        assert not measured_around(half)
     never_both = [np.where(np.arange(500) < 200, np.nan, 2.0), np.where(np.arange(500) < 200, 2.0, np.nan)]
-    assert not has_measured_wind(replace(made(), extra=dict(zip(pair, never_both, strict=True))))
-    assert not has_measured_wind(made())
+    assert not measured_around(replace(made(), extra=dict(zip(pair, never_both, strict=True))))
+    assert not measured_around(made())
+
+
+@pytest.mark.parametrize(
+    "pair",
+    [
+        ("current_speed", "current_dir"),
+        ("current_speed_at_2.5m", "current_dir_at_2.5m"),
+        ("wave_height", "wave_dir"),
+    ],
+)
+def test_half_a_current_and_half_of_waves(pair: tuple[str, str]) -> None:
+    whole = replace(made(), extra={name: np.full(500, 2.0) for name in pair})
+    only(whole)
+    assert len(measured_around(whole)) == 1
+    for kept, missing in (pair, pair[::-1]):
+        half = replace(made(), extra={kept: whole.extra[kept]})
+        only(half, f"there is '{kept}' without '{missing}'")
+        assert not measured_around(half)
+    damaged = replace(made(), extra={name: np.full(500, 1e300) for name in pair})
+    assert f"'{pair[0]}' is up to 1e+300" in said(damaged, "error")
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("wave_height", 180.0), ("current_speed", 40.0), ("depth", -12.0), ("wind_speed", -3.0)]
+)
+def test_numbers_that_nothing_around_a_ship_has(name: str, value: float) -> None:
+    partner = {"wave_height": "wave_dir", "current_speed": "current_dir", "wind_speed": "wind_dir"}.get(name)
+    extra = {name: np.where(np.arange(500) == 40, value, 1.0), **({partner: np.zeros(500)} if partner else {})}
+    only(replace(made(), extra=extra), f"'{name}' is {value:g}")
+    assert f"column '{name}', row 40" in said(replace(made(), extra=extra))
+
+
+def test_a_layer_of_the_water_is_known() -> None:
+    """By unit and meaning, as any column."""
+    layer = known_column("current_speed_at_2.5m")
+    assert layer is not None
+    assert layer.unit == "m/s"
+    assert "2.5 m below the surface" in layer.meaning
+    assert known_column("current_speed_at_m") is None
+    assert known_column("wind_speed_at_2m") is None
 
 
 def test_notes() -> None:

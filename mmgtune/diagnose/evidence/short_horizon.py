@@ -10,7 +10,7 @@ import numpy as np
 from ...arrays import BoolArray, FloatArray
 from ...backends import Integrator
 from ...model import Model
-from ...predictor import Predictor, as_predictor, cases_from, portions
+from ...predictor import Predictor, as_predictor, cases_from, draught_of, portions
 from ...profile import ShipProfile
 from ...trial import Trial
 from .smoothing import Smoothed, smooth
@@ -98,7 +98,9 @@ def short_horizon(
         parts = [part for _, part in some]
         start = [motions[i].states[part.start] for i, part in some]
         found = predictor.predict(
-            cases_from([trials[i] for i, _ in some], predictor.inputs, parts=parts, initial=start)
+            cases_from(
+                [trials[i] for i, _ in some], predictor.inputs, draught_of(predictor), parts=parts, initial=start
+            )
         )
         diverged += int(found.diverged[:, member].sum())
         for k, (i, part) in enumerate(some):

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..elementary import exp, log
 from ..quantities import Lanes
 from .formula import Formula
 
@@ -96,21 +97,27 @@ class ShallowRatios(NamedTuple):
     N_r: Lanes
 
 
-def shallow_ratios(L, B, d, C_b, depth):
-    """What water of ``depth`` [m] makes of the linear derivatives; L, B, d [m], C_b [-].
+LEAST = 1.2
+"""Depth over draught [-] below which nobody validated the formulas."""
 
-    Y_v, N_v, N_r times (1 - h)^-n - h with h = d / depth and n = 0.40, 0.425 C_b B/d and 1.5 - 14.28 d/L; Y_r times a
-    cubic in h.  The exponent of N_v is from memory of the paper.  Not validated below depth / draught = 1.2.
+
+def shallow_ratios(L, B, d, C_b, h):
+    """What water makes of the linear derivatives where the draught is ``h`` [-] of its depth; L, B, d [m], C_b [-].
+
+    Y_v, N_v, N_r times (1 - h)^-n - h with n = 0.40, 0.425 C_b B/d and 1.5 - 14.28 d/L; Y_r times a cubic in h.  In
+    deep water, h = 0, all four are exactly 1.  The exponent of N_v is from memory of the paper.  Not validated below
+    depth / draught = 1.2.
     Floats or (n_lanes,) -> ShallowRatios.
     """
     fullness = C_b * B / d
-    h = d / depth
     a_1 = -5.5 * fullness**2 + 26.0 * fullness - 31.5
     a_2 = 37.0 * fullness**2 - 185.0 * fullness + 230.0
     a_3 = -38.0 * fullness**2 + 197.0 * fullness - 250.0
 
+    gap = log(1.0 - h)
+
     def ratio(n):
-        return (1.0 - h) ** -n - h
+        return exp(-n * gap) - h
 
     return ShallowRatios(
         Y_v=ratio(0.40 * fullness),

@@ -1,0 +1,138 @@
+"""``mmgtune validate`` on voyages: a run folder, and what is found in it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from ..options import VoyageOptions
+from ..units import DEG, shown_in
+from . import common as c
+from .options import WrittenOptions
+from .progress import Progress
+
+if TYPE_CHECKING:
+    from ..voyages import VoyageValidation
+
+SHOWN = 5
+"""Features whose bins are printed; the report has all."""
+
+
+def on_voyages(
+    profiles: Sequence[str],
+    trials: str,
+    options: VoyageOptions,
+    run: WrittenOptions,
+    *,
+    json: bool,
+    no_report: bool,
+) -> None:
+    """Score profiles on voyages, write the run folder and print what was found."""
+    from ..fitting import claimed
+    from ..given import ship_of
+    from ..report import render
+    from ..trial import load_voyages
+    from ..voyages import Hooks, validate_voyages, write_voyages
+
+    ships = [ship_of(name) for name in profiles]
+    data = load_voyages(trials)
+    if data.ship and data.ship != ships[0].id:
+        c.say(f"warning: the voyages are of '{data.ship}', the first profile is of '{ships[0].id}'")
+    folder = run.out or c.default_out(ships[0])
+    with claimed(folder, force=run.force), Progress(run.quiet, folder, resumable=False) as progress:
+        hooks = Hooks(on_progress=progress.on_share, stop=lambda: progress.stopped)
+        result = validate_voyages(list(profiles), data, options, hooks=hooks, command=c.command_line())
+        document = write_voyages(result, folder)
+        progress.saved(result.interrupted)
+        if not no_report:
+            render(folder)
+    if json:
+        c.print_json(document)
+    else:
+        c.show(summary(result, str(folder), report=not no_report))
+    progress.leave()
+
+
+def summary(result: VoyageValidation, folder: str, report: bool) -> str:
+    """The result as a person wants to read it in a terminal."""
+    found = result.to_dict()
+    lines = [found["verdict"]]
+    if result.n_windows:
+        limits = found["classes"]["cVDM_limits"]
+        names = [f"{name} (to {limit:g} %)" for name, limit in zip(found["classes"]["names"], limits, strict=False)]
+        lines += ["", _head("windows", [*names, "sub-optimal", "diverged"])]
+        lines += [_head(one["profile"], [*one["classes"].values(), one["diverged"]]) for one in found["models"]]
+        lines += ["", _head("median (95 % below)", list(found["models"][0]["measures"]))]
+        lines += [_head(one["profile"], _medians(one)) for one in found["models"]]
+        for one in found["comparisons"]:
+            lines.append(_compared(one, found["drawn_anew"]))
+        first = found["models"][0]
+        lines += ["", f"where the error of {first['profile']} lives: mean cVDM [%] (windows)"]
+        for row in first["where"][:SHOWN]:
+            lines.append(f"  {row['words']}, explains {100.0 * row['explained']:.0f} %")
+            lines.append("    " + "   ".join(_bin(one, row["unit"]) for one in row["bins"]))
+        r_max = found["r_max"]
+        if r_max["rad_per_s"] is not None:
+            lines += ["", f"cVDM is relative to {r_max['rad_per_s'] / DEG:.3g} deg/s, {r_max['from']}."]
+    lines.append(_left_out(found))
+    if result.interrupted:
+        done = sum(log["complete"] for log in found["logs"])
+        lines.append(f"Stopped after {done} of {found['n_logs']} voyages; everything is of the windows scored by then.")
+    lines.append(f"{found['n_windows']} windows of {found['window_s']:g} s in {found['wall_s']:.1f} s.")
+    lines.append(f"Report: {folder}/report.html" if report else f"Results: {folder}")
+    return "\n".join(lines)
+
+
+def _head(name: str, values: Sequence[Any]) -> str:
+    return f"{name[:32]:<34}" + "".join(f"{value:>24}" for value in values)
+
+
+def _medians(one: dict[str, Any]) -> list[str]:
+    return [f"{_number(row['median'])} ({_number(row['q95'])}) {row['unit']}" for row in one["measures"].values()]
+
+
+def _number(value: float | None) -> str:
+    return "diverged" if value is None else f"{value:.3g}"
+
+
+def _bin(one: dict[str, Any], unit: str) -> str:
+    mean = "-" if one["cVDM_mean"] is None else f"{one['cVDM_mean']:.3g}"
+    return f"{in_words(one, unit)}: {mean} ({one['windows']})"
+
+
+def in_words(one: dict[str, Any], unit: str) -> str:
+    """A bin by its ends, in the unit that people read."""
+    if one["name"]:
+        return str(one["name"])
+    shown, factor = shown_in(unit)
+    low, high = (None if one[end] is None else f"{one[end] * factor:.3g}" for end in ("low", "high"))
+    if low is None:
+        return f"below {high} {shown}"
+    return f"from {low} {shown}" if high is None else f"{low} to {high} {shown}"
+
+
+def _compared(one: dict[str, Any], anew: str) -> str:
+    share = "-" if one["share_second_better"] is None else f"{100.0 * one['share_second_better']:.0f} %"
+    said = f"{one['second']} is better than {one['first']} in {share} of the windows"
+    if one["cVDM_difference"] is not None:
+        said += f"; cVDM differs by {one['cVDM_difference']:+.3g} % on average"
+    if one["cVDM_difference_ci95"]:
+        low, high = one["cVDM_difference_ci95"]
+        said += f" ({low:+.3g} to {high:+.3g}, {anew} drawn anew)"
+    return said + "."
+
+
+def _left_out(found: dict[str, Any]) -> str:
+    rows = sum(log["rows_read"] for log in found["logs"])
+    left: dict[str, int] = {}
+    for log in found["logs"]:
+        for reason, count in log["rows_left_out"].items():
+            left[reason] = left.get(reason, 0) + count
+    resting = sum(log["windows_at_rest"] for log in found["logs"])
+    parts = [
+        f"{count} with {reason}" if reason != "too short" else f"{count} in pieces {reason}"
+        for reason, count in left.items()
+        if count
+    ]
+    said = f"Left out of {rows} rows: {', '.join(parts)}" if parts else f"Every one of {rows} rows is in a window"
+    return said + (f"; {resting} windows with the ship at rest" if resting else "") + "."

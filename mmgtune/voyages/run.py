@@ -1,0 +1,238 @@
+"""Models scored on voyages: streamed, cut into windows, each simulated anew from its measured state."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import OptionError, Problem, TrialError
+from ..fitting.run import facts_of_profile, made_by
+from ..given import trials_of
+from ..objective import spread
+from ..options import VoyageOptions
+from ..predictor import Predictor, draught_of, profile_of
+from ..threads import blas_on_one_thread
+from ..trial import Cutting, Voyage, VoyageSet, load_voyages, voyage_windows, window_at
+from ..trial.voyage_windows import Window
+from ..units import DEG
+from ..validating import Scorable, predictors_of
+from .result import DrawnWindow, Log, VoyageValidation
+from .scores import cases_for, score_windows, windows_of
+from .spread import Spread
+from .table import Gathered, WindowTable
+from .turning import r_max_of
+
+AT_ONCE = 60_000
+"""Samples of windows simulated at one time; bounds the memory."""
+
+AT_REST = 0.02
+"""Froude number U / sqrt(g L_pp) below which the ship is at rest: relative distances say nothing there."""
+
+EACH = 2
+"""Windows drawn of each role: best, median, worst."""
+
+
+@dataclass
+class Hooks:
+    """What the caller wants to hear and to say while it goes on.
+
+    on_progress  called with rows done, rows in all, and the voyage's id
+    stop         asked often; True ends the run with the windows scored by then
+    """
+
+    on_progress: Callable[[int, int, str], None] = lambda *_: None
+    stop: Callable[[], bool] = lambda: False
+
+
+@dataclass(eq=False)
+class _Run:
+    """A validation under way."""
+
+    predictors: Mapping[str, Predictor]
+    options: VoyageOptions
+    hooks: Hooks
+    slowest: float
+    total: int
+    gathered: Gathered = field(default_factory=Gathered)
+    spread: Spread = field(default_factory=Spread)
+    logs: list[Log] = field(default_factory=list)
+    rows: int = 0
+
+    @property
+    def inputs(self) -> list[str]:
+        """All that drives any of the models."""
+        return list(dict.fromkeys(name for one in self.predictors.values() for name in one.inputs))
+
+    def score(self, voyage: Voyage, number: int) -> bool:
+        """All windows of a voyage; whether it was read to its end."""
+        sha256 = voyage.verify()
+        counted = Cutting()
+        at_rest = 0
+        stopped = False
+        found = voyage_windows(voyage, self.options.window, gap=self.options.gap, inputs=self.inputs, counted=counted)
+        for some in _portions(found):
+            self.hooks.on_progress(self.rows + counted.rows, self.total, voyage.id)
+            at_rest += self._add(some, number)
+            stopped = self.hooks.stop()
+            if stopped:
+                break
+        self.rows += voyage.n_rows
+        self.logs.append(Log(voyage, counted, at_rest, sha256, not stopped))
+        return not stopped
+
+    def _add(self, some: Sequence[Window], number: int) -> int:
+        """Score windows; returns how many are left out because the ship was at rest."""
+        speed = [float(np.nanmean(np.hypot(one.trial.u, one.trial.v_m))) for one in some]
+        moving = [one for one, U in zip(some, speed, strict=True) if self.slowest <= U]
+        if not moving:
+            return len(some)
+        windows = windows_of([one.trial for one in moving])
+        self.spread.add(windows.motion)
+        self.gathered.ids += [one.trial.id for one in moving]
+        self.gathered.about += [
+            (number, one.row, one.trial.n_samples, one.begins, one.trial.duration) for one in moving
+        ]
+        self.gathered.features.append(windows.features())
+        self.gathered.counts.append(windows.counts)
+        cases: dict[tuple[tuple[str, ...], float | None], Any] = {}
+        for name, predictor in self.predictors.items():
+            driven = tuple(predictor.inputs), draught_of(predictor)
+            if driven not in cases:
+                cases[driven] = cases_for(windows, *driven)
+            scores, _ = score_windows(predictor, windows, cases[driven])
+            self.gathered.scores.setdefault(name, []).append(scores)
+        return len(some) - len(moving)
+
+
+@blas_on_one_thread
+def validate_voyages(
+    profiles: Scorable | Sequence[Scorable] | Mapping[str, Scorable],
+    voyages: VoyageSet | str | Path,
+    options: VoyageOptions = VoyageOptions(),
+    *,
+    hooks: Hooks | None = None,
+    command: str = "",
+) -> VoyageValidation:
+    """Score models on the windows of voyages, each window simulated from its first measured state.
+
+    profiles  as for ``validate``
+    voyages   logs of hours and days, or the path of a file or a folder; they are never held whole
+
+    r_max of cVDM is the ship's: as given, else the first physics model's in its own turn, else of the logs.
+    Raises OptionError for no profile and for repeated manoeuvres; TrialError for what is wrong with a file, and where
+    no window could be cut.
+    """
+    began = time.perf_counter()
+    if options.manoeuvres:
+        why = "a voyage is no turning circle and no zigzag"
+        raise OptionError(Problem("manoeuvres of voyages cannot be repeated", "manoeuvres", why, "leave it out"))
+    predictors = predictors_of(profiles, options)
+    data = voyages if isinstance(voyages, VoyageSet) else load_voyages(voyages)
+    told = Hooks() if hooks is None else hooks
+    sigma = spread(list(trials_of(options.sigma_from).trials.values())) if options.sigma_from else None
+    first = next(iter(predictors.values()))
+    run = _Run(predictors, options, told, AT_REST * float(np.sqrt(9.81 * first.L_pp)), data.n_rows)
+    interrupted = False
+    for number, voyage in enumerate(data.voyages):
+        interrupted = told.stop() or not run.score(voyage, number)
+        if interrupted:
+            break
+    if not run.gathered.ids and not interrupted:
+        raise TrialError(_nothing(data, run.logs))
+    given = None if options.r_max is None else options.r_max * DEG
+    largest = np.concatenate([one["yaw_rate_largest"] for one in run.gathered.features] or [np.zeros(0)])
+    r_max, r_max_from = r_max_of(given, predictors.items(), largest)
+    table = run.gathered.table(r_max) if run.gathered.ids else None
+    by = f"{options.sigma_from}" if options.sigma_from else "the windows, positions from the start of each"
+    return VoyageValidation(
+        predictors=predictors,
+        trials=str(data.path),
+        logs=tuple(run.logs),
+        table=table,
+        r_max=r_max,
+        r_max_from=r_max_from,
+        sigma=sigma or run.spread.sigma(),
+        sigma_from=by,
+        drawn=_drawn(table, data, predictors) if table is not None else (),
+        provenance=_provenance(predictors, data, run.logs, command),
+        options=options,
+        shorter=data.shorter,
+        n_logs=len(data.voyages),
+        interrupted=interrupted,
+        wall_s=time.perf_counter() - began,
+    )
+
+
+def _portions(windows: Iterator[Window]) -> Iterator[list[Window]]:
+    """Windows that are scored together."""
+    some: list[Window] = []
+    longest = 0
+    for one in windows:
+        longest = max(longest, one.trial.n_samples)
+        if some and (len(some) + 1) * longest > AT_ONCE:
+            yield some
+            some, longest = [], one.trial.n_samples
+        some.append(one)
+    if some:
+        yield some
+
+
+def _drawn(table: WindowTable, data: VoyageSet, predictors: Mapping[str, Predictor]) -> tuple[DrawnWindow, ...]:
+    """The best, the median and the worst windows by cVDM of the first model, read and simulated anew."""
+    cVDM = next(iter(table.models.values())).cVDM
+    sound = np.flatnonzero(np.isfinite(cVDM))
+    order = sound[np.argsort(cVDM[sound], kind="stable")]
+    middle = max(0, (len(order) - EACH) // 2)
+    places: dict[int, str] = {}
+    for role, chosen in (("best", order[:EACH]), ("worst", order[::-1][:EACH]), ("median", order[middle:][:EACH])):
+        for place in chosen.tolist():
+            places.setdefault(place, role)
+    found = []
+    for role in ("best", "median", "worst"):
+        for place in (one for one, of in places.items() if of == role):
+            voyage = data.voyages[int(table.voyage[place])]
+            trial = window_at(voyage, int(table.row[place]), int(table.n_samples[place])).trial
+            windows = windows_of([trial])
+            states = {
+                name: score_windows(one, windows, cases_for(windows, one.inputs, draught_of(one)))[1][0]
+                for name, one in predictors.items()
+            }
+            found.append(DrawnWindow(place, role, trial.t, trial.motion, trial.delta, states))
+    return tuple(found)
+
+
+def _provenance(
+    predictors: Mapping[str, Predictor], data: VoyageSet, logs: Sequence[Log], command: str
+) -> dict[str, Any]:
+    profiles = {name: profile_of(one) for name, one in predictors.items()}
+    return {
+        **made_by(command),
+        "profiles": {name: facts_of_profile(one) for name, one in profiles.items() if one is not None},
+        "trials": {
+            "path": str(data.path),
+            "ship": data.ship,
+            "licence": data.licence,
+            "citation": data.citation,
+            "sha256": {log.voyage.id: log.sha256 for log in logs},
+            "source": {log.voyage.id: log.voyage.source for log in logs},
+        },
+    }
+
+
+def _nothing(data: VoyageSet, logs: Sequence[Log]) -> Problem:
+    """The problem of voyages without a window."""
+    left = {reason: sum(log.counted.left_out[reason] for log in logs) for reason in Cutting().left_out}
+    resting = sum(log.at_rest for log in logs)
+    why = ", ".join(f"{count} rows {reason}" for reason, count in left.items() if count)
+    why = "; ".join(filter(None, (why, f"{resting} windows with the ship at rest" if resting else "")))
+    return Problem(
+        "no window could be cut out of these voyages",
+        str(data.path),
+        why,
+        "a window needs motion and inputs without a gap longer than gap=S; see the guide on voyages",
+    )
