@@ -138,7 +138,7 @@ def test_a_current_that_turns_is_what_newton_says(following, ship, period):
     scale = 1.0 + np.abs(expected).max(axis=0)
     integrator = Integrator("rk4", 200)
     compiled = states(following, cases, integrator=integrator)[0, 0]
-    assert np.abs((compiled - expected) / scale).max() < 1e-8
+    assert np.abs((compiled - expected) / scale).max() < 1e-11
 
     # Without the water's own acceleration the ship is left behind, by more than any trial would forgive.
     section = following.profile.sections["effects.current"]
