@@ -85,7 +85,7 @@ def _warnings(data: Mapping[str, Any]) -> tuple[str, ...]:
     if data.get("interrupted"):
         done = sum(bool(log.get("complete")) for log in data["logs"])
         found.append(
-            f"Stopped by the user after {done} of {data['n_logs']} voyages: all of this is of the windows scored by then."
+            f"Stopped by the user after {done} of {data['n_logs']} voyages: this is of the windows scored by then."
         )
     if data.get("shorter"):
         names = ", ".join(clean(name) for name in data["shorter"][:6])
