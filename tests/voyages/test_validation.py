@@ -164,7 +164,7 @@ def test_the_command(voyage, tmp_path):
         cwd=tmp_path,
     )
     assert shown.code == 0, shown.err
-    assert "optimal (to 5 %)" in shown.out
+    assert "optimal to 5 %, satisfactory to 50 %" in shown.out
     assert "windows of 300 s" in shown.out
     assert "400 with incomplete motion" in shown.out
     assert "kvlcc2 is better than suzaku in" in shown.out
