@@ -87,6 +87,8 @@ def summary(result: FitResult, folder: str, report: bool) -> str:
     lines += ["", f"{'trial':<{width}}{'role':<7}{'J before':>11}{'J after':>11}   {result.method}", ""]
     for one in result.compared:
         lines.append(f"{one.trial.id:<{width}}{one.role:<7}{one.J['before']:>11.4g}{one.J['after']:>11.4g}")
+    if result.beside:
+        lines += ["", *result.beside.words()]
     lines += ["", *result.certificate.sentences[:2], *map(in_flags, result.identifiability.sentences[:2])]
     lines += [f"Note: {in_flags(warning)}" for warning in result.warnings()]
     lines += ["", result.verdict(), f"{result.evaluations} evaluations in {result.wall_s:.1f} s."]

@@ -22,7 +22,7 @@ from ..threads import blas_on_one_thread
 from ..trial import Trial, TrialSet
 from ..validation import L_MSE, TrialScore, by_manoeuvre, improvement, score
 from .comparison import finite, finite_values
-from .extending import with_effects
+from .extending import settled
 from .journal import finished, journalled
 from .least_squares import solve
 from .robust import weigh_down
@@ -36,6 +36,7 @@ from .run import (
     make_provenance,
     random_starts,
 )
+from .weighing import Weight, weigh
 
 RESULT = "leave_out.json"
 
@@ -66,6 +67,7 @@ class LeftOut:
     repeated_before, repeated_after  their manoeuvres repeated likewise, where asked for
     n_parts  how many there are to be
     interrupted  stopped by the user; scores are of the parts finished by then
+    weight   of what is known beforehand, found with all runs; None where J is all
     """
 
     thetas: tuple[dict[str, float], ...]
@@ -78,6 +80,7 @@ class LeftOut:
     wall_s: float
     n_parts: int
     interrupted: bool = False
+    weight: Weight | None = None
     repeated_before: tuple[Repeated, ...] = ()
     repeated_after: tuple[Repeated, ...] = ()
 
@@ -124,6 +127,8 @@ class LeftOut:
             ],
             "wall_s": self.wall_s,
         }
+        if self.weight:
+            found["weight"] = self.weight.to_dict()
         if self.options.manoeuvres:
             found["manoeuvres"] = {
                 "before": document(self.repeated_before),
@@ -167,7 +172,7 @@ def leave_out(
     Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to.
     """
     profile, trials = ship_of(profile), trials_of(trials)
-    profile, options = with_effects(profile, options)
+    profile, options = settled(profile, options)
     provenance = make_provenance(profile, trials, command)
     identity = identity_of(profile, trials, options, provenance)
     with journalled(folder, identity, hooks.stop, resume=resume):
@@ -194,6 +199,7 @@ def _leave_out(
     problem = make_problem(profile, trials, options)
     box, model = problem.box, problem.model
     before = np.clip(box.to_unit(box.pre), 0.0, 1.0)
+    problem, weight = weigh(problem, before, hooks.stop)
     hooks.on_phase("fitting all runs")
     ridge = edge_ridge(problem, options, before)
     first = random_starts(problem, options, before, ())
@@ -213,7 +219,7 @@ def _leave_out(
             break
         runs = tuple(dict.fromkeys(trials.trials[name].run for name in out))
         hooks.on_phase(f"leaving out {', '.join(runs)}")
-        part = make_problem(profile, trials, options, others)
+        part = make_problem(profile, trials, options, others).with_weight(problem.weight)
         ends = solve(part, starts, ridge=ridge, anchor=before, stop=hooks.stop, tolerance=SETTLED * best.J)
         fitted = min(ends, key=lambda end: end.J + ridge * float(np.sum((end.unit - before) ** 2)))
         if options.loss == "huber" and not hooks.stop():
@@ -242,6 +248,7 @@ def _leave_out(
         time.perf_counter() - began,
         len(dealt),
         len(parts) < len(dealt),
+        weight,
         tuple(repeat(model, _named(whole, seen))) if asked.manoeuvres else (),
         tuple(repeated[name] for name in dict.fromkeys(trial.whole for trial in seen) if name in repeated),
     )

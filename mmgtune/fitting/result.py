@@ -13,14 +13,47 @@ from ..components import split_name
 from ..options import FitOptions
 from ..predictor import words_of
 from ..profile import ShipProfile, tuned
-from .box import Box
+from .box import Box, width_words
 from .certificate import Certificate
 from .cmaes import Generation, Restart
 from .comparison import TrialComparison, finite, finite_values, total
 from .identifiability import Identifiability
 from .least_squares import LeastSquaresResult
+from .weighing import Weight
 
 SCHEMA = 1
+
+
+@dataclass(frozen=True)
+class Beside:
+    """What a fit made small beside J.
+
+    squares  of the rows of each term before and after, by its name: in variances, so times ``weight.s2`` beside J
+    """
+
+    weight: Weight
+    squares: Mapping[str, tuple[float, float]]
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        terms = {name: {"before": finite(old), "after": finite(new)} for name, (old, new) in self.squares.items()}
+        return {"weight": self.weight.to_dict(), "squares": terms, "sentences": self.words()}
+
+    def words(self) -> list[str]:
+        """The terms and their weight in sentences."""
+        found = []
+        weight = f"weight {self.weight.s2:.3g} in units of J"
+        independent = sum(self.weight.independent.values())
+        if "prior" in self.squares:
+            old, new = self.squares["prior"]
+            found.append(f"Prior: scatter of the formulas, {weight}; its squares go from {old:.3g} to {new:.3g}.")
+        if self.weight.independent:
+            settled = "" if self.weight.settled else "; the weight had not settled"
+            found.append(
+                f"J counts as {independent:.3g} independent differences, which determine "
+                f"{sum(self.weight.learnt.values()):.2g} combinations of coefficients against it{settled}."
+            )
+        return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +62,7 @@ class FitResult:
 
     unit         (n_targets,) position of the tuned values in the box
     provenance   what it was made from: profile, trials with their hashes, command, versions, time
+    beside       what was made small beside J; None where J is all
     J_free_start  J of the tuned values if each tune trial started from an estimated state; None where it does
     interrupted  stopped by the user; the values are the best so far
     """
@@ -40,6 +74,7 @@ class FitResult:
     J: float
     J_before: float
     J_free_start: float | None
+    beside: Beside | None
     compared: tuple[TrialComparison, ...]
     restarts: tuple[Restart, ...]
     starts: tuple[LeastSquaresResult, ...]
@@ -59,7 +94,11 @@ class FitResult:
         """In a line."""
         stopped = ", interrupted" if self.interrupted else ""
         J = f"J {self.J_before:.4g} -> {self.J:.4g}"
-        return f"FitResult({self.profile.id}, {len(self.box)} targets, a_r {self.options.a_r:g}, {J}{stopped})"
+        return f"FitResult({self.profile.id}, {len(self.box)} targets, {self.box_words()}, {J}{stopped})"
+
+    def box_words(self) -> str:
+        """How wide the box is."""
+        return width_words(self.options.a_r, "a_r ")
 
     @property
     def theta(self) -> dict[str, float]:
@@ -143,6 +182,7 @@ class FitResult:
             section, symbol = split_name(name)
             field = self.profile.sections[section].component.fields[symbol]
             z = float(self.unit[i])
+            formula = self.box.prior_of(i) if self.beside else None
             rows.append(
                 {
                     "name": name,
@@ -156,6 +196,7 @@ class FitResult:
                     "stderr": stderr.get(name),
                     "at_bound": self.box.bound_at(i, z),
                     "determined": name not in undetermined,
+                    **({"formula": formula[0], "scatter": formula[1]} if formula else {}),
                 }
             )
         return rows
@@ -177,7 +218,7 @@ class FitResult:
                 "trials": {whole[name]: sha256 for name, sha256 in told["sha256"].items()},
                 "tuned_on": list(dict.fromkeys(whole[name] for name in told["tune"])),
                 "source_of_trials": {whole[name]: source for name, source in told["source"].items()},
-                "a_r": self.options.a_r,
+                **({"box": self.box_words()} if self.options.a_r is None else {"a_r": self.options.a_r}),
                 "seed": self.options.seed,
                 "method": self.options.method,
                 "integrator": self.method,
@@ -219,6 +260,7 @@ class FitResult:
                 "scales": dict(self.scales),
             },
             "coefficients": self.coefficients(),
+            "beside": self.beside.to_dict() if self.beside else None,
             "inputs": [one.to_dict() for one in self.profile.arrangement.inputs],
             "trial_results": [c.to_dict() for c in self.compared],
             "J_tune_free_start": finite(self.J_free_start),

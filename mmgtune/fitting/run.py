@@ -27,14 +27,16 @@ from .certificate import certify
 from .checkpoint import EVERY, Checkpoint
 from .cmaes import Search, search
 from .comparison import compare, total
-from .extending import with_effects
+from .extending import settled
 from .identifiability import analyse
 from .initial import deviations
 from .journal import journalled
 from .least_squares import LeastSquaresResult, fit_offsets, solve
 from .problem import FitProblem
-from .result import FitResult
+from .result import Beside, FitResult
 from .robust import weigh_down
+from .terms import ScatterPrior, Term
+from .weighing import Weight, weigh
 
 EDGE = 0.5
 """Distance from the middle of the box to its edge, in the unit cube."""
@@ -69,16 +71,18 @@ class Setting:
     """What all problems of one fit have in common.
 
     estimated  whether trials start from an estimated state
+    terms      what is made small besides J
     """
 
     model: Model
     trials: TrialSet
     objective: Objective
     box: Box
-    a_r: float
+    a_r: float | None
     backend: Backend
     integrator: Integrator
     estimated: bool
+    terms: tuple[Term, ...] = ()
 
     def holding(self, names: Sequence[str]) -> Setting:
         """The same with some targets held at their pre-determined values."""
@@ -93,7 +97,7 @@ class Setting:
         chosen = [self.trials.trials[name] for name in ids or self.trials.tune]
         cases = cases_of(chosen, self.objective, self.model.inputs)
         sigma = self.deviations(ids) if self.estimated else None
-        return FitProblem.of(self.model, cases, self.box, self.backend, self.integrator, sigma)
+        return FitProblem.of(self.model, cases, self.box, self.backend, self.integrator, sigma, self.terms)
 
     def deviations(self, ids: Sequence[str] = ()) -> FloatArray:
         """Deviations (n_trials, 6) of the measured initial states."""
@@ -120,6 +124,7 @@ def make_setting(profile: ShipProfile, trials: TrialSet, options: FitOptions) ->
         get_backend(options.backend),
         options.make_integrator(),
         options.initial == "estimated",
+        (ScatterPrior(),) if options.prior and len(box.from_formula) else (),
     )
 
 
@@ -153,7 +158,7 @@ def fit(
     Raises OptionError for choices that make no sense, OutputError where the checkpoint cannot be written.
     """
     profile, trials = ship_of(profile), trials_of(trials)
-    profile, options = with_effects(profile, options)
+    profile, options = settled(profile, options)
     provenance = make_provenance(profile, trials, command)
     if checkpoint_folder is None:
         return _fit(profile, trials, options, hooks, None, resume, more_starts, provenance)
@@ -187,7 +192,11 @@ def _fit(
     plain = problem
     recorded = checkpoint.load() if checkpoint and resume and checkpoint.path.is_file() else None
     before = problem.box.to_unit(problem.box.pre)
-    J_before = float(problem.costs(before[:, None])[0])
+    if problem.terms:
+        hooks.on_phase("weighing what is known beforehand")
+    problem, weight = weigh(problem, np.clip(before, 0.0, 1.0), hooks.stop)
+    J_before = float(problem.misfit(before[:, None])[0])
+    cost_before = float(problem.costs(before[:, None])[0]) if problem.terms else J_before
 
     hooks.on_phase("least squares")
     starts = random_starts(problem, options, before, more_starts)
@@ -205,21 +214,22 @@ def _fit(
     if options.method == "cma-es":
         hooks.on_phase("CMA-ES")
         # Far below the tolerance of the certificate; least squares goes on from where the search ends.
-        tolerance = max(1e-9 * J_before, 1e-5 * best.J)
+        tolerance = max(1e-9 * cost_before, 1e-5 * best.J)
         found = _search(problem, options, np.clip(before, 0.0, 1.0), tolerance, hooks, checkpoint, recorded)
         if not hooks.stop():
             ends += solve(problem, found.unit[:, None], stop=hooks.stop)
             best = min(ends, key=lambda end: end.J)
     if not hooks.stop() and ridge == 0.0:
         best = _nearest(problem, best, before)
-    unit, J = best.unit, best.J
+    unit, cost = best.unit, best.J
     problem = problem.with_offsets(best.offsets)
-    if found is not None and found.J < J:
-        unit, J = found.unit, found.J
+    if found is not None and cost > found.J:
+        unit, cost = found.unit, found.J
+    J = float(problem.misfit(unit[:, None])[0]) if problem.terms else cost
 
     hooks.on_phase("certificate and identifiability")
     restarts = found.restarts if found else []
-    certificate = certify(problem, unit, J, J_before, ends, restarts, found.J if found else None, ridge, before)
+    certificate = certify(problem, unit, cost, cost_before, ends, restarts, found.J if found else None, ridge, before)
     held_by_bound = np.isin(problem.box.names, [bound.name for bound in certificate.active])
     roles = {name: trials.role(name) for name in trials.trials}
     everything = setting.problem(tuple(trials.trials))
@@ -233,6 +243,7 @@ def _fit(
         J=J if options.loss == "squares" else float(total(compared, "tune", "after") or J),
         J_before=J_before,
         J_free_start=free_start,
+        beside=beside(problem, before, unit, weight) if weight else None,
         compared=compared,
         restarts=tuple(restarts),
         starts=tuple(ends),
@@ -252,7 +263,7 @@ def _fit(
 
 def edge_ridge(problem: FitProblem, options: FitOptions, before: FloatArray) -> float:
     """Weight of squared distances from the pre-determined values (n_targets,) in the unit cube."""
-    return options.regularise * float(problem.costs(before[:, None])[0]) / EDGE**2 if options.regularise else 0.0
+    return options.regularise * float(problem.misfit(before[:, None])[0]) / EDGE**2 if options.regularise else 0.0
 
 
 def random_starts(
@@ -269,7 +280,15 @@ def random_starts(
 
 def J_free_start(problem: FitProblem, unit: FloatArray) -> float:
     """J of coefficients (n_targets,) if each trial started from the state that fits best within its noise."""
-    return float(problem.costs(unit[:, None], fit_offsets(problem, unit)[:, None])[0])
+    return float(problem.misfit(unit[:, None], fit_offsets(problem, unit)[:, None])[0])
+
+
+def beside(problem: FitProblem, before: FloatArray, unit: FloatArray, weight: Weight) -> Beside:
+    """What the terms of a weighed problem come to at two points (n_targets,) of the unit cube."""
+    squares = {
+        name: (float(of[0]), float(of[1])) for name, of in problem.squares(np.column_stack([before, unit])).items()
+    }
+    return Beside(weight, squares)
 
 
 def traded(problem: FitProblem) -> tuple[str, ...]:
