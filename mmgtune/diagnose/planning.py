@@ -20,7 +20,7 @@ def plan_diagnosis(profile: ShipGiven, trials: TrialsGiven, options: DiagnoseOpt
     ship = ship_of(profile)
     options = with_width(ship, options)
     own = options.fit_options()
-    pieces = in_pieces(trials_of(trials), own)
+    pieces = in_pieces(trials_of(trials).series_only("a diagnosis"), own)
     seen = [trial for name, trial in pieces.trials.items() if name not in pieces.test]
     known = known_causes(ship, seen, options)
     bench = make_workbench(ship, seen, options)

@@ -61,7 +61,7 @@ def diagnose(
     resume  continue what was stopped in the folder
     Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to.
     """
-    profile, trials = ship_of(profile), trials_of(trials)
+    profile, trials = ship_of(profile), trials_of(trials).series_only("a diagnosis")
     options = with_width(profile, options)
     provenance = make_provenance(profile, trials, command)
     identity = identity_of(profile, trials, options, provenance)

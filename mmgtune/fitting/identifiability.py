@@ -129,6 +129,9 @@ def analyse(problem: FitProblem, unit: FloatArray, active: BoolArray) -> Identif
         if problem.sigma is not None:
             by_offset = whitening.apply(problem.central_offsets(unit))
             sensitivity = problem.without_offsets(sensitivity, by_offset, problem.sigma**-2.0)
+    lacking = len(box) - len(sensitivity)
+    if lacking > 0:  # fewer numbers than targets: the rest of the directions is null
+        sensitivity = np.vstack([sensitivity, np.zeros((lacking, len(box)))])
     _, singular, vectors = np.linalg.svd(sensitivity, full_matrices=False)
     null = singular < NULL_RATIO * singular[0]
     directions = tuple(_direction(problem, unit, relative, v) for v in _sparse(vectors[null]))
@@ -160,7 +163,7 @@ def analyse(problem: FitProblem, unit: FloatArray, active: BoolArray) -> Identif
         undetermined=undetermined,
         combinations=_combinations(problem, unit, relative, singular, vectors, null),
         autocorrelation=whitening.phi,
-        from_data=_from_data(problem, sensitivity) if problem.terms else None,
+        from_data=_from_data(problem, sensitivity[: len(residuals)]) if problem.terms else None,
     )
     return replace(result, sentences=_sentences(problem, result, active))
 
@@ -219,8 +222,10 @@ def _direction(problem: FitProblem, unit: FloatArray, relative: FloatArray, vect
     first = members[sizes.index(sorted(sizes)[len(sizes) // 3])]
     factor = 1.0 / percent[first]
     step = CHECKED * vector * relative * factor / box.width
-    states = problem.states(np.column_stack([unit, unit + step])).states
-    shift = np.abs(states[:, 1, :, :2] - states[:, 0, :, :2]).max()
+    shift = 0.0
+    if len(problem.cases):
+        states = problem.states(np.column_stack([unit, unit + step])).states
+        shift = np.abs(states[:, 1, :, :2] - states[:, 0, :, :2]).max()
     ordered = [first, *(i for i in members if i != first)]
     return NullDirection({box.names[i]: float(percent[i] * factor) for i in ordered}, float(shift))
 
@@ -279,7 +284,8 @@ def _sentences(problem: FitProblem, result: Identifiability, active: BoolArray) 
     sentences = [f"{n - lost} of {n} combinations of the targets can be known from these trials."]
     if result.from_data is not None:
         sentences = [_decided(problem, result.from_data)]
-    sentences += [direction.sentence for direction in result.null_directions]
+    if problem.n_residuals:  # a few stated numbers leave more directions open than anybody reads
+        sentences += [direction.sentence for direction in result.null_directions]
     weak = [name for name, of in result.undetermined.items() if of.why == "weak"]
     if weak:
         sentences.append(f"Not determined by these trials within their box: {', '.join(weak)}.")

@@ -80,9 +80,11 @@ def plan_leave_out(profile: ShipGiven, trials: TrialsGiven, options: LeaveOutOpt
 
 def whole(profile: ShipProfile, trials: TrialSet, search: str, options: FitOptions) -> list[str]:
     """Profile, trials and choices in lines."""
+    tune, test = (*trials.tune, *trials.tune_stated), (*trials.test, *trials.test_stated)
     return [
         f"profile   {profile.name} ({profile.path})",
-        f"trials    tune: {', '.join(trials.tune)}; test: {', '.join(trials.test) or 'none'} ({trials.path})",
+        f"trials    tune: {', '.join(tune)}; test: {', '.join(test) or 'none'} ({trials.path})",
+        *(f"stated    {one.id}: {one.order}; {', '.join(one.indices)}" for one in trials.stated.values()),
         f"search    {search}",
         f"runs      {options.integrator}, initial states {options.initial}",
     ]

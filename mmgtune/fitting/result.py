@@ -13,6 +13,7 @@ from ..components import split_name
 from ..options import FitOptions
 from ..predictor import words_of
 from ..profile import ShipProfile, tuned
+from ..stated import IndexComparison
 from .box import Box, width_words
 from .certificate import Certificate
 from .cmaes import Generation, Restart
@@ -47,6 +48,11 @@ class Beside:
         if "prior" in self.squares:
             old, new = self.squares["prior"]
             found.append(f"Prior: scatter of the formulas, {weight}; its squares go from {old:.3g} to {new:.3g}.")
+        if "indices" in self.squares:
+            old, new = self.squares["indices"]
+            found.append(
+                f"Stated indices: {weight}; their squares go from {old:.3g} to {new:.3g} over their tolerances."
+            )
         if self.weight.independent:
             settled = "" if self.weight.settled else "; the weight had not settled"
             found.append(
@@ -64,6 +70,7 @@ class FitResult:
     provenance   what it was made from: profile, trials with their hashes, command, versions, time
     beside       what was made small beside J; None where J is all
     J_free_start  J of the tuned values if each tune trial started from an estimated state; None where it does
+    stated       every stated index beside what the model makes of it
     interrupted  stopped by the user; the values are the best so far
     """
 
@@ -76,6 +83,7 @@ class FitResult:
     J_free_start: float | None
     beside: Beside | None
     compared: tuple[TrialComparison, ...]
+    stated: tuple[IndexComparison, ...]
     restarts: tuple[Restart, ...]
     starts: tuple[LeastSquaresResult, ...]
     history: tuple[Generation, ...]
@@ -129,6 +137,8 @@ class FitResult:
 
     def verdict(self) -> str:
         """The result in one sentence."""
+        if self.stated and not self.compared:
+            return self.verdict_of_stated()
         before, after = self.J_of("test", "before"), self.J_of("test", "after")
         tests = [c for c in self.compared if c.role == "test"]
         better = sum(c.J["after"] < c.J["before"] for c in tests)
@@ -143,6 +153,18 @@ class FitResult:
             f"On the {sum(c.role == 'tune' for c in self.compared)} trials it was tuned to, "
             f"the tuned {self.profile.name} has J ({self.method}) {self.J:.4g} instead of {self.J_before:.4g}; "
             "there are no test trials to confirm it."
+        )
+
+    def verdict_of_stated(self) -> str:
+        """What became of the stated indices, in one sentence."""
+        tests = [one for one in self.stated if one.role == "test"]
+        chosen = tests or [one for one in self.stated if one.role == "tune"]
+        before, after = (float(np.sqrt(np.mean([one.off(k) ** 2 for one in chosen]))) for k in ("before", "after"))
+        which = "not used for tuning" if tests else "it was tuned to"
+        last = "." if tests else "; there are no test trials to confirm it."
+        return (
+            f"On {len(chosen)} stated indices {which}, the tuned {self.profile.name} is {after:.2f} tolerances off, "
+            f"root mean square, instead of {before:.2f}{last}"
         )
 
     def warnings(self) -> list[str]:
@@ -160,6 +182,14 @@ class FitResult:
                 f"Of J = {self.J:.4g} on the tune trials {self.J - self.J_free_start:.4g} comes from starting "
                 "each trial at its noisy first sample; initial=estimated removes that."
             )
+        never = sorted({f"{one.name} of {one.trial}" for one in self.stated if one.simulated["after"] is None})
+        if never:
+            found.append(f"The tuned model never reaches: {', '.join(never)}.")
+        assumed = sum(one.assumed for one in self.stated)
+        if assumed:
+            found.append(f"{assumed} of {len(self.stated)} stated indices have the tolerance that mmgtune assumes.")
+        if self.stated and self.compared:
+            found.append(self.verdict_of_stated())
         gaps = [c.trial.id for c in self.compared if np.isnan(c.trial.motion).any()]
         if gaps:
             found.append(f"Gaps in these trials do not count: {', '.join(gaps)}.")
@@ -204,6 +234,7 @@ class FitResult:
     def tuned_profile(self) -> ShipProfile:
         """The tuned profile, ready to simulate; in its provenance windows stand as the trials they were cut from."""
         whole = {one.trial.id: one.trial.whole for one in self.compared}
+        whole |= {one.trial: one.trial for one in self.stated}
         told = self.provenance["trials"]
         return tuned(
             self.profile,
@@ -263,6 +294,7 @@ class FitResult:
             "beside": self.beside.to_dict() if self.beside else None,
             "inputs": [one.to_dict() for one in self.profile.arrangement.inputs],
             "trial_results": [c.to_dict() for c in self.compared],
+            "stated": [one.to_dict(self.profile.L_pp) for one in self.stated],
             "J_tune_free_start": finite(self.J_free_start),
             "evaluations": self.evaluations,
             "diverged": self.diverged,

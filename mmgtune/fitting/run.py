@@ -15,11 +15,13 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..backends import STATES, Backend, Integrator, get_backend
+from ..errors import OptionError, Problem
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..model import Model
 from ..objective import Objective, cases_of, make_objective, spread
 from ..options import FitOptions, Options, TuningOptions
 from ..profile import ShipProfile
+from ..stated import IndexComparison, compare_stated, possible
 from ..threads import blas_on_one_thread
 from ..trial import TrialSet
 from .box import Box, choose_targets, make_box
@@ -35,7 +37,7 @@ from .least_squares import LeastSquaresResult, fit_offsets, solve
 from .problem import FitProblem
 from .result import Beside, FitResult
 from .robust import weigh_down
-from .terms import ScatterPrior, Term
+from .terms import ScatterPrior, StatedIndices, Term
 from .weighing import Weight, weigh
 
 EDGE = 0.5
@@ -43,6 +45,10 @@ EDGE = 0.5
 
 RIDGE = 1e-8
 """Weight, as a share of J, of the distance to the pre-determined values: chooses among sets that fit equally well."""
+
+
+LOOSE = 1e-3
+"""The same where indices are stated, in squared tolerances: a few numbers are met exactly by many sets."""
 
 
 @dataclass(frozen=True)
@@ -94,25 +100,37 @@ class Setting:
 
         Raises OptionError where the window leaves one without a sample.
         """
-        chosen = [self.trials.trials[name] for name in ids or self.trials.tune]
+        ids = ids or (*self.trials.tune, *self.trials.tune_stated)
+        chosen = [self.trials.trials[name] for name in ids if name in self.trials.trials]
+        stated = [self.trials.stated[name] for name in ids if name in self.trials.stated]
+        terms = (*self.terms, StatedIndices(stated)) if stated else self.terms
         cases = cases_of(chosen, self.objective, self.model.inputs)
         sigma = self.deviations(ids) if self.estimated else None
-        return FitProblem.of(self.model, cases, self.box, self.backend, self.integrator, sigma, self.terms)
+        return FitProblem.of(self.model, cases, self.box, self.backend, self.integrator, sigma, terms)
 
     def deviations(self, ids: Sequence[str] = ()) -> FloatArray:
         """Deviations (n_trials, 6) of the measured initial states."""
         scales = np.array([self.objective.scales[name] for name in STATES])
-        return deviations([self.trials.trials[name] for name in ids or self.trials.tune], scales)
+        ids = ids or self.trials.tune
+        return deviations([self.trials.trials[name] for name in ids if name in self.trials.trials], scales)
 
 
 def make_setting(profile: ShipProfile, trials: TrialSet, options: FitOptions) -> Setting:
     """The setting of fitting ``profile`` to trials.
 
-    Raises OptionError for targets, box or channels that make no sense.
+    Raises OptionError for targets, box or channels that make no sense, and for stated trials the ship cannot be asked
+    for.
     """
     model = Model(profile)
+    possible(profile, list(trials.stated.values()))
+    if trials.tune_stated and options.method == "cma-es":
+        why = "each candidate is steered through them, and this search has tens of thousands"
+        raise OptionError(
+            Problem("CMA-ES is not for trials given as indices", "method", why, "add method=least-squares")
+        )
     # Scales come from all tune trials, whichever of them a problem is over.
-    scales = spread([trials.trials[name] for name in trials.tune]) if options.objective == "standardised" else None
+    standardised = options.objective == "standardised" and trials.tune
+    scales = spread([trials.trials[name] for name in trials.tune]) if standardised else None
     objective = make_objective(model.L_pp, options.channels, options.window, scales=scales, every=options.every)
     box = make_box(model, choose_targets(model, options.targets, options.fixed), options.a_r)
     return Setting(
@@ -231,10 +249,12 @@ def _fit(
     restarts = found.restarts if found else []
     certificate = certify(problem, unit, cost, cost_before, ends, restarts, found.J if found else None, ridge, before)
     held_by_bound = np.isin(problem.box.names, [bound.name for bound in certificate.active])
-    roles = {name: trials.role(name) for name in trials.trials}
-    everything = setting.problem(tuple(trials.trials))
+    roles = {name: trials.role(name) for name in (*trials.trials, *trials.stated)}
+    everything = setting.problem(tuple(trials.trials)) if trials.trials else plain
     compared = tuple(compare(everything, list(trials.trials.values()), setting.objective, roles, before, unit))
-    free_start = None if setting.estimated else J_free_start(plain.estimated(setting.deviations()), unit)
+    free_start = (
+        None if setting.estimated or not trials.tune else J_free_start(plain.estimated(setting.deviations()), unit)
+    )
     return FitResult(
         profile=profile,
         options=options,
@@ -245,6 +265,7 @@ def _fit(
         J_free_start=free_start,
         beside=beside(problem, before, unit, weight) if weight else None,
         compared=compared,
+        stated=compared_stated(setting, roles, before, unit),
         restarts=tuple(restarts),
         starts=tuple(ends),
         history=tuple(found.history if found else ()),
@@ -262,8 +283,10 @@ def _fit(
 
 
 def edge_ridge(problem: FitProblem, options: FitOptions, before: FloatArray) -> float:
-    """Weight of squared distances from the pre-determined values (n_targets,) in the unit cube."""
-    return options.regularise * float(problem.misfit(before[:, None])[0]) / EDGE**2 if options.regularise else 0.0
+    """Weight of squared distances from the pre-determined values (n_targets,) in the cube, of a weighed problem."""
+    asked = options.regularise * float(problem.misfit(before[:, None])[0]) / EDGE**2 if options.regularise else 0.0
+    stated = any(term.name == "indices" for term in problem.terms)
+    return max(asked, LOOSE * problem.weight) if stated else asked
 
 
 def random_starts(
@@ -289,6 +312,15 @@ def beside(problem: FitProblem, before: FloatArray, unit: FloatArray, weight: We
         name: (float(of[0]), float(of[1])) for name, of in problem.squares(np.column_stack([before, unit])).items()
     }
     return Beside(weight, squares)
+
+
+def compared_stated(
+    setting: Setting, roles: Mapping[str, str], before: FloatArray, unit: FloatArray
+) -> tuple[IndexComparison, ...]:
+    """Every stated index beside what the model makes of it at two points (n_targets,) of the unit cube."""
+    values = setting.box.from_unit(np.column_stack([before, unit]))
+    thetas = dict(zip(("before", "after"), setting.model.matrix(setting.box.names, values).T, strict=True))
+    return tuple(compare_stated(setting.model, thetas, list(setting.trials.stated.values()), roles))
 
 
 def traded(problem: FitProblem) -> tuple[str, ...]:
@@ -347,8 +379,8 @@ def identity_of(
     return {
         "profile": profile.sha256,
         "trials": trials.hashes(),
-        "tune": list(trials.tune),
-        "test": list(trials.test),
+        "tune": [*trials.tune, *trials.tune_stated],
+        "test": [*trials.test, *trials.test_stated],
         "options": options.to_dict(),
         "versions": {**provenance["environment"], "mmgtune": provenance["mmgtune"]},
     }
@@ -380,10 +412,10 @@ def make_provenance(profile: ShipProfile, trials: TrialSet, command: str) -> dic
             "ship": trials.ship,
             "licence": trials.licence,
             "citation": trials.citation,
-            "tune": list(trials.tune),
-            "test": list(trials.test),
+            "tune": [*trials.tune, *trials.tune_stated],
+            "test": [*trials.test, *trials.test_stated],
             "sha256": trials.hashes(),
-            "source": {name: trial.source for name, trial in trials.trials.items()},
+            "source": {name: trial.source for of in (trials.trials, trials.stated) for name, trial in of.items()},
         },
         "environment": versions,
     }

@@ -242,7 +242,8 @@ def _leave_one_out(profile: ShipProfile, trials: TrialSet, run: FitResult, hooks
     """
     total = 0.0
     start, before = run.unit[:, None], run.box.to_unit(run.box.pre)
-    ridge = edge_ridge(make_problem(profile, trials, run.options), run.options, before)
+    whole = make_problem(profile, trials, run.options)
+    ridge = edge_ridge(whole.with_weight(run.beside.weight.s2) if run.beside else whole, run.options, before)
     for left_out, others in leaving_out(trials):
         if hooks.stop():
             return float("nan")

@@ -11,11 +11,14 @@ in the units of J; ``weighing`` finds s2.  A fit without time series has no J, a
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from ..arrays import FloatArray
+from ..stated import residuals
+from ..trial import IndexTrial
 
 if TYPE_CHECKING:
     from .problem import FitProblem
@@ -59,3 +62,20 @@ class ScatterPrior:
     def asked(self, problem: FitProblem) -> list[Any]:
         """See ``Term``."""
         return [self.name, problem.box.centre, problem.box.scatter]
+
+
+class StatedIndices:
+    """Indices of trials as the model makes them less those stated, in tolerances of the latter."""
+
+    name = "indices"
+
+    def __init__(self, trials: Sequence[IndexTrial]):
+        self.trials = tuple(trials)
+
+    def residuals(self, problem: FitProblem, unit: FloatArray) -> FloatArray:
+        """See ``Term``."""
+        return residuals(problem.model, problem.theta(unit), self.trials)
+
+    def asked(self, problem: FitProblem) -> list[Any]:
+        """See ``Term``."""
+        return [self.name, *((one.id, one.sha256) for one in self.trials)]
