@@ -70,7 +70,7 @@ def summary(result: Validation) -> str:
                 "",
                 *stated_table(one["stated"], ("simulated",)),
                 "",
-                f"  off by {_rms(one['stated'])} tolerances",
+                f"  off by {_rms(one['stated'])}",
             ]
         if "J" not in one:
             continue
@@ -90,8 +90,8 @@ def _rms(rows: list[dict[str, Any]]) -> str:
     """Root mean square of what stated indices are off by."""
     off = [row["off"]["simulated"] for row in rows]
     if None in off:
-        return "more than a thousand"
-    return f"{(sum(one**2 for one in off) / len(off)) ** 0.5:.3g}, root mean square over {len(off)},"
+        return "more than a thousand tolerances: some are never reached"
+    return f"{(sum(one**2 for one in off) / len(off)) ** 0.5:.3g} tolerances, root mean square over {len(off)} indices"
 
 
 def _shown(value: float | None, width: int = 12) -> str:

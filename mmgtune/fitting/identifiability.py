@@ -129,6 +129,7 @@ def analyse(problem: FitProblem, unit: FloatArray, active: BoolArray) -> Identif
         if problem.sigma is not None:
             by_offset = whitening.apply(problem.central_offsets(unit))
             sensitivity = problem.without_offsets(sensitivity, by_offset, problem.sigma**-2.0)
+    from_data = _from_data(problem, sensitivity) if problem.terms else None
     lacking = len(box) - len(sensitivity)
     if lacking > 0:  # fewer numbers than targets: the rest of the directions is null
         sensitivity = np.vstack([sensitivity, np.zeros((lacking, len(box)))])
@@ -163,7 +164,7 @@ def analyse(problem: FitProblem, unit: FloatArray, active: BoolArray) -> Identif
         undetermined=undetermined,
         combinations=_combinations(problem, unit, relative, singular, vectors, null),
         autocorrelation=whitening.phi,
-        from_data=_from_data(problem, sensitivity[: len(residuals)]) if problem.terms else None,
+        from_data=from_data,
     )
     return replace(result, sentences=_sentences(problem, result, active))
 

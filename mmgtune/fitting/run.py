@@ -105,7 +105,7 @@ class Setting:
         stated = [self.trials.stated[name] for name in ids if name in self.trials.stated]
         terms = (*self.terms, StatedIndices(stated)) if stated else self.terms
         cases = cases_of(chosen, self.objective, self.model.inputs)
-        sigma = self.deviations(ids) if self.estimated else None
+        sigma = self.deviations(ids) if self.estimated and chosen else None
         return FitProblem.of(self.model, cases, self.box, self.backend, self.integrator, sigma, terms)
 
     def deviations(self, ids: Sequence[str] = ()) -> FloatArray:

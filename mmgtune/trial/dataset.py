@@ -104,7 +104,7 @@ def load_trials(name: str | Path) -> TrialSet:
         fix = "put *.parquet files there, one a trial, or a *.toml file of stated indices"
         raise TrialError(Problem("the folder has no trial files", str(path), fix=fix))
     trials: dict[str, Trial] = {}
-    problems: list[Problem] = wrong_there
+    problems = list(wrong_there)
     ids: list[str | None] = []
     for file in files:
         try:
