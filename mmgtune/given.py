@@ -25,5 +25,5 @@ def trials_of(given: TrialsGiven) -> TrialSet:
 def list_of(given: TrialsGiven | Sequence[Trial]) -> list[Trial]:
     """The trials of a data set, in its order, or those of a list."""
     if isinstance(given, (str, Path, TrialSet)):
-        return list(trials_of(given).trials.values())
+        return list(trials_of(given).series_only("a simulation of trials").trials.values())
     return list(given)

@@ -16,6 +16,8 @@ from .objective import spread
 from .options import SimulationOptions, ValidateOptions
 from .predictor import PhysicsPredictor, Predictor, as_predictor, profile_of, words_of
 from .repeating import Repeated, document, repeat
+from .stated import IndexComparison, compare_stated, model_of, possible
+from .trial import TrialSet
 from .validation import L_MSE, TrialScore, score, summary
 
 Scorable = ShipGiven | Model | Predictor
@@ -25,12 +27,14 @@ Scorable = ShipGiven | Model | Predictor
 @dataclass(frozen=True, eq=False)
 class Scored:
     """One predictor: what it was called, its scores by trial or window, its manoeuvres repeated where asked for, and
-    notes on what was around the ship."""
+    what it makes of indices that are stated, and notes on what was around the ship.
+    """
 
     name: str
     predictor: Predictor
     scores: tuple[TrialScore, ...]
     repeated: tuple[Repeated, ...] = ()
+    stated: tuple[IndexComparison, ...] = ()
     notes: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
@@ -45,7 +49,8 @@ class Scored:
             "id": self.predictor.name,
             "sha256": profile.sha256 if profile else None,
             "method": self.predictor.method,
-            **summary(self.scores),
+            **(summary(self.scores) if self.scores else {}),
+            **({"stated": [one.to_dict(self.predictor.L_pp) for one in self.stated]} if self.stated else {}),
             "notes": list(self.notes),
         }
 
@@ -111,7 +116,8 @@ def validate(
     several = predictors_of(profiles, options)
     data = trials_of(trials)
     called = str(trials) if isinstance(trials, (str, Path)) else str(data.path or "trials")
-    sigma = spread(list((trials_of(options.sigma_from) if options.sigma_from else data).trials.values()))
+    measured = list((trials_of(options.sigma_from) if options.sigma_from else data).trials.values())
+    sigma = spread(measured) if measured else {}
     still = [name for name, value in sigma.items() if not value > 0.0]
     if still:
         raise OptionError(
@@ -128,7 +134,8 @@ def validate(
     for name, predictor in several.items():
         repeated = tuple(repeat(predictor, whole)) if options.manoeuvres else ()
         notes = notes_on(predictor.model, whole) if isinstance(predictor, PhysicsPredictor) else ()
-        scored.append(Scored(name, predictor, tuple(score(predictor, pieces, sigma)), repeated, tuple(notes)))
+        scores = tuple(score(predictor, pieces, sigma)) if pieces else ()
+        scored.append(Scored(name, predictor, scores, repeated, _stated(predictor, data), tuple(notes)))
     return Validation(tuple(scored), called, sigma, options.sigma_from or called, options)
 
 
@@ -151,6 +158,18 @@ def predictors_of(
         )
         for name, one in several
     }
+
+
+def _stated(predictor: Predictor, data: TrialSet) -> tuple[IndexComparison, ...]:
+    """What a profile makes of the indices that are stated; of a predictor with several members its first."""
+    trials = list(data.stated.values())
+    if not trials:
+        return ()
+    profile = model_of(predictor)
+    possible(profile, trials)
+    roles = {one.id: data.role(one.id) for one in trials}
+    model = Model(profile)
+    return tuple(compare_stated(model, {"simulated": model.matrix()[:, 0]}, trials, roles))
 
 
 def _called(given: Scorable) -> str:

@@ -30,7 +30,7 @@ from mmgtune.trial import load_trials
         (FitOptions, {"substeps": 1.5}),
         (FitOptions, {"substeps": None}),
         (FitOptions, {"a_r": "0.5"}),
-        (FitOptions, {"a_r": None}),
+        (FitOptions, {"seed": None}),
         (FitOptions, {"identifiable": 1}),
         (FitOptions, {"method": 3}),
         (FitOptions, {"method": ["cma-es"]}),

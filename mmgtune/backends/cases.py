@@ -86,7 +86,7 @@ def pad(
     """Cases out of runs: times (n_i,), controls (n_i, n_inputs), initial (6,), target and weight (n_i, 6), around
     (n_i, n_surroundings); nothing counts where target and weight are None, nothing was measured where around is."""
     n_samples = np.array([len(t) for t in times], dtype=np.int64)
-    T = int(n_samples.max())
+    T = int(n_samples.max(initial=1))
 
     def padded(columns: Sequence[FloatArray] | None, width: int, *, hold: bool) -> FloatArray:
         """(n_cases, T, width), after the end of a run its last row or 0."""
@@ -99,9 +99,9 @@ def pad(
     return Cases(
         t=padded([t[:, None] for t in times], 1, hold=True)[:, :, 0],
         n_samples=n_samples,
-        controls=padded(controls, controls[0].shape[1], hold=True),
+        controls=padded(controls, controls[0].shape[1] if len(controls) else 0, hold=True),
         around=padded(around, len(Surroundings._fields), hold=True),
-        initial=np.array(initial, dtype=float),
+        initial=np.array(initial, dtype=float).reshape(-1, len(STATES)),
         target=padded(target if weight is not None else None, len(STATES), hold=False),
         weight=padded(weight if target is not None else None, len(STATES), hold=False),
     )

@@ -13,7 +13,8 @@ from ..model import Model
 from ..objective import default_scales
 from ..predictor import Predictor, as_predictor
 from ..profile import ShipProfile
-from ..trial import Trial
+from ..stated import compare_stated, possible
+from ..trial import IndexTrial, Trial
 from ..units import DEG
 
 Values = dict[str, float]
@@ -44,6 +45,28 @@ def measure(
     for record in records(predictor, trials):
         values = values_of(record)
         found[record.member][record.trial.id] = {name: values[name] for name in names if name in values}
+    return found
+
+
+def measure_stated(model: Model, trials: Sequence[IndexTrial], names: Sequence[str]) -> dict[str, Values]:
+    """Errors of stated indices as a profile's own helmsman makes them, by trial and metric; see ``measure``.
+
+    Raises OptionError for trials the ship cannot be asked for.
+    """
+    possible(model.profile, trials)
+    roles = {one.id: "other" for one in trials}
+    found: dict[str, Values] = {one.id: {} for one in trials}
+    compared = compare_stated(model, {"now": model.matrix()[:, 0]}, trials, roles) if trials else []
+    for one in compared:
+        value = one.simulated["now"]
+        if one.name not in names:
+            continue
+        if value is None:
+            found[one.trial][one.name] = math.inf
+        elif one.name in ANGLES:
+            found[one.trial][one.name] = (value - one.stated) / DEG
+        else:
+            found[one.trial][one.name] = 100.0 * (value / one.stated - 1.0)
     return found
 
 

@@ -15,7 +15,7 @@ from ..metrics import METRICS
 from ..model import Model
 from .baseline import Baseline, Recorded, read_baseline, write_baseline
 from .blame import changed_coefficients
-from .measuring import Values, applicable, default_tolerances, measure
+from .measuring import Values, applicable, default_tolerances, measure, measure_stated
 from .result import CheckReport, Item, Status
 
 BaselineGiven = Baseline | str | Path | None
@@ -41,6 +41,8 @@ def record_baseline(
     model = Model(profile)
     names = _known(metrics) or (before.metrics if before else list(METRICS))
     (found,) = measure(model, list(trials.trials.values()), names, integrator=integrator, backend=backend)
+    found |= measure_stated(model, list(trials.stated.values()), names)
+    hashes = trials.hashes()
     shown = names if before and not metrics else applicable(found)
     tolerances = {name: dict(of) for name, of in default_tolerances(shown, model.L_pp).items()}
     if before:
@@ -57,7 +59,7 @@ def record_baseline(
         backend=backend,
         made_by=made_by(),
         tolerances=tolerances,
-        trials={name: Recorded(trials.trials[name].sha256, values) for name, values in found.items()},
+        trials={name: Recorded(hashes[name], values) for name, values in found.items()},
     )
 
 
@@ -106,9 +108,11 @@ def check(
     wanted = _known(metrics) or (baseline.metrics if baseline else [])
     wanted = [name for name in METRICS if name in wanted or (name in profile.limits and not metrics)]
     (found,) = measure(model, list(trials.trials.values()), wanted, integrator=chosen, backend=backend)
+    found |= measure_stated(model, list(trials.stated.values()), wanted)
+    hashes = trials.hashes()
     items: list[Item] = []
     for name, values in found.items():
-        items += compared(name, values, trials.trials[name].sha256, wanted, profile.limits, baseline)
+        items += compared(name, values, hashes[name], wanted, profile.limits, baseline)
     gone = [name for name in baseline.trials if name not in found] if baseline else []
     items += [
         Item(name, "", None, None, None, "not comparable", "the baseline has it, the trials do not") for name in gone

@@ -11,6 +11,7 @@ from . import common as c
 from .exitcodes import ExitCode
 from .options import RunOptions, takes
 from .progress import Progress
+from .stated import stated_table
 
 if TYPE_CHECKING:
     from ..fitting import FitResult
@@ -83,10 +84,15 @@ def summary(result: FitResult, folder: str, report: bool) -> str:
         place = "".join("*" if round(row["position"] * 20) == k else "-" for k in range(21))
         before, tuned = ("inf" if row[key] is None else f"{row[key]:.4g}" for key in ("pre_determined", "value"))
         lines.append(f"{row['name']:<24}{before:>11}{tuned:>11}{error:>10}  {place} {note}")
-    width = max([22, *(len(one.trial.id) for one in result.compared)]) + 2
-    lines += ["", f"{'trial':<{width}}{'role':<7}{'J before':>11}{'J after':>11}   {result.method}", ""]
-    for one in result.compared:
-        lines.append(f"{one.trial.id:<{width}}{one.role:<7}{one.J['before']:>11.4g}{one.J['after']:>11.4g}")
+    if result.compared:
+        width = max([22, *(len(one.trial.id) for one in result.compared)]) + 2
+        lines += ["", f"{'trial':<{width}}{'role':<7}{'J before':>11}{'J after':>11}   {result.method}", ""]
+        for one in result.compared:
+            lines.append(f"{one.trial.id:<{width}}{one.role:<7}{one.J['before']:>11.4g}{one.J['after']:>11.4g}")
+    if result.stated:
+        lines += ["", *stated_table([one.to_dict(result.profile.L_pp) for one in result.stated])]
+    if result.beside:
+        lines += ["", *result.beside.words()]
     lines += ["", *result.certificate.sentences[:2], *map(in_flags, result.identifiability.sentences[:2])]
     lines += [f"Note: {in_flags(warning)}" for warning in result.warnings()]
     lines += ["", result.verdict(), f"{result.evaluations} evaluations in {result.wall_s:.1f} s."]

@@ -8,6 +8,7 @@ from ..options import LeaveOutOptions
 from . import common as c
 from .options import RunOptions, takes
 from .progress import Progress
+from .stated import stated_table
 
 if TYPE_CHECKING:
     from ..fitting import LeftOut
@@ -57,7 +58,7 @@ def summary(result: LeftOut, folder: str) -> str:
     from .repeated import table
 
     head = f"{'left out':<20}{'runs':>6}{'L_MSE before':>14}{'after':>10}{'J before':>12}{'after':>10}"
-    lines = [f"{head}   removed of L_MSE"] if result.parts else []
+    lines = [f"{head}   removed of L_MSE"] if result.before else []
     for row in result.rows():
         interval = row["share_removed_ci95"]
         removed = "-" if row["share_removed"] is None else f"{100 * row['share_removed']:.0f} %"
@@ -69,6 +70,11 @@ def summary(result: LeftOut, folder: str) -> str:
             for v, w in zip(numbers, (14, 10, 12, 10), strict=True)
         ]
         lines.append(f"{row['manoeuvre']:<20}{row['runs']:>6}{''.join(shown)}   {removed}")
+    if result.stated:
+        rows = [one.to_dict(result.L_pp) for one in result.stated]
+        off = result.stated_rms()
+        lines += ["", *stated_table(rows, ("before", "left_out")), ""]
+        lines.append(f"off by {off['before']:.2f} tolerances before, {off['left_out']:.2f} left out, root mean square")
     if result.options.manoeuvres and result.parts:
         lines.append(table({"before": result.repeated_before, "left out": result.repeated_after}))
     if result.interrupted:

@@ -115,7 +115,8 @@ def parameters_of(of: type[Options]) -> list[inspect.Parameter]:
     found = []
     for name, known in flags_of(of).items():
         kind, default = _typed(hints[name], defaults[name])
-        decls = [known.flag, *([known.short] if known.short else [])]
+        off = f"/--no-{known.flag.lstrip('-')}" if defaults[name] is True else ""  # what is on can be turned off
+        decls = [known.flag + off, *([known.short] if known.short else [])]
         option = typer.Option(*decls, help=known.help, rich_help_panel=known.panel)
         found.append(
             inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=Annotated[kind, option])

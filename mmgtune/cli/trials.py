@@ -38,6 +38,7 @@ def check(
     # The trials of a ship with a bundled profile are checked against her length.
     L_pp = load_profile(data.ship).L_pp if data.ship in profile_names() else None
     found = check_trials(data.trials, L_pp)
+    found |= {name: [] for name in data.stated}  # what is wrong with these is said on reading
     if json:
         c.print_json({"schema": 1, "trials": {name: [vars(f) for f in findings] for name, findings in found.items()}})
     else:
@@ -49,7 +50,8 @@ def check(
                     + (f"\n  fix: {f.fix}" if f.fix else "")
                 )
         warnings = sum(f.severity == "warning" for findings in found.values() for f in findings)
-        c.show(f"{len(found)} trials can be used, {warnings} warnings; tune {len(data.tune)}, test {len(data.test)}")
+        tune, test = len(data.tune) + len(data.tune_stated), len(data.test) + len(data.test_stated)
+        c.show(f"{len(found)} trials can be used, {warnings} warnings; tune {tune}, test {test}")
     if strict and any(f.severity == "warning" for findings in found.values() for f in findings):
         raise typer.Exit(ExitCode.NO)
 
@@ -79,6 +81,7 @@ def inspect(
     from ..simulation import trial_indices
     from ..trial import load_trials
     from ..trial.describe import describe
+    from ..trial.index_trial import shown_index
 
     data = load_trials(trials)
     name = profile or data.ship
@@ -92,9 +95,16 @@ def inspect(
     rows = []
     for name, trial in data.trials.items():
         rows.append({**describe(trial), "role": data.role(name), "indices": trial_indices(trial, L_pp)})
+    stated = [{**one.describe(), "role": data.role(one.id)} for one in data.stated.values()]
     if json:
-        c.print_json({"schema": 1, "L_pp_m": L_pp, "trials": rows})
+        c.print_json({"schema": 1, "L_pp_m": L_pp, "trials": rows, **({"stated": stated} if stated else {})})
         return
+    for one in data.stated.values():
+        c.show(f"{one.id}  {one.ship} {one.order} ({one.source or 'source not stated'}), {data.role(one.id)}")
+        for index, (value, tolerance) in one.stated(L_pp).items():
+            (shown, unit), (off, _) = shown_index(index, value, L_pp), shown_index(index, tolerance, L_pp)
+            assumed = ", tolerance assumed" if one.indices[index].assumed else ""
+            c.show(f"  {index:<34}{shown:.4g} +- {off:.2g} {unit}{assumed}")
     for row in rows:
         c.show(
             f"{row['id']}  {row['ship']} {row['manoeuvre']} ({row['source'] or 'source not stated'}), "

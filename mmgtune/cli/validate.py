@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -11,6 +11,7 @@ from ..errors import OptionError, Problem
 from ..options import ValidateOptions, VoyageOptions
 from . import common as c
 from .options import WrittenOptions, takes
+from .stated import stated_table
 
 if TYPE_CHECKING:
     from ..validating import Validation
@@ -104,6 +105,15 @@ def summary(result: Validation) -> str:
     lines = []
     for one in result.to_dict()["profiles"]:
         lines.append(f"{one['profile']} ({one['id']}), {one['method']}")
+        if one.get("stated"):
+            lines += [
+                "",
+                *stated_table(one["stated"], ("simulated",)),
+                "",
+                f"  off by {_rms(one['stated'])}",
+            ]
+        if "J" not in one:
+            continue
         lines.append(f"  {'':<34}{'runs':>6}{'J':>12}{'L_MSE':>10}")
         for kind, row in one["by_manoeuvre"].items():
             name = kind or "manoeuvre not stated"
@@ -114,6 +124,14 @@ def summary(result: Validation) -> str:
     if result.options.manoeuvres:
         lines.append(table({one.name: one.repeated for one in result.profiles}))
     return "\n".join(lines)
+
+
+def _rms(rows: list[dict[str, Any]]) -> str:
+    """Root mean square of what stated indices are off by."""
+    off = [row["off"]["simulated"] for row in rows]
+    if None in off:
+        return "more than a thousand tolerances: some are never reached"
+    return f"{(sum(one**2 for one in off) / len(off)) ** 0.5:.3g} tolerances, root mean square over {len(off)} indices"
 
 
 def _shown(value: float | None, width: int = 12) -> str:

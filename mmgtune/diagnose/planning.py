@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from ..fitting.box import width_words
+from ..fitting.extending import with_width
 from ..fitting.planning import Plan, evaluation_seconds, whole
 from ..fitting.run import in_pieces
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
@@ -15,8 +17,10 @@ EVALUATIONS = (100, 400)
 
 def plan_diagnosis(profile: ShipGiven, trials: TrialsGiven, options: DiagnoseOptions) -> Plan:
     """What a diagnosis would do.  Raises OptionError for what it would refuse."""
-    ship, own = ship_of(profile), options.fit_options()
-    pieces = in_pieces(trials_of(trials), own)
+    ship = ship_of(profile)
+    options = with_width(ship, options)
+    own = options.fit_options()
+    pieces = in_pieces(trials_of(trials).series_only("a diagnosis"), own)
     seen = [trial for name, trial in pieces.trials.items() if name not in pieces.test]
     known = known_causes(ship, seen, options)
     bench = make_workbench(ship, seen, options)
@@ -28,7 +32,7 @@ def plan_diagnosis(profile: ShipGiven, trials: TrialsGiven, options: DiagnoseOpt
         *whole(ship, pieces, search, own),
         f"effects   {', '.join(tags)}",
         f"compares  {bench.problem.n_residuals} differences of {', '.join(bench.channels)}; back end {options.backend}",
-        f"targets   within +-{options.a_r:g} of their values: {', '.join(bench.targets)}",
+        f"targets   within {width_words(options.a_r)} of their values: {', '.join(bench.targets)}",
     )
     each = evaluation_seconds(bench.problem)
     free = len(bench.targets) + 7

@@ -14,6 +14,7 @@ import numpy as np
 from ..backends import STATES
 from ..components import split_name
 from ..fitting.box import parameter_of
+from ..fitting.extending import with_width
 from ..fitting.journal import journalled
 from ..fitting.run import Hooks, identity_of, in_pieces, make_provenance
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
@@ -60,7 +61,8 @@ def diagnose(
     resume  continue what was stopped in the folder
     Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to.
     """
-    profile, trials = ship_of(profile), trials_of(trials)
+    profile, trials = ship_of(profile), trials_of(trials).series_only("a diagnosis")
+    options = with_width(profile, options)
     provenance = make_provenance(profile, trials, command)
     identity = identity_of(profile, trials, options, provenance)
     with journalled(folder, identity, hooks.stop, resume=resume):

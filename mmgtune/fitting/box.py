@@ -13,12 +13,25 @@ from fnmatch import fnmatchcase
 import numpy as np
 import numpy.typing as npt
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..components import split_name
 from ..effects import Parameter
 from ..errors import OptionError, Problem, closest
 from ..model import Model
 from ..profile import scale_of
+
+A_R = 0.5
+"""Half width of the box where nothing else is said, as a share of the pre-determined value."""
+
+SCATTERS = 2.0
+"""Half width of the box of a coefficient from a formula that says its scatter: nineteen ships of twenty lie within."""
+
+
+def width_words(a_r: float | None, sign: str = "+-") -> str:
+    """How wide a box is, in words; None where scatters of formulas make it."""
+    if a_r is None:
+        return f"{SCATTERS:g} scatters of the formulas, else {sign}{A_R:g}"
+    return f"{sign}{a_r:g}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +43,8 @@ class Box:
     low, high   (n_targets,) bounds in coordinates of the search: the value itself, its reciprocal, or a component
     reciprocal  targets searched for by their reciprocal
     polar       pairs of targets, a size and its direction [rad], searched for by their components
+    centre, scatter  (n_targets,) what the formula of each gives, and how far ships lie about it, one standard
+                deviation; NaN for one that comes from no formula or whose formula does not say.  None for no target
     """
 
     names: tuple[str, ...]
@@ -38,6 +53,8 @@ class Box:
     high: FloatArray
     reciprocal: tuple[int, ...] = ()
     polar: tuple[tuple[int, int], ...] = ()
+    centre: FloatArray | None = None
+    scatter: FloatArray | None = None
 
     def __len__(self) -> int:
         return len(self.names)
@@ -46,6 +63,17 @@ class Box:
     def width(self) -> FloatArray:
         """Distance between the bounds."""
         return self.high - self.low
+
+    @property
+    def from_formula(self) -> IntArray:
+        """Targets whose formula says its scatter, by number."""
+        return np.flatnonzero(np.isfinite(self.scatter)) if self.scatter is not None else np.zeros(0, dtype=np.int64)
+
+    def prior_of(self, i: int) -> tuple[float, float] | None:
+        """What the formula of target ``i`` gives, and its scatter; None where there is none or it does not say."""
+        if self.centre is None or self.scatter is None or not np.isfinite(self.scatter[i]):
+            return None
+        return float(self.centre[i]), float(self.scatter[i])
 
     @property
     def relative(self) -> FloatArray:
@@ -98,13 +126,14 @@ class Box:
         return values
 
 
-def make_box(model: Model, targets: Sequence[str], a_r: float) -> Box:
+def make_box(model: Model, targets: Sequence[str], a_r: float | None) -> Box:
     """The box pre +- a_r |pre| (Suyama et al. 2023, eq. 38), or a coefficient's own bounds where its profile has some.
 
+    Without a_r it is pre +- two scatters for a coefficient whose formula says its scatter, pre +- 0.5 |pre| for others.
     Limits of what is possible (a wake fraction below 1, say) cut the box where it would go beyond them.  Raises
     OptionError for a_r <= 0, no targets, and targets that are 0 and have no bounds of their own.
     """
-    if not (np.isfinite(a_r) and a_r > 0.0):
+    if a_r is not None and not (np.isfinite(a_r) and a_r > 0.0):
         raise OptionError(
             Problem(
                 f"a_r is {a_r:g}",
@@ -145,6 +174,9 @@ def make_box(model: Model, targets: Sequence[str], a_r: float) -> Box:
         if coefficient.bounds is not None:
             bounds.append(coefficient.bounds)
             continue
+        if a_r is None and coefficient.scatter is not None:
+            bounds.append((value - SCATTERS * coefficient.scatter, value + SCATTERS * coefficient.scatter))
+            continue
         if value == 0.0:
             problems.append(
                 Problem(
@@ -154,7 +186,8 @@ def make_box(model: Model, targets: Sequence[str], a_r: float) -> Box:
                     "give it bounds in the profile, { value = 0.0, bounds = [low, high] }, or leave it out",
                 )
             )
-        bounds.append((value - a_r * abs(value), value + a_r * abs(value)))
+        half = (A_R if a_r is None else a_r) * abs(value)
+        bounds.append((value - half, value + half))
     if problems:
         raise OptionError(*problems)
     for i, j in polar:
@@ -170,7 +203,20 @@ def make_box(model: Model, targets: Sequence[str], a_r: float) -> Box:
             low[i] = max(low[i], field.low + 1e-6 * abs(pre[i]))
         if field.high is not None:
             high[i] = min(high[i], field.high - 1e-6 * abs(pre[i]))
-    return Box(tuple(targets), pre, low, high, tuple(reciprocal), tuple(polar))
+    return Box(tuple(targets), pre, low, high, tuple(reciprocal), tuple(polar), *_formulas(model, targets))
+
+
+def _formulas(model: Model, targets: Sequence[str]) -> tuple[FloatArray | None, FloatArray | None]:
+    """What the formulas of targets give, before any tuning, and their scatter; see ``Box``."""
+    known = [model.profile.coefficient(name) for name in targets]
+    if all(one.scatter is None for one in known):
+        return None, None
+    centre = [
+        model.profile.value(name) if one.pre_determined is None else one.pre_determined
+        for name, one in zip(targets, known, strict=True)
+    ]
+    scatter = np.array([np.nan if one.scatter is None else one.scatter for one in known])
+    return np.where(np.isfinite(scatter), centre, np.nan), scatter
 
 
 def parameter_of(model: Model, name: str) -> Parameter | None:

@@ -1,4 +1,4 @@
-"""Effects that a fit is asked to put into the profile and tune besides."""
+"""What a fit is asked for, settled for the ship it is asked of: effects put in to be tuned, the width of the box."""
 
 from __future__ import annotations
 
@@ -7,11 +7,36 @@ from typing import TypeVar
 
 from ..effects import effect_tags, find_effect
 from ..errors import OptionError, Problem, closest
-from ..options import TuningOptions
+from ..model import Model
+from ..options import DiagnoseOptions, FitOptions, LeaveOutOptions, Options, TuningOptions
 from ..profile import ShipProfile, missing_for
 from ..profile import with_effects as put_in
+from .box import A_R, choose_targets
 
 T = TypeVar("T", bound=TuningOptions)
+O = TypeVar("O", bound=Options)
+
+
+def settled(profile: ShipProfile, options: T) -> tuple[ShipProfile, T]:
+    """The profile with the effects of the options put in, and options that say all there is to say.
+
+    ``a_r`` is None afterwards only where the scatter of formulas makes the box of a target.
+    Raises OptionError for an unknown effect, or one that does not apply, and for unknown targets.
+    """
+    profile, options = with_effects(profile, options)
+    return profile, with_width(profile, options)
+
+
+def with_width(profile: ShipProfile, options: O) -> O:
+    """Options that say ``a_r``, unless the scatter of formulas makes the box of a target.
+
+    Raises OptionError for unknown targets.
+    """
+    if isinstance(options, (FitOptions, LeaveOutOptions, DiagnoseOptions)) and options.a_r is None:
+        names = choose_targets(Model(profile), options.targets, options.fixed)
+        if all(profile.coefficient(name).scatter is None for name in names):
+            return replace(options, a_r=A_R)
+    return options
 
 
 def with_effects(profile: ShipProfile, options: T) -> tuple[ShipProfile, T]:

@@ -111,7 +111,7 @@ def _history(history: Iterable[Generation]) -> dict[str, Any]:
     return columns
 
 
-def motions_table(compared: Iterable[TrialComparison], inputs: Sequence[str]) -> dict[str, Any]:
+def motions_table(compared: Sequence[TrialComparison], inputs: Sequence[str]) -> dict[str, Any]:
     """Columns of motions.parquet: every trial measured, before and after, with what drove the ship."""
     parts: dict[str, list[Any]] = {name: [] for name in ("trial", "which", "t", *STATES, *inputs)}
     for one in compared:
@@ -125,6 +125,9 @@ def motions_table(compared: Iterable[TrialComparison], inputs: Sequence[str]) ->
                 parts[name].append(values)
             for name, values in {"t": trial.t, **driven}.items():
                 parts[name].append(values)
+    if not compared:
+        texts = ("trial", "which")
+        return {name: np.zeros(0, dtype=str if name in texts else float) for name in parts}
     return {name: np.concatenate(values) for name, values in parts.items()}
 
 

@@ -70,6 +70,8 @@ class Identifiability:
     correlation      names and matrix for the targets that have a standard error
     undetermined     targets the data does not determine, each with why
     autocorrelation  of neighbouring residuals per channel
+    from_data        (n_directions,) for combinations of targets, largest first, how much better the trials know each
+                     than prior and box do, as a ratio of standard deviations; None without terms beside J
     """
 
     names: tuple[str, ...]
@@ -81,6 +83,7 @@ class Identifiability:
     undetermined: dict[str, Undetermined]
     combinations: tuple[KnownCombination, ...]
     autocorrelation: dict[str, float]
+    from_data: FloatArray | None = None
     sentences: tuple[str, ...] = field(default=())
 
     def to_dict(self) -> dict[str, Any]:
@@ -99,6 +102,7 @@ class Identifiability:
             "undetermined": {name: of.words for name, of in self.undetermined.items()},
             "undetermined_why": {name: of.why for name, of in self.undetermined.items()},
             "autocorrelation": self.autocorrelation,
+            **({} if self.from_data is None else {"from_data": self.from_data.tolist()}),
             "sentences": list(self.sentences),
         }
 
@@ -114,10 +118,21 @@ def analyse(problem: FitProblem, unit: FloatArray, active: BoolArray) -> Identif
     residuals, jacobian = problem.central_jacobian(unit)
     whitening = estimate_whitening(problem, residuals)
     relative = box.relative
-    sensitivity = whitening.apply(jacobian * (relative / box.width))
-    if problem.sigma is not None:
-        by_offset = whitening.apply(problem.central_offsets(unit))
-        sensitivity = problem.without_offsets(sensitivity, by_offset, problem.sigma**-2.0)
+    sensitivity = jacobian * (relative / box.width)
+    if problem.terms:  # every row over its deviation, as ``terms`` counts them
+        sensitivity /= np.sqrt(problem.weight)
+        if problem.sigma is not None:
+            by_offset = problem.central_offsets(unit) / np.sqrt(problem.weight)
+            sensitivity = problem.without_offsets(sensitivity, by_offset, problem.prior / problem.weight)
+    else:
+        sensitivity = whitening.apply(sensitivity)
+        if problem.sigma is not None:
+            by_offset = whitening.apply(problem.central_offsets(unit))
+            sensitivity = problem.without_offsets(sensitivity, by_offset, problem.sigma**-2.0)
+    from_data = _from_data(problem, sensitivity) if problem.terms else None
+    lacking = len(box) - len(sensitivity)
+    if lacking > 0:  # fewer numbers than targets: the rest of the directions is null
+        sensitivity = np.vstack([sensitivity, np.zeros((lacking, len(box)))])
     _, singular, vectors = np.linalg.svd(sensitivity, full_matrices=False)
     null = singular < NULL_RATIO * singular[0]
     directions = tuple(_direction(problem, unit, relative, v) for v in _sparse(vectors[null]))
@@ -149,8 +164,25 @@ def analyse(problem: FitProblem, unit: FloatArray, active: BoolArray) -> Identif
         undetermined=undetermined,
         combinations=_combinations(problem, unit, relative, singular, vectors, null),
         autocorrelation=whitening.phi,
+        from_data=from_data,
     )
     return replace(result, sentences=_sentences(problem, result, active))
+
+
+def _from_data(problem: FitProblem, sensitivity: FloatArray) -> FloatArray:
+    """See ``Identifiability``; a target without a formula is known beforehand to a quarter of its box."""
+    box = problem.box
+    known = 0.25 * box.width
+    own = len(sensitivity)
+    for term in reversed(problem.terms):  # rows of the prior do not count as data
+        rows = len(term.residuals(problem, np.full((len(box), 1), 0.5)))
+        if term.name == "prior":
+            sensitivity = np.delete(sensitivity, np.s_[own - rows : own], axis=0)
+        own -= rows
+    for i in range(len(box)):
+        formula = box.prior_of(i)
+        known[i] = formula[1] if formula else known[i]
+    return np.asarray(np.linalg.svd(sensitivity * (known / box.relative), compute_uv=False))
 
 
 def _errors(sensitivity: FloatArray, free: BoolArray) -> tuple[FloatArray, FloatArray, BoolArray]:
@@ -191,8 +223,10 @@ def _direction(problem: FitProblem, unit: FloatArray, relative: FloatArray, vect
     first = members[sizes.index(sorted(sizes)[len(sizes) // 3])]
     factor = 1.0 / percent[first]
     step = CHECKED * vector * relative * factor / box.width
-    states = problem.states(np.column_stack([unit, unit + step])).states
-    shift = np.abs(states[:, 1, :, :2] - states[:, 0, :, :2]).max()
+    shift = 0.0
+    if len(problem.cases):
+        states = problem.states(np.column_stack([unit, unit + step])).states
+        shift = np.abs(states[:, 1, :, :2] - states[:, 0, :, :2]).max()
     ordered = [first, *(i for i in members if i != first)]
     return NullDirection({box.names[i]: float(percent[i] * factor) for i in ordered}, float(shift))
 
@@ -229,11 +263,30 @@ def _combinations(
     return tuple(known)
 
 
+def _decided(problem: FitProblem, from_data: FloatArray) -> str:
+    """What the trials decide and what the prior does."""
+    n = len(problem.box)
+    decided = int(np.sum(from_data > 1.0))
+    formulas = len(problem.box.from_formula)
+    rest = "the prior decides the rest" if formulas and problem.terms[0].name == "prior" else "the box holds the rest"
+    numbers = sum(
+        len(term.residuals(problem, np.full((n, 1), 0.5))) for term in problem.terms if term.name == "indices"
+    )
+    given = f"{numbers} stated numbers, {n} coefficients: " if numbers and not problem.n_residuals else ""
+    return (
+        f"{given}The trials determine {decided} of {n} combinations of the targets better than they were known "
+        f"beforehand; {rest}."
+    )
+
+
 def _sentences(problem: FitProblem, result: Identifiability, active: BoolArray) -> tuple[str, ...]:
     """The findings in words, most important first."""
     n, lost = len(result.names), len(result.null_directions)
     sentences = [f"{n - lost} of {n} combinations of the targets can be known from these trials."]
-    sentences += [direction.sentence for direction in result.null_directions]
+    if result.from_data is not None:
+        sentences = [_decided(problem, result.from_data)]
+    if problem.n_residuals:  # a few stated numbers leave more directions open than anybody reads
+        sentences += [direction.sentence for direction in result.null_directions]
     weak = [name for name, of in result.undetermined.items() if of.why == "weak"]
     if weak:
         sentences.append(f"Not determined by these trials within their box: {', '.join(weak)}.")
@@ -250,6 +303,12 @@ def _sentences(problem: FitProblem, result: Identifiability, active: BoolArray) 
         worst = ", ".join(f"{a} with {b} ({value:.3f})" for value, a, b in sorted(pairs, reverse=True)[:4])
         sentences.append(f"Strongly correlated, so hardly known one by one: {worst}.")
     phi = max(result.autocorrelation.values(), default=0.0)
+    if problem.terms:
+        sentences.append(
+            "Standard errors are of trials and prior together, by the weight between them; "
+            "they do not cover errors of the model's form."
+        )
+        return tuple(sentences)
     sentences.append(
         f"Standard errors take account of neighbouring residuals being correlated (up to {phi:.3f}); "
         "they do not cover errors of the model's form."

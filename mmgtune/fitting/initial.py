@@ -33,7 +33,7 @@ def deviations(trials: Sequence[Trial], scales: FloatArray) -> FloatArray:
 
     scales  (6,) what the objective divides each channel by
     """
-    return np.array([np.maximum(noise_of(trial), 1e-9 * scales) for trial in trials])
+    return np.array([np.maximum(noise_of(trial), 1e-9 * scales) for trial in trials]).reshape(-1, len(MOTION))
 
 
 def prior_weight(sigma: FloatArray, weight: FloatArray) -> FloatArray:

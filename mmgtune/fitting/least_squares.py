@@ -35,7 +35,7 @@ class LeastSquaresResult:
 
     unit        (n_targets,) position in the unit cube
     offsets     (n_cases, 6) of the initial states; zero where these are held
-    J           sum of squares there, without the prior of the offsets
+    J           what ``FitProblem.costs`` gives there: J and the terms beside it, without the prior of the offsets
     converged   whether it stopped by itself
     """
 
@@ -131,7 +131,8 @@ def solve(
                 tried[:, i, 0, k] = bounded_step(damped, gradient, z[:, row], nearby)
                 moved[:, i, 0, k] = linear[i].offsets(tried[:, i, 0, k] - z[:, row])
         _accelerate(residuals_of, linear, z[:, rows], d[:, rows], damping[rows], tried, moved)
-        unit, offsets = tried.reshape(len(z), -1), moved.reshape(len(problem.cases), -1, 6)
+        unit = tried.reshape(len(z), -1)
+        offsets = moved.reshape(len(problem.cases), unit.shape[1], 6)
         costs = cost(unit, offsets)
         values = (costs + penalty(unit, offsets)).reshape(len(rows), -1)
         costs = costs.reshape(len(rows), -1)
@@ -233,7 +234,7 @@ def _accelerate(
     """
     step, shift = tried[:, :, 0] - z[:, :, None], moved[:, :, 0] - d[:, :, None]
     near = (z[:, :, None] + AHEAD * step).reshape(len(z), -1)
-    runs = residuals_of(near, (d[:, :, None] + AHEAD * shift).reshape(len(d), -1, 6))
+    runs = residuals_of(near, (d[:, :, None] + AHEAD * shift).reshape(len(d), near.shape[1], 6))
     runs = runs.reshape(len(runs), *step.shape[1:])
     for i, at in enumerate(linear):
         for k, factor in enumerate(DAMPINGS):

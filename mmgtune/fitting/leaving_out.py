@@ -18,11 +18,12 @@ from ..options import LeaveOutOptions
 from ..predictor import words_of
 from ..profile import ShipProfile
 from ..repeating import Repeated, document, repeat
+from ..stated import IndexComparison, compare_stated
 from ..threads import blas_on_one_thread
 from ..trial import Trial, TrialSet
 from ..validation import L_MSE, TrialScore, by_manoeuvre, improvement, score
 from .comparison import finite, finite_values
-from .extending import with_effects
+from .extending import settled
 from .journal import finished, journalled
 from .least_squares import solve
 from .robust import weigh_down
@@ -36,6 +37,7 @@ from .run import (
     make_provenance,
     random_starts,
 )
+from .weighing import Weight, weigh
 
 RESULT = "leave_out.json"
 
@@ -48,12 +50,13 @@ def leaving_out(trials: TrialSet, folds: int = 0) -> Iterator[tuple[tuple[str, .
 
     folds  number of parts the runs are dealt out to; 0 for a part of its own for each run
     """
-    runs = list(dict.fromkeys(trials.trials[name].run for name in trials.tune))
+    run_of = {name: trials.trials[name].run for name in trials.tune} | {name: name for name in trials.tune_stated}
+    runs = list(dict.fromkeys(run_of.values()))
     n_parts = min(folds or len(runs), len(runs))
     for k in range(n_parts):
         part = set(runs[k::n_parts])
-        out = tuple(name for name in trials.tune if trials.trials[name].run in part)
-        yield out, tuple(name for name in trials.tune if name not in out)
+        out = tuple(name for name in run_of if run_of[name] in part)
+        yield out, tuple(name for name in run_of if name not in out)
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,8 +67,10 @@ class LeftOut:
     parts    ids of the runs of each part
     before, after  scores of all tune trials with the profile's values, and with those fitted without them
     repeated_before, repeated_after  their manoeuvres repeated likewise, where asked for
+    stated   stated indices with the profile's values ("before") and with those fitted without them ("left_out")
     n_parts  how many there are to be
     interrupted  stopped by the user; scores are of the parts finished by then
+    weight   of what is known beforehand, found with all runs; None where J is all
     """
 
     thetas: tuple[dict[str, float], ...]
@@ -78,8 +83,11 @@ class LeftOut:
     wall_s: float
     n_parts: int
     interrupted: bool = False
+    weight: Weight | None = None
     repeated_before: tuple[Repeated, ...] = ()
     repeated_after: tuple[Repeated, ...] = ()
+    stated: tuple[IndexComparison, ...] = ()
+    L_pp: float = 1.0
 
     @property
     def method(self) -> str:
@@ -89,7 +97,7 @@ class LeftOut:
     def __repr__(self) -> str:
         """In a line."""
         stopped = ", interrupted" if self.interrupted else ""
-        scores = "" if not self.parts else f", L_MSE {L_MSE(self.before):.4g} -> {L_MSE(self.after):.4g}"
+        scores = "" if not self.before else f", L_MSE {L_MSE(self.before):.4g} -> {L_MSE(self.after):.4g}"
         return (
             f"LeftOut({self.provenance['profile']['id']}, {len(self.parts)} of {self.n_parts} parts{scores}{stopped})"
         )
@@ -97,14 +105,21 @@ class LeftOut:
     def rows(self) -> list[dict[str, Any]]:
         """L_MSE and J before and after over all, then by kind of manoeuvre, with the share removed and its interval.
 
-        None where no part was finished.
+        Empty where no part was finished, or none is of time series.
         """
-        if not self.parts:
+        if not self.before:
             return []
         groups = {"": (self.before, self.after)}
         after = by_manoeuvre(self.after)
         groups |= {kind: (tuple(of), tuple(after[kind])) for kind, of in by_manoeuvre(self.before).items() if kind}
         return [_row(kind, old, new) for kind, (old, new) in groups.items()]
+
+    def stated_rms(self) -> dict[str, float]:
+        """Root mean square of what stated indices are off by, in tolerances, before and left out."""
+        return {
+            which: float(np.sqrt(np.mean([one.off(which) ** 2 for one in self.stated])))
+            for which in ("before", "left_out")
+        }
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
@@ -124,6 +139,11 @@ class LeftOut:
             ],
             "wall_s": self.wall_s,
         }
+        if self.stated:
+            found["stated"] = [one.to_dict(self.L_pp) for one in self.stated]
+            found["stated_rms"] = {which: finite(value) for which, value in self.stated_rms().items()}
+        if self.weight:
+            found["weight"] = self.weight.to_dict()
         if self.options.manoeuvres:
             found["manoeuvres"] = {
                 "before": document(self.repeated_before),
@@ -167,7 +187,7 @@ def leave_out(
     Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to.
     """
     profile, trials = ship_of(profile), trials_of(trials)
-    profile, options = with_effects(profile, options)
+    profile, options = settled(profile, options)
     provenance = make_provenance(profile, trials, command)
     identity = identity_of(profile, trials, options, provenance)
     with journalled(folder, identity, hooks.stop, resume=resume):
@@ -194,6 +214,7 @@ def _leave_out(
     problem = make_problem(profile, trials, options)
     box, model = problem.box, problem.model
     before = np.clip(box.to_unit(box.pre), 0.0, 1.0)
+    problem, weight = weigh(problem, before, hooks.stop)
     hooks.on_phase("fitting all runs")
     ridge = edge_ridge(problem, options, before)
     first = random_starts(problem, options, before, ())
@@ -202,18 +223,21 @@ def _leave_out(
     best = min(ends, key=lambda end: end.J)
     starts = best.unit[:, None]
     chosen = [trials.trials[name] for name in trials.tune]
-    sigma = spread(chosen)
+    sigma = spread(chosen) if chosen else {}
     integrator = options.make_integrator()
     scores: dict[str, TrialScore] = {}
     repeated: dict[str, Repeated] = {}
+    stated: dict[str, list[IndexComparison]] = {}
     thetas, parts = [], []
     dealt = list(leaving_out(trials, asked.folds))
     for out, others in dealt:
         if hooks.stop():
             break
-        runs = tuple(dict.fromkeys(trials.trials[name].run for name in out))
+        series = [trials.trials[name] for name in out if name in trials.trials]
+        indices = [trials.stated[name] for name in out if name in trials.stated]
+        runs = tuple(dict.fromkeys([*(one.run for one in series), *(one.run for one in indices)]))
         hooks.on_phase(f"leaving out {', '.join(runs)}")
-        part = make_problem(profile, trials, options, others)
+        part = make_problem(profile, trials, options, others).with_weight(problem.weight)
         ends = solve(part, starts, ridge=ridge, anchor=before, stop=hooks.stop, tolerance=SETTLED * best.J)
         fitted = min(ends, key=lambda end: end.J + ridge * float(np.sum((end.unit - before) ** 2)))
         if options.loss == "huber" and not hooks.stop():
@@ -223,12 +247,15 @@ def _leave_out(
         thetas.append(dict(zip(box.names, box.from_unit(fitted.unit).tolist(), strict=True)))
         parts.append(runs)
         theta = part.theta(fitted.unit[:, None])
-        left_out = [trials.trials[name] for name in out]
-        for one in score(model, left_out, sigma, theta=theta, integrator=integrator, backend=options.backend):
-            scores[one.id] = one
+        if series:
+            for one in score(model, series, sigma, theta=theta, integrator=integrator, backend=options.backend):
+                scores[one.id] = one
+        both = {"before": model.matrix()[:, 0], "left_out": theta[:, 0]}
+        for of in compare_stated(model, both, indices, dict.fromkeys(out, "tune")):
+            stated.setdefault(of.trial, []).append(of)
         if asked.manoeuvres:
             hooks.on_phase(f"repeating {', '.join(runs)}")
-            repeated |= {one.id: one for one in repeat(model, _named(whole, left_out), theta=theta)}
+            repeated |= {one.id: one for one in repeat(model, _named(whole, series), theta=theta)}
     seen = [trial for trial in chosen if trial.id in scores]
     scored = score(model, seen, sigma, integrator=integrator, backend=options.backend) if seen else []
     return LeftOut(
@@ -242,8 +269,11 @@ def _leave_out(
         time.perf_counter() - began,
         len(dealt),
         len(parts) < len(dealt),
+        weight,
         tuple(repeat(model, _named(whole, seen))) if asked.manoeuvres else (),
         tuple(repeated[name] for name in dict.fromkeys(trial.whole for trial in seen) if name in repeated),
+        tuple(one for name in trials.tune_stated for one in stated.get(name, ())),
+        model.L_pp,
     )
 
 

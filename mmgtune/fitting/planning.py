@@ -12,8 +12,9 @@ from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..options import FitOptions, LeaveOutOptions, SweepOptions
 from ..profile import ShipProfile
 from ..trial import TrialSet
+from .box import width_words
 from .cmaes import LAMBDAS
-from .extending import with_effects
+from .extending import settled
 from .leaving_out import leaving_out
 from .problem import FitProblem
 from .run import in_pieces, make_problem
@@ -43,7 +44,7 @@ class Plan:
 
 def plan_fit(profile: ShipGiven, trials: TrialsGiven, options: FitOptions) -> Plan:
     """What a fit would do.  Raises OptionError for what the fit would refuse."""
-    profile, options = with_effects(ship_of(profile), options)
+    profile, options = settled(ship_of(profile), options)
     pieces = in_pieces(trials_of(trials), options)
     problem = make_problem(profile, pieces, options)
     search = f"{options.method}, seed {options.seed}, {options.starts} least-squares starts"
@@ -53,7 +54,7 @@ def plan_fit(profile: ShipGiven, trials: TrialsGiven, options: FitOptions) -> Pl
 
 def plan_sweep(profile: ShipGiven, trials: TrialsGiven, options: SweepOptions) -> Plan:
     """What a sweep would do, with the box of its narrowest fit.  Raises OptionError for what it would refuse."""
-    profile, options = with_effects(ship_of(profile), options)
+    profile, options = settled(ship_of(profile), options)
     pieces = in_pieces(trials_of(trials), options)
     widths = sorted(options.widths)
     problems = [make_problem(profile, pieces, options.at(a_r)) for a_r in widths]
@@ -65,7 +66,7 @@ def plan_sweep(profile: ShipGiven, trials: TrialsGiven, options: SweepOptions) -
 
 def plan_leave_out(profile: ShipGiven, trials: TrialsGiven, options: LeaveOutOptions) -> Plan:
     """What leaving runs out would do.  Raises OptionError for what it would refuse."""
-    profile, options = with_effects(ship_of(profile), options)
+    profile, options = settled(ship_of(profile), options)
     own = options.fit_options()
     pieces = in_pieces(trials_of(trials), own)
     problem = make_problem(profile, pieces, own)
@@ -79,9 +80,11 @@ def plan_leave_out(profile: ShipGiven, trials: TrialsGiven, options: LeaveOutOpt
 
 def whole(profile: ShipProfile, trials: TrialSet, search: str, options: FitOptions) -> list[str]:
     """Profile, trials and choices in lines."""
+    tune, test = (*trials.tune, *trials.tune_stated), (*trials.test, *trials.test_stated)
     return [
         f"profile   {profile.name} ({profile.path})",
-        f"trials    tune: {', '.join(trials.tune)}; test: {', '.join(trials.test) or 'none'} ({trials.path})",
+        f"trials    tune: {', '.join(tune)}; test: {', '.join(test) or 'none'} ({trials.path})",
+        *(f"stated    {one.id}: {one.order}; {', '.join(one.indices)}" for one in trials.stated.values()),
         f"search    {search}",
         f"runs      {options.integrator}, initial states {options.initial}",
     ]
@@ -90,11 +93,18 @@ def whole(profile: ShipProfile, trials: TrialSet, search: str, options: FitOptio
 def _problem(problem: FitProblem, options: FitOptions) -> list[str]:
     low, high = problem.box.limits
     pre = problem.box.pre
+    prior = any(term.name == "prior" for term in problem.terms)
+
+    def by(i: int) -> str:
+        formula = problem.box.prior_of(i) if prior else None
+        return f"  prior {formula[0]:.5g} +- {formula[1]:.2g}" if formula else ""
+
     return [
         f"compares  {problem.n_residuals} differences over {problem.cases.steps} steps; back end {options.backend}",
-        f"targets   within +-{options.a_r:g} of their values:",
+        *([f"prior     {len(problem.box.from_formula)} targets by the scatter of their formulas"] if prior else []),
+        f"targets   within {width_words(options.a_r)} of their values:",
         *(
-            f"  {name:<22}{low[i]:>12.5g} .. {pre[i]:>10.5g} .. {high[i]:<10.5g}"
+            f"  {name:<22}{low[i]:>12.5g} .. {pre[i]:>10.5g} .. {high[i]:<10.5g}{by(i)}".rstrip()
             for i, name in enumerate(problem.box.names)
         ),
     ]

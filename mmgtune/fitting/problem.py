@@ -13,6 +13,7 @@ from ..model import Model
 from ..predictor import PhysicsPredictor, Prediction
 from .box import Box
 from .initial import prior_weight
+from .terms import Term
 
 LANES_AT_ONCE = 512
 """Largest number of runs kept with their residuals at one time, but for the lanes of one block; bounds the memory."""
@@ -27,11 +28,13 @@ class Counter:
 
 @dataclass(frozen=True, eq=False)
 class FitProblem:
-    """Model, cases, targets and box.  Nothing of it changes: ``with_...`` and ``held`` give another problem.
+    """Model, cases, targets, box and terms.  Nothing of it changes: ``with_...`` and ``held`` give another problem.
 
     sigma    (n_cases, 6) deviations of the measured initial states where these are estimated, None where they are held
     offsets  (n_cases, 6) offsets of the initial states in use where a call gives none
     prior    (n_cases, 6) weight of squared offsets beside J; zero where initial states are held
+    terms    rows of residuals besides those of the cases, behind them in this order
+    weight   of the squares of these rows beside J
     """
 
     model: Model
@@ -42,6 +45,8 @@ class FitProblem:
     sigma: FloatArray | None
     offsets: FloatArray
     prior: FloatArray
+    terms: tuple[Term, ...] = ()
+    weight: float = 1.0
     counter: Counter = field(default_factory=Counter)
 
     @classmethod
@@ -53,15 +58,20 @@ class FitProblem:
         backend: Backend,
         integrator: Integrator = Integrator(),
         sigma: FloatArray | None = None,
+        terms: tuple[Term, ...] = (),
     ) -> Self:
         """The problem with offsets of zero and the prior that the noise of the initial states calls for."""
         none = np.zeros((len(cases), 6))
         prior = none if sigma is None else prior_weight(sigma, cases.weight)
-        return cls(model, cases, box, backend, integrator, sigma, none, prior)
+        return cls(model, cases, box, backend, integrator, sigma, none, prior, terms)
 
     def with_offsets(self, offsets: FloatArray) -> Self:
         """Initial states begin (n_cases, 6) off the measured ones where a call does not say otherwise."""
         return replace(self, offsets=offsets)
+
+    def with_weight(self, weight: float) -> Self:
+        """The rows of the terms weighed otherwise."""
+        return replace(self, weight=weight)
 
     def with_cases(self, cases: Cases) -> Self:
         """The same trials weighed otherwise."""
@@ -98,11 +108,14 @@ class FitProblem:
         """What tells this problem from another, as numbers and texts."""
         box = (self.box.names, self.box.low, self.box.high)
         method = (self.model.tags, self.backend.name, self.integrator)
-        return [*box, *method, self.model.base, self.cases.sha256, self.sigma, self.offsets, self.prior]
+        found: list[Any] = [*box, *method, self.model.base, self.cases.sha256, self.sigma, self.offsets, self.prior]
+        if self.terms:
+            found += [self.weight, *(part for term in self.terms for part in term.asked(self))]
+        return found
 
     @property
     def n_residuals(self) -> int:
-        """Number of differences that count."""
+        """Number of differences between simulated and measured motion that count."""
         return self.cases.n_residuals
 
     @property
@@ -140,16 +153,28 @@ class FitProblem:
         return Prediction(result.states, result.diverged)
 
     def costs(self, unit: FloatArray, offsets: FloatArray | None = None) -> FloatArray:
-        """J of candidates (n_targets, n_candidates) -> (n_candidates,); inf where a run diverged.
+        """What is made small of candidates (n_targets, n_candidates) -> (n_candidates,): J, and the terms by weight.
 
         offsets  (n_cases, n_candidates, 6) of the initial states, the problem's own where None
+        inf where a run diverged.
         """
+        J = self.misfit(unit, offsets)
+        return J + self.weight * sum(self.squares(unit).values()) if self.terms else J
+
+    def misfit(self, unit: FloatArray, offsets: FloatArray | None = None) -> FloatArray:
+        """J alone; arguments as for ``costs``."""
         return np.asarray(self.costs_by_case(unit, offsets).sum(axis=0))
+
+    def squares(self, unit: FloatArray) -> dict[str, FloatArray]:
+        """Sum of squares of the rows of each term (n_candidates,), by name, not weighed."""
+        return {term.name: np.sum(term.residuals(self, unit) ** 2, axis=0) for term in self.terms}
 
     def costs_by_case(self, unit: FloatArray, offsets: FloatArray | None = None) -> FloatArray:
         """J of candidates by case, (n_cases, n_candidates); arguments as for ``costs``."""
         n_candidates = unit.shape[1]
         self.counter.evaluations += n_candidates
+        if not len(self.cases):
+            return np.zeros((0, n_candidates))
         result = self.backend.run(
             self.model,
             self.theta(unit),
@@ -160,14 +185,19 @@ class FitProblem:
         return result.cost
 
     def residuals(self, unit: FloatArray, offsets: FloatArray | None = None) -> FloatArray:
-        """Residuals of candidates (n_targets, n_candidates) -> (n_candidates, n_residuals); J is their sum of squares.
+        """Residuals of candidates (n_targets, n_candidates) -> (n_candidates, n_rows); ``costs`` sums their squares.
 
-        Ordered by case, sample and channel.  A candidate that diverged has inf everywhere.
+        Ordered by case, sample and channel; rows of the terms follow, by the root of their weight.  A candidate that
+        diverged has inf in all of its cases.
         """
         n_candidates = unit.shape[1]
         self.counter.evaluations += n_candidates
+        beside = self._beside(unit)
         initial = self.initial(n_candidates, offsets)
-        out = np.empty((self.n_residuals, n_candidates))
+        out = np.empty((self.n_residuals + len(beside), n_candidates))
+        out[self.n_residuals :] = beside
+        if not len(self.cases):
+            return out.T
         chunk = max(WIDTH, LANES_AT_ONCE // len(self.cases))
         for first in range(0, n_candidates, chunk):
             rows = slice(first, first + chunk)
@@ -180,17 +210,25 @@ class FitProblem:
                 keep_residuals=True,
             )
             assert result.residuals is not None  # asked for
-            out[:, rows] = result.residuals
-            out[:, rows][:, result.diverged.any(axis=0)] = np.inf
+            out[: self.n_residuals, rows] = result.residuals
+            out[: self.n_residuals, rows][:, result.diverged.any(axis=0)] = np.inf
         return out.T
+
+    def _beside(self, unit: FloatArray) -> FloatArray:
+        """Rows of the terms by the root of their weight (n_rows, n_candidates); equal candidates are run once."""
+        if not self.terms:
+            return np.zeros((0, unit.shape[1]))
+        apart, of = np.unique(unit, axis=1, return_inverse=True)
+        rows = np.vstack([term.residuals(self, apart) for term in self.terms])
+        return np.asarray(np.sqrt(self.weight) * rows[:, of.reshape(-1)])
 
     def jacobians(
         self, unit: FloatArray, offsets: FloatArray | None = None, step: float = 1e-6
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Residuals and their derivatives at points (n_targets, n_points) of the unit cube, by forward differences.
 
-        -> residuals (n_points, n_residuals), derivatives by target (n_points, n_residuals, n_targets), and by the six
-        initial offsets of the case a residual belongs to (n_points, n_residuals, 6; empty where they are held).
+        -> residuals (n_points, n_rows), derivatives by target (n_points, n_rows, n_targets), and by the six initial
+        offsets of the case a residual belongs to (n_points, n_rows, 6; empty where they are held).
         Steps go inwards where a point is on the upper bound.  All points and columns run as lanes of one call.
         """
         n_targets, n_points = unit.shape
@@ -205,7 +243,8 @@ class FitProblem:
         if self.sigma is not None:
             for k in range(6):
                 moved[:, :, 1 + n_targets + k, k] += step * self.sigma[:, None, k] * 1e3
-        values = self.residuals(columns.reshape(n_targets, -1), moved.reshape(len(self.cases), -1, 6))
+        n_lanes = n_points * n_columns
+        values = self.residuals(columns.reshape(n_targets, n_lanes), moved.reshape(len(self.cases), n_lanes, 6))
         values = values.T.reshape(-1, n_points, n_columns).transpose(1, 0, 2)
         base = values[:, :, :1]
         with np.errstate(invalid="ignore"):
@@ -218,7 +257,7 @@ class FitProblem:
         return base[:, :, 0], slopes, by_offset
 
     def central_jacobian(self, unit: FloatArray, step: float = 1e-5) -> tuple[FloatArray, FloatArray]:
-        """Residuals (n_residuals,) and derivatives (n_residuals, n_targets) at one point, by central differences.
+        """Residuals (n_rows,) and derivatives (n_rows, n_targets) at one point, by central differences.
 
         Looks a step beyond the bounds where the point is on one.
         """
@@ -230,7 +269,7 @@ class FitProblem:
         return values[0], (values[1 : n + 1] - values[n + 1 :]).T / (2.0 * step)
 
     def central_offsets(self, unit: FloatArray, step: float = 1e-2) -> FloatArray:
-        """Derivatives (n_residuals, 6) of residuals by the initial offsets of their case, by central differences.
+        """Derivatives (n_rows, 6) of residuals by the initial offsets of their case, by central differences.
 
         step  in deviations of the initial states, which must be estimated
         """
@@ -248,9 +287,9 @@ class FitProblem:
     def without_offsets(
         self, values: FloatArray, by_offset: FloatArray, prior: FloatArray, offsets: FloatArray | None = None
     ) -> FloatArray:
-        """Columns (n_residuals, k) less what initial offsets explain of them, six rows longer for each case.
+        """Columns (n_rows, k) less what initial offsets explain of them, six rows longer for each case.
 
-        by_offset  (n_residuals, 6) derivatives of the residuals by the offsets of their case
+        by_offset  (n_rows, 6) derivatives of the residuals by the offsets of their case
         prior      (n_cases, 6) weight of squared offsets beside squared residuals
         offsets    (n_cases, 6) where the first column is the residuals at these offsets; None where no column is
 
@@ -266,4 +305,5 @@ class FitProblem:
             Q, _ = np.linalg.qr(np.vstack([by_offset[rows], np.diag(root)]))
             own = np.vstack([values[rows], added])
             parts.append(own - Q @ (Q.T @ own))
+        parts.append(values[self.n_residuals :])
         return np.vstack(parts)

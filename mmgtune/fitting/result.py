@@ -15,14 +15,53 @@ from ..model import Model
 from ..options import FitOptions
 from ..predictor import words_of
 from ..profile import ShipProfile, tuned
-from .box import Box
+from ..stated import IndexComparison
+from .box import Box, width_words
 from .certificate import Certificate
 from .cmaes import Generation, Restart
 from .comparison import TrialComparison, finite, finite_values, total
 from .identifiability import Identifiability
 from .least_squares import LeastSquaresResult
+from .weighing import Weight
 
 SCHEMA = 1
+
+
+@dataclass(frozen=True)
+class Beside:
+    """What a fit made small beside J.
+
+    squares  of the rows of each term before and after, by its name: in variances, so times ``weight.s2`` beside J
+    """
+
+    weight: Weight
+    squares: Mapping[str, tuple[float, float]]
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        terms = {name: {"before": finite(old), "after": finite(new)} for name, (old, new) in self.squares.items()}
+        return {"weight": self.weight.to_dict(), "squares": terms, "sentences": self.words()}
+
+    def words(self) -> list[str]:
+        """The terms and their weight in sentences."""
+        found = []
+        weight = f"weight {self.weight.s2:.3g} in units of J"
+        independent = sum(self.weight.independent.values())
+        if "prior" in self.squares:
+            old, new = self.squares["prior"]
+            found.append(f"Prior: scatter of the formulas, {weight}; its squares go from {old:.3g} to {new:.3g}.")
+        if "indices" in self.squares:
+            old, new = self.squares["indices"]
+            found.append(
+                f"Stated indices: {weight}; their squares go from {old:.3g} to {new:.3g} over their tolerances."
+            )
+        if self.weight.independent:
+            settled = "" if self.weight.settled else "; the weight had not settled"
+            found.append(
+                f"J counts as {independent:.3g} independent differences, which determine "
+                f"{sum(self.weight.learnt.values()):.2g} combinations of coefficients against it{settled}."
+            )
+        return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +70,9 @@ class FitResult:
 
     unit         (n_targets,) position of the tuned values in the box
     provenance   what it was made from: profile, trials with their hashes, command, versions, time
+    beside       what was made small beside J; None where J is all
     J_free_start  J of the tuned values if each tune trial started from an estimated state; None where it does
+    stated       every stated index beside what the model makes of it
     interrupted  stopped by the user; the values are the best so far
     """
 
@@ -42,7 +83,9 @@ class FitResult:
     J: float
     J_before: float
     J_free_start: float | None
+    beside: Beside | None
     compared: tuple[TrialComparison, ...]
+    stated: tuple[IndexComparison, ...]
     restarts: tuple[Restart, ...]
     starts: tuple[LeastSquaresResult, ...]
     history: tuple[Generation, ...]
@@ -61,7 +104,11 @@ class FitResult:
         """In a line."""
         stopped = ", interrupted" if self.interrupted else ""
         J = f"J {self.J_before:.4g} -> {self.J:.4g}"
-        return f"FitResult({self.profile.id}, {len(self.box)} targets, a_r {self.options.a_r:g}, {J}{stopped})"
+        return f"FitResult({self.profile.id}, {len(self.box)} targets, {self.box_words()}, {J}{stopped})"
+
+    def box_words(self) -> str:
+        """How wide the box is."""
+        return width_words(self.options.a_r, "a_r ")
 
     @property
     def theta(self) -> dict[str, float]:
@@ -92,6 +139,8 @@ class FitResult:
 
     def verdict(self) -> str:
         """The result in one sentence."""
+        if self.stated and not self.compared:
+            return self.verdict_of_stated()
         before, after = self.J_of("test", "before"), self.J_of("test", "after")
         tests = [c for c in self.compared if c.role == "test"]
         better = sum(c.J["after"] < c.J["before"] for c in tests)
@@ -106,6 +155,18 @@ class FitResult:
             f"On the {sum(c.role == 'tune' for c in self.compared)} trials it was tuned to, "
             f"the tuned {self.profile.name} has J ({self.method}) {self.J:.4g} instead of {self.J_before:.4g}; "
             "there are no test trials to confirm it."
+        )
+
+    def verdict_of_stated(self) -> str:
+        """What became of the stated indices, in one sentence."""
+        tests = [one for one in self.stated if one.role == "test"]
+        chosen = tests or [one for one in self.stated if one.role == "tune"]
+        before, after = (float(np.sqrt(np.mean([one.off(k) ** 2 for one in chosen]))) for k in ("before", "after"))
+        which = "not used for tuning" if tests else "it was tuned to"
+        last = "." if tests else "; there are no test trials to confirm it."
+        return (
+            f"On {len(chosen)} stated indices {which}, the tuned {self.profile.name} is {after:.2f} tolerances off, "
+            f"root mean square, instead of {before:.2f}{last}"
         )
 
     def warnings(self) -> list[str]:
@@ -130,6 +191,14 @@ class FitResult:
         trials = [c.trial for c in self.compared]
         around = notes_on(Model(self.profile), trials, self.theta, self.box.names)
         found += [f"{note[0].upper()}{note[1:]}." for note in around]
+        never = sorted({f"{one.name} of {one.trial}" for one in self.stated if one.simulated["after"] is None})
+        if never:
+            found.append(f"The tuned model never reaches: {', '.join(never)}.")
+        assumed = sum(one.assumed for one in self.stated)
+        if assumed:
+            found.append(f"{assumed} of {len(self.stated)} stated indices have the tolerance that mmgtune assumes.")
+        if self.stated and self.compared:
+            found.append(self.verdict_of_stated())
         gaps = [c.trial.id for c in self.compared if np.isnan(c.trial.motion).any()]
         if gaps:
             found.append(f"Gaps in these trials do not count: {', '.join(gaps)}.")
@@ -152,6 +221,7 @@ class FitResult:
             section, symbol = split_name(name)
             field = self.profile.sections[section].component.fields[symbol]
             z = float(self.unit[i])
+            formula = self.box.prior_of(i) if self.beside else None
             rows.append(
                 {
                     "name": name,
@@ -165,6 +235,7 @@ class FitResult:
                     "stderr": stderr.get(name),
                     "at_bound": self.box.bound_at(i, z),
                     "determined": name not in undetermined,
+                    **({"formula": formula[0], "scatter": formula[1]} if formula else {}),
                 }
             )
         return rows
@@ -172,6 +243,7 @@ class FitResult:
     def tuned_profile(self) -> ShipProfile:
         """The tuned profile, ready to simulate; in its provenance windows stand as the trials they were cut from."""
         whole = {one.trial.id: one.trial.whole for one in self.compared}
+        whole |= {one.trial: one.trial for one in self.stated}
         told = self.provenance["trials"]
         return tuned(
             self.profile,
@@ -186,7 +258,7 @@ class FitResult:
                 "trials": {whole[name]: sha256 for name, sha256 in told["sha256"].items()},
                 "tuned_on": list(dict.fromkeys(whole[name] for name in told["tune"])),
                 "source_of_trials": {whole[name]: source for name, source in told["source"].items()},
-                "a_r": self.options.a_r,
+                **({"box": self.box_words()} if self.options.a_r is None else {"a_r": self.options.a_r}),
                 "seed": self.options.seed,
                 "method": self.options.method,
                 "integrator": self.method,
@@ -228,8 +300,10 @@ class FitResult:
                 "scales": dict(self.scales),
             },
             "coefficients": self.coefficients(),
+            "beside": self.beside.to_dict() if self.beside else None,
             "inputs": [one.to_dict() for one in self.profile.arrangement.inputs],
             "trial_results": [c.to_dict() for c in self.compared],
+            "stated": [one.to_dict(self.profile.L_pp) for one in self.stated],
             "J_tune_free_start": finite(self.J_free_start),
             "evaluations": self.evaluations,
             "diverged": self.diverged,

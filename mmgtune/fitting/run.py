@@ -15,11 +15,13 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..backends import STATES, Backend, Integrator, get_backend
+from ..errors import OptionError, Problem
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..model import Model
 from ..objective import Objective, cases_of, make_objective, spread
 from ..options import FitOptions, Options, TuningOptions
 from ..profile import ShipProfile
+from ..stated import IndexComparison, compare_stated, possible
 from ..threads import blas_on_one_thread
 from ..trial import TrialSet
 from .box import Box, choose_targets, make_box
@@ -27,20 +29,26 @@ from .certificate import certify
 from .checkpoint import EVERY, Checkpoint
 from .cmaes import Search, search
 from .comparison import compare, total
-from .extending import with_effects
+from .extending import settled
 from .identifiability import analyse
 from .initial import deviations
 from .journal import journalled
 from .least_squares import LeastSquaresResult, fit_offsets, solve
 from .problem import FitProblem
-from .result import FitResult
+from .result import Beside, FitResult
 from .robust import weigh_down
+from .terms import ScatterPrior, StatedIndices, Term
+from .weighing import Weight, weigh
 
 EDGE = 0.5
 """Distance from the middle of the box to its edge, in the unit cube."""
 
 RIDGE = 1e-8
 """Weight, as a share of J, of the distance to the pre-determined values: chooses among sets that fit equally well."""
+
+
+LOOSE = 1e-3
+"""The same where indices are stated, in squared tolerances: a few numbers are met exactly by many sets."""
 
 
 @dataclass(frozen=True)
@@ -69,16 +77,18 @@ class Setting:
     """What all problems of one fit have in common.
 
     estimated  whether trials start from an estimated state
+    terms      what is made small besides J
     """
 
     model: Model
     trials: TrialSet
     objective: Objective
     box: Box
-    a_r: float
+    a_r: float | None
     backend: Backend
     integrator: Integrator
     estimated: bool
+    terms: tuple[Term, ...] = ()
 
     def holding(self, names: Sequence[str]) -> Setting:
         """The same with some targets held at their pre-determined values."""
@@ -90,25 +100,37 @@ class Setting:
 
         Raises OptionError where the window leaves one without a sample.
         """
-        chosen = [self.trials.trials[name] for name in ids or self.trials.tune]
+        ids = ids or (*self.trials.tune, *self.trials.tune_stated)
+        chosen = [self.trials.trials[name] for name in ids if name in self.trials.trials]
+        stated = [self.trials.stated[name] for name in ids if name in self.trials.stated]
+        terms = (*self.terms, StatedIndices(stated)) if stated else self.terms
         cases = cases_of(chosen, self.objective, self.model.inputs, self.model.draught)
-        sigma = self.deviations(ids) if self.estimated else None
-        return FitProblem.of(self.model, cases, self.box, self.backend, self.integrator, sigma)
+        sigma = self.deviations(ids) if self.estimated and chosen else None
+        return FitProblem.of(self.model, cases, self.box, self.backend, self.integrator, sigma, terms)
 
     def deviations(self, ids: Sequence[str] = ()) -> FloatArray:
         """Deviations (n_trials, 6) of the measured initial states."""
         scales = np.array([self.objective.scales[name] for name in STATES])
-        return deviations([self.trials.trials[name] for name in ids or self.trials.tune], scales)
+        ids = ids or self.trials.tune
+        return deviations([self.trials.trials[name] for name in ids if name in self.trials.trials], scales)
 
 
 def make_setting(profile: ShipProfile, trials: TrialSet, options: FitOptions) -> Setting:
     """The setting of fitting ``profile`` to trials.
 
-    Raises OptionError for targets, box or channels that make no sense.
+    Raises OptionError for targets, box or channels that make no sense, and for stated trials the ship cannot be asked
+    for.
     """
     model = Model(profile)
+    possible(profile, list(trials.stated.values()))
+    if trials.tune_stated and options.method == "cma-es":
+        why = "each candidate is steered through them, and this search has tens of thousands"
+        raise OptionError(
+            Problem("CMA-ES is not for trials given as indices", "method", why, "add method=least-squares")
+        )
     # Scales come from all tune trials, whichever of them a problem is over.
-    scales = spread([trials.trials[name] for name in trials.tune]) if options.objective == "standardised" else None
+    standardised = options.objective == "standardised" and trials.tune
+    scales = spread([trials.trials[name] for name in trials.tune]) if standardised else None
     objective = make_objective(model.L_pp, options.channels, options.window, scales=scales, every=options.every)
     box = make_box(model, choose_targets(model, options.targets, options.fixed), options.a_r)
     return Setting(
@@ -120,6 +142,7 @@ def make_setting(profile: ShipProfile, trials: TrialSet, options: FitOptions) ->
         get_backend(options.backend),
         options.make_integrator(),
         options.initial == "estimated",
+        (ScatterPrior(),) if options.prior and len(box.from_formula) else (),
     )
 
 
@@ -153,7 +176,7 @@ def fit(
     Raises OptionError for choices that make no sense, OutputError where the checkpoint cannot be written.
     """
     profile, trials = ship_of(profile), trials_of(trials)
-    profile, options = with_effects(profile, options)
+    profile, options = settled(profile, options)
     provenance = make_provenance(profile, trials, command)
     if checkpoint_folder is None:
         return _fit(profile, trials, options, hooks, None, resume, more_starts, provenance)
@@ -187,7 +210,11 @@ def _fit(
     plain = problem
     recorded = checkpoint.load() if checkpoint and resume and checkpoint.path.is_file() else None
     before = problem.box.to_unit(problem.box.pre)
-    J_before = float(problem.costs(before[:, None])[0])
+    if problem.terms:
+        hooks.on_phase("weighing what is known beforehand")
+    problem, weight = weigh(problem, np.clip(before, 0.0, 1.0), hooks.stop)
+    J_before = float(problem.misfit(before[:, None])[0])
+    cost_before = float(problem.costs(before[:, None])[0]) if problem.terms else J_before
 
     hooks.on_phase("least squares")
     starts = random_starts(problem, options, before, more_starts)
@@ -205,26 +232,29 @@ def _fit(
     if options.method == "cma-es":
         hooks.on_phase("CMA-ES")
         # Far below the tolerance of the certificate; least squares goes on from where the search ends.
-        tolerance = max(1e-9 * J_before, 1e-5 * best.J)
+        tolerance = max(1e-9 * cost_before, 1e-5 * best.J)
         found = _search(problem, options, np.clip(before, 0.0, 1.0), tolerance, hooks, checkpoint, recorded)
         if not hooks.stop():
             ends += solve(problem, found.unit[:, None], stop=hooks.stop)
             best = min(ends, key=lambda end: end.J)
     if not hooks.stop() and ridge == 0.0:
         best = _nearest(problem, best, before)
-    unit, J = best.unit, best.J
+    unit, cost = best.unit, best.J
     problem = problem.with_offsets(best.offsets)
-    if found is not None and found.J < J:
-        unit, J = found.unit, found.J
+    if found is not None and cost > found.J:
+        unit, cost = found.unit, found.J
+    J = float(problem.misfit(unit[:, None])[0]) if problem.terms else cost
 
     hooks.on_phase("certificate and identifiability")
     restarts = found.restarts if found else []
-    certificate = certify(problem, unit, J, J_before, ends, restarts, found.J if found else None, ridge, before)
+    certificate = certify(problem, unit, cost, cost_before, ends, restarts, found.J if found else None, ridge, before)
     held_by_bound = np.isin(problem.box.names, [bound.name for bound in certificate.active])
-    roles = {name: trials.role(name) for name in trials.trials}
-    everything = setting.problem(tuple(trials.trials))
+    roles = {name: trials.role(name) for name in (*trials.trials, *trials.stated)}
+    everything = setting.problem(tuple(trials.trials)) if trials.trials else plain
     compared = tuple(compare(everything, list(trials.trials.values()), setting.objective, roles, before, unit))
-    free_start = None if setting.estimated else J_free_start(plain.estimated(setting.deviations()), unit)
+    free_start = (
+        None if setting.estimated or not trials.tune else J_free_start(plain.estimated(setting.deviations()), unit)
+    )
     return FitResult(
         profile=profile,
         options=options,
@@ -233,7 +263,9 @@ def _fit(
         J=J if options.loss == "squares" else float(total(compared, "tune", "after") or J),
         J_before=J_before,
         J_free_start=free_start,
+        beside=beside(problem, before, unit, weight) if weight else None,
         compared=compared,
+        stated=compared_stated(setting, roles, before, unit),
         restarts=tuple(restarts),
         starts=tuple(ends),
         history=tuple(found.history if found else ()),
@@ -251,8 +283,10 @@ def _fit(
 
 
 def edge_ridge(problem: FitProblem, options: FitOptions, before: FloatArray) -> float:
-    """Weight of squared distances from the pre-determined values (n_targets,) in the unit cube."""
-    return options.regularise * float(problem.costs(before[:, None])[0]) / EDGE**2 if options.regularise else 0.0
+    """Weight of squared distances from the pre-determined values (n_targets,) in the cube, of a weighed problem."""
+    asked = options.regularise * float(problem.misfit(before[:, None])[0]) / EDGE**2 if options.regularise else 0.0
+    stated = any(term.name == "indices" for term in problem.terms)
+    return max(asked, LOOSE * problem.weight) if stated else asked
 
 
 def random_starts(
@@ -269,7 +303,24 @@ def random_starts(
 
 def J_free_start(problem: FitProblem, unit: FloatArray) -> float:
     """J of coefficients (n_targets,) if each trial started from the state that fits best within its noise."""
-    return float(problem.costs(unit[:, None], fit_offsets(problem, unit)[:, None])[0])
+    return float(problem.misfit(unit[:, None], fit_offsets(problem, unit)[:, None])[0])
+
+
+def beside(problem: FitProblem, before: FloatArray, unit: FloatArray, weight: Weight) -> Beside:
+    """What the terms of a weighed problem come to at two points (n_targets,) of the unit cube."""
+    squares = {
+        name: (float(of[0]), float(of[1])) for name, of in problem.squares(np.column_stack([before, unit])).items()
+    }
+    return Beside(weight, squares)
+
+
+def compared_stated(
+    setting: Setting, roles: Mapping[str, str], before: FloatArray, unit: FloatArray
+) -> tuple[IndexComparison, ...]:
+    """Every stated index beside what the model makes of it at two points (n_targets,) of the unit cube."""
+    values = setting.box.from_unit(np.column_stack([before, unit]))
+    thetas = dict(zip(("before", "after"), setting.model.matrix(setting.box.names, values).T, strict=True))
+    return tuple(compare_stated(setting.model, thetas, list(setting.trials.stated.values()), roles))
 
 
 def traded(problem: FitProblem) -> tuple[str, ...]:
@@ -328,8 +379,8 @@ def identity_of(
     return {
         "profile": profile.sha256,
         "trials": trials.hashes(),
-        "tune": list(trials.tune),
-        "test": list(trials.test),
+        "tune": [*trials.tune, *trials.tune_stated],
+        "test": [*trials.test, *trials.test_stated],
         "options": options.to_dict(),
         "versions": {**provenance["environment"], "mmgtune": provenance["mmgtune"]},
     }
@@ -363,10 +414,10 @@ def make_provenance(profile: ShipProfile, trials: TrialSet, command: str) -> dic
             "ship": trials.ship,
             "licence": trials.licence,
             "citation": trials.citation,
-            "tune": list(trials.tune),
-            "test": list(trials.test),
+            "tune": [*trials.tune, *trials.tune_stated],
+            "test": [*trials.test, *trials.test_stated],
             "sha256": trials.hashes(),
-            "source": {name: trial.source for name, trial in trials.trials.items()},
+            "source": {name: trial.source for of in (trials.trials, trials.stated) for name, trial in of.items()},
         },
         "environment": environment,
     }

@@ -15,8 +15,9 @@ from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..options import SweepOptions
 from ..profile import ShipProfile
 from ..trial import TrialSet
+from .box import A_R
 from .comparison import finite_values
-from .extending import with_effects
+from .extending import settled
 from .folder import write_run
 from .journal import finished, journalled
 from .least_squares import fit_offsets, solve
@@ -48,7 +49,7 @@ class SweepResult:
     @property
     def widths(self) -> list[float]:
         """The half widths a_r."""
-        return [run.options.a_r for run in self.runs]
+        return [run.options.a_r or A_R for run in self.runs]  # a sweep gives it
 
     def judged(self) -> list[float]:
         """J on trials not used, per a_r: of the test set, or left out one at a time."""
@@ -127,7 +128,7 @@ class SweepResult:
             "runs": [
                 {
                     "a_r": run.options.a_r,
-                    "out": folder_name(run.options.a_r),
+                    "out": folder_name(a_r),
                     "J_tune": run.J_of("tune", "after"),
                     "J_test": run.J_of("test", "after"),
                     "J_tune_cmaes": run.certificate.J_cmaes,
@@ -139,7 +140,7 @@ class SweepResult:
                     "evaluations": run.evaluations,
                     "wall_s": run.wall_s,
                 }
-                for run in self.runs
+                for a_r, run in zip(self.widths, self.runs, strict=True)
             ],
             "recommended": self.recommended(),
             "leave_one_out": None
@@ -176,7 +177,7 @@ def sweep(
     Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to.
     """
     profile, trials = ship_of(profile), trials_of(trials)
-    profile, options = with_effects(profile, options)
+    profile, options = settled(profile, options)
     identity = identity_of(profile, trials, options, make_provenance(profile, trials, command))
     with journalled(folder, identity, hooks.stop, resume=resume):
         swept = _sweep(profile, trials, options, hooks, folder, resume, command)
@@ -241,15 +242,17 @@ def _leave_one_out(profile: ShipProfile, trials: TrialSet, run: FitResult, hooks
     """
     total = 0.0
     start, before = run.unit[:, None], run.box.to_unit(run.box.pre)
-    ridge = edge_ridge(make_problem(profile, trials, run.options), run.options, before)
+    whole = make_problem(profile, trials, run.options)
+    ridge = edge_ridge(whole.with_weight(run.beside.weight.s2) if run.beside else whole, run.options, before)
     for left_out, others in leaving_out(trials):
         if hooks.stop():
             return float("nan")
         part = make_problem(profile, trials, run.options, others)
+        part = part.with_weight(run.beside.weight.s2) if run.beside else part
         fitted = solve(part, start, ridge=ridge, anchor=before, stop=hooks.stop)[0]
         if run.options.loss == "huber" and not hooks.stop():
             _, fitted = weigh_down(part, fitted, ridge, before)
         alone = make_problem(profile, trials, run.options, left_out)
         offsets = None if alone.sigma is None else fit_offsets(alone, fitted.unit)[:, None]
-        total += float(alone.costs(fitted.unit[:, None], offsets)[0])
+        total += float(alone.misfit(fitted.unit[:, None], offsets)[0])
     return total

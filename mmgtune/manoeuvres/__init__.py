@@ -4,6 +4,7 @@ The same functions read measured and simulated records, so that the two differ b
 """
 
 from .criteria import Criterion, check_turning, check_zigzag, first_overshoot_limit, second_overshoot_limit
+from .stopping import StoppingIndices, stopping_indices
 from .summary import criteria_of, indices_of
 from .track import Execute, Track, find_execute, find_executes
 from .turning import TurningIndices, turning_indices
@@ -12,6 +13,7 @@ from .zigzag import ZigzagIndices, manoeuvre_kind, zigzag_indices
 __all__ = [
     "Criterion",
     "Execute",
+    "StoppingIndices",
     "Track",
     "TurningIndices",
     "ZigzagIndices",
@@ -24,6 +26,7 @@ __all__ = [
     "indices_of",
     "manoeuvre_kind",
     "second_overshoot_limit",
+    "stopping_indices",
     "turning_indices",
     "zigzag_indices",
 ]

@@ -16,7 +16,7 @@ CHANNELS = ("x", "y", "psi", "u", "v", "r")
 class DiagnoseOptions(SimulationOptions):
     """All choices of a diagnosis with working defaults.  A wrong integrator is itself a candidate cause."""
 
-    a_r: float = again(FitOptions, "a_r")
+    a_r: float | None = again(FitOptions, "a_r")
     targets: tuple[str, ...] = again(FitOptions, "targets")
     fixed: tuple[str, ...] = again(FitOptions, "fixed")
     effects: tuple[str, ...] = choice((), "Effects to look for, comma-separated. Default: all that apply.")

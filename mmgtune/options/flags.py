@@ -29,6 +29,8 @@ def in_flags(text: str) -> str:
         name, value = found.groups()
         if name not in FLAGS:
             return found[0]
+        if value == "False":
+            return f"--no-{FLAGS[name].lstrip('-')}"
         return FLAGS[name] if value == "True" else f"{FLAGS[name]} {value}"
 
     return _KEYWORD.sub(flagged, text)

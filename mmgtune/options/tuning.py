@@ -49,6 +49,10 @@ class TuningOptions(SimulationOptions):
         least=0,
         most=1e6,
     )
+    prior: bool = choice(
+        True,
+        "Count how far coefficients move from what formulas that say their scatter give.",
+    )
     initial: str = choice(
         "measured",
         "Start trials from the measured first sample, or estimated within its noise.",
@@ -86,8 +90,13 @@ class SearchOptions(TuningOptions):
 class FitOptions(SearchOptions):
     """All choices of a fit, each with the paper's value or a working default."""
 
-    a_r: float = choice(
-        0.5, "Half width of the box, as a share of each pre-determined value.", flag="--ar", above=0, most=5
+    a_r: float | None = choice(
+        None,
+        "Half width of the box, as a share of each pre-determined value. "
+        "Default: 0.5, and two scatters of its formula for a coefficient that says one.",
+        flag="--ar",
+        above=0,
+        most=5,
     )
 
 
@@ -116,7 +125,7 @@ class SweepOptions(SearchOptions):
 class LeaveOutOptions(TuningOptions):
     """All choices of leaving runs out: those of a fit by least squares, and how runs are dealt out."""
 
-    a_r: float = again(FitOptions, "a_r")
+    a_r: float | None = again(FitOptions, "a_r")
     folds: int = choice(0, "Parts the runs are dealt out to; 0: each run alone.", least=0, most=1000)
     starts: int = again(TuningOptions, "starts", 4)
     manoeuvres: bool = choice(

@@ -30,13 +30,17 @@ def after_fit(data: Mapping[str, Any]) -> Advice:
     """(reason, command) pairs that follow from a fit."""
     profile, trials = _inputs(data)
     a_r = number(data["options"].get("a_r"))
+    method = " --method least-squares" if data.get("stated") else ""
     same = f" --ar {a_r:g}" if a_r is not None else ""
     items = []
     if data.get("at_bound"):
         bound = count(len(data["at_bound"]), "coefficient")
         this = f" (this run: a_r = {shown(a_r)})" if a_r is not None else ""
         reason = f"{bound} at a bound: see what other ranges do on trials that were not tuned on{this}"
-        items.append((reason, f"mmgtune sweep {profile} {trials}"))
+        items.append((reason, f"mmgtune sweep {profile} {trials}{method}"))
+    elif data.get("stated") and data.get("J_test") is None:
+        reason = "Leave each trial out in turn, to see how the fit does on trials it was not tuned on"
+        items.append((reason, f"mmgtune leave-out {profile} {trials}"))
     elif data.get("J_test") is None:
         reason = "No test set: leave each trial out in turn, to see how the fit does on trials it was not tuned on"
         items.append((reason, f"mmgtune sweep {profile} {trials}"))
@@ -45,7 +49,7 @@ def after_fit(data: Mapping[str, Any]) -> Advice:
         reason = (
             f"{count(loose, 'coefficient')} not determined: hold what no trial can tell at its pre-determined value"
         )
-        items.append((reason, f"mmgtune fit {profile} {trials}{same} --identifiable"))
+        items.append((reason, f"mmgtune fit {profile} {trials}{same}{method} --identifiable"))
     tuned = shlex.quote(clean(data.get("out") or "RUN").rstrip("/") + "/profile.toml")
     reason = "Take the tuned ship through manoeuvres that were not measured, against the IMO criteria"
     items.append((reason, f"mmgtune simulate -p {tuned} --turn 35 --turn -35 --zigzag 10/10 --zigzag 20/20"))

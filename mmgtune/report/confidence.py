@@ -20,6 +20,7 @@ def best_fit(record: RunRecord, drawings: dict[str, Drawn]) -> Section:
     data, blocks = record.data, list[Block]()
     certificate = data.get("certificate") or {}
     said = [sentence(text) for text in certificate.get("sentences") or ()]
+    said += [sentence(text) for text in (data.get("beside") or {}).get("sentences") or ()]
     blocks.append(Prose(tuple(said or findings.agreement(data)), listed=True))
     active = certificate.get("active") or []
     if active:

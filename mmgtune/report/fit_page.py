@@ -19,10 +19,11 @@ def build(record: RunRecord) -> Page:
     data = record.data
     drawings: dict[str, Drawn] = {}
     sections = [
-        Section("trials", "Trials", (tables.trials(record), Prose((findings.misfit(data["options"]),)))),
+        _trials(record),
         _tracks(record, drawings),
         _histories(record, drawings),
         _indices(record),
+        _stated(record),
         _coefficients(record, drawings),
         confidence.best_fit(record, drawings),
         confidence.identifiability(record, drawings),
@@ -43,6 +44,17 @@ def build(record: RunRecord) -> Page:
         sections=tuple(section for section in sections if section is not None),
         figures=drawings,
     )
+
+
+def _trials(record: RunRecord) -> Section | None:
+    if not record.results:
+        return None
+    return Section("trials", "Trials", (tables.trials(record), Prose((findings.misfit(record.data["options"]),))))
+
+
+def _stated(record: RunRecord) -> Section | None:
+    table = tables.stated(record)
+    return None if table is None else Section("stated", "Stated indices", (table,))
 
 
 def _verdict(record: RunRecord) -> str:

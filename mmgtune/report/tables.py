@@ -131,6 +131,36 @@ def indices(record: RunRecord) -> Table | None:
     )
 
 
+def stated(record: RunRecord) -> Table | None:
+    """Stated indices with their tolerance, before and after; None where there are none."""
+    rows = []
+    for row in record.data.get("stated") or ():
+        unit = clean(row.get("unit") or "")
+        off = [number((row.get("off") or {}).get(which)) for which in ("before", "after")]
+        better = tone(None if None in off else change(abs(off[0] or 0.0), abs(off[1] or 0.0)), 1.0)
+        mark = " (assumed)" if row.get("assumed_tolerance") else ""
+        rows.append(
+            cells(
+                clean(row["trial"]),
+                ROLES.get(str(row.get("role")), "not used"),
+                clean(row.get("words") or row["index"]) + (f" [{unit}]" if unit else ""),
+                f"{shown(row.get('stated'))} ± {shown(row.get('tolerance'), 2)}{mark}",
+                shown(row.get("before")),
+                Cell(shown(row.get("after")), better),
+                fixed(off[1], 2),
+            )
+        )
+    if not rows:
+        return None
+    return Table(
+        "stated-table",
+        "Stated indices and what the model's own helmsman makes of them; off: simulated less stated, in tolerances",
+        ("trial", "role", "index", "stated", "before", "after", "off"),
+        tuple(rows),
+        numeric=range(3, 7),
+    )
+
+
 def deviation(true: float | None, value: float | None, unit: str) -> str:
     """The error of an index: in percent, or for angles in degrees."""
     if true is None or value is None:

@@ -3,6 +3,7 @@
 schema          columns of a file, their units and meaning
 model           a trial in memory
 parquet         reading and writing a file; metadata: the facts in it; digest: told from damage; footer: its size
+index_trial     a trial of which only indices are known, and its files
 dataset         folders of files; split: which of them tune and which test
 unusable        what forbids using a trial
 checks          everything odd about one: motion_checks, control_checks, cross_checks; kinematics: what they measure
@@ -18,6 +19,7 @@ describe        what a trial holds, in numbers
 from .checks import check_trial
 from .dataset import TrialSet, load_trials
 from .finding import Finding
+from .index_trial import IndexTrial
 from .model import Trial
 from .parquet import read_trial, write_trial
 from .pieces import windows
@@ -31,6 +33,7 @@ from .wind import measured_wind
 __all__ = [
     "Cutting",
     "Finding",
+    "IndexTrial",
     "Trial",
     "TrialSet",
     "Voyage",

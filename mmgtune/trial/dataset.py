@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Self
 
 from ..errors import Problem, TrialError, closest
 from ..resources import folder, trial_set_names
+from .index_trial import IndexTrial, has_index_trials, read_index_trials
 from .model import Trial
 from .parquet import id_in, read_trial
 from .pieces import windows
@@ -20,7 +22,8 @@ from .voyage import Voyage
 class TrialSet:
     """Trials by id, in the order of their file names.
 
-    tune, test  ids, in the order of the split; without a split all trials tune
+    tune, test  ids of ``trials``, in the order of the split; without a split all trials tune
+    stated      trials of which only indices are known, by id; tune_stated, test_stated their ids likewise
     ship        id of the ship, "" where neither split nor files say
     licence     of the measurements and how to cite them, "" where the split does not say: profiles tuned to them
                 carry both
@@ -34,20 +37,39 @@ class TrialSet:
     path: Path | None = None
     licence: str = ""
     citation: str = ""
+    stated: dict[str, IndexTrial] = field(default_factory=dict)
+    tune_stated: tuple[str, ...] = ()
+    test_stated: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         """In a line."""
-        roles = f"{len(self.trials)} trials, {len(self.tune)} tune, {len(self.test)} test"
+        tune, test = len(self.tune) + len(self.tune_stated), len(self.test) + len(self.test_stated)
+        roles = f"{len(self.trials) + len(self.stated)} trials, {tune} tune, {test} test"
         return f"TrialSet({self.ship or 'ship not stated'}: {roles})"
 
     @property
     def others(self) -> tuple[str, ...]:
         """Ids of the trials that neither tune nor test."""
-        return tuple(name for name in self.trials if name not in self.tune and name not in self.test)
+        return tuple(name for name in (*self.trials, *self.stated) if self.role(name) == "other")
 
     def role(self, name: str) -> str:
         """What the trial of that id is for: "tune", "test" or "other"."""
-        return "tune" if name in self.tune else "test" if name in self.test else "other"
+        if name in self.tune or name in self.tune_stated:
+            return "tune"
+        return "test" if name in self.test or name in self.test_stated else "other"
+
+    def series_only(self, what: str) -> Self:
+        """The set, all of it time series.  Raises TrialError where there are others: ``what`` has no use for them."""
+        if not self.stated:
+            return self
+        raise TrialError(
+            Problem(
+                f"{what} needs time series",
+                str(self.path or ""),
+                f"of these trials only indices are known: {', '.join(self.stated)}",
+                "take the files of stated indices out of the folder, or give one without them",
+            )
+        )
 
     def in_windows(self, length: float, every: float | None = None) -> TrialSet:
         """The same set with every trial cut into windows of ``length`` [s]; each has the role of its trial.
@@ -64,18 +86,23 @@ class TrialSet:
 
     def hashes(self) -> dict[str, str]:
         """SHA-256 of each trial's file, by id."""
-        return {name: trial.sha256 for name, trial in self.trials.items()}
+        series = {name: trial.sha256 for name, trial in self.trials.items()}
+        return series | {name: trial.sha256 for name, trial in self.stated.items()}
 
 
 def load_trials(name: str | Path) -> TrialSet:
-    """A folder of trial files, one file, or a bundled data set by name.
+    """A folder of trial files and files of stated indices, one file, or a bundled data set by name.
 
     Without ``split.toml`` every trial tunes.  Raises TrialError with everything wrong in any of the files.
     """
     path = find_trials(name)
     files = files_of(path)
+    stated, wrong_there = _stated(path)
+    if not files and not stated and not wrong_there:
+        fix = "put *.parquet files there, one a trial, or a *.toml file of stated indices"
+        raise TrialError(Problem("the folder has no trial files", str(path), fix=fix))
     trials: dict[str, Trial] = {}
-    problems: list[Problem] = []
+    problems = list(wrong_there)
     ids: list[str | None] = []
     for file in files:
         try:
@@ -91,28 +118,61 @@ def load_trials(name: str | Path) -> TrialSet:
             where = f"{trials[trial.id].path} and {file}"
             problems.append(Problem(what, where, why, "give each its own id, or remove one"))
         trials.setdefault(trial.id, trial)
-    said = Split(tune=tuple(trials))
+    known: dict[str, IndexTrial] = {}
+    for one in stated:
+        ids.append(one.id)
+        if one.id in trials or one.id in known:
+            why = "trials are told apart by their ids"
+            problems.append(Problem(f"two trials are called '{one.id}'", str(one.path), why, "give each its own id"))
+        known.setdefault(one.id, one)
+    if wrong_there:
+        ids.append(None)
+    said = Split(tune=(*trials, *known))
     split = path / SPLIT
     if path.is_dir() and split.is_file():
         said, wrong = read_split(split, None if None in ids else [one for one in ids if one is not None])
         problems += wrong
-    problems += of_another_ship(list(trials.values()), said.ship, split)
+    problems += of_another_ship([*trials.values(), *known.values()], said.ship, split)
     if problems:
         raise TrialError(*problems)
-    ships = [trial.ship for trial in trials.values() if trial.ship]
+    everything: dict[str, Trial | IndexTrial] = {**trials, **known}
+    ships = [trial.ship for trial in everything.values() if trial.ship]
     ship = said.ship or (ships[0] if ships else "")
-    return TrialSet(trials, said.tune, said.test, ship, path, said.licence, said.citation)
+
+    def among(ids: tuple[str, ...], which: Mapping[str, object]) -> tuple[str, ...]:
+        return tuple(name for name in ids if name in which)
+
+    series = among(said.tune, trials), among(said.test, trials)
+    indices = among(said.tune, known), among(said.test, known)
+    return TrialSet(trials, *series, ship, path, said.licence, said.citation, known, *indices)
+
+
+def _stated(path: Path) -> tuple[list[IndexTrial], list[Problem]]:
+    """Trials of which only indices are known, in a folder or a file, and everything wrong with them."""
+    if path.is_dir():
+        files = sorted(one for one in path.glob("*.toml") if one.name != SPLIT and not one.name.startswith("."))
+    else:
+        files = [path] if path.suffix == ".toml" else []
+    found: list[IndexTrial] = []
+    problems: list[Problem] = []
+    for file in files:
+        try:
+            if path.is_dir() and not has_index_trials(file):
+                continue  # a profile or a map that lies there
+        except TrialError as error:
+            problems += error.problems
+            continue
+        trials, wrong = read_index_trials(file)
+        found += trials
+        problems += wrong
+    return found, problems
 
 
 def files_of(path: Path) -> list[Path]:
-    """The trial files of a folder, by name, or the file itself.  Raises TrialError where a folder has none."""
-    files = [path]
+    """The Parquet files of a folder, by name, or the file itself unless it is a TOML file."""
     if path.is_dir():
-        files = sorted(file for file in path.glob("*.parquet") if not file.name.startswith("."))
-    if not files:
-        fix = "put *.parquet files there, one a trial"
-        raise TrialError(Problem("the folder has no trial files", str(path), fix=fix))
-    return files
+        return sorted(file for file in path.glob("*.parquet") if not file.name.startswith("."))
+    return [] if path.suffix == ".toml" else [path]
 
 
 def find_trials(name: str | Path) -> Path:
@@ -128,7 +188,7 @@ def find_trials(name: str | Path) -> Path:
     raise TrialError(Problem("no such trials", str(name), fix=fix))
 
 
-def of_another_ship(trials: Sequence[Trial | Voyage], ship: str, split: Path) -> list[Problem]:
+def of_another_ship(trials: Sequence[Trial | Voyage | IndexTrial], ship: str, split: Path) -> list[Problem]:
     """Trials of another ship than the split's, or of several ships where it names none."""
     ships = Counter(trial.ship for trial in trials if trial.ship)
     if not ships:

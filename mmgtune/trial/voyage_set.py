@@ -47,7 +47,7 @@ def holds_voyages(name: str | Path) -> bool:
     """Whether one file at least of a folder, or a file, is a voyage.
 
     Files that cannot be opened are none: reading them as trials says what is wrong.
-    Raises TrialError where there are no such trials.
+    Raises TrialError where there is no such folder or file.
     """
     path = find_trials(name)
     for file in files_of(path):
@@ -85,6 +85,8 @@ def load_voyages(name: str | Path) -> VoyageSet:
         said, wrong = read_split(path / SPLIT, None if problems else [one.id for one in voyages])
         problems += wrong
     problems += of_another_ship(voyages, said.ship, path / SPLIT)
+    if not voyages and not problems:
+        problems.append(Problem("the folder has no voyages", str(path), fix="put *.parquet files there, one a voyage"))
     if problems:
         raise TrialError(*problems)
     return VoyageSet(tuple(voyages), said.ship or _ship(voyages), path, said.licence, said.citation)

@@ -1,0 +1,81 @@
+"""What a fit makes small besides the squares of time series: further rows of residuals, each over its own deviation.
+
+J is in the units of its paper, not a likelihood.  A row here is a number of known standard deviation, so its square
+belongs with minus twice a logarithm of probability, and J with it once it is divided by s2, the variance of J's
+differences per independent one.  Times s2 this is
+
+    J + s2 * (squares of the rows),
+
+in the units of J; ``weighing`` finds s2.  A fit without time series has no J, and s2 is 1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..stated import residuals
+from ..trial import IndexTrial
+
+if TYPE_CHECKING:
+    from .problem import FitProblem
+
+
+class Term(Protocol):
+    """Some of these rows.
+
+    name  what to call them in records: "prior", "indices"
+    """
+
+    name: str
+
+    def residuals(self, problem: FitProblem, unit: FloatArray) -> FloatArray:
+        """The rows of candidates (n_targets, n_candidates) in the unit cube -> (n_rows, n_candidates); finite."""
+        ...
+
+    def asked(self, problem: FitProblem) -> list[Any]:
+        """What tells these rows from others, as numbers and texts."""
+        ...
+
+
+class ScatterPrior:
+    """How far coefficients are from what their formulas give, in scatters of ships about the formula.
+
+    A formula and its scatter are a normal distribution of the coefficient before anything is known of this ship.  Rows
+    for ``Box.from_formula``, in their order; coefficients count as independent of each other.
+    """
+
+    name = "prior"
+
+    def residuals(self, problem: FitProblem, unit: FloatArray) -> FloatArray:
+        """See ``Term``."""
+        box = problem.box
+        at = box.from_formula
+        if box.scatter is None or box.centre is None:
+            return np.zeros((0, unit.shape[1]))
+        away: FloatArray = box.from_unit(unit)[at] - box.centre[at, None]
+        return away / box.scatter[at, None]
+
+    def asked(self, problem: FitProblem) -> list[Any]:
+        """See ``Term``."""
+        return [self.name, problem.box.centre, problem.box.scatter]
+
+
+class StatedIndices:
+    """Indices of trials as the model makes them less those stated, in tolerances of the latter."""
+
+    name = "indices"
+
+    def __init__(self, trials: Sequence[IndexTrial]):
+        self.trials = tuple(trials)
+
+    def residuals(self, problem: FitProblem, unit: FloatArray) -> FloatArray:
+        """See ``Term``."""
+        return residuals(problem.model, problem.theta(unit), self.trials)
+
+    def asked(self, problem: FitProblem) -> list[Any]:
+        """See ``Term``."""
+        return [self.name, *((one.id, one.sha256) for one in self.trials)]
