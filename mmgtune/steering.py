@@ -122,7 +122,7 @@ def steer(model: Model, theta: FloatArray, orders: Orders) -> Steered:
             done = helm.finished(shown) | ~np.isfinite(run.s).all(axis=0)
             end[running & done] = k + 1
             running &= ~done
-            if not running.any():
+            if not running.any() and k > APPROACH:  # every record holds its order
                 break
     whole = np.array(states)
     end = np.minimum(end, len(whole) - 1)

@@ -47,6 +47,9 @@ RIDGE = 1e-8
 """Weight, as a share of J, of the distance to the pre-determined values: chooses among sets that fit equally well."""
 
 
+EXACT = 1e-8
+"""Squared tolerances of stated indices that count as none: they can be met to the last bit, which is worth nothing."""
+
 LOOSE = 1e-3
 """The same where indices are stated, in squared tolerances: a few numbers are met exactly by many sets."""
 
@@ -221,7 +224,8 @@ def _fit(
     if problem.sigma is not None:  # far from an optimum, free initial states only lead astray
         starts = np.column_stack([end.unit for end in solve(problem.held(), starts, stop=hooks.stop)])
     ridge = edge_ridge(problem, options, before)
-    ends = solve(problem, starts, ridge=ridge, anchor=before, stop=hooks.stop)
+    exact = EXACT * problem.weight if any(term.name == "indices" for term in problem.terms) else 0.0
+    ends = solve(problem, starts, ridge=ridge, anchor=before, stop=hooks.stop, tolerance=exact)
     best = min(ends, key=lambda end: end.J + ridge * float(np.sum((end.unit - before) ** 2)))
     problem = problem.with_offsets(best.offsets)
     if options.loss == "huber" and not hooks.stop():

@@ -35,6 +35,9 @@ ROUNDS = 8
 SETTLED = 0.02
 """Change of s2, as a share, that ends the rounds."""
 
+CLOSE = 0.01
+"""Fall of what is minimised over s2 that counts as none in these fits: s2 does not show it."""
+
 FALL = 1e-9
 """s2 is kept above this share of its first value: residuals of noise-free trials vanish."""
 
@@ -78,7 +81,7 @@ def weigh(
         if stop():
             break
         weighed = problem.with_weight(found.s2).with_offsets(at.offsets)
-        at = solve(weighed, at.unit[:, None], stop=stop)[0]
+        at = solve(weighed, at.unit[:, None], stop=stop, tolerance=CLOSE * found.s2)[0]
         new = replace(_weight(weighed.with_offsets(at.offsets), at), rounds=k + 1)
         new = replace(new, s2=max(new.s2, least))
         change = abs(new.s2 / found.s2 - 1.0)
