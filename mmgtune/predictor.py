@@ -19,8 +19,8 @@ from .model import Model
 from .profile import ShipProfile
 from .trial import Trial, surroundings
 
-AT_ONCE = 200_000
-"""Samples times members predicted at one time, but for those of a single case; bounds the memory (10 MB of states)."""
+AT_ONCE = 100_000
+"""Samples times members predicted at one time, but for those of a single case; bounds the memory (5 MB of states)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,7 +224,7 @@ def cases_from(
         [trial.motion[part.start] for trial, part in both] if initial is None else initial,
         target,
         weight,
-        [surroundings(trial, draught)[part] for trial, part in both],
+        (surroundings(trial, draught)[part] for trial, part in both),
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Protocol
@@ -81,14 +81,14 @@ def pad(
     initial: Sequence[FloatArray],
     target: Sequence[FloatArray] | None = None,
     weight: Sequence[FloatArray] | None = None,
-    around: Sequence[FloatArray] | None = None,
+    around: Iterable[FloatArray] | None = None,
 ) -> Cases:
     """Cases out of runs: times (n_i,), controls (n_i, n_inputs), initial (6,), target and weight (n_i, 6), around
     (n_i, n_surroundings); nothing counts where target and weight are None, nothing was measured where around is."""
     n_samples = np.array([len(t) for t in times], dtype=np.int64)
     T = int(n_samples.max(initial=1))
 
-    def padded(columns: Sequence[FloatArray] | None, width: int, *, hold: bool) -> FloatArray:
+    def padded(columns: Iterable[FloatArray] | None, width: int, *, hold: bool) -> FloatArray:
         """(n_cases, T, width), after the end of a run its last row or 0."""
         whole = np.zeros((len(times), T, width))
         for into, n, values in zip(whole, n_samples, columns or (), strict=columns is not None):

@@ -52,9 +52,13 @@ def extend(profile, rng):
     for effect in effects():
         if missing_for(effect, profile) or rng.random() < 0.5:
             continue
-        given = {name: rng.uniform(1e-9, 0.5) for name in effect.parameters if rng.random() < 0.5}
+        chosen = [name for name in effect.parameters if rng.random() < 0.5]
+        words = {name: effect.parameters[name].choices for name in chosen}
+        given = {
+            name: rng.choice([*words[name].values()]) if words[name] else rng.uniform(1e-9, 0.5) for name in chosen
+        }
         values[effect.tag] = given
-        stderr[effect.tag] = {name: rng.uniform(0.0, 1.0) for name in given if rng.random() < 0.5}
+        stderr[effect.tag] = {name: rng.uniform(0.0, 1.0) for name in given if not words[name] and rng.random() < 0.5}
     return with_effects(profile, values, "a test", stderr)
 
 
