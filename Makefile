@@ -69,8 +69,9 @@ fuzz: $(DEV) ## hostile inputs, kills and interrupts: COUNT of each kind (1000),
 bench: $(RUNTIME) ## time the simulation and the fit
 	$(BIN)/python -m tools.bench
 
-trials: $(RUNTIME) ## write the bundled trials and the logs of the tutorial anew
+trials: $(RUNTIME) ## write the bundled trials and voyages and the logs of the tutorial anew
 	$(BIN)/python tools/generate_suzaku_trials.py
+	$(BIN)/python tools/generate_suzaku_voyages.py
 	$(BIN)/python -m tools.generate_tutorial_logs
 
 browser: ## install Debian's chromium for the tests of the page, where that is possible
