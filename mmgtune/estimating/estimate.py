@@ -23,7 +23,7 @@ from ..physics.regressions import (
     zhou1983,
 )
 from ..physics.regressions.formula import Formula, ratios
-from ..profile import Approach, Coefficient, Section, ShipProfile, SteeringGear
+from ..profile import Approach, Coefficient, Section, ShipProfile, SteeringGear, with_effects
 from ..profile.reading import with_wind_coefficients
 from .defaults import Complete
 from .particulars import Particulars
@@ -43,6 +43,9 @@ HEADER = """\
 
 """
 """What a profile made from main dimensions begins with."""
+
+AROUND = ("current", "wind", "waves")
+"""Effects by which measured surroundings act."""
 
 STALL = 0.6
 """Inflow angle at which a rudder in a slipstream begins to stall [rad]; assumption."""
@@ -166,6 +169,9 @@ class _Estimate:
         ]
         if problems:
             raise ProfileError(*problems)
+        if self.options.surroundings:
+            acting = {tag: {"measured": 1.0} for tag in AROUND if tag != "wind" or "above_water" in sections}
+            found = with_effects(found, acting, "as measured, where a log has it")
         return replace(found, template=HEADER + found.text)
 
     def by(self, formula: Formula, kind: str, values: Mapping[str, Any], note: str = "") -> dict[str, Coefficient]:

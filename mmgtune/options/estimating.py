@@ -38,6 +38,10 @@ class EstimateOptions(Options):
         "1984", "Year of Holtrop's formulas of wake and thrust deduction.", values=HOLTROP, panel=INPUT
     )
 
+    surroundings: bool = choice(
+        True, "Let measured current, waves and, with [above_water], wind act where a log has them.", panel=INPUT
+    )
+
     def problems(self) -> list[Problem]:
         """The derivatives must be those of the form."""
         found = super().problems()
