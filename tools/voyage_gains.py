@@ -13,6 +13,7 @@ from dataclasses import replace
 from mmgtune import EstimateOptions, FitOptions, estimate, fit, load_profile, load_trials, read_particulars
 from mmgtune.profile import ShipProfile, with_effects
 from mmgtune.trial import load_voyages
+from mmgtune.units import shown_in
 from mmgtune.voyages import VoyageOptions, VoyageValidation, validate_voyages
 
 VOYAGES = "voyages"
@@ -64,7 +65,7 @@ def where(found: VoyageValidation) -> str:
     bins = [
         (feature["feature"], number, one["name"] or _between(one, feature["unit"]))
         for feature in models[0]["where"]
-        if "rudder" in feature["feature"]
+        if feature["feature"] in ("rudder_largest", "rudder_range")
         for number, one in enumerate(feature["bins"])
     ]
     lines = ["| model | " + " | ".join(words for *_, words in bins) + " |", "|---|" + "---:|" * len(bins)]
@@ -76,8 +77,11 @@ def where(found: VoyageValidation) -> str:
 
 
 def _between(one: dict[str, float | None], unit: str) -> str:
-    ends = ("" if end is None else f"{end:g}" for end in (one["low"], one["high"]))
-    return "-".join(ends) + f" {unit}"
+    words, factor = shown_in(unit)
+    low, high = (None if end is None else f"{factor * end:.3g}" for end in (one["low"], one["high"]))
+    return (
+        f"below {high} {words}" if low is None else f"from {low} {words}" if high is None else f"{low}-{high} {words}"
+    )
 
 
 if __name__ == "__main__":
