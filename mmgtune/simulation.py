@@ -17,7 +17,7 @@ from .inputs import INPUTS, Role
 from .manoeuvres import Track, manoeuvre_kind, zigzag_indices
 from .manoeuvres.summary import indices_of
 from .model import Model
-from .physics.quantities import Force, State
+from .physics.quantities import UNKNOWN, Force, State, Surroundings
 from .predictor import Predictor, as_predictor, cases_from, draught_of, portions, profile_of
 from .profile import ShipProfile
 from .trial import Trial
@@ -38,6 +38,8 @@ class Motion:
     diverged  whether the simulation left the world of ships; its states then mean nothing
     inputs    names of the inputs, see ``inputs.INPUTS``
     member    of the predictor, from 0
+    around    (n_samples, n_surroundings) what was measured around the ship, as ``Surroundings``; None where
+              nothing was
     """
 
     id: str
@@ -47,6 +49,7 @@ class Motion:
     diverged: bool
     inputs: tuple[str, ...] = MAIN_INPUTS
     member: int = 0
+    around: FloatArray | None = None
 
     def __repr__(self) -> str:
         """In a line."""
@@ -100,25 +103,30 @@ def motions(predictor: Predictor, trials: Sequence[Trial], offsets: FloatArray |
         found = predictor.predict(cases)
         for i, trial in enumerate(some):
             controls = np.array(cases.controls[i, : trial.n_samples])  # copies: a view would hold all of them
+            around = np.array(cases.around[i, : trial.n_samples]) if cases.around[i].any() else None
             for k in range(predictor.n_members):
                 states = np.array(found.states[i, k, : trial.n_samples])
-                yield Motion(trial.id, trial.t, states, controls, bool(found.diverged[i, k]), inputs, k)
+                yield Motion(trial.id, trial.t, states, controls, bool(found.diverged[i, k]), inputs, k, around)
 
 
-def breakdown(ship: ShipGiven | Model, states: FloatArray, controls: FloatArray) -> Any:
+def breakdown(
+    ship: ShipGiven | Model, states: FloatArray, controls: FloatArray, around: FloatArray | None = None
+) -> Any:
     """Forces and intermediates along a run, by the very functions the simulation uses.
 
-    ship object, path or bundled name, states (n_samples, 6), controls (n_samples, n_inputs) as in ``Motion``
+    ship object, path or bundled name, states (n_samples, 6), controls (n_samples, n_inputs), around
+    (n_samples, n_surroundings) or None as in ``Motion``
     -> the breakdown of the profile's arrangement, of arrays (n_samples,).
 
-    Effects of the profile have acted; forces they add are in the total only.  What depends on the past or on measured
-    wind is left out: lags count as settled.
+    Effects of the profile have acted; forces they add are in the total only.  What depends on the past is left out:
+    lags count as settled.
     """
     model = ship if isinstance(ship, Model) else Model(ship_of(ship))
     lanes = LaneModel(model, np.repeat(model.matrix(), len(states), axis=1))
     logged = model.arrangement.control(*controls.T)
     control = lanes.moved([], logged, None, np.zeros(len(states)))[-1]
-    return lanes.breakdown(lanes.unsensed(State(*states.T)), control)
+    measured = UNKNOWN if around is None else Surroundings(*around.T)
+    return lanes.breakdown(lanes.unsensed(State(*states.T)), control, measured)
 
 
 def track_of(trial: Trial) -> Track:
@@ -165,7 +173,7 @@ def as_trial(ship: ShipProfile | Predictor, motion: Motion, *, with_forces: bool
     if with_forces:
         if profile is None:
             raise OptionError(Problem(f"'{id}' has no forces", "with_forces", "only a ship profile has them"))
-        extra = _columns(breakdown(profile, motion.states, motion.controls))
+        extra = _columns(breakdown(profile, motion.states, motion.controls, motion.around))
     own = {name: motion.controls[:, k] for k, name in enumerate(motion.inputs) if name not in MAIN_INPUTS}
     x, y, psi, u, v_m, r = motion.states.T
     return Trial(

@@ -108,7 +108,8 @@ def residual_forces(model: Model, trial: Trial) -> ResidualForces:
     """Residual forces of a trial against a model, by inverse dynamics from smoothed measured motion.
 
     Both sides are blunted alike: inputs are smoothed as the motion is (see ``smoothing``).  Effects of the model act
-    as in ``simulation.breakdown``: what depends on the past or on measured wind is not in the model's forces.
+    as in ``simulation.breakdown`` in still air and water: what depends on the past, or was measured around the ship, is
+    not in the model's forces.
 
     Raises ValueError where u, v_m and r are measured together at fewer than 10 samples, or nowhere for long enough.
     """
