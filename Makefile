@@ -67,7 +67,7 @@ fuzz: $(DEV) ## hostile inputs, kills and interrupts: COUNT of each kind (1000),
 	$(BIN)/python -m tests.fuzz.interruptions --count $$(( $(COUNT) / 10 )) --seed $(SEED)
 
 bench: $(RUNTIME) ## time the simulation and the fit
-	$(BIN)/python tools/bench.py
+	$(BIN)/python -m tools.bench
 
 trials: $(RUNTIME) ## write the bundled trials and voyages and the logs of the tutorial anew
 	$(BIN)/python tools/generate_suzaku_trials.py

@@ -58,3 +58,7 @@ from .trial import write_trial as write_trial
 from .validating import Validation as Validation
 from .validating import validate as validate
 from .validation import score as score
+from .voyages import VoyageOptions as VoyageOptions
+from .voyages import VoyageValidation as VoyageValidation
+from .voyages import validate_voyages as validate_voyages
+from .voyages import write_voyages as write_voyages

@@ -1,6 +1,6 @@
 """Measure the speed of the simulators and of whole commands; write ``docs/benchmarks.json`` and ``docs/benchmarks.md``.
 
-    python tools/bench.py [FOLDER]
+    python -m tools.bench [FOLDER]
 
 Figures of one run belong together: compare their ratios, not their seconds, with another machine's.  Simulator times
 are the least of several repeats; commands run as processes of their own, cold with an empty cache of compiled kernels
@@ -35,6 +35,7 @@ from mmgtune.profile import load_profile
 from mmgtune.simulation import as_trial
 from mmgtune.trial import load_trials, write_trial
 from mmgtune.validation import score
+from tools.generate_voyage import make_voyage
 
 STEPS = 600
 LANES = (1, 48, 512, 4096)
@@ -144,6 +145,25 @@ def run(line: list[str], environment: dict[str, str]) -> tuple[float, int]:
     return round(time.perf_counter() - began, 2), usage.ru_maxrss // 1024
 
 
+def voyages() -> list[dict[str, Any]]:
+    """Two models on voyages: 1,000 windows of 120 s, and thirty days at 1 Hz; seconds warm, and memory."""
+    rows = []
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        environment = {**os.environ, "MMGTUNE_CACHE": str(folder / "cache")}
+        model = Model(load_profile("suzaku"))
+        for title, hours in (("1,000 windows", 1000.0 / 30.0), ("30 days", 720.0)):
+            trial = make_voyage(model, hours)
+            path = write_trial(trial, folder / f"{hours:.0f}.parquet")
+            line = [sys.executable, "-m", "mmgtune", "validate", "suzaku", "kvlcc2", str(path), "--no-report"]
+            line += ["--quiet", "--force", "--out", str(folder / "run")]
+            if not rows:
+                run(line, environment)  # compiles
+            seconds, memory = run(line, environment)
+            rows.append({"log": title, "rows": trial.n_samples, "warm_s": seconds, "peak_memory_mb": memory})
+    return rows
+
+
 def timed(work: Any) -> float:
     """Seconds that a call takes."""
     began = time.perf_counter()
@@ -197,6 +217,14 @@ def as_markdown(found: dict[str, Any]) -> str:
         f"Scores of one model on {w['windows']} windows of {w['samples']} samples, rk4: {w['seconds']} s, {w['mb']} MB",
         "besides the windows themselves.",
         "",
+        "## Voyages",
+        "",
+        "`mmgtune validate suzaku kvlcc2 LOG --no-report` on generated logs at 1 Hz, windows of 120 s; warm.",
+        "",
+        "| log | rows | warm [s] | peak memory [MB] |",
+        "|---|---:|---:|---:|",
+        *(f"| {r['log']} | {r['rows']:,} | {r['warm_s']} | {r['peak_memory_mb']} |" for r in found["voyages"]),
+        "",
         "## CMA-ES itself",
         "",
         "Asking and telling, without any simulation, 12 targets.",
@@ -223,6 +251,7 @@ if __name__ == "__main__":
         "machine": machine(),
         "lane_steps": lane_steps(),
         "windows": windows(),
+        "voyages": voyages(),
         "search_overhead": search_overhead(),
         "commands": commands(),
     }

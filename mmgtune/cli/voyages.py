@@ -58,15 +58,16 @@ def summary(result: VoyageValidation, folder: str, report: bool) -> str:
     found = result.to_dict()
     lines = [found["verdict"]]
     if result.n_windows:
-        limits = found["classes"]["cVDM_limits"]
-        names = [f"{name} (to {limit:g} %)" for name, limit in zip(found["classes"]["names"], limits, strict=False)]
-        lines += ["", _head("windows", [*names, "sub-optimal", "diverged"])]
-        lines += [_head(one["profile"], [*one["classes"].values(), one["diverged"]]) for one in found["models"]]
-        lines += ["", _head("median (95 % below)", list(found["models"][0]["measures"]))]
-        lines += [_head(one["profile"], _medians(one)) for one in found["models"]]
+        limits, models = found["classes"]["cVDM_limits"], found["models"]
+        lines += ["", f"windows by cVDM: optimal to {limits[0]:g} %, satisfactory to {limits[1]:g} %"]
+        lines.append(_row("", [*found["classes"]["names"], "diverged"], 14))
+        lines += [_row(one["profile"], [*one["classes"].values(), one["diverged"]], 14) for one in models]
+        lines += ["", _row("median (95 % stay below)", [one["profile"][-20:] for one in models], 22)]
+        for name, row in models[0]["measures"].items():
+            lines.append(_row(f"{name} [{row['unit']}]", [_median(one["measures"][name]) for one in models], 22))
         for one in found["comparisons"]:
             lines.append(_compared(one, found["drawn_anew"]))
-        first = found["models"][0]
+        first = models[0]
         lines += ["", f"where the error of {first['profile']} lives: mean cVDM [%] (windows)"]
         for row in first["where"][:SHOWN]:
             lines.append(f"  {row['words']}, explains {100.0 * row['explained']:.0f} %")
@@ -83,12 +84,12 @@ def summary(result: VoyageValidation, folder: str, report: bool) -> str:
     return "\n".join(lines)
 
 
-def _head(name: str, values: Sequence[Any]) -> str:
-    return f"{name[:32]:<34}" + "".join(f"{value:>24}" for value in values)
+def _row(name: str, values: Sequence[Any], width: int) -> str:
+    return f"  {name[-26:]:<28}" + "".join(f"{value:>{width}}" for value in values)
 
 
-def _medians(one: dict[str, Any]) -> list[str]:
-    return [f"{_number(row['median'])} ({_number(row['q95'])}) {row['unit']}" for row in one["measures"].values()]
+def _median(row: dict[str, Any]) -> str:
+    return f"{_number(row['median'])} ({_number(row['q95'])})"
 
 
 def _number(value: float | None) -> str:

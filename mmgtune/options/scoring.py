@@ -47,7 +47,10 @@ class VoyageOptions(ValidateOptions):
         panel=VOYAGES,
     )
     classes: tuple[float, ...] = choice(
-        (1.3, 4.1), "Voyages: cVDM [%] up to which a window is optimal, and satisfactory.", above=0.0, panel=VOYAGES
+        (1.3, 4.1),
+        "Voyages: cVDM in percent up to which a window is optimal, and satisfactory.",
+        above=0.0,
+        panel=VOYAGES,
     )
     gap: float = choice(
         10.0, "Voyages: longest gap that a window may hold; longer ones end it.", unit="s", above=0.0, panel=VOYAGES

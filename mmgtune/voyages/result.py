@@ -32,7 +32,8 @@ ALL_MEASURES = tuple(UNITS)
 class Log:
     """What became of one voyage.
 
-    counted  rows and windows
+    counted  rows, of what was read by the time it was stopped
+    windows  scored
     at_rest  windows in which the ship hardly moved, left out
     sha256   of the file
     complete whether it was read to its end
@@ -40,6 +41,7 @@ class Log:
 
     voyage: Voyage
     counted: Cutting
+    windows: int
     at_rest: int
     sha256: str
     complete: bool
@@ -59,7 +61,7 @@ class Log:
             "rows_used": self.counted.used,
             "rows_with_gaps": self.counted.gaps,
             "rows_left_out": dict(self.counted.left_out),
-            "windows": self.counted.windows - self.at_rest,
+            "windows": self.windows,
             "windows_at_rest": self.at_rest,
             "complete": self.complete,
         }

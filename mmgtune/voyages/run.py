@@ -72,17 +72,19 @@ class _Run:
         """All windows of a voyage; whether it was read to its end."""
         sha256 = voyage.verify()
         counted = Cutting()
-        at_rest = 0
+        scored = at_rest = 0
         stopped = False
         found = voyage_windows(voyage, self.options.window, gap=self.options.gap, inputs=self.inputs, counted=counted)
         for some in _portions(found):
-            self.hooks.on_progress(self.rows + counted.rows, self.total, voyage.id)
-            at_rest += self._add(some, number)
             stopped = self.hooks.stop()
             if stopped:
                 break
+            resting = self._add(some, number)
+            at_rest += resting
+            scored += len(some) - resting
+            self.hooks.on_progress(self.rows + counted.rows, self.total, voyage.id)
         self.rows += voyage.n_rows
-        self.logs.append(Log(voyage, counted, at_rest, sha256, not stopped))
+        self.logs.append(Log(voyage, counted, scored, at_rest, sha256, not stopped))
         return not stopped
 
     def _add(self, some: Sequence[Window], number: int) -> int:

@@ -29,6 +29,14 @@ def sweep_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
+def voyages_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A rendered run folder of two models on voyages."""
+    folder = fake_run.make_voyages(tmp_path_factory.mktemp("voyages") / "run")
+    render(folder)
+    return folder
+
+
+@pytest.fixture(scope="session")
 def page(fit_folder: Path) -> str:
     """The HTML of the fit's report without the chart library, which would drown every search."""
     return read(fit_folder)

@@ -251,3 +251,16 @@ def edited(**changes: Any) -> tuple[dict[str, Any], pd.DataFrame, pd.DataFrame]:
     data = copy.deepcopy(data)
     data.update(changes)
     return data, history, motions
+
+
+def make_voyages(folder: Path, model: str = "before", id: str = "voyage") -> Path:
+    """A run folder of two models on two generated hours."""
+    from mmgtune.model import Model
+    from mmgtune.profile import load_profile
+    from mmgtune.trial import write_trial
+    from mmgtune.voyages import validate_voyages, write_voyages
+    from tools.generate_voyage import make_voyage
+
+    log = write_trial(make_voyage(Model(load_profile("suzaku")), 2.0, id=id), folder / "log" / "a.parquet")
+    write_voyages(validate_voyages({model: "suzaku", "after": "kvlcc2"}, log), folder)
+    return folder

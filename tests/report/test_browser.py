@@ -246,3 +246,34 @@ def test_structure_for_screen_readers(browser: Any, fit_folder: Path) -> None:
         assert visit.page.get_by_role("rowheader", name="w_P0", exact=True).count() >= 1
         assert visit.page.get_by_role("figure", name="Tracks", exact=True).count() == 1
         assert visit.page.get_by_role("combobox", name="Trial").count() == 1
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_voyages_open_clean(browser: Any, voyages_folder: Path, width: int, scheme: str) -> None:
+    shape = {"width": width, "height": 844}
+    with Visit(browser, voyages_folder / "report.html", viewport=shape, color_scheme=scheme) as visit:
+        assert visit.complaints == []
+        assert visit.requests == [visit.url]
+        visit.page.evaluate("document.querySelectorAll('details').forEach(part => { part.open = true; })")
+        assert visit.page.evaluate(OVERFLOW) == 0
+        for name in ("classes", "distributions", "where", "parts", "windows"):
+            assert visit.page.locator(f"#{name}-figure svg").is_visible(), name
+        assert visit.page.locator("#measures-table tbody tr").count() == 14
+        ink, paper = visit.page.evaluate(
+            "[getComputedStyle(document.querySelector('#classes-figure svg text')).fill,"
+            " getComputedStyle(document.body).backgroundColor]"
+        )
+        assert contrast(ink, paper) > 7.0
+
+
+def test_hostile_names_of_voyages_are_harmless(browser: Any, tmp_path: Path) -> None:
+    name = "</script><img src=x onerror=alert(1)>"
+    folder = fake_run.make_voyages(tmp_path / "run", model=name, id="<svg onload=alert(1)>")
+    render(folder)
+    with Visit(browser, folder / "report.html", viewport={"width": 360, "height": 800}) as visit:
+        assert visit.complaints == []
+        assert visit.requests == [visit.url]
+        assert visit.page.locator("img").count() == 0
+        assert visit.page.locator("#voyages-table tbody th").all_text_contents() == ["<svg onload=alert(1)>"]
+        assert visit.page.evaluate(OVERFLOW) == 0
