@@ -18,7 +18,7 @@ from .output import show as show
 if TYPE_CHECKING:
     from ..fitting import Plan
     from ..profile import ShipProfile
-    from ..trial import TrialSet
+    from ..trial import TrialSet, VoyageSet
 
 
 def complete_profile(incomplete: str) -> list[str]:
@@ -69,7 +69,19 @@ def load(profile: str, trials: str) -> tuple[ShipProfile, TrialSet]:
     return ship, data
 
 
-def warn_of_another_ship(ship: ShipProfile, data: TrialSet) -> None:
+def load_with_voyages(profile: str, trials: str) -> tuple[ShipProfile, TrialSet | VoyageSet]:
+    """Likewise; of voyages no more than what they say of themselves."""
+    from ..profile import load_profile
+    from ..trial import holds_voyages, load_voyages
+
+    if not holds_voyages(trials):
+        return load(profile, trials)
+    ship, data = load_profile(profile), load_voyages(trials)
+    warn_of_another_ship(ship, data)
+    return ship, data
+
+
+def warn_of_another_ship(ship: ShipProfile, data: TrialSet | VoyageSet) -> None:
     """Say on stderr that trials are of another ship than the profile."""
     if data.ship and data.ship != ship.id:
         say(f"warning: the trials are of '{data.ship}', the profile is of '{ship.id}'")

@@ -15,6 +15,7 @@ from .progress import Progress
 
 if TYPE_CHECKING:
     from ..diagnose import Diagnosis
+    from ..diagnose.legs import Difference
 
 
 @takes(options=DiagnoseOptions, run=RunOptions)
@@ -36,6 +37,9 @@ def command(
 ) -> None:
     """Name what a re-tuned model still gets wrong: cause, size, and the gain on trials not used.
 
+    Of voyages (logs that say manoeuvre "voyage", or last more than an hour) at most --windows windows of 120 s, or
+    --restart, are looked at, and what differs from voyage to voyage is told besides: current and resistance.
+
     A diagnosis that was stopped has the verdict interrupted; it ends with 130 whatever --fail-on says.
 
     Examples:
@@ -56,7 +60,7 @@ def command(
         raise OptionError(
             *(Problem(f"unknown verdict '{word}'", "fail_on", fix=closest(word, VERDICTS)) for word in unknown)
         )
-    ship, data = c.load(profile, trials)
+    ship, data = c.load_with_voyages(profile, trials)
     folder = run.out or c.default_out(ship)
     plan = plan_diagnosis(ship, data, options)
     if run.dry_run:
@@ -79,6 +83,21 @@ def command(
         raise typer.Exit(ExitCode.NO)
 
 
+def _by_voyage(one: Difference) -> list[str]:
+    """A line for each voyage, where these differ."""
+    if one.pattern not in ("each", "trend"):
+        return []
+    width = max(len(name) for name in one.voyages)
+    rows = []
+    for name, values, errors in zip(one.voyages, one.values, one.stderr, strict=True):
+        told = (
+            f"{parameter} {value:7.3f} +- {1.96 * error:.3f}"
+            for parameter, value, error in zip(one.quantity.parameters, values, errors, strict=True)
+        )
+        rows.append(f"  {name:<{width}}  {'   '.join(told)}")
+    return rows
+
+
 def summary(result: Diagnosis, folder: str, report: bool) -> str:
     """The result as a person wants to read it in a terminal."""
     lines = [f"{'hypothesis':<44}{'score':>12}{'gain':>12}{'by chance':>12}{'J test':>10}", ""]
@@ -94,6 +113,8 @@ def summary(result: Diagnosis, folder: str, report: bool) -> str:
             f"J held out ({result.gain.words}; {result.gain.method}): {before:.4g} -> {after:.4g}; "
             f"95 % interval of the share removed {100.0 * low:.1f} to {100.0 * high:.1f} %."
         )
+    for one in result.differing:
+        lines += ["", one.sentence, *_by_voyage(one)]
     if result.suggestion:
         lines.append(f"A trial that would tell: {result.suggestion.manoeuvre}.")
     lines += ["", f"{'Stopped after' if result.interrupted else 'Finished in'} {result.wall_s:.1f} s."]

@@ -155,7 +155,7 @@ def linearise(bench: Workbench, point: Point, absent: Sequence[str] = (), apart:
     for k, i in enumerate(moved):
         if parameter_of(bench.model, names[i]) is not None:
             slopes[:, k] *= typical(bench, names[i])
-    by_offset = bench.noise.apply(flat_where_lost(_offset_derivatives(bench, point)))
+    by_offset = bench.noise.apply(flat_where_lost(offset_derivatives(bench, point)))
 
     columns = np.column_stack([values[:, 0], slopes, wander(bench, point)])
     left = problem.without_offsets(columns, by_offset, problem.prior, point.offsets)
@@ -167,7 +167,7 @@ def linearise(bench: Workbench, point: Point, absent: Sequence[str] = (), apart:
     signature, small = left[:, at_chosen], left[:, 1 + len(names) : 1 + n_moved]
     length = np.linalg.norm(slopes[:, [i - 1 for i in at_chosen]], axis=0)
     every = basis(np.column_stack([signature, small]))
-    first, blocks = _rows(problem)
+    first, blocks = blocks_of(problem)
     return Linear(
         residual=left[:, 0],
         names=chosen,
@@ -182,7 +182,7 @@ def linearise(bench: Workbench, point: Point, absent: Sequence[str] = (), apart:
     )
 
 
-def _offset_derivatives(bench: Workbench, point: Point) -> FloatArray:
+def offset_derivatives(bench: Workbench, point: Point) -> FloatArray:
     """Derivatives of the residuals by the initial offsets of their own case, (n_residuals, 6)."""
     problem = bench.problem_of(point.names, point.integrator)
     _, _, by_offset = problem.jacobians(point.unit[:, None], point.offsets[:, None])
@@ -203,7 +203,7 @@ def basis(columns: FloatArray) -> FloatArray:
     return np.asarray(shown @ (vectors[:, kept] / np.sqrt(square[kept])))
 
 
-def _rows(problem: FitProblem) -> tuple[IntArray, IntArray]:
+def blocks_of(problem: FitProblem) -> tuple[IntArray, IntArray]:
     """First row of each trial, and of each block; the rows of a trial's offsets belong to its last."""
     first, blocks, row = [], [], 0
     for case, rows in enumerate(problem.rows_of_cases):

@@ -6,21 +6,24 @@ from ..fitting.box import width_words
 from ..fitting.extending import with_width
 from ..fitting.planning import Plan, evaluation_seconds, whole
 from ..fitting.run import in_pieces
-from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
+from ..given import ShipGiven, TrialsGiven, ship_of
 from ..options import DiagnoseOptions
+from ..trial import VoyageSet
 from .hypotheses import known_causes
+from .voyages import looked_at
 from .workbench import make_workbench
 
 EVALUATIONS = (100, 400)
 """Evaluations a hypothesis costs per parameter fitted, over screening and refits, from few to many."""
 
 
-def plan_diagnosis(profile: ShipGiven, trials: TrialsGiven, options: DiagnoseOptions) -> Plan:
+def plan_diagnosis(profile: ShipGiven, trials: TrialsGiven | VoyageSet, options: DiagnoseOptions) -> Plan:
     """What a diagnosis would do.  Raises OptionError for what it would refuse."""
     ship = ship_of(profile)
     options = with_width(ship, options)
     own = options.fit_options()
-    pieces = in_pieces(trials_of(trials).series_only("a diagnosis"), own)
+    data, choice = looked_at(ship, trials, options)
+    pieces = in_pieces(data, own)
     seen = [trial for name, trial in pieces.trials.items() if name not in pieces.test]
     known = known_causes(ship, seen, options)
     bench = make_workbench(ship, seen, options)
@@ -29,6 +32,7 @@ def plan_diagnosis(profile: ShipGiven, trials: TrialsGiven, options: DiagnoseOpt
         f"{len(known)} hypotheses, {options.most} causes at most, false alarm {options.level:g}, seed {options.seed}"
     )
     lines = (
+        *((f"voyages   {choice.sentence}",) if choice else ()),
         *whole(ship, pieces, search, own),
         f"effects   {', '.join(tags)}",
         f"compares  {bench.problem.n_residuals} differences of {', '.join(bench.channels)}; back end {options.backend}",

@@ -14,7 +14,9 @@ from ..profile import ShipProfile, tuned, with_effects
 from .gain import Gain
 from .intervals import Estimate
 from .leftover import Leftover
+from .legs import Difference
 from .separate import Suggestion
+from .voyages import Choice
 from .wording import parameters_in_words
 
 SCHEMA = 1
@@ -124,6 +126,7 @@ class Diagnosis:
     groups    causes that cannot be told apart, each a list of tags
     chi2      of the trials it looked at per residual: before, after
     evidence  residuals, residual forces and what explains them, for the report
+    choice    windows of voyages that were looked at, None for trials; differing: what differs between the voyages
     """
 
     profile: ShipProfile
@@ -143,6 +146,8 @@ class Diagnosis:
     provenance: Mapping[str, Any]
     wall_s: float
     interrupted: bool = False
+    choice: Choice | None = None
+    differing: tuple[Difference, ...] = ()
 
     def __repr__(self) -> str:
         """In a line."""
@@ -157,10 +162,15 @@ class Diagnosis:
         # Held-out error alone does not tell: with few trials the targets themselves are known too badly for that.
         fails = self.gain.remains and self.leftover.noticed
         if self.leftover.structured if not self.causes else fails or self._mostly_left:
-            return "unexplained"
+            return "found" if any(one.explained >= MOSTLY for one in self.between) else "unexplained"
         if self.groups:
             return "not-separable"
-        return "found" if self.causes else "none"
+        return "found" if self.causes or self.between else "none"
+
+    @property
+    def between(self) -> tuple[Difference, ...]:
+        """What differs from voyage to voyage."""
+        return tuple(one for one in self.differing if one.pattern in ("each", "trend"))
 
     @property
     def _mostly_left(self) -> bool:
@@ -174,6 +184,16 @@ class Diagnosis:
 
     def sentence(self) -> str:
         """The answer in words a captain understands."""
+        told = [
+            f"{one.sentence} That accounts for {_percent(one.explained)} of the error that one value for all leaves."
+            for one in self.between
+        ]
+        if self.verdict == "found" and not self.causes:
+            return " ".join(["No cause that is the same in all voyages shows.", *told])
+        return " ".join([self._of_causes(), *told])
+
+    def _of_causes(self) -> str:
+        """What is the same in all trials, in words."""
         if self.verdict == "interrupted":
             known = ", ".join(dict.fromkeys(cause.tag for cause in self.causes))
             told = (
@@ -209,6 +229,19 @@ class Diagnosis:
             text = f"These trials cannot tell which it was: {groups}. If the first: {text}"
         them = "it" if len(self.causes) == 1 else "them"
         return f"{text} Adding {them} removes {_percent(share)} of the error {where}."
+
+    def _voyages(self) -> dict[str, Any] | None:
+        """What was looked at of voyages, and what differs from one to the next."""
+        if self.choice is None:
+            return None
+        chosen = [trial.whole for trial in self.choice.trials.trials.values()]
+        return {
+            "window_s": self.choice.length,
+            "windows": {name: chosen.count(name) for name in self.choice.voyages},
+            "windows_there_are": dict(self.choice.of),
+            "sentence": self.choice.sentence,
+            "differences": [one.to_dict() for one in self.differing],
+        }
 
     def citations(self) -> list[str]:
         """The papers behind the profile's components and the causes."""
@@ -284,6 +317,7 @@ class Diagnosis:
             "citations": self.citations(),
             "options": self.options.to_dict(),
             "evidence": dict(self.evidence),
+            "voyages": self._voyages(),
             "wall_s": self.wall_s,
         }
 

@@ -17,23 +17,25 @@ from ..fitting.box import parameter_of
 from ..fitting.extending import with_width
 from ..fitting.journal import journalled
 from ..fitting.run import Hooks, identity_of, in_pieces, make_provenance
-from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
+from ..given import ShipGiven, TrialsGiven, ship_of
 from ..model import Model
 from ..options import DiagnoseOptions
-from ..profile import ShipProfile
+from ..profile import ShipProfile, with_all_effects
 from ..threads import blas_on_one_thread
-from ..trial import Trial, TrialSet
+from ..trial import Trial, TrialSet, VoyageSet
 from ..trial.smoothing import FEWEST
 from .evidence import explain_forces, noise_share, residual_forces, short_horizon
 from .gain import J_of, held_out
 from .hypotheses import INTEGRATION_STEP, Hypothesis, known_causes
 from .intervals import Estimate, estimates
 from .leftover import Leftover, leftover
+from .legs import LEG_NAMES, differences
 from .linear import typical
 from .result import Candidate, Cause, Detectability, Diagnosis
 from .screening import angles
 from .search import ENOUGH, WORTH, Found, Refit, Step, search
 from .separate import Suggestion, suggest
+from .voyages import Choice, looked_at
 from .workbench import Point, Workbench, make_workbench
 
 TWINS = 3
@@ -43,7 +45,7 @@ TWINS = 3
 @blas_on_one_thread
 def diagnose(
     profile: ShipGiven,
-    trials: TrialsGiven,
+    trials: TrialsGiven | VoyageSet,
     options: DiagnoseOptions = DiagnoseOptions(),
     *,
     hooks: Hooks = Hooks(),
@@ -56,22 +58,26 @@ def diagnose(
     Causes are looked for on every trial that the split does not keep for testing; the gain is that on the test trials,
     or on each trial in turn where there are none.  Nothing is read but the profile, the columns and the split.
 
+    Of voyages, logs of hours, a bounded number of windows is looked at, and what differs from one to the next is told.
+
     profile, trials  objects, paths or bundled names
     folder  where each finished refit is noted at once; None for nowhere
     resume  continue what was stopped in the folder
     Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to.
     """
-    profile, trials = ship_of(profile), trials_of(trials).series_only("a diagnosis")
+    profile = ship_of(profile)
     options = with_width(profile, options)
+    trials, choice = looked_at(profile, trials, options)
     provenance = make_provenance(profile, trials, command)
     identity = identity_of(profile, trials, options, provenance)
     with journalled(folder, identity, hooks.stop, resume=resume):
-        return _diagnose(profile, trials, options, hooks, provenance)
+        return _diagnose(profile, trials, choice, options, hooks, provenance)
 
 
 def _diagnose(
     profile: ShipProfile,
     trials: TrialSet,
+    choice: Choice | None,
     options: DiagnoseOptions,
     hooks: Hooks,
     provenance: dict[str, Any],
@@ -81,7 +87,8 @@ def _diagnose(
     seen = _in_order([trial for name, trial in trials.trials.items() if name not in trials.test])
     test = _in_order([trials.trials[name] for name in trials.test])
     known = known_causes(profile, seen, options)
-    bench = make_workbench(profile, seen, options, [name for h in known for name in h.names])
+    names = [name for h in known for name in h.names]
+    bench = make_workbench(profile, seen, options, [*names, *(_legs(profile, names) if choice else ())])
     known = [h for h in known if not set(h.names) & set(bench.targets)]
     known = [h for h in known if not {h.effect.absorbed.get(v) for v in h.variant} & set(bench.targets)]
     found = search(bench, known, hooks.on_phase, hooks.stop)
@@ -90,6 +97,10 @@ def _diagnose(
     gain = held_out(bench, found, test)
     before = leftover(bench, found.base)
     left = leftover(bench, found.final) if found.causes or found.finer_step else before
+    differing = None
+    if choice is not None and not hooks.stop():
+        hooks.on_phase("comparing the voyages")
+        differing = differences(bench, found.final, choice.voyages)
     groups = tuple(
         (cause.tag, *(rival.hypothesis.tag for rival in rivals))
         for cause, rivals in zip(found.causes, found.rivals, strict=True)
@@ -117,9 +128,17 @@ def _diagnose(
         ),
         evidence=_evidence(bench, found, before, left),
         provenance=provenance,
+        choice=choice,
+        differing=differing or (),
         wall_s=time.perf_counter() - began,
         interrupted=hooks.stop(),
     )
+
+
+def _legs(profile: ShipProfile, names: Sequence[str]) -> list[str]:
+    """What may differ from voyage to voyage, of the effects that apply, besides what is looked for anyhow."""
+    there = {f"{effect.kind}.{name}" for effect in Model(with_all_effects(profile)).effects for name in effect.fields}
+    return [name for name in LEG_NAMES if name in there and name not in names]
 
 
 def _in_order(trials: Sequence[Trial]) -> list[Trial]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from ..errors import Problem, closest
 from .choice import again, choice
+from .scoring import VOYAGES, WINDOW
 from .simulation import SimulationOptions
 from .tuning import FitOptions
 
@@ -25,6 +26,14 @@ class DiagnoseOptions(SimulationOptions):
     most: int = choice(4, "Largest number of causes looked for.", least=1, most=8)
     level: float = choice(0.01, "Largest probability of a false alarm over the search.", above=0, below=0.5)
     seed: int = again(FitOptions, "seed")
+    windows: int = choice(
+        72, "Voyages: largest number of windows looked at, as many from each.", least=4, most=1000, panel=VOYAGES
+    )
+
+    @property
+    def voyage_window(self) -> float:
+        """Length of the windows of voyages [s]."""
+        return WINDOW if self.restart is None else self.restart
 
     def problems(self) -> list[Problem]:
         """What makes no sense, effects and channels that do not exist among it."""

@@ -51,6 +51,7 @@ def build(record: DiagnosisRecord) -> Page:
     drawings: dict[str, Drawn] = {}
     sections = [
         _causes(data),
+        _voyages(data),
         _why(data, drawings),
         _gain(record, drawings),
         _evidence(data),
@@ -100,6 +101,42 @@ def _tiles(data: Mapping[str, Any]) -> tuple[Tile, ...]:
         left = data["unexplained"]["share_of_noise_variance"]
         tiles.append(Tile("Left beyond sensor noise", f"{100.0 * left:.1f} %", note="of the noise's variance"))
     return tuple(tiles)
+
+
+def _voyages(data: Mapping[str, Any]) -> Section | None:
+    """What differs from voyage to voyage; records of trials, and of older versions, have nothing of it."""
+    told = data.get("voyages")
+    if not told:
+        return None
+    blocks: list[Block] = [Prose((clean(told["sentence"]),))]
+    for one in told["differences"]:
+        blocks.append(Prose((clean(one["sentence"]),)))
+        names = [name for name in one["by_voyage"][0] if name != "voyage"]
+        rows = [
+            cells(
+                clean(row["voyage"]),
+                shown(told["windows"].get(row["voyage"])),
+                *(word for name in names for word in _with_error(row[name])),
+            )
+            for row in one["by_voyage"]
+        ]
+        relative = ", over its mean" if one["relative_to_mean"] else ""
+        what = f"{clean(one['quantity']).capitalize()} of each voyage{relative}, with its 95 % half width"
+        heads = tuple(head for name in names for head in (_head(name, one["unit"]), "±"))
+        table_of = f"{clean(one['quantity'])}-by-voyage"
+        blocks.append(
+            Table(table_of, what, ("voyage", "windows", *heads), tuple(rows), tuple(range(1, 2 + len(heads))))
+        )
+    return Section("voyages", "From voyage to voyage", tuple(blocks))
+
+
+def _head(name: str, unit: str) -> str:
+    return clean(name) if unit in ("-", "prime") else f"{clean(name)} [{clean(unit)}]"
+
+
+def _with_error(value: Mapping[str, Any]) -> tuple[str, str]:
+    error = number(value["stderr"])
+    return (shown(value["value"], 3), NONE if error is None else shown(1.96 * error, 2)) if error else (NONE, NONE)
 
 
 def _causes(data: Mapping[str, Any]) -> Section | None:

@@ -11,11 +11,14 @@ from glob import glob
 
 import pytest
 
+from mmgtune.model import Model
+from mmgtune.profile import load_profile
 from mmgtune.resources import folder
 from mmgtune.trial import read_trial, write_trial
 from mmgtune.trial.schema import ATTRIBUTES
 from tests.command import QUICK, run
 from tests.docs.test_docs import ROOT, code
+from tools.generate_voyage import make_voyage
 
 PAGES = [
     ROOT / "README.md",
@@ -63,6 +66,7 @@ def desk(tmp_path):
         (tmp_path / name).write_text(toml, encoding="utf-8")
     shutil.copytree(folder("trials"), tmp_path / "trials")
     shutil.copy(folder("trials") / "suzaku" / "check.json", tmp_path)
+    write_trial(make_voyage(Model(load_profile("suzaku")), 1.5), tmp_path / "voyages" / "voyage.parquet")
     return tmp_path
 
 

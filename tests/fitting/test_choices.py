@@ -20,6 +20,7 @@ def test_windows_recover_the_truth_too(suzaku, clean):
     found = fit(suzaku.profile, clean, replace(QUICK, restart=100.0))
     assert len(found.compared) > 3 * len(clean.trials)
     assert 1e-6 * found.J_before > found.J
+    assert all(f"{name} = " in found.tuned_text() for name in clean.tune)
 
 
 def test_the_standardised_objective_counts_all_states_over_their_spread(suzaku, clean):
