@@ -3,10 +3,10 @@
 particulars  what is known of a ship: a small TOML file
 defaults     what such a file leaves out, by rules of thumb
 scatter      how far ships lie about the formulas
-estimate     the profile
+making       the profile
 """
 
-from .estimate import estimate
+from .making import estimate
 from .particulars import QUESTIONS, Particulars, parse_particulars, read_particulars
 
 __all__ = ["QUESTIONS", "Particulars", "estimate", "parse_particulars", "read_particulars"]

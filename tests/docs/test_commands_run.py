@@ -1,9 +1,11 @@
 """Every command of the README and of the guides, run as it stands, page by page in a folder of its own.
 
 The pages on measured ships need data that does not travel with the program (tests/measured), the tutorial has a test of
-its own (test_tutorial.py), and the output of some commands here is what other tests are about: here they must work.
+its own (test_tutorial.py), fits to sea-trial reports take minutes and are run by tests/fitting/test_stated.py, and the
+output of some commands here is what other tests are about: here they must work.
 """
 
+import re
 import shlex
 import shutil
 from dataclasses import replace
@@ -22,7 +24,7 @@ from tools.generate_voyage import make_voyage
 
 PAGES = [
     ROOT / "README.md",
-    *sorted((ROOT / "docs" / "guides").glob("*.md")),
+    *sorted(page for page in (ROOT / "docs" / "guides").glob("*.md") if page.name != "sea-trial-report.md"),
     *sorted((ROOT / "docs" / "theory").glob("*.md")),
     ROOT / "docs" / "check-sensitivity.md",
     *ROOT.glob("*/README.md"),
@@ -94,6 +96,8 @@ def test_commands_of_a_page_run(page, desk):
     lines = commands(page)
     if not any(MAKES_TRIALS in line for line in lines):
         own_trials(desk, "my_trials")
+    for name, text in re.findall(r'```toml title="([^"]+)"\n(.*?)```', page.read_text(encoding="utf-8"), re.DOTALL):
+        (desk / name).write_text(text, encoding="utf-8")
     if page.name == "ci.md":
         shutil.rmtree(desk / "trials")
         own_trials(desk, "trials")
