@@ -37,6 +37,7 @@ from .options import LeaveOutOptions as LeaveOutOptions
 from .options import SimulateOptions as SimulateOptions
 from .options import SweepOptions as SweepOptions
 from .options import ValidateOptions as ValidateOptions
+from .options import VoyageOptions as VoyageOptions
 from .orders import TurningOrder as TurningOrder
 from .orders import ZigzagOrder as ZigzagOrder
 from .orders import run_manoeuvre as run_manoeuvre
@@ -58,7 +59,6 @@ from .trial import write_trial as write_trial
 from .validating import Validation as Validation
 from .validating import validate as validate
 from .validation import score as score
-from .voyages import VoyageOptions as VoyageOptions
 from .voyages import VoyageValidation as VoyageValidation
 from .voyages import validate_voyages as validate_voyages
 from .voyages import write_voyages as write_voyages
