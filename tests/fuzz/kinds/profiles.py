@@ -41,7 +41,8 @@ rms_psi = "5 deg"
 def texts() -> tuple[str, ...]:
     """The bundled profiles, and one of them with more in it."""
     found = [(folder("ship_profiles") / f"{name}.toml").read_text(encoding="utf-8") for name in profile_names()]
-    return (*found, found[-1] + MORE)
+    plain = next(text for text in found if "[effects." not in text)
+    return (*found, plain + MORE)
 
 
 @functools.cache
