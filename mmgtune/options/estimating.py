@@ -39,7 +39,7 @@ class EstimateOptions(Options):
     )
 
     surroundings: bool = choice(
-        True, "Let measured current, waves and, with [above_water], wind act where a log has them.", panel=INPUT
+        True, "Let measured current, waves and (where above_water is given) wind act where a log has them.", panel=INPUT
     )
 
     def problems(self) -> list[Problem]:
