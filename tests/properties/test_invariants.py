@@ -25,6 +25,8 @@ def symmetric(model):
         if f"propeller.{name}" in model.rows:
             theta[model.rows[f"propeller.{name}"]] = 0.0
     theta[model.rows["rudder.gamma_Rn"]] = theta[model.rows["rudder.gamma_Rp"]]
+    if "rudder.C_port" in model.rows:
+        theta[model.rows["rudder.C_port"]] = theta[model.rows["rudder.C_stbd"]]
     if "wake.C_2n" in model.rows:
         theta[model.rows["wake.C_2n"]] = theta[model.rows["wake.C_2p"]]
     return theta
