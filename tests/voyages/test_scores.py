@@ -35,7 +35,7 @@ def test_as_one_by_one(suzaku, pieces):
     """J, squares, counts and all seven measures are those of a record for each window."""
     together = windows_of(pieces)
     scores, states = score_windows(
-        predictor := PhysicsPredictor(suzaku, suzaku.matrix()), together, cases_for(together, suzaku.inputs)
+        predictor := PhysicsPredictor(suzaku, suzaku.matrix()), together, cases_for(together, suzaku.inputs, None)
     )
     length, speed = references(together.motion)
     parts = cvdm_parts(scores.mean, length, speed, R_MAX)
@@ -92,7 +92,7 @@ class Lost:
 
 def test_members_and_what_diverged(pieces):
     together = windows_of(pieces)
-    scores, _ = score_windows(Lost(), together, cases_for(together, ("n", "delta")))
+    scores, _ = score_windows(Lost(), together, cases_for(together, ("n", "delta"), None))
     assert scores.diverged.tolist() == [k % 2 == 0 for k in range(len(pieces))]
     assert np.isinf(scores.J[::2]).all()
     assert np.isinf(scores.measures["MED"][::2]).all()
@@ -109,7 +109,7 @@ def test_tables_have_the_standardised_error_of_a_validation(suzaku, pieces):
         gathered.features.append(together.features())
         gathered.counts.append(together.counts)
         scores, _ = score_windows(
-            PhysicsPredictor(suzaku, suzaku.matrix()), together, cases_for(together, suzaku.inputs)
+            PhysicsPredictor(suzaku, suzaku.matrix()), together, cases_for(together, suzaku.inputs, None)
         )
         gathered.scores.setdefault("suzaku", []).append(scores)
     table = gathered.table(R_MAX)
