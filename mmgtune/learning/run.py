@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -196,13 +196,17 @@ def _single(weights: Weights) -> Weights:
 
 
 def _scored(
-    network: Network, trials: tuple[Trial, ...], sigma: dict[str, float], restart: float | None
+    network: Network, trials: Sequence[Trial], sigma: dict[str, float], restart: float | None
 ) -> tuple[TrialScore, ...]:
     """Windows of trials scored by all members."""
     if not trials:
         return ()
-    pieces = [piece for trial in trials for piece in (windows(trial, restart) if restart else [trial])]
-    return tuple(score(NetworkPredictor(network), pieces, sigma))
+    return tuple(score(NetworkPredictor(network), pieces_of(trials, restart), sigma))
+
+
+def pieces_of(trials: Sequence[Trial], restart: float | None) -> list[Trial]:
+    """Trials, or their windows of ``restart`` [s]."""
+    return [piece for trial in trials for piece in (windows(trial, restart) if restart else [trial])]
 
 
 def _facts(task: Task, command: str) -> dict[str, Any]:
