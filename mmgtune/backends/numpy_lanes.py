@@ -41,9 +41,15 @@ NUMPY = Arithmetic(of=lambda function: function, states=np.array, each=lambda fu
 
 
 class NumpyLanes:
-    """Evaluates ``physics`` as it stands, on arrays of n_cases * n_candidates lanes."""
+    """Evaluates ``physics`` as it stands, on arrays of n_cases * n_candidates lanes.
+
+    lanes  what marches, of a model and the coefficients of every lane
+    """
 
     name = "numpy"
+
+    def __init__(self, lanes: Callable[[Model, FloatArray], LaneModel] | None = None):
+        self.lanes = lanes or LaneModel
 
     def run(
         self,
@@ -59,7 +65,7 @@ class NumpyLanes:
         """See ``Backend.run``."""
         n_cases, n_candidates = len(cases), theta.shape[1]
         shape = (n_cases, n_candidates)
-        ship = LaneModel(model, np.ascontiguousarray(np.tile(theta, n_cases)))
+        ship = self.lanes(model, np.ascontiguousarray(np.tile(theta, n_cases)))
         if initial is None:
             initial = np.repeat(cases.initial[:, None], n_candidates, axis=1)
         T = cases.t.shape[1]

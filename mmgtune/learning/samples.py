@@ -10,6 +10,7 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..errors import OptionError, Problem
 from ..networks.predicting import WIND
+from ..physics.quantities import HELD, Surroundings
 from ..trial import Trial, surroundings
 
 GAP = 2.5
@@ -22,7 +23,7 @@ class Samples:
 
     states    (n_rows, 6), NaN where nothing was measured near
     controls  (n_rows, n_inputs)
-    wind      (n_rows, 2) velocity of the air over ground, north and east [m/s]; 0 where nothing was measured
+    around    (n_rows, n_surroundings) in the order of ``Surroundings``; 0 where nothing was measured
     first     (n_trials + 1,) row at which each trial begins, and the end
     step      [s] between rows
     """
@@ -30,7 +31,7 @@ class Samples:
     trials: tuple[Trial, ...]
     states: FloatArray
     controls: FloatArray
-    wind: FloatArray
+    around: FloatArray
     first: IntArray
     step: float
 
@@ -38,6 +39,11 @@ class Samples:
     def whole(self) -> BoolArray:
         """(n_rows,) whether a row has all its states."""
         return np.asarray(np.isfinite(self.states).all(axis=1))
+
+    @property
+    def wind(self) -> FloatArray:
+        """(n_rows, 2) velocity of the air over ground, north and east [m/s]."""
+        return self.around[:, WIND]
 
     def starts(self, length: int) -> IntArray:
         """Rows at which ``length`` steps of complete rows of one trial begin."""
@@ -55,26 +61,32 @@ class Samples:
         return np.asarray(np.nanstd(self.states, axis=0))
 
 
-def samples_of(trials: Sequence[Trial], inputs: Sequence[str], step: float) -> Samples:
+def samples_of(
+    trials: Sequence[Trial], inputs: Sequence[str], step: float, draught: float | None = None
+) -> Samples:
     """Trials on a common step [s], interpolated linearly.
 
+    draught  of the ship [m], as for ``surroundings``
     Raises TrialError for a trial without one of the inputs, OptionError where nothing can be learned from them.
     """
-    states, controls, wind = [], [], []
+    states, controls, beside = [], [], []
+    held = np.array([name in HELD for name in Surroundings._fields])
     first = [0]
     for trial in trials:
         grid = trial.t[0] + step * np.arange(int(trial.duration / step + 1e-6) + 1)
         states.append(np.column_stack([_measured(grid, trial.t, column, step) for column in trial.motion.T]))
         driven = trial.inputs(inputs)
         controls.append(np.column_stack([np.interp(grid, trial.t, column) for column in driven.T]))
-        around = surroundings(trial, None)[:, WIND]
-        wind.append(np.column_stack([np.interp(grid, trial.t, column) for column in around.T]))
+        around = surroundings(trial, draught)
+        linear = np.column_stack([np.interp(grid, trial.t, column) for column in around.T])
+        last = np.clip(np.searchsorted(trial.t, grid, side="right") - 1, 0, None)
+        beside.append(np.where(held, around[last], linear))
         first.append(first[-1] + len(grid))
     found = Samples(
         tuple(trials),
         np.vstack(states) if states else np.zeros((0, 6)),
         np.vstack(controls) if controls else np.zeros((0, len(inputs))),
-        np.vstack(wind) if wind else np.zeros((0, 2)),
+        np.vstack(beside) if beside else np.zeros((0, len(held))),
         np.array(first),
         step,
     )
