@@ -136,7 +136,7 @@ def simulate(
     profile that is given no trials.
     """
     predictor = as_predictor(
-        named_ship(ship),
+        named_ship(ship, integrator or options.make_integrator()),
         integrator=integrator or options.make_integrator(),
         backend=backend or options.backend,
     )

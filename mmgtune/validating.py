@@ -153,7 +153,7 @@ def predictors_of(
         raise OptionError(Problem("there is no profile to score", "profiles", fix="name one or more"))
     return {
         name: as_predictor(
-            named_ship(one),
+            named_ship(one, options.make_integrator()),
             integrator=options.make_integrator(),
             backend=options.backend,
         )

@@ -12,7 +12,8 @@ from ..files import write_text
 from ..networks import NetworkPredictor, save_network
 from ..simulation import simulate
 from ..validation import by_manoeuvre, summary
-from .run import Learned, pieces_of
+from .choosing import pieces_of
+from .run import Learned
 
 RESULT = "learning.json"
 MODEL = "model.safetensors"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -13,12 +13,13 @@ from ..backends.differentiable import Log, Marching, on_jax
 from ..backends.twins import jax_module
 from ..model import Model
 from ..networks.hybrid import HybridLanes
-from ..networks.residual import Ranges, ResidualWeights
+from ..networks.residual import Ranges, ResidualWeights, seen
 from ..trial import Trial
-from ..trial.pieces import windows
-from .samples import Samples, samples_of
+from .choosing import Chooser, Single
+from .samples import Samples
 
-Single = np.float32
+Runs = Mapping[str, tuple[str, int]]
+"""Kind of manoeuvre of runs, and the samples of each that count."""
 
 EULER = Integrator("euler")
 """Method within training: at half a second scores differ by less than a hundredth from those at a tenth."""
@@ -47,8 +48,6 @@ def ranges_of(samples: Samples, memory: float, roles: Sequence[str]) -> Ranges:
 
     roles  of the inputs: a rudder changes sign where port and starboard change places
     """
-    from ..networks.residual import seen
-
     n_inputs = samples.controls.shape[1]
     plain = Ranges(np.ones(n_inputs + 8), np.ones(n_inputs + 8), np.ones(3), np.ones(n_inputs + 8))
     settled = np.full((len(samples.states), 3), np.nan)
@@ -108,8 +107,17 @@ class HybridAim:
         self._states = jnp.asarray(learn.states, dtype=Single)
         self._controls = jnp.asarray(learn.controls, dtype=Single)
         self._around = jnp.asarray(learn.around, dtype=Single)
-        self._windows = _Windows(model, learn.step, choose, restart, sigma)
-        self._errors = jax_module().jit(self._squares)
+        self._chooser = Chooser(
+            lambda *given: self.roll(*given)[0],
+            choose,
+            model.inputs,
+            learn.step,
+            sigma,
+            restart=restart,
+            draught=model.draught,
+        )
+        self.runs = self._chooser.runs
+        self._alone: dict[str, float] = {}
 
     def roll(self, w: ResidualWeights, initial: Any, controls: Any, around: Any) -> tuple[Any, Any]:
         """States (T, n, 6) from ``initial`` (n, 6) over samples (T, n, ...), and what the network added (T - 1, n, 3)
@@ -119,9 +127,7 @@ class HybridAim:
         T, n = controls.shape[:2]
         t = numpy.broadcast_to(self.step * numpy.arange(T, dtype=Single)[:, None], (T, n))
         log = Log(t, np.full(n, T), controls, around)
-        lanes = HybridLanes(
-            self.model, self.theta, weights=w, ranges=self.ranges, memory=self.memory, on=on_jax()
-        )
+        lanes = HybridLanes(self.model, self.theta, weights=w, ranges=self.ranges, memory=self.memory, on=on_jax())
         march = Marching(lanes, log, EULER, lanes.rates)
 
         def body(now: Any, samples: Any) -> Any:
@@ -144,52 +150,31 @@ class HybridAim:
         robust = 2.0 * ROBUST * (numpy.sqrt(1.0 + error / ROBUST) - 1.0)
         return numpy.mean(robust) + self.quiet * numpy.mean(added**2)
 
-    def _squares(self, w: ResidualWeights, initial: Any, controls: Any, around: Any, states: Any, counts: Any) -> Any:
-        numpy = jax_module().numpy
-        off = (self.roll(w, initial, controls, around)[0] - states) / self.sigma
-        return numpy.sum(numpy.where(counts, off * off, 0.0), axis=0)
+    def alone(self, w: ResidualWeights) -> dict[str, float]:
+        """L_MSE by run of the model of forces alone, on the windows that choose."""
+        if not self._alone:
+            self._alone = self._chooser.by_run(w._replace(W_3=0.0 * w.W_3))
+        return self._alone
 
-    def errors(self, w: ResidualWeights) -> dict[str, float]:
-        """L_MSE by kind of manoeuvre on the windows that choose."""
-        squares = np.asarray(self._errors(w, *self._windows.given), dtype=float)
-        return self._windows.by_kind(squares)
-
-    def score(self, w: ResidualWeights) -> float:
-        """See ``Aim``: the mean over kinds of manoeuvre."""
-        total = float(np.mean(list(self.errors(w).values())))
-        return total if np.isfinite(total) else float("inf")
+    def judged(self, w: ResidualWeights) -> dict[str, float]:
+        """See ``Aim``: L_MSE by run, and the score of ``relative``."""
+        errors = self._chooser.by_run(w)
+        return {"score": relative(self.alone(w), errors, self.runs), **errors}
 
 
-class _Windows:
-    """Windows of trials side by side, padded at the end: what a score compares."""
+def ratios(before: Mapping[str, float], after: Mapping[str, float], runs: Runs) -> dict[str, float]:
+    """Error after over error before, by kind of manoeuvre: of runs together, each by its samples."""
+    found = {}
+    for kind in sorted({kind for kind, _ in runs.values()}):
+        of = {run: n for run, (own, n) in runs.items() if own == kind}
+        found[kind] = sum(n * after[run] for run, n in of.items()) / sum(n * before[run] for run, n in of.items())
+    return found
 
-    def __init__(self, model: Model, step: float, trials: Sequence[Trial], restart: float | None, sigma: FloatArray):
-        jnp = jax_module().numpy
-        pieces = [piece for trial in trials for piece in (windows(trial, restart) if restart else [trial])]
-        cut = samples_of(pieces, model.inputs, step, model.draught)
-        lengths = np.diff(cut.first)
-        T, n = int(lengths.max()), len(pieces)
-        rows = cut.first[:-1] + np.minimum(np.arange(T)[:, None], lengths - 1)
-        states = cut.states[rows].copy()
-        states[:, :, :2] -= states[:1, :, :2]
-        counts = np.isfinite(states) & (np.arange(T)[:, None] < lengths)[:, :, None]
-        counts[0] = False
-        states = np.nan_to_num(states)
-        self.kinds = np.array([piece.manoeuvre for piece in pieces])
-        self.counts = counts.sum(axis=0)
-        self.given = (
-            jnp.asarray(states[0], dtype=Single),
-            jnp.asarray(cut.controls[rows], dtype=Single),
-            jnp.asarray(cut.around[rows], dtype=Single),
-            jnp.asarray(states, dtype=Single),
-            jnp.asarray(counts),
-        )
 
-    def by_kind(self, squares: FloatArray) -> dict[str, float]:
-        """L_MSE by kind from squares (n_windows, 6) over their variance."""
-        found = {}
-        for kind in sorted(set(self.kinds.tolist())):
-            of = self.kinds == kind
-            n = self.counts[of].sum(axis=0)
-            found[str(kind)] = float(np.sum(squares[of].sum(axis=0)[n > 0] / n[n > 0]))
-        return found
+def relative(before: Mapping[str, float], after: Mapping[str, float], runs: Runs) -> float:
+    """Mean over kinds of manoeuvre of their ``ratios``, each alike; 1 for no change.
+
+    A kind that is worse counts by its loss once more: what one kind gains another must not pay.
+    """
+    found = np.array(list(ratios(before, after, runs).values()))
+    return float(np.mean(found) + np.sum(np.maximum(found - 1.0, 0.0)))

@@ -18,10 +18,10 @@ from ..networks import Network, NetworkPredictor
 from ..networks.recurrent import Scales, Weights
 from ..options.learning import LearnOptions
 from ..trial import Trial
-from ..trial.pieces import windows
 from ..validation import TrialScore, score
 from . import keeping
 from .aims import RecurrentAim
+from .choosing import pieces_of
 from .starting import first_weights, scales_of
 from .task import Task, make_task
 from .training import Plan, Progressed, Trainer
@@ -111,12 +111,14 @@ def learn_rnn(
     began = time.perf_counter()
     task = make_task(ship_of(ship), trials_of(trials).series_only("a network"), options)
     scales = scales_of(task.samples)
-    plan = Plan(options.steps, options.batch, options.rate, options.every)
+    plan = Plan(options.steps, options.batch, options.rate, options.validate_every)
     identity = identity_of(task)
     members = _members(Trainer(RecurrentAim(task, scales), plan), task, hooks, folder, identity, resume)
     if not members:
         why = "nothing is known of weights before"
-        raise OptionError(Problem("stopped before the first validation", "every", why, "write a smaller every"))
+        raise OptionError(
+            Problem("stopped before the first validation", "validate_every", why, "write a smaller validate_every")
+        )
     facts = _facts(task, command)
     network = Network(
         ship=task.profile.id,
@@ -202,11 +204,6 @@ def _scored(
     if not trials:
         return ()
     return tuple(score(NetworkPredictor(network), pieces_of(trials, restart), sigma))
-
-
-def pieces_of(trials: Sequence[Trial], restart: float | None) -> list[Trial]:
-    """Trials, or their windows of ``restart`` [s]."""
-    return [piece for trial in trials for piece in (windows(trial, restart) if restart else [trial])]
 
 
 def _facts(task: Task, command: str) -> dict[str, Any]:

@@ -61,9 +61,7 @@ class Samples:
         return np.asarray(np.nanstd(self.states, axis=0))
 
 
-def samples_of(
-    trials: Sequence[Trial], inputs: Sequence[str], step: float, draught: float | None = None
-) -> Samples:
+def samples_of(trials: Sequence[Trial], inputs: Sequence[str], step: float, draught: float | None = None) -> Samples:
     """Trials on a common step [s], interpolated linearly.
 
     draught  of the ship [m], as for ``surroundings``

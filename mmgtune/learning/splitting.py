@@ -19,6 +19,32 @@ class Split:
     choose: tuple[Trial, ...]
 
 
+def fold_runs(trials: Sequence[Trial], folds: int, seed: int) -> list[Split]:
+    """Every run kept back once, in ``folds`` parts with runs of every kind dealt out in turn.
+
+    Raises OptionError where there are fewer runs than parts.
+    """
+    rng = np.random.default_rng([seed, 5])
+    kinds: dict[str, set[str]] = {}
+    for trial in trials:
+        kinds.setdefault(trial.manoeuvre, set()).add(trial.run)
+    dealt: list[str] = []
+    for _, runs in sorted(kinds.items()):
+        names = sorted(runs)
+        dealt += [names[k] for k in rng.permutation(len(names))]
+    if len(dealt) < folds:
+        why = f"there are {len(dealt)} runs"
+        raise OptionError(Problem(f"{folds} parts of runs", "folds", why, f"write folds={len(dealt)} or less"))
+    parts = [{*dealt[k::folds]} for k in range(folds)]
+    return [
+        Split(
+            tuple(trial for trial in trials if trial.run not in part),
+            tuple(trial for trial in trials if trial.run in part),
+        )
+        for part in parts
+    ]
+
+
 def split_runs(trials: Sequence[Trial], share: float, seed: int) -> Split:
     """Keep back about this share of the time of each kind of manoeuvre, as whole runs drawn by ``seed``.
 

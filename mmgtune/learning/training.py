@@ -45,8 +45,8 @@ class Aim(Protocol):
         """Loss of a batch of windows, (n,) rows -> number; traceable."""
         ...
 
-    def score(self, parameters: Any) -> float:
-        """What chooses among weights, less is better; infinite where a run diverged."""
+    def judged(self, parameters: Any) -> dict[str, float]:
+        """What is known of weights: their "score", less is better and infinite where a run diverged, and more."""
         ...
 
 
@@ -67,7 +67,8 @@ class Progressed:
 
     parameters, state, mean  trees of arrays: weights, what the optimiser remembers, running mean of the weights
     best, best_score         the best mean so far
-    curve                    a row for each validation: step, mean loss since the last, score, norm of the gradient
+    curve                    a row for each validation: step, mean loss since the last, norm of the gradient, and what
+                             the aim says
     events                   what went wrong, with its step
     factor                   on the rate, halved each time training went back
     """
@@ -118,18 +119,21 @@ class Trainer:
         now: Progressed,
         seed: int,
         *,
+        until: int | None = None,
         on_validation: Callable[[Progressed], None] = lambda _: None,
         stop: Callable[[], bool] = lambda: False,
     ) -> Progressed:
-        """Train to the end of the plan, or until ``stop``; ``on_validation`` is called after each, to save and tell.
+        """Train to the end of the plan, or to the step ``until``, or until ``stop``.
+
+        on_validation  called after each validation, to save and tell
 
         Raises OptionError where no step ever had a finite loss.
         """
-        plan = self.plan
+        plan, last = self.plan, until or self.plan.steps
         good = _copy(now)
         losses: list[float] = []
         largest = 0.0
-        while now.step < plan.steps:
+        while now.step < last:
             starts = batch(self.aim.starts, plan.batch, seed, now.step)
             past = min((1.0 + now.step) / (10.0 + now.step), AVERAGE)
             now.parameters, now.state, now.mean, loss, norm, sound = self._update(
@@ -146,16 +150,11 @@ class Trainer:
                 now = self._gone_back(now, good, "no finite gradient for some steps in a row")
                 losses, largest = [], 0.0
                 continue
-            if now.step % plan.every == 0 or now.step == plan.steps:
-                score = self.aim.score(now.mean)
-                now.curve.append(
-                    {
-                        "step": now.step,
-                        "loss": float(np.mean(losses)) if losses else math.nan,
-                        "score": score,
-                        "norm": largest,
-                    }
-                )
+            if now.step % plan.every == 0 or now.step == last:
+                judged = self.aim.judged(now.mean)
+                score = judged["score"]
+                loss = float(np.mean(losses)) if losses else math.nan
+                now.curve.append({"step": now.step, "loss": loss, "norm": largest, **judged})
                 losses, largest = [], 0.0
                 if score < now.best_score:
                     now.best, now.best_score = now.mean, score
@@ -164,7 +163,7 @@ class Trainer:
                 on_validation(now)
                 if stop():
                     break
-        if not math.isfinite(now.best_score) and now.step >= plan.steps:
+        if not math.isfinite(now.best_score) and now.step >= last:
             raise OptionError(
                 Problem(
                     "training found no weights with which the ship stays in the world",

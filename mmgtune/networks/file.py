@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from .. import limits
 from ..errors import NetworkError, Problem, brief
 from ..files import atomic
+from ..profile import parse_profile
+from .hybrid import Hybrid
 from .model import Network
 from .recurrent import Scales, Weights
+from .residual import Ranges, ResidualWeights
 
 SUFFIX = ".safetensors"
 FORMAT = "mmgtune network"
@@ -20,33 +24,42 @@ SCHEMA = 1
 FIX = "give a file that mmgtune learn has written, or train the model again"
 
 
-def save_network(network: Network, path: Path, *, overwrite: bool = False) -> Path:
-    """Write a network, whole or not at all.  Raises OutputError."""
+def save_network(network: Network | Hybrid, path: Path, *, overwrite: bool = False) -> Path:
+    """Write a network, or a hybrid with its profile, whole or not at all.  Raises OutputError."""
     from safetensors.numpy import save
 
-    header = {
-        "ship": network.ship,
-        "L_pp": network.L_pp,
-        "inputs": list(network.inputs),
-        "step": network.step,
-        "memory": network.memory,
-        "facts": network.facts,
-    }
-    groups = {"weights": network.weights._asdict(), "scales": network.scales._asdict()}
+    header: dict[str, Any]
+    if isinstance(network, Hybrid):
+        header = {"kind": "hybrid", "profile": network.profile.text, "memory": network.memory}
+        groups = {"weights": network.weights._asdict(), "ranges": network.ranges._asdict()}
+    else:
+        header = {
+            "kind": "recurrent",
+            "ship": network.ship,
+            "L_pp": network.L_pp,
+            "inputs": list(network.inputs),
+            "step": network.step,
+            "memory": network.memory,
+        }
+        groups = {"weights": network.weights._asdict(), "scales": network.scales._asdict()}
     arrays = {
         f"{group}.{name}": np.ascontiguousarray(values, dtype=np.float32)
         for group, of in groups.items()
         for name, values in of.items()
     }
-    text = json.dumps(header, sort_keys=True, allow_nan=False)
+    text = json.dumps({**header, "facts": network.facts}, sort_keys=True, allow_nan=False)
     content = save(arrays, metadata={"format": FORMAT, "schema": str(SCHEMA), "network": text})
     with atomic(path, overwrite) as part:
         part.write_bytes(content)
     return path
 
 
-def load_network(path: str | Path) -> Network:
-    """Read a network.  Raises NetworkError for a file that is none, is damaged, or does not fit together."""
+def load_network(path: str | Path) -> Network | Hybrid:
+    """Read a network or a hybrid.
+
+    Raises NetworkError for a file that is none, is damaged, or does not fit together; ProfileError for a hybrid whose
+    profile this version cannot read.
+    """
     from safetensors import SafetensorError, safe_open
 
     path = Path(path)
@@ -54,11 +67,10 @@ def load_network(path: str | Path) -> Network:
     try:
         limits.NETWORK_BYTES.hold(path.stat().st_size, where, NetworkError)
         with safe_open(path, framework="numpy") as file:
-            metadata = file.metadata() or {}
-            names = file.keys()
-            wanted = [f"weights.{name}" for name in Weights._fields] + [f"scales.{name}" for name in Scales._fields]
-            header = _header(metadata, where)
-            lacking = sorted({*wanted} - {*names})
+            header = _header(file.metadata() or {}, where)
+            made = _MADE[header["kind"]]
+            wanted = [f"{group}.{name}" for group, of in made.groups.items() for name in of._fields]
+            lacking = sorted({*wanted} - {*file.keys()})
             if lacking:
                 raise NetworkError(Problem(f"the network lacks {', '.join(lacking)}", where, "", FIX))
             arrays = [np.asarray(file.get_tensor(name)) for name in wanted]
@@ -66,9 +78,59 @@ def load_network(path: str | Path) -> Network:
         raise NetworkError(Problem("the network cannot be read", where, brief(str(error)), FIX)) from error
     if any(one.dtype.kind != "f" for one in arrays):
         raise NetworkError(Problem("the network holds arrays that are no numbers", where, "", FIX))
-    wide = [one.astype(np.float64) for one in arrays]
-    n = len(Weights._fields)
-    return _made(header, Weights(*wide[:n]), Scales(*wide[n:]), where)
+    wide = iter([one.astype(np.float64) for one in arrays])
+    groups = [of(*(next(wide) for _ in of._fields)) for of in made.groups.values()]
+    _hold(header, made.header, where)
+    try:
+        return made.make(header, *groups, where)
+    except (ValueError, OverflowError) as error:
+        raise NetworkError(Problem(str(error), where, "the parts of the network do not fit", FIX)) from error
+
+
+class _Made(NamedTuple):
+    """How a kind of file is read: its groups of arrays, the types of its header, and what makes the model of both."""
+
+    groups: dict[str, Any]
+    header: dict[str, tuple[type, ...]]
+    make: Callable[..., Network | Hybrid]
+
+
+def _recurrent(header: dict[str, Any], weights: Weights, scales: Scales, where: str) -> Network:
+    inputs = header["inputs"]
+    if not all(isinstance(name, str) for name in inputs):
+        raise NetworkError(Problem(f"inputs of the network are {brief(inputs)}", where, "", FIX))
+    if header["memory"] is not None:
+        limits.NETWORK_MEMORY.hold(header["memory"], where, NetworkError)
+    length, step = float(header["L_pp"]), float(header["step"])
+    return Network(header["ship"], length, tuple(inputs), step, header["memory"], weights, scales, header["facts"])
+
+
+def _hybrid(header: dict[str, Any], weights: ResidualWeights, ranges: Ranges, where: str) -> Hybrid:
+    limits.PROFILE_BYTES.hold(len(header["profile"]), where, NetworkError)
+    profile = parse_profile(header["profile"], Path(where))
+    return Hybrid(profile, weights, ranges, float(header["memory"]), header["facts"])
+
+
+_NUMBER = (float, int)
+_MADE = {
+    "recurrent": _Made(
+        {"weights": Weights, "scales": Scales},
+        {
+            "ship": (str,),
+            "L_pp": _NUMBER,
+            "inputs": (list,),
+            "step": _NUMBER,
+            "memory": (int, type(None)),
+            "facts": (dict,),
+        },
+        _recurrent,
+    ),
+    "hybrid": _Made(
+        {"weights": ResidualWeights, "ranges": Ranges},
+        {"profile": (str,), "memory": _NUMBER, "facts": (dict,)},
+        _hybrid,
+    ),
+}
 
 
 def _header(metadata: dict[str, str], where: str) -> dict[str, Any]:
@@ -84,41 +146,18 @@ def _header(metadata: dict[str, str], where: str) -> dict[str, Any]:
         raise NetworkError(Problem("the header of the network cannot be read", where, str(error), FIX)) from error
     if not isinstance(found, dict):
         raise NetworkError(Problem("the header of the network is no table", where, brief(found), FIX))
+    if not isinstance(found.get("kind"), str) or found["kind"] not in _MADE:
+        why = f"known here: {', '.join(_MADE)}"
+        raise NetworkError(Problem(f"the network is of kind {brief(found.get('kind'))}", where, why, FIX))
     return found
 
 
-def _made(header: dict[str, Any], weights: Weights, scales: Scales, where: str) -> Network:
-    """The network of these parts.  Raises NetworkError."""
-    kinds: dict[str, tuple[type, ...]] = {
-        "ship": (str,),
-        "L_pp": (float, int),
-        "inputs": (list,),
-        "step": (float, int),
-        "memory": (int, type(None)),
-        "facts": (dict,),
-    }
+def _hold(header: dict[str, Any], kinds: dict[str, tuple[type, ...]], where: str) -> None:
+    """Raises NetworkError where something in a header is missing or of another type."""
     wrong = [
         Problem(f"{key} of the network is {brief(header.get(key))}", where, "", FIX)
         for key, kind in kinds.items()
         if not isinstance(header.get(key, ...), kind) or isinstance(header.get(key), bool)
     ]
-    if not wrong and not all(isinstance(name, str) for name in header["inputs"]):
-        wrong = [Problem(f"inputs of the network are {brief(header['inputs'])}", where, "", FIX)]
     if wrong:
         raise NetworkError(*wrong)
-    memory = header["memory"]
-    if memory is not None:
-        limits.NETWORK_MEMORY.hold(memory, where, NetworkError)
-    try:
-        return Network(
-            header["ship"],
-            float(header["L_pp"]),
-            tuple(header["inputs"]),
-            float(header["step"]),
-            memory,
-            weights,
-            scales,
-            header["facts"],
-        )
-    except (ValueError, OverflowError) as error:
-        raise NetworkError(Problem(str(error), where, "the parts of the network do not fit", FIX)) from error

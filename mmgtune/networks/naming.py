@@ -5,20 +5,27 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TypeVar
 
+from ..backends import Integrator
 from ..given import ship_of
 from ..profile import ShipProfile
 from .file import SUFFIX, load_network
+from .hybrid import Hybrid, HybridPredictor
 from .predicting import NetworkPredictor
 
 Other = TypeVar("Other")
 
 
-def named_ship(given: str | Path | Other) -> ShipProfile | NetworkPredictor | Other:
+def named_ship(
+    given: str | Path | Other, integrator: Integrator = Integrator()
+) -> ShipProfile | NetworkPredictor | HybridPredictor | Other:
     """The profile, or the network, of a path or bundled name; anything else as it is.
 
+    integrator  of a hybrid; a network alone has its own step
     Raises ProfileError or NetworkError.
     """
-    if isinstance(given, (str, Path)):
-        is_network = str(given).endswith(SUFFIX)
-        return NetworkPredictor(load_network(given)) if is_network else ship_of(given)
-    return given
+    if not isinstance(given, (str, Path)):
+        return given
+    if not str(given).endswith(SUFFIX):
+        return ship_of(given)
+    found = load_network(given)
+    return HybridPredictor(found, integrator) if isinstance(found, Hybrid) else NetworkPredictor(found)

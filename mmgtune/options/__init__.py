@@ -17,7 +17,7 @@ from .choice import Choice, Options, again, choice, choices
 from .diagnosis import DiagnoseOptions
 from .estimating import EstimateOptions
 from .flags import FLAGS, flags_of, in_flags
-from .learning import LearnOptions
+from .learning import HybridOptions, LearnOptions
 from .orders import SimulateOptions
 from .scoring import FORMATS, CheckOptions, ValidateOptions, VoyageOptions
 from .simulation import BACKENDS, INTEGRATORS, SimulationOptions
@@ -34,6 +34,7 @@ __all__ = [
     "DiagnoseOptions",
     "EstimateOptions",
     "FitOptions",
+    "HybridOptions",
     "LearnOptions",
     "LeaveOutOptions",
     "Options",
@@ -56,6 +57,7 @@ for _of in (
     DiagnoseOptions,
     EstimateOptions,
     FitOptions,
+    HybridOptions,
     LearnOptions,
     LeaveOutOptions,
     SimulateOptions,

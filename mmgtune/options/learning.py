@@ -16,7 +16,38 @@ TYPES = ("1", "2", "3", "4", "5")
 
 
 @dataclass(frozen=True)
-class LearnOptions(Options):
+class TrainingOptions(Options):
+    """Choices of every training."""
+
+    steps: int = choice(600, "Updates of the weights.", least=1, most=1_000_000, panel=TRAINING)
+    batch: int = choice(256, "Windows in each update.", least=1, most=65_536, panel=TRAINING)
+    rate: float = choice(2e-3, "Largest rate of learning.", above=0.0, most=1.0, panel=TRAINING)
+    width: int = choice(200, "Units of a layer.", least=1, most=4096, panel=TRAINING)
+    validation: float = choice(
+        0.2,
+        "Share of each kind of manoeuvre kept back, as whole runs, to choose the best weights by.",
+        above=0.0,
+        most=0.8,
+        panel=TRAINING,
+    )
+    restart: float | None = again(LeaveOutOptions, "restart", 100.0)
+    validate_every: int = choice(25, "Updates between two validations.", least=1, most=1_000_000, panel=TRAINING)
+    step: float | None = choice(None, "Time between samples in training.", unit="s", above=0.0, panel=TRAINING)
+    seed: int = choice(
+        1, "Seed of the first network, and of which runs are kept back.", least=1, most=2**62, panel=REPRODUCE
+    )
+
+    def problems(self) -> list[Problem]:
+        """There must be a validation before the end."""
+        found = super().problems()
+        if self.validate_every > self.steps:
+            what = f"every {self.validate_every} updates of {self.steps} is never"
+            found.append(Problem(what, "validate_every", fix=f"write validate_every={self.steps} or less"))
+        return found
+
+
+@dataclass(frozen=True)
+class LearnOptions(TrainingOptions):
     """All choices of ``learn rnn``."""
 
     type: str = choice(
@@ -28,32 +59,42 @@ class LearnOptions(Options):
         panel=INPUT,
     )
     seeds: int = choice(5, "Networks trained, each from a start of its own.", least=1, most=100, panel=TRAINING)
-    steps: int = choice(600, "Updates of the weights.", least=1, most=1_000_000, panel=TRAINING)
-    batch: int = choice(256, "Windows in each update.", least=1, most=65_536, panel=TRAINING)
-    rate: float = choice(2e-3, "Largest rate of learning.", above=0.0, most=1.0, panel=TRAINING)
-    width: int = choice(200, "Units of a layer.", least=1, most=4096, panel=TRAINING)
     memory: int = choice(10, "Samples that truncated memory reaches back.", least=1, most=1000, panel=TRAINING)
     horizon: int = choice(60, "Samples that a window of the loss has.", least=2, most=100_000, panel=TRAINING)
-    step: float | None = choice(
-        None, "Time between samples. Default: that of most trials.", unit="s", above=0.0, panel=TRAINING
-    )
-    validation: float = choice(
-        0.2,
-        "Share of each kind of manoeuvre kept back, as whole runs, to choose the best weights by.",
-        above=0.0,
-        most=0.8,
+    step: float | None = again(TrainingOptions, "step", but="Default: that of most trials.")
+
+
+@dataclass(frozen=True)
+class HybridOptions(TrainingOptions):
+    """All choices of ``learn hybrid``."""
+
+    steps: int = again(TrainingOptions, "steps", 400)
+    rate: float = again(TrainingOptions, "rate", 3e-3)
+    width: int = again(TrainingOptions, "width", 32)
+    quiet: tuple[float, ...] = choice(
+        (0.5, 5.0),
+        "Weights of the penalty on what the network adds, tried in turn; validation chooses.",
+        least=0.0,
         panel=TRAINING,
     )
-    restart: float | None = again(LeaveOutOptions, "restart", 100.0)
-    every: int = choice(25, "Updates between two validations.", least=1, most=1_000_000, panel=TRAINING)
-    seed: int = choice(
-        1, "Seed of the first network, and of which runs are kept back.", least=1, most=2**62, panel=REPRODUCE
+    folds: int = choice(
+        1,
+        "Parts the runs are left out in, one after the other; 1: a share of them is, once.",
+        least=1,
+        most=100,
+        panel=TRAINING,
     )
-
-    def problems(self) -> list[Problem]:
-        """There must be a validation before the end."""
-        found = super().problems()
-        if isinstance(self.every, int) and isinstance(self.steps, int) and self.every > self.steps:
-            fix = f"write every={self.steps} or less"
-            found.append(Problem(f"every {self.every} updates of {self.steps} is never", "every", fix=fix))
-        return found
+    refit: bool = choice(
+        True,
+        "Tune a tuned profile anew without the runs kept back, so that it has not seen them either; the profile that is "
+        "kept stays as it is.",
+        panel=TRAINING,
+    )
+    lag: float | None = choice(
+        None,
+        "Time constant of its memory of velocities. Default: half the time of a ship length.",
+        unit="s",
+        above=0.0,
+        panel=TRAINING,
+    )
+    step: float | None = again(TrainingOptions, "step", but="Default: three hundredths of the time of a ship length.")

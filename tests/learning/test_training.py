@@ -19,7 +19,7 @@ from mmgtune.options.learning import LearnOptions
 from mmgtune.trial import load_trials
 from mmgtune.validating import validate
 
-SMALL = LearnOptions(seeds=1, steps=6, every=2, batch=16, width=6, memory=3, horizon=8, restart=60.0)
+SMALL = LearnOptions(seeds=1, steps=6, validate_every=2, batch=16, width=6, memory=3, horizon=8, restart=60.0)
 
 
 def weights(result):
@@ -28,7 +28,7 @@ def weights(result):
 
 @pytest.fixture(scope="module")
 def trained():
-    return learn_rnn("suzaku", "suzaku", replace(SMALL, steps=60, every=20, rate=2e-2, width=16, horizon=20))
+    return learn_rnn("suzaku", "suzaku", replace(SMALL, steps=60, validate_every=20, rate=2e-2, width=16, horizon=20))
 
 
 @pytest.mark.slow(8)
@@ -117,7 +117,7 @@ def test_a_checkpoint_of_another_training_or_damaged_is_refused(tmp_path):
 @pytest.mark.slow(8)
 @pytest.mark.parametrize("type", ["2", "3"])
 def test_other_types_learn_too(type):
-    result = learn_rnn("suzaku", "suzaku", replace(SMALL, type=type, steps=30, every=10, rate=5e-3))
+    result = learn_rnn("suzaku", "suzaku", replace(SMALL, type=type, steps=30, validate_every=10, rate=5e-3))
     losses = [row["loss"] for row in result.members[0].curve]
     assert losses[-1] < losses[0]
     assert (result.network.memory is None) == (type == "2")
@@ -162,7 +162,7 @@ def test_divergence_is_told_with_its_step_and_training_goes_back(monkeypatch):
         return jnp.where(starts[0] < 0, jnp.nan, 1.0) * spoiled(self, w, jnp.abs(starts) % len(self.starts))
 
     monkeypatch.setattr(runs.RecurrentAim, "loss", loss)
-    result = learn_rnn("suzaku", "suzaku", replace(SMALL, steps=30, every=5))
+    result = learn_rnn("suzaku", "suzaku", replace(SMALL, steps=30, validate_every=5))
     (event,) = result.members[0].events
     assert (event["step"], event["back_to"], event["rate_factor"]) == (23, 10, 0.5)
     assert np.isfinite(result.members[0].score)
@@ -172,7 +172,7 @@ def test_divergence_is_told_with_its_step_and_training_goes_back(monkeypatch):
 def test_gradients_that_are_never_numbers_are_an_error(monkeypatch):
     monkeypatch.setattr(runs.RecurrentAim, "loss", lambda self, w, starts: sum(one.sum() for one in w) * np.nan)
     with pytest.raises(OptionError, match="diverged 6 times, the last time at step 60") as error:
-        learn_rnn("suzaku", "suzaku", replace(SMALL, steps=100, every=5))
+        learn_rnn("suzaku", "suzaku", replace(SMALL, steps=100, validate_every=5))
     assert error.value.problems[0].where == "rate"
 
 

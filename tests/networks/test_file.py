@@ -51,7 +51,15 @@ def altered(tmp_path, change):
     net = network()
     arrays = {f"weights.{k}": np.float32(v) for k, v in net.weights._asdict().items()}
     arrays |= {f"scales.{k}": np.float32(v) for k, v in net.scales._asdict().items()}
-    header = {"ship": "toy", "L_pp": 3.0, "inputs": ["n", "delta"], "step": 0.1, "memory": 3, "facts": {}}
+    header = {
+        "kind": "recurrent",
+        "ship": "toy",
+        "L_pp": 3.0,
+        "inputs": ["n", "delta"],
+        "step": 0.1,
+        "memory": 3,
+        "facts": {},
+    }
     metadata = {"format": "mmgtune network", "schema": "1"}
     change(arrays, header, metadata)
     metadata.setdefault("network", json.dumps(header))
@@ -77,6 +85,8 @@ def test_the_unaltered_file_is_read(tmp_path):
         (lambda a, h, m: a.update({"weights.b_1": np.ones((1, 1, 5), np.int64)}), "no numbers"),
         (lambda a, h, m: a.update({"weights.W_x": np.zeros((7, 5), np.float32)}), "members x features x width"),
         (lambda a, h, m: a.update({"scales.features": np.zeros((1, 1, 7), np.float32)}), "divided by 0"),
+        (lambda a, h, m: h.update(kind="other"), "of kind"),
+        (lambda a, h, m: h.update(kind=["hybrid"]), "of kind"),
         (lambda a, h, m: h.update(inputs=["n", "flaps"]), "no input is called flaps"),
         (lambda a, h, m: h.update(inputs=["n"]), "W_x has the shape"),
         (lambda a, h, m: h.update(inputs="n"), "inputs of the network"),
