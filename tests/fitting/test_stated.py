@@ -130,7 +130,9 @@ def test_both_kinds_of_trials_in_one_fit(truth, off):
     noisy = replace(series, x=series.x + rng.standard_normal(len(series.t)))
     both = data(of_ship(truth, ["zz_10"]), (), [noisy])
     problem = make_problem(off, both, replace(QUICK, targets=FEW))
-    assert [term.name for term in problem.terms] == ["prior", "indices"]
+    assert [(term.name, term.known_before) for term in problem.terms] == [("prior", True), ("indices", False)]
+    for term in problem.terms:
+        assert term.n_rows(problem) == len(term.residuals(problem, np.full((3, 1), 0.5)))
     start = problem.box.to_unit(problem.box.pre)
     weighed, weight = weigh(problem, start)
     assert 0.0 < weight.s2 < 1.0
