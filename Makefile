@@ -10,6 +10,9 @@ COUNT ?= 1000
 SEED ?= 1
 PYTEST := $(BIN)/pytest -n auto --maxprocesses 8 --dist loadgroup --no-loadscope-reorder
 
+# Without its bytecode every start of a process compiles the program and its libraries anew: more than a second.
+unexport PYTHONDONTWRITEBYTECODE
+
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PHONY: help install demo test quick lint types arch check regression docs bench fuzz signs hidden trials browser constraints clean

@@ -53,6 +53,10 @@ class LogError(MmgtuneError):
     """A log of a trial, or the map that says how to read it, cannot be used."""
 
 
+class NetworkError(MmgtuneError):
+    """A trained network cannot be used."""
+
+
 class OptionError(MmgtuneError):
     """An option or argument makes no sense, alone or with the others."""
 

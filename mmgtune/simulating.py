@@ -13,9 +13,10 @@ from .circumstances import notes_on
 from .errors import OptionError, OutputError, Problem
 from .evaluation import TrialRecord, evaluate
 from .files import exists
-from .given import ShipGiven, TrialsGiven, list_of, ship_of
+from .given import ShipGiven, TrialsGiven, list_of
 from .manoeuvres.summary import criteria_of, indices_of
 from .model import Model
+from .networks import named_ship
 from .options import SimulateOptions
 from .orders import Helmsman, TurningOrder, ZigzagOrder, run_manoeuvre
 from .predictor import PhysicsPredictor, Predictor, as_predictor, profile_of
@@ -135,7 +136,7 @@ def simulate(
     profile that is given no trials.
     """
     predictor = as_predictor(
-        ship_of(ship) if isinstance(ship, (str, Path)) else ship,
+        named_ship(ship),
         integrator=integrator or options.make_integrator(),
         backend=backend or options.backend,
     )

@@ -10,8 +10,9 @@ from typing import Any
 
 from .circumstances import notes_on
 from .errors import OptionError, Problem
-from .given import ShipGiven, TrialsGiven, ship_of, trials_of
+from .given import ShipGiven, TrialsGiven, trials_of
 from .model import Model
+from .networks import named_ship
 from .objective import spread
 from .options import SimulationOptions, ValidateOptions
 from .predictor import PhysicsPredictor, Predictor, as_predictor, profile_of, words_of
@@ -153,7 +154,7 @@ def predictors_of(
         raise OptionError(Problem("there is no profile to score", "profiles", fix="name one or more"))
     return {
         name: as_predictor(
-            ship_of(one) if isinstance(one, (str, Path)) else one,
+            named_ship(one),
             integrator=options.make_integrator(),
             backend=options.backend,
         )

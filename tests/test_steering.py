@@ -77,7 +77,7 @@ def stepped(model, order):
         return model.arrangement.control(*map(np.float64, values))
 
     def after(values):
-        run.s, run._chain, run._around = before
+        run.now = before
         run.step(control(values), UNKNOWN, h, Integrator("rk4"))
         return np.array(run.shown)
 
@@ -87,7 +87,7 @@ def stepped(model, order):
     for k in range(PATIENCE):
         if k == APPROACH:
             side, times = 1.0, [float(k)]
-        before = run.s, run._chain, run._around
+        before = run.now
         then = moved(driven, h)
         shown = after(then)
         begin, end = (side * np.sign(order.rudder) * psi for psi in (states[-1][2], shown[2]))

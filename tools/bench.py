@@ -135,14 +135,24 @@ def a_check(folder: Path) -> dict[str, Any]:
     return row
 
 
+WATCH = """
+import json, os, subprocess, sys, time
+began = time.perf_counter()
+process = subprocess.Popen(sys.argv[1:], stdout=subprocess.DEVNULL)
+_, status, usage = os.wait4(process.pid, 0)
+print(json.dumps([status, round(time.perf_counter() - began, 2), usage.ru_maxrss // 1024]))
+"""
+"""A small process that starts and watches another: a child counts the memory of who forked it as its own."""
+
+
 def run(line: list[str], environment: dict[str, str]) -> tuple[float, int]:
     """Seconds and peak memory [MB] of a process, which must succeed."""
-    began = time.perf_counter()
-    process = subprocess.Popen(line, env=environment, stdout=subprocess.DEVNULL)
-    _, status, usage = os.wait4(process.pid, 0)
+    compiled = {name: value for name, value in environment.items() if name != "PYTHONDONTWRITEBYTECODE"}
+    watched = subprocess.run([sys.executable, "-S", "-c", WATCH, *line], env=compiled, stdout=subprocess.PIPE)
+    status, seconds, memory = json.loads(watched.stdout)
     if status:
         raise SystemExit(f"failed: {' '.join(line)}")
-    return round(time.perf_counter() - began, 2), usage.ru_maxrss // 1024
+    return seconds, memory
 
 
 def voyages() -> list[dict[str, Any]]:

@@ -11,7 +11,7 @@ from .compiled import Compiled
 from .kernel_source import WIDTH
 from .numpy_lanes import LaneModel, NumpyLanes
 
-BACKENDS = ("compiled", "numpy")
+BACKENDS = ("compiled", "numpy", "jax")
 
 __all__ = [
     "BACKENDS",
@@ -29,9 +29,13 @@ __all__ = [
 
 @lru_cache(maxsize=len(BACKENDS))
 def get_backend(name: str = "compiled") -> Backend:
-    """The back end of that name.  Raises OptionError for an unknown one."""
+    """The back end of that name.  Raises OptionError for an unknown one, and where JAX is missing."""
     if name == "compiled":
         return Compiled()
     if name == "numpy":
         return NumpyLanes()
+    if name == "jax":
+        from .differentiable import JaxLanes
+
+        return JaxLanes()
     raise OptionError(Problem(f"unknown back end '{name}'", "backend", fix=closest(name, BACKENDS)))

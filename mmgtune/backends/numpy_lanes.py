@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any, Generic, TypeVar
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -20,10 +22,34 @@ E = TypeVar("E", bound=Effect)
 N_STATES = len(STATES)
 
 
+@dataclass(frozen=True)
+class Arithmetic:
+    """What evaluates the equations on lanes.
+
+    of      what takes the place of a function of the equations, or of each of a tuple of them
+    states  how the states of lanes are kept: in one array, or apart
+    each    calls a function of states and numbers, with states kept so
+    """
+
+    of: Callable[[Any], Any]
+    states: Callable[[list[Any]], Any]
+    each: Callable[..., Any]
+
+
+NUMPY = Arithmetic(of=lambda function: function, states=np.array, each=lambda function, *given: function(*given))
+"""NumPy on the functions as they stand, and on all states at once."""
+
+
 class NumpyLanes:
-    """Evaluates ``physics`` as it stands, on arrays of n_cases * n_candidates lanes."""
+    """Evaluates ``physics`` as it stands, on arrays of n_cases * n_candidates lanes.
+
+    lanes  what marches, of a model and the coefficients of every lane
+    """
 
     name = "numpy"
+
+    def __init__(self, lanes: Callable[[Model, FloatArray], LaneModel] | None = None):
+        self.lanes = lanes or LaneModel
 
     def run(
         self,
@@ -40,7 +66,7 @@ class NumpyLanes:
         """See ``Backend.run``."""
         n_cases, n_candidates = len(cases), 1 if paired else theta.shape[1]
         shape = (n_cases, n_candidates)
-        ship = LaneModel(model, np.ascontiguousarray(lanes_of(theta, n_cases, paired)))
+        ship = self.lanes(model, np.ascontiguousarray(lanes_of(theta, n_cases, paired)))
         if initial is None:
             initial = np.repeat(cases.initial[:, None], n_candidates, axis=1)
         T = cases.t.shape[1]
@@ -86,11 +112,13 @@ class LaneModel:
 
     theta  (n_rows, n_lanes), or (n_rows,) for one lane: everything is then a plain number where it is (n_lanes,) else,
            which NumPy is several times as quick with as with arrays of one
+    on     what evaluates it; arrays are of its kind
     """
 
-    def __init__(self, model: Model, theta: FloatArray):
+    def __init__(self, model: Model, theta: FloatArray, on: Arithmetic = NUMPY):
+        self.on, self.of = on, on.of
         self.arrangement = model.arrangement
-        self.components = model.components
+        self.components = self.of(model.components)
         self.p = model.coefficients(theta)
 
         def acting(kind: type[E]) -> list[Acting[E]]:
@@ -101,6 +129,11 @@ class LaneModel:
         self.acts_on = [self.arrangement.of_role(one.effect.of) for one in self.actuators]
         shifts = [model.parameters(effect, theta)[0] for effect in model.clocks]
         self.shift: FloatArray | None = sum(shifts[1:], shifts[0]) if shifts else None
+
+    @property
+    def looks_around(self) -> bool:
+        """Whether anything depends on the surroundings."""
+        return bool(self.flows or self.forces or self.factors)
 
     def start(self, shown: State, logged: Any, around: Surroundings = UNKNOWN) -> LaneRun:
         """A run from the state the sensors show, with the machinery at rest at the inputs logged there."""
@@ -114,7 +147,7 @@ class LaneModel:
             held = first if before is None else before[k + 1]
             left = list(chain[k])
             for i in inputs:
-                left[i] = one.effect.function(first[i], chain[k][i], held[i], h, one.e)
+                left[i] = self.of(one.effect.function)(first[i], chain[k][i], held[i], h, one.e)
             chain.append(type(end)(*left))
         return chain
 
@@ -123,7 +156,7 @@ class LaneModel:
         u_c: Any = 0.0
         v_c: Any = 0.0
         for one in self.flows:
-            du, dv = one.effect.function(state, around, one.e)
+            du, dv = self.of(one.effect.function)(state, around, one.e)
             u_c, v_c = u_c + du, v_c + dv
         return u_c, v_c
 
@@ -131,7 +164,7 @@ class LaneModel:
         """The coefficients in these surroundings."""
         p = self.p
         for one in self.factors:
-            for name, factor in zip(one.effect.changes, one.effect.function(around, one.e), strict=True):
+            for name, factor in zip(one.effect.changes, self.of(one.effect.function)(around, one.e), strict=True):
                 section, _, symbol = name.partition(".")
                 part = getattr(p, section)
                 p = p._replace(**{section: part._replace(**{symbol: getattr(part, symbol) * factor})})
@@ -139,11 +172,11 @@ class LaneModel:
 
     def breakdown(self, state: State, control: Any, around: Surroundings = UNKNOWN) -> Any:
         """Forces of the components, and in the total those that effects add."""
-        through, p = through_water(state, *self.water(state, around)), self.here(around)
-        found = self.arrangement.forces(through, control, self.components, p)
+        through, p = self.of(through_water)(state, *self.water(state, around)), self.here(around)
+        found = self.of(self.arrangement.forces)(through, control, self.components, p)
         total = found.total
         for one in self.forces:
-            total = _sum(total, one.effect.function(state, around, found, self.components, p, one.e))
+            total = _sum(total, self.of(one.effect.function)(state, around, found, self.components, p, one.e))
         return found._replace(total=total)
 
     def behind(self, state: State, control: Any, around: Surroundings) -> list[Any]:
@@ -151,9 +184,9 @@ class LaneModel:
         if not self.lags:
             return []
         found = self.breakdown(state, control, around)
-        return [value for one in self.lags for value in one.effect.start(found, one.e)]
+        return [value for one in self.lags for value in self.of(one.effect.start)(found, one.e)]
 
-    def rates(self, s: FloatArray, control: Any, around: Surroundings, h: Any) -> FloatArray:
+    def rates(self, s: Any, control: Any, around: Surroundings, h: Any) -> Any:
         """Time derivatives of the six states and of what lags remember, (n_states, n_lanes)."""
         state = State(*s[:N_STATES])
         found = self.breakdown(state, control, around)
@@ -162,40 +195,85 @@ class LaneModel:
         at = N_STATES
         for one in self.lags:
             behind = tuple(s[at : at + len(one.effect.states)])
-            more, own = one.effect.function(found, behind, h, one.e)
+            more, own = self.of(one.effect.function)(found, behind, h, one.e)
             total = _sum(total, more)
             slopes += own
             at += len(behind)
-        rate = rates(state, *self.water(state, around), total, self.p.ship)
+        rate = self.of(rates)(state, *self.water(state, around), total, self.p.ship)
         for moving in self.flows:
             if moving.effect.rate is not None:
-                rate = carried(rate, *moving.effect.rate(state, around, moving.e))
-        return np.array([*rate, *slopes])
+                rate = self.of(carried)(rate, *self.of(moving.effect.rate)(state, around, moving.e))
+        return self.on.states([*rate, *slopes])
 
     def sensed(self, state: State) -> State:
         """The state as the sensors show it."""
         for one in self.sensors:
-            state = one.effect.function(state, one.e)
+            state = self.of(one.effect.function)(state, one.e)
         return state
 
     def unsensed(self, shown: State) -> State:
         """The state behind what the sensors show."""
         for one in reversed(self.sensors):
-            shown = one.effect.inverse(shown, one.e)
+            shown = self.of(one.effect.inverse)(shown, one.e)
         return shown
+
+    def begin(self, state: State, logged: Any, around: Surroundings) -> Moment:
+        """The first moment, with the machinery at rest at the inputs logged there."""
+        chain = self.moved([], logged, None, 0.0 * logged[0])
+        return Moment(self.on.states([*state, *self.behind(state, chain[-1], around)]), chain, around)
+
+    def step(
+        self,
+        now: Moment,
+        logged: Any,
+        around: Surroundings,
+        h: Any,
+        integrator: Integrator,
+        by: Callable[[Any, Any, Surroundings, Any], Any] | None = None,
+    ) -> Moment:
+        """The moment h [s] later, at which these inputs are logged and these surroundings measured.
+
+        by  what takes the place of ``rates``
+        """
+        by, each = by or self.rates, self.on.each
+        position, share = (values.tolist() for values in integrator.tableau)
+        chain = self.moved(now.chain, logged, now.chain, h)
+        before, after = now.chain[-1], chain[-1]
+        total: Any = 0.0
+        z = now.s
+        for stage, at in enumerate(position):
+            control = type(after)(*(between(a, b, at) for a, b in zip(before, after, strict=True)))
+            rate = by(z, control, _between(now.around, around, at), h)
+            total = each(with_stage, total, share[stage], rate)
+            if stage + 1 < len(position):
+                z = each(at_stage, now.s, position[stage + 1], h, rate)
+        return Moment(each(after_step, now.s, h, total), chain, around)
+
+
+class Moment(NamedTuple):
+    """Lanes on their way.
+
+    s       (n_states, n_lanes), or (n_states,), the six states, then what lags remember
+    chain   what has reached and left each actuator, one after the other
+    around  the surroundings
+    """
+
+    s: FloatArray
+    chain: list[Any]
+    around: Surroundings
 
 
 class LaneRun:
-    """Lanes on their way: the state, and what has reached and left each actuator.
-
-    s  (n_states, n_lanes), or (n_states,), the six states, then what lags remember
-    """
+    """Lanes that march in place."""
 
     def __init__(self, ship: LaneModel, state: State, logged: Any, around: Surroundings):
         self.ship = ship
-        self._chain = ship.moved([], logged, None, 0.0 * np.asarray(logged[0]))
-        self._around = around
-        self.s: FloatArray = np.array([*state, *ship.behind(state, self._chain[-1], around)])
+        self.now = ship.begin(state, logged, around)
+
+    @property
+    def s(self) -> FloatArray:
+        """The states, then what lags remember: see ``Moment``."""
+        return self.now.s
 
     @property
     def shown(self) -> State:
@@ -204,19 +282,7 @@ class LaneRun:
 
     def step(self, logged: Any, around: Surroundings, h: Any, integrator: Integrator) -> None:
         """March by h [s] to where these inputs are logged and these surroundings measured."""
-        position, share = integrator.tableau
-        reached = self.ship.moved(self._chain, logged, self._chain, h)
-        now, then = self._chain[-1], reached[-1]
-        total = np.zeros_like(self.s)
-        z = self.s
-        for stage, at in enumerate(position):
-            control = type(then)(*(between(a, b, at) for a, b in zip(now, then, strict=True)))
-            rate = self.ship.rates(z, control, _between(self._around, around, at), h)
-            total = with_stage(total, share[stage], rate)
-            if stage + 1 < len(position):
-                z = at_stage(self.s, position[stage + 1], h, rate)
-        self.s = after_step(self.s, h, total)
-        self._chain, self._around = reached, around
+        self.now = self.ship.step(self.now, logged, around, h, integrator)
 
 
 def _between(before: Surroundings, after: Surroundings, f: float) -> Surroundings:

@@ -22,6 +22,7 @@ from . import (
     doctor,
     fit,
     interrupts,
+    learn,
     leave_out,
     profiles,
     report,
@@ -92,6 +93,7 @@ app.command("simulate", epilog=EPILOG)(simulate.command)
 app.command("report", epilog=EPILOG)(report.command)
 app.command("cite", epilog=EPILOG)(cite.command)
 app.command("doctor", epilog=EPILOG)(doctor.command)
+app.add_typer(learn.app, name="learn", epilog=EPILOG)
 app.add_typer(trials.app, name="trials", epilog=EPILOG)
 app.add_typer(profiles.app, name="profile", epilog=EPILOG)
 

@@ -26,6 +26,8 @@ OWN_FILES = (
     "diagnosis.json",
     "leave_out.json",
     "voyages.json",
+    "learning.json",
+    "model.safetensors",
     "windows.parquet",
     "drawn.parquet",
     "journal.jsonl",
@@ -35,6 +37,9 @@ OWN_FILES = (
     "checkpoint.npz",
     "report.html",
 )
+
+CHECKPOINTS = "training-*.safetensors"
+"""What is left of a training that was stopped before it had a result."""
 
 
 def prepare(folder: Path, *, force: bool = False, resume: bool = False) -> Path:
@@ -49,7 +54,8 @@ def prepare(folder: Path, *, force: bool = False, resume: bool = False) -> Path:
     taken = folder.is_dir() and any(not is_left_over(one) for one in folder.iterdir())
     if taken and not (force or resume):
         raise OutputError(exists(folder))
-    if taken and force and not any((folder / name).exists() for name in OWN_FILES):
+    own = any((folder / name).exists() for name in OWN_FILES) or any(folder.glob(CHECKPOINTS))
+    if taken and force and not own:
         raise OutputError(
             Problem(
                 "the folder holds files that are not a run of mmgtune",

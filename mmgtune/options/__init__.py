@@ -7,6 +7,7 @@ diagnosis   diagnose
 scoring     validate, on trials and on voyages, and check
 orders      simulate
 estimating  profile new
+learning    learn
 flags       what fields are called on the command line
 
 Nothing here is heavy to import: the command line builds its flags from it before it knows what is wanted.
@@ -16,6 +17,7 @@ from .choice import Choice, Options, again, choice, choices
 from .diagnosis import DiagnoseOptions
 from .estimating import EstimateOptions
 from .flags import FLAGS, flags_of, in_flags
+from .learning import LearnOptions
 from .orders import SimulateOptions
 from .scoring import FORMATS, CheckOptions, ValidateOptions, VoyageOptions
 from .simulation import BACKENDS, INTEGRATORS, SimulationOptions
@@ -32,6 +34,7 @@ __all__ = [
     "DiagnoseOptions",
     "EstimateOptions",
     "FitOptions",
+    "LearnOptions",
     "LeaveOutOptions",
     "Options",
     "SearchOptions",
@@ -53,6 +56,7 @@ for _of in (
     DiagnoseOptions,
     EstimateOptions,
     FitOptions,
+    LearnOptions,
     LeaveOutOptions,
     SimulateOptions,
     SweepOptions,

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from ..backends import Integrator
 
 INTEGRATORS = ("euler", "rk4")
-BACKENDS = ("compiled", "numpy")
+BACKENDS = ("compiled", "numpy", "jax")
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,9 @@ class SimulationOptions(Options):
 
     integrator: str = choice("rk4", "Method of integration: rk4, or euler as the paper does.", values=INTEGRATORS)
     substeps: int = choice(1, "Integration steps between two samples.", least=1, most=1000)
-    backend: str = choice("compiled", "compiled or numpy.", values=BACKENDS, called="back end")
+    backend: str = choice(
+        "compiled", "compiled, numpy, or jax, which is to be installed.", values=BACKENDS, called="back end"
+    )
 
     def make_integrator(self) -> Integrator:
         """The integrator chosen."""

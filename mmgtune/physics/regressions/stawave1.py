@@ -6,6 +6,9 @@ from ..elementary import where
 
 GRAVITY = 9.81
 
+LEAST = 1e-24
+"""Square of a height [m^2] below which waves have no direction; far from the ends of either precision."""
+
 
 def height_limit(L_pp):
     """Largest significant height [m] the formula holds for: the ship (L_pp [m]) hardly heaves and pitches up to it."""
@@ -30,7 +33,7 @@ def from_ahead(ahead, starboard, taper):
     Floats or (n_lanes,).
     """
     a2, s2 = ahead * ahead, starboard * starboard
-    size2 = np.maximum(a2 + s2, 1e-300)
+    size2 = np.maximum(a2 + s2, LEAST)
     twice = (a2 - s2) / size2  # cosine of twice the angle off the bow
     forward = ahead > 0.0
     beside = where(forward, taper * (1.0 - twice * twice), 0.0)

@@ -1,0 +1,108 @@
+"""``mmgtune learn``: networks trained on trials."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from ..options.learning import LearnOptions
+from . import common as c
+from .options import RunOptions, takes
+from .progress import Progress
+
+if TYPE_CHECKING:
+    from ..learning import Learned
+
+app = typer.Typer(
+    no_args_is_help=True,
+    help="Train networks that predict the motion of a ship, and hold them against other models.",
+)
+
+
+@app.command("rnn")
+@takes(options=LearnOptions, run=RunOptions)
+def rnn(
+    profile: c.Profile = "suzaku",
+    trials: c.Trials = "suzaku",
+    *,
+    options: LearnOptions,
+    run: RunOptions,
+    no_report: c.NoReport = False,
+) -> None:
+    """Train recurrent networks on the trials that tune: velocities, inputs and wind in, accelerations out.
+
+    The networks of Wakita et al. 2022. Of the profile only the ship's name, her length and what drives her are used.
+    Whole runs are kept back, and the weights are kept that do best on windows of these; trials that test play no
+    part and are scored at the end. What comes out is one file, model.safetensors in the run folder, that simulate
+    and validate take in place of a profile. Needs the extra: pip install 'mmgtune[learn]'.
+
+    Examples:
+
+      mmgtune learn rnn -p esso_osaka_3m -t esso --type 1 --seeds 5 --out runs/type1
+
+      mmgtune validate esso_osaka_3m_tuned runs/type1/model.safetensors esso --restart 100
+    """
+    from ..fitting import claimed
+    from ..learning import Hooks, learn_rnn, write_learned
+    from ..report import render
+
+    ship, data = c.load(profile, trials)
+    folder = run.out or c.default_out(ship)
+    if run.dry_run:
+        from ..learning.planning import plan_rnn
+
+        c.print_plan(plan_rnn(ship, data, options), folder)
+        return
+    with claimed(folder, force=run.force, resume=run.resume), Progress(run.quiet, folder) as progress:
+        hooks = Hooks(on_progress=progress.on_share, stop=lambda: progress.stopped)
+        result = learn_rnn(ship, data, options, hooks=hooks, folder=folder, resume=run.resume, command=c.command_line())
+        document = write_learned(result, folder)
+        progress.saved(result.interrupted)
+        if not no_report:
+            render(folder)
+    if run.json:
+        c.print_json(document)
+    else:
+        c.show(summary(result, str(folder), report=not no_report))
+    progress.leave()
+
+
+def summary(result: Learned, folder: str, report: bool) -> str:
+    """The result as a person wants to read it in a terminal."""
+    network = result.network
+    lines = [
+        f"type {result.task.options.type}: {result.task.recipe.words}; {network.n_members} x {network.width} units"
+    ]
+    lines.append(
+        f"learned from {len(result.task.split.learn)} trials, chosen by {len(result.task.split.choose)} others"
+    )
+    lines.append("")
+    lines.append(f"{'seed':>6}{'best step':>11}{'L_MSE of validation':>22}")
+    for row in (one.to_dict() for one in result.members):
+        lines.append(f"{row['seed']:>6}{row['best_step']:>11}{row['score']:>22.4g}")
+    for event in (event for one in result.members for event in one.events):
+        lines.append(f"note: diverged at step {event['step']}, went back to step {event['back_to']} at half the rate")
+    for role, scores in result.scores.items():
+        if scores:
+            lines += ["", f"L_MSE on the trials of {role}, mean and deviation over seeds", *_by_kind(scores)]
+    if result.interrupted:
+        lines += ["", f"Stopped early; --resume --out {folder} continues."]
+    lines.append("")
+    lines.append(
+        f"{result.wall_s:.1f} s. Model: {folder}/model.safetensors. "
+        + (f"Report: {folder}/report.html" if report else "")
+    )
+    return "\n".join(lines)
+
+
+def _by_kind(scores: Any) -> list[str]:
+    from ..validation import L_MSE, by_manoeuvre, by_member
+
+    found = []
+    for kind, of in by_manoeuvre(scores).items():
+        values = [L_MSE(one) for one in by_member(of)]
+        mean = sum(values) / len(values)
+        deviation = (sum((one - mean) ** 2 for one in values) / max(len(values) - 1, 1)) ** 0.5
+        found.append(f"  {kind or 'manoeuvre not stated':<24}{mean:>10.4g} ± {deviation:.2g}")
+    return found

@@ -1,0 +1,84 @@
+"""Checkpoints of a training: what has been learned so far, whole or not at all, and never executed on loading."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..backends.twins import jax_module
+from ..errors import OptionError, Problem
+from ..files import atomic
+from ..fitting.checkpoint import differing
+from .training import Progressed
+
+
+def named(seed: int) -> str:
+    """The file of a seed's training in the folder of a run."""
+    return f"training-{seed}.safetensors"
+
+
+def save(path: Path, now: Progressed, identity: dict[str, Any]) -> None:
+    """Write where a training stands.  Raises OutputError."""
+    from safetensors.numpy import save as as_bytes
+
+    leaves = jax_module().tree.leaves(_trees(now))
+    arrays = {f"{k:05d}": np.array(leaf, order="C") for k, leaf in enumerate(leaves)}
+    numbers = {
+        "best_score": repr(now.best_score),
+        "step": now.step,
+        "factor": now.factor,
+        "lost": now.lost,
+        "curve": now.curve,
+        "events": now.events,
+        "identity": identity,
+    }
+    content = as_bytes(arrays, metadata={"training": json.dumps(numbers)})
+    with atomic(path) as part:
+        part.write_bytes(content)
+
+
+def load(path: Path, like: Progressed, identity: dict[str, Any]) -> Progressed:
+    """Where a training stood; ``like`` is one of the same shapes.
+
+    Raises OptionError where the file is damaged, or belongs to another training.
+    """
+    from safetensors import SafetensorError, safe_open
+
+    jax = jax_module()
+    leaves, tree = jax.tree.flatten(_trees(like))
+    try:
+        with safe_open(path, framework="numpy") as file:
+            numbers = json.loads((file.metadata() or {})["training"])
+            arrays = [np.asarray(file.get_tensor(f"{k:05d}")) for k in range(len(leaves))]
+        recorded = numbers["identity"]
+    except (OSError, SafetensorError, ValueError, KeyError, TypeError) as error:
+        raise _unreadable(path, str(error)) from error
+    differing(recorded, identity, path)
+    if any(a.shape != np.shape(b) for a, b in zip(arrays, leaves, strict=True)):
+        raise _unreadable(path, "its arrays have other shapes")
+    parameters, state, mean, best = jax.tree.unflatten(tree, [jax.numpy.asarray(one) for one in arrays])
+    return Progressed(
+        parameters,
+        state,
+        mean,
+        best,
+        float(numbers["best_score"]),
+        int(numbers["step"]),
+        float(numbers["factor"]),
+        int(numbers["lost"]),
+        list(numbers["curve"]),
+        list(numbers["events"]),
+    )
+
+
+def _trees(now: Progressed) -> tuple[Any, ...]:
+    return now.parameters, now.state, now.mean, now.best
+
+
+def _unreadable(path: Path, why: str) -> OptionError:
+    return OptionError(
+        Problem("the checkpoint cannot be read", str(path), why, "delete it, or run without resume=True")
+    )

@@ -1,0 +1,75 @@
+"""Roll-outs of networks on JAX: the equations of ``networks.recurrent`` under a compiled scan, with derivatives."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..backends.twins import jax_module, twin
+from ..networks import recurrent
+from ..networks.recurrent import Scales, Weights
+
+
+def roll(w: Weights, scales: Scales, initial: Any, controls: Any, wind: Any, h: float, memory: int | None) -> Any:
+    """States (T + 1, n, 6) from ``initial`` (n, 6) over T steps of Euler's method of h [s]: eq. 19-23.
+
+    w         one member, without the axis of members
+    controls  (T, n, n_inputs)
+    wind      (T, n, 2) over ground
+    memory    samples that truncated memory reaches back, None for standard memory
+    """
+    jax = jax_module()
+    jnp = jax.numpy
+    see, move, accelerate = twin(recurrent.features), twin(recurrent.moved), twin(recurrent.accelerations)
+
+    def step(carry: Any, given: Any) -> Any:
+        states, held = carry
+        control, air = given
+        part = twin(recurrent.projected)(see(states, control, air, scales), w)
+        first, held = _recall(part, held, w, memory)
+        states = move(states, accelerate(first, w, scales), h)
+        return (states, held), states
+
+    begin = (initial, _nothing(jnp, initial, w, memory))
+    _, found = jax.lax.scan(jax.checkpoint(step), begin, (controls, wind))
+    return jnp.concatenate([initial[None], found])
+
+
+def follow(w: Weights, scales: Scales, states: Any, controls: Any, wind: Any, memory: int | None) -> Any:
+    """Accelerations (T, n, 3) along measured states (T, n, 6): eq. 13-16."""
+    jax = jax_module()
+    jnp = jax.numpy
+    parts = twin(recurrent.projected)(twin(recurrent.features)(states, controls, wind, scales), w)
+
+    def step(held: Any, part: Any) -> Any:
+        first, held = _recall(part, held, w, memory)
+        return held, twin(recurrent.accelerations)(first, w, scales)
+
+    _, found = jax.lax.scan(step, _nothing(jnp, states[0], w, memory), parts)
+    return found
+
+
+def _nothing(jnp: Any, like: Any, w: Weights, memory: int | None) -> Any:
+    """What is remembered before the first sample."""
+    n, width = like.shape[0], w.W_r.shape[-1]
+    zero = jnp.zeros((n, width), dtype=w.W_r.dtype)
+    return zero if memory is None else (jnp.zeros((memory, n, width), dtype=w.W_r.dtype), jnp.zeros(memory, bool))
+
+
+def _recall(part: Any, held: Any, w: Weights, memory: int | None) -> tuple[Any, Any]:
+    """The first layer now, and what is remembered of it.
+
+    A truncated memory holds what was seen lately, oldest first, and which of it there was: before the start there was
+    nothing, and the layer stays at zero.
+    """
+    remember = twin(recurrent.remembered)
+    if memory is None:
+        first = remember(part, held, w)
+        return first, first
+    jnp = jax_module().numpy
+    lately, there = held
+    lately = jnp.concatenate([lately[1:], part[None]])
+    there = jnp.concatenate([there[1:], jnp.ones(1, bool)])
+    first = jnp.zeros_like(part)
+    for k in range(memory):
+        first = jnp.where(there[k], remember(lately[k], first, w), 0.0)
+    return first, (lately, there)

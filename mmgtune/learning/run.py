@@ -1,0 +1,236 @@
+"""Networks trained on trials: what ``mmgtune learn rnn`` does."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import OptionError, Problem
+from ..fitting.run import facts_of_profile, made_by
+from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
+from ..networks import Network, NetworkPredictor
+from ..networks.recurrent import Scales, Weights
+from ..options.learning import LearnOptions
+from ..trial import Trial
+from ..trial.pieces import windows
+from ..validation import TrialScore, score
+from . import keeping
+from .aims import RecurrentAim
+from .starting import first_weights, scales_of
+from .task import Task, make_task
+from .training import Plan, Progressed, Trainer
+
+
+@dataclass(frozen=True)
+class Hooks:
+    """What the caller wants to hear and to say while networks are trained.
+
+    on_progress  called after each validation with updates done, updates in all, and where the training stands in words
+    stop         asked after each validation; True ends the training with the best so far
+    """
+
+    on_progress: Callable[[int, int, str], None] = lambda *_: None
+    stop: Callable[[], bool] = lambda: False
+
+
+@dataclass(frozen=True, eq=False)
+class Member:
+    """One trained network.
+
+    weights  the best by score, without the axis of members
+    score    mean over kinds of manoeuvre of L_MSE on the windows that chose
+    curve    a row for each validation: step, loss, score, norm of the gradient
+    events   where training diverged, and what was done
+    """
+
+    seed: int
+    weights: Weights
+    score: float
+    step: int
+    curve: tuple[dict[str, float], ...]
+    events: tuple[dict[str, Any], ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON; the weights are in the model's file."""
+        best = min(self.curve, key=lambda row: row["score"])
+        return {
+            "seed": self.seed,
+            "score": _finite(self.score),
+            "best_step": int(best["step"]),
+            "steps": self.step,
+            "curve": [{key: _finite(value) for key, value in row.items()} for row in self.curve],
+            "events": list(self.events),
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class Learned:
+    """Networks of one type, one for each seed.
+
+    task     what was learned from what
+    scores   of the trials that chose and of those held out, in windows, by role: "validation", "test"
+    """
+
+    network: Network
+    members: tuple[Member, ...]
+    task: Task
+    scores: dict[str, tuple[TrialScore, ...]]
+    provenance: dict[str, Any]
+    interrupted: bool
+    wall_s: float
+
+    def __repr__(self) -> str:
+        """In a line."""
+        best = ", ".join(f"{one.score:.3g}" for one in self.members)
+        return f"Learned({self.network.ship}, type {self.task.options.type}, L_MSE of validation by seed {best})"
+
+
+def learn_rnn(
+    ship: ShipGiven,
+    trials: TrialsGiven,
+    options: LearnOptions = LearnOptions(),
+    *,
+    hooks: Hooks = Hooks(),
+    folder: Path | None = None,
+    resume: bool = False,
+    command: str = "",
+) -> Learned:
+    """Train networks on the trials that tune, choose by runs kept back, and score those that test.
+
+    ship    profile that names the ship, her length and what drives her; her coefficients play no part
+    folder  for checkpoints; None for none
+    resume  go on with what is there: the result is that of a run without a stop, bit for bit
+    Raises what ``make_task`` does, and OptionError where JAX is missing.
+    """
+    began = time.perf_counter()
+    task = make_task(ship_of(ship), trials_of(trials).series_only("a network"), options)
+    scales = scales_of(task.samples)
+    plan = Plan(options.steps, options.batch, options.rate, options.every)
+    identity = identity_of(task)
+    members = _members(Trainer(RecurrentAim(task, scales), plan), task, hooks, folder, identity, resume)
+    if not members:
+        why = "nothing is known of weights before"
+        raise OptionError(Problem("stopped before the first validation", "every", why, "write a smaller every"))
+    facts = _facts(task, command)
+    network = Network(
+        ship=task.profile.id,
+        L_pp=task.profile.L_pp,
+        inputs=task.inputs,
+        step=task.samples.step,
+        memory=task.memory,
+        weights=Weights(*(np.stack(parts) for parts in zip(*(one.weights for one in members), strict=True))),
+        scales=Scales(*(one[None] for one in scales)),
+        facts={**facts, "type": f"type {options.type}", "seeds": [one.seed for one in members]},
+    )
+    done = len(members) == options.seeds and all(one.step >= options.steps for one in members)
+    held = {"validation": task.split.choose, "test": task.test}
+    return Learned(
+        network,
+        tuple(members),
+        task,
+        {role: _scored(network, of, task.sigma, options.restart) for role, of in held.items()},
+        facts,
+        not done,
+        time.perf_counter() - began,
+    )
+
+
+def identity_of(task: Task) -> dict[str, Any]:
+    """Everything the weights depend on."""
+    return {
+        "ship": task.profile.id,
+        "inputs": list(task.inputs),
+        "trials": task.data.hashes(),
+        "tune": list(task.data.tune),
+        "options": task.options.to_dict(),
+        "versions": {name: version(name) for name in ("jax", "jaxlib", "optax", "numpy")},
+    }
+
+
+def _members(
+    trainer: Trainer,
+    task: Task,
+    hooks: Hooks,
+    folder: Path | None,
+    identity: dict[str, Any],
+    resume: bool,
+) -> list[Member]:
+    """The networks one after the other; those that an earlier run has trained are read."""
+    options = task.options
+    found = []
+    if resume and folder is not None and not (folder / keeping.named(options.seed)).is_file():
+        why = "the folder holds no checkpoint: the run ended, or never came to its first validation"
+        raise OptionError(Problem("nothing to resume", str(folder), why, "run without resume=True"))
+    for k in range(options.seeds):
+        seed = options.seed + k
+        now = trainer.begin(_single(first_weights(len(task.inputs), options.width, seed)))
+        path = None if folder is None else folder / keeping.named(seed)
+        if path is not None and resume and path.is_file():
+            now = keeping.load(path, now, identity)
+
+        def told(one: Progressed, path: Path | None = path, k: int = k) -> None:
+            if path is not None:
+                keeping.save(path, one, identity)
+            row = one.curve[-1]
+            words = f"seed {k + 1} of {options.seeds}, loss {row['loss']:.4g}, L_MSE of validation {row['score']:.4g}"
+            hooks.on_progress(k * options.steps + one.step, task.updates, words)
+
+        if now.step < options.steps:
+            now = trainer.run(now, seed, on_validation=told, stop=hooks.stop)
+        if np.isfinite(now.best_score):
+            best = Weights(*(np.asarray(one, dtype=np.float64) for one in now.best))
+            found.append(Member(seed, best, now.best_score, now.step, tuple(now.curve), tuple(now.events)))
+        if hooks.stop():
+            break
+    return found
+
+
+def _single(weights: Weights) -> Weights:
+    return Weights(*(one.astype(np.float32) for one in weights))
+
+
+def _scored(
+    network: Network, trials: Sequence[Trial], sigma: dict[str, float], restart: float | None
+) -> tuple[TrialScore, ...]:
+    """Windows of trials scored by all members."""
+    if not trials:
+        return ()
+    return tuple(score(NetworkPredictor(network), pieces_of(trials, restart), sigma))
+
+
+def pieces_of(trials: Sequence[Trial], restart: float | None) -> list[Trial]:
+    """Trials, or their windows of ``restart`` [s]."""
+    return [piece for trial in trials for piece in (windows(trial, restart) if restart else [trial])]
+
+
+def _facts(task: Task, command: str) -> dict[str, Any]:
+    """What a network was made from."""
+    made = made_by(command)
+    made["environment"] |= {name: version(name) for name in ("jax", "optax")}
+    data, used = task.data, (*task.split.learn, *task.split.choose)
+    return {
+        **made,
+        "profile": facts_of_profile(task.profile),
+        "trials": {
+            "path": str(data.path) if data.path else "",
+            "ship": data.ship,
+            "sources": sorted({trial.source for trial in used}),
+            "licence": data.licence,
+            "citation": data.citation,
+            "sha256": data.hashes(),
+            "learned_from": [trial.id for trial in task.split.learn],
+            "chosen_by": [trial.id for trial in task.split.choose],
+        },
+        "recipe": task.recipe.words,
+        "options": task.options.to_dict(),
+    }
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None

@@ -1,0 +1,228 @@
+"""Weights made better step by step: Adam, the best kept by a score, checkpoints, and a way back from divergence.
+
+What is trained is any tree of arrays; what is made small and what chooses come as an ``Aim``.  The batch of a step
+depends on seed and step alone, so a run that was stopped goes on as if it had not been, bit for bit.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+
+from ..arrays import IntArray
+from ..backends.twins import jax_module
+from ..errors import OptionError, Problem
+
+WARM_UP = 0.05
+"""Share of the steps over which the rate rises to its largest; it then falls as a cosine."""
+
+CLIP = 1.0
+"""Largest norm of a gradient."""
+
+AVERAGE = 0.98
+"""Weight of the past in the running mean of the weights, which is what is scored and kept."""
+
+LOST = 10
+"""Steps in a row without a finite gradient after which training goes back."""
+
+BACK = 5
+"""Times training goes back, each time at half the rate, before it ends with what it has."""
+
+
+class Aim(Protocol):
+    """What is trained for.
+
+    starts  rows at which windows of the loss begin
+    """
+
+    starts: IntArray
+
+    def loss(self, parameters: Any, starts: Any) -> Any:
+        """Loss of a batch of windows, (n,) rows -> number; traceable."""
+        ...
+
+    def score(self, parameters: Any) -> float:
+        """What chooses among weights, less is better; infinite where a run diverged."""
+        ...
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How long, how fast, and with what: see ``LearnOptions``."""
+
+    steps: int
+    batch: int
+    rate: float
+    every: int
+    decay: float = 0.0
+
+
+@dataclass
+class Progressed:
+    """Where a training stands: everything that it goes on from.
+
+    parameters, state, mean  trees of arrays: weights, what the optimiser remembers, running mean of the weights
+    best, best_score         the best mean so far
+    curve                    a row for each validation: step, mean loss since the last, score, norm of the gradient
+    events                   what went wrong, with its step
+    factor                   on the rate, halved each time training went back
+    """
+
+    parameters: Any
+    state: Any
+    mean: Any
+    best: Any
+    best_score: float = math.inf
+    step: int = 0
+    factor: float = 1.0
+    lost: int = 0
+    curve: list[dict[str, float]] = field(default_factory=list)
+    events: list[dict[str, Any]] = field(default_factory=list)
+
+
+class Trainer:
+    """One compiled step, for any number of seeds."""
+
+    def __init__(self, aim: Aim, plan: Plan):
+        jax, optax = jax_module(), optax_module()
+        self.aim, self.plan = aim, plan
+        warm = max(1, round(WARM_UP * plan.steps))
+        rate = optax.warmup_cosine_decay_schedule(0.0, plan.rate, warm, max(plan.steps, warm + 1), 0.0)
+        self.optimiser = optax.chain(optax.clip_by_global_norm(CLIP), optax.adamw(rate, weight_decay=plan.decay))
+
+        def update(parameters: Any, state: Any, mean: Any, starts: Any, factor: Any, past: Any) -> Any:
+            loss, gradient = jax.value_and_grad(aim.loss)(parameters, starts)
+            norm = optax.tree.norm(gradient)
+            sound = jax.numpy.isfinite(norm) & jax.numpy.isfinite(loss)
+            gradient = jax.tree.map(lambda one: jax.numpy.where(sound, one, 0.0), gradient)
+            change, moved = self.optimiser.update(gradient, state, parameters)
+            new = jax.tree.map(lambda a, b: a + factor * b, parameters, change)
+            kept = jax.tree.map(lambda a, b: past * a + (1.0 - past) * b, mean, new)
+            old = (parameters, state, mean)
+            found = jax.tree.map(lambda a, b: jax.numpy.where(sound, a, b), (new, moved, kept), old)
+            return *found, loss, norm, sound
+
+        self._update = jax.jit(update)
+
+    def begin(self, parameters: Any) -> Progressed:
+        """A training before its first step."""
+        parameters = jax_module().tree.map(jax_module().numpy.asarray, parameters)
+        return Progressed(parameters, self.optimiser.init(parameters), parameters, parameters)
+
+    def run(
+        self,
+        now: Progressed,
+        seed: int,
+        *,
+        on_validation: Callable[[Progressed], None] = lambda _: None,
+        stop: Callable[[], bool] = lambda: False,
+    ) -> Progressed:
+        """Train to the end of the plan, or until ``stop``; ``on_validation`` is called after each, to save and tell.
+
+        Raises OptionError where no step ever had a finite loss.
+        """
+        plan = self.plan
+        good = _copy(now)
+        losses: list[float] = []
+        largest = 0.0
+        while now.step < plan.steps:
+            starts = batch(self.aim.starts, plan.batch, seed, now.step)
+            past = min((1.0 + now.step) / (10.0 + now.step), AVERAGE)
+            now.parameters, now.state, now.mean, loss, norm, sound = self._update(
+                now.parameters, now.state, now.mean, starts, np.float32(now.factor), np.float32(past)
+            )
+            now.step += 1
+            if bool(sound):
+                now.lost = 0
+                losses.append(float(loss))
+                largest = max(largest, float(norm))
+            else:
+                now.lost += 1
+            if now.lost >= LOST:
+                now = self._gone_back(now, good, "no finite gradient for some steps in a row")
+                losses, largest = [], 0.0
+                continue
+            if now.step % plan.every == 0 or now.step == plan.steps:
+                score = self.aim.score(now.mean)
+                now.curve.append(
+                    {
+                        "step": now.step,
+                        "loss": float(np.mean(losses)) if losses else math.nan,
+                        "score": score,
+                        "norm": largest,
+                    }
+                )
+                losses, largest = [], 0.0
+                if score < now.best_score:
+                    now.best, now.best_score = now.mean, score
+                if math.isfinite(score) and not now.lost:
+                    good = _copy(now)
+                on_validation(now)
+                if stop():
+                    break
+        if not math.isfinite(now.best_score) and now.step >= plan.steps:
+            raise OptionError(
+                Problem(
+                    "training found no weights with which the ship stays in the world",
+                    "rate",
+                    f"after {now.step} steps; it went back {len(now.events)} times",
+                    "train at a smaller rate, or look at the trials for jumps",
+                )
+            )
+        return now
+
+    def _gone_back(self, now: Progressed, good: Progressed, why: str) -> Progressed:
+        """The last good state again, at half the rate; the steps count on."""
+        if len(now.events) >= BACK:
+            raise OptionError(
+                Problem(
+                    f"training diverged {BACK + 1} times, the last time at step {now.step}",
+                    "rate",
+                    why,
+                    "train at a smaller rate, or look at the trials for jumps",
+                )
+            )
+        back = _copy(good)
+        back.events = [
+            *now.events,
+            {"step": now.step, "why": why, "back_to": good.step, "rate_factor": 0.5 * now.factor},
+        ]
+        back.step, back.factor, back.lost = now.step, 0.5 * now.factor, 0
+        return back
+
+
+def batch(starts: IntArray, size: int, seed: int, step: int) -> IntArray:
+    """The windows of one step: drawn from all, by seed and step alone."""
+    rng = np.random.default_rng([seed, 3, step])
+    return starts[rng.integers(len(starts), size=size)]
+
+
+def optax_module() -> Any:
+    """Optax.  Raises OptionError with the command that installs it where it is not there."""
+    try:
+        import optax
+    except ImportError as error:
+        raise OptionError(
+            Problem("Optax is not installed", "", str(error), "install it with: pip install 'mmgtune[learn]'")
+        ) from error
+    return optax
+
+
+def _copy(one: Progressed) -> Progressed:
+    """The same with lists of its own; arrays are never written into."""
+    return Progressed(
+        one.parameters,
+        one.state,
+        one.mean,
+        one.best,
+        one.best_score,
+        one.step,
+        one.factor,
+        one.lost,
+        list(one.curve),
+        list(one.events),
+    )

@@ -1,0 +1,100 @@
+"""The networks of Wakita et al. 2022 as pure functions: the only copy of their equations.
+
+They know NumPy alone, and work on one network, or on several whose weights are stacked along a first axis of members;
+inputs are then (n_members, n_lanes, n_features).  Training differentiates the same functions rebuilt on JAX.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..physics.frame import to_ship
+from ..physics.integration import after_step
+from ..physics.kinematics import pose_rate
+
+Array = Any
+"""An array of NumPy or of JAX, of any number type."""
+
+
+class Weights(NamedTuple):
+    """Weights of the network of Wakita et al. 2022, eq. 8; leading axes are members.
+
+    Zero in gives zero out: of each layer its value at zero is subtracted, and the last has no bias.
+    """
+
+    W_x: Array  # (..., n_features, width) of velocities, inputs and wind together
+    W_r: Array  # (..., width, width) of the layer's own last value: the memory
+    b_0: Array  # (..., 1, width)
+    W_1: Array  # (..., width, width)
+    b_1: Array  # (..., 1, width)
+    W_2: Array  # (..., width, width)
+    b_2: Array  # (..., 1, width)
+    W_3: Array  # (..., width, 3)
+
+
+class Scales(NamedTuple):
+    """What features are divided by and accelerations multiplied with: standard deviations in the training data.
+
+    No mean is subtracted, so that a ship at rest in still air stays zero.
+    """
+
+    features: Array  # (..., 1, n_features)
+    accelerations: Array  # (..., 1, 3) [m/s^2, m/s^2, rad/s^2]
+
+
+def features(states: Array, controls: Array, wind: Array, scales: Scales) -> Array:
+    """What the network sees, (..., n_features): u, v_m, r, the inputs, apparent wind ahead and to starboard (eq. 7).
+
+    states    (..., 6) x, y [m], psi [rad], u, v_m [m/s], r [rad/s]
+    controls  (..., n_inputs)
+    wind      (..., 2) velocity of the air over ground, north and east [m/s]
+
+    The vector of the apparent wind points to where it comes from.
+    """
+    ahead, starboard = to_ship(states[..., 2], wind[..., 0], wind[..., 1])
+    from_ahead = states[..., 3] - ahead
+    from_starboard = states[..., 4] - starboard
+    blows = np.stack([from_ahead, from_starboard], axis=-1)
+    return np.concatenate([states[..., 3:6], controls, blows], axis=-1) / scales.features
+
+
+def projected(seen: Array, w: Weights) -> Array:
+    """Part of the first layer that what is seen now gives, (..., width)."""
+    return seen @ w.W_x
+
+
+def remembered(part: Array, memory: Array, w: Weights) -> Array:
+    """The first layer, (..., width), from what is seen now and its own last value: eq. 8, first line."""
+    return np.tanh(part + memory @ w.W_r + w.b_0) - np.tanh(w.b_0)
+
+
+def accelerations(memory: Array, w: Weights, scales: Scales) -> Array:
+    """(..., 3) of u [m/s^2], v_m [m/s^2], r [rad/s^2] from the first layer: eq. 8, the other lines."""
+    z_2 = np.tanh(memory @ w.W_1 + w.b_1) - np.tanh(w.b_1)
+    z_3 = np.tanh(z_2 @ w.W_2 + w.b_2) - np.tanh(w.b_2)
+    return (z_3 @ w.W_3) * scales.accelerations
+
+
+def truncated(parts: Sequence[Array], w: Weights) -> Array:
+    """The first layer from what was seen lately, oldest first, begun at zero: eq. 10.
+
+    parts  ``projected`` of up to m samples, the last of them now
+    """
+    memory = 0.0 * parts[0]
+    for part in parts:
+        memory = remembered(part, memory, w)
+    return memory
+
+
+def moved(states: Array, rates: Array, h: Array) -> Array:
+    """States (..., 6) after a step of h [s] of Euler's method at these accelerations (..., 3): eq. 21-22.
+
+    h  a number, or an array that broadcasts with (..., 6)
+    """
+    psi, u, v_m, r = states[..., 2], states[..., 3], states[..., 4], states[..., 5]
+    north, east, turning = pose_rate(psi, u, v_m, r)
+    pose = np.stack([north, east, turning], axis=-1)
+    return after_step(states, h, np.concatenate([pose, rates], axis=-1))

@@ -1,0 +1,59 @@
+"""What a user can choose where networks are trained."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..errors import Problem
+from .choice import INPUT, REPRODUCE, Options, again, choice
+from .tuning import LeaveOutOptions
+
+TRAINING = "Training"
+"""Panel of the help."""
+
+TYPES = ("1", "2", "3", "4", "5")
+"""Types of networks in Wakita et al. 2022, Table 7."""
+
+
+@dataclass(frozen=True)
+class LearnOptions(Options):
+    """All choices of ``learn rnn``."""
+
+    type: str = choice(
+        "1",
+        "Network and loss of Wakita et al. 2022, Table 7: 1 truncated memory, 2 standard memory, 3 loss of "
+        "accelerations; 4 and 5 as 1, on fewer trials.",
+        values=TYPES,
+        called="type",
+        panel=INPUT,
+    )
+    seeds: int = choice(5, "Networks trained, each from a start of its own.", least=1, most=100, panel=TRAINING)
+    steps: int = choice(600, "Updates of the weights.", least=1, most=1_000_000, panel=TRAINING)
+    batch: int = choice(256, "Windows in each update.", least=1, most=65_536, panel=TRAINING)
+    rate: float = choice(2e-3, "Largest rate of learning.", above=0.0, most=1.0, panel=TRAINING)
+    width: int = choice(200, "Units of a layer.", least=1, most=4096, panel=TRAINING)
+    memory: int = choice(10, "Samples that truncated memory reaches back.", least=1, most=1000, panel=TRAINING)
+    horizon: int = choice(60, "Samples that a window of the loss has.", least=2, most=100_000, panel=TRAINING)
+    step: float | None = choice(
+        None, "Time between samples. Default: that of most trials.", unit="s", above=0.0, panel=TRAINING
+    )
+    validation: float = choice(
+        0.2,
+        "Share of each kind of manoeuvre kept back, as whole runs, to choose the best weights by.",
+        above=0.0,
+        most=0.8,
+        panel=TRAINING,
+    )
+    restart: float | None = again(LeaveOutOptions, "restart", 100.0)
+    every: int = choice(25, "Updates between two validations.", least=1, most=1_000_000, panel=TRAINING)
+    seed: int = choice(
+        1, "Seed of the first network, and of which runs are kept back.", least=1, most=2**62, panel=REPRODUCE
+    )
+
+    def problems(self) -> list[Problem]:
+        """There must be a validation before the end."""
+        found = super().problems()
+        if isinstance(self.every, int) and isinstance(self.steps, int) and self.every > self.steps:
+            fix = f"write every={self.steps} or less"
+            found.append(Problem(f"every {self.every} updates of {self.steps} is never", "every", fix=fix))
+        return found

@@ -1,0 +1,240 @@
+"""The report of networks trained on trials."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .common import picture
+from .drawing import AFTER, BEFORE, Drawn, grid_of, log_ticks, new_figure
+from .load import Kind
+from .page import Commands, Details, Page, Prose, Section, Table, Tile, cells
+from .tables import pairs
+from .wording import NONE, clean, count, listing, number, shown
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_ROLES = {"test": "held out", "validation": "validation"}
+_MEANING = (
+    "L_MSE is the mean over time of the sum over all six states of squared differences over their variance in the "
+    "trials that tune (Wakita et al. 2022, eq. 26): 0 is perfect, and a model that knows only the mean has about 6."
+)
+
+
+@dataclass(frozen=True)
+class LearningRecord:
+    """A training as its folder holds it: learning.json."""
+
+    folder: Path
+    data: Mapping[str, Any]
+
+    @property
+    def members(self) -> list[dict[str, Any]]:
+        """The networks, one a seed."""
+        return list(self.data["members"])
+
+    @property
+    def role(self) -> str:
+        """The trials that the report speaks of first: those held out, where there are any."""
+        return "test" if "test" in self.data["scores"] else "validation"
+
+    @property
+    def scores(self) -> Mapping[str, Any]:
+        """Their scores."""
+        found: Mapping[str, Any] = self.data["scores"][self.role]
+        return found
+
+
+def build(record: LearningRecord) -> Page:
+    """Everything the report of a training says."""
+    data = record.data
+    tracks = Drawn("tracks", "Tracks as measured and as predicted", lambda: _draw_tracks(data["drawn"]))
+    curves = Drawn("curves", "Learning curves", lambda: _draw_curves(record.members))
+    sections = [
+        Section("tracks", "What it predicts", (picture(tracks, "Tracks", _tracks_words(record)),)),
+        Section("scores", "Errors by kind of manoeuvre", (_scores(record), Prose((_MEANING,)))),
+        Section("learning", "How it learned", (picture(curves, "Learning curves", _CURVES), *_events(record))),
+        Section("next", "What to do next", (_next(record),)),
+        _made(record),
+    ]
+    generated = data["provenance"]["trials"].get("sources") == ["generated"]
+    banner = "The trials it learned from are generated, not measured: this says how the method works, not the ship."
+    return Page(
+        title=f"Networks of {clean(data['ship'])}: type {clean(data['type'])}",
+        eyebrow=clean(data["recipe"]),
+        verdict=_verdict(record),
+        banners=(banner,) if generated else (),
+        warnings=("The training was stopped early; --resume continues it.",) if data["interrupted"] else (),
+        tiles=_tiles(record),
+        sections=tuple(sections),
+        figures={"tracks": tracks, "curves": curves},
+    )
+
+
+def _verdict(record: LearningRecord) -> str:
+    position, heading = _rms(record.data, record.scores)
+    window = number(record.data["window_s"])
+    over = f"over {shown(window, 3)} s" if window else "over whole trials"
+    return (
+        f"{over.capitalize()} from a measured state the networks are {shown(position, 2)} m and {shown(heading, 2)}° "
+        f"off (root mean square) on {count(len(record.scores['trials']), 'trial')} "
+        f"{'that played no part' if record.role == 'test' else 'that chose among their weights'}."
+    )
+
+
+def _rms(data: Mapping[str, Any], row: Mapping[str, Any]) -> tuple[float | None, float | None]:
+    """Root mean square error of position [m] and heading [deg]; None where it diverged."""
+    parts, sigma = row["L_MSE_by_state"], data["sigma"]
+    squares = {name: number(parts.get(name)) for name in ("x", "y", "psi")}
+    if any(value is None for value in squares.values()):
+        return None, None
+    x, y, psi = ((squares[name] or 0.0) * sigma[name] ** 2 for name in ("x", "y", "psi"))
+    return math.sqrt(x + y), math.degrees(math.sqrt(psi))
+
+
+def _tiles(record: LearningRecord) -> tuple[Tile, ...]:
+    data = record.data
+    position, heading = _rms(data, record.scores)
+    where = _ROLES[record.role]
+    best = [one["score"] for one in record.members if number(one["score"]) is not None]
+    return (
+        Tile(f"Position error, {where}", f"{shown(position, 2)} m", note="root mean square"),
+        Tile(f"Heading error, {where}", f"{shown(heading, 2)}°", note="root mean square"),
+        Tile(f"L_MSE, {where}", shown(record.scores["L_MSE"], 3), note=f"mean over {count(len(best), 'seed')}"),
+        Tile("Learned from", count(len(data["learned_from"]), "trial"), note=f"chosen by {len(data['chosen_by'])}"),
+    )
+
+
+def _tracks_words(record: LearningRecord) -> str:
+    return (
+        f"Of each kind of manoeuvre the window of median error among the trials {_ROLES[record.role]}: measured, and "
+        f"as {count(record.data['provenance']['options']['seeds'], 'network')} predict it from the first state and the "
+        "inputs."
+    )
+
+
+def _draw_tracks(drawn: Sequence[Mapping[str, Any]]) -> Figure:
+    from matplotlib.lines import Line2D
+
+    figure, axes = grid_of(max(len(drawn), 1), (2.9, 3.0))
+    for ax, one in zip(axes, drawn, strict=False):
+        for member in one["members"]:
+            ax.plot(*_line(member), color=AFTER, linewidth=1.0, linestyle=(0, (6, 2.2)))
+        ax.plot(*_line(one["measured"]), color="black", linewidth=1.5)
+        ax.set_aspect("equal", adjustable="datalim")
+        ax.set_title(f"{clean(one['manoeuvre']) or clean(one['id'])}: L_MSE {shown(one['L_MSE'], 2)}", fontsize="small")
+        ax.set_xlabel("east [m]")
+        ax.set_ylabel("north [m]")
+    handles = [
+        Line2D([], [], color="black", label="measured"),
+        Line2D([], [], color=AFTER, linestyle=(0, (6, 2.2)), label="predicted"),
+    ]
+    figure.legend(handles=handles, loc="outside upper left", ncols=2, handlelength=3.6)
+    return figure
+
+
+def _line(track: Mapping[str, Any]) -> tuple[list[float], list[float]]:
+    return tuple([math.nan if v is None else v for v in track[name]] for name in ("east_m", "north_m"))  # type: ignore[return-value]
+
+
+_CURVES = (
+    "Loss on short windows of the trials learned from, and L_MSE on long windows of those that chose; a line a seed. "
+    "The weights at the dot are kept: the loss on short windows hardly foretells the error on long ones."
+)
+
+
+def _draw_curves(members: Sequence[Mapping[str, Any]]) -> Figure:
+    figure = new_figure(7.6, 3.0)
+    left, right = figure.subplots(1, 2)
+    for one in members:
+        rows = [row for row in one["curve"] if number(row["loss"]) is not None]
+        left.plot([row["step"] for row in rows], [row["loss"] for row in rows], color=BEFORE, linewidth=1.0)
+        rows = [row for row in one["curve"] if number(row["score"]) is not None]
+        right.plot([row["step"] for row in rows], [row["score"] for row in rows], color=AFTER, linewidth=1.0)
+        if number(one["score"]) is not None:
+            right.plot([one["best_step"]], [one["score"]], color=AFTER, marker="o", markersize=4)
+    _scaled(left, "loss on short windows [–]")
+    _scaled(right, "L_MSE of validation [–]")
+    return figure
+
+
+def _scaled(ax: Axes, label: str) -> None:
+    ax.set_xlabel("updates of the weights")
+    ax.set_ylabel(label)
+    if ax.lines:
+        ax.set_yscale("log")
+        log_ticks(ax.yaxis)
+
+
+def _scores(record: LearningRecord) -> Table:
+    rows = []
+    for role, words in _ROLES.items():
+        found = record.data["scores"].get(role)
+        if found is None:
+            continue
+        for kind, row in found["by_manoeuvre"].items():
+            position, heading = _rms(record.data, row)
+            name = clean(kind) or "not stated"
+            rows.append(
+                cells(words, name, str(row["runs"]), shown(position, 3), shown(heading, 3), shown(row["L_MSE"], 3))
+            )
+    return Table(
+        "scores-table",
+        "Root mean square errors and L_MSE, means over the seeds",
+        ("trials", "manoeuvre", "runs", "position [m]", "heading [°]", "L_MSE [–]"),
+        tuple(rows),
+        numeric=(2, 3, 4, 5),
+    )
+
+
+def _events(record: LearningRecord) -> tuple[Prose, ...]:
+    said = [
+        f"Seed {one['seed']} diverged at update {event['step']} ({clean(event['why'])}) and went back to update "
+        f"{event['back_to']} at {shown(100 * event['rate_factor'], 3)} % of the rate."
+        for one in record.members
+        for event in one["events"]
+    ]
+    return (Prose(tuple(said), listed=True, tone="warning"),) if said else ()
+
+
+def _next(record: LearningRecord) -> Commands:
+    model = f"{record.folder.as_posix()}/model.safetensors"
+    ship, trials = clean(record.data["ship"]), clean(record.data["provenance"]["trials"]["path"]) or "TRIALS"
+    window = number(record.data["window_s"])
+    restart = f" --restart {window:g}" if window else ""
+    return Commands(
+        (
+            (f"mmgtune validate {ship} {model} {trials}{restart}", "Hold it against a profile on the same windows."),
+            (f"mmgtune simulate -p {model} --trials {trials}", "Simulate trials with it."),
+        )
+    )
+
+
+def _made(record: LearningRecord) -> Section:
+    data = record.data
+    made, trials = data["provenance"], data["provenance"]["trials"]
+    items = [
+        ("learned from", listing([clean(one) for one in data["learned_from"]], 40)),
+        ("chosen by", listing([clean(one) for one in data["chosen_by"]], 40)),
+        ("held out", listing([clean(one) for one in data["held_out"]], 40)),
+        ("licence of the trials", clean(trials.get("licence") or NONE)),
+        ("cite for them", clean(trials.get("citation") or NONE)),
+        ("inputs", ", ".join(clean(one) for one in data["inputs"])),
+        ("step", f"{shown(data['step_s'], 3)} s"),
+        ("memory", "runs on" if data["memory"] is None else f"{data['memory']} samples"),
+        ("units of a layer", str(data["width"])),
+        ("command", clean(made["command"] or NONE)),
+        ("made by", f"mmgtune {clean(made['mmgtune'])}, {clean(made['created'])}"),
+        ("time", f"{shown(data['wall_s'], 3)} s"),
+    ]
+    options = pairs("options-table", "Options", ("option", "value"), [(k, str(v)) for k, v in made["options"].items()])
+    about = pairs("made-table", "What it was made from", ("", ""), items)
+    return Section("made", "How it was made", (about, Details("All options", (options,))))
+
+
+KIND = Kind("learning", ("members", "scores", "drawn", "provenance", "sigma"), LearningRecord, build)

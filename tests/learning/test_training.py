@@ -1,0 +1,186 @@
+"""Training of networks on the bundled generated trials, as small as it can be."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+pytest.importorskip("jax", reason="networks are trained with the extra mmgtune[learn]")
+
+from mmgtune.errors import OptionError
+from mmgtune.learning import Hooks, learn_rnn, write_learned
+from mmgtune.learning import run as runs
+from mmgtune.learning.keeping import named
+from mmgtune.networks import NetworkPredictor, load_network
+from mmgtune.options.learning import LearnOptions
+from mmgtune.trial import load_trials
+from mmgtune.validating import validate
+
+SMALL = LearnOptions(seeds=1, steps=6, every=2, batch=16, width=6, memory=3, horizon=8, restart=60.0)
+
+
+def weights(result):
+    return np.concatenate([np.ravel(one) for one in result.network.weights])
+
+
+@pytest.fixture(scope="module")
+def trained():
+    return learn_rnn("suzaku", "suzaku", replace(SMALL, steps=60, every=20, rate=2e-2, width=16, horizon=20))
+
+
+@pytest.mark.slow(8)
+def test_training_learns(trained):
+    losses = [row["loss"] for row in trained.members[0].curve]
+    assert losses[-1] < 0.5 * losses[0]
+
+
+def test_the_best_by_validation_is_kept(trained):
+    one = trained.members[0]
+    assert one.score == min(row["score"] for row in one.curve)
+
+
+def test_validation_runs_are_not_learned_from(trained):
+    learned = {trial.run for trial in trained.task.split.learn}
+    chosen = {trial.run for trial in trained.task.split.choose}
+    assert learned
+    assert chosen
+    assert not learned & chosen
+    tested = {score.trial for score in trained.scores["test"]}
+    assert tested == set(load_trials("suzaku").test)
+    assert not tested & (learned | chosen)
+
+
+def test_the_score_that_chose_is_that_of_validate(trained, tmp_path):
+    """One network, scored in training in single precision on JAX, and by the program on NumPy from its file."""
+    write_learned(trained, tmp_path)
+    data = load_trials("suzaku")
+    chosen = {trial.id for trial in trained.task.split.choose}
+    from mmgtune.trial import TrialSet
+    from mmgtune.validation import L_MSE, by_manoeuvre, score
+
+    network = load_network(tmp_path / "model.safetensors")
+    pieces = TrialSet({id: data.trials[id] for id in chosen}, tuple(chosen), ()).in_windows(60.0).trials.values()
+    scores = score(NetworkPredictor(network), list(pieces), trained.task.sigma)
+    by_kind = [L_MSE(of) for of in by_manoeuvre(scores).values()]
+    assert np.mean(by_kind) == pytest.approx(trained.members[0].score, rel=2e-3)
+
+
+@pytest.mark.slow(10)
+def test_the_same_seed_gives_the_same_weights_and_another_others():
+    a, b = (learn_rnn("suzaku", "suzaku", SMALL) for _ in range(2))
+    other = learn_rnn("suzaku", "suzaku", replace(SMALL, seed=2))
+    np.testing.assert_array_equal(weights(a), weights(b))
+    assert np.abs(weights(a) - weights(other)).max() > 0.01
+
+
+@pytest.mark.slow(10)
+@pytest.mark.parametrize("after", [1, 4])
+def test_resumed_equals_not_interrupted(tmp_path, after):
+    """Stopped in the first seed or in the second, and gone on: the same bits."""
+    options = replace(SMALL, seeds=2)
+    asked = []
+
+    def stop():
+        return len(asked) >= after
+
+    hooks = Hooks(on_progress=lambda *_: asked.append(1), stop=stop)
+    first = learn_rnn("suzaku", "suzaku", options, hooks=hooks, folder=tmp_path)
+    assert first.interrupted
+    write_learned(first, tmp_path)
+    assert list(tmp_path.glob("training-*"))
+    second = learn_rnn("suzaku", "suzaku", options, folder=tmp_path, resume=True)
+    write_learned(second, tmp_path)
+    assert not second.interrupted
+    assert not list(tmp_path.glob("training-*"))
+    whole = learn_rnn("suzaku", "suzaku", options)
+    np.testing.assert_array_equal(weights(second), weights(whole))
+    assert [one.to_dict() for one in second.members] == [one.to_dict() for one in whole.members]
+
+
+@pytest.mark.slow(5)
+def test_a_checkpoint_of_another_training_or_damaged_is_refused(tmp_path):
+    hooks = Hooks(stop=lambda: True)
+    learn_rnn("suzaku", "suzaku", SMALL, hooks=hooks, folder=tmp_path)
+    with pytest.raises(OptionError, match="another fit"):
+        learn_rnn("suzaku", "suzaku", replace(SMALL, rate=1e-3), folder=tmp_path, resume=True)
+    path = tmp_path / named(1)
+    path.write_bytes(path.read_bytes()[:-40])
+    with pytest.raises(OptionError, match="cannot be read"):
+        learn_rnn("suzaku", "suzaku", SMALL, folder=tmp_path, resume=True)
+    with pytest.raises(OptionError, match="nothing to resume"):
+        learn_rnn("suzaku", "suzaku", SMALL, folder=tmp_path / "other", resume=True)
+
+
+@pytest.mark.slow(8)
+@pytest.mark.parametrize("type", ["2", "3"])
+def test_other_types_learn_too(type):
+    result = learn_rnn("suzaku", "suzaku", replace(SMALL, type=type, steps=30, every=10, rate=5e-3))
+    losses = [row["loss"] for row in result.members[0].curve]
+    assert losses[-1] < losses[0]
+    assert (result.network.memory is None) == (type == "2")
+
+
+def test_types_on_runs_of_the_paper_say_which_are_missing():
+    with pytest.raises(OptionError, match="8 of the runs") as error:
+        learn_rnn("suzaku", "suzaku", replace(SMALL, type="5"))
+    assert "type=1" in error.value.problems[0].fix
+
+
+def test_windows_longer_than_any_trial_are_refused():
+    with pytest.raises(OptionError, match="no trial is as long"):
+        learn_rnn("suzaku", "suzaku", replace(SMALL, horizon=5000))
+
+
+def test_one_run_leaves_nothing_to_choose_by():
+    data = load_trials("suzaku")
+    one = replace(data, tune=data.tune[:1])
+    with pytest.raises(OptionError, match="too few runs"):
+        learn_rnn("suzaku", one, SMALL)
+
+
+@pytest.mark.slow(5)
+def test_divergence_is_told_with_its_step_and_training_goes_back(monkeypatch):
+    """Gradients that are no numbers for a while: training goes back to the last good state at half the rate."""
+    from mmgtune.learning import training
+
+    drawn = training.batch
+    poisoned = range(13, 23)
+
+    def batch(starts, size, seed, step):
+        found = drawn(starts, size, seed, step)
+        return np.full_like(found, -1_000_000) if step in poisoned else found
+
+    monkeypatch.setattr(training, "batch", batch)
+    spoiled = runs.RecurrentAim.loss
+
+    def loss(self, w, starts):
+        import jax.numpy as jnp
+
+        return jnp.where(starts[0] < 0, jnp.nan, 1.0) * spoiled(self, w, jnp.abs(starts) % len(self.starts))
+
+    monkeypatch.setattr(runs.RecurrentAim, "loss", loss)
+    result = learn_rnn("suzaku", "suzaku", replace(SMALL, steps=30, every=5))
+    (event,) = result.members[0].events
+    assert (event["step"], event["back_to"], event["rate_factor"]) == (23, 10, 0.5)
+    assert np.isfinite(result.members[0].score)
+
+
+@pytest.mark.slow(5)
+def test_gradients_that_are_never_numbers_are_an_error(monkeypatch):
+    monkeypatch.setattr(runs.RecurrentAim, "loss", lambda self, w, starts: sum(one.sum() for one in w) * np.nan)
+    with pytest.raises(OptionError, match="diverged 6 times, the last time at step 60") as error:
+        learn_rnn("suzaku", "suzaku", replace(SMALL, steps=100, every=5))
+    assert error.value.problems[0].where == "rate"
+
+
+def test_what_is_left_behind_is_json_and_a_predictor(trained, tmp_path):
+    write_learned(trained, tmp_path)
+    document = json.loads((tmp_path / "learning.json").read_text())
+    assert document["kind"] == "learning"
+    assert document["scores"]["test"]["L_MSE"] > 0.0
+    assert document["provenance"]["trials"]["sources"] == ["generated"]
+    result = validate([str(tmp_path / "model.safetensors"), "suzaku"], "suzaku")
+    assert [one.predictor.name for one in result.profiles] == ["suzaku type 1", "suzaku"]

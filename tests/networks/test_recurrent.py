@@ -1,0 +1,82 @@
+"""The equations of the networks: eq. 8, 10 and 21-22 of Wakita et al. 2022, written out once more by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mmgtune.networks.predicting import NetworkRun
+from mmgtune.networks.recurrent import Scales, accelerations, features, moved, projected, remembered, truncated
+
+from .made import network
+
+
+def by_hand(net, seen):
+    """Accelerations of one member along features (T, n_features), unit by unit."""
+    w = [np.asarray(one)[0] for one in net.weights]
+    W_x, W_r, b_0, W_1, b_1, W_2, b_2, W_3 = w
+    width = W_r.shape[0]
+    z = np.zeros(width)
+    for x in seen:
+        new = np.empty(width)
+        for j in range(width):
+            inside = sum(x[i] * W_x[i, j] for i in range(len(x))) + sum(z[i] * W_r[i, j] for i in range(width))
+            new[j] = np.tanh(inside + b_0[0, j]) - np.tanh(b_0[0, j])
+        z = new
+    for W, b in ((W_1, b_1), (W_2, b_2)):
+        z = np.array([np.tanh(z @ W[:, j] + b[0, j]) - np.tanh(b[0, j]) for j in range(width)])
+    return (z @ W_3) * np.asarray(net.scales.accelerations)[0, 0]
+
+
+def test_standard_memory_is_the_paper_s():
+    net = network(memory=None)
+    seen = np.random.default_rng(2).standard_normal((7, 7))
+    memory = np.zeros((1, 1, net.width))
+    for x in seen:
+        memory = remembered(projected(x[None, None], net.weights), memory, net.weights)
+    np.testing.assert_allclose(accelerations(memory, net.weights, net.scales)[0, 0], by_hand(net, seen), rtol=1e-12)
+
+
+def test_truncated_memory_sees_the_last_samples_alone():
+    net = network(memory=3)
+    seen = np.random.default_rng(2).standard_normal((7, 7))
+    parts = [projected(x[None, None], net.weights) for x in seen]
+    found = accelerations(truncated(parts[-3:], net.weights), net.weights, net.scales)[0, 0]
+    np.testing.assert_allclose(found, by_hand(net, seen[-3:]), rtol=1e-12)
+
+
+def test_nothing_in_gives_nothing_out():
+    net = network(members=3)
+    still = np.zeros((3, 2, 7))
+    memory = truncated([projected(still, net.weights)] * 3, net.weights)
+    assert not accelerations(memory, net.weights, net.scales).any()
+
+
+def test_a_history_shorter_than_the_memory_is_remembered_whole():
+    standard, short = network(memory=None), network(memory=6)
+    state = np.array([[[0.0, 0.0, 0.3, 0.5, 0.1, 0.02]]])
+    runs = NetworkRun(standard, state), NetworkRun(short, state)
+    rng = np.random.default_rng(3)
+    for k in range(8):
+        controls, wind = rng.standard_normal((1, 2)), rng.standard_normal((1, 2))
+        for run in runs:
+            run.step(controls, wind, 0.1)
+        same = np.array_equal(runs[0].states, runs[1].states)
+        assert same == (k < 6)
+
+
+def test_the_ship_sees_apparent_wind_from_where_it_comes():
+    plain = Scales(np.ones(1), np.ones(1))
+    heading_east = np.array([0.0, 0.0, np.pi / 2, 2.0, 0.5, 0.1])
+    # Air that moves west at 3 m/s: from ahead, at 5 m/s with her own speed; and her drift brings some from starboard.
+    seen = features(heading_east, np.array([8.0, 0.2]), np.array([0.0, -3.0]), plain)
+    np.testing.assert_allclose(seen, [2.0, 0.5, 0.1, 8.0, 0.2, 5.0, 0.5], atol=1e-15)
+
+
+@pytest.mark.parametrize("psi", [0.0, 1.0, -2.5])
+def test_a_step_is_euler_s(psi):
+    state = np.array([1.0, 2.0, psi, 0.8, -0.2, 0.05])
+    found = moved(state, np.array([0.1, -0.2, 0.3]), 0.1)
+    c, s = np.cos(psi), np.sin(psi)
+    by = [0.8 * c + 0.2 * s, 0.8 * s - 0.2 * c, 0.05, 0.1, -0.2, 0.3]
+    np.testing.assert_allclose(found, state + 0.1 * np.array(by), rtol=1e-14)
