@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from .arrays import FloatArray
+from .backends import get_backend
 from .errors import OptionError, Problem
 from .manoeuvres.on_lanes import LaneRecord, stopping, turning, zigzag
 from .model import Model
@@ -117,7 +118,9 @@ def possible(profile: ShipProfile, trials: Sequence[IndexTrial]) -> None:
         raise OptionError(*problems)
 
 
-def simulated(model: Model, theta: FloatArray, trials: Sequence[IndexTrial]) -> list[FloatArray]:
+def simulated(
+    model: Model, theta: FloatArray, trials: Sequence[IndexTrial], backend: str = "compiled"
+) -> list[FloatArray]:
     """The stated indices of each trial as candidates make them: (n_indices, n_candidates) each, SI, NaN if not reached.
 
     theta  (n_rows, n_candidates)
@@ -127,29 +130,33 @@ def simulated(model: Model, theta: FloatArray, trials: Sequence[IndexTrial]) -> 
     at_once = max(1, LANES // len(trials)) if trials else 1
     for first in range(0, n_candidates, at_once):
         part = slice(first, min(first + at_once, n_candidates))
-        for into, values in zip(found, _march(model, theta[:, part], trials), strict=True):
+        for into, values in zip(found, _march(model, theta[:, part], trials, backend), strict=True):
             into[:, part] = values
     return found
 
 
-def residuals(model: Model, theta: FloatArray, trials: Sequence[IndexTrial]) -> FloatArray:
+def residuals(model: Model, theta: FloatArray, trials: Sequence[IndexTrial], backend: str = "compiled") -> FloatArray:
     """Simulated less stated over the tolerance, (n_indices of all trials, n_candidates); see ``UNREACHED``."""
     rows = []
-    for one, values in zip(trials, simulated(model, theta, trials), strict=True):
+    for one, values in zip(trials, simulated(model, theta, trials, backend), strict=True):
         stated, tolerance = np.array(list(one.stated(model.L_pp).values())).T[:, :, None]
         rows.append(np.nan_to_num((values - stated) / tolerance, nan=UNREACHED, posinf=UNREACHED, neginf=-UNREACHED))
     return np.vstack(rows) if rows else np.zeros((0, theta.shape[1]))
 
 
 def compare_stated(
-    model: Model, thetas: Mapping[str, FloatArray], trials: Sequence[IndexTrial], roles: Mapping[str, str]
+    model: Model,
+    thetas: Mapping[str, FloatArray],
+    trials: Sequence[IndexTrial],
+    roles: Mapping[str, str],
+    backend: str = "compiled",
 ) -> list[IndexComparison]:
     """Every stated index beside what models make of it.
 
     thetas  (n_rows,) coefficients by what to call them, such as "before" and "after"
     roles   by trial: "tune", "test" or "other"
     """
-    of = simulated(model, np.column_stack(list(thetas.values())), trials)
+    of = simulated(model, np.column_stack(list(thetas.values())), trials, backend)
     found = []
     for one, values in zip(trials, of, strict=True):
         for (name, (stated, tolerance)), row in zip(one.stated(model.L_pp).items(), values, strict=True):
@@ -168,7 +175,7 @@ def model_of(predictor: Predictor) -> ShipProfile:
     return profile
 
 
-def _march(model: Model, theta: FloatArray, trials: Sequence[IndexTrial]) -> list[FloatArray]:
+def _march(model: Model, theta: FloatArray, trials: Sequence[IndexTrial], backend: str) -> list[FloatArray]:
     approach = model.profile.approach
     n_candidates = theta.shape[1]
 
@@ -189,7 +196,7 @@ def _march(model: Model, theta: FloatArray, trials: Sequence[IndexTrial]) -> lis
         until=lanes([_until(one) for one in trials]),
         revolutions=lanes(astern),
     )
-    whole = steer(model, np.tile(theta, len(trials)), orders)
+    whole = steer(model, np.tile(theta, len(trials)), orders, get_backend(backend))
     found = []
     for k, one in enumerate(trials):
         at = slice(k * n_candidates, (k + 1) * n_candidates)

@@ -1,25 +1,25 @@
-"""Standard manoeuvres of many lanes at once: a helmsman and a steering gear to each, and the model, stepped together.
+"""Standard manoeuvres of many lanes at once: a helmsman and a steering gear to each, and the model.
 
-A zigzag's rudder depends on the motion, so it cannot be prepared as inputs.  Here every lane has orders of its own and
-they march side by side.  What comes out varies smoothly with the coefficients, as finite differences of it need: the
-rudder is reversed at the moment within a step at which the ship passes her check heading, not at the end of the step.
+A zigzag's rudder depends on the motion, so its inputs are found by repeating: all lanes are run with the orders known
+so far, the first at which a ship passes her check heading gives her next one, and she is run again.  In the end the
+inputs of a lane are those of a log, sampled at every step, and its motion is what a back end makes of them.  It varies
+smoothly with the coefficients, as finite differences of it need: the rudder is reversed at the moment within a step at
+which the ship passes her check heading, not at the end of the step.
 """
 
 from __future__ import annotations
 
-import copy
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from .arrays import BoolArray, FloatArray, IntArray
-from .backends import STATES, Integrator, LaneModel
+from .backends import STATES, Backend, Cases, Integrator
 from .inputs import INPUTS, Role
 from .manoeuvres import Track
 from .model import Model
-from .physics.quantities import UNKNOWN, State
-from .profile import Actuator
+from .physics.quantities import Surroundings
 
 STEP = 0.05
 """Step of the integration, fourth-order Runge-Kutta, and of the record: a share of the time a ship length takes."""
@@ -29,6 +29,9 @@ APPROACH = 10
 
 PATIENCE = 1600
 """Steps after which a manoeuvre ends in any case: eighty ship lengths at the approach speed."""
+
+AHEAD = 150
+"""Steps a lane is run beyond its last order, at first; twice as many whenever nothing has happened in them."""
 
 RK4 = Integrator("rk4")
 N_STATES = len(STATES)
@@ -83,105 +86,158 @@ class Steered:
         return self.controls[part, of, lane].mean(axis=1) if of else np.zeros(part.stop)
 
 
-def steer(model: Model, theta: FloatArray, orders: Orders) -> Steered:
+def steer(model: Model, theta: FloatArray, orders: Orders, backend: Backend) -> Steered:
     """Every lane from straight ahead to the end of its manoeuvre, or to ``PATIENCE``; samples are a step apart.
 
     theta  (n_rows, n_lanes) coefficients.  A lane that leaves the world of ships ends there and touches no other.
     """
+    theta = _on_time(model, theta)
     n_lanes = theta.shape[1]
     h = STEP * model.L_pp / orders.speed
-    inputs = model.arrangement.inputs
-    actuators = [model.profile.actuator(one.name) for one in inputs]
-    zero = np.zeros(n_lanes)
-    driven = np.array([orders.n if one.role == "propeller" else zero for one in inputs])
-    ship = LaneModel(model, np.ascontiguousarray(theta))
-    helm = _Helm(orders)
-    states, controls = [np.array([zero, zero, zero, orders.speed, zero, zero])], [driven]
-    end = np.full(n_lanes, PATIENCE)
-    running = np.ones(n_lanes, dtype=bool)
-    with np.errstate(all="ignore"):
-        run = ship.start(State(*states[0]), model.arrangement.control(*driven))
-        for k in range(PATIENCE):
-            if k == APPROACH:
-                helm.begin()
-            then = _moved(driven, helm.ordered(inputs), actuators, h)
-            before = copy.copy(run)  # a step replaces what a run holds
-            run.step(model.arrangement.control(*then), UNKNOWN, h, RK4)
-            shown = np.array(run.shown)
-            share = helm.passed(states[-1][2], shown[2])
-            if (share < 1.0).any():
-                first = _moved(driven, helm.ordered(inputs), actuators, share * h)
-                helm.reverse(share < 1.0, k + share)
-                then = _moved(first, helm.ordered(inputs), actuators, (1.0 - share) * h)
-                run = before
-                run.step(model.arrangement.control(*then), UNKNOWN, h, RK4)
-                shown = np.array(run.shown)
-            driven = then
-            states.append(shown)
-            controls.append(driven)
-            done = helm.finished(shown) | ~np.isfinite(run.s).all(axis=0)
-            end[running & done] = k + 1
-            running &= ~done
-            if not running.any() and k > APPROACH:  # every record holds its order
-                break
-    whole = np.array(states)
-    end = np.minimum(end, len(whole) - 1)
-    sound = np.isfinite(whole[end, :, np.arange(n_lanes)]).all(axis=1)
-    return Steered(h, whole, np.array(controls), end, np.array(helm.times), sound, model.inputs)
+    helm = _Helm(model, orders, h)
+    states = np.empty((n_lanes, PATIENCE + 1, N_STATES))
+    length = np.minimum(APPROACH + AHEAD, helm.longest)  # steps
+    end = np.zeros(n_lanes, dtype=np.int64)
+    lanes = np.arange(n_lanes)  # those under way
+    while len(lanes):
+        steps = length[lanes]
+        controls = helm.drive(lanes, int(steps.max()))
+        shown = _run(model, theta[:, lanes], h[lanes], steps, controls, orders.speed[lanes], backend)
+        states[lanes, : shown.shape[1]] = shown
+        passed, end[lanes] = helm.look(lanes, shown, steps)
+        turned = np.isfinite(passed)
+        helm.order(lanes[turned], passed[turned])
+        further = np.where(turned, np.nan_to_num(passed).astype(np.int64) + AHEAD, 2 * steps)
+        length[lanes] = np.minimum(further, helm.longest[lanes])
+        lanes = lanes[turned | (end[lanes] < 0)]
+    # Every record holds its order, and each lane its last state after its end.
+    at = np.minimum(np.arange(max(int(end.max(initial=0)), APPROACH + 1) + 1)[:, None], end)
+    every = np.arange(n_lanes)
+    whole = np.ascontiguousarray(states[every, at].transpose(0, 2, 1))
+    driven = helm.controls[every, at].transpose(0, 2, 1)
+    sound = np.asarray(np.isfinite(states[every, end]).all(axis=1))
+    return Steered(h, whole, driven, end, np.array(helm.times), sound, model.inputs)
 
 
 class _Helm:
-    """The helmsmen: side the rudder is at, 0 before the first order, and orders given so far."""
+    """The helmsmen and the steering gears: orders given so far, and what inputs became of them.
 
-    def __init__(self, orders: Orders):
+    controls  (n_lanes, PATIENCE + 1, n_inputs) inputs, as far as they are known
+    side      (n_lanes,) side the rudder is at, 0 before the first order
+    given     (n_lanes,) orders
+    since     (n_lanes,) fractional sample of the last of them; held (n_inputs, n_lanes), inputs at that moment
+    times     (n_lanes,) for each order, fractional samples, NaN where it was not given
+    """
+
+    def __init__(self, model: Model, orders: Orders, h: FloatArray):
+        n_lanes, zero = len(h), np.zeros(len(h))
         self.orders = orders
-        self.side = np.zeros(len(orders.speed))
-        self.given = np.zeros(len(orders.speed), dtype=np.int64)
-        self.times = [np.full(len(orders.speed), float(APPROACH))]
-        self._astern = orders.revolutions < 0.0
+        self.h = h
+        self.inputs = model.arrangement.inputs
+        self.actuators = [model.profile.actuator(one.name) for one in self.inputs]
+        self.side, self.given, self.since = zero, np.zeros(n_lanes, dtype=np.int64), zero.copy()
+        self.held = np.array([orders.n if one.role == "propeller" else zero for one in self.inputs])
+        self.controls = np.empty((n_lanes, PATIENCE + 1, len(self.inputs)))
+        self.controls[:, 0] = self.held.T
+        self.times: list[FloatArray] = []
+        everyone = np.arange(n_lanes)
+        self.drive(everyone, APPROACH)
+        self.order(everyone, np.full(n_lanes, float(APPROACH)))
 
-    def begin(self) -> None:
-        """The first order."""
-        self.side, self.given = self.side + 1.0, self.given + 1
+    @property
+    def longest(self) -> IntArray:
+        """(n_lanes,) last sample of each, whatever happens: the one after the last order, where that is given."""
+        last = np.floor(self.since).astype(np.int64) + 1
+        return np.where(self.given > self.orders.legs, last, PATIENCE)
 
-    def ordered(self, inputs: Any) -> FloatArray:
-        """Orders to every input (n_inputs, n_lanes)."""
-        rudder = self.side * self.orders.rudder
-        propeller = np.where(self.given > 0, self.orders.revolutions, self.orders.n)
-        by_role = {"rudder": rudder, "propeller": propeller, "thruster": 0.0 * rudder}
-        return np.array([by_role[one.role] for one in inputs])
+    def drive(self, lanes: IntArray, last: int) -> FloatArray:
+        """Inputs (n_lanes, last + 1, n_inputs) of some lanes, the last order carried out up to sample ``last``."""
+        samples = np.arange(last + 1.0)
+        later = samples > self.since[lanes, None]
+        known = self.controls[lanes, : last + 1]
+        self.controls[lanes, : last + 1] = np.where(later[:, :, None], self._moved(lanes, samples), known)
+        return self.controls[lanes, : last + 1]
 
-    def passed(self, before: FloatArray, after: FloatArray) -> FloatArray:
-        """Share of a step at which lanes pass their check heading, 1 where they do not."""
-        towards = self.side * np.sign(self.orders.rudder)
-        begin, end = towards * before, towards * after
-        passing = (self.given > 0) & (begin < self.orders.check) & (end >= self.orders.check)
-        rise = np.where(passing, end - begin, 1.0)
-        return np.where(passing, np.clip((self.orders.check - begin) / rise, 0.0, 1.0 - 1e-12), 1.0)
+    def order(self, lanes: IntArray, when: FloatArray) -> None:
+        """The next order to some lanes at fractional samples (n_lanes,): the first, or the rudder to the other side."""
+        self.held[:, lanes] = self._moved(lanes, when[:, None])[:, 0].T
+        self.since[lanes] = when
+        while len(self.times) <= self.given[lanes].max(initial=-1):
+            self.times.append(np.full(len(self.h), np.nan))
+        for lane, moment in zip(lanes, when, strict=True):
+            self.times[self.given[lane]][lane] = moment
+        self.side[lanes] = np.where(self.given[lanes] == 0, 1.0, -self.side[lanes])
+        self.given[lanes] += 1
 
-    def reverse(self, lanes: BoolArray, when: FloatArray) -> None:
-        """The rudder of lanes to the other side, at these fractional samples."""
-        while len(self.times) <= self.given[lanes].max():
-            self.times.append(np.full(len(self.side), np.nan))
-        for lane in np.flatnonzero(lanes):
-            self.times[self.given[lane]][lane] = when[lane]
-        self.side = np.where(lanes, -self.side, self.side)
-        self.given = self.given + lanes
+    def look(self, lanes: IntArray, shown: FloatArray, length: IntArray) -> tuple[FloatArray, IntArray]:
+        """What is next of some lanes whose motion ``shown`` (n_lanes, n_samples, 6) is known for ``length`` steps.
 
-    def finished(self, shown: FloatArray) -> BoolArray:
-        """Which manoeuvres are complete."""
-        stopped = self._astern & (self.given > 0) & (shown[3] <= 0.0)
-        return np.asarray((self.given > self.orders.legs) | (np.abs(shown[2]) >= self.orders.until) | stopped)
+        -> fractional sample at which a lane passes her check heading, NaN where she does not; else the sample at which
+        she ends, -1 where neither is known.
+        """
+        orders, samples = self.orders, np.arange(shown.shape[1])
+        psi, u = shown[:, :, 2], shown[:, :, 3]
+        with np.errstate(all="ignore"):
+            stopped = (orders.revolutions[lanes, None] < 0.0) & (samples > APPROACH) & (u <= 0.0)
+            done = (np.abs(psi) >= orders.until[lanes, None]) | stopped | ~np.isfinite(shown).all(axis=2)
+            done &= (samples > 0) & (samples <= length[:, None])
+            towards = (self.side[lanes] * np.sign(orders.rudder[lanes]))[:, None] * psi
+            check = orders.check[lanes, None]
+            passing = (towards[:, :-1] < check) & (towards[:, 1:] >= check)
+            passing &= (samples[:-1] >= self.since[lanes, None]) & (samples[1:] <= length[:, None])
+        end = np.where(done.any(axis=1), np.argmax(done, axis=1), np.where(length == self.longest[lanes], length, -1))
+        k = np.argmax(passing, axis=1)
+        turned = passing.any(axis=1) & ((k < end) | (end < 0))
+        every = np.arange(len(lanes))
+        before, after = towards[every, k], towards[every, k + 1]
+        rise = np.where(turned, after - before, 1.0)
+        share = np.clip(np.where(turned, check[:, 0] - before, 0.0) / rise, 0.0, 1.0 - 1e-12)
+        return np.where(turned, k + share, np.nan), np.where(turned, -1, end)
+
+    def _moved(self, lanes: IntArray, samples: FloatArray) -> FloatArray:
+        """What the last order of lanes has made of their inputs at samples, (n_lanes, n_samples, n_inputs)."""
+        orders = self.orders
+        propeller = np.where(self.given > 0, orders.revolutions, orders.n)
+        by_role = {"rudder": self.side * orders.rudder, "propeller": propeller, "thruster": np.zeros(len(self.h))}
+        elapsed = (samples - self.since[lanes, None]) * self.h[lanes, None]
+        found = np.empty((*elapsed.shape, len(self.inputs)))
+        for k, (one, actuator) in enumerate(zip(self.inputs, self.actuators, strict=True)):
+            ordered, held = by_role[one.role][lanes, None], self.held[k, lanes, None]
+            found[:, :, k] = actuator.moved(held, ordered, elapsed) if actuator else ordered
+        return found
 
 
-def _moved(now: FloatArray, ordered: FloatArray, actuators: list[Actuator | None], dt: Any) -> FloatArray:
-    """What inputs (n_inputs, n_lanes) have become after dt [s] towards their orders."""
-    found = np.empty_like(now)
-    for k, actuator in enumerate(actuators):
-        if actuator is None:
-            found[k] = ordered[k]
-            continue
-        most = actuator.rate * dt
-        goal = np.clip(ordered[k], actuator.low, actuator.high)
-        found[k] = now[k] + np.minimum(np.maximum(goal - now[k], -most), most)
-    return found
+def _run(
+    model: Model,
+    theta: FloatArray,
+    h: FloatArray,
+    length: IntArray,
+    controls: FloatArray,
+    speed: FloatArray,
+    backend: Backend,
+) -> FloatArray:
+    """States (n_lanes, n_samples, 6) of lanes with these inputs; arguments by lane, ``length`` in steps."""
+    n_lanes, n_samples = controls.shape[:2]
+    nothing = np.zeros((n_lanes, n_samples, N_STATES))
+    initial = np.zeros((n_lanes, N_STATES))
+    initial[:, 3] = speed
+    cases = Cases(
+        t=h[:, None] * np.minimum(np.arange(n_samples), length[:, None]),
+        n_samples=length + 1,
+        controls=controls,
+        around=np.zeros((n_lanes, n_samples, len(Surroundings._fields))),
+        initial=initial,
+        target=nothing,
+        weight=nothing,
+    )
+    states = backend.run(model, theta, cases, integrator=RK4, keep_states=True, paired=True).states
+    assert states is not None  # asked for
+    return states[:, 0]
+
+
+def _on_time(model: Model, theta: FloatArray) -> FloatArray:
+    """The coefficients without what shifts a log: nothing is logged here."""
+    theta = np.array(theta)
+    for clock in model.clocks:
+        theta[model.fields(clock)[0]] = 0.0
+    return theta

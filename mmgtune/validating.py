@@ -136,7 +136,8 @@ def validate(
         repeated = tuple(repeat(predictor, whole)) if options.manoeuvres else ()
         notes = notes_on(predictor.model, whole) if isinstance(predictor, PhysicsPredictor) else ()
         scores = tuple(score(predictor, pieces, sigma)) if pieces else ()
-        scored.append(Scored(name, predictor, scores, repeated, _stated(predictor, data), tuple(notes)))
+        stated = _stated(predictor, data, options.backend)
+        scored.append(Scored(name, predictor, scores, repeated, stated, tuple(notes)))
     return Validation(tuple(scored), called, sigma, options.sigma_from or called, options)
 
 
@@ -161,7 +162,7 @@ def predictors_of(
     }
 
 
-def _stated(predictor: Predictor, data: TrialSet) -> tuple[IndexComparison, ...]:
+def _stated(predictor: Predictor, data: TrialSet, backend: str) -> tuple[IndexComparison, ...]:
     """What a profile makes of the indices that are stated; of a predictor with several members its first."""
     trials = list(data.stated.values())
     if not trials:
@@ -170,7 +171,7 @@ def _stated(predictor: Predictor, data: TrialSet) -> tuple[IndexComparison, ...]
     possible(profile, trials)
     roles = {one.id: data.role(one.id) for one in trials}
     model = Model(profile)
-    return tuple(compare_stated(model, {"simulated": model.matrix()[:, 0]}, trials, roles))
+    return tuple(compare_stated(model, {"simulated": model.matrix()[:, 0]}, trials, roles, backend))
 
 
 def _called(given: Scorable) -> str:

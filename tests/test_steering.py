@@ -1,14 +1,18 @@
 """Helmsmen on lanes: the indices of single fine runs, smooth in the coefficients, each lane for itself."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from mmgtune.backends import Integrator, LaneModel, get_backend
 from mmgtune.manoeuvres import stopping_indices, turning_indices, zigzag_indices
 from mmgtune.manoeuvres.on_lanes import LaneRecord, stopping, turning, zigzag
 from mmgtune.model import Model
 from mmgtune.orders import TurningOrder, ZigzagOrder, run_manoeuvre
-from mmgtune.profile import load_profile
-from mmgtune.steering import APPROACH, Orders, steer
+from mmgtune.physics.quantities import UNKNOWN, State
+from mmgtune.profile import Actuator, load_profile, with_effects
+from mmgtune.steering import APPROACH, PATIENCE, STEP, Orders, steer
 from mmgtune.units import DEG
 
 TURN, TWENTY, TEN = 35.0 * DEG, 20.0 * DEG, 10.0 * DEG
@@ -41,13 +45,113 @@ def record_of(steered, rudder):
     )
 
 
-def march(model, rudder, check, theta=None, **known):
+def march(model, rudder, check, theta=None, backend="compiled", **known):
     steered = steer(
         model,
         np.repeat(model.matrix(), len(rudder), axis=1) if theta is None else theta,
         orders(model, rudder, check, **known),
+        get_backend(backend),
     )
     return steered, record_of(steered, rudder)
+
+
+def stepped(model, order):
+    """One lane stepped together with its helmsman, who sees each step before it is final: what ``steer`` has to find.
+
+    order  one entry of each field of ``Orders``
+    -> states (n_samples, 6), inputs (n_samples, n_inputs), fractional samples of the orders
+    """
+    h = STEP * model.L_pp / order.speed
+    inputs = model.arrangement.inputs
+    actuators = [model.profile.actuator(one.name) for one in inputs]
+    ship = LaneModel(model, model.matrix()[:, 0])
+    side, times = 0.0, []
+
+    def moved(now, dt):
+        n = order.revolutions if times else order.n
+        of = {"rudder": side * order.rudder, "propeller": n, "thruster": 0.0}
+        pairs = zip(inputs, now, actuators, strict=True)
+        return [gear.moved(value, of[one.role], dt) if gear else of[one.role] for one, value, gear in pairs]
+
+    def control(values):
+        return model.arrangement.control(*map(np.float64, values))
+
+    def after(values):
+        run.now = before
+        run.step(control(values), UNKNOWN, h, Integrator("rk4"))
+        return np.array(run.shown)
+
+    driven = [order.n if one.role == "propeller" else 0.0 for one in inputs]
+    states, controls = [np.array([0.0, 0.0, 0.0, order.speed, 0.0, 0.0])], [driven]
+    run = ship.start(State(*states[0]), control(driven))
+    for k in range(PATIENCE):
+        if k == APPROACH:
+            side, times = 1.0, [float(k)]
+        before = run.now
+        then = moved(driven, h)
+        shown = after(then)
+        begin, end = (side * np.sign(order.rudder) * psi for psi in (states[-1][2], shown[2]))
+        if times and begin < order.check <= end:
+            share = (order.check - begin) / (end - begin)
+            first = moved(driven, share * h)
+            side = -side
+            times.append(k + share)
+            then = moved(first, (1.0 - share) * h)
+            shown = after(then)
+        driven = then
+        states.append(shown)
+        controls.append(then)
+        stopped = order.revolutions < 0.0 and times and shown[3] <= 0.0
+        if len(times) > order.legs or abs(shown[2]) >= order.until or stopped:
+            break
+    return np.array(states), np.array(controls), times
+
+
+def with_memory(profile):
+    """A gear and forces that lag, a compass that is off, clocks that differ; revolutions follow slowly."""
+    values = {
+        "steering-lag": {"time_constant": 6.0},
+        "memory": {"time_constant": 20.0},
+        "heading-bias": {"angle": 2.0 * DEG},
+        "clock-offset": {"seconds": 3.0},
+    }
+    return replace(with_effects(profile, values, "a test"), actuators={"n": Actuator(-2.0, 2.0, 0.01)})
+
+
+@pytest.mark.parametrize("backend", ["compiled", "numpy"])
+@pytest.mark.parametrize("kind", ["gear", "at once", pytest.param("memory", marks=pytest.mark.slow(17)), "astern"])
+def test_lanes_are_those_stepped_with_their_helmsmen(kvlcc2, esso_osaka, kind, backend):
+    rudder, check, known = [TURN, -TEN, TWENTY, -TEN], [np.inf, TEN, TWENTY, 5.0 * DEG], {"until": 100.0 * DEG}
+    model = kvlcc2
+    if kind == "at once":
+        model = Model(replace(model.profile, steering_gear=None))
+    if kind == "memory":
+        model = Model(with_memory(model.profile))
+    if kind == "astern":
+        model, known = esso_osaka, {"astern": -esso_osaka.profile.approach.n}
+        rudder, check = [0.0, TEN], [np.inf, np.inf]
+    steered, _ = march(model, rudder, check, backend=backend, **known)
+    told = orders(model, rudder, check, **known)
+    assert steered.sound.all()
+    for lane in range(len(rudder)):
+        states, controls, times = stepped(model, Orders(*(of[lane] for of in told)))
+        part = slice(0, steered.end[lane] + 1)
+        assert part.stop == len(states)
+        np.testing.assert_allclose(steered.controls[part, :, lane], controls, rtol=0.0, atol=1e-9)
+        np.testing.assert_allclose(steered.states[part, :, lane], states, rtol=1e-9, atol=1e-9)
+        given = steered.orders[:, lane]
+        assert given[~np.isnan(given)] == pytest.approx(times, abs=1e-9)
+    if kind == "memory":
+        assert 0.0 < steered.controls[APPROACH + 1, 1, 0] < TURN
+
+
+def test_an_engine_follows_its_order_within_its_limits(esso_osaka):
+    n = esso_osaka.profile.approach.n
+    model = Model(replace(esso_osaka.profile, actuators={"n": Actuator(-0.5 * n, 2.0 * n, 0.1 * n)}))
+    steered, _ = march(model, [0.0], [np.inf], until=np.inf, astern=-n)
+    driven = steered.controls[:, steered.inputs.index("n"), 0]
+    since = steered.h[0] * np.maximum(np.arange(len(driven)) - APPROACH, 0)
+    assert driven == pytest.approx(np.maximum(n - 0.1 * n * since, -0.5 * n))
 
 
 def test_indices_of_lanes_are_those_of_their_records(kvlcc2):
@@ -66,7 +170,7 @@ def test_indices_of_lanes_are_those_of_their_records(kvlcc2):
             assert zigzags[f"overshoot_{k}"][lane] == pytest.approx(angle, abs=0.005 * DEG)
 
 
-@pytest.mark.slow(8)
+@pytest.mark.slow(3)
 def test_they_are_those_of_fine_single_runs(kvlcc2):
     steered, record = march(kvlcc2, [TURN, TWENTY], [np.inf, TWENTY], until=185.0 * DEG)
     turns, zigzags = turning(record), zigzag(record, np.array([np.inf, TWENTY]))

@@ -149,6 +149,11 @@ class LaneResult:
     residuals: FloatArray | None = None
 
 
+def lanes_of(theta: FloatArray, n_cases: int, paired: bool) -> FloatArray:
+    """Coefficients of every lane (n_rows, n_cases * n_candidates), candidates of a case side by side."""
+    return theta if paired else np.tile(theta, n_cases)
+
+
 class Backend(Protocol):
     """A way to evaluate the equations on lanes."""
 
@@ -164,10 +169,12 @@ class Backend(Protocol):
         integrator: Integrator = Integrator(),
         keep_states: bool = False,
         keep_residuals: bool = False,
+        paired: bool = False,
     ) -> LaneResult:
-        """Simulate every case with every candidate.
+        """Simulate every case with every candidate, or, ``paired``, each with its own.
 
         theta (n_rows, n_candidates); initial (n_cases, n_candidates, 6), the cases' own where None.
+        Paired, theta is (n_rows, n_cases), a column to a case, and everything else is as with one candidate.
         A lane that diverges has infinite cost; it never raises and never touches other lanes.
         """
         ...

@@ -15,7 +15,7 @@ from ..arrays import FloatArray, IntArray
 from ..effects import LagEffect
 from ..model import Model
 from ..physics.quantities import State
-from .cases import Cases, Integrator, LaneResult, finish
+from .cases import Cases, Integrator, LaneResult, finish, lanes_of
 from .kernel_source import N_STATES, WIDTH, functions_of, kernel_source
 from .logged import Logged
 from .numpy_lanes import LaneModel
@@ -48,7 +48,7 @@ def cores() -> int:
 class Blocks:
     """Which lanes march together: a case and a candidate for each, (n_blocks, WIDTH).
 
-    theta_of  (n_blocks,) which of ``thetas`` (n_distinct, WIDTH) rows of candidates a block has
+    theta_of  (n_blocks,) which of ``thetas`` (n_distinct, WIDTH) rows of columns of theta a block has
     mixed     whether the lanes of a block belong to different cases
     """
 
@@ -59,8 +59,11 @@ class Blocks:
     mixed: bool
 
 
-def make_blocks(cases: Cases, n_candidates: int) -> Blocks:
-    """Blocks over all cases and candidates; the last lane is repeated where they do not fill the last block."""
+def make_blocks(cases: Cases, n_candidates: int, paired: bool = False) -> Blocks:
+    """Blocks over all cases and candidates; the last lane is repeated where they do not fill the last block.
+
+    paired  one candidate, of which every case has coefficients of its own
+    """
     n_cases = len(cases)
     if n_cases == 1 or n_candidates >= FULL * WIDTH * -(-n_candidates // WIDTH):
         return _blocks_of_one_case(n_cases, n_candidates)
@@ -68,7 +71,7 @@ def make_blocks(cases: Cases, n_candidates: int) -> Blocks:
     n_lanes = n_cases * n_candidates
     lanes = np.minimum(np.arange(-(-n_lanes // WIDTH) * WIDTH), n_lanes - 1).reshape(-1, WIDTH)
     case_of, candidate_of = by_length[lanes // n_candidates], lanes % n_candidates
-    thetas, theta_of = np.unique(candidate_of, axis=0, return_inverse=True)
+    thetas, theta_of = np.unique(case_of if paired else candidate_of, axis=0, return_inverse=True)
     return Blocks(case_of, candidate_of, thetas, theta_of.reshape(-1), mixed=True)
 
 
@@ -80,18 +83,20 @@ def _blocks_of_one_case(n_cases: int, n_candidates: int) -> Blocks:
     return Blocks(case_of, np.tile(thetas, (n_cases, 1)), thetas, np.tile(np.arange(per_case), n_cases), mixed=False)
 
 
-def first_states(model: Model, theta: FloatArray, cases: Cases, initial: FloatArray | None) -> FloatArray:
+def first_states(
+    model: Model, theta: FloatArray, cases: Cases, initial: FloatArray | None, paired: bool = False
+) -> FloatArray:
     """(n_cases, n_candidates, n_states) where lanes start: the state as the sensors show it, then what lags remember.
 
     The latter is worked out by the reference, once a run: a kernel would need all forces a second time for it.
     """
-    n_candidates = theta.shape[1]
+    n_candidates = 1 if paired else theta.shape[1]
     if initial is None:
         initial = np.broadcast_to(cases.initial[:, None], (len(cases), n_candidates, N_STATES))
     if not model.acting(LagEffect):
         return initial
     with np.errstate(all="ignore"):
-        ship = LaneModel(model, np.tile(theta, len(cases)))
+        ship = LaneModel(model, lanes_of(theta, len(cases), paired))
         log = Logged(model, cases, n_candidates, ship.shift)
         shown = State(*initial.reshape(-1, N_STATES).T)
         behind = ship.start(shown, log.inputs(1, 0.0), log.around(1, 0.0)).s[N_STATES:]
@@ -125,12 +130,14 @@ class Compiled:
         integrator: Integrator = Integrator(),
         keep_states: bool = False,
         keep_residuals: bool = False,
+        paired: bool = False,
     ) -> LaneResult:
         """See ``Backend.run``."""
-        n_cases, n_candidates = len(cases), theta.shape[1]
-        blocks = make_blocks(cases, n_candidates)
+        n_cases, n_candidates = len(cases), 1 if paired else theta.shape[1]
+        blocks = make_blocks(cases, n_candidates, paired)
         n_blocks = len(blocks.case_of)
-        start = first_states(model, theta, cases, initial)[blocks.case_of, blocks.candidate_of].transpose(0, 2, 1)
+        first = first_states(model, theta, cases, initial, paired)
+        start = first[blocks.case_of, blocks.candidate_of].transpose(0, 2, 1)
         cost, fastest2 = np.empty((n_blocks, WIDTH)), np.empty((n_blocks, WIDTH))
         end = np.empty((n_blocks, N_STATES * WIDTH))
         states = np.empty((n_cases, n_candidates, cases.t.shape[1], N_STATES) if keep_states else (1, 1, 1, 1))

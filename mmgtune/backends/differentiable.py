@@ -261,9 +261,10 @@ class JaxLanes:
         integrator: Integrator = Integrator(),
         keep_states: bool = False,
         keep_residuals: bool = False,
+        paired: bool = False,
     ) -> LaneResult:
         """See ``Backend.run``."""
-        n_cases, n_candidates = len(cases), theta.shape[1]
+        n_cases, n_candidates = len(cases), 1 if paired else theta.shape[1]
         T = cases.t.shape[1]
         if initial is None:
             initial = np.repeat(cases.initial[:, None], n_candidates, axis=1)
@@ -279,7 +280,8 @@ class JaxLanes:
                 lanes = _filled(of)
                 case_of, candidate_of = case[lanes], candidate[lanes]
                 own, log_of = np.unique(case_of, return_inverse=True)
-                found = march(theta[:, candidate_of], initial[case_of, candidate_of], _given(cases, own, log_of, steps))
+                of_lane = theta[:, case_of if paired else candidate_of]
+                found = march(of_lane, initial[case_of, candidate_of], _given(cases, own, log_of, steps))
                 J, v2, end, shown = (np.asarray(values) for values in found)
                 cost[case, candidate], fastest2[case, candidate], last[case, candidate] = J[:of], v2[:of], end.T[:of]
                 if not keep:

@@ -14,7 +14,7 @@ from ..model import Model
 from ..physics.integration import after_step, at_stage, between, with_stage
 from ..physics.mmg import carried, rates, through_water
 from ..physics.quantities import HELD, STATES, UNKNOWN, Force, State, Surroundings
-from .cases import Cases, Integrator, LaneResult, finish
+from .cases import Cases, Integrator, LaneResult, finish, lanes_of
 from .logged import Logged
 
 E = TypeVar("E", bound=Effect)
@@ -61,11 +61,12 @@ class NumpyLanes:
         integrator: Integrator = Integrator(),
         keep_states: bool = False,
         keep_residuals: bool = False,
+        paired: bool = False,
     ) -> LaneResult:
         """See ``Backend.run``."""
-        n_cases, n_candidates = len(cases), theta.shape[1]
+        n_cases, n_candidates = len(cases), 1 if paired else theta.shape[1]
         shape = (n_cases, n_candidates)
-        ship = self.lanes(model, np.ascontiguousarray(np.tile(theta, n_cases)))
+        ship = self.lanes(model, np.ascontiguousarray(lanes_of(theta, n_cases, paired)))
         if initial is None:
             initial = np.repeat(cases.initial[:, None], n_candidates, axis=1)
         T = cases.t.shape[1]

@@ -48,7 +48,9 @@ def measure(
     return found
 
 
-def measure_stated(model: Model, trials: Sequence[IndexTrial], names: Sequence[str]) -> dict[str, Values]:
+def measure_stated(
+    model: Model, trials: Sequence[IndexTrial], names: Sequence[str], backend: str = "compiled"
+) -> dict[str, Values]:
     """Errors of stated indices as a profile's own helmsman makes them, by trial and metric; see ``measure``.
 
     Raises OptionError for trials the ship cannot be asked for.
@@ -56,7 +58,8 @@ def measure_stated(model: Model, trials: Sequence[IndexTrial], names: Sequence[s
     possible(model.profile, trials)
     roles = {one.id: "other" for one in trials}
     found: dict[str, Values] = {one.id: {} for one in trials}
-    compared = compare_stated(model, {"now": model.matrix()[:, 0]}, trials, roles) if trials else []
+    now = {"now": model.matrix()[:, 0]}
+    compared = compare_stated(model, now, trials, roles, backend) if trials else []
     for one in compared:
         value = one.simulated["now"]
         if one.name not in names:

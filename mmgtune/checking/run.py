@@ -41,7 +41,7 @@ def record_baseline(
     model = Model(profile)
     names = _known(metrics) or (before.metrics if before else list(METRICS))
     (found,) = measure(model, list(trials.trials.values()), names, integrator=integrator, backend=backend)
-    found |= measure_stated(model, list(trials.stated.values()), names)
+    found |= measure_stated(model, list(trials.stated.values()), names, backend)
     hashes = trials.hashes()
     shown = names if before and not metrics else applicable(found)
     tolerances = {name: dict(of) for name, of in default_tolerances(shown, model.L_pp).items()}
@@ -108,7 +108,7 @@ def check(
     wanted = _known(metrics) or (baseline.metrics if baseline else [])
     wanted = [name for name in METRICS if name in wanted or (name in profile.limits and not metrics)]
     (found,) = measure(model, list(trials.trials.values()), wanted, integrator=chosen, backend=backend)
-    found |= measure_stated(model, list(trials.stated.values()), wanted)
+    found |= measure_stated(model, list(trials.stated.values()), wanted, backend)
     hashes = trials.hashes()
     items: list[Item] = []
     for name, values in found.items():

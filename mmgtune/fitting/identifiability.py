@@ -174,9 +174,9 @@ def _from_data(problem: FitProblem, sensitivity: FloatArray) -> FloatArray:
     box = problem.box
     known = 0.25 * box.width
     own = len(sensitivity)
-    for term in reversed(problem.terms):  # rows of the prior do not count as data
-        rows = len(term.residuals(problem, np.full((len(box), 1), 0.5)))
-        if term.name == "prior":
+    for term in reversed(problem.terms):
+        rows = term.n_rows(problem)
+        if term.known_before:
             sensitivity = np.delete(sensitivity, np.s_[own - rows : own], axis=0)
         own -= rows
     for i in range(len(box)):
@@ -268,10 +268,9 @@ def _decided(problem: FitProblem, from_data: FloatArray) -> str:
     n = len(problem.box)
     decided = int(np.sum(from_data > 1.0))
     formulas = len(problem.box.from_formula)
-    rest = "the prior decides the rest" if formulas and problem.terms[0].name == "prior" else "the box holds the rest"
-    numbers = sum(
-        len(term.residuals(problem, np.full((n, 1), 0.5))) for term in problem.terms if term.name == "indices"
-    )
+    prior = any(term.known_before for term in problem.terms)
+    rest = "the prior decides the rest" if formulas and prior else "the box holds the rest"
+    numbers = sum(term.n_rows(problem) for term in problem.terms if not term.known_before)
     given = f"{numbers} stated numbers, {n} coefficients: " if numbers and not problem.n_residuals else ""
     return (
         f"{given}The trials determine {decided} of {n} combinations of the targets better than they were known "

@@ -251,7 +251,7 @@ def _leave_out(
             for one in score(model, series, sigma, theta=theta, integrator=integrator, backend=options.backend):
                 scores[one.id] = one
         both = {"before": model.matrix()[:, 0], "left_out": theta[:, 0]}
-        for of in compare_stated(model, both, indices, dict.fromkeys(out, "tune")):
+        for of in compare_stated(model, both, indices, dict.fromkeys(out, "tune"), options.backend):
             stated.setdefault(of.trial, []).append(of)
         if asked.manoeuvres:
             hooks.on_phase(f"repeating {', '.join(runs)}")

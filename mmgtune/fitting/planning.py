@@ -93,7 +93,7 @@ def whole(profile: ShipProfile, trials: TrialSet, search: str, options: FitOptio
 def _problem(problem: FitProblem, options: FitOptions) -> list[str]:
     low, high = problem.box.limits
     pre = problem.box.pre
-    prior = any(term.name == "prior" for term in problem.terms)
+    prior = any(term.known_before for term in problem.terms)
 
     def by(i: int) -> str:
         formula = problem.box.prior_of(i) if prior else None

@@ -31,11 +31,13 @@ SCHEMA = 1
 class Beside:
     """What a fit made small beside J.
 
-    squares  of the rows of each term before and after, by its name: in variances, so times ``weight.s2`` beside J
+    squares    of the rows of each term before and after, by its name: in variances, so times ``weight.s2`` beside J
+    sentences  of each term, see ``Term``, by its name
     """
 
     weight: Weight
     squares: Mapping[str, tuple[float, float]]
+    sentences: Mapping[str, str]
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
@@ -44,17 +46,11 @@ class Beside:
 
     def words(self) -> list[str]:
         """The terms and their weight in sentences."""
-        found = []
         weight = f"weight {self.weight.s2:.3g} in units of J"
         independent = sum(self.weight.independent.values())
-        if "prior" in self.squares:
-            old, new = self.squares["prior"]
-            found.append(f"Prior: scatter of the formulas, {weight}; its squares go from {old:.3g} to {new:.3g}.")
-        if "indices" in self.squares:
-            old, new = self.squares["indices"]
-            found.append(
-                f"Stated indices: {weight}; their squares go from {old:.3g} to {new:.3g} over their tolerances."
-            )
+        found = [
+            self.sentences[name].format(weight=weight, old=old, new=new) for name, (old, new) in self.squares.items()
+        ]
         if self.weight.independent:
             settled = "" if self.weight.settled else "; the weight had not settled"
             found.append(

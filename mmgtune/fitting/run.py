@@ -127,7 +127,7 @@ def make_setting(profile: ShipProfile, trials: TrialSet, options: FitOptions) ->
     model = Model(profile)
     possible(profile, list(trials.stated.values()))
     if trials.tune_stated and options.method == "cma-es":
-        why = "each candidate is steered through them, and this search has tens of thousands"
+        why = "a few numbers leave many sets that fit alike, of which this search takes any"
         raise OptionError(
             Problem("CMA-ES is not for trials given as indices", "method", why, "add method=least-squares")
         )
@@ -224,7 +224,7 @@ def _fit(
     if problem.sigma is not None:  # far from an optimum, free initial states only lead astray
         starts = np.column_stack([end.unit for end in solve(problem.held(), starts, stop=hooks.stop)])
     ridge = edge_ridge(problem, options, before)
-    exact = EXACT * problem.weight if any(term.name == "indices" for term in problem.terms) else 0.0
+    exact = 0.0 if all(term.known_before for term in problem.terms) else EXACT * problem.weight
     ends = solve(problem, starts, ridge=ridge, anchor=before, stop=hooks.stop, tolerance=exact)
     best = min(ends, key=lambda end: end.J + ridge * float(np.sum((end.unit - before) ** 2)))
     problem = problem.with_offsets(best.offsets)
@@ -289,8 +289,8 @@ def _fit(
 def edge_ridge(problem: FitProblem, options: FitOptions, before: FloatArray) -> float:
     """Weight of squared distances from the pre-determined values (n_targets,) in the cube, of a weighed problem."""
     asked = options.regularise * float(problem.misfit(before[:, None])[0]) / EDGE**2 if options.regularise else 0.0
-    stated = any(term.name == "indices" for term in problem.terms)
-    return max(asked, LOOSE * problem.weight) if stated else asked
+    series_alone = all(term.known_before for term in problem.terms)
+    return asked if series_alone else max(asked, LOOSE * problem.weight)
 
 
 def random_starts(
@@ -315,7 +315,7 @@ def beside(problem: FitProblem, before: FloatArray, unit: FloatArray, weight: We
     squares = {
         name: (float(of[0]), float(of[1])) for name, of in problem.squares(np.column_stack([before, unit])).items()
     }
-    return Beside(weight, squares)
+    return Beside(weight, squares, {term.name: term.sentence for term in problem.terms})
 
 
 def compared_stated(
@@ -324,7 +324,8 @@ def compared_stated(
     """Every stated index beside what the model makes of it at two points (n_targets,) of the unit cube."""
     values = setting.box.from_unit(np.column_stack([before, unit]))
     thetas = dict(zip(("before", "after"), setting.model.matrix(setting.box.names, values).T, strict=True))
-    return tuple(compare_stated(setting.model, thetas, list(setting.trials.stated.values()), roles))
+    stated = list(setting.trials.stated.values())
+    return tuple(compare_stated(setting.model, thetas, stated, roles, setting.backend.name))
 
 
 def traded(problem: FitProblem) -> tuple[str, ...]:

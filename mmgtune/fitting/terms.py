@@ -27,10 +27,18 @@ if TYPE_CHECKING:
 class Term(Protocol):
     """Some of these rows.
 
-    name  what to call them in records: "prior", "indices"
+    name          what to call them in records: "prior", "indices"
+    known_before  whether they say what was known before any trial, so that they are no data
+    sentence      what became of them, with places for ``weight`` in words and the squares ``old`` and ``new``
     """
 
     name: str
+    known_before: bool
+    sentence: str
+
+    def n_rows(self, problem: FitProblem) -> int:
+        """How many rows there are."""
+        ...
 
     def residuals(self, problem: FitProblem, unit: FloatArray) -> FloatArray:
         """The rows of candidates (n_targets, n_candidates) in the unit cube -> (n_rows, n_candidates); finite."""
@@ -49,6 +57,12 @@ class ScatterPrior:
     """
 
     name = "prior"
+    known_before = True
+    sentence = "Prior: scatter of the formulas, {weight}; its squares go from {old:.3g} to {new:.3g}."
+
+    def n_rows(self, problem: FitProblem) -> int:
+        """See ``Term``."""
+        return len(problem.box.from_formula)
 
     def residuals(self, problem: FitProblem, unit: FloatArray) -> FloatArray:
         """See ``Term``."""
@@ -68,13 +82,19 @@ class StatedIndices:
     """Indices of trials as the model makes them less those stated, in tolerances of the latter."""
 
     name = "indices"
+    known_before = False
+    sentence = "Stated indices: {weight}; their squares go from {old:.3g} to {new:.3g} over their tolerances."
 
     def __init__(self, trials: Sequence[IndexTrial]):
         self.trials = tuple(trials)
 
+    def n_rows(self, problem: FitProblem) -> int:
+        """See ``Term``."""
+        return sum(len(one.indices) for one in self.trials)
+
     def residuals(self, problem: FitProblem, unit: FloatArray) -> FloatArray:
         """See ``Term``."""
-        return residuals(problem.model, problem.theta(unit), self.trials)
+        return residuals(problem.model, problem.theta(unit), self.trials, problem.backend.name)
 
     def asked(self, problem: FitProblem) -> list[Any]:
         """See ``Term``."""

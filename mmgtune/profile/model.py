@@ -10,6 +10,7 @@ from typing import Any
 
 from ..components import ARRANGEMENTS, Arrangement, Component, split_name
 from ..inputs import INPUTS
+from ..physics.actuation import moved
 from ..units import DIMENSIONLESS
 
 ABSENT = "absent"
@@ -67,10 +68,9 @@ class Actuator:
     high: float
     rate: float
 
-    def moved(self, value: float, ordered: float, dt: float) -> float:
-        """What the input has become after dt [s] of a constant rate towards the order."""
-        goal = min(max(ordered, self.low), self.high)
-        return value + min(max(goal - value, -self.rate * dt), self.rate * dt)
+    def moved(self, value: Any, ordered: Any, dt: Any) -> Any:
+        """What the input has become after dt [s] of a constant rate towards the order; numbers or arrays."""
+        return moved(value, ordered, self.low, self.high, self.rate * dt)
 
 
 @dataclass(frozen=True)

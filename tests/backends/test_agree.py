@@ -182,6 +182,45 @@ def test_lanes_over_cases_and_candidates_are_bit_equal_to_single_runs(esso_osaka
             assert np.array_equal(alone.residuals[:, 0], together.residuals[own, candidate])
 
 
+@pytest.mark.parametrize("backend", ["compiled", "numpy", "jax"])
+def test_a_candidate_for_each_case_is_the_same_as_every_case_with_every_candidate(suzaku, backend):
+    """Cases of many lengths and steps, with a lag that remembers and a clock that is late."""
+    if backend == "jax":
+        pytest.importorskip("jax")
+    rounding = 1e-11 if backend == "jax" else 0.0  # which sums in another order for other counts of lanes
+    effects = {
+        "steering-lag": {"time_constant": 4.0},
+        "clock-offset": {"seconds": -0.7},
+        "memory": {"time_constant": 9},
+    }
+    model = Model(with_effects(suzaku.profile, effects, "a test"))
+    rng = np.random.default_rng(7)
+    runs = [turn(model, 35.0 * (-1.0) ** k, 60.0 + 7.0 * k, 0.5 + 0.1 * k) for k in range(11)]
+    weight = [rng.uniform(size=(len(one.t[0]), 6)) for one in runs]
+    for w in weight:
+        w[0] = 0.0
+    cases = pad(
+        [one.t[0] for one in runs],
+        [one.controls[0] for one in runs],
+        [one.initial[0] for one in runs],
+        [rng.standard_normal(w.shape) for w in weight],
+        weight,
+    )
+    theta = model.matrix(["hull.R_0"], np.linspace(0.01, 0.03, 11)[None])
+    known = {"integrator": Integrator("rk4"), "keep_states": True, "keep_residuals": True}
+    run, own = get_backend(backend).run, np.arange(11)
+    paired, product = run(model, theta, cases, paired=True, **known), run(model, theta, cases, **known)
+    assert paired.cost.shape == (11, 1)
+    np.testing.assert_allclose(paired.cost[:, 0], product.cost[own, own], rounding, rounding)
+    np.testing.assert_allclose(paired.states[:, 0], product.states[own, own], rounding, rounding)
+    case_of = np.argwhere(cases.rows >= 0)[:, 0]
+    expected = product.residuals[np.arange(len(case_of)), case_of]
+    np.testing.assert_allclose(paired.residuals[:, 0], expected, rounding, rounding)
+    one = pad([runs[3].t[0]], [runs[3].controls[0]], [runs[3].initial[0]])
+    alone = run(model, theta[:, [3]], one, paired=True, **known)
+    np.testing.assert_allclose(alone.states[0, 0], paired.states[3, 0, : one.n_samples[0]], rounding, rounding)
+
+
 def test_weights_at_the_first_sample_are_refused(suzaku):
     cases = turn(suzaku, 20.0)
     weight = np.ones((len(cases.t[0]), 6))

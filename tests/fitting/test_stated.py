@@ -94,7 +94,6 @@ def fitted(truth, off):
     return fit(off, data(tune, test), replace(QUICK, targets=FEW))
 
 
-@pytest.mark.slow(25)
 def test_held_out_indices_are_recovered(fitted, truth):
     rms = {
         (role, which): np.sqrt(np.mean([one.off(which) ** 2 for one in fitted.stated if one.role == role]))
@@ -112,7 +111,6 @@ def test_held_out_indices_are_recovered(fitted, truth):
     assert fitted.verdict().startswith("On 4 stated indices not used for tuning")
 
 
-@pytest.mark.slow(10)
 def test_indices_and_time_series_say_the_same(fitted, truth, off):
     motion = run_manoeuvre(truth, TurningOrder(35.0 * DEG, 20.0, 200.0 * DEG), id="series", sample=2.0)
     other = run_manoeuvre(truth, TurningOrder(-20.0 * DEG, 20.0, 200.0 * DEG), id="series_m", sample=2.0)
@@ -125,7 +123,6 @@ def test_indices_and_time_series_say_the_same(fitted, truth, off):
     assert ways[0] @ ways[1] / np.linalg.norm(ways[0]) / np.linalg.norm(ways[1]) > 0.8
 
 
-@pytest.mark.slow(60)
 def test_both_kinds_of_trials_in_one_fit(truth, off):
     motion = run_manoeuvre(truth, TurningOrder(20.0 * DEG, 20.0, 200.0 * DEG), id="series", sample=2.0)
     series = replace(as_trial(truth.profile, motion), sha256="series")
@@ -133,7 +130,9 @@ def test_both_kinds_of_trials_in_one_fit(truth, off):
     noisy = replace(series, x=series.x + rng.standard_normal(len(series.t)))
     both = data(of_ship(truth, ["zz_10"]), (), [noisy])
     problem = make_problem(off, both, replace(QUICK, targets=FEW))
-    assert [term.name for term in problem.terms] == ["prior", "indices"]
+    assert [(term.name, term.known_before) for term in problem.terms] == [("prior", True), ("indices", False)]
+    for term in problem.terms:
+        assert term.n_rows(problem) == len(term.residuals(problem, np.full((3, 1), 0.5)))
     start = problem.box.to_unit(problem.box.pre)
     weighed, weight = weigh(problem, start)
     assert 0.0 < weight.s2 < 1.0
@@ -192,7 +191,6 @@ def test_what_a_ship_cannot_be_asked_for(truth):
         data([trial("turn_35", {})]).series_only("a diagnosis")
 
 
-@pytest.mark.slow(15)
 def test_leaving_out_leaves_out_stated_trials(truth, off):
     tune = of_ship(truth, ["turn_35", "turn_m20"], 0.03)
     left = leave_out(off, data(tune), LeaveOutOptions(targets=FEW[:2], starts=1))
@@ -223,7 +221,7 @@ initial_turning_time = "70 s"
 """
 
 
-@pytest.mark.slow(80)
+@pytest.mark.slow(7)
 def test_a_sea_trial_report_as_a_user_has_it(truth, tmp_path):
     folder = tmp_path / "trials"
     folder.mkdir()
