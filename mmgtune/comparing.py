@@ -131,9 +131,8 @@ def _coefficients(a: ShipProfile, b: ShipProfile) -> list[dict[str, Any]]:
         kind, _, symbol = name.rpartition(".")
         known = ship.sections[kind].component.fields[symbol]
         of = [numbers[k].get(name) for k in (0, 1)]
-        scatter = next(
-            (s.coefficient(name).scatter for s, v in zip((b, a), of[::-1], strict=True) if v is not None), None
-        )
+        scatters = (s.coefficient(name).scatter for s, value in ((b, of[1]), (a, of[0])) if value is not None)
+        scatter = next((one for one in scatters if one is not None), None)
         rows.append(
             {
                 "name": name,
