@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from .arrays import FloatArray
-from .errors import OptionError, OutputError, Problem
-from .files import exists, write_text
+from .errors import OptionError, Problem
+from .files import refuse_existing, write_text
 from .given import ShipGiven, ship_of
 from .options import SimulateOptions
 from .physics.prime import force_unit, moment_unit
@@ -73,8 +73,8 @@ class Comparison:
         import json
 
         path = folder / FILE
-        if path.exists() and not overwrite:
-            raise OutputError(exists(path))
+        if not overwrite:
+            refuse_existing([path])
         folder.mkdir(parents=True, exist_ok=True)
         return write_text(path, json.dumps(self.to_dict(), indent=1) + "\n", overwrite)
 

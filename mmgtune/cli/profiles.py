@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..errors import OptionError, OutputError, Problem
+from ..errors import OptionError, Problem
 from ..options import EstimateOptions
 from . import common as c
 from .options import takes
@@ -113,11 +113,11 @@ def new(
       mmgtune profile new my_ship.toml --from particulars.toml --form fam
     """
     from ..estimating import estimate, read_particulars
-    from ..files import exists, write_text
+    from ..files import refuse_existing, write_text
     from ..units import KNOT
 
-    if file.exists() and not force:
-        raise OutputError(exists(file))
+    if not force:
+        refuse_existing([file])
     asked = particulars == "particulars" and not Path(particulars).exists()
     ship = estimate(_asked() if asked else read_particulars(particulars), options)
     write_text(file, ship.text, overwrite=force)
@@ -155,8 +155,12 @@ def compare(
 
       mmgtune profile compare before.toml after.toml --out compared
     """
+    from ..comparing import FILE
     from ..comparing import compare as compared
+    from ..files import refuse_existing
 
+    if out is not None and not force:
+        refuse_existing([out / FILE])
     found = compared(a, b)
     if out is not None:
         from ..report import render

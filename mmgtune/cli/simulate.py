@@ -53,10 +53,13 @@ def command(
 
       mmgtune simulate --trials suzaku --out simulated --forces
     """
-    from ..simulating import simulate
+    from ..files import refuse_existing
+    from ..simulating import files_of, simulate
 
     if forces and out is None:
         raise OptionError(Problem("forces need a folder to write to", "forces", fix="add out=FOLDER"))
+    if out is not None and not force:
+        refuse_existing(files_of(out, trials, options))
     result = simulate(profile, trials, options)
     files = result.write(out, with_forces=forces, overwrite=force) if out is not None else []
     if json:
