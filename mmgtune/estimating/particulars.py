@@ -11,6 +11,7 @@ from typing import Any
 from .. import limits
 from ..components import ABOVE_WATER, SHIP, Field
 from ..errors import Problem, ProfileError
+from ..physics.constants import GRAVITY
 from ..physics.quantities import ABOVE_WATER as GEOMETRY
 from ..profile.reading import APPROACH, IDENTIFIER, STEERING_GEAR
 from ..resources import particulars, particulars_names
@@ -234,7 +235,7 @@ class _Reader(TomlReader):
             wrong("rudder", "H_R", f"span^2 over area is {H_R * H_R / A_R:.3g}", "rudders have 1 to 3")
         if D_P is not None and 1.5 * d < D_P:
             wrong("propeller", "D_P", f"a propeller of {D_P:g} m is more than 1.5 draughts", f"d is {d:g} m")
-        froude = ship["approach", "speed"] / (9.81 * L) ** 0.5
+        froude = ship["approach", "speed"] / (GRAVITY * L) ** 0.5
         if froude > 0.45:
             why = f"the Froude number would be {froude:.2f}; the formulas are for ships that displace water"
             wrong("approach", "speed", "the approach speed is impossible for this length", why)

@@ -18,7 +18,7 @@ from ..options import VoyageOptions
 from ..predictor import Predictor, draught_of, profile_of
 from ..threads import blas_on_one_thread
 from ..trial import Cutting, Voyage, VoyageSet, load_voyages, voyage_windows, window_at
-from ..trial.voyage_windows import Window
+from ..trial.voyage_windows import Window, mean_speed, rest_speed
 from ..units import DEG
 from ..validating import Scorable, predictors_of
 from .result import DrawnWindow, Log, VoyageValidation
@@ -29,9 +29,6 @@ from .turning import r_max_of
 
 AT_ONCE = 60_000
 """Samples of windows simulated at one time; bounds the memory."""
-
-AT_REST = 0.02
-"""Froude number U / sqrt(g L_pp) below which the ship is at rest: relative distances say nothing there."""
 
 EACH = 2
 """Windows drawn of each role: best, median, worst."""
@@ -89,7 +86,7 @@ class _Run:
 
     def _add(self, some: Sequence[Window], number: int) -> int:
         """Score windows; returns how many are left out because the ship was at rest."""
-        speed = [float(np.nanmean(np.hypot(one.trial.u, one.trial.v_m))) for one in some]
+        speed = [mean_speed(one.trial) for one in some]
         moving = [one for one, U in zip(some, speed, strict=True) if self.slowest <= U]
         if not moving:
             return len(some)
@@ -138,7 +135,7 @@ def validate_voyages(
     told = Hooks() if hooks is None else hooks
     sigma = spread(list(trials_of(options.sigma_from).trials.values())) if options.sigma_from else None
     first = next(iter(predictors.values()))
-    run = _Run(predictors, options, told, AT_REST * float(np.sqrt(9.81 * first.L_pp)), data.n_rows)
+    run = _Run(predictors, options, told, rest_speed(first.L_pp), data.n_rows)
     interrupted = False
     for number, voyage in enumerate(data.voyages):
         interrupted = told.stop() or not run.score(voyage, number)

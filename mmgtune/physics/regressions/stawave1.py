@@ -2,9 +2,8 @@
 
 import numpy as np
 
+from ..constants import GRAVITY
 from ..elementary import where
-
-GRAVITY = 9.81
 
 
 def height_limit(L_pp):
