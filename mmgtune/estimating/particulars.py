@@ -14,7 +14,7 @@ from ..errors import Problem, ProfileError
 from ..physics.constants import GRAVITY
 from ..physics.quantities import ABOVE_WATER as GEOMETRY
 from ..profile.reading import APPROACH, IDENTIFIER, STEERING_GEAR
-from ..resources import particulars, particulars_names
+from ..resources import particulars, particulars_names, taken
 from ..toml_reading import TomlReader, toml_of
 
 SCHEMA = 1
@@ -99,7 +99,7 @@ class Particulars:
 
 def read_particulars(path: str | Path) -> Particulars:
     """The particulars in a file, or bundled under a name.  Raises ProfileError with everything wrong in them."""
-    path = _found(path)
+    path = taken(path, Path(path).exists(), particulars() / f"{path}.toml") or Path(path)
     try:
         text = limits.text(path, limits.PROFILE_BYTES, ProfileError)
     except (OSError, ValueError) as error:
@@ -107,12 +107,6 @@ def read_particulars(path: str | Path) -> Particulars:
         fix = f"give a TOML file with [ship], [particulars], [approach], or one of: {', '.join(particulars_names())}"
         raise ProfileError(Problem("the particulars cannot be read", str(path), why, fix)) from error
     return parse_particulars(text, path)
-
-
-def _found(name: str | Path) -> Path:
-    path = Path(name)
-    bundled = particulars() / f"{path.name}.toml"
-    return bundled if not path.exists() and path.name == str(name) and bundled.is_file() else path
 
 
 def parse_particulars(text: str, path: Path | None = None) -> Particulars:
