@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -42,6 +42,13 @@ def notes_on(
         around = Surroundings(*np.concatenate([surroundings(trial, model.draught) for trial in trials]).T)
         said += [beyond(numbers, around) for beyond in holding]
     return list(dict.fromkeys(one for one in said if one))
+
+
+def unmeasured(effects: Iterable[Effect], trials: Sequence[Trial]) -> dict[str, str]:
+    """Coefficients that act on what none of the trials has measured, each with what that is in words."""
+    acting = {f"{effect.kind}.{one}": name for effect in effects for one, name in effect.of_measured.items()}
+    measured = frozenset[str]().union(*(measured_around(trial) for trial in trials)) if acting else frozenset()
+    return {one: WORDS[name][0] for one, name in acting.items() if name not in measured}
 
 
 def _missing(

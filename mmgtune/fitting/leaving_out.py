@@ -187,7 +187,7 @@ def leave_out(
     Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to.
     """
     profile, trials = ship_of(profile), trials_of(trials)
-    profile, options = settled(profile, options)
+    profile, options = settled(profile, options, trials)
     provenance = make_provenance(profile, trials, command)
     identity = identity_of(profile, trials, options, provenance)
     with journalled(folder, identity, hooks.stop, resume=resume):

@@ -20,6 +20,7 @@ from .box import Box, width_words
 from .certificate import Certificate
 from .cmaes import Generation, Restart
 from .comparison import TrialComparison, finite, finite_values, total
+from .extending import held_words
 from .identifiability import Identifiability
 from .least_squares import LeastSquaresResult
 from .weighing import Weight
@@ -191,6 +192,7 @@ class FitResult:
         trials = [c.trial for c in self.compared]
         around = notes_on(Model(self.profile), trials, self.theta, self.box.names)
         found += [f"{note[0].upper()}{note[1:]}." for note in around]
+        found += held_words(self.profile, self.options, [c.trial for c in self.compared if c.role == "tune"])
         never = sorted({f"{one.name} of {one.trial}" for one in self.stated if one.simulated["after"] is None})
         if never:
             found.append(f"The tuned model never reaches: {', '.join(never)}.")

@@ -177,7 +177,7 @@ def sweep(
     Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to.
     """
     profile, trials = ship_of(profile), trials_of(trials)
-    profile, options = settled(profile, options)
+    profile, options = settled(profile, options, trials)
     identity = identity_of(profile, trials, options, make_provenance(profile, trials, command))
     with journalled(folder, identity, hooks.stop, resume=resume):
         swept = _sweep(profile, trials, options, hooks, folder, resume, command)
