@@ -90,6 +90,7 @@ def _warnings(data: Mapping[str, Any]) -> tuple[str, ...]:
     if data.get("shorter"):
         names = ", ".join(clean(name) for name in data["shorter"][:6])
         found.append(f"{count(len(data['shorter']), 'file')} no longer than a trial, cut like the voyages: {names}.")
+    found += [f"{clean(one['profile'])}: {clean(note)}." for one in data["models"] for note in one.get("notes", ())]
     return tuple(found)
 
 
