@@ -105,7 +105,7 @@ def compare(a: ShipGiven, b: ShipGiven) -> Comparison:
                 "title": ship.name,
                 "sha256": ship.sha256,
                 "models": {kind: s.component.tag for kind, s in ship.sections.items()},
-                "warnings": [{"of": of, "warning": warning} for of, warning in ship.warnings()],
+                "doubts": [one.to_dict() for one in ship.doubts()],
                 "assumptions": len(ship.assumptions()),
             }
             for name, ship in zip(names, ships, strict=True)

@@ -98,6 +98,7 @@ class Simulated(Sequence[Motion]):
             "sha256": ship.sha256 if ship else None,
             "runs": self.rows(),
             "notes": list(self.notes),
+            "doubts": [one.to_dict() for one in ship.doubts()] if ship else [],
         }
 
     def _described(self, motion: Motion, record: TrialRecord | None) -> dict[str, Any]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..options import LeaveOutOptions
+from ..options import LeaveOutOptions, in_flags
 from . import common as c
 from .options import RunOptions, takes
 from .progress import Progress
@@ -77,6 +77,7 @@ def summary(result: LeftOut, folder: str) -> str:
         lines.append(f"off by {off['before']:.2f} tolerances before, {off['left_out']:.2f} left out, root mean square")
     if result.options.manoeuvres and result.parts:
         lines.append(table({"before": result.repeated_before, "left out": result.repeated_after}))
+    lines += [f"Note: {in_flags(warning)}" for warning in result.warnings]
     if result.interrupted:
         lines.append(f"Stopped after {len(result.parts)} of {result.n_parts} parts; scores are of those alone.")
     lines.append(f"{len(result.parts)} fits in {result.wall_s:.1f} s, simulated by {result.method}. Results: {folder}")

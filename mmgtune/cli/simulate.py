@@ -69,6 +69,7 @@ def command(
         c.show(_text(row))
     for note in result.notes:
         c.say(f"note: {note}")
+    c.say_doubts(result.ship.doubts() if result.ship else ())
     for file in files:
         c.say(f"wrote {file}")
 

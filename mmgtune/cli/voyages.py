@@ -31,6 +31,7 @@ def on_voyages(
     """Score profiles on voyages, write the run folder and print what was found."""
     from ..fitting import claimed
     from ..given import ship_of
+    from ..predictor import profile_of
     from ..report import render
     from ..trial import load_voyages
     from ..voyages import Hooks, validate_voyages, write_voyages
@@ -61,6 +62,9 @@ def on_voyages(
         for name, notes in result.notes.items():
             for note in notes:
                 c.say(f"note: {name}: {note}")
+        for name, predictor in result.predictors.items():
+            if (profile := profile_of(predictor)) is not None:
+                c.say_doubts(profile.doubts(), f"{name}: ")
     progress.leave()
 
 

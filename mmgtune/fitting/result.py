@@ -15,6 +15,7 @@ from ..model import Model
 from ..options import FitOptions
 from ..predictor import words_of
 from ..profile import ShipProfile, tuned
+from ..profile.doubts import in_words
 from ..stated import IndexComparison
 from .box import Box, width_words
 from .certificate import Certificate
@@ -177,10 +178,7 @@ class FitResult:
             found.append("The fit was interrupted; these are the best values so far, not an optimum.")
         if self.diverged:
             found.append(f"{self.diverged} candidates diverged during the search and were given up.")
-        found += [
-            f"Coefficients {names} are outside the range of their formula: {why}."
-            for names, why in self.profile.warnings()
-        ]
+        found += [f"{words}." for words in in_words(self.profile.doubts())]
         generated = sorted({c.trial.id for c in self.compared if c.trial.source == "generated"})
         if generated:
             found.append(f"{len(generated)} of {len(self.compared)} trials are generated, not measured.")
@@ -285,6 +283,7 @@ class FitResult:
             "interrupted": self.interrupted,
             "verdict": self.verdict(),
             "warnings": self.warnings(),
+            "doubts": [one.to_dict() for one in self.profile.doubts()],
             "integrator": self.method,
             "J_tune": self.J_of("tune", "after"),
             "J_test": self.J_of("test", "after"),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import findings, tracks
 from .advice import shortest
-from .common import assumptions, generated_banner, picture, provenance
+from .common import assumptions, doubts, generated_banner, picture, provenance
 from .drawing import AFTER, MUTED, Drawn, log_ticks, new_figure
 from .load import DiagnosisRecord, Kind, inputs_of, motions_in
 from .page import Block, Cell, Commands, Details, Page, Prose, Section, Table, Tile, cells
@@ -67,7 +67,10 @@ def build(record: DiagnosisRecord) -> Page:
         eyebrow=f"{ship} · {_WORDS.get(data['verdict'], clean(data['verdict']))}",
         verdict=clean(data["sentence"]),
         banners=generated_banner(data["trials"]),
-        warnings=("The search was interrupted; this is what was known by then.",) if data.get("interrupted") else (),
+        warnings=(
+            *(("The search was interrupted; this is what was known by then.",) if data.get("interrupted") else ()),
+            *doubts(data),
+        ),
         tiles=_tiles(data),
         sections=tuple(section for section in sections if section is not None),
         figures=drawings,

@@ -263,6 +263,7 @@ class VoyageValidation:
             "sha256": profile.sha256 if profile else None,
             "method": predictor.method,
             "notes": list(self.notes.get(name, ())),
+            "doubts": [one.to_dict() for one in profile.doubts()] if profile else [],
         }
         if self.table is None:
             return found
