@@ -51,7 +51,7 @@ def command(
       mmgtune diagnose -p my_ship.toml -t my_trials/ --fail-on found,unexplained
     """
     from ..diagnose import VERDICTS, diagnose, plan_diagnosis, write_diagnosis
-    from ..fitting import claimed
+    from ..fitting import claimed, refuse_taken
     from ..report import render
 
     failing = split(fail_on)
@@ -62,6 +62,8 @@ def command(
         )
     ship, data = c.load_with_voyages(profile, trials)
     folder = run.out or c.default_out(ship)
+    if not run.dry_run:
+        refuse_taken(folder, force=run.force, resume=run.resume)
     plan = plan_diagnosis(ship, data, options)
     if run.dry_run:
         c.print_plan(plan, folder)

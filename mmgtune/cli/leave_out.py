@@ -32,10 +32,12 @@ def command(
 
       mmgtune leave-out -p my_ship.toml -t my_trials/ --restart 100 --objective standardised --folds 5
     """
-    from ..fitting import claimed, leave_out, plan_leave_out, write_left_out
+    from ..fitting import claimed, leave_out, plan_leave_out, refuse_taken, write_left_out
 
     ship, data = c.load(profile, trials)
     folder = run.out or c.default_out(ship)
+    if not run.dry_run:
+        refuse_taken(folder, force=run.force, resume=run.resume)
     plan = plan_leave_out(ship, data, options)
     if run.dry_run:
         c.print_plan(plan, folder)

@@ -30,11 +30,13 @@ def command(
 
       mmgtune sweep --method least-squares --out runs/sweep
     """
-    from ..fitting import claimed, plan_sweep, sweep
+    from ..fitting import claimed, plan_sweep, refuse_taken, sweep
     from ..report import render
 
     ship, data = c.load(profile, trials)
     folder = run.out or c.default_out(ship)
+    if not run.dry_run:
+        refuse_taken(folder, force=run.force, resume=run.resume)
     plan = plan_sweep(ship, data, options)
     if run.dry_run:
         c.print_plan(plan, folder)

@@ -76,7 +76,8 @@ class Effect(Component):
     of_measured  parameters that act on what was measured around the ship, {parameter: one of ``quantities.KNOWN``}
     stand_in   parameters that say what there is where that was not measured; none where they are at their null
     beyond     what to say where surroundings are beyond what the effect holds for, from {section.symbol: number} and
-               the surroundings of samples (n_samples,) each; "" where they are not, None where it holds in any
+               the surroundings of samples (n_samples,) each, of voyages those with the least and the largest of
+               everything; "" where they are not, None where it holds in any
     """
 
     place: ClassVar[str]

@@ -1,6 +1,7 @@
 """``mmgtune profile new`` and ``profile compare`` as a user types them."""
 
 import io
+from importlib import import_module
 
 import pytest
 
@@ -78,9 +79,13 @@ def test_an_output_that_exists_is_found_before_the_work(tmp_path, monkeypatch):
 
     monkeypatch.setattr("mmgtune.comparing.compare", work)
     monkeypatch.setattr("mmgtune.simulating.simulate", work)
+    for module, names in (("fitting", ("plan_fit", "plan_sweep", "plan_leave_out")), ("diagnose", ("plan_diagnosis",))):
+        for name in names:
+            monkeypatch.setattr(import_module(f"mmgtune.{module}"), name, work)
     (tmp_path / "comparison.json").write_text("{}")
     (tmp_path / "turn_p20.parquet").write_text("")
-    for words in (("profile", "compare", "suzaku", "kvlcc2"), ("simulate", "--turn", "20")):
+    tuning = (("fit",), ("sweep",), ("leave-out",), ("diagnose",))
+    for words in (("profile", "compare", "suzaku", "kvlcc2"), ("simulate", "--turn", "20"), *tuning):
         ended = typed(*words, "--out", tmp_path)
         assert ended.code == 2
         assert "exists already" in ended.err
