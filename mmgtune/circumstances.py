@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 import numpy as np
 
+from .arrays import FloatArray
 from .effects import Effect
 from .model import Model
-from .physics.quantities import Surroundings
+from .physics.quantities import HELD, KNOWN, Surroundings
 from .trial import Trial, measured_around, surroundings
 
 WORDS = {
@@ -19,6 +20,8 @@ WORDS = {
 }
 """What is measured, and what there is where it is not, by names of ``quantities.KNOWN``."""
 
+_FIELDS = Surroundings._fields
+
 
 def notes_on(
     model: Model, trials: Sequence[Trial], values: Mapping[str, float] | None = None, free: Collection[str] = ()
@@ -28,20 +31,68 @@ def notes_on(
     values  of coefficients in place of the model's own
     free    names of coefficients that are tuned: they count as acting
     """
+    around: dict[str, list[FloatArray]] = {}
+    if acts_on_surroundings(model):
+        for trial in trials:
+            around.setdefault(trial.whole, []).append(surroundings(trial, model.draught))
+    return notes(model, {name: np.concatenate(parts) for name, parts in around.items()}, values, free)
+
+
+def acts_on_surroundings(model: Model) -> bool:
+    """Whether anything that can be measured around a ship makes a difference to a model, or has to be in a range."""
+    return any(effect.of_measured or effect.beyond is not None for effect in model.effects)
+
+
+def notes(
+    model: Model,
+    around: Mapping[str, FloatArray],
+    values: Mapping[str, float] | None = None,
+    free: Collection[str] = (),
+    of: str = "trial",
+) -> list[str]:
+    """The same of surroundings (n_samples, n_surroundings) as the model has them, by trial or what else they are of."""
     numbers = {**model.numbers(), **(values or {})}
-    measured: dict[str, frozenset[str]] = {}
-    for trial in trials:
-        measured[trial.whole] = measured.get(trial.whole, frozenset()) | measured_around(trial)
+    measured = {name: _known(rows) for name, rows in around.items()}
     said = [
-        _missing(effect, name, measured, numbers, free)
+        _missing(effect, name, measured, numbers, free, of)
         for effect in model.effects
         for name in dict.fromkeys(effect.of_measured.values())
     ]
-    holding = [effect.beyond for effect in model.effects if effect.beyond is not None]
-    if holding and trials:
-        around = Surroundings(*np.concatenate([surroundings(trial, model.draught) for trial in trials]).T)
-        said += [beyond(numbers, around) for beyond in holding]
+    if around:
+        everywhere = Surroundings(*np.concatenate(list(around.values())).T)
+        said += [effect.beyond(numbers, everywhere) for effect in model.effects if effect.beyond is not None]
     return list(dict.fromkeys(one for one in said if one))
+
+
+def extremes(around: FloatArray) -> FloatArray:
+    """Of surroundings (n_samples, n_surroundings) the samples that say as much to ``notes``: (n, n_surroundings).
+
+    Of each thing that may be measured one without it, and of those with it the ones with the least and the largest of
+    each of its numbers, and of the length of its vector.
+    """
+    kept: set[int] = set()
+    for name in KNOWN:
+        known = around[:, _FIELDS.index(f"{name}_known")] > 0.0
+        kept.add(int(np.argmin(known)))
+        at = np.flatnonzero(known)
+        if not len(at):
+            continue
+        own = [k for k, one in enumerate(_FIELDS) if one.partition("_")[0] == name and one not in HELD]
+        for size in (*around[at][:, own].T, np.linalg.norm(around[at][:, own], axis=1)):
+            kept |= {int(at[np.argmin(size)]), int(at[np.argmax(size)])}
+    return around[sorted(kept)]
+
+
+def _known(around: FloatArray) -> frozenset[str]:
+    """What was measured in one sample at least."""
+    return frozenset(name for name in KNOWN if around[:, _FIELDS.index(f"{name}_known")].any())
+
+
+def unmeasured(effects: Iterable[Effect], trials: Sequence[Trial]) -> dict[str, str]:
+    """Coefficients that act on what none of the trials has measured, each with what that is in words."""
+    acting = {f"{effect.kind}.{one}": name for effect in effects for one, name in effect.of_measured.items()}
+    measured = frozenset[str]().union(*(measured_around(trial) for trial in trials)) if acting else frozenset()
+    return {one: WORDS[name][0] for one, name in acting.items() if name not in measured}
 
 
 def _missing(
@@ -50,6 +101,7 @@ def _missing(
     measured: Mapping[str, frozenset[str]],
     numbers: Mapping[str, float],
     free: Collection[str],
+    of: str,
 ) -> str:
     """That an effect acts on what some trials have not measured; "" where they have, or where it does not act."""
     of_name = [f"{effect.kind}.{one}" for one, other in effect.of_measured.items() if other == name]
@@ -68,6 +120,6 @@ def _missing(
             return ""
         still = f"the steady {what} of [{effect.kind}]"
     if lacking == len(measured):
-        return f"no trial has measured {what}: {still} throughout"
+        return f"no {of} has measured {what}: {still} throughout"
     verb = "has" if lacking == 1 else "have"
-    return f"{lacking} of {len(measured)} trials {verb} no measured {what}: {still} there"
+    return f"{lacking} of {len(measured)} {of}s {verb} no measured {what}: {still} there"

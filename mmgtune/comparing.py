@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from .arrays import FloatArray
-from .errors import OptionError, OutputError, Problem
-from .files import exists, write_text
+from .errors import OptionError, Problem
+from .files import refuse_existing, write_text
 from .given import ShipGiven, ship_of
 from .options import SimulateOptions
 from .physics.prime import force_unit, moment_unit
@@ -73,8 +73,8 @@ class Comparison:
         import json
 
         path = folder / FILE
-        if path.exists() and not overwrite:
-            raise OutputError(exists(path))
+        if not overwrite:
+            refuse_existing([path])
         folder.mkdir(parents=True, exist_ok=True)
         return write_text(path, json.dumps(self.to_dict(), indent=1) + "\n", overwrite)
 
@@ -105,7 +105,7 @@ def compare(a: ShipGiven, b: ShipGiven) -> Comparison:
                 "title": ship.name,
                 "sha256": ship.sha256,
                 "models": {kind: s.component.tag for kind, s in ship.sections.items()},
-                "warnings": [{"of": of, "warning": warning} for of, warning in ship.warnings()],
+                "doubts": [one.to_dict() for one in ship.doubts()],
                 "assumptions": len(ship.assumptions()),
             }
             for name, ship in zip(names, ships, strict=True)
@@ -131,9 +131,8 @@ def _coefficients(a: ShipProfile, b: ShipProfile) -> list[dict[str, Any]]:
         kind, _, symbol = name.rpartition(".")
         known = ship.sections[kind].component.fields[symbol]
         of = [numbers[k].get(name) for k in (0, 1)]
-        scatter = next(
-            (s.coefficient(name).scatter for s, v in zip((b, a), of[::-1], strict=True) if v is not None), None
-        )
+        scatters = (s.coefficient(name).scatter for s, value in ((b, of[1]), (a, of[0])) if value is not None)
+        scatter = next((one for one in scatters if one is not None), None)
         rows.append(
             {
                 "name": name,

@@ -7,7 +7,7 @@ import os
 import re
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from .errors import OutputError, Problem
@@ -109,6 +109,13 @@ def write_text(path: Path, text: str, overwrite: bool = True) -> Path:
     with atomic(path, overwrite) as part:
         part.write_text(text, encoding="utf-8", newline="\n")
     return path
+
+
+def refuse_existing(paths: Iterable[Path]) -> None:
+    """Raises OutputError with each of these outputs that is already there."""
+    found = [exists(path) for path in dict.fromkeys(paths) if path.exists()]
+    if found:
+        raise OutputError(*found)
 
 
 def exists(path: Path) -> Problem:

@@ -14,6 +14,7 @@ import numpy as np
 from .arrays import FloatArray
 from .backends import STATES, Cases
 from .errors import OptionError, Problem, closest
+from .physics.constants import GRAVITY
 from .predictor import cases_from
 from .trial import Trial
 from .trial.pieces import counting
@@ -28,7 +29,7 @@ def default_scales(L_pp: float) -> dict[str, float]:
     The paper prints Q = diag(L_pp, L_pp, 0.25 pi) but its values of J are only possible when residuals are divided
     by these.  For velocities, which the paper leaves out: a tenth of sqrt(g L_pp) [m/s], and 0.1 of that over L_pp.
     """
-    speed = 0.1 * float(np.sqrt(9.81 * L_pp))
+    speed = 0.1 * float(np.sqrt(GRAVITY * L_pp))
     return {"x": L_pp, "y": L_pp, "psi": 0.25 * np.pi, "u": speed, "v_m": speed, "r": speed / L_pp}
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 
 _PACKAGE = Path(__file__).resolve().parent
@@ -11,6 +12,24 @@ def folder(name: str) -> Path:
     """The folder ``ship_profiles`` or ``trials``: package data where installed, the checkout's own otherwise."""
     installed = _PACKAGE / "data" / name
     return installed if installed.is_dir() else _PACKAGE.parent / name
+
+
+def taken(name: str | Path, there: bool, bundled: Path) -> Path | None:
+    """What a name means: the path where there is something, else what is bundled, None where that is not either.
+
+    there    whether there is such a path
+    bundled  where it would be
+
+    Warns where the path hides what is bundled.
+    """
+    path = Path(name)
+    known = path.name == str(name) and bundled.exists()
+    if not there:
+        return bundled if known else None
+    if known and path.resolve() != bundled.resolve():
+        words = f"'{name}' is {path.resolve()}, not what is bundled under that name, which is {bundled}"
+        warnings.warn(words, stacklevel=1)
+    return path
 
 
 def profile_names() -> list[str]:

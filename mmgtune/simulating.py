@@ -10,9 +10,9 @@ from typing import Any, overload
 
 from .backends import Integrator
 from .circumstances import notes_on
-from .errors import OptionError, OutputError, Problem
+from .errors import OptionError, Problem
 from .evaluation import TrialRecord, evaluate
-from .files import exists
+from .files import refuse_existing
 from .given import ShipGiven, TrialsGiven, list_of
 from .manoeuvres.summary import criteria_of, indices_of
 from .model import Model
@@ -83,9 +83,8 @@ class Simulated(Sequence[Motion]):
         several = self.predictor.n_members > 1
         ids = [f"{motion.id}_{motion.member}" if several else motion.id for motion in self.motions]
         paths = [folder / f"{id}.parquet" for id in ids]
-        taken = [exists(path) for path in paths if path.exists() and not overwrite]
-        if taken:
-            raise OutputError(*taken)
+        if not overwrite:
+            refuse_existing(paths)
         for id, motion, path in zip(ids, self.motions, paths, strict=True):
             trial = as_trial(self.predictor, replace(motion, id=id), with_forces=with_forces)
             write_trial(trial, path, overwrite=overwrite)
@@ -100,6 +99,7 @@ class Simulated(Sequence[Motion]):
             "sha256": ship.sha256 if ship else None,
             "runs": self.rows(),
             "notes": list(self.notes),
+            "doubts": [one.to_dict() for one in ship.doubts()] if ship else [],
         }
 
     def _described(self, motion: Motion, record: TrialRecord | None) -> dict[str, Any]:
@@ -152,6 +152,15 @@ def simulate(
     return Simulated(predictor, tuple(record.motion for record in records), records, options, tuple(notes))
 
 
+def files_of(folder: Path, trials: TrialsGiven | Sequence[Trial] | None, options: SimulateOptions) -> list[Path]:
+    """Where ``Simulated.write`` would write the runs of a profile, known before they are made.
+
+    Raises OptionError for orders that make no sense, and as loading trials does.
+    """
+    ids = [name for name, _ in _orders(options)] if trials is None else [one.id for one in list_of(trials)]
+    return [folder / f"{id}.parquet" for id in ids]
+
+
 def _on_orders(predictor: Predictor, options: SimulateOptions) -> list[Motion]:
     if not isinstance(predictor, PhysicsPredictor) or predictor.n_members > 1:
         what = f"'{predictor.name}' is given no trials"
@@ -160,6 +169,18 @@ def _on_orders(predictor: Predictor, options: SimulateOptions) -> list[Motion]:
     model, ship = predictor.model, predictor.model.profile
     speed = None if options.speed is None else _quantity(options.speed, "speed", "m/s", '"12 kn"')
     n = None if options.rpm is None else revolutions(options.rpm)
+    L, V = ship.L_pp, speed or (ship.approach.speed if ship.approach else 1.0)
+    # Models are quicker than ships: sample ten times per ship length travelled, once a second at most.
+    sample = min(1.0, round(L / V / 10.0, 1) or 0.1)
+    longest = max(600.0, 150.0 * L / V)
+    return [
+        run_manoeuvre(model, helmsman, id=name, speed=speed, n=n, longest=longest, sample=sample, theta=predictor.theta)
+        for name, helmsman in _orders(options)
+    ]
+
+
+def _orders(options: SimulateOptions) -> list[tuple[str, Helmsman]]:
+    """The manoeuvres asked for by name, both hard turns where none is.  Raises OptionError."""
     orders: list[tuple[str, Helmsman]] = []
     turns = options.turn or (() if options.zigzag else ("35", "-35"))
     for text in turns:
@@ -168,14 +189,7 @@ def _on_orders(predictor: Predictor, options: SimulateOptions) -> list[Motion]:
     for text in options.zigzag:
         rudder, heading = zigzag_angles(text)
         orders.append((f"zigzag_{_signed(rudder)}_{heading:g}", ZigzagOrder(rudder * DEG, heading * DEG)))
-    L, V = ship.L_pp, speed or (ship.approach.speed if ship.approach else 1.0)
-    # Models are quicker than ships: sample ten times per ship length travelled, once a second at most.
-    sample = min(1.0, round(L / V / 10.0, 1) or 0.1)
-    longest = max(600.0, 150.0 * L / V)
-    return [
-        run_manoeuvre(model, helmsman, id=name, speed=speed, n=n, longest=longest, sample=sample, theta=predictor.theta)
-        for name, helmsman in orders
-    ]
+    return orders
 
 
 def rudder_angle(text: str) -> float:

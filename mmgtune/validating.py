@@ -16,6 +16,7 @@ from .networks import named_ship
 from .objective import spread
 from .options import SimulationOptions, ValidateOptions
 from .predictor import PhysicsPredictor, Predictor, as_predictor, profile_of, words_of
+from .profile.doubts import Doubt
 from .repeating import Repeated, document, repeat
 from .stated import IndexComparison, compare_stated, model_of, possible
 from .trial import TrialSet
@@ -42,6 +43,12 @@ class Scored:
         """In a line."""
         return f"Scored({self.name}, {len(self.scores)} runs, L_MSE {L_MSE(self.scores):.4g})"
 
+    @property
+    def doubts(self) -> tuple[Doubt, ...]:
+        """Which numbers of its profile may be wrong."""
+        profile = profile_of(self.predictor)
+        return tuple(profile.doubts()) if profile else ()
+
     def to_dict(self) -> dict[str, Any]:
         """Scores over everything, by kind of manoeuvre and by run, for JSON; what diverged is null."""
         profile = profile_of(self.predictor)
@@ -53,6 +60,7 @@ class Scored:
             **(summary(self.scores) if self.scores else {}),
             **({"stated": [one.to_dict(self.predictor.L_pp) for one in self.stated]} if self.stated else {}),
             "notes": list(self.notes),
+            "doubts": [one.to_dict() for one in self.doubts],
         }
 
 

@@ -46,3 +46,12 @@ def test_the_page_names_both_and_says_which_turns_wider(tmp_path):
     html, markdown = (path.read_text() for path in render(tmp_path)[:2])
     assert "suzaku_fam turns 1.3 L_pp wider than suzaku" in html
     assert "wider to starboard" in markdown
+
+
+def test_the_order_of_the_profiles_loses_no_distance(tmp_path):
+    """The scatter of a formula is there whichever of the two knows it."""
+    known, unknown = load_profile("suzaku_fam"), load_profile("suzaku")
+    names = {name for name in known.names() if known.coefficient(name).scatter is not None}
+    for a, b in ((known, unknown), (unknown, known)):
+        rows = {row["name"]: row["scatter"] for row in compare(a, b).data["coefficients"]}
+        assert {name for name, scatter in rows.items() if scatter is not None} == names

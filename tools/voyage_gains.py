@@ -11,9 +11,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from mmgtune import EstimateOptions, FitOptions, estimate, fit, load_profile, load_trials, read_particulars
+from mmgtune.cli.voyages import in_words
 from mmgtune.profile import ShipProfile, with_effects
 from mmgtune.trial import load_voyages
-from mmgtune.units import shown_in
 from mmgtune.voyages import VoyageOptions, VoyageValidation, validate_voyages
 
 VOYAGES = "voyages"
@@ -63,7 +63,7 @@ def where(found: VoyageValidation) -> str:
     """Mean cVDM by rudder angle, and with the rudder moving or steady, a row a model."""
     models = found.to_dict()["models"]
     bins = [
-        (feature["feature"], number, one["name"] or _between(one, feature["unit"]))
+        (feature["feature"], number, in_words(one, feature["unit"]))
         for feature in models[0]["where"]
         if feature["feature"] in ("rudder_largest", "rudder_range")
         for number, one in enumerate(feature["bins"])
@@ -74,14 +74,6 @@ def where(found: VoyageValidation) -> str:
         means = [of[feature][number]["cVDM_mean"] for feature, number, _ in bins]
         lines.append(f"| {row['profile']} | " + " | ".join("-" if m is None else f"{m:.3g}" for m in means) + " |")
     return "\n".join(lines)
-
-
-def _between(one: dict[str, float | None], unit: str) -> str:
-    words, factor = shown_in(unit)
-    low, high = (None if end is None else f"{factor * end:.3g}" for end in (one["low"], one["high"]))
-    return (
-        f"below {high} {words}" if low is None else f"from {low} {words}" if high is None else f"{low}-{high} {words}"
-    )
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ from typing import Any, Literal
 
 from ..errors import Problem
 from ..metrics import METRICS
+from ..profile.doubts import Doubt
 
 Status = Literal["ok", "improved", "regressed", "not comparable", "not shown"]
 Verdict = Literal["pass", "regressed", "not comparable"]
@@ -114,9 +115,10 @@ class CheckReport:
     sha256    of the profile
     items     in the order of trials and metrics; none where nothing could be run
     changed   coefficients that differ from the baseline's, the most responsible first
-    notes     other differences that are worth knowing and fail nothing
+    notes     what else is worth knowing and fails nothing
     problems  why nothing could be run
     made_by, integrator, substeps, backend  how
+    doubts    which of the profile's numbers may be wrong
     """
 
     profile: str
@@ -133,6 +135,7 @@ class CheckReport:
     substeps: int
     backend: str
     wall_s: float
+    doubts: tuple[Doubt, ...] = ()
 
     @cached_property
     def by_status(self) -> Mapping[Status, list[Item]]:
@@ -210,6 +213,7 @@ class CheckReport:
             "items": [item.to_dict() for item in self.items],
             "changed": [one.to_dict() for one in self.changed],
             "notes": list(self.notes),
+            "doubts": [one.to_dict() for one in self.doubts],
             "problems": [problem.to_dict() for problem in self.problems],
             "next": self.next,
             "wall_s": self.wall_s,

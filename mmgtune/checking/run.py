@@ -13,6 +13,7 @@ from ..errors import OptionError, Problem, closest
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..metrics import METRICS
 from ..model import Model
+from ..profile.doubts import in_words
 from .baseline import Baseline, Recorded, read_baseline, write_baseline
 from .blame import changed_coefficients
 from .measuring import Values, applicable, default_tolerances, measure, measure_stated
@@ -130,13 +131,14 @@ def check(
         sha256=profile.sha256,
         items=tuple(items),
         changed=changed_coefficients(model, same, baseline, chosen, backend) if baseline else (),
-        notes=_notes(baseline, backend),
+        notes=(*_notes(baseline, backend), *in_words(profile.doubts())),
         problems=(),
         made_by=made_by(),
         integrator=chosen.name,
         substeps=chosen.substeps,
         backend=backend,
         wall_s=time.perf_counter() - began,
+        doubts=tuple(profile.doubts()),
     )
 
 

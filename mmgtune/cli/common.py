@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from datetime import datetime
 from itertools import count
 from pathlib import Path
@@ -18,6 +19,7 @@ from .output import show as show
 if TYPE_CHECKING:
     from ..fitting import Plan
     from ..profile import ShipProfile
+    from ..profile.doubts import Doubt
     from ..trial import TrialSet, VoyageSet
 
 
@@ -85,6 +87,14 @@ def warn_of_another_ship(ship: ShipProfile, data: TrialSet | VoyageSet) -> None:
     """Say on stderr that trials are of another ship than the profile."""
     if data.ship and data.ship != ship.id:
         say(f"warning: the trials are of '{data.ship}', the profile is of '{ship.id}'")
+
+
+def say_doubts(doubts: Sequence[Doubt], whose: str = "") -> None:
+    """Say on stderr which numbers of a profile may be wrong."""
+    from ..profile.doubts import in_words
+
+    for words in in_words(doubts):
+        say(f"note: {whose}{words}")
 
 
 def print_plan(plan: Plan, folder: Path) -> None:

@@ -51,7 +51,7 @@ def command(
       mmgtune diagnose -p my_ship.toml -t my_trials/ --fail-on found,unexplained
     """
     from ..diagnose import VERDICTS, diagnose, plan_diagnosis, write_diagnosis
-    from ..fitting import claimed
+    from ..fitting import claimed, refuse_taken
     from ..report import render
 
     failing = split(fail_on)
@@ -62,6 +62,8 @@ def command(
         )
     ship, data = c.load_with_voyages(profile, trials)
     folder = run.out or c.default_out(ship)
+    if not run.dry_run:
+        refuse_taken(folder, force=run.force, resume=run.resume)
     plan = plan_diagnosis(ship, data, options)
     if run.dry_run:
         c.print_plan(plan, folder)
@@ -100,6 +102,8 @@ def _by_voyage(one: Difference) -> list[str]:
 
 def summary(result: Diagnosis, folder: str, report: bool) -> str:
     """The result as a person wants to read it in a terminal."""
+    from ..profile.doubts import in_words
+
     lines = [f"{'hypothesis':<44}{'score':>12}{'gain':>12}{'by chance':>12}{'J test':>10}", ""]
     for row in result.candidates[:12]:
         label = f"{row.effect} ({', '.join(row.parameters)})"
@@ -117,6 +121,8 @@ def summary(result: Diagnosis, folder: str, report: bool) -> str:
         lines += ["", one.sentence, *_by_voyage(one)]
     if result.suggestion:
         lines.append(f"A trial that would tell: {result.suggestion.manoeuvre}.")
+    doubts = in_words(result.profile.doubts())
+    lines += ["", *(f"Note: {words}." for words in doubts)] if doubts else []
     lines += ["", f"{'Stopped after' if result.interrupted else 'Finished in'} {result.wall_s:.1f} s."]
     lines.append(f"Report: {folder}/report.html" if report else f"Results: {folder}")
     return "\n".join(lines)

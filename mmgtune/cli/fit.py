@@ -40,11 +40,13 @@ def command(
 
       mmgtune fit --ar 0.5 --json --out runs/today | jq .J_test
     """
-    from ..fitting import claimed, fit, plan_fit, write_run
+    from ..fitting import claimed, fit, plan_fit, refuse_taken, write_run
     from ..report import render
 
     ship, data = c.load(profile, trials)
     folder = run.out or c.default_out(ship)
+    if not run.dry_run:
+        refuse_taken(folder, force=run.force, resume=run.resume)
     plan = plan_fit(ship, data, options)  # also finds what is wrong before a folder is made
     if run.dry_run:
         c.print_plan(plan, folder)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..options import LeaveOutOptions
+from ..options import LeaveOutOptions, in_flags
 from . import common as c
 from .options import RunOptions, takes
 from .progress import Progress
@@ -32,10 +32,12 @@ def command(
 
       mmgtune leave-out -p my_ship.toml -t my_trials/ --restart 100 --objective standardised --folds 5
     """
-    from ..fitting import claimed, leave_out, plan_leave_out, write_left_out
+    from ..fitting import claimed, leave_out, plan_leave_out, refuse_taken, write_left_out
 
     ship, data = c.load(profile, trials)
     folder = run.out or c.default_out(ship)
+    if not run.dry_run:
+        refuse_taken(folder, force=run.force, resume=run.resume)
     plan = plan_leave_out(ship, data, options)
     if run.dry_run:
         c.print_plan(plan, folder)
@@ -77,6 +79,7 @@ def summary(result: LeftOut, folder: str) -> str:
         lines.append(f"off by {off['before']:.2f} tolerances before, {off['left_out']:.2f} left out, root mean square")
     if result.options.manoeuvres and result.parts:
         lines.append(table({"before": result.repeated_before, "left out": result.repeated_after}))
+    lines += [f"Note: {in_flags(warning)}" for warning in result.warnings]
     if result.interrupted:
         lines.append(f"Stopped after {len(result.parts)} of {result.n_parts} parts; scores are of those alone.")
     lines.append(f"{len(result.parts)} fits in {result.wall_s:.1f} s, simulated by {result.method}. Results: {folder}")

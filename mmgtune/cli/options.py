@@ -30,23 +30,32 @@ class RunOptions(Options):
 
     def problems(self) -> list[Problem]:
         """A run to continue needs its folder, and is not replaced."""
-        found = super().problems()
-        if self.resume and self.out is None:
-            found.append(Problem("resume=True needs the folder of the interrupted run", "resume", fix="add out=FOLDER"))
-        if self.resume and self.force:
-            found.append(
-                Problem("resume=True goes on with what is there, force=True replaces it", "resume", fix="leave one out")
-            )
-        return found
+        return super().problems() + _of_resuming(self.out, self.force, self.resume)
 
 
 @dataclass(frozen=True)
 class WrittenOptions(Options):
-    """What a command that cannot go on where it was stopped can be told about what it leaves behind."""
+    """What a command that writes a folder only for some trials can be told about what it leaves behind."""
 
     out: Path | None = again(RunOptions, "out")
     force: bool = again(RunOptions, "force")
+    resume: bool = again(RunOptions, "resume")
     quiet: bool = again(RunOptions, "quiet")
+
+    def problems(self) -> list[Problem]:
+        """As of ``RunOptions``."""
+        return super().problems() + _of_resuming(self.out, self.force, self.resume)
+
+
+def _of_resuming(out: Path | None, force: bool, resume: bool) -> list[Problem]:
+    """A run to continue needs its folder, and is not replaced."""
+    found = []
+    if resume and out is None:
+        found.append(Problem("resume=True needs the folder of the interrupted run", "resume", fix="add out=FOLDER"))
+    if resume and force:
+        what = "resume=True goes on with what is there, force=True replaces it"
+        found.append(Problem(what, "resume", fix="leave one out"))
+    return found
 
 
 def takes(**groups: type[Options]) -> Callable[[Callable[..., None]], Callable[..., None]]:

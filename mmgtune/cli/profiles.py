@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..errors import OptionError, OutputError, Problem
+from ..errors import OptionError, Problem
 from ..options import EstimateOptions
 from . import common as c
 from .options import takes
@@ -16,7 +16,6 @@ from .options import takes
 if TYPE_CHECKING:
     from ..comparing import Comparison
     from ..estimating import Particulars
-    from ..profile import ShipProfile
 
 app = typer.Typer(help="Look at ship profiles, make one from main dimensions, compare two.", no_args_is_help=True)
 
@@ -62,7 +61,7 @@ def show(profile: Name, json: c.Json = False) -> None:
             {**row, "value": None if row["value"] == float("inf") else row["value"]} for row in rows
         ]
         told = {key: getattr(ship, key) for key in ("id", "name", "source", "licence", "citation")}
-        c.print_json({"schema": 1, **told, "coefficients": finite})
+        c.print_json({"schema": 1, **told, "coefficients": finite, "doubts": [one.to_dict() for one in ship.doubts()]})
         return
     c.show("\n".join((ship.name, ship.source, *c.terms(ship), "")))
     for row in rows:
@@ -70,6 +69,7 @@ def show(profile: Name, json: c.Json = False) -> None:
         text = ", ".join(f"{v:.4g}" for v in value) if isinstance(value, list) else f"{value:g}"
         mark = "  ASSUMPTION" + (f": {row['note']}" if row["note"] else "") if row["assumption"] else ""
         c.show(f"{row['name']:<24}{text:>12} {row['unit']:<8} {row['label']}{mark}")
+    c.say_doubts(ship.doubts())
 
 
 @app.command("validate")
@@ -79,8 +79,7 @@ def validate(profile: Name) -> None:
 
     ship = load_profile(profile)
     c.show(f"{ship.path}: {ship.name}, {len(ship.names())} coefficients, {len(ship.assumptions())} of them assumptions")
-    for line in doubts(ship):
-        c.show(line)
+    c.say_doubts(ship.doubts())
 
 
 @app.command("new")
@@ -113,25 +112,24 @@ def new(
       mmgtune profile new my_ship.toml --from particulars.toml --form fam
     """
     from ..estimating import estimate, read_particulars
-    from ..files import exists, write_text
+    from ..files import refuse_existing, write_text
     from ..units import KNOT
 
-    if file.exists() and not force:
-        raise OutputError(exists(file))
+    if not force:
+        refuse_existing([file])
     asked = particulars == "particulars" and not Path(particulars).exists()
     ship = estimate(_asked() if asked else read_particulars(particulars), options)
     write_text(file, ship.text, overwrite=force)
     if json:
         facts = {"schema": 1, "file": str(file), "id": ship.id, "sha256": ship.sha256, "options": options.to_dict()}
-        warnings = [{"of": names, "warning": warning} for names, warning in ship.warnings()]
-        c.print_json({**facts, "coefficients": len(ship.names()), "targets": list(ship.targets), "warnings": warnings})
+        doubts = [one.to_dict() for one in ship.doubts()]
+        c.print_json({**facts, "coefficients": len(ship.names()), "targets": list(ship.targets), "doubts": doubts})
         return
     c.show(f"wrote {file}: {ship.name}, {len(ship.names())} coefficients, {len(ship.targets)} of them free in a fit")
     assert ship.approach is not None  # particulars have a speed
     speed, n = ship.approach.speed / KNOT, ship.approach.n * 60.0
     c.show(f"approach at {speed:.4g} kn with {n:.4g} rpm")
-    for line in doubts(ship):
-        c.show(line)
+    c.say_doubts(ship.doubts())
 
 
 @app.command("compare")
@@ -155,8 +153,12 @@ def compare(
 
       mmgtune profile compare before.toml after.toml --out compared
     """
+    from ..comparing import FILE
     from ..comparing import compare as compared
+    from ..files import refuse_existing
 
+    if out is not None and not force:
+        refuse_existing([out / FILE])
     found = compared(a, b)
     if out is not None:
         from ..report import render
@@ -166,13 +168,10 @@ def compare(
             c.say(f"wrote {path}")
     if json:
         c.print_json(found.to_dict())
-    else:
-        c.show(_side_by_side(found))
-
-
-def doubts(ship: ShipProfile) -> list[str]:
-    """What is doubtful about a profile's numbers, a line each."""
-    return [f"outside its range: {warning} ({names})" for names, warning in ship.warnings()]
+        return
+    c.show(_side_by_side(found))
+    for name, ship in zip(found.profiles, found.ships, strict=True):
+        c.say_doubts(ship.doubts(), f"{name}: ")
 
 
 def _asked() -> Particulars:

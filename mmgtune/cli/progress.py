@@ -27,13 +27,13 @@ class Progress:
     """A context in which a long command reports what it does, can be interrupted, and writes its results.
 
     folder     where the results go, for messages
-    resumable  whether the command can go on where it was stopped
+    kept       what is saved of a command that is stopped
     """
 
-    def __init__(self, quiet: bool, folder: Path, *, resumable: bool = True):
+    def __init__(self, quiet: bool, folder: Path, *, kept: str = "the best so far"):
         self.quiet = quiet
         self.folder = folder
-        self.resumable = resumable
+        self.kept = kept
         self._signal: int | None = None
         self._saved = ""
         self._phase = ""
@@ -76,10 +76,8 @@ class Progress:
         """
         if not interrupted:
             self._saved = f"the results in {self.folder} were complete by then"
-        elif self.resumable:
-            self._saved = f"the best so far is in {self.folder}; --resume --out {self.folder} continues"
         else:
-            self._saved = f"what is done so far is in {self.folder}"
+            self._saved = f"{self.kept} is in {self.folder}; --resume --out {self.folder} continues"
 
     def leave(self) -> None:
         """End with the exit code of a command that was stopped, where it was; called when everything is said."""
@@ -94,11 +92,9 @@ class Progress:
             if self._status is not None:
                 os.write(2, b"\x1b[?25h")  # the cursor, which the status line hides
             last = f"stopped at once; --resume --out {self.folder} continues from the last checkpoint"
-            last = last if self.resumable else "stopped at once; nothing is saved"
             interrupts.leave(number, self._saved or last)
         self._signal = number
-        what = "the best so far" if self.resumable else "what is done so far"
-        interrupts.tell(f"finishing this step, then saving {what}; press Ctrl-C again to stop at once")
+        interrupts.tell(f"finishing this step, then saving {self.kept}; press Ctrl-C again to stop at once")
 
     def _on_phase(self, words: str) -> None:
         self._phase = words

@@ -53,10 +53,13 @@ def command(
 
       mmgtune simulate --trials suzaku --out simulated --forces
     """
-    from ..simulating import simulate
+    from ..files import refuse_existing
+    from ..simulating import files_of, simulate
 
     if forces and out is None:
         raise OptionError(Problem("forces need a folder to write to", "forces", fix="add out=FOLDER"))
+    if out is not None and not force:
+        refuse_existing(files_of(out, trials, options))
     result = simulate(profile, trials, options)
     files = result.write(out, with_forces=forces, overwrite=force) if out is not None else []
     if json:
@@ -66,6 +69,7 @@ def command(
         c.show(_text(row))
     for note in result.notes:
         c.say(f"note: {note}")
+    c.say_doubts(result.ship.doubts() if result.ship else ())
     for file in files:
         c.say(f"wrote {file}")
 

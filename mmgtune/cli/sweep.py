@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..options import SweepOptions
+from ..options import SweepOptions, in_flags
 from . import common as c
 from .options import RunOptions, takes
 from .progress import Progress
@@ -30,11 +30,13 @@ def command(
 
       mmgtune sweep --method least-squares --out runs/sweep
     """
-    from ..fitting import claimed, plan_sweep, sweep
+    from ..fitting import claimed, plan_sweep, refuse_taken, sweep
     from ..report import render
 
     ship, data = c.load(profile, trials)
     folder = run.out or c.default_out(ship)
+    if not run.dry_run:
+        refuse_taken(folder, force=run.force, resume=run.resume)
     plan = plan_sweep(ship, data, options)
     if run.dry_run:
         c.print_plan(plan, folder)
@@ -71,6 +73,8 @@ def summary(result: SweepResult, folder: str, report: bool) -> str:
             lines.append(f"{label:<24}" + "".join(cells) + f"   before {before:.4g}, {result.runs[0].method}")
     if result.leave_one_out is not None:
         lines.append(f"{'J left out':<24}" + "".join(f"{J:>11.4g}" for J in result.leave_one_out))
-    lines += ["", "* on a bound", "", result.recommended()["sentence"], result.overfitting()["sentence"]]
+    lines += ["", "* on a bound", ""]
+    lines += [f"Note: {in_flags(warning)}" for warning in result.warnings()]
+    lines += [result.recommended()["sentence"], result.overfitting()["sentence"]]
     lines.append(f"{result.wall_s:.1f} s. " + (f"Report: {folder}/report.html" if report else f"Results: {folder}"))
     return "\n".join(lines)

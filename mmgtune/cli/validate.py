@@ -76,6 +76,8 @@ def command(
         c.show(summary(result))
         for note in dict.fromkeys(note for one in result.profiles for note in one.notes):
             c.say(f"note: {note}")
+        for one in result.profiles:
+            c.say_doubts(one.doubts, f"{one.name}: ")
 
 
 def _refuse(options: VoyageOptions, run: WrittenOptions, no_report: bool) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from ..errors import TrialError
 from ..options import VoyageOptions
 from ..units import DEG, shown_in
 from . import common as c
@@ -30,6 +31,7 @@ def on_voyages(
     """Score profiles on voyages, write the run folder and print what was found."""
     from ..fitting import claimed
     from ..given import ship_of
+    from ..predictor import profile_of
     from ..report import render
     from ..trial import load_voyages
     from ..voyages import Hooks, validate_voyages, write_voyages
@@ -39,9 +41,16 @@ def on_voyages(
     if data.ship and data.ship != ships[0].id:
         c.say(f"warning: the voyages are of '{data.ship}', the first profile is of '{ships[0].id}'")
     folder = run.out or c.default_out(ships[0])
-    with claimed(folder, force=run.force), Progress(run.quiet, folder, resumable=False) as progress:
+    kept = "what is done so far"
+    with claimed(folder, force=run.force, resume=run.resume), Progress(run.quiet, folder, kept=kept) as progress:
         hooks = Hooks(on_progress=progress.on_share, stop=lambda: progress.stopped)
-        result = validate_voyages(list(profiles), data, options, hooks=hooks, command=c.command_line())
+        try:
+            result = validate_voyages(
+                list(profiles), data, options, hooks=hooks, folder=folder, resume=run.resume, command=c.command_line()
+            )
+        except TrialError:
+            c.say(f"what is done so far is kept: once the voyages are mended, --resume --out {folder} goes on")
+            raise
         document = write_voyages(result, folder)
         progress.saved(result.interrupted)
         if not no_report:
@@ -50,6 +59,12 @@ def on_voyages(
         c.print_json(document)
     else:
         c.show(summary(result, str(folder), report=not no_report))
+        for name, notes in result.notes.items():
+            for note in notes:
+                c.say(f"note: {name}: {note}")
+        for name, predictor in result.predictors.items():
+            if (profile := profile_of(predictor)) is not None:
+                c.say_doubts(profile.doubts(), f"{name}: ")
     progress.leave()
 
 

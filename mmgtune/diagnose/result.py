@@ -286,6 +286,7 @@ class Diagnosis:
             "interrupted": self.interrupted,
             "verdict": self.verdict,
             "sentence": self.sentence(),
+            "doubts": [one.to_dict() for one in self.profile.doubts()],
             "causes": [cause.to_dict() for cause in self.named],
             "groups": [list(group) for group in self.groups] if self.verdict == "not-separable" else [],
             "candidates": [candidate.to_dict() for candidate in self.candidates],

@@ -12,20 +12,17 @@ from ..arrays import FloatArray
 from ..errors import Problem, TrialError
 from ..given import TrialsGiven, trials_of
 from ..model import Model
-from ..options import DiagnoseOptions
+from ..options import DiagnoseOptions, VoyageOptions
 from ..profile import ShipProfile
 from ..trial import Trial, TrialSet, Voyage, VoyageSet, holds_voyages, load_voyages, voyage_windows, window_at
+from ..trial.voyage_windows import mean_speed, rest_speed
 from ..units import DEG
 
 AT_MOST = 400
 """Windows of a voyage that are compared with each other; of more, so many are drawn."""
 
-GAP = 10.0
+GAP = VoyageOptions.gap
 """Longest gap [s] a window may hold."""
-
-GRAVITY = 9.81
-AT_REST = 0.02
-"""Froude number below which the ship is at rest, and no model is asked what she does."""
 
 SCALES = (3.0 * DEG, 0.3 * DEG, 0.1, 0.5)
 """How far two windows must be apart to count as different: spread of the rudder angle [rad], mean yaw rate [rad/s],
@@ -91,7 +88,7 @@ def choose_windows(profile: ShipProfile, voyages: VoyageSet, options: DiagnoseOp
     Raises TrialError for what is wrong with a file, and where no window could be cut.
     """
     length = options.voyage_window
-    slowest = AT_REST * float(np.sqrt(GRAVITY * Model(profile).L_pp))
+    slowest = rest_speed(Model(profile).L_pp)
     inputs = [one.name for one in profile.arrangement.inputs]
     rng = np.random.default_rng(options.seed)
     places: dict[str, list[_Place]] = {}
@@ -127,7 +124,7 @@ def _places(
     seen = 0
     for window in voyage_windows(voyage, length, gap=GAP, inputs=inputs):
         trial = window.trial
-        speed = float(np.nanmean(np.hypot(trial.u, trial.v_m)))
+        speed = mean_speed(trial)
         if speed < slowest:
             continue
         heading = float(np.nanmean(trial.psi))

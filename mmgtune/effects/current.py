@@ -5,7 +5,7 @@ from typing import NamedTuple
 from ..physics.elementary import where
 from ..physics.frame import to_ship
 from ..physics.quantities import Lanes, State, Surroundings
-from .effect import FlowEffect, Parameter
+from .effect import FlowEffect, Parameter, factor_on_measured
 
 
 class Current(NamedTuple):
@@ -57,16 +57,7 @@ EFFECT = FlowEffect(
     fields={
         "north": _component("north"),
         "east": _component("east"),
-        "measured": Parameter(
-            "factor on the current measured in the trial",
-            default=1.0,
-            low=-1e-12,
-            high=5.0,
-            null=0.0,
-            bounds=lambda _: (0.0, 2.0),
-            typical=lambda _: 0.2,
-            bounds_source="from no current to twice the measured",
-        ),
+        "measured": factor_on_measured("the current", 2.0, 0.2, "from no current to twice the measured"),
     },
     variants=(("north", "east"), ("measured",)),
     told_as={("north", "east"): ("speed", "towards")},

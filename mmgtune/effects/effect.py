@@ -41,6 +41,23 @@ class Parameter(Field):
             object.__setattr__(self, "default", self.null)
 
 
+def factor_on_measured(what: str, most: float, typical: float, source: str) -> Parameter:
+    """The factor on something that was measured around the ship: as measured unless told otherwise, absent at 0.
+
+    most, typical  the largest that is looked for, and a size worth finding; source says why no more than that
+    """
+    return Parameter(
+        f"factor on {what} measured in the trial",
+        default=1.0,
+        low=-1e-12,
+        high=5.0,
+        null=0.0,
+        bounds=lambda _: (0.0, most),
+        typical=lambda _: typical,
+        bounds_source=source,
+    )
+
+
 @dataclass(frozen=True, kw_only=True)
 class Effect(Component):
     """An effect: a component of kind "effects.<tag>".  Each place of the data flow has a class of its own below.
@@ -59,7 +76,8 @@ class Effect(Component):
     of_measured  parameters that act on what was measured around the ship, {parameter: one of ``quantities.KNOWN``}
     stand_in   parameters that say what there is where that was not measured; none where they are at their null
     beyond     what to say where surroundings are beyond what the effect holds for, from {section.symbol: number} and
-               the surroundings of samples (n_samples,) each; "" where they are not, None where it holds in any
+               the surroundings of samples (n_samples,) each, of voyages those with the least and the largest of
+               everything; "" where they are not, None where it holds in any
     """
 
     place: ClassVar[str]

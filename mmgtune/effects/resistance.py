@@ -4,10 +4,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..physics.constants import GRAVITY
 from ..physics.quantities import Flow, Force, Forces, Lanes, State, Surroundings
 from .effect import ForceEffect, Parameter
-
-GRAVITY = 9.81
 
 
 class Resistance(NamedTuple):

@@ -8,7 +8,7 @@ import numpy as np
 from ..physics.elementary import where
 from ..physics.quantities import Lanes, Surroundings
 from ..physics.regressions.kijima1990 import LEAST, ShallowRatios, shallow_ratios
-from .effect import FactorsEffect, Parameter
+from .effect import FactorsEffect, Parameter, factor_on_measured
 
 AFLOAT = 1.05
 """Depth over draught [-] that measured depths count as where they are less: the formulas have no end there."""
@@ -65,15 +65,8 @@ EFFECT = FactorsEffect(
             typical=lambda ship: 0.3 / ship.d,
             bounds_source="formula valid down to a depth of 1.2 draughts",
         ),
-        "measured": Parameter(
-            "factor on the draught over the depth measured in the trial",
-            default=1.0,
-            low=-1e-12,
-            high=5.0,
-            null=0.0,
-            bounds=lambda _: (0.0, 1.5),
-            typical=lambda _: 0.3,
-            bounds_source="from deep water to half as shallow again as measured",
+        "measured": factor_on_measured(
+            "the draught over the depth", 1.5, 0.3, "from deep water to half as shallow again as measured"
         ),
     },
     borrowed={name: f"particulars.{name}" for name in ("L_pp", "B", "d", "C_b")},

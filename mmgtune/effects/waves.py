@@ -9,7 +9,7 @@ from ..physics.elementary import cos, sin, where
 from ..physics.frame import to_ship
 from ..physics.quantities import Force, Forces, Lanes, State, Surroundings
 from ..physics.regressions.stawave1 import added_resistance, from_ahead, height_limit
-from .effect import ForceEffect, Parameter
+from .effect import ForceEffect, Parameter, factor_on_measured
 
 
 class Waves(NamedTuple):
@@ -74,15 +74,8 @@ EFFECT = ForceEffect(
             bounds=lambda _: (0.0, 2.0 * np.pi),
             typical=lambda _: 0.5 * np.pi,
         ),
-        "measured": Parameter(
-            "factor on the significant height measured in the trial",
-            default=1.0,
-            low=-1e-12,
-            high=5.0,
-            null=0.0,
-            bounds=lambda _: (0.0, 2.0),
-            typical=lambda _: 0.5,
-            bounds_source="from no waves to twice as high as measured",
+        "measured": factor_on_measured(
+            "the significant height", 2.0, 0.5, "from no waves to twice as high as measured"
         ),
         "L_BWL_": Parameter(
             "distance from the bow to 95 % of the largest breadth on the waterline, over L_pp (0.25: assumption)",

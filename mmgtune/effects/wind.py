@@ -9,7 +9,7 @@ from ..physics.elementary import cos, sin, where
 from ..physics.frame import to_ship
 from ..physics.quantities import HARMONICS, Force, Forces, State, Surroundings
 from ..physics.wind import wind_shape
-from .effect import ForceEffect, Parameter
+from .effect import ForceEffect, Parameter, factor_on_measured
 
 RHO_AIR = 1.225
 """Density of air [kg/m^3]."""
@@ -64,16 +64,7 @@ EFFECT = ForceEffect(
             bounds=lambda _: (0.0, 2.0 * np.pi),
             typical=lambda _: 0.5 * np.pi,
         ),
-        "measured": Parameter(
-            "factor on the wind measured in the trial",
-            default=1.0,
-            low=-1e-12,
-            high=5.0,
-            null=0.0,
-            bounds=lambda _: (0.0, 2.0),
-            typical=lambda _: 1.0,
-            bounds_source="from no wind to twice the measured",
-        ),
+        "measured": factor_on_measured("the wind", 2.0, 1.0, "from no wind to twice the measured"),
     },
     borrowed={name: f"above_water.{name}" for name in SHOWN},
     variants=(("speed", "direction"), ("measured",)),

@@ -11,9 +11,10 @@ from typing import Any
 from .. import limits
 from ..components import ABOVE_WATER, SHIP, Field
 from ..errors import Problem, ProfileError
+from ..physics.constants import GRAVITY
 from ..physics.quantities import ABOVE_WATER as GEOMETRY
 from ..profile.reading import APPROACH, IDENTIFIER, STEERING_GEAR
-from ..resources import particulars, particulars_names
+from ..resources import particulars, particulars_names, taken
 from ..toml_reading import TomlReader, toml_of
 
 SCHEMA = 1
@@ -98,7 +99,7 @@ class Particulars:
 
 def read_particulars(path: str | Path) -> Particulars:
     """The particulars in a file, or bundled under a name.  Raises ProfileError with everything wrong in them."""
-    path = _found(path)
+    path = taken(path, Path(path).exists(), particulars() / f"{path}.toml") or Path(path)
     try:
         text = limits.text(path, limits.PROFILE_BYTES, ProfileError)
     except (OSError, ValueError) as error:
@@ -106,12 +107,6 @@ def read_particulars(path: str | Path) -> Particulars:
         fix = f"give a TOML file with [ship], [particulars], [approach], or one of: {', '.join(particulars_names())}"
         raise ProfileError(Problem("the particulars cannot be read", str(path), why, fix)) from error
     return parse_particulars(text, path)
-
-
-def _found(name: str | Path) -> Path:
-    path = Path(name)
-    bundled = particulars() / f"{path.name}.toml"
-    return bundled if not path.exists() and path.name == str(name) and bundled.is_file() else path
 
 
 def parse_particulars(text: str, path: Path | None = None) -> Particulars:
@@ -234,7 +229,7 @@ class _Reader(TomlReader):
             wrong("rudder", "H_R", f"span^2 over area is {H_R * H_R / A_R:.3g}", "rudders have 1 to 3")
         if D_P is not None and 1.5 * d < D_P:
             wrong("propeller", "D_P", f"a propeller of {D_P:g} m is more than 1.5 draughts", f"d is {d:g} m")
-        froude = ship["approach", "speed"] / (9.81 * L) ** 0.5
+        froude = ship["approach", "speed"] / (GRAVITY * L) ** 0.5
         if froude > 0.45:
             why = f"the Froude number would be {froude:.2f}; the formulas are for ships that displace water"
             wrong("approach", "speed", "the approach speed is impossible for this length", why)

@@ -2,29 +2,55 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TypeVar
 
+from ..circumstances import unmeasured
 from ..effects import effect_tags, find_effect
 from ..errors import OptionError, Problem, closest
 from ..model import Model
 from ..options import DiagnoseOptions, FitOptions, LeaveOutOptions, Options, TuningOptions
 from ..profile import ShipProfile, missing_for
 from ..profile import with_effects as put_in
+from ..trial import Trial, TrialSet
 from .box import A_R, choose_targets
 
 T = TypeVar("T", bound=TuningOptions)
 O = TypeVar("O", bound=Options)
 
 
-def settled(profile: ShipProfile, options: T) -> tuple[ShipProfile, T]:
+def settled(profile: ShipProfile, options: T, trials: TrialSet) -> tuple[ShipProfile, T]:
     """The profile with the effects of the options put in, and options that say all there is to say.
 
-    ``a_r`` is None afterwards only where the scatter of formulas makes the box of a target.
+    ``a_r`` is None afterwards only where the scatter of formulas makes the box of a target.  Of the effects put in,
+    coefficients that act on what no tune trial has measured are ``fixed``: nothing would determine them.
     Raises OptionError for an unknown effect, or one that does not apply, and for unknown targets.
     """
+    asked = {*(options.targets or profile.targets), *options.fixed}
     profile, options = with_effects(profile, options)
+    idle = [name for name in _unmeasured(options.with_effects, tune_trials(trials)) if name not in asked]
+    if idle:
+        options = replace(options, fixed=(*options.fixed, *idle))
     return profile, with_width(profile, options)
+
+
+def tune_trials(trials: TrialSet) -> list[Trial]:
+    """The time series that a fit tunes to."""
+    return [trials.trials[name] for name in trials.tune]
+
+
+def held_words(profile: ShipProfile, options: TuningOptions, trials: Sequence[Trial]) -> list[str]:
+    """What ``settled`` holds because none of these tune trials has measured it, in sentences."""
+    return [
+        f"{name} is held at {profile.written(name)}: no tune trial has measured {what}."
+        for name, what in _unmeasured(options.with_effects, trials).items()
+        if name in options.fixed
+    ]
+
+
+def _unmeasured(tags: Sequence[str], trials: Sequence[Trial]) -> dict[str, str]:
+    return unmeasured([effect for tag in tags if (effect := find_effect(tag))], trials)
 
 
 def with_width(profile: ShipProfile, options: O) -> O:

@@ -45,9 +45,22 @@ CHECKPOINTS = "training-*.safetensors"
 def prepare(folder: Path, *, force: bool = False, resume: bool = False) -> Path:
     """Make sure results can be written to ``folder``, before any work is done.
 
+    Raises OutputError as ``refuse_taken`` does, and where the folder cannot be written to.
+    """
+    refuse_taken(folder, force=force, resume=resume)
+    _make(folder)
+    if not os.access(folder, os.W_OK):
+        raise cannot_write(folder, PermissionError(13, "permission denied"))
+    with half(folder / "writable"):
+        pass
+    return folder
+
+
+def refuse_taken(folder: Path, *, force: bool = False, resume: bool = False) -> None:
+    """Refuse a folder that results cannot go to, and leave everything as it is.
+
     What a run that was killed left half-written counts for nothing.
-    Raises OutputError where it holds results already (unless ``force`` or ``resume``), is a file, or cannot be
-    written to.
+    Raises OutputError where it holds results already (unless ``force`` or ``resume``), or is a file.
     """
     if folder.exists() and not folder.is_dir():
         raise OutputError(Problem("the output is a file, not a folder", str(folder), fix="choose another folder"))
@@ -64,12 +77,6 @@ def prepare(folder: Path, *, force: bool = False, resume: bool = False) -> Path:
                 "choose another folder",
             )
         )
-    _make(folder)
-    if not os.access(folder, os.W_OK):
-        raise cannot_write(folder, PermissionError(13, "permission denied"))
-    with half(folder / "writable"):
-        pass
-    return folder
 
 
 def _make(folder: Path) -> None:

@@ -11,19 +11,22 @@ from typing import Any
 
 import numpy as np
 
+from ..circumstances import notes_on
 from ..files import write_text
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
+from ..model import Model
 from ..objective import spread
 from ..options import LeaveOutOptions
 from ..predictor import words_of
 from ..profile import ShipProfile
+from ..profile.doubts import Doubt, in_words
 from ..repeating import Repeated, document, repeat
 from ..stated import IndexComparison, compare_stated
 from ..threads import blas_on_one_thread
 from ..trial import Trial, TrialSet
 from ..validation import L_MSE, TrialScore, by_manoeuvre, improvement, score
 from .comparison import finite, finite_values
-from .extending import settled
+from .extending import held_words, settled, tune_trials
 from .journal import finished, journalled
 from .least_squares import solve
 from .robust import weigh_down
@@ -71,6 +74,7 @@ class LeftOut:
     n_parts  how many there are to be
     interrupted  stopped by the user; scores are of the parts finished by then
     weight   of what is known beforehand, found with all runs; None where J is all
+    warnings what a reader must know first; doubts: which of the profile's numbers may be wrong
     """
 
     thetas: tuple[dict[str, float], ...]
@@ -88,6 +92,8 @@ class LeftOut:
     repeated_after: tuple[Repeated, ...] = ()
     stated: tuple[IndexComparison, ...] = ()
     L_pp: float = 1.0
+    warnings: tuple[str, ...] = ()
+    doubts: tuple[Doubt, ...] = ()
 
     @property
     def method(self) -> str:
@@ -129,6 +135,8 @@ class LeftOut:
             **self.provenance,
             "interrupted": self.interrupted,
             "n_parts": self.n_parts,
+            "warnings": list(self.warnings),
+            "doubts": [one.to_dict() for one in self.doubts],
             "options": self.options.to_dict(),
             "sigma": self.sigma,
             "integrator": self.method,
@@ -187,7 +195,7 @@ def leave_out(
     Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to.
     """
     profile, trials = ship_of(profile), trials_of(trials)
-    profile, options = settled(profile, options)
+    profile, options = settled(profile, options, trials)
     provenance = make_provenance(profile, trials, command)
     identity = identity_of(profile, trials, options, provenance)
     with journalled(folder, identity, hooks.stop, resume=resume):
@@ -274,7 +282,20 @@ def _leave_out(
         tuple(repeated[name] for name in dict.fromkeys(trial.whole for trial in seen) if name in repeated),
         tuple(one for name in trials.tune_stated for one in stated.get(name, ())),
         model.L_pp,
+        tuple(_warnings(model, box.names, whole, asked)),
+        tuple(profile.doubts()),
     )
+
+
+def _warnings(model: Model, targets: Sequence[str], trials: TrialSet, options: LeaveOutOptions) -> list[str]:
+    """What a reader must know before trusting the numbers."""
+    tuned = tune_trials(trials)
+    around = notes_on(model, tuned, free=targets)
+    return [
+        *(f"{words}." for words in in_words(model.profile.doubts())),
+        *(f"{note[0].upper()}{note[1:]}." for note in around),
+        *held_words(model.profile, options, tuned),
+    ]
 
 
 def _named(whole: TrialSet, pieces: Sequence[Trial]) -> list[Trial]:

@@ -14,7 +14,7 @@ from ..profile import ShipProfile
 from ..trial import TrialSet
 from .box import width_words
 from .cmaes import LAMBDAS
-from .extending import settled
+from .extending import held_words, settled, tune_trials
 from .leaving_out import leaving_out
 from .problem import FitProblem
 from .run import in_pieces, make_problem
@@ -44,8 +44,9 @@ class Plan:
 
 def plan_fit(profile: ShipGiven, trials: TrialsGiven, options: FitOptions) -> Plan:
     """What a fit would do.  Raises OptionError for what the fit would refuse."""
-    profile, options = settled(ship_of(profile), options)
-    pieces = in_pieces(trials_of(trials), options)
+    trials = trials_of(trials)
+    profile, options = settled(ship_of(profile), options, trials)
+    pieces = in_pieces(trials, options)
     problem = make_problem(profile, pieces, options)
     search = f"{options.method}, seed {options.seed}, {options.starts} least-squares starts"
     lines = [*whole(profile, pieces, search, options), *_problem(problem, options)]
@@ -54,8 +55,9 @@ def plan_fit(profile: ShipGiven, trials: TrialsGiven, options: FitOptions) -> Pl
 
 def plan_sweep(profile: ShipGiven, trials: TrialsGiven, options: SweepOptions) -> Plan:
     """What a sweep would do, with the box of its narrowest fit.  Raises OptionError for what it would refuse."""
-    profile, options = settled(ship_of(profile), options)
-    pieces = in_pieces(trials_of(trials), options)
+    trials = trials_of(trials)
+    profile, options = settled(ship_of(profile), options, trials)
+    pieces = in_pieces(trials, options)
     widths = sorted(options.widths)
     problems = [make_problem(profile, pieces, options.at(a_r)) for a_r in widths]
     one = plan_fit(profile, pieces, options.at(widths[0]))
@@ -66,9 +68,10 @@ def plan_sweep(profile: ShipGiven, trials: TrialsGiven, options: SweepOptions) -
 
 def plan_leave_out(profile: ShipGiven, trials: TrialsGiven, options: LeaveOutOptions) -> Plan:
     """What leaving runs out would do.  Raises OptionError for what it would refuse."""
-    profile, options = settled(ship_of(profile), options)
+    trials = trials_of(trials)
+    profile, options = settled(ship_of(profile), options, trials)
     own = options.fit_options()
-    pieces = in_pieces(trials_of(trials), own)
+    pieces = in_pieces(trials, own)
     problem = make_problem(profile, pieces, own)
     parts = sum(1 for _ in leaving_out(pieces, options.folds))
     search = f"{parts} fits by least-squares, after one to all runs from {own.starts} starts, seed {own.seed}"
@@ -87,6 +90,7 @@ def whole(profile: ShipProfile, trials: TrialSet, search: str, options: FitOptio
         *(f"stated    {one.id}: {one.order}; {', '.join(one.indices)}" for one in trials.stated.values()),
         f"search    {search}",
         f"runs      {options.integrator}, initial states {options.initial}",
+        *(f"held      {words}" for words in held_words(profile, options, tune_trials(trials))),
     ]
 
 

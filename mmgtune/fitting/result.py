@@ -15,11 +15,13 @@ from ..model import Model
 from ..options import FitOptions
 from ..predictor import words_of
 from ..profile import ShipProfile, tuned
+from ..profile.doubts import in_words
 from ..stated import IndexComparison
 from .box import Box, width_words
 from .certificate import Certificate
 from .cmaes import Generation, Restart
 from .comparison import TrialComparison, finite, finite_values, total
+from .extending import held_words
 from .identifiability import Identifiability
 from .least_squares import LeastSquaresResult
 from .weighing import Weight
@@ -172,10 +174,7 @@ class FitResult:
             found.append("The fit was interrupted; these are the best values so far, not an optimum.")
         if self.diverged:
             found.append(f"{self.diverged} candidates diverged during the search and were given up.")
-        found += [
-            f"Coefficients {names} are outside the range of their formula: {why}."
-            for names, why in self.profile.warnings()
-        ]
+        found += [f"{words}." for words in in_words(self.profile.doubts())]
         generated = sorted({c.trial.id for c in self.compared if c.trial.source == "generated"})
         if generated:
             found.append(f"{len(generated)} of {len(self.compared)} trials are generated, not measured.")
@@ -187,6 +186,7 @@ class FitResult:
         trials = [c.trial for c in self.compared]
         around = notes_on(Model(self.profile), trials, self.theta, self.box.names)
         found += [f"{note[0].upper()}{note[1:]}." for note in around]
+        found += held_words(self.profile, self.options, [c.trial for c in self.compared if c.role == "tune"])
         never = sorted({f"{one.name} of {one.trial}" for one in self.stated if one.simulated["after"] is None})
         if never:
             found.append(f"The tuned model never reaches: {', '.join(never)}.")
@@ -279,6 +279,7 @@ class FitResult:
             "interrupted": self.interrupted,
             "verdict": self.verdict(),
             "warnings": self.warnings(),
+            "doubts": [one.to_dict() for one in self.profile.doubts()],
             "integrator": self.method,
             "J_tune": self.J_of("tune", "after"),
             "J_test": self.J_of("test", "after"),

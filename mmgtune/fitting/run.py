@@ -179,7 +179,7 @@ def fit(
     Raises OptionError for choices that make no sense, OutputError where the checkpoint cannot be written.
     """
     profile, trials = ship_of(profile), trials_of(trials)
-    profile, options = settled(profile, options)
+    profile, options = settled(profile, options, trials)
     provenance = make_provenance(profile, trials, command)
     if checkpoint_folder is None:
         return _fit(profile, trials, options, hooks, None, resume, more_starts, provenance)

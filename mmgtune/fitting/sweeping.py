@@ -87,6 +87,10 @@ class SweepResult:
             "sentence": f"Use a_r = {a_r:g}: it has the least J on {how} ({judged[best]:.4g}).{edge}",
         }
 
+    def warnings(self) -> list[str]:
+        """What a reader must know first: of the best fit, or of the last where the sweep was stopped."""
+        return self.runs[-1 if self.interrupted else self.best].warnings()
+
     def overfitting(self) -> dict[str, Any]:
         """Whether J rises on trials not used while it falls on those tuned to; not said of a sweep that was stopped."""
         if self.interrupted:
@@ -147,7 +151,8 @@ class SweepResult:
             if loo is None
             else [{"a_r": a, "J": J} for a, J in zip(self.widths, loo, strict=True)],
             "overfitting": self.overfitting(),
-            "warnings": self.runs[-1 if self.interrupted else self.best].warnings(),
+            "warnings": self.warnings(),
+            "doubts": [one.to_dict() for one in first.profile.doubts()],
             "citations": first.profile.cites(),
             "wall_s": self.wall_s,
         }
@@ -177,7 +182,7 @@ def sweep(
     Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to.
     """
     profile, trials = ship_of(profile), trials_of(trials)
-    profile, options = settled(profile, options)
+    profile, options = settled(profile, options, trials)
     identity = identity_of(profile, trials, options, make_provenance(profile, trials, command))
     with journalled(folder, identity, hooks.stop, resume=resume):
         swept = _sweep(profile, trials, options, hooks, folder, resume, command)

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray
-from ..errors import LogError, OutputError, Problem
-from ..files import exists, write_text
+from ..errors import LogError, Problem
+from ..files import refuse_existing, write_text
 from ..trial import Trial, write_trial
 from ..trial.schema import ATTRIBUTES, directions, known_column
 from ..trial.unusable import unusable
@@ -109,7 +109,7 @@ def import_logs(
     out = Path(out)
     if not dry_run and not overwrite:
         # Known before the work is done; parts of a log that is cut are found out later.
-        _refuse_existing(
+        refuse_existing(
             [out / REPORT, *(out / f"{_name(log_map.of(Path(log)).id, Path(log))}.parquet" for log in logs)]
         )
     trials: list[Trial] = []
@@ -136,7 +136,7 @@ def import_logs(
         return Imported(tuple(trials), tuple(quality), (), log_map.name)
     files = [out / f"{trial.id}.parquet" for trial in trials]
     if not overwrite:
-        _refuse_existing(files)
+        refuse_existing(files)
     for trial, path in zip(trials, files, strict=True):
         write_trial(trial, path, overwrite)
     imported = Imported(tuple(trials), tuple(quality), tuple(files), log_map.name)
@@ -144,12 +144,6 @@ def import_logs(
         out / REPORT, json.dumps(imported.to_dict(), indent=1, ensure_ascii=False, allow_nan=False) + "\n", overwrite
     )
     return imported
-
-
-def _refuse_existing(paths: Sequence[Path]) -> None:
-    found = [exists(path) for path in dict.fromkeys(paths) if path.exists()]
-    if found:
-        raise OutputError(*found)
 
 
 def _name(template: str, log: Path) -> str:

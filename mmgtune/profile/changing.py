@@ -8,9 +8,9 @@ from typing import Any
 
 from ..components import split_name
 from ..effects import Effect, Parameter, Scale, effects
+from ..physics.constants import GRAVITY
 from .model import ABSENT, Coefficient, Section, ShipProfile
 
-GRAVITY = 9.81
 TUNED = "tuned by mmgtune; before: "
 
 

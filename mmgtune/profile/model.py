@@ -12,6 +12,7 @@ from ..components import ARRANGEMENTS, Arrangement, Component, split_name
 from ..inputs import INPUTS
 from ..physics.actuation import moved
 from ..units import DIMENSIONLESS
+from .doubts import Doubt
 
 ABSENT = "absent"
 """Source of a parameter of an effect that stands at its null and need not be written."""
@@ -192,14 +193,19 @@ class ShipProfile:
             if coefficient.assumption
         ]
 
-    def warnings(self) -> list[tuple[str, str]]:
-        """What is doubtful about its numbers: names of those that share a warning, and the warning."""
-        names: dict[str, list[str]] = {}
-        for kind, section in self.sections.items():
-            for symbol, coefficient in section.coefficients.items():
-                if coefficient.warning:
-                    names.setdefault(coefficient.warning, []).append(f"{kind}.{symbol}")
-        return [(", ".join(of), warning) for warning, of in names.items()]
+    def doubts(self) -> list[Doubt]:
+        """The coefficients that may be wrong, each with why."""
+        return [
+            Doubt(
+                f"{kind}.{symbol}",
+                None if isinstance(one.value, tuple) else one.value,
+                section.component.fields[symbol].unit,
+                one.warning,
+            )
+            for kind, section in self.sections.items()
+            for symbol, one in section.coefficients.items()
+            if one.warning
+        ]
 
     def cites(self) -> list[str]:
         """The papers behind the components in use, each once."""

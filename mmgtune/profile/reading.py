@@ -16,7 +16,7 @@ from ..errors import Problem, ProfileError, brief, closest
 from ..inputs import Input
 from ..metrics import METRICS
 from ..physics.regressions.fujiwara1998 import wind_harmonics
-from ..resources import folder, profile_names
+from ..resources import folder, profile_names, taken
 from ..toml_reading import TomlReader, toml_of
 from .changing import missing_for
 from .model import ABSENT, Actuator, Approach, Coefficient, Section, ShipProfile, SteeringGear
@@ -36,11 +36,8 @@ VALUE_KEYS = ("value", "source", "assumption", "note", "bounds", "pre_determined
 def find_profile(name: str | Path) -> Path:
     """The file of a profile given by path or by the name of a bundled one; ProfileError if there is none."""
     path = Path(name)
-    if path.is_file():
-        return path
-    bundled = folder("ship_profiles") / f"{name}.toml"
-    if path.name == str(name) and bundled.is_file():
-        return bundled
+    if found := taken(name, path.is_file(), folder("ship_profiles") / f"{name}.toml"):
+        return found
     what = "the profile is a folder, not a file" if path.is_dir() else "no such ship profile"
     raise ProfileError(
         Problem(

@@ -6,6 +6,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
+from ..profile.doubts import in_words
 from .advice import shortest
 from .drawing import Drawn
 from .page import Details, Picture, Prose, Section, Table, Tile
@@ -34,6 +35,11 @@ def warnings(data: Mapping[str, Any]) -> tuple[str, ...]:
     said = bool(generated_banner(data["trials"]))
     found = (sentence(text) for text in data.get("warnings") or ())
     return tuple(text for text in found if not (said and text.endswith("trials are generated, not measured.")))
+
+
+def doubts(record: Mapping[str, Any]) -> tuple[str, ...]:
+    """Which numbers of a profile may be wrong, in sentences; records of older versions do not say."""
+    return tuple(f"{clean(words)}." for words in in_words(record.get("doubts") or ()))
 
 
 def misfit_tile(label: str, before: Any, after: Any, none: str) -> Tile:

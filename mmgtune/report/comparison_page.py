@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .common import picture
+from .common import doubts, picture
 from .drawing import AFTER, BEFORE, Drawn, new_figure
 from .load import Kind
 from .page import Cell, Page, Prose, Section, Table, Tile, cells
@@ -89,11 +89,7 @@ def build(record: ComparisonRecord) -> Page:
         title=f"{names[0]} and {names[1]} side by side",
         eyebrow=" · ".join(dict.fromkeys(titles)),
         verdict=_verdict(names, manoeuvres["indices"]),
-        warnings=tuple(
-            f"{clean(one['name'])}: outside its range: {clean(row['warning'])} ({clean(row['of'])})."
-            for one in data["profiles"]
-            for row in one["warnings"]
-        ),
+        warnings=tuple(f"{clean(one['name'])}: {words}" for one in data["profiles"] for words in doubts(one)),
         tiles=_tiles(names, manoeuvres["indices"]),
         sections=tuple(sections),
         figures={drawn.name: drawn for drawn in drawings},

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from . import findings, tracks
 from .advice import shortest
-from .common import assumptions, generated_banner, picture, provenance
+from .common import assumptions, doubts, generated_banner, picture, provenance
+from .differences import draw_differences
 from .drawing import AFTER, MUTED, Drawn, log_ticks, new_figure
 from .load import DiagnosisRecord, Kind, inputs_of, motions_in
 from .page import Block, Cell, Commands, Details, Page, Prose, Section, Table, Tile, cells
@@ -51,7 +52,7 @@ def build(record: DiagnosisRecord) -> Page:
     drawings: dict[str, Drawn] = {}
     sections = [
         _causes(data),
-        _voyages(data),
+        _voyages(data, drawings),
         _why(data, drawings),
         _gain(record, drawings),
         _evidence(data),
@@ -67,7 +68,10 @@ def build(record: DiagnosisRecord) -> Page:
         eyebrow=f"{ship} · {_WORDS.get(data['verdict'], clean(data['verdict']))}",
         verdict=clean(data["sentence"]),
         banners=generated_banner(data["trials"]),
-        warnings=("The search was interrupted; this is what was known by then.",) if data.get("interrupted") else (),
+        warnings=(
+            *(("The search was interrupted; this is what was known by then.",) if data.get("interrupted") else ()),
+            *doubts(data),
+        ),
         tiles=_tiles(data),
         sections=tuple(section for section in sections if section is not None),
         figures=drawings,
@@ -103,12 +107,18 @@ def _tiles(data: Mapping[str, Any]) -> tuple[Tile, ...]:
     return tuple(tiles)
 
 
-def _voyages(data: Mapping[str, Any]) -> Section | None:
+def _voyages(data: Mapping[str, Any], drawings: dict[str, Drawn]) -> Section | None:
     """What differs from voyage to voyage; records of trials, and of older versions, have nothing of it."""
     told = data.get("voyages")
     if not told:
         return None
     blocks: list[Block] = [Prose((clean(told["sentence"]),))]
+    if told["differences"]:
+        title = "What differs from voyage to voyage"
+        drawn = Drawn("differences", title, lambda: draw_differences(told["differences"]))
+        drawings["differences"] = drawn
+        caption = "Voyages in their order; of those without a point the windows do not tell. The numbers are below."
+        blocks.append(picture(drawn, title, caption))
     for one in told["differences"]:
         blocks.append(Prose((clean(one["sentence"]),)))
         names = [name for name in one["by_voyage"][0] if name != "voyage"]

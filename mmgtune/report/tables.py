@@ -103,12 +103,7 @@ def indices(record: RunRecord) -> Table | None:
                 continue
             words, unit = index_words(key)
             errors = [deviation(true, value, unit) for value in (first, last)]
-            better = tone(
-                None
-                if None in (true, first, last)
-                else change(abs((first or 0) - (true or 0)), abs((last or 0) - (true or 0))),
-                1.0,
-            )
+            off = [None if true is None or value is None else value - true for value in (first, last)]
             rows.append(
                 cells(
                     clean(row["id"]),
@@ -117,7 +112,7 @@ def indices(record: RunRecord) -> Table | None:
                     shown(first),
                     errors[0],
                     shown(last),
-                    Cell(errors[1], better),
+                    Cell(errors[1], _nearer(*off)),
                 )
             )
     if not rows:
@@ -137,7 +132,6 @@ def stated(record: RunRecord) -> Table | None:
     for row in record.data.get("stated") or ():
         unit = clean(row.get("unit") or "")
         off = [number((row.get("off") or {}).get(which)) for which in ("before", "after")]
-        better = tone(None if None in off else change(abs(off[0] or 0.0), abs(off[1] or 0.0)), 1.0)
         mark = " (assumed)" if row.get("assumed_tolerance") else ""
         rows.append(
             cells(
@@ -146,7 +140,7 @@ def stated(record: RunRecord) -> Table | None:
                 clean(row.get("words") or row["index"]) + (f" [{unit}]" if unit else ""),
                 f"{shown(row.get('stated'))} ± {shown(row.get('tolerance'), 2)}{mark}",
                 shown(row.get("before")),
-                Cell(shown(row.get("after")), better),
+                Cell(shown(row.get("after")), _nearer(*off)),
                 fixed(off[1], 2),
             )
         )
@@ -159,6 +153,11 @@ def stated(record: RunRecord) -> Table | None:
         tuple(rows),
         numeric=range(3, 7),
     )
+
+
+def _nearer(before: float | None, after: float | None) -> str:
+    """The tone of an error that was ``before`` and is ``after``."""
+    return tone(None if before is None or after is None else change(abs(before), abs(after)), 1.0)
 
 
 def deviation(true: float | None, value: float | None, unit: str) -> str:

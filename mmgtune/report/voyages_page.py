@@ -10,7 +10,7 @@ from typing import Any
 from ..arrays import FloatArray
 from ..units import shown_in
 from . import voyages_figures as figures
-from .common import generated_banner, picture
+from .common import doubts, generated_banner, picture
 from .drawing import Drawn
 from .load import Kind, columns_in
 from .page import Cell, Details, Page, Prose, Section, Table, Tile, cells
@@ -90,6 +90,8 @@ def _warnings(data: Mapping[str, Any]) -> tuple[str, ...]:
     if data.get("shorter"):
         names = ", ".join(clean(name) for name in data["shorter"][:6])
         found.append(f"{count(len(data['shorter']), 'file')} no longer than a trial, cut like the voyages: {names}.")
+    found += [f"{clean(one['profile'])}: {clean(note)}." for one in data["models"] for note in one.get("notes", ())]
+    found += [f"{clean(one['profile'])}: {words}" for one in data["models"] for words in doubts(one)]
     return tuple(found)
 
 

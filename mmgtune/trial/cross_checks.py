@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
+from ..physics.constants import GRAVITY
 from ..physics.frame import to_earth
 from ..units import DEG
 from .finding import Finding
@@ -17,7 +18,6 @@ FASTEST = {
     "r": (3.0, "rad/s^2"),
 }  # fmt: skip
 """Change per second that neither ships nor models of a metre make, by channel."""
-GRAVITY = 9.81
 USUAL_RUDDER = 50.0 * DEG
 """Angle beyond which hardly any rudder goes: common ones stop at 35 to 45 deg."""
 ADVANCE = (0.004, 0.12)

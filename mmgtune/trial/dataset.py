@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Self
 
 from ..errors import Problem, TrialError, closest
-from ..resources import folder, trial_set_names
+from ..resources import folder, taken, trial_set_names
 from .index_trial import IndexTrial, has_index_trials, read_index_trials
 from .model import Trial
 from .parquet import id_in, read_trial
@@ -177,12 +177,8 @@ def files_of(path: Path) -> list[Path]:
 
 def find_trials(name: str | Path) -> Path:
     """The folder or file of a data set given by path or bundled name; TrialError if there is none."""
-    path = Path(name)
-    if path.exists():
-        return path
-    bundled = folder("trials") / str(name)
-    if path.name == str(name) and bundled.is_dir():
-        return bundled
+    if found := taken(name, Path(name).exists(), folder("trials") / str(name)):
+        return found
     names = trial_set_names()
     fix = f"give a folder or a Parquet file, or a bundled name; {closest(str(name), names) if names else 'none here'}"
     raise TrialError(Problem("no such trials", str(name), fix=fix))

@@ -11,6 +11,7 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..errors import Problem, TrialError
 from ..inputs import INPUTS
+from ..physics.constants import GRAVITY
 from .model import Trial
 from .motion_checks import full_turns
 from .pieces import cuts, named
@@ -23,6 +24,9 @@ LEFT_OUT = ("unknown inputs", "incomplete motion", "too short")
 
 LEAST = 0.5
 """Share of the length that a window must last; a distance measure grows with time, and short ones flatter."""
+
+AT_REST = 0.02
+"""Froude number U / sqrt(g L_pp) below which the ship is at rest: relative distances say nothing there."""
 
 
 class Window(NamedTuple):
@@ -80,6 +84,16 @@ def voyage_windows(
         ended = block.row + len(block.columns["t"]) == voyage.n_rows
         windows, rest = _cut(voyage, whole, length, gap, needed, told, more=not ended)
         yield from windows
+
+
+def rest_speed(L_pp: float) -> float:
+    """Mean speed [m/s] of a window below which a ship of this length [m] is at rest."""
+    return AT_REST * float(np.sqrt(GRAVITY * L_pp))
+
+
+def mean_speed(trial: Trial) -> float:
+    """Over the samples that have one [m/s]."""
+    return float(np.nanmean(np.hypot(trial.u, trial.v_m)))
 
 
 def window_at(voyage: Voyage, row: int, n_samples: int) -> Window:

@@ -11,6 +11,7 @@ import numpy as np
 from ..arrays import BoolArray
 from ..backends import STATES
 from ..files import atomic, write_text
+from ..fitting.journal import finished
 from ..trial.parquet import GROUP_ROWS
 from .result import VoyageValidation
 
@@ -24,6 +25,8 @@ def write_voyages(result: VoyageValidation, folder: Path) -> dict[str, Any]:
         write_table(folder / "drawn.parquet", _drawn(result))
     document = {**result.to_dict(), "out": str(folder)}
     write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+    if not result.interrupted:
+        finished(folder)
     return document
 
 

@@ -126,6 +126,7 @@ class VoyageValidation:
     sigma, sigma_from  what L_MSE divides by [SI], and where it comes from
     drawn       windows to be looked at
     shorter     ids of files that are no voyages by themselves
+    notes       on what was around the ship, by model
     interrupted  stopped by the user; everything is of the windows scored by then
     """
 
@@ -142,6 +143,7 @@ class VoyageValidation:
     options: VoyageOptions = field(default_factory=VoyageOptions)
     shorter: tuple[str, ...] = ()
     n_logs: int = 0
+    notes: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     interrupted: bool = False
     wall_s: float = 0.0
 
@@ -260,6 +262,8 @@ class VoyageValidation:
             "id": predictor.name,
             "sha256": profile.sha256 if profile else None,
             "method": predictor.method,
+            "notes": list(self.notes.get(name, ())),
+            "doubts": [one.to_dict() for one in profile.doubts()] if profile else [],
         }
         if self.table is None:
             return found

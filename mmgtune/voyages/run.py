@@ -4,23 +4,28 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ..arrays import FloatArray
+from ..backends import Cases
+from ..circumstances import acts_on_surroundings, extremes, notes
 from ..errors import OptionError, Problem, TrialError
+from ..fitting.journal import journalled, remembered
 from ..fitting.run import facts_of_profile, made_by
 from ..given import trials_of
 from ..objective import spread
 from ..options import VoyageOptions
-from ..predictor import Predictor, draught_of, profile_of
+from ..predictor import PhysicsPredictor, Predictor, draught_of, profile_of
 from ..threads import blas_on_one_thread
 from ..trial import Cutting, Voyage, VoyageSet, load_voyages, voyage_windows, window_at
-from ..trial.voyage_windows import Window
+from ..trial.voyage_windows import Window, mean_speed, rest_speed
 from ..units import DEG
 from ..validating import Scorable, predictors_of
+from .part import Part, noted, recalled
 from .result import DrawnWindow, Log, VoyageValidation
 from .scores import cases_for, score_windows, windows_of
 from .spread import Spread
@@ -29,9 +34,6 @@ from .turning import r_max_of
 
 AT_ONCE = 60_000
 """Samples of windows simulated at one time; bounds the memory."""
-
-AT_REST = 0.02
-"""Froude number U / sqrt(g L_pp) below which the ship is at rest: relative distances say nothing there."""
 
 EACH = 2
 """Windows drawn of each role: best, median, worst."""
@@ -49,66 +51,64 @@ class Hooks:
     stop: Callable[[], bool] = lambda: False
 
 
-@dataclass(eq=False)
-class _Run:
-    """A validation under way."""
+@dataclass(frozen=True, eq=False)
+class _Work:
+    """What is done with each voyage.
+
+    slowest  mean speed [m/s] of windows below which the ship is at rest
+    before   rows of the voyages before this one, and total: of all; for ``hooks``
+    """
 
     predictors: Mapping[str, Predictor]
     options: VoyageOptions
     hooks: Hooks
     slowest: float
+    before: int
     total: int
-    gathered: Gathered = field(default_factory=Gathered)
-    spread: Spread = field(default_factory=Spread)
-    logs: list[Log] = field(default_factory=list)
-    rows: int = 0
 
     @property
     def inputs(self) -> list[str]:
         """All that drives any of the models."""
         return list(dict.fromkeys(name for one in self.predictors.values() for name in one.inputs))
 
-    def score(self, voyage: Voyage, number: int) -> bool:
-        """All windows of a voyage; whether it was read to its end."""
-        sha256 = voyage.verify()
-        counted = Cutting()
-        scored = at_rest = 0
-        stopped = False
-        found = voyage_windows(voyage, self.options.window, gap=self.options.gap, inputs=self.inputs, counted=counted)
-        for some in _portions(found):
-            stopped = self.hooks.stop()
-            if stopped:
-                break
-            resting = self._add(some, number)
-            at_rest += resting
-            scored += len(some) - resting
-            self.hooks.on_progress(self.rows + counted.rows, self.total, voyage.id)
-        self.rows += voyage.n_rows
-        self.logs.append(Log(voyage, counted, scored, at_rest, sha256, not stopped))
-        return not stopped
 
-    def _add(self, some: Sequence[Window], number: int) -> int:
-        """Score windows; returns how many are left out because the ship was at rest."""
-        speed = [float(np.nanmean(np.hypot(one.trial.u, one.trial.v_m))) for one in some]
-        moving = [one for one, U in zip(some, speed, strict=True) if self.slowest <= U]
-        if not moving:
-            return len(some)
-        windows = windows_of([one.trial for one in moving])
-        self.spread.add(windows.motion)
-        self.gathered.ids += [one.trial.id for one in moving]
-        self.gathered.about += [
-            (number, one.row, one.trial.n_samples, one.begins, one.trial.duration) for one in moving
-        ]
-        self.gathered.features.append(windows.features())
-        self.gathered.counts.append(windows.counts)
-        cases: dict[tuple[tuple[str, ...], float | None], Any] = {}
-        for name, predictor in self.predictors.items():
-            driven = tuple(predictor.inputs), draught_of(predictor)
-            if driven not in cases:
-                cases[driven] = cases_for(windows, *driven)
-            scores, _ = score_windows(predictor, windows, cases[driven])
-            self.gathered.scores.setdefault(name, []).append(scores)
-        return len(some) - len(moving)
+@remembered(lambda work, voyage, number, sha256: [voyage.id, number, sha256, *work.predictors], noted, recalled)
+def score_voyage(work: _Work, voyage: Voyage, number: int, sha256: str) -> Part:
+    """All windows of a voyage, up to where it is stopped."""
+    part = Part()
+    options, counted = work.options, part.counted
+    found = voyage_windows(voyage, options.window, gap=options.gap, inputs=work.inputs, counted=counted)
+    for some in _portions(found):
+        if work.hooks.stop():
+            part.complete = False
+            break
+        moving = [one for one in some if mean_speed(one.trial) >= work.slowest]
+        part.at_rest += len(some) - len(moving)
+        if moving:
+            _score(work, moving, number, part)
+        work.hooks.on_progress(work.before + counted.rows, work.total, voyage.id)
+    return part
+
+
+def _score(work: _Work, moving: Sequence[Window], number: int, part: Part) -> None:
+    windows = windows_of([one.trial for one in moving])
+    part.spread.add(windows.motion)
+    gathered = part.gathered
+    gathered.ids += [one.trial.id for one in moving]
+    gathered.about += [(number, one.row, one.trial.n_samples, one.begins, one.trial.duration) for one in moving]
+    gathered.features.append(windows.features())
+    gathered.counts.append(windows.counts)
+    cases: dict[tuple[tuple[str, ...], float | None], Cases] = {}
+    for name, predictor in work.predictors.items():
+        driven = tuple(predictor.inputs), draught_of(predictor)
+        if driven not in cases:
+            cases[driven] = cases_for(windows, *driven)
+        scores, _ = score_windows(predictor, windows, cases[driven])
+        gathered.scores.setdefault(name, []).append(scores)
+        if isinstance(predictor, PhysicsPredictor) and acts_on_surroundings(predictor.model):
+            here = cases[driven].around.reshape(-1, cases[driven].around.shape[-1])
+            met = [part.around[name]] if name in part.around else []
+            part.around[name] = extremes(np.concatenate([*met, here]))
 
 
 @blas_on_one_thread
@@ -118,15 +118,20 @@ def validate_voyages(
     options: VoyageOptions = VoyageOptions(),
     *,
     hooks: Hooks | None = None,
+    folder: Path | None = None,
+    resume: bool = False,
     command: str = "",
 ) -> VoyageValidation:
     """Score models on the windows of voyages, each window simulated from its first measured state.
 
     profiles  as for ``validate``
     voyages   logs of hours and days, or the path of a file or a folder; they are never held whole
+    folder    where each finished voyage is noted at once; None for nowhere
+    resume    continue what was stopped in the folder; a predictor without a profile counts as the same by its name
 
     r_max of cVDM is the ship's: as given, else the first physics model's in its own turn, else of the logs.
-    Raises OptionError for no profile and for repeated manoeuvres; TrialError for what is wrong with a file, and where
+    Raises OptionError for no profile, for repeated manoeuvres, and where there is nothing to resume or it belongs to
+    another run; OutputError where the folder cannot be written to; TrialError for what is wrong with a file, and where
     no window could be cut.
     """
     began = time.perf_counter()
@@ -137,37 +142,72 @@ def validate_voyages(
     data = voyages if isinstance(voyages, VoyageSet) else load_voyages(voyages)
     told = Hooks() if hooks is None else hooks
     sigma = spread(list(trials_of(options.sigma_from).trials.values())) if options.sigma_from else None
-    first = next(iter(predictors.values()))
-    run = _Run(predictors, options, told, AT_REST * float(np.sqrt(9.81 * first.L_pp)), data.n_rows)
+    slowest = rest_speed(next(iter(predictors.values())).L_pp)
+    gathered, spreads = Gathered(), Spread()
+    logs: list[Log] = []
+    around: dict[str, dict[str, FloatArray]] = {name: {} for name in predictors}
     interrupted = False
-    for number, voyage in enumerate(data.voyages):
-        interrupted = told.stop() or not run.score(voyage, number)
-        if interrupted:
-            break
-    if not run.gathered.ids and not interrupted:
-        raise TrialError(_nothing(data, run.logs))
+    with journalled(folder, _identity(predictors, data, options), told.stop, resume=resume):
+        for number, voyage in enumerate(data.voyages):
+            interrupted = told.stop()
+            if interrupted:
+                break
+            sha256 = voyage.verify()
+            work = _Work(predictors, options, told, slowest, sum(log.voyage.n_rows for log in logs), data.n_rows)
+            part = score_voyage(work, voyage, number, sha256)
+            gathered.add(part.gathered)
+            spreads.join(part.spread)
+            for name, rows in part.around.items():
+                around[name][voyage.id] = rows
+            logs.append(Log(voyage, part.counted, len(part.gathered.ids), part.at_rest, sha256, part.complete))
+            interrupted = not part.complete
+            if interrupted:
+                break
+    if not gathered.ids and not interrupted:
+        raise TrialError(_nothing(data, logs))
     given = None if options.r_max is None else options.r_max * DEG
-    largest = np.concatenate([one["yaw_rate_largest"] for one in run.gathered.features] or [np.zeros(0)])
+    largest = np.concatenate([one["yaw_rate_largest"] for one in gathered.features] or [np.zeros(0)])
     r_max, r_max_from = r_max_of(given, predictors.items(), largest)
-    table = run.gathered.table(r_max) if run.gathered.ids else None
+    table = gathered.table(r_max) if gathered.ids else None
     by = f"{options.sigma_from}" if options.sigma_from else "the windows, positions from the start of each"
     return VoyageValidation(
         predictors=predictors,
         trials=str(data.path),
-        logs=tuple(run.logs),
+        logs=tuple(logs),
         table=table,
         r_max=r_max,
         r_max_from=r_max_from,
-        sigma=sigma or run.spread.sigma(),
+        sigma=sigma or spreads.sigma(),
         sigma_from=by,
         drawn=_drawn(table, data, predictors) if table is not None else (),
-        provenance=_provenance(predictors, data, run.logs, command),
+        provenance=_provenance(predictors, data, logs, command),
         options=options,
         shorter=data.shorter,
         n_logs=len(data.voyages),
+        notes={name: _notes(one, around[name]) for name, one in predictors.items()},
         interrupted=interrupted,
         wall_s=time.perf_counter() - began,
     )
+
+
+def _notes(predictor: Predictor, around: Mapping[str, FloatArray]) -> tuple[str, ...]:
+    """What a reader should know of the surroundings of the voyages for one model."""
+    return tuple(notes(predictor.model, around, of="voyage")) if isinstance(predictor, PhysicsPredictor) else ()
+
+
+def _identity(predictors: Mapping[str, Predictor], data: VoyageSet, options: VoyageOptions) -> dict[str, Any]:
+    """Everything a run depends on but what is in the voyages, which is noted with each."""
+    made = made_by("")
+    profiles = {name: profile_of(one) for name, one in predictors.items()}
+    return {
+        "profiles": {
+            name: own.sha256 if (own := profiles[name]) is not None else [one.name, one.method]
+            for name, one in predictors.items()
+        },
+        "trials": [one.id for one in data.voyages],
+        "options": options.to_dict(),
+        "versions": {**made["environment"], "mmgtune": made["mmgtune"]},
+    }
 
 
 def _portions(windows: Iterator[Window]) -> Iterator[list[Window]]:

@@ -115,6 +115,15 @@ class Gathered:
     counts: list[FloatArray] = field(default_factory=list)
     scores: dict[str, list[Scores]] = field(default_factory=dict)
 
+    def add(self, more: Gathered) -> None:
+        """Windows of another voyage behind these."""
+        self.ids += more.ids
+        self.about += more.about
+        self.features += more.features
+        self.counts += more.counts
+        for name, scores in more.scores.items():
+            self.scores.setdefault(name, []).extend(scores)
+
     def table(self, r_max: float) -> WindowTable:
         """What came, with cVDM relative to ``r_max`` [rad/s]."""
         features = {name: np.concatenate([one[name] for one in self.features]) for name in self.features[0]}

@@ -3,17 +3,21 @@
 import fcntl
 import multiprocessing
 import os
+from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 
 import pytest
 
 from mmgtune.errors import OutputError, ProfileError
+from mmgtune.estimating import read_particulars
 from mmgtune.files import atomic
 from mmgtune.fitting import claimed, prepare
 from mmgtune.fitting.sweeping import folder_name
 from mmgtune.profile import load_profile, parse_profile
-from tests.command import typed
+from mmgtune.resources import folder
+from mmgtune.trial import load_trials, write_trial
+from tests.command import run, typed
 
 
 def killed_while_writing(path):
@@ -117,3 +121,31 @@ def test_two_runs_within_a_second_have_a_folder_each(tmp_path, monkeypatch):
         folder = common.default_out(ship)
         assert folder == Path("runs") / f"20260101-000000-suzaku{f'-{k + 1}' if k else ''}"
         folder.mkdir(parents=True)
+
+
+def test_a_folder_that_hides_bundled_trials_is_named_once(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "suzaku").mkdir()
+    trial = load_trials(folder("trials") / "suzaku").trials["turn_p35"]
+    write_trial(replace(trial, id="own"), tmp_path / "suzaku" / "own.parquet")
+    ended = run("validate", "suzaku", "suzaku", "--backend", "numpy", "--json", cwd=tmp_path)
+    assert ended.code == 0, ended.err
+    assert [row["id"] for row in ended.json()["profiles"][0]["trials"]] == ["own"]
+    said = f"warning: 'suzaku' is {tmp_path / 'suzaku'}, not what is bundled under that name, which is "
+    assert ended.err.count(said + str(folder("trials") / "suzaku")) == 1
+    assert ended.err.count("bundled") == 1  # the folder is no profile, and hides none
+
+
+def test_files_that_hide_bundled_profiles_and_particulars(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "kvlcc2").write_text(load_profile("suzaku").text)
+    with pytest.warns(UserWarning, match="not what is bundled"):
+        assert load_profile("kvlcc2").id == "suzaku"
+    (tmp_path / "suzaku").write_text((folder("ship_profiles") / "particulars" / "kvlcc2.toml").read_text())
+    with pytest.warns(UserWarning, match="not what is bundled"):
+        assert read_particulars("suzaku").id == "kvlcc2"
+
+
+def test_the_bundled_folder_itself_hides_nothing(monkeypatch):
+    monkeypatch.chdir(folder("trials"))
+    assert "turn_p35" in load_trials("suzaku").trials  # a warning would be an error

@@ -1,12 +1,13 @@
 """``mmgtune profile new`` and ``profile compare`` as a user types them."""
 
 import io
+from importlib import import_module
 
 import pytest
 
 from mmgtune.cli import profiles
 from mmgtune.profile import load_profile
-from tests.command import run
+from tests.command import run, typed
 
 ANSWERS = ("M.V. Ask Me", "83 m", "13.5 m", "3.8 m", "0.737", "12 kn", "", "", "", "", "")
 
@@ -70,6 +71,24 @@ def test_other_formulas_by_flag(tmp_path):
     ship = load_profile(tmp_path / "a.toml")
     assert "Clarke" in ship.coefficient("hull.N_r").source
     assert "1982" in ship.coefficient("wake.w_P0").source
+
+
+def test_an_output_that_exists_is_found_before_the_work(tmp_path, monkeypatch):
+    def work(*_args, **_named):
+        raise AssertionError("worked before it looked")
+
+    monkeypatch.setattr("mmgtune.comparing.compare", work)
+    monkeypatch.setattr("mmgtune.simulating.simulate", work)
+    for module, names in (("fitting", ("plan_fit", "plan_sweep", "plan_leave_out")), ("diagnose", ("plan_diagnosis",))):
+        for name in names:
+            monkeypatch.setattr(import_module(f"mmgtune.{module}"), name, work)
+    (tmp_path / "comparison.json").write_text("{}")
+    (tmp_path / "turn_p20.parquet").write_text("")
+    tuning = (("fit",), ("sweep",), ("leave-out",), ("diagnose",))
+    for words in (("profile", "compare", "suzaku", "kvlcc2"), ("simulate", "--turn", "20"), *tuning):
+        ended = typed(*words, "--out", tmp_path)
+        assert ended.code == 2
+        assert "exists already" in ended.err
 
 
 def test_two_profiles_compared(tmp_path):

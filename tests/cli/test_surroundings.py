@@ -1,13 +1,17 @@
 """What commands say of trials that lack what the model acts on: once, and in JSON."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from mmgtune.profile import load_profile
-from mmgtune.trial import load_trials, write_trial
+from mmgtune.circumstances import extremes, notes
+from mmgtune.model import Model
+from mmgtune.profile import load_profile, with_effects
+from mmgtune.trial import load_trials, surroundings, write_trial
 from tests.command import run
+from tools.generate_voyage import make_voyage
 
 SAID = "2 of 3 trials have no measured current: still water there"
 HIGH = "waves are up to 4 m high, and STAWAVE-1 holds up to 2.05 m for this ship"
@@ -71,3 +75,52 @@ def test_trials_check_and_inspect_know_the_columns(folder):
     inspected = run("trials", "inspect", "trials/turn_p35.parquet", cwd=folder)
     assert "current_dir" in inspected.out
     assert "deg" in inspected.out
+
+
+@pytest.fixture(scope="module")
+def voyages(folder):
+    """Two logs of an hour, one of them with a current and waves that get too high."""
+    hour = make_voyage(Model(load_profile("suzaku")), 1.1)
+    n = hour.n_samples
+    high = np.where(hour.t > 3000.0, 4.0, 0.3)
+    extra = {"current_speed": np.full(n, 0.3), "current_dir": np.ones(n), "wave_height": high, "wave_dir": np.zeros(n)}
+    write_trial(replace(hour, id="a"), folder / "voyages" / "a.parquet")
+    write_trial(replace(hour, id="b", extra=extra), folder / "voyages" / "b.parquet")
+    return folder / "voyages"
+
+
+def test_validate_on_voyages_says_it_once_for_each_model(folder, voyages):
+    arguments = ("validate", "ship.toml", "suzaku", voyages, "--backend", "numpy", "--restart", "300", "--out", "on")
+    ended = run(*arguments, cwd=folder)
+    assert ended.code == 0, ended.err
+    said = "1 of 2 voyages has no measured current: still water there"
+    assert ended.err.count(f"note: ship.toml: {said}\n") == 1
+    assert ended.err.count(f"note: ship.toml: {HIGH}\n") == 1
+    assert "suzaku:" not in ended.err
+    acting, other = json.loads((folder / "on" / "voyages.json").read_text())["models"]
+    assert acting["notes"] == [said, "1 of 2 voyages has no measured waves: no waves there", HIGH]
+    assert other["notes"] == []
+    assert f"ship.toml: {said}." in (folder / "on" / "report.html").read_text()
+
+
+def test_extremes_of_surroundings_say_the_same(suzaku):
+    """A few samples of each trial are as good as all of them."""
+    rng = np.random.default_rng(3)
+    acting = {tag: {"measured": 1.0} for tag in ("wind", "current", "waves", "shallow-water")}
+    model = Model(with_effects(suzaku.profile, acting, "as measured"))
+    trial = load_trials("suzaku").trials["turn_p35"]
+    around = {}
+    for k in range(6):
+        extra = {
+            "wave_height": rng.uniform(0.0, 4.0, trial.n_samples),
+            "wave_dir": rng.uniform(-3.0, 3.0, trial.n_samples),
+            "depth": rng.uniform(5.0, 60.0, trial.n_samples),
+            "wind_speed": rng.uniform(0.0, 9.0, trial.n_samples),
+            "wind_dir": rng.uniform(-3.0, 3.0, trial.n_samples),
+        }
+        kept = {name: values for name, values in extra.items() if rng.random() < 0.7}
+        around[f"{k}"] = surroundings(replace(trial, extra=kept), model.draught)
+    few = {name: extremes(rows) for name, rows in around.items()}
+    assert max(map(len, few.values())) < 25
+    assert len(notes(model, around)) > 3
+    assert notes(model, few) == notes(model, around)

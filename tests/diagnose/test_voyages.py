@@ -75,7 +75,10 @@ def test_as_a_user_runs_it(tmp_path):
     document = json.loads((tmp_path / "out" / "diagnosis.json").read_text())
     (current,) = document["voyages"]["differences"]
     assert [row["voyage"] for row in current["by_voyage"]] == ["voyage_01", "voyage_02", "voyage_03"]
-    assert "From voyage to voyage" in (tmp_path / "out" / "report.html").read_text()
+    html = (tmp_path / "out" / "report.html").read_text()
+    assert "From voyage to voyage" in html
+    assert "current north [m/s]" in html  # a panel of the figure
+    assert (tmp_path / "out" / "figures" / "differences.svg").is_file()
 
 
 def test_windows_are_bounded_spread_and_the_same_again(tmp_path):

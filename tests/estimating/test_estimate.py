@@ -9,6 +9,7 @@ from mmgtune.errors import OptionError, ProfileError
 from mmgtune.estimating import parse_particulars
 from mmgtune.physics.regressions import wageningen
 from mmgtune.profile import parse_profile
+from mmgtune.profile.doubts import in_words
 from mmgtune.resources import folder, particulars_names
 
 SETS = [("mmg", None), ("fam", "inoue"), ("fam", "clarke"), ("fam", "kijima")]
@@ -82,14 +83,18 @@ def test_pitch_is_found_from_the_revolutions():
     ship = estimate(parse_particulars(SMALL + 'n = "180 rpm"\n[propeller]\nD_P = "2.8 m"\n'))
     found = mmgtune.breakdown(ship, np.array([[0.0, 0.0, 0.0, ship.approach.speed, 0.0, 0.0]]), np.array([[3.0, 0.0]]))
     assert found.total.X[0] == pytest.approx(0.0, abs=0.05 * abs(found.hull.X[0]))  # the parabola's own error
-    assert not ship.warnings()
+    assert not ship.doubts()
 
 
 def test_revolutions_that_no_pitch_explains_are_a_warning():
     ship = estimate(parse_particulars(SMALL + 'n = "40 rpm"\n[propeller]\nD_P = "2.8 m"\n'))
-    ((names, warning),) = ship.warnings()
-    assert "propeller.k_0" in names
-    assert "do not go together" in warning
+    found = ship.doubts()
+    assert [one.name for one in found] == ["propeller.k_0", "propeller.k_1", "propeller.k_2"]
+    assert found[0].value == ship.value("propeller.k_0")
+    assert found[0].unit == "-"
+    (words,) = in_words(found)
+    assert words.startswith("propeller.k_0, propeller.k_1, propeller.k_2 are doubtful: no pitch of the series")
+    assert words.endswith("do not go together")  # and nothing of a range
 
 
 def test_an_open_water_curve_is_followed():
@@ -104,11 +109,13 @@ def test_an_open_water_curve_is_followed():
 
 def test_outside_a_formulas_range_is_a_warning_with_the_numbers():
     ship = estimate(parse_particulars(changed(B='"30 m"')))
-    told = dict((warning, names) for names, warning in ship.warnings())
-    (holtrop,) = [warning for warning in told if warning.startswith("Holtrop 1984")]
-    assert "L/B is 2.77, outside 3.9 to 9.5" in holtrop
-    assert "hull.R_0" in told[holtrop]
-    assert parse_profile(ship.text).warnings() == ship.warnings()
+    found = ship.doubts()
+    told = {one.name: one.warning for one in found}
+    assert told["hull.R_0"].startswith("Holtrop 1984")
+    assert "L/B is 2.77, outside 3.9 to 9.5" in told["hull.R_0"]
+    assert parse_profile(ship.text).doubts() == found
+    assert in_words([one.to_dict() for one in found]) == in_words(found)
+    assert len(in_words(found)) == len(set(told.values()))
 
 
 def test_starboard_circle_is_wider_than_port_where_the_slipstream_makes_it_so():

@@ -6,8 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmgtune.fitting import FitOptions, fit
-from mmgtune.fitting.box import make_box
+from mmgtune.fitting import FitOptions, fit, plan_fit
+from mmgtune.fitting.box import choose_targets, make_box
+from mmgtune.fitting.extending import settled
 from mmgtune.fitting.extending import with_effects as put_in
 from mmgtune.model import Model
 from mmgtune.profile import load_profile, parse_profile, with_effects
@@ -100,3 +101,36 @@ def test_a_lag_that_is_not_there_stays_at_its_null(tmp_path):
     shown = run("profile", "show", "run/profile.toml", "--json", cwd=tmp_path)
     values = {row["name"]: row["value"] for row in shown.json()["coefficients"]}
     assert values[RATE_LIMIT] == theta[RATE_LIMIT]
+
+
+def test_a_factor_on_what_no_trial_measured_is_held(ship):
+    """Nothing would determine it, and the fit would say so of a coefficient that nobody asked for."""
+    data = load_trials("suzaku")
+    some = replace(data, trials={"turn_p35": data.trials["turn_p35"]}, tune=("turn_p35",), test=())
+    name = "effects.current.measured"
+    asked = FitOptions(method="least-squares", starts=1, targets=("hull.R_0",), with_effects=("current",))
+    result = fit(ship, some, asked)
+    assert name not in result.theta
+    assert {"effects.current.north", "effects.current.east"} < set(result.theta)
+    assert name in result.held
+    said = f"{name} is held at 0: no tune trial has measured current."
+    assert [one for one in result.warnings() if name in one] == [said]
+    assert said in str(plan_fit(ship, some, asked))
+    assert name not in result.identifiability.undetermined
+
+
+def test_it_is_tuned_where_a_trial_measured_it_and_where_it_is_asked_for(ship):
+    data = load_trials("suzaku")
+    name = "effects.current.measured"
+    asked = FitOptions(targets=("hull.R_0",), with_effects=("current",))
+    trial = data.trials["turn_p35"]
+    here = {"current_speed": np.full(trial.n_samples, 0.2), "current_dir": np.zeros(trial.n_samples)}
+    with_current = replace(data, trials={**data.trials, "turn_p35": replace(trial, extra=here)})
+    assert "turn_p35" in data.tune
+    for trials, options in ((with_current, asked), (data, replace(asked, targets=("hull.R_0", name)))):
+        profile, found = settled(ship, options, trials)
+        assert name in choose_targets(Model(profile), found.targets, found.fixed)
+        assert settled(profile, found, trials) == (profile, found)
+    profile, found = settled(ship, asked, data)
+    assert name not in choose_targets(Model(profile), found.targets, found.fixed)
+    assert settled(profile, found, data) == (profile, found)

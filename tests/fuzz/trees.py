@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .mutating import odd_text, pick
+from .mutating import encoded, mutated_bytes, mutated_lines, odd_text, pick, several
 
 DEEP: list[Any] = [[[[[[[[[[[[]]]]]]]]]]]]
 STEERING = "\x1b]0;x\x07\n::error::planted\r\u202e"
@@ -102,3 +102,14 @@ def _inline(value: Any) -> str:
         return '""'
     text = str(value).encode("utf-8", "replace").decode()
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def hostile_toml(rng: np.random.Generator, text: str, tree: dict[str, Any]) -> bytes:
+    """A TOML file with something wrong in its values, lines or bytes; tree is what its text says."""
+    how = rng.random()
+    if how < 0.7:
+        return encoded(as_toml(several(rng, tree, [mutated])))
+    if how < 0.85:
+        return encoded("\n".join(several(rng, text.splitlines(), [mutated_lines])))
+    content = text.encode(pick(rng, ("utf-8", "utf-8", "utf-8-sig", "utf-16", "cp1252")), "replace")
+    return several(rng, content, [mutated_bytes])

@@ -214,11 +214,13 @@ def test_damage_in_the_middle_leaves_no_result(voyage, tmp_path):
     content[len(content) // 2] ^= 0xFF
     path.write_bytes(content)
     for logs in ("logs", "a.parquet"):
-        ended = run("validate", "suzaku", logs, "--out", "run", cwd=tmp_path)
+        out = f"of_{logs}"
+        ended = run("validate", "suzaku", logs, "--out", out, cwd=tmp_path)
         assert ended.code == 2, ended.out
         assert "Traceback" not in ended.err
+        assert f"--resume --out {out} goes on" in ended.err
         assert "row 6000" in ended.err or "row group 1 of 1" in ended.err or "not what was written" in ended.err
-        assert not (tmp_path / "run" / "voyages.json").exists()
+        assert not (tmp_path / out / "voyages.json").exists()
 
 
 def test_nothing_to_cut(voyage, tmp_path):

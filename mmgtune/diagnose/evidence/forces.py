@@ -11,10 +11,10 @@ from scipy.interpolate import CubicSpline
 from ...arrays import FloatArray
 from ...model import Model
 from ...physics.prime import force_unit, moment_unit
-from ...physics.quantities import Forces, Ship
+from ...physics.quantities import HELD, Forces, Ship, Surroundings
 from ...physics.rigid_body import accelerations
 from ...simulation import breakdown
-from ...trial import Trial
+from ...trial import Trial, surroundings
 from ...trial.kinematics import white_noise
 from .smoothing import Smoothed, smooth
 
@@ -107,9 +107,9 @@ class ResidualForces:
 def residual_forces(model: Model, trial: Trial) -> ResidualForces:
     """Residual forces of a trial against a model, by inverse dynamics from smoothed measured motion.
 
-    Both sides are blunted alike: inputs are smoothed as the motion is (see ``smoothing``).  Effects of the model act
-    as in ``simulation.breakdown`` in still air and water: what depends on the past, or was measured around the ship, is
-    not in the model's forces.
+    Both sides are blunted alike: inputs and what was measured around the ship are smoothed as the motion is (see
+    ``smoothing``).  Effects of the model act as in ``simulation.breakdown``: what depends on the past is not in the
+    model's forces.
 
     Raises ValueError where u, v_m and r are measured together at fewer than 10 samples, or nowhere for long enough.
     """
@@ -119,7 +119,8 @@ def residual_forces(model: Model, trial: Trial) -> ResidualForces:
         raise ValueError(f"trial '{trial.id}' is too short, or too broken by gaps, for forces: tau {motion.tau:.3g} s")
     known = np.flatnonzero(np.isfinite(motion.states[:, 3:]).all(axis=1))
     controls = motion.alike(trial.inputs(model.inputs))
-    found = breakdown(model, motion.states[known], controls[known])
+    around = measured(model, trial, motion)
+    found = breakdown(model, motion.states[known], controls[known], around[known])
     velocities = _velocities(found)
     # A natural cubic spline through a natural cubic spline's own values at its knots is that spline.
     slopes = CubicSpline(motion.t[known], velocities, bc_type="natural")(motion.t[known], 1)
@@ -133,7 +134,7 @@ def residual_forces(model: Model, trial: Trial) -> ResidualForces:
         id=trial.id,
         sample=at,
         force=force,
-        noise=_noise(model, motion, controls, at, slopes[inner]),
+        noise=_noise(model, motion, controls, around, at, slopes[inner]),
         unit=np.column_stack([unit_F, unit_F, unit_M]),
         time=trial.t[at],
         heading=motion.states[at, 2],
@@ -193,15 +194,29 @@ def time_since_order(t: FloatArray, delta: FloatArray) -> FloatArray:
     return ordered
 
 
+def measured(model: Model, trial: Trial, motion: Smoothed) -> FloatArray:
+    """(n_samples, n_surroundings) as ``surroundings`` has them, blunted as the motion is."""
+    found = surroundings(trial, model.draught)
+    moving = [k for k, name in enumerate(Surroundings._fields) if name not in HELD and found[:, k].any()]
+    if moving:
+        found[:, moving] = motion.alike(found[:, moving])
+    return found
+
+
 def _noise(
-    model: Model, motion: Smoothed, controls: FloatArray, at: npt.NDArray[np.intp], slopes: FloatArray
+    model: Model,
+    motion: Smoothed,
+    controls: FloatArray,
+    around: FloatArray,
+    at: npt.NDArray[np.intp],
+    slopes: FloatArray,
 ) -> FloatArray:
     """(n, 3) deviation of residual forces from noise in u, v_m and r and, apart from it, in their slopes."""
-    states, controls = motion.states[at], controls[at]
+    states, controls, around = motion.states[at], controls[at], around[at]
     value_noise, slope_noise = motion.value_noise[3:], motion.slope_noise[3:]
 
     def force(moved: FloatArray, change: FloatArray) -> FloatArray:
-        found = breakdown(model, moved, controls)
+        found = breakdown(model, moved, controls, around)
         return needed_force(model, _velocities(found), slopes + change) - _total(found)
 
     base = force(states, np.zeros(3))

@@ -2,9 +2,8 @@
 
 import numpy as np
 
+from ..constants import GRAVITY
 from ..elementary import where
-
-GRAVITY = 9.81
 
 LEAST = 1e-24
 """Square of a height [m^2] below which waves have no direction; far from the ends of either precision."""

@@ -5,12 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mmgtune.backends import STATES, Integrator
 from mmgtune.diagnose.evidence import residual_forces
-from mmgtune.diagnose.evidence.forces import needed_force, time_since_order
+from mmgtune.diagnose.evidence.forces import measured, needed_force, time_since_order
 from mmgtune.diagnose.evidence.smoothing import smooth
 from mmgtune.model import Model
+from mmgtune.physics.quantities import Surroundings
 from mmgtune.physics.rigid_body import accelerations
-from mmgtune.trial import load_trials
+from mmgtune.profile import with_effects
+from mmgtune.simulation import simulate
+from mmgtune.trial import load_trials, surroundings
 from tests.diagnose.evidence.conftest import WIND
 from tests.diagnose.evidence.made import DEG, NOISE, make_trials, turn_order, zigzag_order
 from tests.twin import sail, twin, with_value
@@ -64,6 +68,47 @@ def test_a_force_of_the_earth_frame_is_found_with_its_size_and_direction(suzaku,
     assert (north, east) == pytest.approx((WIND * np.cos(1.0), WIND * np.sin(1.0)), abs=0.15 * WIND)
 
 
+def test_what_was_measured_around_the_ship_acts_as_in_the_simulation(suzaku):
+    """A wind that turns, a current that grows, waves and a shoal: nothing is left of a model that acts on them."""
+    acting = {tag: {"measured": 1.0} for tag in ("wind", "current", "waves", "shallow-water")}
+    acting["waves"]["outside"] = 1.0  # a taper: a force that ends at 45 deg is no spline
+    ship = with_effects(suzaku.profile, acting, "as measured")
+    for still in make_trials(suzaku, noise=0.0)[1:3]:
+        t = still.t
+        extra = {
+            "wind_speed": np.full(len(t), 12.0),
+            "wind_dir": 0.5 + 0.002 * t,
+            "current_speed": 0.2 + 0.002 * t,
+            "current_dir": np.full(len(t), 2.0),
+            "wave_height": np.full(len(t), 1.0),
+            "wave_dir": np.full(len(t), 0.5),
+            "depth": 40.0 - 0.05 * t,
+        }
+        logged = replace(still, extra=extra)
+        (motion,) = simulate(ship, [logged], integrator=Integrator("rk4", 4), backend="numpy")
+        trial = replace(logged, **dict(zip(STATES, motion.states.T, strict=True)))
+        found = residual_forces(Model(ship), trial)
+        assert np.all(np.sqrt(np.mean(found.prime**2, axis=0)) < 2e-4)
+        blind = residual_forces(Model(ship), replace(trial, extra={}))
+        assert np.sqrt(np.mean(blind.prime[:, 1] ** 2)) > 5e-3
+
+
+def test_noise_of_what_was_measured_around_the_ship_is_blunted(suzaku, plain):
+    """As the motion is, so that the velocity through the water is no noisier than over ground."""
+    ship = Model(with_effects(suzaku.profile, {"current": {"measured": 1.0}}, "as measured"))
+    still = plain[0]
+    here = {"current_speed": np.full(len(still.t), 0.5), "current_dir": np.ones(len(still.t))}
+    trial = replace(still, extra=here)
+    noisy = {**here, "current_speed": 0.5 + 0.1 * np.random.default_rng(2).standard_normal(len(still.t))}
+    motion = smooth(trial)
+    clean, rough = (measured(ship, one, motion) for one in (trial, replace(still, extra=noisy)))
+    raw = surroundings(replace(still, extra=noisy), ship.draught)
+    east = Surroundings._fields.index("current_east")
+    assert np.std(rough[:, east] - clean[:, east]) < 0.7 * np.std(raw[:, east] - clean[:, east])
+    assert clean[:, east] == pytest.approx(0.5 * np.sin(1.0))
+    assert np.all(rough[:, Surroundings._fields.index("current_known")] == 1.0)
+
+
 def test_gaps_are_bridged_or_left_out(suzaku, plain):
     trial = plain[0]
     motion = {name: getattr(trial, name).copy() for name in ("psi", "u", "v_m", "r")}
@@ -115,8 +160,8 @@ def test_too_little_to_go_by_is_said(suzaku, plain):
 
 def test_the_smoothing_knows_what_noise_it_leaves(suzaku, plain):
     clean = make_trials(suzaku, noise=0.0)
-    for measured, true in zip(plain, clean, strict=True):
-        motion = smooth(measured)
+    for noisy, true in zip(plain, clean, strict=True):
+        motion = smooth(noisy)
         np.testing.assert_allclose(motion.noise, NOISE, rtol=0.15)  # from 420 samples
         error = (motion.states - true.motion)[motion.inner, 3:]
         # About 1 by the formula, more where the rudder's corners are blunted.

@@ -15,8 +15,7 @@ from mmgtune.options import EstimateOptions
 from mmgtune.profile.reading import parse_profile
 from mmgtune.resources import particulars
 
-from ..mutating import encoded, mutated_bytes, mutated_lines, pick, several
-from ..trees import as_toml, mutated
+from ..trees import hostile_toml
 from . import Files, Kind
 
 SETS = (
@@ -42,13 +41,7 @@ def trees() -> tuple[dict[str, Any], ...]:
 def make(rng: np.random.Generator) -> Files:
     """Particulars with something wrong in their values, lines or bytes."""
     number = int(rng.integers(len(texts())))
-    how = rng.random()
-    if how < 0.7:
-        return {"ship.toml": encoded(as_toml(several(rng, trees()[number], [mutated])))}
-    if how < 0.85:
-        return {"ship.toml": encoded("\n".join(several(rng, texts()[number].splitlines(), [mutated_lines])))}
-    content = texts()[number].encode(pick(rng, ("utf-8", "utf-8", "utf-8-sig", "utf-16", "cp1252")), "replace")
-    return {"ship.toml": several(rng, content, [mutated_bytes])}
+    return {"ship.toml": hostile_toml(rng, texts()[number], trees()[number])}
 
 
 def run(folder: Path) -> str:

@@ -17,8 +17,7 @@ from mmgtune.profile.reading import parse_profile
 from mmgtune.resources import folder, profile_names
 from tests.command import typed
 
-from ..mutating import encoded, mutated_bytes, mutated_lines, pick, several
-from ..trees import as_toml, mutated
+from ..trees import hostile_toml
 from . import Files, Kind
 
 MORE = """
@@ -54,14 +53,7 @@ def trees() -> tuple[dict[str, Any], ...]:
 def make(rng: np.random.Generator) -> Files:
     """A profile with something wrong in its values, lines or bytes."""
     number = int(rng.integers(len(texts())))
-    how = rng.random()
-    if how < 0.7:
-        tree = several(rng, trees()[number], [mutated])
-        return {"ship.toml": encoded(as_toml(tree))}
-    if how < 0.85:
-        return {"ship.toml": encoded("\n".join(several(rng, texts()[number].splitlines(), [mutated_lines])))}
-    content = texts()[number].encode(pick(rng, ("utf-8", "utf-8", "utf-8-sig", "utf-16", "cp1252")), "replace")
-    return {"ship.toml": several(rng, content, [mutated_bytes])}
+    return {"ship.toml": hostile_toml(rng, texts()[number], trees()[number])}
 
 
 def run(folder: Path) -> str:

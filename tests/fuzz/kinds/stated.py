@@ -12,8 +12,7 @@ import numpy as np
 from mmgtune.trial import load_trials
 from tests.command import typed
 
-from ..mutating import encoded, mutated_bytes, mutated_lines, pick, several
-from ..trees import as_toml, mutated
+from ..trees import hostile_toml
 from . import Files, Kind
 
 TEXT = """schema = 1
@@ -48,13 +47,7 @@ def tree() -> dict[str, Any]:
 
 def make(rng: np.random.Generator) -> Files:
     """A sea-trial report with something wrong in its values, lines or bytes."""
-    how = rng.random()
-    if how < 0.7:
-        return {"report.toml": encoded(as_toml(several(rng, tree(), [mutated])))}
-    if how < 0.85:
-        return {"report.toml": encoded("\n".join(several(rng, TEXT.splitlines(), [mutated_lines])))}
-    content = TEXT.encode(pick(rng, ("utf-8", "utf-8", "utf-8-sig", "utf-16", "cp1252")), "replace")
-    return {"report.toml": several(rng, content, [mutated_bytes])}
+    return {"report.toml": hostile_toml(rng, TEXT, tree())}
 
 
 def run(folder: Path) -> str:
