@@ -24,8 +24,8 @@ Runs = Mapping[str, tuple[str, int]]
 EULER = Integrator("euler")
 """Method within training: at half a second scores differ by less than a hundredth from those at a tenth."""
 
-ROBUST = 0.3
-"""Error of a window, in L_MSE, from which it counts by its root: one lost window rules nothing."""
+ROBUST = 1.0
+"""Error of a window, over that of the model of forces on its kind of manoeuvre, from which it counts by its root."""
 
 QUANTILE = 0.999
 """Share of the data within the largest value of a feature."""
@@ -99,7 +99,7 @@ class HybridAim:
         restart: float | None,
     ):
         jnp = jax_module().numpy
-        self.starts: IntArray = learn.starts(horizon)
+        self.starts = balanced(learn, horizon)
         self.model, self.memory, self.horizon, self.quiet, self.step = model, memory, horizon, quiet, learn.step
         self.ranges = Ranges(*(jnp.asarray(one, dtype=Single) for one in ranges))
         self.theta = jnp.asarray(model.matrix()[:, 0], dtype=Single)
@@ -117,6 +117,9 @@ class HybridAim:
             draught=model.draught,
         )
         self.runs = self._chooser.runs
+        typical = self._typical(learn, restart, sigma)
+        by_trial = np.array([typical[trial.manoeuvre] for trial in learn.trials])
+        self._typical_error = jnp.asarray(np.repeat(by_trial, np.diff(learn.first)), dtype=Single)
         self._alone: dict[str, float] = {}
 
     def roll(self, w: ResidualWeights, initial: Any, controls: Any, around: Any) -> tuple[Any, Any]:
@@ -147,8 +150,22 @@ class HybridAim:
         states = states - begin
         found, added = self.roll(w, states[0], self._controls[rows], self._around[rows])
         error = numpy.sum(numpy.mean(((found - states) / self.sigma)[1:] ** 2, axis=0), axis=-1)
+        error = error / self._typical_error[starts]
         robust = 2.0 * ROBUST * (numpy.sqrt(1.0 + error / ROBUST) - 1.0)
         return numpy.mean(robust) + self.quiet * numpy.mean(added**2)
+
+    def _typical(self, learn: Samples, restart: float | None, sigma: FloatArray) -> dict[str, float]:
+        """L_MSE of the model of forces alone on what is learned from, by kind of manoeuvre."""
+        own = Chooser(
+            lambda *given: self.roll(*given)[0],
+            learn.trials,
+            self.model.inputs,
+            learn.step,
+            sigma,
+            restart=restart,
+            draught=self.model.draught,
+        )
+        return own.by_kind(first_residual(len(self.ranges.deviation), 1, 1))
 
     def alone(self, w: ResidualWeights) -> dict[str, float]:
         """L_MSE by run of the model of forces alone, on the windows that choose."""
@@ -160,6 +177,15 @@ class HybridAim:
         """See ``Aim``: L_MSE by run, and the score of ``relative``."""
         errors = self._chooser.by_run(w)
         return {"score": relative(self.alone(w), errors, self.runs), **errors}
+
+
+def balanced(samples: Samples, horizon: int) -> IntArray:
+    """Rows at which windows begin, each kind of manoeuvre as often as any other."""
+    starts = samples.starts(horizon)
+    kinds = np.array(samples.kinds(starts))
+    several = [starts[kinds == kind] for kind in sorted({*kinds.tolist()})]
+    most = max((len(one) for one in several), default=0)
+    return np.concatenate([np.resize(one, most) for one in several]) if several else starts
 
 
 def ratios(before: Mapping[str, float], after: Mapping[str, float], runs: Runs) -> dict[str, float]:

@@ -56,6 +56,11 @@ class Samples:
                 found.append(begin + np.flatnonzero(there))
         return np.concatenate(found) if found else np.zeros(0, dtype=np.int64)
 
+    def kinds(self, rows: IntArray) -> list[str]:
+        """Kind of manoeuvre of the trials that rows belong to."""
+        of = np.searchsorted(self.first, rows, side="right") - 1
+        return [self.trials[k].manoeuvre for k in of.tolist()]
+
     def spread(self) -> FloatArray:
         """(6,) standard deviation of each state over all rows: sigma of eq. 24."""
         return np.asarray(np.nanstd(self.states, axis=0))

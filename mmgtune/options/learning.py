@@ -72,8 +72,8 @@ class HybridOptions(TrainingOptions):
     rate: float = again(TrainingOptions, "rate", 3e-3)
     width: int = again(TrainingOptions, "width", 32)
     quiet: tuple[float, ...] = choice(
-        (0.5, 5.0),
-        "Weights of the penalty on what the network adds, tried in turn; validation chooses.",
+        (15.0,),
+        "Weights of the penalty on what the network adds, with commas, tried in turn; validation chooses.",
         least=0.0,
         panel=TRAINING,
     )
@@ -86,8 +86,8 @@ class HybridOptions(TrainingOptions):
     )
     refit: bool = choice(
         True,
-        "Tune a tuned profile anew without the runs kept back, so that it has not seen them either; the profile that is "
-        "kept stays as it is.",
+        "Tune a tuned profile anew without the runs kept back, so that it has not seen them either; the profile kept "
+        "stays as it is.",
         panel=TRAINING,
     )
     lag: float | None = choice(
