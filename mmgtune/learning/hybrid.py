@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -16,10 +16,8 @@ from ..networks.hybrid import HybridLanes
 from ..networks.residual import Ranges, ResidualWeights, seen
 from ..trial import Trial
 from .choosing import Chooser, Single
+from .gains import relative
 from .samples import Samples
-
-Runs = Mapping[str, tuple[str, int]]
-"""Kind of manoeuvre of runs, and the samples of each that count."""
 
 EULER = Integrator("euler")
 """Method within training: at half a second scores differ by less than a hundredth from those at a tenth."""
@@ -82,7 +80,7 @@ def ranges_of(samples: Samples, memory: float, roles: Sequence[str]) -> Ranges:
 class HybridAim:
     """The network of a hybrid on windows of ``horizon`` samples; the model of forces stays as it is.
 
-    quiet  weight of the mean square of what the network adds, over the deviations of accelerations
+    penalty  weight of the mean square of what the network adds, over the deviations of accelerations
     """
 
     def __init__(
@@ -95,12 +93,12 @@ class HybridAim:
         memory: float,
         sigma: FloatArray,
         horizon: int,
-        quiet: float,
+        penalty: float,
         restart: float | None,
     ):
         jnp = jax_module().numpy
         self.starts = balanced(learn, horizon)
-        self.model, self.memory, self.horizon, self.quiet, self.step = model, memory, horizon, quiet, learn.step
+        self.model, self.memory, self.horizon, self.penalty, self.step = model, memory, horizon, penalty, learn.step
         self.ranges = Ranges(*(jnp.asarray(one, dtype=Single) for one in ranges))
         self.theta = jnp.asarray(model.matrix()[:, 0], dtype=Single)
         self.sigma = jnp.asarray(sigma, dtype=Single)
@@ -152,7 +150,7 @@ class HybridAim:
         error = numpy.sum(numpy.mean(((found - states) / self.sigma)[1:] ** 2, axis=0), axis=-1)
         error = error / self._typical_error[starts]
         robust = 2.0 * ROBUST * (numpy.sqrt(1.0 + error / ROBUST) - 1.0)
-        return numpy.mean(robust) + self.quiet * numpy.mean(added**2)
+        return numpy.mean(robust) + self.penalty * numpy.mean(added**2)
 
     def _typical(self, learn: Samples, restart: float | None, sigma: FloatArray) -> dict[str, float]:
         """L_MSE of the model of forces alone on what is learned from, by kind of manoeuvre."""
@@ -186,21 +184,3 @@ def balanced(samples: Samples, horizon: int) -> IntArray:
     several = [starts[kinds == kind] for kind in sorted({*kinds.tolist()})]
     most = max((len(one) for one in several), default=0)
     return np.concatenate([np.resize(one, most) for one in several]) if several else starts
-
-
-def ratios(before: Mapping[str, float], after: Mapping[str, float], runs: Runs) -> dict[str, float]:
-    """Error after over error before, by kind of manoeuvre: of runs together, each by its samples."""
-    found = {}
-    for kind in sorted({kind for kind, _ in runs.values()}):
-        of = {run: n for run, (own, n) in runs.items() if own == kind}
-        found[kind] = sum(n * after[run] for run, n in of.items()) / sum(n * before[run] for run, n in of.items())
-    return found
-
-
-def relative(before: Mapping[str, float], after: Mapping[str, float], runs: Runs) -> float:
-    """Mean over kinds of manoeuvre of their ``ratios``, each alike; 1 for no change.
-
-    A kind that is worse counts by its loss once more: what one kind gains another must not pay.
-    """
-    found = np.array(list(ratios(before, after, runs).values()))
-    return float(np.mean(found) + np.sum(np.maximum(found - 1.0, 0.0)))
