@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from .advice import shortest
 from .common import picture
 from .drawing import AFTER, BEFORE, Drawn, grid_of, new_figure
 from .learning_page import draw_line, made_section, rms_errors
 from .load import Kind
-from .page import Commands, Page, Prose, Section, Table, Tile, cells
+from .page import Commands, Page, Section, Table, Tile, cells
 from .tables import tone
 from .wording import NONE, clean, count, number, percent, shown
 
@@ -161,26 +162,25 @@ def _draw_tracks(drawn: Sequence[Mapping[str, Any]]) -> Figure:
         ax.set_title(f"{clean(one['manoeuvre']) or clean(one['id'])}", fontsize="small")
     handles = [Line2D([], [], color="black", label="measured")]
     handles += [
-        Line2D([], [], label=label, **style)
-        for label, style in zip(("model of forces", "with the network"), styles, strict=True)
+        Line2D([], [], label=label, **style) for label, style in zip(("forces alone", "hybrid"), styles, strict=True)
     ]
     figure.legend(handles=handles, loc="outside upper left", ncols=3, handlelength=3.6)
     return figure
 
 
-def _next(record: HybridRecord) -> Commands | Prose:
+def _next(record: HybridRecord) -> Commands:
     data = record.data
-    path = clean(data["provenance"]["profile"].get("path")) or clean(data["ship"])
-    trials = clean(data["provenance"]["trials"]["path"]) or "TRIALS"
+    path = shortest(data["provenance"]["profile"].get("path") or data["ship"], "ship_profiles")
+    trials = shortest(data["provenance"]["trials"].get("path") or "TRIALS", "trials")
     if not data["gained"]:
-        return Commands(((f"mmgtune diagnose -p {path} -t {trials}", "See what the profile gets wrong, and why."),))
+        return Commands((("See what the profile gets wrong, and why", f"mmgtune diagnose -p {path} -t {trials}"),))
     model = f"{record.folder.as_posix()}/model.safetensors"
     window = number(data["window_s"])
     restart = f" --restart {window:g}" if window else ""
     return Commands(
         (
-            (f"mmgtune validate {path} {model} {trials}{restart}", "Score both on the same windows."),
-            (f"mmgtune simulate -p {model} --trials {trials}", "Simulate trials with it."),
+            ("Score both on the same windows", f"mmgtune validate {path} {model} {trials}{restart}"),
+            ("Simulate trials with it", f"mmgtune simulate -p {model} --trials {trials}"),
         )
     )
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from .advice import shortest
 from .common import picture
 from .drawing import AFTER, BEFORE, Drawn, grid_of, log_ticks, new_figure
 from .load import Kind
@@ -206,13 +207,15 @@ def _events(record: LearningRecord) -> tuple[Prose, ...]:
 
 def _next(record: LearningRecord) -> Commands:
     model = f"{record.folder.as_posix()}/model.safetensors"
-    ship, trials = clean(record.data["ship"]), clean(record.data["provenance"]["trials"]["path"]) or "TRIALS"
+    made = record.data["provenance"]
+    ship = shortest(made["profile"].get("path") or record.data["ship"], "ship_profiles")
+    trials = shortest(made["trials"].get("path") or "TRIALS", "trials")
     window = number(record.data["window_s"])
     restart = f" --restart {window:g}" if window else ""
     return Commands(
         (
-            (f"mmgtune validate {ship} {model} {trials}{restart}", "Hold it against a profile on the same windows."),
-            (f"mmgtune simulate -p {model} --trials {trials}", "Simulate trials with it."),
+            ("Hold it against a profile on the same windows", f"mmgtune validate {ship} {model} {trials}{restart}"),
+            ("Simulate trials with it", f"mmgtune simulate -p {model} --trials {trials}"),
         )
     )
 
