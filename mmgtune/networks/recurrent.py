@@ -81,8 +81,8 @@ def truncated(part: Array, held: Array, w: Weights) -> tuple[Array, Array]:
     """The first layer, (..., n_lanes, width), from the last m samples alone, begun at zero: eq. 10; and what to hold.
 
     part  what is seen now gives, (..., n_lanes, width)
-    held  (..., (m - 1) n_lanes, width) the layer of the last sample, begun at it, one sample before it and so on to m - 2
-          before it, behind each other; before the first sample zero
+    held  (..., (m - 1) n_lanes, width) the layer of the last sample, begun at it, one sample before it and so on
+          to m - 2 before it, behind each other; before the first sample zero
 
     The equation begins m samples back at every sample.  Those beginnings that overlap go on side by side here, each
     with one step a sample: the same numbers from one wide product in place of m - 1 narrow ones.
