@@ -45,7 +45,7 @@ def data(suzaku):
 
 
 def expected(trials, drift, sigma, window):
-    """Mean of the squared drift over sigma, over all samples that count; a window ends with the sample the next begins at."""
+    """Mean of the squared drift over sigma, each sample once: a window ends where the next begins."""
     squares = []
     for trial in trials:
         since = trial.t - trial.t[0]
