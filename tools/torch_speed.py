@@ -8,23 +8,26 @@ environment of its own: ``python -m venv FOLDER && FOLDER/bin/pip install numpy 
 The network is that of Wakita et al. 2022, written here once more in PyTorch as one would, without its compiler: what
 does not change in a batch is computed once, and what was seen is projected once.  Both get the same windows of the
 bundled trials and the same weights, and must find the same loss and norm of the gradient.  They are timed in turn, as
-processes of their own, with the threads that each takes by itself.  Nothing else should run meanwhile.
+processes of their own: on one core by the time of the processor, which what else runs there hardly changes, and on all
+cores by the clock, for which nothing else may run.
 """
 
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 import tempfile
 import time
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 WIDTH, HORIZON, BATCHES, TYPES = 200, 60, (256, 512), ("1", "2")
-ROUNDS, UPDATES = 4, 5
+ROUNDS, UPDATES = 3, 4
 RATE, CLIP = 1e-4, 1.0
 
 
@@ -145,14 +148,14 @@ def torch_loss(torch: Any, w: Any, given: Any, memory: int, h: float) -> Any:
     return torch.mean(torch.stack(off) ** 2)
 
 
-def timed(update: Any) -> list[float]:
-    """Seconds of an update, several times, after one that does not count."""
+def timed(update: Any) -> list[list[float]]:
+    """Seconds on the clock and of the processor that an update takes, several times, after one that does not count."""
     update()
     found = []
     for _ in range(UPDATES):
-        began = time.perf_counter()
+        began = time.perf_counter(), time.process_time()
         update()
-        found.append(time.perf_counter() - began)
+        found.append([time.perf_counter() - began[0], time.process_time() - began[1]])
     return found
 
 
@@ -161,44 +164,46 @@ def main(python: str, target: Path) -> None:
     from mmgtune.files import write_text
     from tools.bench import machine
 
-    times: dict[tuple[str, str, int], list[float]] = {}
-    versions: dict[str, Any] = {}
-    with tempfile.TemporaryDirectory() as folder:
-        for _ in range(ROUNDS):
-            for side, interpreter in (("jax", sys.executable), ("torch", python)):
-                line = [interpreter, str(Path(__file__)), f"--{side}", folder]
-                done = subprocess.run(line, check=True, stdout=subprocess.PIPE)
-                found = json.loads(done.stdout.splitlines()[-1])
-                versions[side] = {"version": found["version"], "threads": found["threads"]}
-                for row in found["rows"]:
-                    times.setdefault((side, row["type"], row["batch"]), []).extend(row["seconds"])
-    rows = []
-    for type in TYPES:
-        for n in BATCHES:
-            own, other = (times[side, type, n] for side in ("jax", "torch"))
-            row = {"type": type, "batch": n, "updates_timed": len(own)}
-            for name, value in (("jax", own), ("torch", other)):
-                row |= {f"{name}_s": round(float(np.median(value)), 4), f"{name}_least_s": round(min(value), 4)}
-            row["ratio"] = round(row["torch_s"] / row["jax_s"], 2)
-            row["ratio_of_least"] = round(row["torch_least_s"] / row["jax_least_s"], 2)
-            rows.append(row)
-            print(row)
-    about = {**machine(), **versions, "width": WIDTH, "horizon": HORIZON, "rows": rows}
-    write_text(target, json.dumps(about, indent=1) + "\n")
+    cores = sorted(os.sched_getaffinity(0))
+    about: dict[str, Any] = {**machine(), "width": WIDTH, "horizon": HORIZON}
+    for title, taken in (("one_core", cores[:1]), ("all_cores", cores)):
+        times: dict[tuple[str, str, int], list[list[float]]] = {}
+        load = os.getloadavg()[0]
+        with tempfile.TemporaryDirectory() as folder:
+            for _ in range(ROUNDS):
+                for side, interpreter in (("jax", sys.executable), ("torch", python)):
+                    line = [interpreter, str(Path(__file__)), f"--{side}", folder, ",".join(map(str, taken))]
+                    done = subprocess.run(line, check=True, stdout=subprocess.PIPE)
+                    found = json.loads(done.stdout.splitlines()[-1])
+                    about[side] = found["version"]
+                    for row in found["rows"]:
+                        times.setdefault((side, row["type"], row["batch"]), []).extend(row["seconds"])
+        clock = 1 if title == "one_core" else 0
+        about[title] = {
+            "cores": len(taken),
+            "seconds": "of the processor" if clock else "on the clock",
+            "load_before": round(load, 1),
+            "rows": [summary(times, type, n, clock) for type in TYPES for n in BATCHES],
+        }
+        print(json.dumps(about[title], indent=1), flush=True)
+        write_text(target, json.dumps(about, indent=1) + "\n")
+
+
+def summary(times: Any, type: str, n: int, clock: int) -> dict[str, Any]:
+    """Median and least seconds of an update of both, and how many times as long PyTorch takes."""
+    row: dict[str, Any] = {"type": type, "batch": n, "updates_timed": len(times["jax", type, n])}
+    for side in ("jax", "torch"):
+        values = [one[clock] for one in times[side, type, n]]
+        row |= {f"{side}_s": round(float(np.median(values)), 4), f"{side}_least_s": round(min(values), 4)}
+    row["ratio"] = round(row["torch_s"] / row["jax_s"], 2)
+    return row | {"ratio_of_least": round(row["torch_least_s"] / row["jax_least_s"], 2)}
 
 
 if __name__ == "__main__":
-    if sys.argv[1] == "--jax":
-        import os
-        from importlib.metadata import version
-
-        rows = measure_own(Path(sys.argv[2]))
-        print(json.dumps({"version": version("jax"), "threads": len(os.sched_getaffinity(0)), "rows": rows}))
-    elif sys.argv[1] == "--torch":
-        import torch
-
-        rows = measure_torch(Path(sys.argv[2]))
-        print(json.dumps({"version": torch.__version__, "threads": torch.get_num_threads(), "rows": rows}))
+    if sys.argv[1] in ("--jax", "--torch"):
+        os.sched_setaffinity(0, map(int, sys.argv[3].split(",")))
+        rows = (measure_own if sys.argv[1] == "--jax" else measure_torch)(Path(sys.argv[2]))
+        print(json.dumps({"version": version(sys.argv[1].strip("-")), "rows": rows}))
     else:
         docs = Path(__file__).parent.parent / "docs"
         main(sys.argv[1], Path(sys.argv[2]) if len(sys.argv) > 2 else docs / "networks-speed.json")
