@@ -38,6 +38,9 @@ from .training import Plan, Progressed, Trainer
 LAG, STEP = 0.5, 0.03
 """Memory, and step of training, as shares of the time the ship takes for her length at her root mean square speed."""
 
+LEAST = 0.02
+"""Share of the error that a network must remove on unseen runs to be kept."""
+
 DECAY = 1e-4
 """Decay of the weights in each update, relative to the rate."""
 
@@ -128,7 +131,7 @@ def learn_hybrid(
     weights = first_residual(len(ranges.deviation), options.width, options.seed)  # adds nothing
     gains: list[Gain] = []
     step_kept = 0
-    if best is not None and best["score"] < 1.0:
+    if best is not None and best["score"] < 1.0 - LEAST:
         step_kept = int(best["step"])
         weights = work.train_on_all(penalty, tune, ranges, step_kept)
         gains = gains_of(trained[penalty], step_kept, options.seed)
