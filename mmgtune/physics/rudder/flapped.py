@@ -35,8 +35,8 @@ class FlappedRudder(NamedTuple):
 def flap_angle(delta, step, table):
     """Flap angle [rad] at rudder angle delta [rad]: linear between the table's values, odd, constant beyond its end.
 
-    Written as a sum of hinges, so that lanes with different rudder angles need no look-up.  Nothing has a bend where the
-    rudder is at 0, and the flap turns with it: the derivative is right there too.
+    Written as a sum of hinges, so that lanes with different rudder angles need no look-up; the first has no bend at 0,
+    where derivatives are taken as well.
     """
     size = where(delta < 0.0, -delta, delta) / step
     angle = table[0] + 0.0 * size + (table[1] - table[0]) * np.minimum(size, 1.0)
