@@ -26,8 +26,8 @@ LIBRARIES = ("numpy", "jax", "jaxlib", "builtins", "math", "typing", "collection
 
 
 FUSE = "xla_backend_extra_options=xla_cpu_use_multi_output_fusion=true"
-"""A flag of JAX's compiler, which has the forces of a step computed once and not for each of the rates anew: steps take less than half the time.  A
-release that does not know it passes it over."""
+"""A flag of JAX's compiler: the forces of a step are computed once, not for each of the rates anew, which takes less
+than half the time.  A release that does not know it passes it over."""
 
 
 def jax_module() -> Any:
