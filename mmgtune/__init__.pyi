@@ -8,6 +8,9 @@ from .checking import update_baseline as update_baseline
 from .checking import write_baseline as write_baseline
 from .comparing import Comparison as Comparison
 from .comparing import compare as compare
+from .comparing_models import ModelComparison as ModelComparison
+from .comparing_models import compare_models as compare_models
+from .comparing_models import write_model_comparison as write_model_comparison
 from .diagnose import Diagnosis as Diagnosis
 from .diagnose import diagnose as diagnose
 from .diagnose import write_diagnosis as write_diagnosis
@@ -37,6 +40,7 @@ from .measures import distance_measures as distance_measures
 from .model import Model as Model
 from .networks import load_network as load_network
 from .networks import save_network as save_network
+from .options import CompareModelsOptions as CompareModelsOptions
 from .options import DiagnoseOptions as DiagnoseOptions
 from .options import EstimateOptions as EstimateOptions
 from .options import FitOptions as FitOptions

@@ -26,10 +26,19 @@ import numpy as np
 
 from mmgtune.backends import Integrator, get_backend, pad
 from mmgtune.backends.compiled import cores
+from mmgtune.backends.twins import jax_module
 from mmgtune.files import write_text
 from mmgtune.fitting.cmaes import _strategy
+from mmgtune.learning.aims import RecurrentAim
+from mmgtune.learning.hybrid import HybridAim, first_residual, ranges_of
+from mmgtune.learning.hybrid_run import times_of
+from mmgtune.learning.samples import samples_of
+from mmgtune.learning.starting import first_weights, scales_of
+from mmgtune.learning.task import make_task
+from mmgtune.learning.training import Plan, Trainer, batch
 from mmgtune.model import Model
 from mmgtune.objective import spread
+from mmgtune.options import HybridOptions, LearnOptions
 from mmgtune.orders import TurningOrder, run_manoeuvre
 from mmgtune.profile import load_profile
 from mmgtune.simulation import as_trial
@@ -181,6 +190,67 @@ def a_check(folder: Path) -> dict[str, Any]:
     return row
 
 
+def training() -> list[dict[str, Any]]:
+    """Seconds of a gradient and an update of networks on SUZAKU's trials, and updates a second."""
+    jax, rows = jax_module(), []
+    for title, trainer, begin in (recurrent_training(), hybrid_training()):
+        now = trainer.begin(begin)
+        held = [now.parameters, now.state, now.mean]
+        starts = batch(trainer.aim.starts, trainer.plan.batch, 1, 0)
+
+        def update(held: list[Any] = held, trainer: Trainer = trainer, starts: Any = starts) -> None:
+            found = trainer.update(*held, starts, np.float32(1.0), np.float32(0.9))
+            held[:] = found[:3]
+            jax.block_until_ready(found)
+
+        update()
+        seconds = min(timed(update) for _ in range(10))
+        rows.append(
+            {
+                "training": title,
+                "batch": trainer.plan.batch,
+                "seconds": round(seconds, 4),
+                "updates_per_s": round(1.0 / seconds, 2),
+            }
+        )
+    return rows
+
+
+def recurrent_training() -> tuple[str, Trainer, Any]:
+    """Networks of type 1 as ``learn rnn`` trains them."""
+    options = LearnOptions()
+    task = make_task(load_profile("suzaku"), load_trials("suzaku"), options)
+    aim = RecurrentAim(task, scales_of(task.samples))
+    begin = first_weights(len(task.inputs), options.width, 1)
+    title = f"type 1, {options.horizon} samples, width {options.width}"
+    single = begin._make(np.float32(one) for one in begin)
+    return title, Trainer(aim, Plan(options.steps, options.batch, options.rate, options.validate_every)), single
+
+
+def hybrid_training() -> tuple[str, Trainer, Any]:
+    """A hybrid as ``learn hybrid`` trains it, with validation on what it learns from."""
+    options, model, data = HybridOptions(), Model(load_profile("suzaku")), load_trials("suzaku")
+    trials = [data.trials[id] for id in data.tune]
+    step, lag = times_of(model.profile, trials, options)
+    samples = samples_of(trials, model.inputs, step, model.draught)
+    ranges = ranges_of(samples, lag, [one.role for one in model.arrangement.inputs])
+    horizon = round((options.restart or 100.0) / step)
+    aim = HybridAim(
+        model,
+        samples,
+        trials,
+        ranges,
+        memory=lag,
+        sigma=np.array(list(spread(trials).values())),
+        horizon=horizon,
+        penalty=options.penalty[0],
+        restart=options.restart,
+    )
+    begin = first_residual(len(ranges.deviation), options.width, 1)
+    plan = Plan(options.steps, options.batch, options.rate, options.validate_every)
+    return f"hybrid, {horizon} samples, width {options.width}", Trainer(aim, plan), begin
+
+
 WATCH = """
 import json, os, subprocess, sys, time
 began = time.perf_counter()
@@ -294,6 +364,14 @@ def as_markdown(found: dict[str, Any]) -> str:
         "|---|---:|---:|---:|",
         *(f"| {r['log']} | {r['rows']:,} | {r['warm_s']} | {r['peak_memory_mb']} |" for r in found["voyages"]),
         "",
+        "## Training",
+        "",
+        "A gradient and an update of networks on the bundled trials of SUZAKU, compiled; needs `mmgtune[learn]`.",
+        "",
+        "| network | windows in a batch | seconds | updates a second |",
+        "|---|---:|---:|---:|",
+        *(f"| {r['training']} | {r['batch']} | {r['seconds']} | {r['updates_per_s']} |" for r in found["training"]),
+        "",
         "## CMA-ES itself",
         "",
         "Asking and telling, without any simulation, 12 targets.",
@@ -322,6 +400,7 @@ if __name__ == "__main__":
         "derivatives": derivatives(),
         "windows": windows(),
         "voyages": voyages(),
+        "training": training(),
         "search_overhead": search_overhead(),
         "commands": commands(),
     }

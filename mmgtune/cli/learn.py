@@ -8,6 +8,7 @@ import typer
 
 from ..options.learning import HybridOptions, LearnOptions
 from . import common as c
+from . import learn_compare
 from .options import RunOptions, takes
 from .progress import Progress
 
@@ -18,6 +19,8 @@ app = typer.Typer(
     no_args_is_help=True,
     help="Train networks that predict the motion of a ship, and hold them against other models.",
 )
+
+app.command("compare")(learn_compare.command)
 
 
 @app.command("rnn")

@@ -109,7 +109,7 @@ class Trainer:
             found = jax.tree.map(lambda a, b: jax.numpy.where(sound, a, b), (new, moved, kept), old)
             return *found, loss, norm, sound
 
-        self._update = jax.jit(update)
+        self.update = jax.jit(update)
 
     def begin(self, parameters: Any) -> Progressed:
         """A training before its first step."""
@@ -138,7 +138,7 @@ class Trainer:
         while now.step < last:
             starts = batch(self.aim.starts, plan.batch, seed, now.step)
             past = min((1.0 + now.step) / (10.0 + now.step), AVERAGE)
-            now.parameters, now.state, now.mean, loss, norm, sound = self._update(
+            now.parameters, now.state, now.mean, loss, norm, sound = self.update(
                 now.parameters, now.state, now.mean, starts, np.float32(now.factor), np.float32(past), self.aim.data
             )
             now.step += 1

@@ -4,7 +4,7 @@ choice      a field that is an option, and what all such dataclasses do
 simulation  integrator, step, back end
 tuning      fit, sweep, leave-out
 diagnosis   diagnose
-scoring     validate, on trials and on voyages, and check
+scoring     validate, on trials and on voyages, check, and learn compare
 orders      simulate
 estimating  profile new
 learning    learn
@@ -19,7 +19,7 @@ from .estimating import EstimateOptions
 from .flags import FLAGS, flags_of, in_flags
 from .learning import HybridOptions, LearnOptions, TrainingOptions
 from .orders import SimulateOptions
-from .scoring import FORMATS, CheckOptions, ValidateOptions, VoyageOptions
+from .scoring import FORMATS, CheckOptions, CompareModelsOptions, ValidateOptions, VoyageOptions
 from .simulation import BACKENDS, INTEGRATORS, SimulationOptions
 from .tuning import METHODS, FitOptions, LeaveOutOptions, SearchOptions, SweepOptions, TuningOptions
 
@@ -31,6 +31,7 @@ __all__ = [
     "METHODS",
     "CheckOptions",
     "Choice",
+    "CompareModelsOptions",
     "DiagnoseOptions",
     "EstimateOptions",
     "FitOptions",
@@ -55,6 +56,7 @@ __all__ = [
 
 for _of in (
     CheckOptions,
+    CompareModelsOptions,
     DiagnoseOptions,
     EstimateOptions,
     FitOptions,
