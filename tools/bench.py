@@ -199,7 +199,7 @@ def training() -> list[dict[str, Any]]:
         starts = batch(trainer.aim.starts, trainer.plan.batch, 1, 0)
 
         def update(held: list[Any] = held, trainer: Trainer = trainer, starts: Any = starts) -> None:
-            found = trainer.update(*held, starts, np.float32(1.0), np.float32(0.9))
+            found = trainer.update(*held, starts, np.float32(1.0), np.float32(0.9), trainer.aim.data)
             held[:] = found[:3]
             jax.block_until_ready(found)
 
