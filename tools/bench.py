@@ -83,6 +83,52 @@ def lane_steps() -> list[dict[str, Any]]:
     return rows
 
 
+JAX_LANES, JAX_STEPS = 48, 900
+"""Of the roll-outs that are differentiated."""
+
+
+def derivatives() -> list[dict[str, Any]]:
+    """Nanoseconds per lane and step of SUZAKU in a 35 deg turn on JAX, states kept: the run, and its gradient.
+
+    The gradient is that of the sum of all squared positions by every coefficient of every lane; its seconds of
+    compilation are those of a first call.
+    """
+    from mmgtune.backends.differentiable import log_of_cases, rollout
+    from mmgtune.backends.twins import jax_module
+
+    jax = jax_module()
+    model = Model(load_profile("suzaku"))
+    t = np.arange(JAX_STEPS + 1.0)
+    controls = np.column_stack([np.full(len(t), 106.0 / 60.0), np.full(len(t), np.radians(35.0))])
+    cases = pad([t], [controls], [np.array([0.0, 0.0, 0.0, 3.086, 0.0, 0.0])])
+    theta = model.matrix(["hull.R_0"], np.linspace(0.012, 0.02, JAX_LANES)[None])
+    log = log_of_cases(cases, np.zeros(JAX_LANES, dtype=int))
+    start = np.repeat(cases.initial, JAX_LANES, axis=0)
+    rows = []
+    for integrator in (EULER, RK4):
+
+        def squared(c: Any, i: Integrator = integrator) -> Any:
+            return jax.numpy.sum(rollout(model, c, start, log, integrator=i)[..., :2] ** 2)
+
+        def run(name: str, i: Integrator = integrator) -> None:
+            get_backend(name).run(model, theta, cases, integrator=i, keep_states=True)
+
+        with jax.enable_x64(True):
+            gradient = jax.jit(jax.grad(squared))
+            kinds = {
+                "compiled": lambda r=run: r("compiled"),
+                "jax": lambda r=run: r("jax"),
+                "gradient": lambda g=gradient: jax.block_until_ready(g(theta)),
+            }
+            row: dict[str, Any] = {"integrator": integrator.name}
+            for kind, work in kinds.items():
+                row[f"{kind}_first_s"] = round(timed(work), 1)
+                row[f"{kind}_ns"] = round(min(timed(work) for _ in range(20)) / (JAX_LANES * JAX_STEPS) * 1e9)
+        row["ratio"] = round(row["jax_ns"] / row["compiled_ns"], 1)
+        rows.append(row)
+    return rows
+
+
 def windows() -> dict[str, Any]:
     """Scores of one model on a thousand windows of 120 s at 10 Hz: seconds, and memory besides the windows [MB]."""
     model = Model(load_profile("suzaku"))
@@ -153,7 +199,7 @@ def training() -> list[dict[str, Any]]:
         starts = batch(trainer.aim.starts, trainer.plan.batch, 1, 0)
 
         def update(held: list[Any] = held, trainer: Trainer = trainer, starts: Any = starts) -> None:
-            found = trainer.update(*held, starts, np.float32(1.0), np.float32(0.9))
+            found = trainer.update(*held, starts, np.float32(1.0), np.float32(0.9), trainer.aim.data)
             held[:] = found[:3]
             jax.block_until_ready(found)
 
@@ -292,6 +338,19 @@ def as_markdown(found: dict[str, Any]) -> str:
             for r in found["lane_steps"]
         ),
         "",
+        "## Derivatives",
+        "",
+        f"SUZAKU, {JAX_LANES} lanes of {JAX_STEPS} steps of a 35 deg turn, states kept; ns per lane and step.",
+        "The gradient is that of one number by all coefficients of all lanes.",
+        "",
+        "| integrator | compiled | JAX | ratio | gradient | first gradient [s] |",
+        "|---|---:|---:|---:|---:|---:|",
+        *(
+            f"| {r['integrator']} | {r['compiled_ns']:,} | {r['jax_ns']:,} | {r['ratio']} | {r['gradient_ns']:,} "
+            f"| {r['gradient_first_s']} |"
+            for r in found["derivatives"]
+        ),
+        "",
         "## Many windows",
         "",
         f"Scores of one model on {w['windows']} windows of {w['samples']} samples, rk4: {w['seconds']} s, {w['mb']} MB",
@@ -338,6 +397,7 @@ if __name__ == "__main__":
     results = {
         "machine": machine(),
         "lane_steps": lane_steps(),
+        "derivatives": derivatives(),
         "windows": windows(),
         "voyages": voyages(),
         "training": training(),

@@ -72,7 +72,7 @@ def measure_own(folder: Path) -> list[dict[str, Any]]:
             held = [now.parameters, now.state, now.mean]
 
             def update(held: list[Any] = held, trainer: Any = trainer, starts: Any = starts) -> None:
-                found = trainer.update(*held, starts, np.float32(1.0), np.float32(0.9))
+                found = trainer.update(*held, starts, np.float32(1.0), np.float32(0.9), trainer.aim.data)
                 held[:] = found[:3]
                 jax.block_until_ready(found)
 

@@ -38,7 +38,7 @@ def rnn(
     The networks of Wakita et al. 2022. Of the profile only the ship's name, her length and what drives her are used.
     Whole runs are kept back, and the weights are kept that do best on windows of these; trials that test play no
     part and are scored at the end. What comes out is one file, model.safetensors in the run folder, that simulate
-    and validate take in place of a profile. Needs the extra: pip install 'mmgtune[learn]'.
+    and validate take in place of a profile. Needs the extra called learn.
 
     Examples:
 
@@ -86,7 +86,7 @@ def hybrid(
     The profile's coefficients stay. The network adds to the accelerations, begins at nothing, is as strong to port as
     to starboard, and is silent outside the data. It is kept only where it does better on runs it has not seen; a tuned
     profile is tuned anew without these runs for that comparison. What comes out is one file, model.safetensors, that
-    simulate and validate take in place of a profile. Needs the extra: pip install 'mmgtune[learn]'.
+    simulate and validate take in place of a profile. Needs the extra called learn.
 
     Examples:
 

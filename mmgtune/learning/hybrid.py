@@ -8,14 +8,15 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..backends import Integrator
+from ..backends import STATES, Integrator
 from ..backends.differentiable import Log, Marching, on_jax
 from ..backends.twins import jax_module
 from ..model import Model
 from ..networks.hybrid import HybridLanes
 from ..networks.residual import Ranges, ResidualWeights, seen
 from ..trial import Trial
-from .choosing import Chooser, Single
+from ..validation import L_MSE, by_manoeuvre, score
+from .choosing import Chooser, Single, pieces_of
 from .gains import relative
 from .samples import Samples
 
@@ -102,9 +103,6 @@ class HybridAim:
         self.ranges = Ranges(*(jnp.asarray(one, dtype=Single) for one in ranges))
         self.theta = jnp.asarray(model.matrix()[:, 0], dtype=Single)
         self.sigma = jnp.asarray(sigma, dtype=Single)
-        self._states = jnp.asarray(learn.states, dtype=Single)
-        self._controls = jnp.asarray(learn.controls, dtype=Single)
-        self._around = jnp.asarray(learn.around, dtype=Single)
         self._chooser = Chooser(
             lambda *given: self.roll(*given)[0],
             choose,
@@ -115,9 +113,14 @@ class HybridAim:
             draught=model.draught,
         )
         self.runs = self._chooser.runs
-        typical = self._typical(learn, restart, sigma)
+        typical = typical_errors(model, learn.trials, restart, sigma)
         by_trial = np.array([typical[trial.manoeuvre] for trial in learn.trials])
-        self._typical_error = jnp.asarray(np.repeat(by_trial, np.diff(learn.first)), dtype=Single)
+        self.data = {
+            "states": jnp.asarray(learn.states, dtype=Single),
+            "controls": jnp.asarray(learn.controls, dtype=Single),
+            "around": jnp.asarray(learn.around, dtype=Single),
+            "typical": jnp.asarray(np.repeat(by_trial, np.diff(learn.first)), dtype=Single),
+        }
         self._alone: dict[str, float] = {}
 
     def roll(self, w: ResidualWeights, initial: Any, controls: Any, around: Any) -> tuple[Any, Any]:
@@ -139,31 +142,18 @@ class HybridAim:
         _, (shown, added) = jax.lax.scan(jax.checkpoint(body), march.begin(initial), march.samples)
         return numpy.concatenate([initial[None], shown]), added
 
-    def loss(self, w: ResidualWeights, starts: Any) -> Any:
+    def loss(self, w: ResidualWeights, starts: Any, data: Any) -> Any:
         """See ``Aim``."""
         numpy = jax_module().numpy
         rows = starts[None, :] + numpy.arange(self.horizon + 1)[:, None]
-        states = self._states[rows]
+        states = data["states"][rows]
         begin = numpy.concatenate([states[:1, :, :2], numpy.zeros_like(states[:1, :, 2:])], axis=-1)
         states = states - begin
-        found, added = self.roll(w, states[0], self._controls[rows], self._around[rows])
+        found, added = self.roll(w, states[0], data["controls"][rows], data["around"][rows])
         error = numpy.sum(numpy.mean(((found - states) / self.sigma)[1:] ** 2, axis=0), axis=-1)
-        error = error / self._typical_error[starts]
+        error = error / data["typical"][starts]
         robust = 2.0 * ROBUST * (numpy.sqrt(1.0 + error / ROBUST) - 1.0)
         return numpy.mean(robust) + self.penalty * numpy.mean(added**2)
-
-    def _typical(self, learn: Samples, restart: float | None, sigma: FloatArray) -> dict[str, float]:
-        """L_MSE of the model of forces alone on what is learned from, by kind of manoeuvre."""
-        own = Chooser(
-            lambda *given: self.roll(*given)[0],
-            learn.trials,
-            self.model.inputs,
-            learn.step,
-            sigma,
-            restart=restart,
-            draught=self.model.draught,
-        )
-        return own.by_kind(first_residual(len(self.ranges.deviation), 1, 1))
 
     def alone(self, w: ResidualWeights) -> dict[str, float]:
         """L_MSE by run of the model of forces alone, on the windows that choose."""
@@ -175,6 +165,12 @@ class HybridAim:
         """See ``Aim``: L_MSE by run, and the score of ``relative``."""
         errors = self._chooser.by_run(w)
         return {"score": relative(self.alone(w), errors, self.runs), **errors}
+
+
+def typical_errors(model: Model, trials: Sequence[Trial], restart: float | None, sigma: FloatArray) -> dict[str, float]:
+    """L_MSE of the model of forces alone, by kind of manoeuvre."""
+    scores = score(model, pieces_of(trials, restart), dict(zip(STATES, sigma.tolist(), strict=True)))
+    return {kind: L_MSE(of) for kind, of in by_manoeuvre(scores).items()}
 
 
 def balanced(samples: Samples, horizon: int) -> IntArray:

@@ -14,7 +14,6 @@ import numpy as np
 
 from ..backends import STATES
 from ..errors import OptionError, Problem
-from ..fitting.run import facts_of_profile, made_by
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..model import Model
 from ..networks.hybrid import Hybrid, HybridPredictor
@@ -23,12 +22,13 @@ from ..objective import spread
 from ..options.learning import HybridOptions
 from ..predictor import as_predictor
 from ..profile import ShipProfile
-from ..trial import Trial, TrialSet
+from ..trial import Trial
 from ..validation import TrialScore, score
 from . import keeping
 from .choosing import pieces_of
 from .gains import Gain, Trained, curve_of, gains_of
 from .hybrid import HybridAim, first_residual, ranges_of
+from .provenance import provenance_of, travelling
 from .refitting import refitted, tuned_names
 from .run import Hooks
 from .samples import Samples, samples_of
@@ -37,6 +37,9 @@ from .training import Plan, Progressed, Trainer
 
 LAG, STEP = 0.5, 0.03
 """Memory, and step of training, as shares of the time the ship takes for her length at her root mean square speed."""
+
+LEAST = 0.02
+"""Share of the error that a network must remove on unseen runs to be kept."""
 
 DECAY = 1e-4
 """Decay of the weights in each update, relative to the rate."""
@@ -128,12 +131,12 @@ def learn_hybrid(
     weights = first_residual(len(ranges.deviation), options.width, options.seed)  # adds nothing
     gains: list[Gain] = []
     step_kept = 0
-    if best is not None and best["score"] < 1.0:
+    if best is not None and best["score"] < 1.0 - LEAST:
         step_kept = int(best["step"])
         weights = work.train_on_all(penalty, tune, ranges, step_kept)
         gains = gains_of(trained[penalty], step_kept, options.seed)
-    facts = _facts(profile, data, options, command)
-    hybrid = Hybrid(profile, weights, ranges, lag, {**facts, "type": "hybrid"})
+    made = provenance_of(profile, data, tune, options, command)
+    hybrid = Hybrid(profile, weights, ranges, lag, {**travelling(made), "type": "hybrid"})
     pieces = pieces_of(test, options.restart)
     models = {"before": as_predictor(profile), "after": HybridPredictor(hybrid)}
     return LearnedHybrid(
@@ -148,7 +151,7 @@ def learn_hybrid(
         {which: tuple(score(one, pieces, sigma)) for which, one in models.items()} if pieces else {},
         sigma,
         options,
-        facts,
+        made,
         tuple(event for of in trained.values() for one in of for event in one.events),
         work.stopped,
         time.perf_counter() - began,
@@ -288,23 +291,3 @@ def _speed(trials: Sequence[Trial]) -> float:
     if not squares.size or not squares.mean() > 0.0:
         raise OptionError(Problem("the ship does not move in these trials", "trials", "", "give trials under way"))
     return float(np.sqrt(squares.mean()))
-
-
-def _facts(profile: Any, data: TrialSet, options: HybridOptions, command: str) -> dict[str, Any]:
-    """What a hybrid was made from."""
-    made = made_by(command)
-    made["environment"] |= {name: version(name) for name in ("jax", "optax")}
-    return {
-        **made,
-        "profile": facts_of_profile(profile),
-        "trials": {
-            "path": str(data.path) if data.path else "",
-            "ship": data.ship,
-            "sources": sorted({data.trials[id].source for id in data.tune}),
-            "licence": data.licence,
-            "citation": data.citation,
-            "sha256": data.hashes(),
-            "learned_from": list(data.tune),
-        },
-        "options": options.to_dict(),
-    }

@@ -17,7 +17,7 @@ from .choice import Choice, Options, again, choice, choices
 from .diagnosis import DiagnoseOptions
 from .estimating import EstimateOptions
 from .flags import FLAGS, flags_of, in_flags
-from .learning import HybridOptions, LearnOptions
+from .learning import HybridOptions, LearnOptions, TrainingOptions
 from .orders import SimulateOptions
 from .scoring import FORMATS, CheckOptions, CompareModelsOptions, ValidateOptions, VoyageOptions
 from .simulation import BACKENDS, INTEGRATORS, SimulationOptions
@@ -43,6 +43,7 @@ __all__ = [
     "SimulateOptions",
     "SimulationOptions",
     "SweepOptions",
+    "TrainingOptions",
     "TuningOptions",
     "ValidateOptions",
     "VoyageOptions",
