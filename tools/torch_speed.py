@@ -51,7 +51,7 @@ def measure_own(folder: Path) -> list[dict[str, Any]]:
         weights = in_single(first_weights(len(task.inputs), WIDTH, 1))
         for n in BATCHES:
             starts = batch(aim.starts, n, 1, 0)
-            loss, gradient = jax.jit(jax.value_and_grad(aim.loss))(weights, starts)
+            loss, gradient = jax.jit(jax.value_and_grad(aim.loss))(weights, starts, aim.data)
             span = starts[None, :] + np.arange(HORIZON + 1)[:, None]
             np.savez(
                 folder / f"{type}-{n}.npz",
