@@ -4,7 +4,7 @@ Each plant is a ship of the program with one more piece, sailed through turns, z
 noisy sensors would; the model of forces is tuned to the runs without the piece, a network is trained on what is left,
 and runs that neither has seen are scored.  What the network says is then read (``mmgtune.learning.reading``).
 
-    python tools/network_plants.py OUT.json [PLANT ...] [--keep FOLDER]
+    python tools/network_plants.py OUT.json [PLANT ...] [--keep FOLDER] [--read FOLDER]
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ from mmgtune.files import write_text
 from mmgtune.fitting import FitOptions, fit
 from mmgtune.learning.choosing import pieces_of
 from mmgtune.learning.hybrid_run import LearnedHybrid, learn_hybrid
-from mmgtune.learning.reading import Reading, read
+from mmgtune.learning.reading import read
 from mmgtune.learning.run import Hooks
 from mmgtune.model import Model
-from mmgtune.networks import Hybrid, HybridPredictor, save_network
+from mmgtune.networks import Hybrid, HybridPredictor, load_network, save_network
 from mmgtune.options.learning import HybridOptions
 from mmgtune.orders import TurningOrder, ZigzagOrder, run_manoeuvre
 from mmgtune.predictor import as_predictor
@@ -100,6 +100,7 @@ class Plant:
     ship    the ship that sails
     model   the profile before it is tuned, without the piece
     named   beginnings of names of terms that name the piece
+    note    what is to be known of its result
     """
 
     piece: str
@@ -108,6 +109,7 @@ class Plant:
     model: ShipProfile
     targets: tuple[str, ...]
     named: tuple[str, ...]
+    note: str = ""
 
 
 def _suzaku(piece: str, effects: dict[str, dict[str, float]], named: tuple[str, ...]) -> Plant:
@@ -116,7 +118,7 @@ def _suzaku(piece: str, effects: dict[str, dict[str, float]], named: tuple[str, 
     return Plant(piece, SUZAKU, ship, before, tuple(TABLE_7), named)
 
 
-def _esso(piece: str, lacks: dict[str, float], named: tuple[str, ...]) -> Plant:
+def _esso(piece: str, lacks: dict[str, float], named: tuple[str, ...], note: str = "") -> Plant:
     whole = load_profile("esso_osaka_3m")
     sections = dict(whole.sections)
     for name, value in lacks.items():
@@ -124,7 +126,7 @@ def _esso(piece: str, lacks: dict[str, float], named: tuple[str, ...]) -> Plant:
         of = sections[kind]
         one = replace(of.coefficients[symbol], value=value)
         sections[kind] = replace(of, coefficients={**of.coefficients, symbol: one})
-    return Plant(piece, ESSO, whole, replace(whole, sections=sections), ESSO_TARGETS, named)
+    return Plant(piece, ESSO, whole, replace(whole, sections=sections), ESSO_TARGETS, named, note)
 
 
 PLANTS: dict[str, Callable[[], Plant]] = {
@@ -147,6 +149,8 @@ PLANTS: dict[str, Callable[[], Plant]] = {
         "side force and yaw moment of the propeller turning astern",
         {f"propeller.{letter}_{k}": 0.0 for letter in "AB" for k in range(1, 6)},
         tuple(f"propeller.{letter}_{k}" for letter in "AB" for k in range(1, 6)),
+        "The network is as strong to port as to starboard: it cannot add this force, which pushes to one side, and "
+        "makes up for it by what follows from it.",
     ),
     "cross flow of a unified hull": lambda: _esso(
         "cross-flow drag of the hull, C_D of 0.97",
@@ -250,9 +254,7 @@ class Studied:
     """A plant, what was made of it, and its row."""
 
     plant: Plant
-    data: TrialSet
     learned: LearnedHybrid
-    reading: Reading
     row: dict[str, Any]
 
 
@@ -280,9 +282,6 @@ def study(name: str, options: HybridOptions, say: Callable[[str], None] = print)
     pieces = pieces_of(learned.test, options.restart)
     floor = L_MSE(score(as_predictor(plant.ship), pieces, learned.sigma))
     before, after = (L_MSE(learned.scores[which]) for which in ("before", "after"))
-    reading = read(learned.hybrid, list(data.trials.values()), restart=options.restart)
-    first = [term.name for term in reading.terms[:2]]
-    like = [one.name for term in reading.terms[:2] for one in term.rivals]
     row = {
         "plant": name,
         "piece": plant.piece,
@@ -292,16 +291,27 @@ def study(name: str, options: HybridOptions, say: Callable[[str], None] = print)
         "L_MSE_hybrid": after,
         "L_MSE_plant": floor,
         "share_removed": (before - after) / (before - floor),
+        "penalty": learned.quiet,
+        "updates": learned.step,
+        "wall_s": round(time.perf_counter() - began),
+    }
+    return Studied(plant, learned, {**row, **told(learned.hybrid, plant, data)})
+
+
+def told(hybrid: Hybrid, plant: Plant, data: TrialSet) -> dict[str, Any]:
+    """The part of a row that a trained network gives: what it says, and what it does outside the data."""
+    reading = read(hybrid, list(data.trials.values()), restart=plant.fleet.window)
+    first = [term.name for term in reading.terms[:2]]
+    like = [one.name for term in reading.terms[:2] for one in term.rivals]
+    return {
+        "share_of_tuned": reading.tuned,
         "first_terms": [term.to_dict() for term in reading.terms[:2]],
         "named": any(term.startswith(plant.named) for term in first),
         "named_among_alike": any(term.startswith(plant.named) for term in [*first, *like]),
         "sentences": list(reading.sentences),
-        "penalty": learned.quiet,
-        "updates": learned.step,
-        "outside": outside(learned.hybrid),
-        "wall_s": round(time.perf_counter() - began),
+        "outside": outside(hybrid),
+        "note": plant.note,
     }
-    return Studied(plant, data, learned, reading, row)
 
 
 def outside(hybrid: Hybrid) -> list[dict[str, Any]]:
@@ -360,14 +370,21 @@ def main() -> None:
     given.add_argument("out", type=Path)
     given.add_argument("plants", nargs="*", help=", ".join(PLANTS))
     given.add_argument("--keep", type=Path, help="folder for the trained networks")
+    given.add_argument("--read", type=Path, help="folder of trained networks to read anew; nothing is trained")
     asked = given.parse_args()
     found = {row["plant"]: row for row in json.loads(asked.out.read_text())["plants"]} if asked.out.is_file() else {}
     options = HybridOptions()
     for name in asked.plants or PLANTS:
-        done = study(name, options)
-        found[name] = done.row
-        if asked.keep:
-            save_network(done.learned.hybrid, asked.keep / f"{name.replace(' ', '-')}.safetensors", overwrite=True)
+        file = f"{''.join(c if c.isalnum() else '-' for c in name)}.safetensors"
+        if asked.read:
+            hybrid, plant = load_network(asked.read / file), PLANTS[name]()
+            assert isinstance(hybrid, Hybrid), file
+            found[name] |= told(hybrid, plant, runs_of(plant))
+        else:
+            done = study(name, options)
+            found[name] = done.row
+            if asked.keep:
+                save_network(done.learned.hybrid, asked.keep / file, overwrite=True)
         rows = [found[name] for name in PLANTS if name in found]
         write_text(asked.out, json.dumps({"schema": 1, "plants": rows}, indent=1, ensure_ascii=False) + "\n")
         print(table(rows), flush=True)
