@@ -23,8 +23,11 @@ from .resources import folder, profile_names, trial_set_names
 from .trial import load_trials
 
 PACKAGES = ("numpy", "scipy", "numba", "cma", "pandas", "pyarrow", "pyproj", "matplotlib", "plotly")
+OPTIONAL = {"jax": "back end jax, derivatives and networks", "optax": "training of networks"}
+"""What the extra ``learn`` brings, and what it is for."""
+
 AGREE = 1e-9
-"""Largest difference of the two back ends, over the size of the motion, that is rounding."""
+"""Largest difference of two back ends, over the size of the motion, that is rounding."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +60,18 @@ def _versions() -> list[Finding]:
             found.append(Finding(name, version(name)))
         except PackageNotFoundError:
             found.append(Finding(name, "missing", ok=False, fix="install mmgtune again, with its dependencies"))
+    for name, purpose in OPTIONAL.items():
+        there = _installed(name)
+        text = version(name) if there else f"not installed (optional: {purpose}; pip install 'mmgtune[learn]')"
+        found.append(Finding(name, text))
     return found
+
+
+def _installed(name: str) -> bool:
+    try:
+        return bool(version(name))
+    except PackageNotFoundError:
+        return False
 
 
 def _cores() -> Finding:
@@ -66,7 +80,7 @@ def _cores() -> Finding:
 
 
 def _backends() -> list[Finding]:
-    """Both back ends on one bundled trial: they must run, and agree."""
+    """Every back end that is installed on one bundled trial: they must run, and agree."""
     try:
         model = Model(load_profile("suzaku"))
         trials = list(load_trials("suzaku").trials.values())[:1]
@@ -74,7 +88,8 @@ def _backends() -> list[Finding]:
     except MmgtuneError as error:
         return [Finding("back ends", f"cannot be tried: {error.problems[0].what}", ok=False)]
     found, states = [], []
-    for name in BACKENDS:
+    there = [name for name in BACKENDS if name != "jax" or _installed("jax")]
+    for name in there:
         began = time.perf_counter()
         try:
             result = get_backend(name).run(model, model.matrix(), cases, keep_states=True)
@@ -87,8 +102,8 @@ def _backends() -> list[Finding]:
         found.append(
             Finding(f"back end {name}", f"runs a trial in {time.perf_counter() - began:.2g} s, start included")
         )
-    if len(states) == len(BACKENDS):
-        apart = float(np.max(np.abs(states[0] - states[1])) / np.max(np.abs(states[0])))
+    if len(states) == len(there):
+        apart = max(float(np.max(np.abs(states[0] - one)) / np.max(np.abs(states[0]))) for one in states[1:])
         good = apart <= AGREE
         text = f"agree to {apart:.1g}" if good else f"differ by {apart:.1g}"
         fix = "" if good else "remove the folder of compiled kernels below, then please report it"

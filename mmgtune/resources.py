@@ -37,6 +37,11 @@ def profile_names() -> list[str]:
     return sorted(path.stem for path in folder("ship_profiles").glob("*.toml"))
 
 
+def network_names() -> list[str]:
+    """Names of the bundled networks, which stand beside the profiles."""
+    return sorted(path.stem for path in folder("ship_profiles").glob("*.safetensors"))
+
+
 def particulars_names() -> list[str]:
     """Names of the bundled files of particulars."""
     return sorted(path.stem for path in particulars().glob("*.toml"))

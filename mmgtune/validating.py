@@ -125,18 +125,7 @@ def validate(
     several = predictors_of(profiles, options)
     data = trials_of(trials)
     called = str(trials) if isinstance(trials, (str, Path)) else str(data.path or "trials")
-    measured = list((trials_of(options.sigma_from) if options.sigma_from else data).trials.values())
-    sigma = spread(measured) if measured else {}
-    still = [name for name, value in sigma.items() if not value > 0.0]
-    if still:
-        raise OptionError(
-            Problem(
-                f"these trials do not vary in {', '.join(still)}",
-                "sigma_from" if options.sigma_from else called,
-                "L_MSE divides by the spread of each state",
-                "name trials that do with sigma_from=TRIALS",
-            )
-        )
+    sigma = sigma_of(data, options.sigma_from, called)
     whole = list(data.trials.values())
     pieces = list((data.in_windows(options.restart) if options.restart else data).trials.values())
     scored = []
@@ -147,6 +136,27 @@ def validate(
         stated = _stated(predictor, data, options.backend)
         scored.append(Scored(name, predictor, scores, repeated, stated, tuple(notes)))
     return Validation(tuple(scored), called, sigma, options.sigma_from or called, options)
+
+
+def sigma_of(data: TrialSet, sigma_from: str | None, called: str) -> dict[str, float]:
+    """Spread of each state in trials, or in those of ``sigma_from`` [SI]; nothing where there are none.
+
+    called  what the trials were called
+    Raises OptionError where a state does not vary.
+    """
+    measured = list((trials_of(sigma_from) if sigma_from else data).trials.values())
+    sigma = spread(measured) if measured else {}
+    still = [name for name, value in sigma.items() if not value > 0.0]
+    if still:
+        raise OptionError(
+            Problem(
+                f"these trials do not vary in {', '.join(still)}",
+                "sigma_from" if sigma_from else called,
+                "L_MSE divides by the spread of each state",
+                "name trials that do with sigma_from=TRIALS",
+            )
+        )
+    return sigma
 
 
 def predictors_of(

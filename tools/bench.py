@@ -26,10 +26,19 @@ import numpy as np
 
 from mmgtune.backends import Integrator, get_backend, pad
 from mmgtune.backends.compiled import cores
+from mmgtune.backends.twins import jax_module
 from mmgtune.files import write_text
 from mmgtune.fitting.cmaes import _strategy
+from mmgtune.learning.aims import RecurrentAim
+from mmgtune.learning.hybrid import HybridAim, first_residual, ranges_of
+from mmgtune.learning.hybrid_run import times_of
+from mmgtune.learning.samples import samples_of
+from mmgtune.learning.starting import first_weights, scales_of
+from mmgtune.learning.task import make_task
+from mmgtune.learning.training import Plan, Trainer, batch
 from mmgtune.model import Model
 from mmgtune.objective import spread
+from mmgtune.options import HybridOptions, LearnOptions
 from mmgtune.orders import TurningOrder, run_manoeuvre
 from mmgtune.profile import load_profile
 from mmgtune.simulation import as_trial
@@ -70,6 +79,52 @@ def lane_steps() -> list[dict[str, Any]]:
             best = min(timed(run) for _ in range(repeats))
             row[f"{name}_{integrator.name}_ns"] = round(best / (lanes * STEPS) * 1e9, 1)
         row["ratio"] = round(row["numpy_rk4_ns"] / row["compiled_rk4_ns"], 1)
+        rows.append(row)
+    return rows
+
+
+JAX_LANES, JAX_STEPS = 48, 900
+"""Of the roll-outs that are differentiated."""
+
+
+def derivatives() -> list[dict[str, Any]]:
+    """Nanoseconds per lane and step of SUZAKU in a 35 deg turn on JAX, states kept: the run, and its gradient.
+
+    The gradient is that of the sum of all squared positions by every coefficient of every lane; its seconds of
+    compilation are those of a first call.
+    """
+    from mmgtune.backends.differentiable import log_of_cases, rollout
+    from mmgtune.backends.twins import jax_module
+
+    jax = jax_module()
+    model = Model(load_profile("suzaku"))
+    t = np.arange(JAX_STEPS + 1.0)
+    controls = np.column_stack([np.full(len(t), 106.0 / 60.0), np.full(len(t), np.radians(35.0))])
+    cases = pad([t], [controls], [np.array([0.0, 0.0, 0.0, 3.086, 0.0, 0.0])])
+    theta = model.matrix(["hull.R_0"], np.linspace(0.012, 0.02, JAX_LANES)[None])
+    log = log_of_cases(cases, np.zeros(JAX_LANES, dtype=int))
+    start = np.repeat(cases.initial, JAX_LANES, axis=0)
+    rows = []
+    for integrator in (EULER, RK4):
+
+        def squared(c: Any, i: Integrator = integrator) -> Any:
+            return jax.numpy.sum(rollout(model, c, start, log, integrator=i)[..., :2] ** 2)
+
+        def run(name: str, i: Integrator = integrator) -> None:
+            get_backend(name).run(model, theta, cases, integrator=i, keep_states=True)
+
+        with jax.enable_x64(True):
+            gradient = jax.jit(jax.grad(squared))
+            kinds = {
+                "compiled": lambda r=run: r("compiled"),
+                "jax": lambda r=run: r("jax"),
+                "gradient": lambda g=gradient: jax.block_until_ready(g(theta)),
+            }
+            row: dict[str, Any] = {"integrator": integrator.name}
+            for kind, work in kinds.items():
+                row[f"{kind}_first_s"] = round(timed(work), 1)
+                row[f"{kind}_ns"] = round(min(timed(work) for _ in range(20)) / (JAX_LANES * JAX_STEPS) * 1e9)
+        row["ratio"] = round(row["jax_ns"] / row["compiled_ns"], 1)
         rows.append(row)
     return rows
 
@@ -133,6 +188,67 @@ def a_check(folder: Path) -> dict[str, Any]:
     row["cold_s"], _ = run([*line, "--update-baseline"], environment)
     row["warm_s"], row["peak_memory_mb"] = run(line, environment)
     return row
+
+
+def training() -> list[dict[str, Any]]:
+    """Seconds of a gradient and an update of networks on SUZAKU's trials, and updates a second."""
+    jax, rows = jax_module(), []
+    for title, trainer, begin in (recurrent_training(), hybrid_training()):
+        now = trainer.begin(begin)
+        held = [now.parameters, now.state, now.mean]
+        starts = batch(trainer.aim.starts, trainer.plan.batch, 1, 0)
+
+        def update(held: list[Any] = held, trainer: Trainer = trainer, starts: Any = starts) -> None:
+            found = trainer.update(*held, starts, np.float32(1.0), np.float32(0.9), trainer.aim.data)
+            held[:] = found[:3]
+            jax.block_until_ready(found)
+
+        update()
+        seconds = min(timed(update) for _ in range(10))
+        rows.append(
+            {
+                "training": title,
+                "batch": trainer.plan.batch,
+                "seconds": round(seconds, 4),
+                "updates_per_s": round(1.0 / seconds, 2),
+            }
+        )
+    return rows
+
+
+def recurrent_training() -> tuple[str, Trainer, Any]:
+    """Networks of type 1 as ``learn rnn`` trains them."""
+    options = LearnOptions()
+    task = make_task(load_profile("suzaku"), load_trials("suzaku"), options)
+    aim = RecurrentAim(task, scales_of(task.samples))
+    begin = first_weights(len(task.inputs), options.width, 1)
+    title = f"type 1, {options.horizon} samples, width {options.width}"
+    single = begin._make(np.float32(one) for one in begin)
+    return title, Trainer(aim, Plan(options.steps, options.batch, options.rate, options.validate_every)), single
+
+
+def hybrid_training() -> tuple[str, Trainer, Any]:
+    """A hybrid as ``learn hybrid`` trains it, with validation on what it learns from."""
+    options, model, data = HybridOptions(), Model(load_profile("suzaku")), load_trials("suzaku")
+    trials = [data.trials[id] for id in data.tune]
+    step, lag = times_of(model.profile, trials, options)
+    samples = samples_of(trials, model.inputs, step, model.draught)
+    ranges = ranges_of(samples, lag, [one.role for one in model.arrangement.inputs])
+    horizon = round((options.restart or 100.0) / step)
+    aim = HybridAim(
+        model,
+        samples,
+        trials,
+        ranges,
+        memory=lag,
+        sigma=np.array(list(spread(trials).values())),
+        horizon=horizon,
+        penalty=options.penalty[0],
+        restart=options.restart,
+    )
+    begin = first_residual(len(ranges.deviation), options.width, 1)
+    plan = Plan(options.steps, options.batch, options.rate, options.validate_every)
+    return f"hybrid, {horizon} samples, width {options.width}", Trainer(aim, plan), begin
 
 
 WATCH = """
@@ -222,6 +338,19 @@ def as_markdown(found: dict[str, Any]) -> str:
             for r in found["lane_steps"]
         ),
         "",
+        "## Derivatives",
+        "",
+        f"SUZAKU, {JAX_LANES} lanes of {JAX_STEPS} steps of a 35 deg turn, states kept; ns per lane and step.",
+        "The gradient is that of one number by all coefficients of all lanes.",
+        "",
+        "| integrator | compiled | JAX | ratio | gradient | first gradient [s] |",
+        "|---|---:|---:|---:|---:|---:|",
+        *(
+            f"| {r['integrator']} | {r['compiled_ns']:,} | {r['jax_ns']:,} | {r['ratio']} | {r['gradient_ns']:,} "
+            f"| {r['gradient_first_s']} |"
+            for r in found["derivatives"]
+        ),
+        "",
         "## Many windows",
         "",
         f"Scores of one model on {w['windows']} windows of {w['samples']} samples, rk4: {w['seconds']} s, {w['mb']} MB",
@@ -234,6 +363,14 @@ def as_markdown(found: dict[str, Any]) -> str:
         "| log | rows | warm [s] | peak memory [MB] |",
         "|---|---:|---:|---:|",
         *(f"| {r['log']} | {r['rows']:,} | {r['warm_s']} | {r['peak_memory_mb']} |" for r in found["voyages"]),
+        "",
+        "## Training",
+        "",
+        "A gradient and an update of networks on the bundled trials of SUZAKU, compiled; needs `mmgtune[learn]`.",
+        "",
+        "| network | windows in a batch | seconds | updates a second |",
+        "|---|---:|---:|---:|",
+        *(f"| {r['training']} | {r['batch']} | {r['seconds']} | {r['updates_per_s']} |" for r in found["training"]),
         "",
         "## CMA-ES itself",
         "",
@@ -260,8 +397,10 @@ if __name__ == "__main__":
     results = {
         "machine": machine(),
         "lane_steps": lane_steps(),
+        "derivatives": derivatives(),
         "windows": windows(),
         "voyages": voyages(),
+        "training": training(),
         "search_overhead": search_overhead(),
         "commands": commands(),
     }

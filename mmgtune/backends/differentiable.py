@@ -205,7 +205,7 @@ def _logged_at(time: Array, t: Array, n: Array, values: Array) -> Array:
     """
     numpy = jax_module().numpy
     last = t[n - 1]
-    time = numpy.clip(time, t[0], last)
+    time = numpy.minimum(numpy.maximum(time, t[0]), last)  # of half a derivative at either end, unlike clip
     k = numpy.clip(numpy.searchsorted(t, time, side="right"), 1, n - 1)
     slope = (values[k] - values[k - 1]) / _length(t[k] - t[k - 1])
     earlier = numpy.maximum(k - 2, 0)

@@ -225,7 +225,7 @@ class LaneModel:
 
     def begin(self, state: State, logged: Any, around: Surroundings) -> Moment:
         """The first moment, with the machinery at rest at the inputs logged there."""
-        chain = self.moved([], logged, None, 0.0 * logged[0])
+        chain = self.moved([], logged, None, 0.0)
         return Moment(self.on.states([*state, *self.behind(state, chain[-1], around)]), chain, around)
 
     def step(

@@ -25,9 +25,9 @@ LIBRARIES = ("numpy", "jax", "jaxlib", "builtins", "math", "typing", "collection
 """Packages whose functions are used as they are, or by the name JAX has for them."""
 
 
-FUSE = "--xla_backend_extra_options=xla_cpu_use_multi_output_fusion=true"
-"""Has the forces of a step computed once and not for each of the rates anew: steps take less than half the time.  A
-compiler that does not know it passes it over."""
+FUSE = "xla_backend_extra_options=xla_cpu_use_multi_output_fusion=true"
+"""A flag of JAX's compiler: the forces of a step are computed once, not for each of the rates anew, which takes less
+than half the time.  A release that does not know it passes it over."""
 
 
 def jax_module() -> Any:
@@ -36,7 +36,7 @@ def jax_module() -> Any:
     Imported here first, it is told to ``FUSE``; where XLA_FLAGS is set, that counts.
     """
     if "jax" not in sys.modules:
-        os.environ.setdefault("XLA_FLAGS", FUSE)
+        os.environ.setdefault("XLA_FLAGS", f"{2 * '-'}{FUSE}")
     try:
         import jax
     except ImportError as error:

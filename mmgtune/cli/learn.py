@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from ..options.learning import LearnOptions
+from ..options.learning import HybridOptions, LearnOptions
 from . import common as c
+from . import learn_compare
 from .options import RunOptions, takes
 from .progress import Progress
 
@@ -18,6 +19,8 @@ app = typer.Typer(
     no_args_is_help=True,
     help="Train networks that predict the motion of a ship, and hold them against other models.",
 )
+
+app.command("compare")(learn_compare.command)
 
 
 @app.command("rnn")
@@ -35,7 +38,7 @@ def rnn(
     The networks of Wakita et al. 2022. Of the profile only the ship's name, her length and what drives her are used.
     Whole runs are kept back, and the weights are kept that do best on windows of these; trials that test play no
     part and are scored at the end. What comes out is one file, model.safetensors in the run folder, that simulate
-    and validate take in place of a profile. Needs the extra: pip install 'mmgtune[learn]'.
+    and validate take in place of a profile. Needs the extra called learn.
 
     Examples:
 
@@ -66,6 +69,86 @@ def rnn(
     else:
         c.show(summary(result, str(folder), report=not no_report))
     progress.leave()
+
+
+@app.command("hybrid")
+@takes(options=HybridOptions, run=RunOptions)
+def hybrid(
+    profile: c.Profile = "suzaku",
+    trials: c.Trials = "suzaku",
+    *,
+    options: HybridOptions,
+    run: RunOptions,
+    no_report: c.NoReport = False,
+) -> None:
+    """Train a small network for what a profile's forces leave, inside the profile's own simulation.
+
+    The profile's coefficients stay. The network adds to the accelerations, begins at nothing, is as strong to port as
+    to starboard, and is silent outside the data. It is kept only where it does better on runs it has not seen; a tuned
+    profile is tuned anew without these runs for that comparison. What comes out is one file, model.safetensors, that
+    simulate and validate take in place of a profile. Needs the extra called learn.
+
+    Examples:
+
+      mmgtune learn hybrid -p esso_osaka_3m_tuned -t esso --out runs/hybrid
+
+      mmgtune learn hybrid -p tuned.toml -t my_trials/ --folds 5 --penalty 5,15,50
+    """
+    from ..fitting import claimed
+    from ..learning import Hooks, learn_hybrid, write_learned
+    from ..report import render
+
+    ship, data = c.load(profile, trials)
+    folder = run.out or c.default_out(ship)
+    if run.dry_run:
+        from ..learning.planning import plan_hybrid
+
+        c.print_plan(plan_hybrid(ship, data, options), folder)
+        return
+    with claimed(folder, force=run.force, resume=run.resume), Progress(run.quiet, folder) as progress:
+        hooks = Hooks(on_progress=progress.on_share, stop=lambda: progress.stopped)
+        result = learn_hybrid(
+            ship, data, options, hooks=hooks, folder=folder, resume=run.resume, command=c.command_line()
+        )
+        document = write_learned(result, folder)
+        progress.saved(result.interrupted)
+        if not no_report:
+            render(folder)
+    if run.json:
+        c.print_json(document)
+    else:
+        c.show(hybrid_summary(document, str(folder), report=not no_report))
+    progress.leave()
+
+
+def hybrid_summary(found: dict[str, Any], folder: str, report: bool) -> str:
+    """The result as a person wants to read it in a terminal."""
+    lines = []
+    if found["gained"]:
+        lines += [f"{'runs not learned from':<24}{'runs':>6}{'L_MSE model':>13}{'hybrid':>10}   removed"]
+        for row in found["gains"]:
+            interval = row["share_removed_ci95"]
+            removed = f"{100 * row['share_removed']:.0f} %"
+            if interval:
+                removed += f" ({100 * interval[0]:.0f} to {100 * interval[1]:.0f} %, runs drawn anew)"
+            name = row["manoeuvre"] or "manoeuvre not stated"
+            lines.append(
+                f"{name:<24}{row['runs']:>6}{row['L_MSE_before']:>13.4g}{row['L_MSE_after']:>10.4g}   {removed}"
+            )
+        lines += ["", f"kept: penalty {found['penalty']:g}, {found['updates']} updates, trained on all runs that tune"]
+    else:
+        lines.append("No gain: no network does better on runs it has not seen. The model is the profile as it is.")
+    for event in found["events"]:
+        lines.append(f"note: diverged at step {event['step']}, went back to step {event['back_to']} at half the rate")
+    if found["scores"]:
+        before, after = (found["scores"][which]["L_MSE"] for which in ("before", "after"))
+        shown = ["diverged" if one is None else f"{one:.4g}" for one in (before, after)]
+        lines.append(f"held out: L_MSE {shown[0]} -> {shown[1]}")
+    if found["interrupted"]:
+        lines += ["", f"Stopped early; --resume --out {folder} continues."]
+    where = f"Report: {folder}/report.html" if report else ""
+    lines += ["", f"{found['wall_s']:.1f} s. Model: {folder}/model.safetensors. {where}".rstrip()]
+    return "\n".join(lines)
 
 
 def summary(result: Learned, folder: str, report: bool) -> str:

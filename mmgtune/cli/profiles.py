@@ -24,12 +24,15 @@ Name = Annotated[str, typer.Argument(help="A TOML file or a bundled name.", auto
 
 @app.command("list")
 def list_profiles() -> None:
-    """List the bundled profiles."""
+    """List the bundled profiles, and what was trained beside them."""
+    from ..networks import load_network
     from ..profile import load_profile
-    from ..resources import profile_names
+    from ..resources import folder, network_names, profile_names
 
     for name in profile_names():
         c.show(f"{name:<24}{load_profile(name).name}")
+    for name in network_names():
+        c.show(f"{name:<24}{load_network(folder('ship_profiles') / f'{name}.safetensors')!r}")
 
 
 @app.command("show")

@@ -27,6 +27,7 @@ OWN_FILES = (
     "leave_out.json",
     "voyages.json",
     "learning.json",
+    "hybrid.json",
     "model.safetensors",
     "windows.parquet",
     "drawn.parquet",

@@ -3,12 +3,17 @@
 samples, splitting   trials on one time step, and whole runs kept back to choose by
 recipes, starting    the five types of the paper; where weights begin
 rolling, losses      roll-outs of the equations of ``networks.recurrent`` on JAX, and what is made small
-aims, training       windows of trials as what is trained for; the steps, and the way back from divergence
+aims, choosing       windows of trials as what is trained for, and what chooses among weights
+training             the steps, and the way back from divergence
 keeping, folder      checkpoints, and what a run leaves behind
 run                  all of it, as ``mmgtune learn rnn``
+hybrid, gains        a network beside a model of forces, and what it gains on unseen runs
+refitting            the model of forces tuned anew without the runs kept back
+hybrid_run           all of that, as ``mmgtune learn hybrid``
 """
 
 from .folder import write_learned
+from .hybrid_run import LearnedHybrid, learn_hybrid
 from .run import Hooks, Learned, learn_rnn
 
-__all__ = ["Hooks", "Learned", "learn_rnn", "write_learned"]
+__all__ = ["Hooks", "Learned", "LearnedHybrid", "learn_hybrid", "learn_rnn", "write_learned"]

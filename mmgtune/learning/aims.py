@@ -26,15 +26,17 @@ class RecurrentAim:
         options, recipe, learn = task.options, task.recipe, task.samples
         sigma = np.array([task.sigma[name] for name in STATES])
         self.starts: IntArray = learn.starts(options.horizon)
-        self._states = jnp.asarray(learn.states, dtype=Single)
-        self._controls = jnp.asarray(learn.controls, dtype=Single)
-        self._wind = jnp.asarray(learn.wind, dtype=Single)
+        measured = accelerations_of(learn) if recipe.loss == "acceleration" else np.zeros((0, 3))
+        self.data = {
+            "states": jnp.asarray(learn.states, dtype=Single),
+            "controls": jnp.asarray(learn.controls, dtype=Single),
+            "wind": jnp.asarray(learn.wind, dtype=Single),
+            "accelerations": jnp.asarray(measured, dtype=Single),
+        }
         self._scales = Scales(*(jnp.asarray(one, dtype=Single) for one in scales))
         self._sigma = jnp.asarray(sigma, dtype=Single)
         self._h, self._memory, self._horizon, self._recipe = learn.step, task.memory, options.horizon, recipe
         if recipe.loss == "acceleration":
-            measured = accelerations_of(learn)
-            self._measured = jnp.asarray(measured, dtype=Single)
             self._deviation = jnp.asarray(np.nanstd(measured, axis=0), dtype=Single)
         self._chooser = Chooser(
             self._of_windows, task.split.choose, task.inputs, learn.step, sigma, restart=options.restart
@@ -44,14 +46,14 @@ class RecurrentAim:
         """See ``Roll``."""
         return roll(w, self._scales, initial, controls[:-1], around[:-1, :, WIND], self._h, self._memory)
 
-    def loss(self, w: Weights, starts: Any) -> Any:
+    def loss(self, w: Weights, starts: Any, data: Any) -> Any:
         """See ``Aim``."""
         rows = starts[None, :] + jax_module().numpy.arange(self._horizon + 1)[:, None]
-        states = from_origin(self._states[rows])
-        controls, wind = self._controls[rows], self._wind[rows]
+        states = from_origin(data["states"][rows])
+        controls, wind = data["controls"][rows], data["wind"][rows]
         if self._recipe.loss == "acceleration":
             return acceleration_loss(
-                w, self._scales, states, controls, wind, self._memory, self._measured[rows], self._deviation
+                w, self._scales, states, controls, wind, self._memory, data["accelerations"][rows], self._deviation
             )
         return trajectory_loss(w, self._scales, states, controls[:-1], wind[:-1], self._h, self._memory, self._sigma)
 

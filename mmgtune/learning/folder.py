@@ -4,18 +4,24 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from ..arrays import FloatArray
 from ..files import write_text
-from ..networks import NetworkPredictor, save_network
+from ..networks import HybridPredictor, NetworkPredictor, save_network
+from ..objective import spread
+from ..predictor import Predictor, as_predictor
 from ..simulation import simulate
-from ..validation import by_manoeuvre, summary
+from ..trial import Trial
+from ..validation import score, summary
 from .choosing import pieces_of
+from .hybrid_run import LearnedHybrid
 from .run import Learned
 
 RESULT = "learning.json"
+HYBRID_RESULT = "hybrid.json"
 MODEL = "model.safetensors"
 CHECKPOINTS = "training-*.safetensors"
 
@@ -26,6 +32,7 @@ POINTS = 200
 def document_of(result: Learned) -> dict[str, Any]:
     """Everything but the weights, for JSON."""
     task = result.task
+    role = "test" if task.test else "validation"
     return {
         "schema": 1,
         "kind": "learning",
@@ -43,7 +50,7 @@ def document_of(result: Learned) -> dict[str, Any]:
         "chosen_by": [trial.id for trial in task.split.choose],
         "held_out": [trial.id for trial in task.test],
         "scores": {role: summary(scores) for role, scores in result.scores.items() if scores},
-        "drawn": drawn_of(result),
+        "drawn": drawn([NetworkPredictor(result.network)], task.test or task.split.choose, task.options.restart, role),
         "options": task.options.to_dict(),
         "provenance": result.provenance,
         "interrupted": result.interrupted,
@@ -51,31 +58,63 @@ def document_of(result: Learned) -> dict[str, Any]:
     }
 
 
-def drawn_of(result: Learned) -> list[dict[str, Any]]:
-    """Of each kind of manoeuvre the window of median error, as measured and by all members: tracks [m].
+def hybrid_document(result: LearnedHybrid) -> dict[str, Any]:
+    """Everything but the weights of a hybrid, for JSON."""
+    trials = result.test or result.splits[0].choose
+    models = [as_predictor(result.hybrid.profile), HybridPredictor(result.hybrid)]
+    return {
+        "schema": 1,
+        "kind": "hybrid",
+        "ship": result.hybrid.profile.id,
+        "gained": result.gained,
+        "penalty": result.penalty,
+        "updates": result.step,
+        "lag_s": result.hybrid.memory,
+        "step_s": result.step_s,
+        "window_s": result.options.restart,
+        "sigma": result.sigma,
+        "gains": [one.to_dict() for one in result.gains],
+        "tried": [{"penalty": penalty, "curve": rows} for penalty, rows in result.tried.items()],
+        "parts": [[trial.id for trial in split.choose] for split in result.splits],
+        "held_out": [trial.id for trial in result.test],
+        "scores": {which: summary(scores) for which, scores in result.scores.items()},
+        "drawn": drawn(models, trials, result.options.restart, "test" if result.test else "validation"),
+        "options": result.options.to_dict(),
+        "provenance": result.provenance,
+        "events": list(result.events),
+        "interrupted": result.interrupted,
+        "wall_s": result.wall_s,
+    }
 
-    Of the trials held out where there are any, else of those that chose.
-    """
-    role = "test" if result.scores["test"] else "validation"
-    trials = result.task.test if role == "test" else result.task.split.choose
-    pieces = {piece.id: piece for piece in pieces_of(trials, result.task.options.restart)}
+
+def drawn(
+    models: Sequence[Predictor], trials: Sequence[Trial], restart: float | None, role: str
+) -> list[dict[str, Any]]:
+    """Of each kind of manoeuvre the window of median error of the last model: tracks [m] as measured, and as all
+    members of all models make them."""
+    pieces = pieces_of(trials, restart)
+    sigma = spread(trials)
+    errors: dict[str, float] = {}
+    for one in score(models[-1], pieces, sigma):
+        errors[one.id] = errors.get(one.id, 0.0) + one.L_MSE / models[-1].n_members
     found = []
-    for kind, scores in by_manoeuvre(result.scores[role]).items():
-        by_window: dict[str, float] = {}
-        for one in scores:
-            by_window[one.id] = by_window.get(one.id, 0.0) + one.L_MSE / result.network.n_members
-        id = sorted(by_window, key=lambda name: by_window[name])[len(by_window) // 2]
-        of = pieces[id]
+    for kind in dict.fromkeys(piece.manoeuvre for piece in pieces):
+        several = sorted((piece for piece in pieces if piece.manoeuvre == kind), key=lambda piece: errors[piece.id])
+        of = several[len(several) // 2]
         every = slice(None, None, max(1, of.n_samples // POINTS))
-        members = [one.states for one in simulate(NetworkPredictor(result.network), [of]) if not one.diverged]
         found.append(
             {
-                "id": id,
+                "id": of.id,
                 "manoeuvre": kind,
                 "role": role,
-                "L_MSE": float(by_window[id]) if math.isfinite(by_window[id]) else None,
+                "L_MSE": errors[of.id] if math.isfinite(errors[of.id]) else None,
                 "measured": _track(of.motion[every]),
-                "members": [_track(states[every]) for states in members],
+                "members": [
+                    _track(motion.states[every])
+                    for model in models
+                    for motion in simulate(model, [of])
+                    if not motion.diverged
+                ],
             }
         )
     return found
@@ -89,11 +128,16 @@ def _track(states: FloatArray) -> dict[str, list[float | None]]:
     }
 
 
-def write_learned(result: Learned, folder: Path) -> dict[str, Any]:
+def write_learned(result: Learned | LearnedHybrid, folder: Path) -> dict[str, Any]:
     """Write a run folder, the record last; checkpoints stay where the training was stopped.  Returns the record."""
-    save_network(result.network, folder / MODEL, overwrite=True)
-    document = {**document_of(result), "out": str(folder)}
-    write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+    if isinstance(result, LearnedHybrid):
+        save_network(result.hybrid, folder / MODEL, overwrite=True)
+        document, name = hybrid_document(result), HYBRID_RESULT
+    else:
+        save_network(result.network, folder / MODEL, overwrite=True)
+        document, name = document_of(result), RESULT
+    document["out"] = str(folder)
+    write_text(folder / name, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
     if not result.interrupted:
         for path in folder.glob(CHECKPOINTS):
             path.unlink()

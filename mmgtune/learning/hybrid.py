@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..backends import Integrator
+from ..backends import STATES, Integrator
 from ..backends.differentiable import Log, Marching, on_jax
 from ..backends.twins import jax_module
 from ..model import Model
 from ..networks.hybrid import HybridLanes
 from ..networks.residual import Ranges, ResidualWeights, seen
 from ..trial import Trial
-from .choosing import Chooser, Single
+from ..validation import L_MSE, by_manoeuvre, score
+from .choosing import Chooser, Single, pieces_of
+from .gains import relative
 from .samples import Samples
-
-Runs = Mapping[str, tuple[str, int]]
-"""Kind of manoeuvre of runs, and the samples of each that count."""
 
 EULER = Integrator("euler")
 """Method within training: at half a second scores differ by less than a hundredth from those at a tenth."""
@@ -82,7 +81,7 @@ def ranges_of(samples: Samples, memory: float, roles: Sequence[str]) -> Ranges:
 class HybridAim:
     """The network of a hybrid on windows of ``horizon`` samples; the model of forces stays as it is.
 
-    quiet  weight of the mean square of what the network adds, over the deviations of accelerations
+    penalty  weight of the mean square of what the network adds, over the deviations of accelerations
     """
 
     def __init__(
@@ -95,18 +94,15 @@ class HybridAim:
         memory: float,
         sigma: FloatArray,
         horizon: int,
-        quiet: float,
+        penalty: float,
         restart: float | None,
     ):
         jnp = jax_module().numpy
         self.starts = balanced(learn, horizon)
-        self.model, self.memory, self.horizon, self.quiet, self.step = model, memory, horizon, quiet, learn.step
+        self.model, self.memory, self.horizon, self.penalty, self.step = model, memory, horizon, penalty, learn.step
         self.ranges = Ranges(*(jnp.asarray(one, dtype=Single) for one in ranges))
         self.theta = jnp.asarray(model.matrix()[:, 0], dtype=Single)
         self.sigma = jnp.asarray(sigma, dtype=Single)
-        self._states = jnp.asarray(learn.states, dtype=Single)
-        self._controls = jnp.asarray(learn.controls, dtype=Single)
-        self._around = jnp.asarray(learn.around, dtype=Single)
         self._chooser = Chooser(
             lambda *given: self.roll(*given)[0],
             choose,
@@ -117,9 +113,14 @@ class HybridAim:
             draught=model.draught,
         )
         self.runs = self._chooser.runs
-        typical = self._typical(learn, restart, sigma)
+        typical = typical_errors(model, learn.trials, restart, sigma)
         by_trial = np.array([typical[trial.manoeuvre] for trial in learn.trials])
-        self._typical_error = jnp.asarray(np.repeat(by_trial, np.diff(learn.first)), dtype=Single)
+        self.data = {
+            "states": jnp.asarray(learn.states, dtype=Single),
+            "controls": jnp.asarray(learn.controls, dtype=Single),
+            "around": jnp.asarray(learn.around, dtype=Single),
+            "typical": jnp.asarray(np.repeat(by_trial, np.diff(learn.first)), dtype=Single),
+        }
         self._alone: dict[str, float] = {}
 
     def roll(self, w: ResidualWeights, initial: Any, controls: Any, around: Any) -> tuple[Any, Any]:
@@ -141,31 +142,18 @@ class HybridAim:
         _, (shown, added) = jax.lax.scan(jax.checkpoint(body), march.begin(initial), march.samples)
         return numpy.concatenate([initial[None], shown]), added
 
-    def loss(self, w: ResidualWeights, starts: Any) -> Any:
+    def loss(self, w: ResidualWeights, starts: Any, data: Any) -> Any:
         """See ``Aim``."""
         numpy = jax_module().numpy
         rows = starts[None, :] + numpy.arange(self.horizon + 1)[:, None]
-        states = self._states[rows]
+        states = data["states"][rows]
         begin = numpy.concatenate([states[:1, :, :2], numpy.zeros_like(states[:1, :, 2:])], axis=-1)
         states = states - begin
-        found, added = self.roll(w, states[0], self._controls[rows], self._around[rows])
+        found, added = self.roll(w, states[0], data["controls"][rows], data["around"][rows])
         error = numpy.sum(numpy.mean(((found - states) / self.sigma)[1:] ** 2, axis=0), axis=-1)
-        error = error / self._typical_error[starts]
+        error = error / data["typical"][starts]
         robust = 2.0 * ROBUST * (numpy.sqrt(1.0 + error / ROBUST) - 1.0)
-        return numpy.mean(robust) + self.quiet * numpy.mean(added**2)
-
-    def _typical(self, learn: Samples, restart: float | None, sigma: FloatArray) -> dict[str, float]:
-        """L_MSE of the model of forces alone on what is learned from, by kind of manoeuvre."""
-        own = Chooser(
-            lambda *given: self.roll(*given)[0],
-            learn.trials,
-            self.model.inputs,
-            learn.step,
-            sigma,
-            restart=restart,
-            draught=self.model.draught,
-        )
-        return own.by_kind(first_residual(len(self.ranges.deviation), 1, 1))
+        return numpy.mean(robust) + self.penalty * numpy.mean(added**2)
 
     def alone(self, w: ResidualWeights) -> dict[str, float]:
         """L_MSE by run of the model of forces alone, on the windows that choose."""
@@ -179,6 +167,12 @@ class HybridAim:
         return {"score": relative(self.alone(w), errors, self.runs), **errors}
 
 
+def typical_errors(model: Model, trials: Sequence[Trial], restart: float | None, sigma: FloatArray) -> dict[str, float]:
+    """L_MSE of the model of forces alone, by kind of manoeuvre."""
+    scores = score(model, pieces_of(trials, restart), dict(zip(STATES, sigma.tolist(), strict=True)))
+    return {kind: L_MSE(of) for kind, of in by_manoeuvre(scores).items()}
+
+
 def balanced(samples: Samples, horizon: int) -> IntArray:
     """Rows at which windows begin, each kind of manoeuvre as often as any other."""
     starts = samples.starts(horizon)
@@ -186,21 +180,3 @@ def balanced(samples: Samples, horizon: int) -> IntArray:
     several = [starts[kinds == kind] for kind in sorted({*kinds.tolist()})]
     most = max((len(one) for one in several), default=0)
     return np.concatenate([np.resize(one, most) for one in several]) if several else starts
-
-
-def ratios(before: Mapping[str, float], after: Mapping[str, float], runs: Runs) -> dict[str, float]:
-    """Error after over error before, by kind of manoeuvre: of runs together, each by its samples."""
-    found = {}
-    for kind in sorted({kind for kind, _ in runs.values()}):
-        of = {run: n for run, (own, n) in runs.items() if own == kind}
-        found[kind] = sum(n * after[run] for run, n in of.items()) / sum(n * before[run] for run, n in of.items())
-    return found
-
-
-def relative(before: Mapping[str, float], after: Mapping[str, float], runs: Runs) -> float:
-    """Mean over kinds of manoeuvre of their ``ratios``, each alike; 1 for no change.
-
-    A kind that is worse counts by its loss once more: what one kind gains another must not pay.
-    """
-    found = np.array(list(ratios(before, after, runs).values()))
-    return float(np.mean(found) + np.sum(np.maximum(found - 1.0, 0.0)))

@@ -14,7 +14,6 @@ import numpy as np
 
 from ..backends import STATES
 from ..errors import OptionError, Problem
-from ..fitting.run import facts_of_profile, made_by
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..model import Model
 from ..networks.hybrid import Hybrid, HybridPredictor
@@ -23,11 +22,13 @@ from ..objective import spread
 from ..options.learning import HybridOptions
 from ..predictor import as_predictor
 from ..profile import ShipProfile
-from ..trial import Trial, TrialSet
+from ..trial import Trial
 from ..validation import TrialScore, score
 from . import keeping
 from .choosing import pieces_of
-from .hybrid import HybridAim, first_residual, ranges_of, ratios, relative
+from .gains import Gain, Trained, curve_of, gains_of
+from .hybrid import HybridAim, first_residual, ranges_of
+from .provenance import provenance_of, travelling
 from .refitting import refitted, tuned_names
 from .run import Hooks
 from .samples import Samples, samples_of
@@ -37,35 +38,11 @@ from .training import Plan, Progressed, Trainer
 LAG, STEP = 0.5, 0.03
 """Memory, and step of training, as shares of the time the ship takes for her length at her root mean square speed."""
 
-DRAWS = 2000
-"""Times runs are drawn anew for an interval."""
+LEAST = 0.02
+"""Share of the error that a network must remove on unseen runs to be kept."""
 
-
-@dataclass(frozen=True)
-class Gain:
-    """What the network removes of the error on runs it has not seen, of one kind of manoeuvre.
-
-    share     of L_MSE that is gone
-    interval  95 %, by drawing runs anew; None with fewer than three
-    """
-
-    manoeuvre: str
-    runs: int
-    before: float
-    after: float
-    share: float
-    interval: tuple[float, float] | None
-
-    def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
-        return {
-            "manoeuvre": self.manoeuvre,
-            "runs": self.runs,
-            "L_MSE_before": self.before,
-            "L_MSE_after": self.after,
-            "share_removed": self.share,
-            "share_removed_ci95": self.interval,
-        }
+DECAY = 1e-4
+"""Decay of the weights in each update, relative to the rate."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,16 +50,18 @@ class LearnedHybrid:
     """A hybrid, and how it was chosen.
 
     hybrid   what does best on runs that were not learned from; the model of forces alone where nothing does better
-    quiet    weight of the penalty chosen, None where nothing is gained
+    penalty    weight of the penalty chosen, None where nothing is gained
     step     updates after which it does best
+    step_s   of the integration within training [s]
     tried    of each weight of the penalty the score by step, 1 being the model of forces alone
     gains    on the runs that chose, by kind of manoeuvre
     scores   of the trials held out, before and after
     """
 
     hybrid: Hybrid
-    quiet: float | None
+    penalty: float | None
     step: int
+    step_s: float
     tried: dict[float, list[dict[str, float]]]
     gains: tuple[Gain, ...]
     splits: tuple[Split, ...]
@@ -98,7 +77,7 @@ class LearnedHybrid:
     @property
     def gained(self) -> bool:
         """Whether the network does better than none."""
-        return self.quiet is not None
+        return self.penalty is not None
 
     def __repr__(self) -> str:
         """In a line."""
@@ -127,11 +106,8 @@ def learn_hybrid(
     profile, data = ship_of(ship), trials_of(trials).series_only("a network")
     tune = [data.trials[id] for id in data.tune]
     test = tuple(data.trials[id] for id in data.test)
-    several = options.folds > 1
-    splits = fold_runs(tune, options.folds, options.seed) if several else []
-    splits = splits or [split_runs(tune, options.validation, options.seed)]
-    length_time = profile.L_pp / _speed(tune)
-    step, lag = options.step or STEP * length_time, options.lag or LAG * length_time
+    splits = splits_of(tune, options)
+    step, lag = times_of(profile, tune, options)
     sigma = spread(tune)
     work = _Work(profile, options, step, lag, np.array([sigma[name] for name in STATES]), hooks, folder, resume)
     work.identity = {
@@ -141,58 +117,61 @@ def learn_hybrid(
         "options": options.to_dict(),
         "versions": {name: version(name) for name in ("jax", "jaxlib", "optax", "numpy")},
     }
-    work.total = (len(splits) * len(options.quiet) + 1) * options.steps
+    work.total = (len(splits) * len(options.penalty) + 1) * options.steps
     if resume and folder is not None and not list(folder.glob("training-*.safetensors")):
         why = "the folder holds no checkpoint: the run ended, or never came to its first validation"
         raise OptionError(Problem("nothing to resume", str(folder), why, "run without resume=True"))
     ranges = work.ranges(tune)
-    trained: dict[float, list[_Trained]] = {}
-    for quiet in options.quiet:
-        trained[quiet] = [work.train(quiet, split, ranges) for split in splits]
-    tried = {quiet: _curve(of) for quiet, of in trained.items()}
-    quiet, best = min(
-        ((quiet, row) for quiet, rows in tried.items() for row in rows),
-        key=lambda one: one[1]["score"],
-        default=(0.0, {"score": 1.0, "step": 0.0}),
-    )
-    gained = best["score"] < 1.0
-    chosen = trained[quiet]
-    weights = chosen[0].best
-    if gained:
-        weights = work.train_on_all(quiet, tune, ranges, int(best["step"]))
-    if not gained:
-        weights = weights._replace(W_3=np.zeros_like(weights.W_3))
-    facts = _facts(profile, data, options, command)
-    hybrid = Hybrid(profile, weights, ranges, lag, {**facts, "type": "hybrid"})
+    trained: dict[float, list[Trained]] = {}
+    for penalty in options.penalty:
+        trained[penalty] = [work.train(penalty, split, ranges) for split in splits]
+    tried = {penalty: curve_of(of) for penalty, of in trained.items()}
+    steps = [(penalty, row) for penalty, rows in tried.items() for row in rows]
+    penalty, best = min(steps, key=lambda one: one[1]["score"], default=(0.0, None))
+    weights = first_residual(len(ranges.deviation), options.width, options.seed)  # adds nothing
+    gains: list[Gain] = []
+    step_kept = 0
+    if best is not None and best["score"] < 1.0 - LEAST:
+        step_kept = int(best["step"])
+        weights = work.train_on_all(penalty, tune, ranges, step_kept)
+        gains = gains_of(trained[penalty], step_kept, options.seed)
+    made = provenance_of(profile, data, tune, options, command)
+    hybrid = Hybrid(profile, weights, ranges, lag, {**travelling(made), "type": "hybrid"})
     pieces = pieces_of(test, options.restart)
     models = {"before": as_predictor(profile), "after": HybridPredictor(hybrid)}
     return LearnedHybrid(
         hybrid,
-        quiet if gained else None,
-        int(best["step"]),
+        penalty if gains else None,
+        step_kept,
+        step,
         tried,
-        tuple(_gains(chosen, int(best["step"]), options.seed)) if gained else (),
+        tuple(gains),
         tuple(splits),
         test,
         {which: tuple(score(one, pieces, sigma)) for which, one in models.items()} if pieces else {},
         sigma,
         options,
-        facts,
+        made,
         tuple(event for of in trained.values() for one in of for event in one.events),
         work.stopped,
         time.perf_counter() - began,
     )
 
 
-@dataclass(frozen=True, eq=False)
-class _Trained:
-    """A training of one part: errors of unseen runs by step, with and without the network."""
+def splits_of(trials: Sequence[Trial], options: HybridOptions) -> list[Split]:
+    """Parts of the runs that are kept back in turn.  Raises OptionError for too few."""
+    if options.folds > 1:
+        return fold_runs(trials, options.folds, options.seed)
+    return [split_runs(trials, options.validation, options.seed)]
 
-    best: ResidualWeights
-    alone: dict[str, float]
-    runs: dict[str, tuple[str, int]]
-    curve: list[dict[str, float]]
-    events: list[dict[str, Any]]
+
+def times_of(profile: ShipProfile, trials: Sequence[Trial], options: HybridOptions) -> tuple[float, float]:
+    """Step of the integration within training, and time constant of the network's memory [s].
+
+    Raises OptionError where the ship never moves.
+    """
+    length_time = profile.L_pp / _speed(trials)
+    return options.step or STEP * length_time, options.lag or LAG * length_time
 
 
 @dataclass(eq=False)
@@ -237,20 +216,21 @@ class _Work:
         """What the data says of features, the same for all parts."""
         return ranges_of(self.samples(trials), self.lag, [one.role for one in self.model.arrangement.inputs])
 
-    def train(self, quiet: float, split: Split, ranges: Ranges) -> _Trained:
+    def train(self, penalty: float, split: Split, ranges: Ranges) -> Trained:
         """Train on the one part of the runs, judge by the other."""
-        aim = self.aim(self.unseen(split.learn), quiet, split.learn, split.choose, ranges)
-        now = self._run(aim, f"penalty {quiet:g}", None)
-        best = ResidualWeights(*(np.asarray(one, dtype=np.float64) for one in now.best))
-        return _Trained(best, aim.alone(now.mean), aim.runs, now.curve, now.events)
+        model = self.unseen(split.learn)
+        self.stopped = self.stopped or self.hooks.stop()  # then the model was not tuned to its end
+        aim = self.aim(model, penalty, split.learn, split.choose, ranges)
+        now = self._run(aim, f"penalty {penalty:g}", None)
+        return Trained(aim.alone(now.mean) if now.curve else {}, aim.runs, now.curve, now.events)
 
-    def train_on_all(self, quiet: float, trials: Sequence[Trial], ranges: Ranges, until: int) -> ResidualWeights:
+    def train_on_all(self, penalty: float, trials: Sequence[Trial], ranges: Ranges, until: int) -> ResidualWeights:
         """Train on all runs, for as long as did best on unseen ones."""
-        now = self._run(self.aim(self.model, quiet, trials, trials, ranges), "all runs", until)
+        now = self._run(self.aim(self.model, penalty, trials, trials, ranges), "all runs", until)
         return ResidualWeights(*(np.asarray(one, dtype=np.float64) for one in now.mean))
 
     def aim(
-        self, model: Model, quiet: float, learn: Sequence[Trial], choose: Sequence[Trial], ranges: Ranges
+        self, model: Model, penalty: float, learn: Sequence[Trial], choose: Sequence[Trial], ranges: Ranges
     ) -> HybridAim:
         """What is trained for."""
         samples = self.samples(learn)
@@ -264,7 +244,7 @@ class _Work:
             memory=self.lag,
             sigma=self.sigma,
             horizon=horizon,
-            quiet=quiet,
+            penalty=penalty,
             restart=self.options.restart,
         )
         if not len(aim.starts):
@@ -304,46 +284,6 @@ class _Work:
         return now
 
 
-DECAY = 1e-4
-"""Decay of the weights in each update, relative to the rate."""
-
-
-def _curve(parts: Sequence[_Trained]) -> list[dict[str, float]]:
-    """Score by step over the runs of all parts together."""
-    alone = {run: value for one in parts for run, value in one.alone.items()}
-    runs = {run: of for one in parts for run, of in one.runs.items()}
-    found = []
-    for rows in zip(*(one.curve for one in parts), strict=False):  # as far as all have come
-        errors = {run: row[run] for one, row in zip(parts, rows, strict=True) for run in one.runs}
-        by_kind = ratios(alone, errors, runs)
-        mean_loss = float(np.mean([row["loss"] for row in rows]))
-        found.append({"step": rows[0]["step"], "loss": mean_loss, "score": relative(alone, errors, runs), **by_kind})
-    return found
-
-
-def _gains(parts: Sequence[_Trained], step: int, seed: int) -> list[Gain]:
-    """The gain by kind of manoeuvre on runs not learned from, after so many updates."""
-    rows = [next(row for row in one.curve if row["step"] == step) for one in parts]
-    all_runs = [
-        (kind, n, one.alone[run], row[run])
-        for one, row in zip(parts, rows, strict=True)
-        for run, (kind, n) in one.runs.items()
-    ]
-    found = []
-    for kind in sorted({one[0] for one in all_runs}):
-        n, before, after = np.array([one[1:] for one in all_runs if one[0] == kind]).T
-        old, new = float(n @ before / n.sum()), float(n @ after / n.sum())
-        interval = None
-        if len(n) > 2:
-            rng = np.random.default_rng([seed, 6])
-            drawn = rng.integers(len(n), size=(DRAWS, len(n)))
-            shares = 1.0 - (n * after)[drawn].sum(axis=1) / (n * before)[drawn].sum(axis=1)
-            low, high = np.percentile(shares, [2.5, 97.5])
-            interval = float(low), float(high)
-        found.append(Gain(kind, len(n), old, new, 1.0 - new / old, interval))
-    return found
-
-
 def _speed(trials: Sequence[Trial]) -> float:
     """Root mean square speed [m/s]."""
     squares = np.concatenate([trial.u**2 + trial.v_m**2 for trial in trials]) if trials else np.zeros(0)
@@ -351,23 +291,3 @@ def _speed(trials: Sequence[Trial]) -> float:
     if not squares.size or not squares.mean() > 0.0:
         raise OptionError(Problem("the ship does not move in these trials", "trials", "", "give trials under way"))
     return float(np.sqrt(squares.mean()))
-
-
-def _facts(profile: Any, data: TrialSet, options: HybridOptions, command: str) -> dict[str, Any]:
-    """What a hybrid was made from."""
-    made = made_by(command)
-    made["environment"] |= {name: version(name) for name in ("jax", "optax")}
-    return {
-        **made,
-        "profile": facts_of_profile(profile),
-        "trials": {
-            "path": str(data.path) if data.path else "",
-            "ship": data.ship,
-            "sources": sorted({data.trials[id].source for id in data.tune}),
-            "licence": data.licence,
-            "citation": data.citation,
-            "sha256": data.hashes(),
-            "learned_from": list(data.tune),
-        },
-        "options": options.to_dict(),
-    }

@@ -6,12 +6,20 @@ from collections.abc import Sequence
 
 from ..fitting import Plan
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
-from ..options.learning import LearnOptions
+from ..options.learning import HybridOptions, LearnOptions
 from ..trial import Trial
+from .hybrid_run import splits_of, times_of
+from .refitting import tuned_names
 from .task import make_task
 
 RATE = 5e10, 2e11
 """Operations a second that training was measured at on two cores of different machines, busy and idle."""
+
+LANE_STEP = 5e-7, 2e-6
+"""Seconds for the gradient of one step of one window of a hybrid."""
+
+FIT = 10.0
+"""Seconds that a profile takes to be tuned anew, about."""
 
 WRITES = ("learning.json", "model.safetensors", "report.html", "training-SEED.safetensors until it is complete")
 
@@ -33,6 +41,28 @@ def plan_rnn(ship: ShipGiven, trials: TrialsGiven, options: LearnOptions) -> Pla
     )
     low, high = (operations / rate for rate in (RATE[1], RATE[0]))
     return Plan(lines, (low, high), WRITES)
+
+
+def plan_hybrid(ship: ShipGiven, trials: TrialsGiven, options: HybridOptions) -> Plan:
+    """What ``learn_hybrid`` would do.  Raises what it would refuse with."""
+    profile, data = ship_of(ship), trials_of(trials).series_only("a network")
+    tune = [data.trials[id] for id in data.tune]
+    splits = splits_of(tune, options)
+    step, lag = times_of(profile, tune, options)
+    steps = len(splits) * len(options.penalty) * options.steps + options.steps
+    window = options.restart or max(one.duration for one in tune)
+    lane_steps = steps * options.batch * window / step
+    names = tuned_names(profile)
+    anew = f"tuned anew without them: {len(names)} coefficients" if names and options.refit else "as it is"
+    lines = (
+        f"learn     what {profile.id} leaves of {_of(tune)}",
+        f"memory    {lag:.3g} s, steps of {step:.3g} s in windows of {window:.4g} s",
+        *(f"part {k + 1:<4} {_of(one.choose)} kept back; the profile {anew}" for k, one in enumerate(splits)),
+        f"train     {options.steps} updates by {options.batch} windows, penalties {options.penalty}, then on all runs",
+        f"test      {len(data.test)} trials",
+    )
+    low, high = (lane_steps * seconds + FIT * len(splits) * bool(names) for seconds in LANE_STEP)
+    return Plan(lines, (low, high), ("hybrid.json", *WRITES[1:]))
 
 
 def _of(trials: Sequence[Trial]) -> str:

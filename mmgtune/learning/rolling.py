@@ -30,7 +30,7 @@ def roll(w: Weights, scales: Scales, initial: Any, controls: Any, wind: Any, h: 
         return (states, held), states
 
     begin = (initial, _nothing(jnp, initial, w, memory))
-    _, found = jax.lax.scan(jax.checkpoint(step), begin, (controls, wind))
+    _, found = jax.lax.scan(jax.checkpoint(step, policy=_of_tanh), begin, (controls, wind))
     return jnp.concatenate([initial[None], found])
 
 
@@ -48,28 +48,20 @@ def follow(w: Weights, scales: Scales, states: Any, controls: Any, wind: Any, me
     return found
 
 
+def _of_tanh(primitive: Any, *_: Any, **__: Any) -> bool:
+    """What of a step is kept for its derivatives: layers, so that no product is computed again."""
+    return bool(primitive.name == "tanh")
+
+
 def _nothing(jnp: Any, like: Any, w: Weights, memory: int | None) -> Any:
     """What is remembered before the first sample."""
     n, width = like.shape[0], w.W_r.shape[-1]
-    zero = jnp.zeros((n, width), dtype=w.W_r.dtype)
-    return zero if memory is None else (jnp.zeros((memory, n, width), dtype=w.W_r.dtype), jnp.zeros(memory, bool))
+    return jnp.zeros((n if memory is None else (memory - 1) * n, width), dtype=w.W_r.dtype)
 
 
 def _recall(part: Any, held: Any, w: Weights, memory: int | None) -> tuple[Any, Any]:
-    """The first layer now, and what is remembered of it.
-
-    A truncated memory holds what was seen lately, oldest first, and which of it there was: before the start there was
-    nothing, and the layer stays at zero.
-    """
-    remember = twin(recurrent.remembered)
+    """The first layer now, and what is held for the next sample."""
     if memory is None:
-        first = remember(part, held, w)
+        first = twin(recurrent.remembered)(part, held, w)
         return first, first
-    jnp = jax_module().numpy
-    lately, there = held
-    lately = jnp.concatenate([lately[1:], part[None]])
-    there = jnp.concatenate([there[1:], jnp.ones(1, bool)])
-    first = jnp.zeros_like(part)
-    for k in range(memory):
-        first = jnp.where(there[k], remember(lately[k], first, w), 0.0)
-    return first, (lately, there)
+    return twin(recurrent.truncated)(part, held, w)

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from ..errors import OptionError, Problem
-from ..fitting.run import facts_of_profile, made_by
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..networks import Network, NetworkPredictor
 from ..networks.recurrent import Scales, Weights
@@ -22,6 +21,7 @@ from ..validation import TrialScore, score
 from . import keeping
 from .aims import RecurrentAim
 from .choosing import pieces_of
+from .provenance import provenance_of, travelling
 from .starting import first_weights, scales_of
 from .task import Task, make_task
 from .training import Plan, Progressed, Trainer
@@ -119,7 +119,9 @@ def learn_rnn(
         raise OptionError(
             Problem("stopped before the first validation", "validate_every", why, "write a smaller validate_every")
         )
-    facts = _facts(task, command)
+    used = (*task.split.learn, *task.split.choose)
+    made = provenance_of(task.profile, task.data, used, options, command)
+    made["recipe"] = task.recipe.words
     network = Network(
         ship=task.profile.id,
         L_pp=task.profile.L_pp,
@@ -128,7 +130,7 @@ def learn_rnn(
         memory=task.memory,
         weights=Weights(*(np.stack(parts) for parts in zip(*(one.weights for one in members), strict=True))),
         scales=Scales(*(one[None] for one in scales)),
-        facts={**facts, "type": f"type {options.type}", "seeds": [one.seed for one in members]},
+        facts={**travelling(made), "type": f"type {options.type}", "seeds": [one.seed for one in members]},
     )
     done = len(members) == options.seeds and all(one.step >= options.steps for one in members)
     held = {"validation": task.split.choose, "test": task.test}
@@ -137,7 +139,7 @@ def learn_rnn(
         tuple(members),
         task,
         {role: _scored(network, of, task.sigma, options.restart) for role, of in held.items()},
-        facts,
+        made,
         not done,
         time.perf_counter() - began,
     )
@@ -204,29 +206,6 @@ def _scored(
     if not trials:
         return ()
     return tuple(score(NetworkPredictor(network), pieces_of(trials, restart), sigma))
-
-
-def _facts(task: Task, command: str) -> dict[str, Any]:
-    """What a network was made from."""
-    made = made_by(command)
-    made["environment"] |= {name: version(name) for name in ("jax", "optax")}
-    data, used = task.data, (*task.split.learn, *task.split.choose)
-    return {
-        **made,
-        "profile": facts_of_profile(task.profile),
-        "trials": {
-            "path": str(data.path) if data.path else "",
-            "ship": data.ship,
-            "sources": sorted({trial.source for trial in used}),
-            "licence": data.licence,
-            "citation": data.citation,
-            "sha256": data.hashes(),
-            "learned_from": [trial.id for trial in task.split.learn],
-            "chosen_by": [trial.id for trial in task.split.choose],
-        },
-        "recipe": task.recipe.words,
-        "options": task.options.to_dict(),
-    }
 
 
 def _finite(value: float) -> float | None:

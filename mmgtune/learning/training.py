@@ -37,11 +37,13 @@ class Aim(Protocol):
     """What is trained for.
 
     starts  rows at which windows of the loss begin
+    data    tree of arrays that the loss is of: given to it, so that they are no part of what is compiled
     """
 
     starts: IntArray
+    data: Any
 
-    def loss(self, parameters: Any, starts: Any) -> Any:
+    def loss(self, parameters: Any, starts: Any, data: Any) -> Any:
         """Loss of a batch of windows, (n,) rows -> number; traceable."""
         ...
 
@@ -95,8 +97,8 @@ class Trainer:
         rate = optax.warmup_cosine_decay_schedule(0.0, plan.rate, warm, max(plan.steps, warm + 1), 0.0)
         self.optimiser = optax.chain(optax.clip_by_global_norm(CLIP), optax.adamw(rate, weight_decay=plan.decay))
 
-        def update(parameters: Any, state: Any, mean: Any, starts: Any, factor: Any, past: Any) -> Any:
-            loss, gradient = jax.value_and_grad(aim.loss)(parameters, starts)
+        def update(parameters: Any, state: Any, mean: Any, starts: Any, factor: Any, past: Any, data: Any) -> Any:
+            loss, gradient = jax.value_and_grad(aim.loss)(parameters, starts, data)
             norm = optax.tree.norm(gradient)
             sound = jax.numpy.isfinite(norm) & jax.numpy.isfinite(loss)
             gradient = jax.tree.map(lambda one: jax.numpy.where(sound, one, 0.0), gradient)
@@ -107,7 +109,7 @@ class Trainer:
             found = jax.tree.map(lambda a, b: jax.numpy.where(sound, a, b), (new, moved, kept), old)
             return *found, loss, norm, sound
 
-        self._update = jax.jit(update)
+        self.update = jax.jit(update)
 
     def begin(self, parameters: Any) -> Progressed:
         """A training before its first step."""
@@ -136,8 +138,8 @@ class Trainer:
         while now.step < last:
             starts = batch(self.aim.starts, plan.batch, seed, now.step)
             past = min((1.0 + now.step) / (10.0 + now.step), AVERAGE)
-            now.parameters, now.state, now.mean, loss, norm, sound = self._update(
-                now.parameters, now.state, now.mean, starts, np.float32(now.factor), np.float32(past)
+            now.parameters, now.state, now.mean, loss, norm, sound = self.update(
+                now.parameters, now.state, now.mean, starts, np.float32(now.factor), np.float32(past), self.aim.data
             )
             now.step += 1
             if bool(sound):

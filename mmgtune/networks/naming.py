@@ -8,6 +8,7 @@ from typing import TypeVar
 from ..backends import Integrator
 from ..given import ship_of
 from ..profile import ShipProfile
+from ..resources import folder, taken
 from .file import SUFFIX, load_network
 from .hybrid import Hybrid, HybridPredictor
 from .predicting import NetworkPredictor
@@ -25,7 +26,9 @@ def named_ship(
     """
     if not isinstance(given, (str, Path)):
         return given
-    if not str(given).endswith(SUFFIX):
+    bundled = folder("ship_profiles") / f"{given}{SUFFIX}"
+    path = taken(given, str(given).endswith(SUFFIX), bundled)
+    if path is None:
         return ship_of(given)
-    found = load_network(given)
+    found = load_network(path)
     return HybridPredictor(found, integrator) if isinstance(found, Hybrid) else NetworkPredictor(found)

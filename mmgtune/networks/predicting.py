@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +12,7 @@ from ..backends import Cases
 from ..backends.cases import SPEED_LIMIT
 from ..physics.quantities import Surroundings
 from ..predictor import Prediction
+from ..threads import blas_on_one_thread
 from .model import Network
 from .recurrent import Array, accelerations, features, moved, projected, remembered, truncated
 
@@ -55,6 +55,7 @@ class NetworkPredictor:
         """Its own step."""
         return f"network, euler at {self.network.step:g} s"
 
+    @blas_on_one_thread
     def predict(self, cases: Cases) -> Prediction:
         """See ``Predictor``."""
         h = self.network.step
@@ -95,8 +96,9 @@ class NetworkRun:
     def __init__(self, network: Network, states: FloatArray):
         self.network = network
         self.states: Array = np.array(states)
-        self._lately: deque[Array] = deque(maxlen=network.memory or 1)
-        self._memory: Array = np.zeros((*self.states.shape[:-1], network.width))
+        members, lanes = self.states.shape[:2]
+        rows = lanes if network.memory is None else (network.memory - 1) * lanes
+        self._held: Array = np.zeros((members, rows, network.width))
 
     def step(self, controls: FloatArray, wind: FloatArray, h: float) -> None:
         """March by h [s] with inputs (n_lanes, n_inputs) and wind (n_lanes, 2) over ground [m/s]."""
@@ -110,11 +112,10 @@ class NetworkRun:
         )
         part = projected(seen, net.weights)
         if net.memory is None:
-            self._memory = remembered(part, self._memory, net.weights)
+            first = self._held = remembered(part, self._held, net.weights)
         else:
-            self._lately.append(part)
-            self._memory = truncated(tuple(self._lately), net.weights)
-        self.states = moved(self.states, accelerations(self._memory, net.weights, net.scales), h)
+            first, self._held = truncated(part, self._held, net.weights)
+        self.states = moved(self.states, accelerations(first, net.weights, net.scales), h)
 
 
 class NetworkStepper:

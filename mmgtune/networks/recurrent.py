@@ -6,7 +6,6 @@ inputs are then (n_members, n_lanes, n_features).  Training differentiates the s
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -78,15 +77,22 @@ def accelerations(memory: Array, w: Weights, scales: Scales) -> Array:
     return (z_3 @ w.W_3) * scales.accelerations
 
 
-def truncated(parts: Sequence[Array], w: Weights) -> Array:
-    """The first layer from what was seen lately, oldest first, begun at zero: eq. 10.
+def truncated(part: Array, held: Array, w: Weights) -> tuple[Array, Array]:
+    """The first layer, (..., n_lanes, width), from the last m samples alone, begun at zero: eq. 10; and what to hold.
 
-    parts  ``projected`` of up to m samples, the last of them now
+    part  what is seen now gives, (..., n_lanes, width)
+    held  (..., (m - 1) n_lanes, width) the layer of the last sample, begun at it, one sample before it and so on
+          to m - 2 before it, behind each other; before the first sample zero
+
+    The equation begins m samples back at every sample.  Those beginnings that overlap go on side by side here, each
+    with one step a sample: the same numbers from one wide product in place of m - 1 narrow ones.
     """
-    memory = 0.0 * parts[0]
-    for part in parts:
-        memory = remembered(part, memory, w)
-    return memory
+    n = part.shape[-2]
+    begun = np.tanh(part + w.b_0) - np.tanh(w.b_0)
+    older = remembered(np.tile(part, (held.shape[-2] // n, 1)), held, w)
+    every = np.concatenate([begun, older], axis=-2)
+    kept = held.shape[-2]
+    return every[..., kept:, :], every[..., :kept, :]
 
 
 def moved(states: Array, rates: Array, h: Array) -> Array:

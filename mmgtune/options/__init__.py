@@ -4,7 +4,7 @@ choice      a field that is an option, and what all such dataclasses do
 simulation  integrator, step, back end
 tuning      fit, sweep, leave-out
 diagnosis   diagnose
-scoring     validate, on trials and on voyages, and check
+scoring     validate, on trials and on voyages, check, and learn compare
 orders      simulate
 estimating  profile new
 learning    learn
@@ -17,9 +17,9 @@ from .choice import Choice, Options, again, choice, choices
 from .diagnosis import DiagnoseOptions
 from .estimating import EstimateOptions
 from .flags import FLAGS, flags_of, in_flags
-from .learning import HybridOptions, LearnOptions
+from .learning import HybridOptions, LearnOptions, TrainingOptions
 from .orders import SimulateOptions
-from .scoring import FORMATS, CheckOptions, ValidateOptions, VoyageOptions
+from .scoring import FORMATS, CheckOptions, CompareModelsOptions, ValidateOptions, VoyageOptions
 from .simulation import BACKENDS, INTEGRATORS, SimulationOptions
 from .tuning import METHODS, FitOptions, LeaveOutOptions, SearchOptions, SweepOptions, TuningOptions
 
@@ -31,6 +31,7 @@ __all__ = [
     "METHODS",
     "CheckOptions",
     "Choice",
+    "CompareModelsOptions",
     "DiagnoseOptions",
     "EstimateOptions",
     "FitOptions",
@@ -42,6 +43,7 @@ __all__ = [
     "SimulateOptions",
     "SimulationOptions",
     "SweepOptions",
+    "TrainingOptions",
     "TuningOptions",
     "ValidateOptions",
     "VoyageOptions",
@@ -54,6 +56,7 @@ __all__ = [
 
 for _of in (
     CheckOptions,
+    CompareModelsOptions,
     DiagnoseOptions,
     EstimateOptions,
     FitOptions,

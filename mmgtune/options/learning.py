@@ -71,7 +71,7 @@ class HybridOptions(TrainingOptions):
     steps: int = again(TrainingOptions, "steps", 400)
     rate: float = again(TrainingOptions, "rate", 3e-3)
     width: int = again(TrainingOptions, "width", 32)
-    quiet: tuple[float, ...] = choice(
+    penalty: tuple[float, ...] = choice(
         (15.0,),
         "Weights of the penalty on what the network adds, with commas, tried in turn; validation chooses.",
         least=0.0,

@@ -31,6 +31,17 @@ class ValidateOptions(SimulationOptions):
     manoeuvres: bool = again(LeaveOutOptions, "manoeuvres")
 
 
+@dataclass(frozen=True)
+class CompareModelsOptions(SimulationOptions):
+    """All choices of ``learn compare``."""
+
+    restart: float = again(LeaveOutOptions, "restart", 100.0)
+    sigma_from: str | None = again(ValidateOptions, "sigma_from")
+    only: tuple[str, ...] = choice(
+        (), "Only trials of these kinds of manoeuvre, ids, runs, or roles: tune, test, other.", panel=INPUT
+    )
+
+
 WINDOW = 120.0
 """Seconds of the windows that voyages are cut into (Mathioudakis et al.: 2-minute trajectories)."""
 

@@ -402,11 +402,11 @@ def _advice(data: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
     extended = f"{data.get('out', 'RUN')}/profile.toml"
     items = []
     if data["causes"]:
-        items.append((f"mmgtune simulate -p {extended} --trials {trials}", "see the extended model on every trial"))
-        items.append((f"mmgtune fit -p {extended} -t {trials} --initial estimated", "re-tune the extended model"))
+        items.append(("See the extended model on every trial", f"mmgtune simulate -p {extended} --trials {trials}"))
+        items.append(("Re-tune the extended model", f"mmgtune fit -p {extended} -t {trials} --initial estimated"))
     if data["verdict"] == "unexplained":
-        items.append((f"mmgtune trials check {trials}", "look for faults of the measurement itself"))
-    items.append((f"mmgtune diagnose -p {extended} -t {trials}", "look again from the extended profile"))
+        items.append(("Look for faults of the measurement itself", f"mmgtune trials check {trials}"))
+    items.append(("Look again from the extended profile", f"mmgtune diagnose -p {extended} -t {trials}"))
     return tuple(items)
 
 

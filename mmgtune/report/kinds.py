@@ -5,10 +5,29 @@ The list is explicit.  A further kind is one file with its page, and one line he
 
 from __future__ import annotations
 
-from . import comparison_page, diagnosis_page, fit_page, learning_page, sweep_page, voyages_page
+from . import (
+    comparison_page,
+    diagnosis_page,
+    fit_page,
+    hybrid_page,
+    learning_page,
+    models_page,
+    sweep_page,
+    voyages_page,
+)
 from .load import Kind
 
 KINDS: tuple[Kind, ...] = tuple(
-    page.KIND for page in (diagnosis_page, sweep_page, fit_page, voyages_page, comparison_page, learning_page)
+    page.KIND
+    for page in (
+        diagnosis_page,
+        sweep_page,
+        fit_page,
+        voyages_page,
+        comparison_page,
+        learning_page,
+        hybrid_page,
+        models_page,
+    )
 )
 """Every kind, in the order in which their files are looked for."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from .advice import shortest
 from .common import picture
 from .drawing import AFTER, BEFORE, Drawn, grid_of, log_ticks, new_figure
 from .load import Kind
@@ -60,7 +61,7 @@ def build(record: LearningRecord) -> Page:
         Section("scores", "Errors by kind of manoeuvre", (_scores(record), Prose((_MEANING,)))),
         Section("learning", "How it learned", (picture(curves, "Learning curves", _CURVES), *_events(record))),
         Section("next", "What to do next", (_next(record),)),
-        _made(record),
+        made_section(data, _more(data)),
     ]
     generated = data["provenance"]["trials"].get("sources") == ["generated"]
     banner = "The trials it learned from are generated, not measured: this says how the method works, not the ship."
@@ -77,7 +78,7 @@ def build(record: LearningRecord) -> Page:
 
 
 def _verdict(record: LearningRecord) -> str:
-    position, heading = _rms(record.data, record.scores)
+    position, heading = rms_errors(record.data, record.scores)
     window = number(record.data["window_s"])
     over = f"over {shown(window, 3)} s" if window else "over whole trials"
     return (
@@ -87,7 +88,7 @@ def _verdict(record: LearningRecord) -> str:
     )
 
 
-def _rms(data: Mapping[str, Any], row: Mapping[str, Any]) -> tuple[float | None, float | None]:
+def rms_errors(data: Mapping[str, Any], row: Mapping[str, Any]) -> tuple[float | None, float | None]:
     """Root mean square error of position [m] and heading [deg]; None where it diverged."""
     parts, sigma = row["L_MSE_by_state"], data["sigma"]
     squares = {name: number(parts.get(name)) for name in ("x", "y", "psi")}
@@ -99,7 +100,7 @@ def _rms(data: Mapping[str, Any], row: Mapping[str, Any]) -> tuple[float | None,
 
 def _tiles(record: LearningRecord) -> tuple[Tile, ...]:
     data = record.data
-    position, heading = _rms(data, record.scores)
+    position, heading = rms_errors(data, record.scores)
     where = _ROLES[record.role]
     best = [one["score"] for one in record.members if number(one["score"]) is not None]
     return (
@@ -124,12 +125,9 @@ def _draw_tracks(drawn: Sequence[Mapping[str, Any]]) -> Figure:
     figure, axes = grid_of(max(len(drawn), 1), (2.9, 3.0))
     for ax, one in zip(axes, drawn, strict=False):
         for member in one["members"]:
-            ax.plot(*_line(member), color=AFTER, linewidth=1.0, linestyle=(0, (6, 2.2)))
-        ax.plot(*_line(one["measured"]), color="black", linewidth=1.5)
-        ax.set_aspect("equal", adjustable="datalim")
+            draw_line(ax, member, color=AFTER, linewidth=1.0, linestyle=(0, (6, 2.2)))
+        draw_line(ax, one["measured"], color="black", linewidth=1.5)
         ax.set_title(f"{clean(one['manoeuvre']) or clean(one['id'])}: L_MSE {shown(one['L_MSE'], 2)}", fontsize="small")
-        ax.set_xlabel("east [m]")
-        ax.set_ylabel("north [m]")
     handles = [
         Line2D([], [], color="black", label="measured"),
         Line2D([], [], color=AFTER, linestyle=(0, (6, 2.2)), label="predicted"),
@@ -138,8 +136,13 @@ def _draw_tracks(drawn: Sequence[Mapping[str, Any]]) -> Figure:
     return figure
 
 
-def _line(track: Mapping[str, Any]) -> tuple[list[float], list[float]]:
-    return tuple([math.nan if v is None else v for v in track[name]] for name in ("east_m", "north_m"))  # type: ignore[return-value]
+def draw_line(ax: Axes, track: Mapping[str, Any], **style: Any) -> None:
+    """A track over the ground, north up; gaps stay open."""
+    east, north = ([math.nan if v is None else v for v in track[name]] for name in ("east_m", "north_m"))
+    ax.plot(east, north, **style)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.set_xlabel("east [m]")
+    ax.set_ylabel("north [m]")
 
 
 _CURVES = (
@@ -178,7 +181,7 @@ def _scores(record: LearningRecord) -> Table:
         if found is None:
             continue
         for kind, row in found["by_manoeuvre"].items():
-            position, heading = _rms(record.data, row)
+            position, heading = rms_errors(record.data, row)
             name = clean(kind) or "not stated"
             rows.append(
                 cells(words, name, str(row["runs"]), shown(position, 3), shown(heading, 3), shown(row["L_MSE"], 3))
@@ -204,37 +207,46 @@ def _events(record: LearningRecord) -> tuple[Prose, ...]:
 
 def _next(record: LearningRecord) -> Commands:
     model = f"{record.folder.as_posix()}/model.safetensors"
-    ship, trials = clean(record.data["ship"]), clean(record.data["provenance"]["trials"]["path"]) or "TRIALS"
+    made = record.data["provenance"]
+    ship = shortest(made["profile"].get("path") or record.data["ship"], "ship_profiles")
+    trials = shortest(made["trials"].get("path") or "TRIALS", "trials")
     window = number(record.data["window_s"])
     restart = f" --restart {window:g}" if window else ""
     return Commands(
         (
-            (f"mmgtune validate {ship} {model} {trials}{restart}", "Hold it against a profile on the same windows."),
-            (f"mmgtune simulate -p {model} --trials {trials}", "Simulate trials with it."),
+            ("Hold it against a profile on the same windows", f"mmgtune validate {ship} {model} {trials}{restart}"),
+            ("Simulate trials with it", f"mmgtune simulate -p {model} --trials {trials}"),
         )
     )
 
 
-def _made(record: LearningRecord) -> Section:
-    data = record.data
+def made_section(data: Mapping[str, Any], more: Sequence[tuple[str, str]]) -> Section:
+    """What networks were made from, when and how."""
     made, trials = data["provenance"], data["provenance"]["trials"]
     items = [
-        ("learned from", listing([clean(one) for one in data["learned_from"]], 40)),
-        ("chosen by", listing([clean(one) for one in data["chosen_by"]], 40)),
+        ("learned from", listing([clean(one) for one in trials["learned_from"]], 40)),
         ("held out", listing([clean(one) for one in data["held_out"]], 40)),
         ("licence of the trials", clean(trials.get("licence") or NONE)),
         ("cite for them", clean(trials.get("citation") or NONE)),
-        ("inputs", ", ".join(clean(one) for one in data["inputs"])),
         ("step", f"{shown(data['step_s'], 3)} s"),
-        ("memory", "runs on" if data["memory"] is None else f"{data['memory']} samples"),
-        ("units of a layer", str(data["width"])),
+        *more,
         ("command", clean(made["command"] or NONE)),
         ("made by", f"mmgtune {clean(made['mmgtune'])}, {clean(made['created'])}"),
         ("time", f"{shown(data['wall_s'], 3)} s"),
     ]
-    options = pairs("options-table", "Options", ("option", "value"), [(k, str(v)) for k, v in made["options"].items()])
+    chosen = [(clean(name), clean(value)) for name, value in made["options"].items()]
+    options = pairs("options-table", "Options", ("option", "value"), chosen)
     about = pairs("made-table", "What it was made from", ("", ""), items)
     return Section("made", "How it was made", (about, Details("All options", (options,))))
+
+
+def _more(data: Mapping[str, Any]) -> list[tuple[str, str]]:
+    return [
+        ("chosen by", listing([clean(one) for one in data["chosen_by"]], 40)),
+        ("inputs", ", ".join(clean(one) for one in data["inputs"])),
+        ("memory", "runs on" if data["memory"] is None else f"{data['memory']} samples"),
+        ("units of a layer", str(data["width"])),
+    ]
 
 
 KIND = Kind("learning", ("members", "scores", "drawn", "provenance", "sigma"), LearningRecord, build)

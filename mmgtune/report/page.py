@@ -73,7 +73,7 @@ class Histories:
 
 @dataclass(frozen=True)
 class Commands:
-    """Commands to run next, each with the reason to run it."""
+    """Commands to run next: (reason, command) each."""
 
     kind: ClassVar[str] = "commands"
     items: tuple[tuple[str, str], ...]

@@ -12,7 +12,7 @@ from tests.command import run
 pytestmark = pytest.mark.slow(1)
 
 COMMANDS = [
-    ("fit",), ("sweep",), ("leave-out",), ("validate",), ("check",), ("cite",), ("doctor",),
+    ("fit",), ("sweep",), ("leave-out",), ("validate",), ("learn", "compare"), ("check",), ("cite",), ("doctor",),
     ("simulate",), ("report",), ("trials", "import"),
     ("trials", "check"), ("trials", "inspect"), ("profile", "list"), ("profile", "show"), ("profile", "validate"),
 ]  # fmt: skip

@@ -19,6 +19,8 @@ from mmgtune.options.learning import LearnOptions
 from mmgtune.trial import load_trials
 from mmgtune.validating import validate
 
+pytestmark = pytest.mark.xdist_group("networks")
+
 SMALL = LearnOptions(seeds=1, steps=6, validate_every=2, batch=16, width=6, memory=3, horizon=8, restart=60.0)
 
 
@@ -26,7 +28,7 @@ def weights(result):
     return np.concatenate([np.ravel(one) for one in result.network.weights])
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def trained():
     return learn_rnn("suzaku", "suzaku", replace(SMALL, steps=60, validate_every=20, rate=2e-2, width=16, horizon=20))
 
@@ -156,10 +158,10 @@ def test_divergence_is_told_with_its_step_and_training_goes_back(monkeypatch):
     monkeypatch.setattr(training, "batch", batch)
     spoiled = runs.RecurrentAim.loss
 
-    def loss(self, w, starts):
+    def loss(self, w, starts, data):
         import jax.numpy as jnp
 
-        return jnp.where(starts[0] < 0, jnp.nan, 1.0) * spoiled(self, w, jnp.abs(starts) % len(self.starts))
+        return jnp.where(starts[0] < 0, jnp.nan, 1.0) * spoiled(self, w, jnp.abs(starts) % len(self.starts), data)
 
     monkeypatch.setattr(runs.RecurrentAim, "loss", loss)
     result = learn_rnn("suzaku", "suzaku", replace(SMALL, steps=30, validate_every=5))
@@ -170,7 +172,7 @@ def test_divergence_is_told_with_its_step_and_training_goes_back(monkeypatch):
 
 @pytest.mark.slow(5)
 def test_gradients_that_are_never_numbers_are_an_error(monkeypatch):
-    monkeypatch.setattr(runs.RecurrentAim, "loss", lambda self, w, starts: sum(one.sum() for one in w) * np.nan)
+    monkeypatch.setattr(runs.RecurrentAim, "loss", lambda self, w, starts, data: sum(one.sum() for one in w) * np.nan)
     with pytest.raises(OptionError, match="diverged 6 times, the last time at step 60") as error:
         learn_rnn("suzaku", "suzaku", replace(SMALL, steps=100, validate_every=5))
     assert error.value.problems[0].where == "rate"

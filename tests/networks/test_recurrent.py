@@ -37,19 +37,26 @@ def test_standard_memory_is_the_paper_s():
     np.testing.assert_allclose(accelerations(memory, net.weights, net.scales)[0, 0], by_hand(net, seen), rtol=1e-12)
 
 
-def test_truncated_memory_sees_the_last_samples_alone():
-    net = network(memory=3)
-    seen = np.random.default_rng(2).standard_normal((7, 7))
-    parts = [projected(x[None, None], net.weights) for x in seen]
-    found = accelerations(truncated(parts[-3:], net.weights), net.weights, net.scales)[0, 0]
-    np.testing.assert_allclose(found, by_hand(net, seen[-3:]), rtol=1e-12)
+@pytest.mark.parametrize("memory", [1, 2, 3, 9])
+def test_truncated_memory_sees_the_last_samples_alone(memory):
+    """At each sample what eq. 10 gives begun anew; two lanes side by side do not mix."""
+    net = network()
+    seen = np.random.default_rng(2).standard_normal((7, 2, 7))
+    held = np.zeros((1, (memory - 1) * 2, net.width))
+    for k, now in enumerate(seen):
+        first, held = truncated(projected(now[None], net.weights), held, net.weights)
+        found = accelerations(first, net.weights, net.scales)[0]
+        for lane in range(2):
+            expected = by_hand(net, seen[max(0, k + 1 - memory) : k + 1, lane])
+            np.testing.assert_allclose(found[lane], expected, rtol=1e-12)
 
 
 def test_nothing_in_gives_nothing_out():
     net = network(members=3)
-    still = np.zeros((3, 2, 7))
-    memory = truncated([projected(still, net.weights)] * 3, net.weights)
-    assert not accelerations(memory, net.weights, net.scales).any()
+    still, held = np.zeros((3, 2, 7)), np.zeros((3, 4, net.width))
+    for _ in range(3):
+        first, held = truncated(projected(still, net.weights), held, net.weights)
+        assert not accelerations(first, net.weights, net.scales).any()
 
 
 def test_a_history_shorter_than_the_memory_is_remembered_whole():

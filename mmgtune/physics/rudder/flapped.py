@@ -35,11 +35,12 @@ class FlappedRudder(NamedTuple):
 def flap_angle(delta, step, table):
     """Flap angle [rad] at rudder angle delta [rad]: linear between the table's values, odd, constant beyond its end.
 
-    Written as a sum of hinges, so that lanes with different rudder angles need no look-up.
+    Written as a sum of hinges, so that lanes with different rudder angles need no look-up; the first has no bend at 0,
+    where derivatives are taken as well.
     """
-    size = np.abs(delta) / step
-    angle = table[0] + 0.0 * size
-    for k in range(len(table) - 1):
+    size = where(delta < 0.0, -delta, delta) / step
+    angle = table[0] + 0.0 * size + (table[1] - table[0]) * np.minimum(size, 1.0)
+    for k in range(1, len(table) - 1):
         angle = angle + (table[k + 1] - table[k]) * np.minimum(np.maximum(size - k, 0.0), 1.0)
     return where(delta < 0.0, -angle, angle)
 

@@ -1,0 +1,115 @@
+"""``mmgtune learn compare``: models of any kind on the same trials."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from ..errors import OptionError, Problem
+from ..options import CompareModelsOptions, Options, again
+from . import common as c
+from .options import RunOptions, takes
+
+WIDTH = 25
+
+
+@dataclass(frozen=True)
+class FolderOptions(Options):
+    """What is left behind."""
+
+    out: Path | None = again(RunOptions, "out", but="Here: none without it.")
+    force: bool = again(RunOptions, "force")
+
+    def problems(self) -> list[Problem]:
+        """Only a folder can be replaced."""
+        lost = self.force and self.out is None
+        what = "force=True replaces results, and none are written"
+        return super().problems() + ([Problem(what, "force", fix="add out=FOLDER")] if lost else [])
+
+
+@takes(options=CompareModelsOptions, run=FolderOptions)
+def command(
+    names: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="MODEL... TRIALS",
+            help="Profiles and model.safetensors files, then the trials; ratios to the first.",
+        ),
+    ],
+    *,
+    options: CompareModelsOptions,
+    run: FolderOptions,
+    json: c.Json = False,
+) -> None:
+    """Hold networks, hybrids and profiles against each other on the same trials.
+
+    A row a model, a column a kind of manoeuvre: L_MSE, mean and deviation over the networks of a model, its ratio to
+    the first model, in both conventions: begun anew in every window, and once in each whole run (Wakita et al. 2022,
+    Table 9). Berthing runs also stand one by one. With --out the record and a report are written. Needs no JAX.
+
+    Examples:
+
+      mmgtune learn compare esso_osaka_3m esso_osaka_3m_tuned runs/type1/model.safetensors esso --only test
+
+      mmgtune learn compare suzaku suzaku_fam suzaku --out runs/compared
+    """
+    from ..comparing_models import compare_models, write_model_comparison
+    from ..fitting import claimed
+    from ..report import render
+
+    if len(names) < 2:
+        fix = "write mmgtune learn compare MODEL... TRIALS"
+        raise OptionError(Problem("a model or the trials are missing", "MODEL... TRIALS", fix=fix))
+    if run.out is None:
+        document = compare_models(names[:-1], names[-1], options).to_dict(c.command_line())
+    else:
+        with claimed(run.out, force=run.force):
+            result = compare_models(names[:-1], names[-1], options)
+            document = write_model_comparison(result, run.out, c.command_line())
+            render(run.out)
+    if json:
+        c.print_json(document)
+    else:
+        c.show(summary(document))
+
+
+def summary(document: Mapping[str, Any]) -> str:
+    """The tables as a person wants to read them in a terminal."""
+    columns = document["columns"]
+    kinds = [k for k, one in enumerate(columns) if one["run"] is None]
+    runs = [k for k, one in enumerate(columns) if one["run"] is not None]
+    words = {"windows": f"begun anew every {document['window_s']:g} s", "whole": "begun once in each whole run"}
+    lines: list[str] = []
+    for convention, said in words.items():
+        lines += ["", f"L_MSE, {said}: mean ± deviation over networks (ratio to the first model)"]
+        for of in filter(None, (kinds, runs)):
+            lines += _table(document["models"], columns, of, convention)
+    lines += ["", f"* the best of a column. {document['wall_s']:.1f} s."]
+    if "out" in document:
+        lines.append(f"Report: {document['out']}/report.html")
+    return "\n".join(lines[1:])
+
+
+def _table(models: Sequence[Any], columns: Sequence[Any], of: Sequence[int], convention: str) -> list[str]:
+    names = [f"{columns[k]['name'][-40:]} ({columns[k]['runs']})" for k in of]
+    width = max(WIDTH, *(len(name) + 2 for name in names))
+    lines = [f"  {'':<32}" + "".join(f"{name:>{width}}" for name in names)]
+    for model in models:
+        row = [
+            _cell(model[convention][k], model["members"]) + "* "[columns[k]["best"][convention] != model["name"]]
+            for k in of
+        ]
+        lines.append(f"  {model['name'][-32:]:<32}" + "".join(f"{text:>{width}}" for text in row))
+    return lines
+
+
+def _cell(cell: Mapping[str, Any], members: int) -> str:
+    if cell["diverged"]:
+        return "diverged" if members == 1 else f"{cell['diverged']} of {members} diverged"
+    deviation = "" if cell["deviation"] is None else f" ± {cell['deviation']:.2g}"
+    ratio = "" if cell["ratio"] is None else f" ({cell['ratio']:.2f})"
+    return f"{cell['mean']:.3g}{deviation}{ratio}"

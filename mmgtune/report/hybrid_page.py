@@ -1,0 +1,188 @@
+"""The report of a network beside a model of forces."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .advice import shortest
+from .common import picture
+from .drawing import AFTER, BEFORE, Drawn, grid_of, new_figure
+from .learning_page import draw_line, made_section, rms_errors
+from .load import Kind
+from .page import Commands, Page, Section, Table, Tile, cells
+from .tables import tone
+from .wording import NONE, clean, count, number, percent, shown
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True)
+class HybridRecord:
+    """A hybrid as its folder holds it: hybrid.json."""
+
+    folder: Path
+    data: Mapping[str, Any]
+
+
+def build(record: HybridRecord) -> Page:
+    """Everything the report of a hybrid says."""
+    data = record.data
+    tracks = Drawn("tracks", "Tracks as measured, of the model and of the hybrid", lambda: _draw_tracks(data["drawn"]))
+    curves = Drawn("curves", "Error on unseen runs by updates", lambda: _draw_curves(data["tried"]))
+    gained = bool(data["gained"])
+    words = (
+        "Of each kind of manoeuvre the window of median error, from its first measured state: measured, the model of "
+        "forces alone, and with the network."
+    )
+    sections = [
+        Section("gains", "Gain on unseen runs", (_gains(data),)) if gained else None,
+        Section("tracks", "What it predicts", (picture(tracks, "Tracks", words),)),
+        Section("learning", "How it was chosen", (picture(curves, "Error on unseen runs", _curves_words(data)),)),
+        Section("next", "What to do next", (_next(record),)),
+        made_section(data, [("memory of velocities", f"{shown(data['lag_s'], 3)} s")]),
+    ]
+    sources = data["provenance"]["trials"].get("sources")
+    banner = "The trials it learned from are generated, not measured: this says how the method works, not the ship."
+    return Page(
+        title=f"{clean(data['ship'])}: a network beside the model of forces",
+        eyebrow="hybrid",
+        verdict=_verdict(data),
+        banners=(banner,) if sources == ["generated"] else (),
+        warnings=("The training was stopped early; --resume continues it.",) if data["interrupted"] else (),
+        tiles=_tiles(data),
+        sections=tuple(one for one in sections if one is not None),
+        figures={"tracks": tracks, "curves": curves},
+    )
+
+
+def _verdict(data: Mapping[str, Any]) -> str:
+    if not data["gained"]:
+        return "No gain: no network does better than the model of forces alone on runs it has not seen."
+    parts = [
+        f"{shown(100 * row['share_removed'], 2)} % in {clean(row['manoeuvre']) or 'all'} ({count(row['runs'], 'run')})"
+        for row in data["gains"]
+    ]
+    return f"On runs it has not seen the network removes of the model's error {', '.join(parts)}."
+
+
+def _tiles(data: Mapping[str, Any]) -> tuple[Tile, ...]:
+    tiles = []
+    scores = data["scores"]
+    if scores:
+        for k, label, unit in ((0, "Position error, held out", " m"), (1, "Heading error, held out", "°")):
+            before, after = (rms_errors(data, scores[which])[k] for which in ("before", "after"))
+            moved = 100.0 * (after - before) / before if before and after is not None else None
+            tiles.append(
+                Tile(
+                    label,
+                    f"{shown(before, 2)} → {shown(after, 2)}{unit}",
+                    percent(moved),
+                    "root mean square",
+                    tone(moved),
+                )
+            )
+    for row in data["gains"][: 4 - len(tiles)]:
+        moved = -100.0 * row["share_removed"]
+        value = f"{shown(row['L_MSE_before'], 3)} → {shown(row['L_MSE_after'], 3)}"
+        tiles.append(Tile(f"L_MSE, {clean(row['manoeuvre'])}", value, percent(moved), "unseen runs", tone(moved)))
+    return tuple(tiles)
+
+
+def _gains(data: Mapping[str, Any]) -> Table:
+    rows = []
+    for row in data["gains"]:
+        interval = row["share_removed_ci95"]
+        within = f"{shown(100 * interval[0], 2)} to {shown(100 * interval[1], 2)} %" if interval else NONE
+        rows.append(
+            cells(
+                clean(row["manoeuvre"]) or "not stated",
+                str(row["runs"]),
+                shown(row["L_MSE_before"], 3),
+                shown(row["L_MSE_after"], 3),
+                f"{shown(100 * row['share_removed'], 2)} %",
+                within,
+            )
+        )
+    return Table(
+        "gains-table",
+        "L_MSE of windows of runs that neither the network nor the model of forces was fitted to; intervals of 95 % by "
+        "drawing runs anew, where there are three or more",
+        ("manoeuvre", "runs", "model of forces", "hybrid", "removed", "interval"),
+        tuple(rows),
+        numeric=(1, 2, 3, 4, 5),
+    )
+
+
+def _curves_words(data: Mapping[str, Any]) -> str:
+    kept = (
+        f"Kept: {data['updates']} updates, penalty {shown(data['penalty'], 3)}." if data["gained"] else "None was kept."
+    )
+    return (
+        "Error with the network over error of the model of forces alone, on runs kept back, by kind of manoeuvre; "
+        f"below 1 the network helps. {kept}"
+    )
+
+
+def _draw_curves(tried: Sequence[Mapping[str, Any]]) -> Figure:
+    several = [one for one in tried if one["curve"]]
+    if not several:
+        return new_figure(4.0, 1.0)
+    figure, axes = grid_of(len(several), (3.6, 2.8))
+    for ax, one in zip(axes, several, strict=True):
+        kinds = [key for key in one["curve"][0] if key not in ("step", "loss", "score")]
+        for kind in kinds:
+            rows = [row for row in one["curve"] if number(row[kind]) is not None]
+            ax.plot(
+                [row["step"] for row in rows], [row[kind] for row in rows], linewidth=1.3, label=clean(kind) or "all"
+            )
+        ax.axhline(1.0, color="black", linewidth=0.8)
+        ax.set_title(f"penalty {shown(one['penalty'], 3)}", fontsize="small")
+        ax.set_xlabel("updates of the weights")
+        ax.set_ylabel("error over the model's [–]")
+    axes[0].legend(fontsize="small")
+    return figure
+
+
+def _draw_tracks(drawn: Sequence[Mapping[str, Any]]) -> Figure:
+    from matplotlib.lines import Line2D
+
+    styles: tuple[dict[str, Any], ...] = (
+        {"color": BEFORE, "linewidth": 1.2, "linestyle": "-"},
+        {"color": AFTER, "linewidth": 1.4, "linestyle": (0, (6, 2.2))},
+    )
+    figure, axes = grid_of(max(len(drawn), 1), (2.9, 3.0))
+    for ax, one in zip(axes, drawn, strict=False):
+        draw_line(ax, one["measured"], color="black", linewidth=1.8)
+        for track, style in zip(one["members"], styles, strict=False):
+            draw_line(ax, track, **style)
+        ax.set_title(f"{clean(one['manoeuvre']) or clean(one['id'])}", fontsize="small")
+    handles = [Line2D([], [], color="black", label="measured")]
+    handles += [
+        Line2D([], [], label=label, **style) for label, style in zip(("forces alone", "hybrid"), styles, strict=True)
+    ]
+    figure.legend(handles=handles, loc="outside upper left", ncols=3, handlelength=3.6)
+    return figure
+
+
+def _next(record: HybridRecord) -> Commands:
+    data = record.data
+    path = shortest(data["provenance"]["profile"].get("path") or data["ship"], "ship_profiles")
+    trials = shortest(data["provenance"]["trials"].get("path") or "TRIALS", "trials")
+    if not data["gained"]:
+        return Commands((("See what the profile gets wrong, and why", f"mmgtune diagnose -p {path} -t {trials}"),))
+    model = f"{record.folder.as_posix()}/model.safetensors"
+    window = number(data["window_s"])
+    restart = f" --restart {window:g}" if window else ""
+    return Commands(
+        (
+            ("Score both on the same windows", f"mmgtune validate {path} {model} {trials}{restart}"),
+            ("Simulate trials with it", f"mmgtune simulate -p {model} --trials {trials}"),
+        )
+    )
+
+
+KIND = Kind("hybrid", ("gained", "gains", "tried", "drawn", "provenance", "sigma"), HybridRecord, build)

@@ -1,0 +1,224 @@
+"""The report of models of any kind on the same trials."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .common import picture
+from .drawing import AFTER, BEFORE, FLAG, INK, MUTED, Drawn, log_ticks, new_figure
+from .load import Kind
+from .page import Cell, Details, Page, Prose, Section, Table, Tile, cells
+from .tables import pairs
+from .wording import NONE, clean, count, listing, number, shown
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_COLOURS = (BEFORE, AFTER, INK, FLAG, MUTED)
+_MARKS = "osD^v"
+_MEANING = (
+    "L_MSE is the mean over time of the sum over all six states of squared differences over their variance (Wakita et "
+    "al. 2022, eq. 26): 0 is perfect. Mean and standard deviation over the networks of a model, each begun from a seed "
+    "of its own; in brackets the ratio to the first model. The best of a column is marked. A model of which a network "
+    "diverged has no mean there: the others alone would flatter it."
+)
+
+
+@dataclass(frozen=True)
+class ModelsRecord:
+    """A comparison of models as its folder holds it: model_comparison.json."""
+
+    folder: Path
+    data: Mapping[str, Any]
+
+    @property
+    def names(self) -> list[str]:
+        """What the models were called."""
+        return [clean(one["name"]) for one in self.data["models"]]
+
+    @property
+    def conventions(self) -> dict[str, str]:
+        """Both ways of restarting in words."""
+        return {
+            "windows": f"begun anew every {shown(self.data['window_s'], 3)} s",
+            "whole": "begun once in each whole run",
+        }
+
+    def columns(self, runs: bool) -> list[tuple[int, Mapping[str, Any]]]:
+        """Places and facts of the columns: those of single runs, or the others."""
+        return [(k, one) for k, one in enumerate(self.data["columns"]) if (one["run"] is not None) == runs]
+
+
+def build(record: ModelsRecord) -> Page:
+    """Everything the report of a comparison of models says."""
+    data = record.data
+    drawn = Drawn("errors", "L_MSE of the models by kind of manoeuvre", lambda: _draw(record))
+    sections = [
+        Section(f"{key}-scores", f"Models {words}", tuple(_tables(record, key)))
+        for key, words in record.conventions.items()
+    ]
+    caption = "L_MSE by kind of manoeuvre: mean and standard deviation over the networks; the number of runs below."
+    sections.insert(0, Section("errors", "Errors", (picture(drawn, "Errors", caption), Prose((_MEANING,)))))
+    lost = _lost(record)
+    if lost:
+        sections.insert(1, Section("diverged", "What diverged", (Prose(tuple(lost), listed=True, tone="warning"),)))
+    banner = "The trials are generated, not measured: this says how the method works, not how a real ship moves."
+    return Page(
+        title="Models compared",
+        eyebrow=f"{clean(data['trials']['ship']) or 'ship not stated'} · {clean(data['trials']['name'])}",
+        verdict=_verdict(record),
+        banners=(banner,) if data["trials"]["sources"] == ["generated"] else (),
+        tiles=_tiles(record),
+        sections=(*sections, _made(record)),
+        figures={"errors": drawn},
+    )
+
+
+def _verdict(record: ModelsRecord) -> str:
+    said = []
+    for key, words in record.conventions.items():
+        best = record.data["columns"][0]["best"][key]
+        if best is None:
+            said.append(f"{words}, every model diverged somewhere")
+            continue
+        row = next(one for one in record.data["models"] if one["name"] == best)[key][0]
+        first = record.data["models"][0]
+        beside = ""
+        if best != first["name"] and number(row["ratio"]) is not None:
+            beside = f", {shown(row['ratio'], 2)} times that of {clean(first['name'])}"
+        said.append(f"{words}, {clean(best)} has the least error of all runs, L_MSE {shown(row['mean'], 3)}{beside}")
+    text = "; ".join(said) + "."
+    return text[:1].upper() + text[1:]
+
+
+def _tiles(record: ModelsRecord) -> tuple[Tile, ...]:
+    tiles = []
+    for model in record.data["models"][:6]:
+        note = f"all runs, anew every {shown(record.data['window_s'], 3)} s"
+        tiles.append(Tile(f"L_MSE, {clean(model['name'])}", _mean(model["windows"][0], model["members"]), note=note))
+    return tuple(tiles)
+
+
+def _tables(record: ModelsRecord, convention: str) -> list[Table]:
+    found = []
+    for runs, id, words in ((False, "kinds", "by kind of manoeuvre"), (True, "runs", "run by run")):
+        columns = record.columns(runs)
+        if not columns:
+            continue
+        rows = []
+        for model in record.data["models"]:
+            row: list[str | Cell] = [clean(model["name"]), str(model["members"])]
+            for k, column in columns:
+                text = _mean(model[convention][k], model["members"])
+                if number(model[convention][k]["ratio"]) is not None:
+                    text += f" ({shown(model[convention][k]['ratio'], 3)})"
+                best = column["best"][convention] == model["name"]
+                bad = "bad" if model[convention][k]["diverged"] else ""
+                row.append(Cell(f"{text} *" if best else text, "good" if best else bad))
+            rows.append(cells(*row))
+        heads = [f"{clean(one['name'])}, {count(one['runs'], 'run')}" for _, one in columns]
+        caption = f"L_MSE {words}, {record.conventions[convention]}; * the best of a column"
+        numeric = range(1, 2 + len(columns))
+        found.append(
+            Table(f"{convention}-{id}-table", caption, ("model", "networks", *heads), tuple(rows), numeric=numeric)
+        )
+    return found
+
+
+def _mean(cell: Mapping[str, Any], members: int) -> str:
+    if cell["diverged"]:
+        return "diverged" if members == 1 else f"{cell['diverged']} of {members} diverged"
+    deviation = number(cell["deviation"])
+    return shown(cell["mean"], 3) + (f" ± {shown(deviation, 2)}" if deviation is not None else "")
+
+
+def _lost(record: ModelsRecord) -> list[str]:
+    found = []
+    for model in record.data["models"]:
+        for key, words in record.conventions.items():
+            columns = [(k, one) for k, one in enumerate(record.data["columns"]) if k and model[key][k]["diverged"]]
+            if columns:
+                where = listing(
+                    [f"{clean(one['name'])} ({model[key][k]['diverged']} of {model['members']})" for k, one in columns],
+                    8,
+                )
+                found.append(f"{clean(model['name'])}, {words}: {where}.")
+    return found
+
+
+def _draw(record: ModelsRecord) -> Figure:
+    columns = record.columns(False)
+    figure = new_figure(7.6, 3.4)
+    axes = figure.subplots(1, 2, sharey=True)
+    width = 0.7 / max(len(record.names), 1)
+    for ax, (key, words) in zip(axes, record.conventions.items(), strict=True):
+        for j, model in enumerate(record.data["models"]):
+            found = [
+                (i, model[key][k]) for i, (k, _) in enumerate(columns) if number(model[key][k]["mean"]) is not None
+            ]
+            ax.errorbar(
+                [i + (j - 0.5 * (len(record.names) - 1)) * width for i, _ in found],
+                [cell["mean"] for _, cell in found],
+                yerr=[_below(cell) for _, cell in found],
+                linestyle="",
+                marker=_MARKS[j % len(_MARKS)],
+                markersize=4,
+                color=_COLOURS[j % len(_COLOURS)],
+                label=clean(model["name"])[-40:],
+            )
+        ax.set_title(words)
+        ax.set_xticks(range(len(columns)), [f"{clean(one['name'])[:12]}\n{one['runs']}" for _, one in columns])
+    axes[0].set_ylabel("L_MSE [–]")
+    if any(
+        number(cell["mean"]) for model in record.data["models"] for key in record.conventions for cell in model[key]
+    ):
+        axes[0].set_yscale("log")
+        log_ticks(axes[0].yaxis)
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper left", ncols=3)
+    return figure
+
+
+def _below(cell: Mapping[str, Any]) -> float:
+    """Half the length of a bar, which must not reach 0 on a logarithmic axis."""
+    return min(number(cell["deviation"]) or 0.0, 0.95 * float(cell["mean"]))
+
+
+def _made(record: ModelsRecord) -> Section:
+    data = record.data
+    trials, made = data["trials"], data["provenance"]
+    models = pairs(
+        "models-table",
+        "Models",
+        ("model", "what it is"),
+        [
+            (clean(one["name"]), f"{clean(one['id'])}; {clean(one['method'])}; {count(one['members'], 'member')}")
+            for one in data["models"]
+        ],
+    )
+    items = [
+        ("trials", clean(trials["name"])),
+        ("licence of the trials", clean(trials.get("licence") or NONE)),
+        ("cite for them", clean(trials.get("citation") or NONE)),
+        ("spread counted in", clean(data["sigma_from"])),
+        *((f"sigma of {clean(name)}", f"{shown(value, 4)} (SI)") for name, value in data["sigma"].items()),
+        ("command", clean(made["command"] or NONE)),
+        ("made by", f"mmgtune {clean(made['mmgtune'])}, {clean(made['created'])}"),
+        ("time", f"{shown(data['wall_s'], 3)} s"),
+    ]
+    hashes: Sequence[tuple[str, str]] = [(clean(name), clean(text)) for name, text in trials["sha256"].items()]
+    return Section(
+        "made",
+        "How it was made",
+        (
+            models,
+            pairs("made-table", "What it was made from", ("", ""), items),
+            Details("Hashes of the trials", (pairs("hashes-table", "Hashes", ("trial", "SHA-256"), hashes),)),
+        ),
+    )
+
+
+KIND = Kind("model-comparison", ("trials", "columns", "models", "sigma", "window_s", "provenance"), ModelsRecord, build)

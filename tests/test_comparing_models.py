@@ -1,0 +1,174 @@
+"""Models of any kind on the same trials: predictors whose errors are known, and the command."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mmgtune.comparing_models import Cell, Column, compare_models
+from mmgtune.errors import OptionError, TrialError
+from mmgtune.networks import save_network
+from mmgtune.objective import spread
+from mmgtune.options import CompareModelsOptions
+from mmgtune.predictor import Prediction, as_predictor
+from mmgtune.trial import TrialSet, write_trial
+from tests.command import run
+from tests.fitting.conftest import make_set
+from tests.networks.made import network
+
+
+class Drifting:
+    """The ship herself, on trials she made, but for a drift to the north [m/s] of each member."""
+
+    def __init__(self, ship, drifts, lost=()):
+        self._ship, self._drifts, self._lost = as_predictor(ship), np.array(drifts), list(lost)
+        self.name, self.L_pp, self.inputs, self.method = "drifting", ship.L_pp, self._ship.inputs, "by hand"
+        self.n_members = len(drifts)
+
+    def predict(self, cases):
+        states = np.repeat(self._ship.predict(cases).states, self.n_members, axis=1)
+        states[..., 0] += self._drifts[None, :, None] * (cases.t - cases.t[:, :1])[:, None, :]
+        diverged = np.zeros(states.shape[:2], dtype=bool)
+        diverged[:, self._lost] = True
+        return Prediction(states, diverged)
+
+
+@pytest.fixture(scope="module")
+def data(suzaku):
+    """Four trials, two of them called berthing."""
+    own = {"hull.R_0": suzaku.profile.value("hull.R_0")}
+    trials = list(make_set(suzaku, own).trials.values())[:4]
+    trials = [replace(one, manoeuvre="berthing" if k > 1 else one.manoeuvre) for k, one in enumerate(trials)]
+    return TrialSet({one.id: one for one in trials}, tuple(one.id for one in trials[:3]), (trials[3].id,))
+
+
+def expected(trials, drift, sigma, window):
+    """Mean of the squared drift over sigma, each sample once: a window ends where the next begins."""
+    squares = []
+    for trial in trials:
+        since = trial.t - trial.t[0]
+        if window is not None:
+            since = since - np.maximum(np.ceil(since / window - 1e-9) - 1.0, 0.0) * window
+        squares.append((drift * since[since > 0.0] / sigma["x"]) ** 2)
+    return np.mean(np.concatenate(squares))
+
+
+def test_known_errors_in_both_conventions(suzaku, data):
+    drifts = 0.01, 0.02, 0.04
+    found = compare_models({"true": suzaku, "off": Drifting(suzaku, drifts)}, data, CompareModelsOptions(restart=50.0))
+    sigma = spread(list(data.trials.values()))
+    assert [one.name for one in found.columns][:1] == ["all"]
+    for column in found.columns:
+        trials = [
+            one
+            for one in data.trials.values()
+            if column.kind in (None, one.manoeuvre) and column.run in (None, one.run)
+        ]
+        assert found.models[0].cell("whole", column).mean == pytest.approx(0.0, abs=1e-12)
+        values = [expected(trials, drift, sigma, None) for drift in drifts]
+        cell = found.models[1].cell("whole", column)
+        np.testing.assert_allclose(cell.members, values, rtol=1e-6)
+        assert cell.mean == pytest.approx(np.mean(values))
+        assert cell.deviation == pytest.approx(np.std(values, ddof=1))
+        short = found.models[1].cell("windows", column)
+        np.testing.assert_allclose(short.members, [expected(trials, one, sigma, 50.0) for one in drifts], rtol=1e-6)
+        assert short.mean < 0.5 * cell.mean
+        assert found.best("whole", column) == "true"
+
+
+def test_columns(suzaku, data):
+    found = compare_models(suzaku, data)
+    kinds = {one.manoeuvre for one in data.trials.values()}
+    berthing = [one.run for one in data.trials.values() if one.manoeuvre == "berthing"]
+    assert {one.kind for one in found.columns} == {None, *kinds}
+    assert [one.run for one in found.columns if one.run] == berthing
+    assert [one["runs"] for one in found.to_dict()["columns"] if one["run"]] == [1, 1]
+
+
+def test_ratios_are_to_the_first_model(suzaku, data):
+    several = {"a": Drifting(suzaku, [0.01]), "b": Drifting(suzaku, [0.03])}
+    document = compare_models(several, data).to_dict()
+    assert [one["whole"][0]["ratio"] for one in document["models"]] == pytest.approx([1.0, 9.0], rel=1e-6)
+    assert document["models"][0]["whole"][0]["deviation"] is None
+    assert {one["best"]["windows"] for one in document["columns"]} == {"a"}
+
+
+def test_what_diverged_has_no_mean_and_is_never_best(suzaku, data):
+    several = {"lost": Drifting(suzaku, [0.001, 0.001], lost=[1]), "b": Drifting(suzaku, [0.03])}
+    document = compare_models(several, data).to_dict()
+    row = document["models"][0]["windows"][0]
+    assert (row["mean"], row["deviation"], row["ratio"], row["diverged"]) == (None, None, None, 1)
+    assert row["members"][0] is not None
+    assert row["members"][1] is None
+    assert document["models"][1]["windows"][0]["ratio"] is None
+    assert {one["best"]["windows"] for one in document["columns"]} == {"b"}
+
+
+def test_a_cell_by_hand():
+    assert (Cell((1.0, 2.0, 6.0)).mean, Cell((1.0, 2.0, 6.0)).deviation) == (3.0, pytest.approx(np.sqrt(7.0)))
+    assert (Cell((2.0,)).mean, Cell((2.0,)).deviation) == (2.0, None)
+    assert Column("").name == "not stated"
+
+
+@pytest.mark.parametrize(("only", "n"), [(("berthing",), 2), (("test",), 1), (("tune", "test"), 4)])
+def test_only_some_trials(suzaku, data, only, n):
+    assert len(compare_models(suzaku, data, CompareModelsOptions(only=only)).data.trials) == n
+
+
+def test_sigma_is_of_the_trials_scored_unless_it_is_said(suzaku, data):
+    found = compare_models(suzaku, data, CompareModelsOptions(only=("berthing",)))
+    scored = [one for one in data.trials.values() if one.manoeuvre == "berthing"]
+    assert found.sigma == pytest.approx(spread(scored))
+    other = compare_models(suzaku, data, CompareModelsOptions(only=("berthing",), sigma_from="suzaku"))
+    assert other.sigma["x"] != pytest.approx(found.sigma["x"])
+
+
+def test_words_that_name_no_trial_and_sets_without_any(suzaku, data):
+    with pytest.raises(OptionError, match="did you mean 'berthing'"):
+        compare_models(suzaku, data, CompareModelsOptions(only=("berting",)))
+    with pytest.raises(OptionError, match="no trial to compare"):
+        compare_models(suzaku, TrialSet({}, (), ()))
+    with pytest.raises((OptionError, TrialError)):
+        compare_models([], data)
+
+
+@pytest.mark.slow(15)
+def test_the_command(tmp_path, data):
+    for trial in data.trials.values():
+        write_trial(trial, tmp_path / "log" / f"{trial.id}.parquet")
+    save_network(network(members=2, size=0.1), tmp_path / "model.safetensors")
+    names = "suzaku", "kvlcc2", "model.safetensors", "log"
+    ended = run("learn", "compare", *names, "--out", "compared", "--json", cwd=tmp_path)
+    assert ended.code == 0, ended.err
+    document = ended.json()
+    assert [one["members"] for one in document["models"]] == [1, 1, 2]
+    assert document["columns"][0]["best"]["whole"] == "suzaku"
+    for name in ("model_comparison.json", "report.html", "report.md", "figures/errors.svg"):
+        assert (tmp_path / "compared" / name).is_file()
+    page = (tmp_path / "compared" / "report.md").read_text()
+    assert "berthing" in page
+    assert "±" in page
+    again = run("learn", "compare", *names, "--out", "compared", cwd=tmp_path)
+    assert again.code == 2
+    shown = run("learn", "compare", *names, "--only", "berthing", cwd=tmp_path)
+    assert "±" in shown.out
+    assert "begun once in each whole run" in shown.out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("suzaku",), "missing"),
+        (("suzaku", "suzaku", "--restart", "0"), "--restart"),
+        (("suzaku", "suzaku", "--only", "stopping"), "--only"),
+        (("suzaku", "suzaku", "--force"), "--force"),
+        (("nowhere.safetensors", "suzaku"), "nowhere"),
+    ],
+)
+def test_wrong_arguments(arguments, said, tmp_path):
+    ended = run("learn", "compare", *arguments, cwd=tmp_path)
+    assert ended.code == 2
+    assert said in ended.err
+    assert "Traceback" not in ended.err
