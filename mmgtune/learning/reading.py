@@ -199,7 +199,7 @@ class Reading:
         }
 
 
-def read(hybrid: Hybrid, trials: Sequence[Trial], *, restart: float | None = 100.0) -> Reading:
+def read_network(hybrid: Hybrid, trials: Sequence[Trial], *, restart: float | None = 100.0) -> Reading:
     """Read the network of a hybrid along the runs of trials.
 
     restart  [s] of the windows; None for whole runs

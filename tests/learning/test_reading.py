@@ -10,7 +10,7 @@ import pytest
 from mmgtune.backends import LaneModel, pad
 from mmgtune.learning.following import accelerations_by, added_by, follow, own_force, thinned
 from mmgtune.learning.hybrid import ranges_of
-from mmgtune.learning.reading import mass_matrix, read
+from mmgtune.learning.reading import mass_matrix, read_network
 from mmgtune.learning.samples import samples_of
 from mmgtune.learning.selecting import select
 from mmgtune.model import Model
@@ -82,7 +82,7 @@ def lacking(trials):
 
 @pytest.fixture(scope="module")
 def reading(lacking, trials):
-    return read(lacking, trials)
+    return read_network(lacking, trials)
 
 
 @pytest.mark.slow(5)
@@ -153,7 +153,7 @@ def test_tuned_coefficients_count_before_any_term(trials):
     name = "rudder.a_H"
     other = tuned(profile, {name: profile.value(name)}, {}, {})
     changed = tuned(profile, {name: 0.5 * profile.value(name)}, {}, {})
-    found = read(imitating(other, between(profile, changed), trials), trials)
+    found = read_network(imitating(other, between(profile, changed), trials), trials)
     assert found.tuned > 0.85
     assert name not in [term.name for term in found.terms]
     assert "Other values of the tuned coefficients" in " ".join(found.sentences)
@@ -161,7 +161,7 @@ def test_tuned_coefficients_count_before_any_term(trials):
 
 def test_a_silent_network_says_nothing(trials, lacking):
     silent = Hybrid(lacking.profile, lacking.weights._replace(W_3=np.zeros((WIDTH, 3))), lacking.ranges, MEMORY)
-    found = read(silent, trials[:3])
+    found = read_network(silent, trials[:3])
     assert found.sentences == ("The network adds no force.",)
     assert found.terms == ()
 
