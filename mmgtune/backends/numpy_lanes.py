@@ -186,8 +186,8 @@ class LaneModel:
         found = self.breakdown(state, control, around)
         return [value for one in self.lags for value in self.of(one.effect.start)(found, one.e)]
 
-    def rates(self, s: Any, control: Any, around: Surroundings, h: Any) -> Any:
-        """Time derivatives of the six states and of what lags remember, (n_states, n_lanes)."""
+    def acting_force(self, s: Any, control: Any, around: Surroundings, h: Any) -> tuple[Force, list[Any]]:
+        """Force on the ship, with those that effects and lags add, and the rates of what lags remember."""
         state = State(*s[:N_STATES])
         found = self.breakdown(state, control, around)
         total: Force = found.total
@@ -199,6 +199,12 @@ class LaneModel:
             total = _sum(total, more)
             slopes += own
             at += len(behind)
+        return total, slopes
+
+    def rates(self, s: Any, control: Any, around: Surroundings, h: Any) -> Any:
+        """Time derivatives of the six states and of what lags remember, (n_states, n_lanes)."""
+        state = State(*s[:N_STATES])
+        total, slopes = self.acting_force(s, control, around, h)
         rate = self.of(rates)(state, *self.water(state, around), total, self.p.ship)
         for moving in self.flows:
             if moving.effect.rate is not None:
