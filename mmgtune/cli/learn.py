@@ -136,6 +136,7 @@ def hybrid_summary(found: dict[str, Any], folder: str, report: bool) -> str:
                 f"{name:<24}{row['runs']:>6}{row['L_MSE_before']:>13.4g}{row['L_MSE_after']:>10.4g}   {removed}"
             )
         lines += ["", f"kept: penalty {found['penalty']:g}, {found['updates']} updates, trained on all runs that tune"]
+        lines += ["", *found["reading"]["sentences"]]
     else:
         lines.append("No gain: no network does better on runs it has not seen. The model is the profile as it is.")
     for event in found["events"]:

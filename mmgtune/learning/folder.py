@@ -18,6 +18,7 @@ from ..trial import Trial
 from ..validation import score, summary
 from .choosing import pieces_of
 from .hybrid_run import LearnedHybrid
+from .reading import read_network
 from .run import Learned
 
 RESULT = "learning.json"
@@ -75,6 +76,7 @@ def hybrid_document(result: LearnedHybrid) -> dict[str, Any]:
         "sigma": result.sigma,
         "gains": [one.to_dict() for one in result.gains],
         "tried": [{"penalty": penalty, "curve": rows} for penalty, rows in result.tried.items()],
+        "reading": _reading(result),
         "parts": [[trial.id for trial in split.choose] for split in result.splits],
         "held_out": [trial.id for trial in result.test],
         "scores": {which: summary(scores) for which, scores in result.scores.items()},
@@ -85,6 +87,14 @@ def hybrid_document(result: LearnedHybrid) -> dict[str, Any]:
         "interrupted": result.interrupted,
         "wall_s": result.wall_s,
     }
+
+
+def _reading(result: LearnedHybrid) -> dict[str, Any] | None:
+    """What the network says along the runs it was trained on, None where there is none."""
+    if not result.gained:
+        return None
+    split = result.splits[0]
+    return read_network(result.hybrid, (*split.learn, *split.choose), restart=result.options.restart).to_dict()
 
 
 def drawn(

@@ -12,7 +12,7 @@ from .common import picture
 from .drawing import AFTER, BEFORE, Drawn, grid_of, new_figure
 from .learning_page import draw_line, made_section, rms_errors
 from .load import Kind
-from .page import Commands, Page, Section, Table, Tile, cells
+from .page import Commands, Page, Prose, Section, Table, Tile, cells
 from .tables import tone
 from .wording import NONE, clean, count, number, percent, shown
 
@@ -40,6 +40,7 @@ def build(record: HybridRecord) -> Page:
     )
     sections = [
         Section("gains", "Gain on unseen runs", (_gains(data),)) if gained else None,
+        _reading(data["reading"]) if gained else None,
         Section("tracks", "What it predicts", (picture(tracks, "Tracks", words),)),
         Section("learning", "How it was chosen", (picture(curves, "Error on unseen runs", _curves_words(data)),)),
         Section("next", "What to do next", (_next(record),)),
@@ -117,6 +118,32 @@ def _gains(data: Mapping[str, Any]) -> Table:
     )
 
 
+def _reading(found: Mapping[str, Any]) -> Section:
+    """What the network says in known terms."""
+    words = Prose(tuple(clean(one) for one in found["sentences"]))
+    if not found["terms"]:
+        return Section("reading", "What it says", (words,))
+    rows = [
+        cells(
+            clean(one["title"]),
+            clean(one["name"]),
+            clean(one["written"]),
+            f"{shown(100 * one['share'], 2)} %",
+            *(f"{shown(100 * one['shares'][name], 2)} %" for name in ("X", "Y", "N")),
+        )
+        for one in found["terms"]
+    ]
+    table = Table(
+        "terms-table",
+        "Known terms that would give part of the force the network adds, each the share of what those before it leave, "
+        "on runs its value was not found from",
+        ("term", "name", "value", "share", "surge", "sway", "yaw"),
+        tuple(rows),
+        numeric=(2, 3, 4, 5, 6),
+    )
+    return Section("reading", "What it says", (words, table))
+
+
 def _curves_words(data: Mapping[str, Any]) -> str:
     kept = (
         f"Kept: {data['updates']} updates, penalty {shown(data['penalty'], 3)}." if data["gained"] else "None was kept."
@@ -185,4 +212,4 @@ def _next(record: HybridRecord) -> Commands:
     )
 
 
-KIND = Kind("hybrid", ("gained", "gains", "tried", "drawn", "provenance", "sigma"), HybridRecord, build)
+KIND = Kind("hybrid", ("gained", "gains", "reading", "tried", "drawn", "provenance", "sigma"), HybridRecord, build)
