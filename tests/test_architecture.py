@@ -90,7 +90,9 @@ def test_constraints_are_complete_and_allowed():
         assert [exact.operator for exact in one.specifier] == ["=="], name
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     extras = project["optional-dependencies"]
-    open_ends = [Requirement(line) for line in (*project["dependencies"], *extras["dev"], *extras["docs"])]
+    open_ends = [
+        Requirement(line) for line in (*project["dependencies"], *extras["dev"], *extras["docs"], *extras["learn"])
+    ]
     done: set[str] = set()
     while open_ends:
         wanted = open_ends.pop()

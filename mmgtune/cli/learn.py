@@ -137,6 +137,8 @@ def hybrid_summary(found: dict[str, Any], folder: str, report: bool) -> str:
             )
         lines += ["", f"kept: penalty {found['penalty']:g}, {found['updates']} updates, trained on all runs that tune"]
         lines += ["", *found["reading"]["sentences"]]
+    elif found["interrupted"]:
+        lines.append("Stopped before a network was chosen: the model is the profile as it is.")
     else:
         lines.append("No gain: no network does better on runs it has not seen. The model is the profile as it is.")
     for event in found["events"]:

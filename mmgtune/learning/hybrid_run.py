@@ -33,7 +33,7 @@ from .refitting import refitted, tuned_names
 from .run import Hooks
 from .samples import Samples, samples_of
 from .splitting import Split, fold_runs, split_runs
-from .training import Plan, Progressed, Trainer
+from .training import Plan, Progressed, Trainer, needed
 
 LAG, STEP = 0.5, 0.03
 """Memory, and step of training, as shares of the time the ship takes for her length at her root mean square speed."""
@@ -49,8 +49,9 @@ DECAY = 1e-4
 class LearnedHybrid:
     """A hybrid, and how it was chosen.
 
-    hybrid   what does best on runs that were not learned from; the model of forces alone where nothing does better
-    penalty    weight of the penalty chosen, None where nothing is gained
+    hybrid   what does best on runs that were not learned from; the model of forces alone where nothing does better, and
+             where the training was stopped before one was chosen and trained on all runs
+    penalty  weight of the penalty chosen, None where nothing is gained
     step     updates after which it does best
     step_s   of the integration within training [s]
     tried    of each weight of the penalty the score by step, 1 being the model of forces alone
@@ -103,6 +104,7 @@ def learn_hybrid(
     Raises OptionError for too few runs or trials from which nothing can be learned, and where JAX is missing.
     """
     began = time.perf_counter()
+    needed()
     profile, data = ship_of(ship), trials_of(trials).series_only("a network")
     tune = [data.trials[id] for id in data.tune]
     test = tuple(data.trials[id] for id in data.test)
@@ -128,13 +130,15 @@ def learn_hybrid(
     tried = {penalty: curve_of(of) for penalty, of in trained.items()}
     steps = [(penalty, row) for penalty, rows in tried.items() for row in rows]
     penalty, best = min(steps, key=lambda one: one[1]["score"], default=(0.0, None))
-    weights = first_residual(len(ranges.deviation), options.width, options.seed)  # adds nothing
     gains: list[Gain] = []
     step_kept = 0
     if best is not None and best["score"] < 1.0 - LEAST:
         step_kept = int(best["step"])
         weights = work.train_on_all(penalty, tune, ranges, step_kept)
-        gains = gains_of(trained[penalty], step_kept, options.seed)
+        if not work.stopped:
+            gains = gains_of(trained[penalty], step_kept, options.seed)
+    if not gains:
+        weights = first_residual(len(ranges.deviation), options.width, options.seed)  # adds nothing
     made = provenance_of(profile, data, tune, options, command)
     hybrid = Hybrid(profile, weights, ranges, lag, {**travelling(made), "type": "hybrid"})
     pieces = pieces_of(test, options.restart)

@@ -165,7 +165,7 @@ class Reading:
         if not any(one.size > 0.0 for one in self.shares):
             return ("The network adds no force.",)
         sizes = ", ".join(
-            f"{one.size:.3g} {UNITS[one.component]} in {DIRECTIONS[one.component]} ({_percent(one.share)})"
+            f"{_plain(one.size)} {UNITS[one.component]} in {DIRECTIONS[one.component]} ({_percent(one.share)})"
             for one in self.shares
         )
         said = [f"The network adds {sizes}: root mean square, and its share of the model's own force."]
@@ -308,6 +308,11 @@ def _class(words: str, there: BoolArray, squares: FloatArray) -> Class:
 
 def _rms(values: FloatArray) -> float:
     return float(np.sqrt(np.mean(values**2)))
+
+
+def _plain(value: float) -> str:
+    """Three digits, without powers of ten."""
+    return f"{float(f'{value:.3g}'):.0f}" if value >= 100.0 else f"{value:.3g}"
 
 
 def _percent(share: float) -> str:

@@ -24,7 +24,7 @@ from .choosing import pieces_of
 from .provenance import provenance_of, travelling
 from .starting import first_weights, scales_of
 from .task import Task, make_task
-from .training import Plan, Progressed, Trainer
+from .training import Plan, Progressed, Trainer, needed
 
 
 @dataclass(frozen=True)
@@ -109,6 +109,7 @@ def learn_rnn(
     Raises what ``make_task`` does, and OptionError where JAX is missing.
     """
     began = time.perf_counter()
+    needed()
     task = make_task(ship_of(ship), trials_of(trials).series_only("a network"), options)
     scales = scales_of(task.samples)
     plan = Plan(options.steps, options.batch, options.rate, options.validate_every)

@@ -202,6 +202,12 @@ def batch(starts: IntArray, size: int, seed: int, step: int) -> IntArray:
     return starts[rng.integers(len(starts), size=size)]
 
 
+def needed() -> None:
+    """Raises OptionError with the command that installs it where something that training needs is not there."""
+    jax_module()
+    optax_module()
+
+
 def optax_module() -> Any:
     """Optax.  Raises OptionError with the command that installs it where it is not there."""
     try:

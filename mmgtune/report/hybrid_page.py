@@ -61,6 +61,8 @@ def build(record: HybridRecord) -> Page:
 
 
 def _verdict(data: Mapping[str, Any]) -> str:
+    if not data["gained"] and data["interrupted"]:
+        return "Stopped before a network was chosen: the model is the profile as it is."
     if not data["gained"]:
         return "No gain: no network does better than the model of forces alone on runs it has not seen."
     parts = [

@@ -244,7 +244,7 @@ def test_an_updated_baseline_keeps_what_people_wrote_into_it(ship, data, baselin
         (lambda text: text.replace('"integrator": "rk4"', '"integrator": "../.."'), "unknown integrator"),
         (lambda text: text.replace('"substeps": 1', '"substeps": -1'), "substeps is -1"),
         (lambda text: text.replace('"substeps": 1', '"substeps": 1e999'), "not complete"),
-        (lambda text: text.replace('"backend": "compiled"', '"backend": "jax"'), "unknown back end"),
+        (lambda text: text.replace('"backend": "compiled"', '"backend": "cuda"'), "unknown back end"),
         (lambda text: text.replace('"relative": 0.01', '"relative": -1'), "relative = -1"),
         (lambda text: text.replace('"relative": 0.01', '"relatif": 1'), "relatif"),
         (lambda text: text.replace('"cVDM"', '"cvdm"'), "unknown metric"),

@@ -52,7 +52,7 @@ def refused(ended, *words):
         (("--seed", "0"), ("seed is 0", "1 or more")),
         (("--starts", "0"), ("starts is 0",)),
         (("--method", "cmaes"), ("unknown method 'cmaes'", "did you mean 'cma-es'")),
-        (("--backend", "jax"), ("unknown back end 'jax'",)),
+        (("--backend", "cuda"), ("unknown back end 'cuda'",)),
         (("--integrator", "rk5"), ("did you mean 'rk4'",)),
         (("--initial", "estimate"), ("did you mean 'estimated'",)),
         (("--targets", "hull.Y_vvvr"), ("no coefficient is called 'hull.Y_vvvr'", "did you mean")),

@@ -63,7 +63,8 @@ def _claim(folder, barrier, results):
 
 def test_of_many_at_once_one_gets_it(tmp_path):
     """Also where the folder has to be made."""
-    context = multiprocessing.get_context("fork")
+    context = multiprocessing.get_context("forkserver")  # this process may have threads by now
+    context.set_forkserver_preload(["tests.cli.test_folders"])
     for k in range(10):
         barrier, results = context.Barrier(4), context.Queue()
         folder = tmp_path / str(k)

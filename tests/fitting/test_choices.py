@@ -116,7 +116,7 @@ def test_effects_are_put_in_to_be_tuned(tmp_path, clean):
     )  # fmt: skip
     assert fitted.code == 0, fitted.err
     theta = fitted.json()["theta"]
-    assert len(theta) == 16  # twelve, the current's two and its factor on what was measured, the rudder's zero
+    assert len(theta) == 15  # twelve, the current's two, the rudder's zero; no trial measured a current
     assert abs(theta["effects.current.north"]) < 1e-3
     assert "[effects.current]" in (tmp_path / "out" / "profile.toml").read_text()
     assert run("profile", "validate", "out/profile.toml", cwd=tmp_path).code == 0

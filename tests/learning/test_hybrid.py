@@ -10,6 +10,7 @@ import pytest
 
 pytest.importorskip("jax", reason="networks are trained with the extra mmgtune[learn]")
 
+from mmgtune.cli.learn import hybrid_summary
 from mmgtune.learning import Hooks, learn_hybrid, write_learned
 from mmgtune.learning.gains import ratios, relative
 from mmgtune.learning.hybrid import HybridAim, balanced, first_residual, ranges_of
@@ -134,7 +135,9 @@ def test_resumed_equals_not_interrupted(tmp_path, trained):
     hooks = Hooks(on_progress=lambda *_: asked.append(1), stop=lambda: len(asked) >= 2)
     first = learn_hybrid("suzaku", "suzaku", SMALL, hooks=hooks, folder=tmp_path)
     assert first.interrupted
-    write_learned(first, tmp_path)
+    assert not first.gained  # none was chosen and trained on all runs yet
+    document = write_learned(first, tmp_path)
+    assert "Stopped before" in hybrid_summary(document, "runs/x", report=False)
     second = learn_hybrid("suzaku", "suzaku", SMALL, folder=tmp_path, resume=True)
     np.testing.assert_array_equal(weights(second), weights(trained))
     assert second.gains == trained.gains

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +12,7 @@ import pytest
 pytest.importorskip("jax", reason="networks are trained with the extra mmgtune[learn]")
 
 from mmgtune.errors import OptionError
-from mmgtune.learning import Hooks, learn_rnn, write_learned
+from mmgtune.learning import Hooks, learn_hybrid, learn_rnn, write_learned
 from mmgtune.learning import run as runs
 from mmgtune.learning.keeping import named
 from mmgtune.networks import NetworkPredictor, load_network
@@ -134,6 +135,14 @@ def test_types_on_runs_of_the_paper_say_which_are_missing():
 def test_windows_longer_than_any_trial_are_refused():
     with pytest.raises(OptionError, match="no trial is as long"):
         learn_rnn("suzaku", "suzaku", replace(SMALL, horizon=5000))
+
+
+@pytest.mark.parametrize("library", ["jax", "optax"])
+@pytest.mark.parametrize("learn", [learn_rnn, learn_hybrid])
+def test_without_the_extra_the_command_that_installs_it_is_named(monkeypatch, library, learn):
+    monkeypatch.setitem(sys.modules, library, None)
+    with pytest.raises(OptionError, match=r"pip install 'mmgtune\[learn\]'"):
+        learn("suzaku", "suzaku")
 
 
 def test_one_run_leaves_nothing_to_choose_by():
