@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from datetime import datetime
 from itertools import count
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Protocol
 
 import typer
 
@@ -21,6 +21,14 @@ if TYPE_CHECKING:
     from ..profile import ShipProfile
     from ..profile.doubts import Doubt
     from ..trial import TrialSet, VoyageSet
+
+
+class HasId(Protocol):
+    """A profile, or what was trained for one."""
+
+    @property
+    def id(self) -> str:
+        """Of the ship."""
 
 
 def complete_profile(incomplete: str) -> list[str]:
@@ -102,9 +110,9 @@ def print_plan(plan: Plan, folder: Path) -> None:
     show(f"{plan}\nwrites    {folder}: {', '.join(plan.writes)}")
 
 
-def default_out(profile: ShipProfile) -> Path:
+def default_out(ship: HasId) -> Path:
     """A folder under runs/ that does not exist yet."""
-    name = f"{datetime.now():%Y%m%d-%H%M%S}-{profile.id}"
+    name = f"{datetime.now():%Y%m%d-%H%M%S}-{ship.id}"
     tries = (Path("runs") / (f"{name}-{k}" if k > 1 else name) for k in count(1))
     return next(folder for folder in tries if not folder.exists())
 

@@ -30,13 +30,13 @@ def on_voyages(
 ) -> None:
     """Score profiles on voyages, write the run folder and print what was found."""
     from ..fitting import claimed
-    from ..given import ship_of
+    from ..networks import named_ship
     from ..predictor import profile_of
     from ..report import render
     from ..trial import load_voyages
     from ..voyages import Hooks, validate_voyages, write_voyages
 
-    ships = [ship_of(name) for name in profiles]
+    ships = [named_ship(name) for name in profiles]
     data = load_voyages(trials)
     if data.ship and data.ship != ships[0].id:
         c.say(f"warning: the voyages are of '{data.ship}', the first profile is of '{ships[0].id}'")

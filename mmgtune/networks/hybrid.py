@@ -116,9 +116,14 @@ class HybridPredictor:
         return Model(self.hybrid.profile)
 
     @property
+    def id(self) -> str:
+        """Id of the ship."""
+        return self.hybrid.profile.id
+
+    @property
     def name(self) -> str:
         """Ship, and that there is a network."""
-        return f"{self.hybrid.profile.id} hybrid"
+        return f"{self.id} hybrid"
 
     @property
     def L_pp(self) -> float:

@@ -31,6 +31,11 @@ class NetworkPredictor:
     network: Network
 
     @property
+    def id(self) -> str:
+        """Id of the ship."""
+        return self.network.ship
+
+    @property
     def name(self) -> str:
         """Ship and type."""
         return " ".join(filter(None, (self.network.ship, str(self.network.facts.get("type", "network")))))

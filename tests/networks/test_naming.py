@@ -1,0 +1,56 @@
+"""Trained models on the command line, where profiles stand."""
+
+from __future__ import annotations
+
+import pytest
+
+from mmgtune.networks import save_network
+from mmgtune.profile import load_profile
+from mmgtune.trial import load_trials, write_trial
+from tests.command import run
+
+from .made import network
+from .test_hybrid import a_hybrid
+
+
+@pytest.fixture
+def models(tmp_path):
+    """A network, a hybrid and one trial of the ship they are of."""
+    import dataclasses
+
+    save_network(dataclasses.replace(network(step=1.0), ship="suzaku", L_pp=83.0), tmp_path / "rnn.safetensors")
+    save_network(
+        dataclasses.replace(a_hybrid(size=0.01), profile=load_profile("suzaku")), tmp_path / "hybrid.safetensors"
+    )
+    trial = load_trials("suzaku").trials["turn_p35"]
+    write_trial(trial, tmp_path / "trials" / "turn_p35.parquet")
+    return tmp_path
+
+
+@pytest.mark.slow(5)
+def test_validate_and_simulate_take_them(models):
+    found = run("validate", "suzaku", "rnn.safetensors", "hybrid.safetensors", "trials", "--json", cwd=models)
+    assert found.code == 0, found.err
+    ids = [one["id"] for one in found.json()["profiles"]]
+    assert ids == ["suzaku", "suzaku type 1", "suzaku hybrid"]
+    for name in ("rnn", "hybrid"):
+        assert run("simulate", "-p", f"{name}.safetensors", "--trials", "trials", cwd=models).code == 0
+
+
+@pytest.mark.slow(5)
+def test_validate_on_voyages_takes_them(models):
+    from mmgtune.model import Model
+    from tools.generate_voyage import make_voyage
+
+    write_trial(make_voyage(Model(load_profile("suzaku")), 1.2), models / "voyages" / "one.parquet")
+    found = run("validate", "rnn.safetensors", "hybrid.safetensors", "voyages", "--json", "--quiet", cwd=models)
+    assert found.code == 0, found.err
+    assert [one["profile"] for one in found.json()["models"]] == ["rnn.safetensors", "hybrid.safetensors"]
+
+
+@pytest.mark.parametrize("command", ["fit", "diagnose", "sweep"])
+def test_what_needs_coefficients_says_so(models, command):
+    found = run(command, "-p", "rnn.safetensors", "-t", "trials", cwd=models)
+    assert found.code == 2
+    assert "rnn.safetensors" in found.err
+    assert "Traceback" not in found.err
