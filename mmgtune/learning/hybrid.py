@@ -19,6 +19,7 @@ from ..validation import L_MSE, by_manoeuvre, score
 from .choosing import Chooser, Single, pieces_of
 from .gains import relative
 from .samples import Samples
+from .starting import acceleration_deviations
 
 EULER = Integrator("euler")
 """Method within training: at half a second scores differ by less than a hundredth from those at a tenth."""
@@ -65,15 +66,12 @@ def ranges_of(samples: Samples, memory: float, roles: Sequence[str]) -> Ranges:
     deviation = np.sqrt(np.mean(x**2, axis=0))
     deviation = np.where(deviation > 0.0, deviation, 1.0)
     largest = np.quantile(np.abs(x) / deviation, QUANTILE, axis=0)
-    stride = max(1, round(1.0 / samples.step))
-    starts = samples.starts(stride)
-    rates = (states[starts + stride, 3:] - states[starts, 3:]) / (stride * samples.step)
     sides = [1.0, -1.0, -1.0]
     inputs = [-1.0 if role in ("rudder", "thruster") else 1.0 for role in roles]
     return Ranges(
         deviation=deviation,
         largest=np.maximum(largest, 1e-3),
-        accelerations=np.sqrt(np.mean(rates**2, axis=0)),
+        accelerations=acceleration_deviations(samples),
         mirrored=np.array([*sides, *inputs, 1.0, -1.0, *sides]),
     )
 

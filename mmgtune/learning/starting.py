@@ -34,21 +34,26 @@ def first_weights(n_inputs: int, width: int, seed: int) -> Weights:
 
 
 def scales_of(samples: Samples) -> Scales:
-    """Standard deviations of features and of accelerations in the training data; 1 for a feature that never varies.
-
-    Accelerations are differences over a second or a step, whichever is longer: those of single samples are noise.
-    """
+    """Standard deviations of features and of accelerations in the training data; 1 for a feature that never varies."""
     whole = samples.whole
     seen = features_of(samples)[whole]
     deviation = np.sqrt(np.mean(seen**2, axis=0))
+    return Scales(
+        features=np.where(deviation > 0.0, deviation, 1.0)[None],
+        accelerations=acceleration_deviations(samples)[None],
+    )
+
+
+def acceleration_deviations(samples: Samples) -> FloatArray:
+    """(3,) root mean squares of accelerations [m/s^2, m/s^2, rad/s^2]; 1 where there are none.
+
+    They are differences over a second or a step, whichever is longer: those of single samples are noise.
+    """
     stride = max(1, round(1.0 / samples.step))
     starts = samples.starts(stride)
     rates = (samples.states[starts + stride, 3:] - samples.states[starts, 3:]) / (stride * samples.step)
     moving = np.sqrt(np.mean(rates**2, axis=0)) if len(starts) else np.ones(3)
-    return Scales(
-        features=np.where(deviation > 0.0, deviation, 1.0)[None],
-        accelerations=np.where(moving > 0.0, moving, 1.0)[None],
-    )
+    return np.asarray(np.where(moving > 0.0, moving, 1.0))
 
 
 def features_of(samples: Samples) -> FloatArray:
