@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from math import isfinite
+from statistics import fmean, stdev
 from typing import TYPE_CHECKING, Any
 
 import typer
 
-from ..options.learning import HybridOptions, LearnOptions
+from ..options.learning import HybridOptions, LearnOptions, TrainingOptions
 from . import common as c
 from . import learn_compare
 from .options import RunOptions, takes
 from .progress import Progress
 
 if TYPE_CHECKING:
-    from ..learning import Learned
+    from ..fitting import Plan
+    from ..learning import Learned, LearnedHybrid
+    from ..validation import TrialScore
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -46,29 +51,10 @@ def rnn(
 
       mmgtune validate esso_osaka_3m_tuned runs/type1/model.safetensors esso --restart 100
     """
-    from ..fitting import claimed
-    from ..learning import Hooks, learn_rnn, write_learned
-    from ..report import render
+    from ..learning import learn_rnn
+    from ..learning.planning import plan_rnn
 
-    ship, data = c.load(profile, trials)
-    folder = run.out or c.default_out(ship)
-    if run.dry_run:
-        from ..learning.planning import plan_rnn
-
-        c.print_plan(plan_rnn(ship, data, options), folder)
-        return
-    with claimed(folder, force=run.force, resume=run.resume), Progress(run.quiet, folder) as progress:
-        hooks = Hooks(on_progress=progress.on_share, stop=lambda: progress.stopped)
-        result = learn_rnn(ship, data, options, hooks=hooks, folder=folder, resume=run.resume, command=c.command_line())
-        document = write_learned(result, folder)
-        progress.saved(result.interrupted)
-        if not no_report:
-            render(folder)
-    if run.json:
-        c.print_json(document)
-    else:
-        c.show(summary(result, str(folder), report=not no_report))
-    progress.leave()
+    _train(profile, trials, options, run, no_report, plan_rnn, learn_rnn, summary)
 
 
 @app.command("hybrid")
@@ -94,22 +80,35 @@ def hybrid(
 
       mmgtune learn hybrid -p tuned.toml -t my_trials/ --folds 5 --penalty 5,15,50
     """
+    from ..learning import learn_hybrid
+    from ..learning.planning import plan_hybrid
+
+    _train(profile, trials, options, run, no_report, plan_hybrid, learn_hybrid, hybrid_summary)
+
+
+def _train(
+    profile: str,
+    trials: str,
+    options: TrainingOptions,
+    run: RunOptions,
+    no_report: bool,
+    plan: Callable[..., Plan],
+    learn: Callable[..., Any],
+    words: Callable[[Any, dict[str, Any], str, bool], str],
+) -> None:
+    """Say what would be done, or train, write the run folder and print what was found."""
     from ..fitting import claimed
-    from ..learning import Hooks, learn_hybrid, write_learned
+    from ..learning import Hooks, write_learned
     from ..report import render
 
     ship, data = c.load(profile, trials)
     folder = run.out or c.default_out(ship)
     if run.dry_run:
-        from ..learning.planning import plan_hybrid
-
-        c.print_plan(plan_hybrid(ship, data, options), folder)
+        c.print_plan(plan(ship, data, options), folder)
         return
     with claimed(folder, force=run.force, resume=run.resume), Progress(run.quiet, folder) as progress:
         hooks = Hooks(on_progress=progress.on_share, stop=lambda: progress.stopped)
-        result = learn_hybrid(
-            ship, data, options, hooks=hooks, folder=folder, resume=run.resume, command=c.command_line()
-        )
+        result = learn(ship, data, options, hooks=hooks, folder=folder, resume=run.resume, command=c.command_line())
         document = write_learned(result, folder)
         progress.saved(result.interrupted)
         if not no_report:
@@ -117,11 +116,11 @@ def hybrid(
     if run.json:
         c.print_json(document)
     else:
-        c.show(hybrid_summary(document, str(folder), report=not no_report))
+        c.show(words(result, document, str(folder), not no_report))
     progress.leave()
 
 
-def hybrid_summary(found: dict[str, Any], folder: str, report: bool) -> str:
+def hybrid_summary(_: LearnedHybrid, found: dict[str, Any], folder: str, report: bool) -> str:
     """The result as a person wants to read it in a terminal."""
     lines = []
     if found["gained"]:
@@ -141,54 +140,45 @@ def hybrid_summary(found: dict[str, Any], folder: str, report: bool) -> str:
         lines.append("Stopped before a network was chosen: the model is the profile as it is.")
     else:
         lines.append("No gain: no network does better on runs it has not seen. The model is the profile as it is.")
-    for event in found["events"]:
-        lines.append(f"note: diverged at step {event['step']}, went back to step {event['back_to']} at half the rate")
     if found["scores"]:
         before, after = (found["scores"][which]["L_MSE"] for which in ("before", "after"))
         shown = ["diverged" if one is None else f"{one:.4g}" for one in (before, after)]
         lines.append(f"held out: L_MSE {shown[0]} -> {shown[1]}")
-    if found["interrupted"]:
-        lines += ["", f"Stopped early; --resume --out {folder} continues."]
-    where = f"Report: {folder}/report.html" if report else ""
-    lines += ["", f"{found['wall_s']:.1f} s. Model: {folder}/model.safetensors. {where}".rstrip()]
-    return "\n".join(lines)
+    return "\n".join([*lines, *_ending(found, found["events"], folder, report)])
 
 
-def summary(result: Learned, folder: str, report: bool) -> str:
+def summary(result: Learned, found: dict[str, Any], folder: str, report: bool) -> str:
     """The result as a person wants to read it in a terminal."""
-    network = result.network
-    lines = [
-        f"type {result.task.options.type}: {result.task.recipe.words}; {network.n_members} x {network.width} units"
-    ]
-    lines.append(
-        f"learned from {len(result.task.split.learn)} trials, chosen by {len(result.task.split.choose)} others"
-    )
-    lines.append("")
-    lines.append(f"{'seed':>6}{'best step':>11}{'L_MSE of validation':>22}")
-    for row in (one.to_dict() for one in result.members):
-        lines.append(f"{row['seed']:>6}{row['best_step']:>11}{row['score']:>22.4g}")
-    for event in (event for one in result.members for event in one.events):
-        lines.append(f"note: diverged at step {event['step']}, went back to step {event['back_to']} at half the rate")
+    members = found["members"]
+    lines = [f"type {found['type']}: {found['recipe']}; {len(members)} x {found['width']} units"]
+    lines.append(f"learned from {len(found['learned_from'])} trials, chosen by {len(found['chosen_by'])} others")
+    lines += ["", f"{'seed':>6}{'best step':>11}{'L_MSE of validation':>22}"]
+    lines += [f"{row['seed']:>6}{row['best_step']:>11}{row['score']:>22.4g}" for row in members]
     for role, scores in result.scores.items():
         if scores:
             lines += ["", f"L_MSE on the trials of {role}, mean and deviation over seeds", *_by_kind(scores)]
-    if result.interrupted:
-        lines += ["", f"Stopped early; --resume --out {folder} continues."]
-    lines.append("")
-    lines.append(
-        f"{result.wall_s:.1f} s. Model: {folder}/model.safetensors. "
-        + (f"Report: {folder}/report.html" if report else "")
-    )
-    return "\n".join(lines)
+    events = [event for one in members for event in one["events"]]
+    return "\n".join([*lines, *_ending(found, events, folder, report)])
 
 
-def _by_kind(scores: Any) -> list[str]:
+def _by_kind(scores: Sequence[TrialScore]) -> list[str]:
     from ..validation import L_MSE, by_manoeuvre, by_member
 
     found = []
     for kind, of in by_manoeuvre(scores).items():
         values = [L_MSE(one) for one in by_member(of)]
-        mean = sum(values) / len(values)
-        deviation = (sum((one - mean) ** 2 for one in values) / max(len(values) - 1, 1)) ** 0.5
-        found.append(f"  {kind or 'manoeuvre not stated':<24}{mean:>10.4g} ± {deviation:.2g}")
+        spread = stdev(values) if len(values) > 1 and all(map(isfinite, values)) else 0.0
+        found.append(f"  {kind or 'manoeuvre not stated':<24}{fmean(values):>10.4g} ± {spread:.2g}")
     return found
+
+
+def _ending(found: dict[str, Any], events: list[dict[str, Any]], folder: str, report: bool) -> list[str]:
+    """What went wrong on the way, how to go on, and where the results are."""
+    lines = [
+        f"note: diverged at step {event['step']}, went back to step {event['back_to']} at half the rate"
+        for event in events
+    ]
+    if found["interrupted"]:
+        lines += ["", f"Stopped early; --resume --out {folder} continues."]
+    where = f"Report: {folder}/report.html" if report else ""
+    return [*lines, "", f"{found['wall_s']:.1f} s. Model: {folder}/model.safetensors. {where}".rstrip()]

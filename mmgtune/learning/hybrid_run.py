@@ -6,7 +6,6 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -24,10 +23,10 @@ from ..predictor import as_predictor
 from ..profile import ShipProfile
 from ..trial import Trial
 from ..validation import TrialScore, score
-from . import keeping
 from .choosing import pieces_of
 from .gains import Gain, Trained, curve_of, gains_of
 from .hybrid import HybridAim, first_residual, ranges_of
+from .keeping import Kept
 from .provenance import provenance_of, travelling
 from .refitting import refitted, tuned_names
 from .run import Hooks
@@ -111,18 +110,15 @@ def learn_hybrid(
     splits = splits_of(tune, options)
     step, lag = times_of(profile, tune, options)
     sigma = spread(tune)
-    work = _Work(profile, options, step, lag, np.array([sigma[name] for name in STATES]), hooks, folder, resume)
-    work.identity = {
+    identity = {
         "profile": profile.sha256,
         "trials": data.hashes(),
         "tune": list(data.tune),
         "options": options.to_dict(),
-        "versions": {name: version(name) for name in ("jax", "jaxlib", "optax", "numpy")},
     }
-    work.total = (len(splits) * len(options.penalty) + 1) * options.steps
-    if resume and folder is not None and not list(folder.glob("training-*.safetensors")):
-        why = "the folder holds no checkpoint: the run ended, or never came to its first validation"
-        raise OptionError(Problem("nothing to resume", str(folder), why, "run without resume=True"))
+    total = (len(splits) * len(options.penalty) + 1) * options.steps
+    deviations = np.array([sigma[name] for name in STATES])
+    work = _Work(profile, options, step, lag, deviations, hooks, Kept(folder, identity, resume), total)
     ranges = work.ranges(tune)
     trained: dict[float, list[Trained]] = {}
     for penalty in options.penalty:
@@ -188,10 +184,8 @@ class _Work:
     lag: float
     sigma: Any
     hooks: Hooks
-    folder: Path | None
-    resume: bool
-    identity: dict[str, Any] | None = None
-    total: int = 0
+    kept: Kept
+    total: int
     done: int = 0
     stopped: bool = False
     _without: dict[tuple[str, ...], Model] = field(default_factory=dict)
@@ -266,17 +260,11 @@ class _Work:
         options = self.options
         trainer = Trainer(aim, Plan(options.steps, options.batch, options.rate, options.validate_every, DECAY))
         begin = first_residual(len(np.asarray(aim.ranges.deviation)), options.width, options.seed)
-        now = trainer.begin(begin)
-        path = None if self.folder is None else self.folder / keeping.named(self.done // options.steps)
-        assert self.identity is not None
-        identity = self.identity
-        if path is not None and self.resume and path.is_file():
-            now = keeping.load(path, now, identity)
-        before = self.done
+        before, number = self.done, self.done // options.steps
+        now = self.kept.begun(number, trainer.begin(begin))
 
         def told(one: Progressed) -> None:
-            if path is not None:
-                keeping.save(path, one, identity)
+            self.kept.keep(number, one)
             row = one.curve[-1]
             said = f"{words}, loss {row['loss']:.4g}, validation {100 * row['score']:.1f} % of the model's error"
             self.hooks.on_progress(before + one.step, self.total, said)

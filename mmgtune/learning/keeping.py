@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -15,9 +17,47 @@ from ..fitting.checkpoint import differing
 from .training import Progressed
 
 
-def named(seed: int) -> str:
-    """The file of a seed's training in the folder of a run."""
-    return f"training-{seed}.safetensors"
+def named(number: int) -> str:
+    """The file of a training in the folder of a run."""
+    return f"training-{number}.safetensors"
+
+
+@dataclass(frozen=True)
+class Kept:
+    """Checkpoints of the trainings of one run, by number.
+
+    folder    None for nowhere
+    identity  everything the weights depend on, but for the versions of what trains them
+    resume    whether trainings go on where they were stopped
+    first     number of the first training
+    """
+
+    folder: Path | None
+    identity: dict[str, Any]
+    resume: bool
+    first: int = 0
+
+    def __post_init__(self) -> None:
+        """Raises OptionError where there is nothing to resume."""
+        versions = {name: version(name) for name in ("jax", "jaxlib", "optax", "numpy")}
+        object.__setattr__(self, "identity", {**self.identity, "versions": versions})
+        if self.resume and self.folder is not None and not (self.folder / named(self.first)).is_file():
+            why = "the folder holds no checkpoint: the run ended, or never came to its first validation"
+            raise OptionError(Problem("nothing to resume", str(self.folder), why, "run without resume=True"))
+
+    def begun(self, number: int, first: Progressed) -> Progressed:
+        """Where a training goes on: at its checkpoint, or at the beginning.  Raises OptionError as ``load`` does."""
+        path = self._path(number)
+        return load(path, first, self.identity) if self.resume and path and path.is_file() else first
+
+    def keep(self, number: int, now: Progressed) -> None:
+        """Write where a training stands.  Raises OutputError."""
+        path = self._path(number)
+        if path is not None:
+            save(path, now, self.identity)
+
+    def _path(self, number: int) -> Path | None:
+        return None if self.folder is None else self.folder / named(number)
 
 
 def save(path: Path, now: Progressed, identity: dict[str, Any]) -> None:

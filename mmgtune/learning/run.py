@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -18,9 +17,9 @@ from ..networks.recurrent import Scales, Weights
 from ..options.learning import LearnOptions
 from ..trial import Trial
 from ..validation import TrialScore, score
-from . import keeping
 from .aims import RecurrentAim
 from .choosing import pieces_of
+from .keeping import Kept
 from .provenance import provenance_of, travelling
 from .starting import first_weights, scales_of
 from .task import Task, make_task
@@ -113,8 +112,8 @@ def learn_rnn(
     task = make_task(ship_of(ship), trials_of(trials).series_only("a network"), options)
     scales = scales_of(task.samples)
     plan = Plan(options.steps, options.batch, options.rate, options.validate_every)
-    identity = identity_of(task)
-    members = _members(Trainer(RecurrentAim(task, scales), plan), task, hooks, folder, identity, resume)
+    kept = Kept(folder, identity_of(task), resume, options.seed)
+    members = _members(Trainer(RecurrentAim(task, scales), plan), task, hooks, kept)
     if not members:
         why = "nothing is known of weights before"
         raise OptionError(
@@ -147,41 +146,27 @@ def learn_rnn(
 
 
 def identity_of(task: Task) -> dict[str, Any]:
-    """Everything the weights depend on."""
+    """Everything the weights depend on, but for versions."""
     return {
         "ship": task.profile.id,
         "inputs": list(task.inputs),
         "trials": task.data.hashes(),
         "tune": list(task.data.tune),
         "options": task.options.to_dict(),
-        "versions": {name: version(name) for name in ("jax", "jaxlib", "optax", "numpy")},
     }
 
 
-def _members(
-    trainer: Trainer,
-    task: Task,
-    hooks: Hooks,
-    folder: Path | None,
-    identity: dict[str, Any],
-    resume: bool,
-) -> list[Member]:
+def _members(trainer: Trainer, task: Task, hooks: Hooks, kept: Kept) -> list[Member]:
     """The networks one after the other; those that an earlier run has trained are read."""
     options = task.options
     found = []
-    if resume and folder is not None and not (folder / keeping.named(options.seed)).is_file():
-        why = "the folder holds no checkpoint: the run ended, or never came to its first validation"
-        raise OptionError(Problem("nothing to resume", str(folder), why, "run without resume=True"))
     for k in range(options.seeds):
         seed = options.seed + k
-        now = trainer.begin(_single(first_weights(len(task.inputs), options.width, seed)))
-        path = None if folder is None else folder / keeping.named(seed)
-        if path is not None and resume and path.is_file():
-            now = keeping.load(path, now, identity)
+        first = trainer.begin(_single(first_weights(len(task.inputs), options.width, seed)))
+        now = kept.begun(seed, first)
 
-        def told(one: Progressed, path: Path | None = path, k: int = k) -> None:
-            if path is not None:
-                keeping.save(path, one, identity)
+        def told(one: Progressed, seed: int = seed, k: int = k) -> None:
+            kept.keep(seed, one)
             row = one.curve[-1]
             words = f"seed {k + 1} of {options.seeds}, loss {row['loss']:.4g}, L_MSE of validation {row['score']:.4g}"
             hooks.on_progress(k * options.steps + one.step, task.updates, words)

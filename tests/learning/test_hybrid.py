@@ -137,7 +137,7 @@ def test_resumed_equals_not_interrupted(tmp_path, trained):
     assert first.interrupted
     assert not first.gained  # none was chosen and trained on all runs yet
     document = write_learned(first, tmp_path)
-    assert "Stopped before" in hybrid_summary(document, "runs/x", report=False)
+    assert "Stopped before" in hybrid_summary(first, document, "runs/x", report=False)
     second = learn_hybrid("suzaku", "suzaku", SMALL, folder=tmp_path, resume=True)
     np.testing.assert_array_equal(weights(second), weights(trained))
     assert second.gains == trained.gains
