@@ -11,7 +11,7 @@ from ..backends import STATES
 from ..backends.twins import jax_module
 from ..networks.predicting import WIND
 from ..networks.recurrent import Scales, Weights
-from .choosing import Chooser, Single
+from .choosing import Chooser, Single, from_origin
 from .losses import acceleration_loss, trajectory_loss
 from .rolling import roll
 from .starting import accelerations_of
@@ -60,10 +60,3 @@ class RecurrentAim:
     def judged(self, w: Weights) -> dict[str, float]:
         """See ``Aim``: the mean over kinds of manoeuvre, each alike."""
         return {"score": float(np.mean(list(self._chooser.by_kind(w).values())))}
-
-
-def from_origin(states: Any) -> Any:
-    """Windows (T, n, 6) moved so that each begins at the origin: single precision has seven digits."""
-    jnp = jax_module().numpy
-    begin = states[:1, :, :2]
-    return jnp.concatenate([states[..., :2] - begin, states[..., 2:]], axis=-1)

@@ -99,3 +99,10 @@ class Chooser:
             total = float(np.sum(squares[of].sum(axis=0)[n > 0] / n[n > 0]))
             found[str(group)] = total if np.isfinite(total) else float("inf")
         return found
+
+
+def from_origin(states: Any) -> Any:
+    """Windows (T, n, 6) moved so that each begins at the origin: single precision has seven digits."""
+    jnp = jax_module().numpy
+    begin = states[:1, :, :2]
+    return jnp.concatenate([states[..., :2] - begin, states[..., 2:]], axis=-1)

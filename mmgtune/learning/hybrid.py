@@ -16,7 +16,7 @@ from ..networks.hybrid import HybridLanes
 from ..networks.residual import Ranges, ResidualWeights, seen
 from ..trial import Trial
 from ..validation import L_MSE, by_manoeuvre, score
-from .choosing import Chooser, Single, pieces_of
+from .choosing import Chooser, Single, from_origin, pieces_of
 from .gains import relative
 from .samples import Samples
 from .starting import acceleration_deviations
@@ -144,9 +144,7 @@ class HybridAim:
         """See ``Aim``."""
         numpy = jax_module().numpy
         rows = starts[None, :] + numpy.arange(self.horizon + 1)[:, None]
-        states = data["states"][rows]
-        begin = numpy.concatenate([states[:1, :, :2], numpy.zeros_like(states[:1, :, 2:])], axis=-1)
-        states = states - begin
+        states = from_origin(data["states"][rows])
         found, added = self.roll(w, states[0], data["controls"][rows], data["around"][rows])
         error = numpy.sum(numpy.mean(((found - states) / self.sigma)[1:] ** 2, axis=0), axis=-1)
         error = error / data["typical"][starts]
