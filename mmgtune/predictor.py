@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from typing import Literal, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -80,6 +80,22 @@ class Steerable(Predictor, Protocol):
 
     def stepper(self, member: int, state: FloatArray, controls: FloatArray) -> Stepper:
         """A member ready to go from a state (6,) with inputs (n_inputs,)."""
+        ...
+
+
+Sampling = Literal["TS-infinity", "TS1"]
+"""How particles keep to members of an ensemble: one for the whole path, or another at each step (Chua et al. 2018)."""
+
+
+@runtime_checkable
+class Uncertain(Predictor, Protocol):
+    """A predictor that knows what it does not know, and says so by particles: as many as are asked for."""
+
+    def drawn(self, n: int, seed: int, sampling: Sampling = "TS-infinity") -> Predictor:
+        """n particles as the members of a predictor; the same seed draws the same ones.
+
+        Raises OptionError for a way of sampling that makes no sense for it.
+        """
         ...
 
 
