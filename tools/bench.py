@@ -30,7 +30,7 @@ from mmgtune.backends.twins import jax_module
 from mmgtune.files import write_text
 from mmgtune.fitting.cmaes import _strategy
 from mmgtune.learning.aims import RecurrentAim
-from mmgtune.learning.hybrid import HybridAim, first_residual, ranges_of
+from mmgtune.learning.hybrid import HybridAim, ResidualLoss, first_residual, ranges_of
 from mmgtune.learning.hybrid_run import times_of
 from mmgtune.learning.samples import samples_of
 from mmgtune.learning.starting import first_weights, scales_of
@@ -235,16 +235,10 @@ def hybrid_training() -> tuple[str, Trainer, Any]:
     samples = samples_of(trials, model.inputs, step, model.draught)
     ranges = ranges_of(samples, lag, [one.role for one in model.arrangement.inputs])
     horizon = round((options.restart or 100.0) / step)
+    loss = ResidualLoss(model, memory=lag, step=step, horizon=horizon)
+    sigma = np.array(list(spread(trials).values()))
     aim = HybridAim(
-        model,
-        samples,
-        trials,
-        ranges,
-        memory=lag,
-        sigma=np.array(list(spread(trials).values())),
-        horizon=horizon,
-        penalty=options.penalty[0],
-        restart=options.restart,
+        loss, model, samples, trials, ranges, sigma=sigma, penalty=options.penalty[0], restart=options.restart
     )
     begin = first_residual(len(ranges.deviation), options.width, 1)
     plan = Plan(options.steps, options.batch, options.rate, options.validate_every)

@@ -277,7 +277,7 @@ class JaxLanes:
         with jax_module().enable_x64(True):
             for case, candidate in _portions(cases, n_candidates):
                 of, steps = len(case), int(cases.n_samples[case].max(initial=1))
-                lanes = _filled(of)
+                lanes = filled(of)
                 case_of, candidate_of = case[lanes], candidate[lanes]
                 own, log_of = np.unique(case_of, return_inverse=True)
                 of_lane = theta[:, case_of if paired else candidate_of]
@@ -311,21 +311,21 @@ def _portions(cases: Cases, n_candidates: int) -> Iterator[tuple[IntArray, IntAr
     """Case and candidate of the lanes that run together: cases of like length, so that few wait for the longest."""
     case = np.repeat(np.argsort(cases.n_samples, kind="stable"), n_candidates)
     candidate = np.tile(np.arange(n_candidates), len(cases))
-    longest = _filled_length(int(cases.n_samples.max(initial=1)))
+    longest = filled_length(int(cases.n_samples.max(initial=1)))
     size = max(1, PORTION // longest)
     for begin in range(0, len(case), size):
         yield case[begin : begin + size], candidate[begin : begin + size]
 
 
-def _filled_length(n: int) -> int:
+def filled_length(n: int) -> int:
     """A count not much above n, of which there are few: each is compiled for."""
     step = 1 << max(0, n.bit_length() - 3)
     return -(-n // step) * step
 
 
-def _filled(n: int) -> IntArray:
+def filled(n: int) -> IntArray:
     """Places of n lanes, and the last again until there are as many as something is compiled for."""
-    return np.minimum(np.arange(_filled_length(n)), n - 1)
+    return np.minimum(np.arange(filled_length(n)), n - 1)
 
 
 def _given(cases: Cases, own: IntArray, log_of: IntArray, steps: int) -> tuple[Log, Array, Array]:
@@ -333,8 +333,8 @@ def _given(cases: Cases, own: IntArray, log_of: IntArray, steps: int) -> tuple[L
 
     Samples and cases are filled up to counts that are compiled for; time stands still there.
     """
-    few = own[_filled(len(own))]
-    long = np.minimum(np.arange(_filled_length(steps)), steps - 1)
+    few = own[filled(len(own))]
+    long = np.minimum(np.arange(filled_length(steps)), steps - 1)
     compared = (np.arange(len(long)) < steps)[:, None, None]
 
     def part(values: FloatArray) -> FloatArray:

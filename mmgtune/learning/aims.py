@@ -11,7 +11,7 @@ from ..backends import STATES
 from ..backends.twins import jax_module
 from ..networks.predicting import WIND
 from ..networks.recurrent import Scales, Weights
-from .choosing import Chooser, Single, from_origin
+from .choosing import Chooser, Single, from_origin, squares_of
 from .losses import acceleration_loss, trajectory_loss
 from .rolling import roll
 from .starting import accelerations_of
@@ -39,7 +39,7 @@ class RecurrentAim:
         if recipe.loss == "acceleration":
             self._deviation = jnp.asarray(np.nanstd(measured, axis=0), dtype=Single)
         self._chooser = Chooser(
-            self._of_windows, task.split.choose, task.inputs, learn.step, sigma, restart=options.restart
+            squares_of(self._of_windows), task.split.choose, task.inputs, learn.step, sigma, restart=options.restart
         )
 
     def _of_windows(self, w: Weights, initial: Any, controls: Any, around: Any) -> Any:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray
+from ..backends.differentiable import filled
 from ..backends.twins import jax_module
 from ..trial import Trial
 from ..trial.pieces import windows
@@ -25,15 +26,33 @@ def pieces_of(trials: Sequence[Trial], restart: float | None) -> list[Trial]:
     return [piece for trial in trials for piece in (windows(trial, restart) if restart else [trial])]
 
 
-class Chooser:
-    """L_MSE of roll-outs on windows side by side, padded at the end, by kind of manoeuvre.
+Squares = Callable[[Any, Any, Any], Any]
+"""Parameters, the windows' (initial, controls, around, states, counts), sigma -> (n, 6) sums of squares over sigma."""
 
-    sigma  (6,) deviations that errors are counted in
+
+def squares_of(roll: Roll) -> Squares:
+    """Squares of the errors of roll-outs, compiled."""
+    jax = jax_module()
+
+    def squares(parameters: Any, given: Any, sigma: Any) -> Any:
+        initial, controls, around, states, counts = given
+        off = (roll(parameters, initial, controls, around) - states) / sigma
+        return jax.numpy.sum(jax.numpy.where(counts, off * off, 0.0), axis=0)
+
+    compiled: Squares = jax.jit(squares)
+    return compiled
+
+
+class Chooser:
+    """L_MSE of roll-outs on windows side by side, padded at the end, by kind of manoeuvre or by run.
+
+    squares  of the roll-outs; windows are filled up to counts of which there are few, so that they share a compilation
+    sigma    (6,) deviations that errors are counted in
     """
 
     def __init__(
         self,
-        roll: Roll,
+        squares: Squares,
         trials: Sequence[Trial],
         inputs: Sequence[str],
         step: float,
@@ -56,22 +75,19 @@ class Chooser:
         self._runs = np.array([piece.run for piece in pieces])
         self._counts = counts.sum(axis=0)
         states = np.nan_to_num(states)
-        self._given = (
-            *(
-                jax.numpy.asarray(one, dtype=Single)
-                for one in (states[0], cut.controls[rows], cut.around[rows], states)
-            ),
-            jax.numpy.asarray(counts),
-            jax.numpy.asarray(sigma, dtype=Single),
+        self._squares = squares
+        places = filled(len(pieces))
+        self._given = tuple(
+            jax.numpy.asarray(one[..., places, :], dtype=kind)
+            for one, kind in (
+                (states[0], Single),
+                (cut.controls[rows], Single),
+                (cut.around[rows], Single),
+                (states, Single),
+                (counts, bool),
+            )
         )
-
-        def squares(
-            parameters: Any, initial: Any, controls: Any, around: Any, states: Any, counts: Any, sigma: Any
-        ) -> Any:
-            off = (roll(parameters, initial, controls, around) - states) / sigma
-            return jax.numpy.sum(jax.numpy.where(counts, off * off, 0.0), axis=0)
-
-        self._squares = jax.jit(squares)
+        self._sigma = jax.numpy.asarray(sigma, dtype=Single)
 
     def by_kind(self, parameters: Any) -> dict[str, float]:
         """L_MSE by kind of manoeuvre; infinite where a run diverged."""
@@ -91,7 +107,7 @@ class Chooser:
         }
 
     def _grouped(self, parameters: Any, groups: Any) -> dict[str, float]:
-        squares = np.asarray(self._squares(parameters, *self._given), dtype=float)
+        squares = np.asarray(self._squares(parameters, self._given, self._sigma), dtype=float)[: len(self._kinds)]
         found = {}
         for group in sorted(set(groups.tolist())):
             of = groups == group

@@ -20,7 +20,7 @@ class Trained:
     """A training of one part: errors of unseen runs by step, with and without the network."""
 
     alone: dict[str, float]
-    runs: dict[str, tuple[str, int]]
+    runs: Runs
     curve: list[dict[str, float]]
     events: list[dict[str, Any]]
 

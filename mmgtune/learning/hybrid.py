@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -16,8 +17,8 @@ from ..networks.hybrid import HybridLanes
 from ..networks.residual import Ranges, ResidualWeights, seen
 from ..trial import Trial
 from ..validation import L_MSE, by_manoeuvre, score
-from .choosing import Chooser, Single, from_origin, pieces_of
-from .gains import relative
+from .choosing import Chooser, Single, Squares, from_origin, pieces_of, squares_of
+from .gains import Runs, relative
 from .samples import Samples
 from .starting import acceleration_deviations
 
@@ -76,91 +77,131 @@ def ranges_of(samples: Samples, memory: float, roles: Sequence[str]) -> Ranges:
     )
 
 
-class HybridAim:
-    """The network of a hybrid on windows of ``horizon`` samples; the model of forces stays as it is.
+class ResidualLoss:
+    """Roll-outs of a model of forces with a network beside it, and their loss: the same for all parts of the runs.
 
-    penalty  weight of the mean square of what the network adds, over the deviations of accelerations
+    model    its components and effects; coefficients are data
+    memory   time constant of the network's memory [s]
+    step     of the integration [s]
+    horizon  samples that a window has
     """
 
-    def __init__(
-        self,
-        model: Model,
-        learn: Samples,
-        choose: Sequence[Trial],
-        ranges: Ranges,
-        *,
-        memory: float,
-        sigma: FloatArray,
-        horizon: int,
-        penalty: float,
-        restart: float | None,
-    ):
-        jnp = jax_module().numpy
-        self.starts = balanced(learn, horizon)
-        self.model, self.memory, self.horizon, self.penalty, self.step = model, memory, horizon, penalty, learn.step
-        self.ranges = Ranges(*(jnp.asarray(one, dtype=Single) for one in ranges))
-        self.theta = jnp.asarray(model.matrix()[:, 0], dtype=Single)
-        self.sigma = jnp.asarray(sigma, dtype=Single)
-        self._chooser = Chooser(
-            lambda *given: self.roll(*given)[0],
-            choose,
-            model.inputs,
-            learn.step,
-            sigma,
-            restart=restart,
-            draught=model.draught,
-        )
-        self.runs = self._chooser.runs
-        typical = typical_errors(model, learn.trials, restart, sigma)
-        by_trial = np.array([typical[trial.manoeuvre] for trial in learn.trials])
-        self.data = {
-            "states": jnp.asarray(learn.states, dtype=Single),
-            "controls": jnp.asarray(learn.controls, dtype=Single),
-            "around": jnp.asarray(learn.around, dtype=Single),
-            "typical": jnp.asarray(np.repeat(by_trial, np.diff(learn.first)), dtype=Single),
-        }
-        self._alone: dict[str, float] = {}
+    def __init__(self, model: Model, *, memory: float, step: float, horizon: int):
+        self.model, self.memory, self.step, self.horizon = model, memory, step, horizon
 
-    def roll(self, w: ResidualWeights, initial: Any, controls: Any, around: Any) -> tuple[Any, Any]:
+    def roll(self, w: ResidualWeights, fixed: Any, initial: Any, controls: Any, around: Any) -> tuple[Any, Any]:
         """States (T, n, 6) from ``initial`` (n, 6) over samples (T, n, ...), and what the network added (T - 1, n, 3)
-        over its deviations."""
+        over its deviations.
+
+        fixed  coefficients ``theta`` of the model (n_rows,) and ``ranges`` of the network
+        """
         jax = jax_module()
         numpy = jax.numpy
         T, n = controls.shape[:2]
         t = numpy.broadcast_to(self.step * numpy.arange(T, dtype=Single)[:, None], (T, n))
         log = Log(t, np.full(n, T), controls, around)
-        lanes = HybridLanes(self.model, self.theta, weights=w, ranges=self.ranges, memory=self.memory, on=on_jax())
-        march = Marching(lanes, log, EULER, lanes.rates)
+        ranges = fixed["ranges"]
+        lanes = HybridLanes(self.model, fixed["theta"], weights=w, ranges=ranges, memory=self.memory, on=on_jax())
+        march = Marching(lanes, log, EULER)
 
         def body(now: Any, samples: Any) -> Any:
-            added = lanes.added(now.s, now.chain[-1], now.around) / self.ranges.accelerations
+            added = lanes.added(now.s, now.chain[-1], now.around) / ranges.accelerations
             now, shown = march.body(now, samples)
             return now, (numpy.stack(shown, axis=-1), added)
 
         _, (shown, added) = jax.lax.scan(jax.checkpoint(body), march.begin(initial), march.samples)
         return numpy.concatenate([initial[None], shown]), added
 
-    def loss(self, w: ResidualWeights, starts: Any, data: Any) -> Any:
-        """See ``Aim``."""
+    def __call__(self, w: ResidualWeights, starts: Any, data: Any) -> Any:
+        """Loss of the windows that begin in rows ``starts`` (n,) of ``HybridAim.data``."""
         numpy = jax_module().numpy
         rows = starts[None, :] + numpy.arange(self.horizon + 1)[:, None]
         states = from_origin(data["states"][rows])
-        found, added = self.roll(w, states[0], data["controls"][rows], data["around"][rows])
-        error = numpy.sum(numpy.mean(((found - states) / self.sigma)[1:] ** 2, axis=0), axis=-1)
+        found, added = self.roll(w, data["fixed"], states[0], data["controls"][rows], data["around"][rows])
+        error = numpy.sum(numpy.mean(((found - states) / data["sigma"])[1:] ** 2, axis=0), axis=-1)
         error = error / data["typical"][starts]
         robust = 2.0 * ROBUST * (numpy.sqrt(1.0 + error / ROBUST) - 1.0)
-        return numpy.mean(robust) + self.penalty * numpy.mean(added**2)
+        return numpy.mean(robust) + data["penalty"] * numpy.mean(added**2)
+
+    @cached_property
+    def squares(self) -> Squares:
+        """See ``squares_of``; parameters are weights and what is fixed."""
+        return squares_of(lambda given, *windows: self.roll(*given, *windows)[0])
+
+
+class HybridAim:
+    """The network of a hybrid on windows of runs; the model of forces stays as it is.
+
+    loss     of this kind of model
+    model    of forces, with its coefficients
+    choose   runs that choose among weights; none where the number of updates is known
+    penalty  weight of the mean square of what the network adds, over the deviations of accelerations
+    rows     that the data is filled up to, so that several parts of runs share one compilation
+    """
+
+    def __init__(
+        self,
+        loss: ResidualLoss,
+        model: Model,
+        learn: Samples,
+        choose: Sequence[Trial],
+        ranges: Ranges,
+        *,
+        sigma: FloatArray,
+        penalty: float,
+        restart: float | None,
+        rows: int = 0,
+    ):
+        self.loss = loss
+        self.starts = balanced(learn, loss.horizon)
+        typical = typical_errors(model, learn.trials, restart, sigma)
+        by_trial = np.array([typical[trial.manoeuvre] for trial in learn.trials])
+        filled = rows - len(learn.states)
+
+        def table(values: FloatArray) -> Any:
+            more = ((0, max(0, filled)), *((0, 0),) * (values.ndim - 1))
+            return single(np.pad(values, more))
+
+        self.data = {
+            "states": table(learn.states),
+            "controls": table(learn.controls),
+            "around": table(learn.around),
+            "typical": table(np.repeat(by_trial, np.diff(learn.first))),
+            "sigma": single(sigma),
+            "penalty": single(penalty),
+            "fixed": {"theta": single(model.matrix()[:, 0]), "ranges": Ranges(*(single(one) for one in ranges))},
+        }
+        self._chooser = None
+        if choose:
+            self._chooser = Chooser(
+                loss.squares, choose, model.inputs, learn.step, sigma, restart=restart, draught=model.draught
+            )
+        self._alone: dict[str, float] = {}
+
+    @property
+    def runs(self) -> Runs:
+        """Those that choose."""
+        return self._chooser.runs if self._chooser else {}
 
     def alone(self, w: ResidualWeights) -> dict[str, float]:
         """L_MSE by run of the model of forces alone, on the windows that choose."""
         if not self._alone:
-            self._alone = self._chooser.by_run(w._replace(W_3=0.0 * w.W_3))
+            self._alone = self._by_run(w._replace(W_3=0.0 * w.W_3))
         return self._alone
 
     def judged(self, w: ResidualWeights) -> dict[str, float]:
-        """See ``Aim``: L_MSE by run, and the score of ``relative``."""
-        errors = self._chooser.by_run(w)
-        return {"score": relative(self.alone(w), errors, self.runs), **errors}
+        """See ``Aim``: L_MSE by run, and the score of ``relative``; the last weights are as good as any where no run
+        chooses."""
+        errors = self._by_run(w)
+        return {"score": relative(self.alone(w), errors, self.runs) if errors else 0.0, **errors}
+
+    def _by_run(self, w: ResidualWeights) -> dict[str, float]:
+        return self._chooser.by_run((w, self.data["fixed"])) if self._chooser else {}
+
+
+def single(values: Any) -> Any:
+    """An array of JAX in single precision."""
+    return jax_module().numpy.asarray(values, dtype=Single)
 
 
 def typical_errors(model: Model, trials: Sequence[Trial], restart: float | None, sigma: FloatArray) -> dict[str, float]:

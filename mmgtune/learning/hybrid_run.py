@@ -25,14 +25,14 @@ from ..trial import Trial
 from ..validation import TrialScore, score
 from .choosing import pieces_of
 from .gains import Gain, Trained, curve_of, gains_of
-from .hybrid import HybridAim, first_residual, ranges_of
+from .hybrid import HybridAim, ResidualLoss, first_residual, ranges_of
 from .keeping import Kept
 from .provenance import provenance_of, travelling
 from .refitting import refitted, tuned_names
 from .run import Hooks
 from .samples import Samples, samples_of
 from .splitting import Split, fold_runs, split_runs
-from .training import Plan, Progressed, Trainer, needed
+from .training import Plan, Progressed, Trainer, Update, needed
 
 LAG, STEP = 0.5, 0.03
 """Memory, and step of training, as shares of the time the ship takes for her length at her root mean square speed."""
@@ -118,19 +118,20 @@ def learn_hybrid(
     }
     total = (len(splits) * len(options.penalty) + 1) * options.steps
     deviations = np.array([sigma[name] for name in STATES])
-    work = _Work(profile, options, step, lag, deviations, hooks, Kept(folder, identity, resume), total)
-    ranges = work.ranges(tune)
+    work = _Work(profile, tune, splits, options, step, lag, deviations, hooks, Kept(folder, identity, resume), total)
+    ranges = work.ranges
     trained: dict[float, list[Trained]] = {}
     for penalty in options.penalty:
-        trained[penalty] = [work.train(penalty, split, ranges) for split in splits]
+        trained[penalty] = [work.train(penalty, split) for split in splits]
     tried = {penalty: curve_of(of) for penalty, of in trained.items()}
     steps = [(penalty, row) for penalty, rows in tried.items() for row in rows]
     penalty, best = min(steps, key=lambda one: one[1]["score"], default=(0.0, None))
     gains: list[Gain] = []
+    events: list[dict[str, Any]] = []
     step_kept = 0
     if best is not None and best["score"] < 1.0 - LEAST:
         step_kept = int(best["step"])
-        weights = work.train_on_all(penalty, tune, ranges, step_kept)
+        weights, events = work.train_on_all(penalty, step_kept)
         if not work.stopped:
             gains = gains_of(trained[penalty], step_kept, options.seed)
     if not gains:
@@ -152,7 +153,7 @@ def learn_hybrid(
         sigma,
         options,
         made,
-        tuple(event for of in trained.values() for one in of for event in one.events),
+        (*(event for of in trained.values() for one in of for event in one.events), *events),
         work.stopped,
         time.perf_counter() - began,
     )
@@ -179,6 +180,8 @@ class _Work:
     """What all trainings of a run share."""
 
     profile: ShipProfile
+    tune: Sequence[Trial]
+    splits: Sequence[Split]
     options: HybridOptions
     step: float
     lag: float
@@ -210,45 +213,67 @@ class _Work:
         """Trials on the step of training."""
         return samples_of(trials, self.model.inputs, self.step, self.model.draught)
 
-    def ranges(self, trials: Sequence[Trial]) -> Ranges:
-        """What the data says of features, the same for all parts."""
-        return ranges_of(self.samples(trials), self.lag, [one.role for one in self.model.arrangement.inputs])
+    @cached_property
+    def all_samples(self) -> Samples:
+        """All runs that tune."""
+        return self.samples(self.tune)
 
-    def train(self, penalty: float, split: Split, ranges: Ranges) -> Trained:
+    @cached_property
+    def ranges(self) -> Ranges:
+        """What the data says of features, the same for all parts."""
+        return ranges_of(self.all_samples, self.lag, [one.role for one in self.model.arrangement.inputs])
+
+    @cached_property
+    def loss(self) -> ResidualLoss:
+        """What is made small: compiled once for all trainings.
+
+        Windows are as long as is asked for, or as every part of the runs has one without an end.
+        """
+        longest = min(max(trial.duration for trial in split.learn) for split in self.splits)
+        horizon = max(2, round(min(longest, self.options.restart or longest) / self.step - 0.5))
+        return ResidualLoss(self.model, memory=self.lag, step=self.step, horizon=horizon)
+
+    @cached_property
+    def plan(self) -> Plan:
+        """How long, how fast."""
+        one = self.options
+        return Plan(one.steps, one.batch, one.rate, one.validate_every, DECAY)
+
+    @cached_property
+    def update(self) -> Update:
+        """One step of all trainings."""
+        return Update(self.loss, self.plan)
+
+    def train(self, penalty: float, split: Split) -> Trained:
         """Train on the one part of the runs, judge by the other."""
         model = self.unseen(split.learn)
         self.stopped = self.stopped or self.hooks.stop()  # then the model was not tuned to its end
-        aim = self.aim(model, penalty, split.learn, split.choose, ranges)
+        aim = self.aim(model, penalty, split.learn, split.choose)
         now = self._run(aim, f"penalty {penalty:g}", None)
         return Trained(aim.alone(now.mean) if now.curve else {}, aim.runs, now.curve, now.events)
 
-    def train_on_all(self, penalty: float, trials: Sequence[Trial], ranges: Ranges, until: int) -> ResidualWeights:
-        """Train on all runs, for as long as did best on unseen ones."""
-        now = self._run(self.aim(self.model, penalty, trials, trials, ranges), "all runs", until)
-        return ResidualWeights(*(np.asarray(one, dtype=np.float64) for one in now.mean))
+    def train_on_all(self, penalty: float, until: int) -> tuple[ResidualWeights, list[dict[str, Any]]]:
+        """Train on all runs, for as long as did best on unseen ones; and what went wrong."""
+        now = self._run(self.aim(self.model, penalty, self.tune, ()), "all runs", until)
+        return ResidualWeights(*(np.asarray(one, dtype=np.float64) for one in now.mean)), now.events
 
-    def aim(
-        self, model: Model, penalty: float, learn: Sequence[Trial], choose: Sequence[Trial], ranges: Ranges
-    ) -> HybridAim:
+    def aim(self, model: Model, penalty: float, learn: Sequence[Trial], choose: Sequence[Trial]) -> HybridAim:
         """What is trained for."""
-        samples = self.samples(learn)
-        longest = max(int(n) for n in np.diff(samples.first)) - 1
-        horizon = min(longest, max(2, round(self.options.restart / self.step))) if self.options.restart else longest
         aim = HybridAim(
+            self.loss,
             model,
-            samples,
+            self.samples(learn) if len(learn) < len(self.tune) else self.all_samples,
             choose,
-            ranges,
-            memory=self.lag,
+            self.ranges,
             sigma=self.sigma,
-            horizon=horizon,
             penalty=penalty,
             restart=self.options.restart,
+            rows=len(self.all_samples.states),
         )
         if not len(aim.starts):
             raise OptionError(
                 Problem(
-                    f"no trial has {horizon * self.step:g} s without a gap",
+                    f"no trial has {self.loss.horizon * self.step:g} s without a gap",
                     "restart",
                     "windows without gaps are what is learned from",
                     "write a smaller restart, or give longer trials",
@@ -258,16 +283,16 @@ class _Work:
 
     def _run(self, aim: HybridAim, words: str, until: int | None) -> Progressed:
         options = self.options
-        trainer = Trainer(aim, Plan(options.steps, options.batch, options.rate, options.validate_every, DECAY))
-        begin = first_residual(len(np.asarray(aim.ranges.deviation)), options.width, options.seed)
+        trainer = Trainer(aim, self.plan, self.update)
+        begin = first_residual(len(self.ranges.deviation), options.width, options.seed)
         before, number = self.done, self.done // options.steps
         now = self.kept.begun(number, trainer.begin(begin))
 
         def told(one: Progressed) -> None:
             self.kept.keep(number, one)
             row = one.curve[-1]
-            said = f"{words}, loss {row['loss']:.4g}, validation {100 * row['score']:.1f} % of the model's error"
-            self.hooks.on_progress(before + one.step, self.total, said)
+            said = f", validation {100 * row['score']:.1f} % of the model's error" if aim.runs else ""
+            self.hooks.on_progress(before + one.step, self.total, f"{words}, loss {row['loss']:.4g}{said}")
 
         if not self.stopped and now.step < (until or options.steps):
             now = trainer.run(now, options.seed, until=until, on_validation=told, stop=self.hooks.stop)

@@ -72,6 +72,11 @@ class HybridLanes(LaneModel):
         super().__init__(model, theta, on)
         self.weights, self.ranges, self.memory = weights, ranges, memory
 
+    @property
+    def looks_around(self) -> bool:
+        """See ``LaneModel.looks_around``: the network sees the wind."""
+        return True
+
     def begin(self, state: State, logged: Any, around: Surroundings) -> Moment:
         """See ``LaneModel.begin``; the ship has moved so for long."""
         now = super().begin(state, logged, around)

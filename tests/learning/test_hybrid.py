@@ -13,7 +13,7 @@ pytest.importorskip("jax", reason="networks are trained with the extra mmgtune[l
 from mmgtune.cli.learn import hybrid_summary
 from mmgtune.learning import Hooks, learn_hybrid, write_learned
 from mmgtune.learning.gains import ratios, relative
-from mmgtune.learning.hybrid import HybridAim, balanced, first_residual, ranges_of
+from mmgtune.learning.hybrid import HybridAim, ResidualLoss, balanced, first_residual, ranges_of
 from mmgtune.learning.refitting import refitted, tuned_names
 from mmgtune.learning.samples import samples_of
 from mmgtune.model import Model
@@ -38,9 +38,8 @@ def an_aim(horizon=20, penalty=0.0):
     model = Model(load_profile("suzaku"))
     samples = samples_of(trials, model.inputs, 2.0, model.draught)
     ranges = ranges_of(samples, 10.0, [one.role for one in model.arrangement.inputs])
-    aim = HybridAim(
-        model, samples, trials, ranges, memory=10.0, sigma=np.ones(6), horizon=horizon, penalty=penalty, restart=80.0
-    )
+    loss = ResidualLoss(model, memory=10.0, step=2.0, horizon=horizon)
+    aim = HybridAim(loss, model, samples, trials, ranges, sigma=np.ones(6), penalty=penalty, restart=80.0)
     return aim, first_residual(len(ranges.deviation), 6, 1)
 
 
@@ -77,15 +76,15 @@ def test_training_on_jax_and_the_predictor_are_one_model(trained):
 
     data = load_trials("suzaku")
     trial = next(iter(data.in_windows(80.0).trials.values()))
-    aim, _ = an_aim()
-    aim.ranges = type(aim.ranges)(*(jnp.asarray(one, dtype=np.float32) for one in trained.hybrid.ranges))
-    aim.memory, aim.step = trained.hybrid.memory, float(trial.t[1] - trial.t[0])
-    model = Model(trained.hybrid.profile)
-    cut = samples_of([trial], model.inputs, aim.step, model.draught)
+    model, step = Model(trained.hybrid.profile), float(trial.t[1] - trial.t[0])
+    loss = ResidualLoss(model, memory=trained.hybrid.memory, step=step, horizon=2)
+    ranges = type(trained.hybrid.ranges)(*(jnp.asarray(one, dtype=np.float32) for one in trained.hybrid.ranges))
+    fixed = {"theta": jnp.asarray(model.matrix()[:, 0], dtype=np.float32), "ranges": ranges}
+    cut = samples_of([trial], model.inputs, step, model.draught)
     initial = trial.motion[:1].astype(np.float32)
     w = type(trained.hybrid.weights)(*(jnp.asarray(one, dtype=np.float32) for one in trained.hybrid.weights))
     given = (jnp.asarray(one[:, None], dtype=np.float32) for one in (cut.controls, cut.around))
-    on_jax = np.asarray(aim.roll(w, initial, *given)[0])[:, 0]
+    on_jax = np.asarray(loss.roll(w, fixed, initial, *given)[0])[:, 0]
     predictor = HybridPredictor(trained.hybrid, Integrator("euler"))
     states = predictor.predict(cases_from([trial], model.inputs, model.draught)).states[0, 0]
     np.testing.assert_allclose(on_jax[:, 2:], states[:, 2:], atol=2e-4)
@@ -101,8 +100,7 @@ def test_gradients_are_those_of_finite_differences():
     starts = aim.starts[:6]
     with jax.enable_x64(True):
         wide = type(w)(*(np.float64(one) for one in w))
-        for name in ("ranges", "theta", "sigma", "data"):
-            setattr(aim, name, jax.tree.map(lambda one: jax.numpy.asarray(np.float64(one)), getattr(aim, name)))
+        aim.data = jax.tree.map(lambda one: jax.numpy.asarray(np.float64(one)), aim.data)
         loss = jax.jit(lambda w: aim.loss(w, starts, aim.data))
         gradient = jax.jit(jax.grad(loss))(wide)
         rng = np.random.default_rng(2)
@@ -123,7 +121,7 @@ def test_gradients_are_finite_at_rest_and_astern():
     around = np.zeros((9, 2, aim.data["around"].shape[1]), dtype=np.float32)
 
     def far(w):
-        return (aim.roll(w, still[0], controls, around)[0] ** 2).sum()
+        return (aim.loss.roll(w, aim.data["fixed"], still[0], controls, around)[0] ** 2).sum()
 
     gradient = jax.jit(jax.grad(far))(w)
     assert all(np.isfinite(one).all() for one in gradient)
