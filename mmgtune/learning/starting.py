@@ -6,6 +6,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..networks.model import shapes
+from ..networks.motion import observed
 from ..networks.recurrent import Scales, Weights
 from .samples import Samples
 
@@ -58,10 +59,7 @@ def acceleration_deviations(samples: Samples) -> FloatArray:
 
 def features_of(samples: Samples) -> FloatArray:
     """(n_rows, n_features) as the network sees them, undivided."""
-    from ..networks.recurrent import features
-
-    plain = Scales(features=np.ones(1), accelerations=np.ones(1))
-    return np.asarray(features(samples.states, samples.controls, samples.wind, plain))
+    return np.asarray(observed(samples.states, samples.controls, samples.wind))
 
 
 def accelerations_of(samples: Samples) -> FloatArray:
