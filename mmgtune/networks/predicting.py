@@ -21,7 +21,7 @@ WIND = tuple(Surroundings._fields.index(name) for name in ("wind_north", "wind_e
 
 @dataclass(frozen=True, eq=False)
 class NetworkPredictor:
-    """All members of a network; see ``Predictor`` and ``Steerable``.
+    """All members of a network; see ``Predictor``, ``Steerable`` and ``Paired``.
 
     It marches in its own step by Euler's method, as it was trained.  Inputs and wind are interpolated linearly to its
     steps, and the states back to the samples of a case.  The memory begins at zero with each case.  Where no wind was
@@ -63,19 +63,42 @@ class NetworkPredictor:
     @blas_on_one_thread
     def predict(self, cases: Cases) -> Prediction:
         """See ``Predictor``."""
-        h = self.network.step
-        span = cases.t - cases.t[:, :1]
+        initial = np.broadcast_to(cases.initial, (self.n_members, *cases.initial.shape))
+        return self._at_samples(self._march(self.network, initial, *self._driven(cases)), cases)
+
+    @blas_on_one_thread
+    def paired(self, cases: Cases, members: IntArray) -> FloatArray:
+        """See ``Paired``."""
+        controls, wind = self._driven(cases)
+        fine = self._march(self.network.only(members), cases.initial[:, None], controls[:, None], wind[:, None])
+        found = self._at_samples(fine[None, :, 0], cases)
+        return np.asarray(np.where(found.diverged[:, :, None], np.nan, found.states[:, 0]))
+
+    def _driven(self, cases: Cases) -> tuple[FloatArray, FloatArray]:
+        """Inputs (n_cases, n_steps, n_inputs) and wind (n_cases, n_steps, 2) at its own steps."""
+        h, span = self.network.step, cases.t - cases.t[:, :1]
         n_steps = max(1, math.ceil(float(span.max(initial=0.0)) / h - 1e-9))
-        controls = _on_grid(span, cases.controls, cases.n_samples, h, n_steps)
-        wind = _on_grid(span, cases.around[:, :, WIND], cases.n_samples, h, n_steps)
-        run = NetworkRun(self.network, np.broadcast_to(cases.initial, (self.n_members, *cases.initial.shape)))
-        fine = np.empty((self.n_members, len(cases), n_steps + 1, 6))
+        return (
+            _on_grid(span, cases.controls, cases.n_samples, h, n_steps),
+            _on_grid(span, cases.around[:, :, WIND], cases.n_samples, h, n_steps),
+        )
+
+    def _march(self, network: Network, initial: FloatArray, controls: FloatArray, wind: FloatArray) -> FloatArray:
+        """States (n_members, n_lanes, n_steps + 1, 6) from initial ones (n_members, n_lanes, 6)."""
+        n_steps = controls.shape[-2]
+        run = NetworkRun(network, initial)
+        fine = np.empty((*initial.shape[:2], n_steps + 1, 6))
         fine[:, :, 0] = run.states
         with np.errstate(all="ignore"):
             for k in range(n_steps):
-                run.step(controls[:, k], wind[:, k], h)
+                run.step(controls[..., k, :], wind[..., k, :], self.network.step)
                 fine[:, :, k + 1] = run.states
-        place = span / h
+        return fine
+
+    def _at_samples(self, fine: FloatArray, cases: Cases) -> Prediction:
+        """What (n_members, n_cases, n_steps + 1, 6) is at the samples of the cases."""
+        n_steps = fine.shape[2] - 1
+        place = (cases.t - cases.t[:, :1]) / self.network.step
         before = np.minimum(place.astype(np.int64), n_steps - 1)
         share = (place - before)[None, :, :, None]
         rows = np.arange(len(cases))[:, None]

@@ -214,4 +214,4 @@ def test_gaps_diverged_particles_and_single_ones():
     single = pooled([window(states[:1], truth)], ONE)
     assert (single.covers(0.9), single.sharpness, single.L_Maha) == (None, None, None)
     off = np.nanmean(np.abs(states[0] - truth)[:, [0, 1, 2, 3, 5]], axis=0)
-    assert single.CRPS == pytest.approx(off.mean())
+    assert single.to_dict()["CRPS"] == pytest.approx(off.mean())
