@@ -201,7 +201,7 @@ class EnsembleRun:
 
 @dataclass(frozen=True, eq=False)
 class EnsemblePredictor:
-    """All members of an ensemble; see ``Predictor``, ``Steerable`` and ``Uncertain``.
+    """All members of an ensemble; see ``Predictor``, ``Steerable``, ``Paired`` and ``Uncertain``.
 
     Every member starts from the given state: what comes before it is not in a case, and what comes after it, from which
     the initial-state networks learned to estimate it, is what is to be predicted.
@@ -248,7 +248,7 @@ class EnsemblePredictor:
 
     @blas_on_one_thread
     def paired(self, cases: Cases, members: IntArray) -> FloatArray:
-        """States (n_cases, T, 6) of case k by member ``members[k]``; not finite once a run diverges."""
+        """See ``Paired``."""
         return paired(EnsembleRun(self.ensemble, cases.initial[:, None], repeat(members)), cases, self.ensemble.step)
 
     def stepper(self, member: int, state: FloatArray, controls: FloatArray) -> RunStepper:
@@ -268,7 +268,7 @@ class EnsemblePredictor:
 
 @dataclass(frozen=True, eq=False)
 class ParticlePredictor:
-    """Particles of an ensemble; see ``Predictor`` and ``Steerable``.
+    """Particles of an ensemble; see ``Predictor``, ``Steerable`` and ``Paired``.
 
     TS-infinity gives each particle one member for its whole path, TS1 another at each step (eq. 28; Chua et al. 2018).
     Members are dealt out evenly: with as many particles as members each has one.  In TS1 a particle changes members at
@@ -318,6 +318,12 @@ class ParticlePredictor:
             return Prediction(found.states[:, which], found.diverged[:, which])
         begin = np.broadcast_to(cases.initial, (self.n_members, *cases.initial.shape))
         return marched(EnsembleRun(self.ensemble, begin, self.members()), cases, self.ensemble.step)
+
+    @blas_on_one_thread
+    def paired(self, cases: Cases, members: IntArray) -> FloatArray:
+        """See ``Paired``."""
+        of = (which[members] for which in self.members())
+        return paired(EnsembleRun(self.ensemble, cases.initial[:, None], of), cases, self.ensemble.step)
 
     def stepper(self, member: int, state: FloatArray, controls: FloatArray) -> RunStepper:
         """See ``Steerable``."""

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..backends import Cases
 from ..predictor import Prediction
 from ..threads import blas_on_one_thread
-from .marching import RunStepper, marched
+from .marching import RunStepper, marched, paired
 from .model import Network
 from .motion import Array, moved
 from .recurrent import accelerations, features, projected, remembered, truncated
@@ -18,7 +18,7 @@ from .recurrent import accelerations, features, projected, remembered, truncated
 
 @dataclass(frozen=True, eq=False)
 class NetworkPredictor:
-    """All members of a network; see ``Predictor`` and ``Steerable``.
+    """All members of a network; see ``Predictor``, ``Steerable`` and ``Paired``.
 
     It marches in its own step by Euler's method, as it was trained.  The memory begins at zero with each case.
     """
@@ -60,6 +60,12 @@ class NetworkPredictor:
         """See ``Predictor``."""
         begin = np.broadcast_to(cases.initial, (self.n_members, *cases.initial.shape))
         return marched(NetworkRun(self.network, begin), cases, self.network.step)
+
+    @blas_on_one_thread
+    def paired(self, cases: Cases, members: IntArray) -> FloatArray:
+        """See ``Paired``."""
+        run = NetworkRun(self.network.only(members), cases.initial[:, None])
+        return paired(run, cases, self.network.step)
 
     def stepper(self, member: int, state: FloatArray, controls: FloatArray) -> RunStepper:
         """See ``Steerable``."""
