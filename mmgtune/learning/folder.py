@@ -18,13 +18,13 @@ from ..trial import Trial
 from ..validation import score, summary
 from .choosing import pieces_of
 from .hybrid_run import LearnedHybrid
+from .keeping import CHECKPOINTS
 from .reading import read_network
 from .run import Learned
 
 RESULT = "learning.json"
 HYBRID_RESULT = "hybrid.json"
 MODEL = "model.safetensors"
-CHECKPOINTS = "training-*.safetensors"
 
 POINTS = 200
 """Points of a drawn track, about."""

@@ -46,15 +46,20 @@ def scales_of(samples: Samples) -> Scales:
 
 
 def acceleration_deviations(samples: Samples) -> FloatArray:
-    """(3,) root mean squares of accelerations [m/s^2, m/s^2, rad/s^2]; 1 where there are none.
+    """(3,) root mean squares of accelerations [m/s^2, m/s^2, rad/s^2]; 1 where there are none."""
+    rates = differences(samples)
+    moving = np.sqrt(np.mean(rates**2, axis=0)) if len(rates) else np.ones(3)
+    return np.asarray(np.where(moving > 0.0, moving, 1.0))
+
+
+def differences(samples: Samples) -> FloatArray:
+    """(n, 3) accelerations [m/s^2, m/s^2, rad/s^2] wherever they are known.
 
     They are differences over a second or a step, whichever is longer: those of single samples are noise.
     """
     stride = max(1, round(1.0 / samples.step))
     starts = samples.starts(stride)
-    rates = (samples.states[starts + stride, 3:] - samples.states[starts, 3:]) / (stride * samples.step)
-    moving = np.sqrt(np.mean(rates**2, axis=0)) if len(starts) else np.ones(3)
-    return np.asarray(np.where(moving > 0.0, moving, 1.0))
+    return np.asarray((samples.states[starts + stride, 3:] - samples.states[starts, 3:]) / (stride * samples.step))
 
 
 def features_of(samples: Samples) -> FloatArray:

@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
+from ..arrays import FloatArray
 from ..errors import OptionError, Problem
 from ..objective import spread
-from ..options.learning import LearnOptions, TrainingOptions
+from ..options.learning import MOST_MEMBERS, EnsembleOptions, LearnOptions, TrainingOptions
 from ..profile import ShipProfile
 from ..trial import Trial, TrialSet
 from .recipes import RECIPES, Recipe
@@ -27,6 +30,7 @@ class Material:
 
     profile: ShipProfile
     data: TrialSet
+    options: TrainingOptions
     inputs: tuple[str, ...]
     split: Split
     samples: Samples
@@ -35,10 +39,9 @@ class Material:
 
 
 @dataclass(frozen=True, eq=False)
-class Task:
+class Task(Material):
     """A training of recurrent networks that can begin."""
 
-    of: Material
     options: LearnOptions
     recipe: Recipe
 
@@ -57,7 +60,7 @@ def make_task(profile: ShipProfile, data: TrialSet, options: LearnOptions) -> Ta
     """The training of a type on the trials that tune.  Raises what ``material_of`` does."""
     recipe = RECIPES[options.type]
     trials = recipe.trials([data.trials[id] for id in data.tune], str(data.path or "trials"))
-    return Task(material_of(profile, data, trials, options, options.horizon), options, recipe)
+    return Task(**vars(material_of(profile, data, trials, options, options.horizon)), recipe=recipe)
 
 
 def material_of(
@@ -85,4 +88,28 @@ def material_of(
             )
         )
     sigma = spread([*split.learn, *split.choose])
-    return Material(profile, data, inputs, split, samples, sigma, tuple(data.trials[id] for id in data.test))
+    test = tuple(data.trials[id] for id in data.test)
+    return Material(profile, data, options, inputs, split, samples, sigma, test)
+
+
+@dataclass(frozen=True, eq=False)
+class EnsembleTask(Material):
+    """A training of an ensemble that can begin."""
+
+    options: EnsembleOptions
+
+    @property
+    def noise(self) -> FloatArray:
+        """(3,) deviations of the measured u, v_m [m/s], r [rad/s]: the roots of Sigma of eq. 18."""
+        options = self.options
+        return np.array([options.sigma_u, options.sigma_v, np.radians(options.sigma_r)])
+
+    def seed(self, k: int) -> int:
+        """Seed of member k; no two ensembles of other seeds share one."""
+        return MOST_MEMBERS * self.options.seed + k
+
+
+def ensemble_task(profile: ShipProfile, data: TrialSet, options: EnsembleOptions) -> EnsembleTask:
+    """The training of an ensemble on the trials that tune.  Raises what ``material_of`` does."""
+    trials = [data.trials[id] for id in data.tune]
+    return EnsembleTask(**vars(material_of(profile, data, trials, options, options.horizon)))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from copy import copy
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -88,9 +89,12 @@ class Progressed:
 
 
 class Trainer:
-    """One compiled step, for any number of seeds."""
+    """One compiled step, for any number of seeds.
 
-    def __init__(self, aim: Aim, plan: Plan):
+    alone  whether a step keeps to one core, for trainings side by side in threads
+    """
+
+    def __init__(self, aim: Aim, plan: Plan, *, alone: bool = False):
         jax, optax = jax_module(), optax_module()
         self.aim, self.plan = aim, plan
         warm = max(1, round(WARM_UP * plan.steps))
@@ -109,7 +113,13 @@ class Trainer:
             found = jax.tree.map(lambda a, b: jax.numpy.where(sound, a, b), (new, moved, kept), old)
             return *found, loss, norm, sound
 
-        self.update = jax.jit(update)
+        self.update = jax.jit(update, compiler_options={"xla_cpu_multi_thread_eigen": False} if alone else None)
+
+    def on(self, aim: Aim) -> Trainer:
+        """The same compiled step for an aim that differs from the first in its data alone."""
+        other = copy(self)
+        other.aim = aim
+        return other
 
     def begin(self, parameters: Any) -> Progressed:
         """A training before its first step."""
