@@ -58,9 +58,7 @@ class EnsembleMember:
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON; the weights are in the model's file."""
-        rows = [
-            {key: float(value) if np.isfinite(value) else None for key, value in row.items()} for row in self.curve
-        ]
+        rows = [{key: float(value) if np.isfinite(value) else None for key, value in row.items()} for row in self.curve]
         return {
             "seed": self.seed,
             "loss": rows[-1]["loss"],
