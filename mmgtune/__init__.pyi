@@ -30,7 +30,9 @@ from .fitting import write_run as write_run
 from .importing import import_logs as import_logs
 from .importing import load_map as load_map
 from .learning import Learned as Learned
+from .learning import LearnedEnsemble as LearnedEnsemble
 from .learning import LearnedHybrid as LearnedHybrid
+from .learning import learn_ensemble as learn_ensemble
 from .learning import learn_hybrid as learn_hybrid
 from .learning import learn_rnn as learn_rnn
 from .learning import write_learned as write_learned
@@ -42,6 +44,7 @@ from .networks import load_network as load_network
 from .networks import save_network as save_network
 from .options import CompareModelsOptions as CompareModelsOptions
 from .options import DiagnoseOptions as DiagnoseOptions
+from .options import EnsembleOptions as EnsembleOptions
 from .options import EstimateOptions as EstimateOptions
 from .options import FitOptions as FitOptions
 from .options import HybridOptions as HybridOptions

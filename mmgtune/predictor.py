@@ -12,7 +12,7 @@ from typing import Literal, Protocol, runtime_checkable
 
 import numpy as np
 
-from .arrays import BoolArray, FloatArray
+from .arrays import BoolArray, FloatArray, IntArray
 from .backends import Cases, Integrator, get_backend, pad
 from .errors import OptionError, Problem
 from .model import Model
@@ -83,6 +83,15 @@ class Steerable(Predictor, Protocol):
         ...
 
 
+@runtime_checkable
+class Paired(Predictor, Protocol):
+    """A predictor that can run one member on each case, as a helmsman to each member asks for."""
+
+    def paired(self, cases: Cases, members: IntArray) -> FloatArray:
+        """States (n_cases, T, 6) of case k by member ``members[k]``; not finite once a run diverges."""
+        ...
+
+
 Sampling = Literal["TS-infinity", "TS1"]
 """How particles keep to members of an ensemble: one for the whole path, or another at each step (Chua et al. 2018)."""
 
@@ -97,6 +106,20 @@ class Uncertain(Predictor, Protocol):
         Raises OptionError for a way of sampling that makes no sense for it.
         """
         ...
+
+
+def particles_of(predictor: Predictor, n: int, seed: int, sampling: Sampling = "TS-infinity") -> Predictor:
+    """n particles of a predictor that is ``Uncertain``; any other as it is, whose members are its particles.
+
+    Raises OptionError for a way of sampling that makes no sense for it.
+    """
+    if isinstance(predictor, Uncertain):
+        return predictor.drawn(n, seed, sampling)
+    if sampling != "TS-infinity":
+        what = f"'{predictor.name}' cannot be sampled by {sampling}"
+        why = "only an ensemble that draws particles can have another member at each step"
+        raise OptionError(Problem(what, "sampling", why, 'leave it at "TS-infinity"'))
+    return predictor
 
 
 @dataclass(eq=False)

@@ -9,8 +9,9 @@ which the ship passes her check heading, not at the end of the step.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from .inputs import INPUTS, Role
 from .manoeuvres import Track
 from .model import Model
 from .physics.quantities import Surroundings
+from .profile import Actuator
 
 STEP = 0.05
 """Step of the integration, fourth-order Runge-Kutta, and of the record: a share of the time a ship length takes."""
@@ -86,15 +88,59 @@ class Steered:
         return self.controls[part, of, lane].mean(axis=1) if of else np.zeros(part.stop)
 
 
+class Lanes(Protocol):
+    """What is steered: as many ships as there are orders, each a lane.
+
+    inputs     what drives them, by names of ``inputs.INPUTS``
+    actuators  what moves each input; None where orders act at once
+    """
+
+    @property
+    def L_pp(self) -> float: ...
+
+    @property
+    def inputs(self) -> Sequence[str]: ...
+
+    @property
+    def actuators(self) -> Sequence[Actuator | None]: ...
+
+    def march(self, lanes: IntArray, cases: Cases) -> FloatArray:
+        """States (n_cases, T, 6) of some lanes, a case to each; not finite once one leaves the world of ships."""
+        ...
+
+
+class ModelLanes:
+    """Lanes of a model, each with coefficients of its own, on a back end.
+
+    theta  (n_rows, n_lanes)
+    """
+
+    def __init__(self, model: Model, theta: FloatArray, backend: Backend):
+        self.model, self.theta, self.backend = model, _on_time(model, theta), backend
+        self.L_pp, self.inputs = model.L_pp, model.inputs
+        self.actuators = [model.profile.actuator(name) for name in model.inputs]
+
+    def march(self, lanes: IntArray, cases: Cases) -> FloatArray:
+        """See ``Lanes``."""
+        theta = self.theta[:, lanes]
+        found = self.backend.run(self.model, theta, cases, integrator=RK4, keep_states=True, paired=True).states
+        assert found is not None  # asked for
+        return found[:, 0]
+
+
 def steer(model: Model, theta: FloatArray, orders: Orders, backend: Backend) -> Steered:
+    """``steer_lanes`` with those of a model; theta (n_rows, n_lanes) coefficients."""
+    return steer_lanes(ModelLanes(model, theta, backend), orders)
+
+
+def steer_lanes(ships: Lanes, orders: Orders) -> Steered:
     """Every lane from straight ahead to the end of its manoeuvre, or to ``PATIENCE``; samples are a step apart.
 
-    theta  (n_rows, n_lanes) coefficients.  A lane that leaves the world of ships ends there and touches no other.
+    A lane that leaves the world of ships ends there and touches no other.
     """
-    theta = _on_time(model, theta)
-    n_lanes = theta.shape[1]
-    h = STEP * model.L_pp / orders.speed
-    helm = _Helm(model, orders, h)
+    n_lanes = len(orders.speed)
+    h = STEP * ships.L_pp / orders.speed
+    helm = _Helm(ships, orders, h)
     states = np.empty((n_lanes, PATIENCE + 1, N_STATES))
     length = np.minimum(APPROACH + AHEAD, helm.longest)  # steps
     end = np.zeros(n_lanes, dtype=np.int64)
@@ -102,7 +148,7 @@ def steer(model: Model, theta: FloatArray, orders: Orders, backend: Backend) -> 
     while len(lanes):
         steps = length[lanes]
         controls = helm.drive(lanes, int(steps.max()))
-        shown = _run(model, theta[:, lanes], h[lanes], steps, controls, orders.speed[lanes], backend)
+        shown = ships.march(lanes, _cases(h[lanes], steps, controls, orders.speed[lanes]))
         states[lanes, : shown.shape[1]] = shown
         passed, end[lanes] = helm.look(lanes, shown, steps)
         turned = np.isfinite(passed)
@@ -116,7 +162,7 @@ def steer(model: Model, theta: FloatArray, orders: Orders, backend: Backend) -> 
     whole = np.ascontiguousarray(states[every, at].transpose(0, 2, 1))
     driven = helm.controls[every, at].transpose(0, 2, 1)
     sound = np.asarray(np.isfinite(states[every, end]).all(axis=1))
-    return Steered(h, whole, driven, end, np.array(helm.times), sound, model.inputs)
+    return Steered(h, whole, driven, end, np.array(helm.times), sound, tuple(ships.inputs))
 
 
 class _Helm:
@@ -129,12 +175,12 @@ class _Helm:
     times     (n_lanes,) for each order, fractional samples, NaN where it was not given
     """
 
-    def __init__(self, model: Model, orders: Orders, h: FloatArray):
+    def __init__(self, ships: Lanes, orders: Orders, h: FloatArray):
         n_lanes, zero = len(h), np.zeros(len(h))
         self.orders = orders
         self.h = h
-        self.inputs = model.arrangement.inputs
-        self.actuators = [model.profile.actuator(one.name) for one in self.inputs]
+        self.inputs = [INPUTS[name] for name in ships.inputs]
+        self.actuators = ships.actuators
         self.side, self.given, self.since = zero, np.zeros(n_lanes, dtype=np.int64), zero.copy()
         self.held = np.array([orders.n if one.role == "propeller" else zero for one in self.inputs])
         self.controls = np.empty((n_lanes, PATIENCE + 1, len(self.inputs)))
@@ -207,21 +253,13 @@ class _Helm:
         return found
 
 
-def _run(
-    model: Model,
-    theta: FloatArray,
-    h: FloatArray,
-    length: IntArray,
-    controls: FloatArray,
-    speed: FloatArray,
-    backend: Backend,
-) -> FloatArray:
-    """States (n_lanes, n_samples, 6) of lanes with these inputs; arguments by lane, ``length`` in steps."""
+def _cases(h: FloatArray, length: IntArray, controls: FloatArray, speed: FloatArray) -> Cases:
+    """Lanes with these inputs (n_lanes, n_samples, n_inputs) as cases; arguments by lane, ``length`` in steps."""
     n_lanes, n_samples = controls.shape[:2]
     nothing = np.zeros((n_lanes, n_samples, N_STATES))
     initial = np.zeros((n_lanes, N_STATES))
     initial[:, 3] = speed
-    cases = Cases(
+    return Cases(
         t=h[:, None] * np.minimum(np.arange(n_samples), length[:, None]),
         n_samples=length + 1,
         controls=controls,
@@ -230,9 +268,6 @@ def _run(
         target=nothing,
         weight=nothing,
     )
-    states = backend.run(model, theta, cases, integrator=RK4, keep_states=True, paired=True).states
-    assert states is not None  # asked for
-    return states[:, 0]
 
 
 def _on_time(model: Model, theta: FloatArray) -> FloatArray:

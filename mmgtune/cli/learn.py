@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from ..options.learning import HybridOptions, LearnOptions, TrainingOptions
+from ..options.learning import EnsembleOptions, HybridOptions, LearnOptions, TrainingOptions
 from . import common as c
 from . import learn_compare
 from .options import RunOptions, takes
@@ -17,7 +17,7 @@ from .progress import Progress
 
 if TYPE_CHECKING:
     from ..fitting import Plan
-    from ..learning import Learned, LearnedHybrid
+    from ..learning import Learned, LearnedEnsemble, LearnedHybrid
     from ..validation import TrialScore
 
 app = typer.Typer(
@@ -84,6 +84,36 @@ def hybrid(
     from ..learning.planning import plan_hybrid
 
     _train(profile, trials, options, run, no_report, plan_hybrid, learn_hybrid, hybrid_summary)
+
+
+@app.command("ensemble")
+@takes(options=EnsembleOptions, run=RunOptions)
+def ensemble(
+    profile: c.Profile = "suzaku",
+    trials: c.Trials = "suzaku",
+    *,
+    options: EnsembleOptions,
+    run: RunOptions,
+    no_report: c.NoReport = False,
+) -> None:
+    """Train an ensemble of networks on the trials that tune: it knows where these say little, since its members differ.
+
+    The feed-forward networks of Wakita, Akimoto and Maki, by the likelihood of the measured velocities. Members differ
+    by their initial values and by the order of windows alone; each is trained to the end, and none is chosen. Of the
+    profile only the ship's name, her length and what drives her are used; trials that test play no part and are scored
+    at the end. What comes out is one file, model.safetensors in the run folder, that simulate and validate take in
+    place of a profile. Needs the extra called learn.
+
+    Examples:
+
+      mmgtune learn ensemble -p my_ship.toml -t my_trials --members 5 --out runs/ensemble
+
+      mmgtune validate runs/ensemble/model.safetensors my_trials --restart 100
+    """
+    from ..learning import learn_ensemble
+    from ..learning.planning import plan_ensemble
+
+    _train(profile, trials, options, run, no_report, plan_ensemble, learn_ensemble, ensemble_summary)
 
 
 def _train(
@@ -159,6 +189,30 @@ def summary(result: Learned, found: dict[str, Any], folder: str, report: bool) -
             lines += ["", f"L_MSE on the trials of {role}, mean and deviation over seeds", *_by_kind(scores)]
     events = [event for one in members for event in one["events"]]
     return "\n".join([*lines, *_ending(found, events, folder, report)])
+
+
+def ensemble_summary(result: LearnedEnsemble, found: dict[str, Any], folder: str, report: bool) -> str:
+    """The result as a person wants to read it in a terminal."""
+    members = found["members"]
+    lines = [f"ensemble of {len(members)} x {found['layers']} x {found['width']} units"]
+    lines.append(f"learned from {len(found['learned_from'])} trials")
+    watched = "of runs kept back" if found["watched_by"] else "on all windows of these"
+    lines += ["", "loss: squared errors of three velocities over their noise; 3 is as near as the noise lets it be"]
+    lines += [f"{'member':>8}{'updates':>9}{'loss':>10}   {watched}"]
+    lines += [
+        f"{k:>8}{row['steps']:>9}{_shown(row['loss']):>10}   {_shown(row['score'])}" for k, row in enumerate(members)
+    ]
+    for role, scores in result.scores.items():
+        lines += ["", f"L_MSE on the trials {_ROLES[role]}, mean and deviation over members", *_by_kind(scores)]
+    events = [event for one in members for event in one["events"]]
+    return "\n".join([*lines, *_ending(found, events, folder, report)])
+
+
+_ROLES = {"test": "held out", "validation": "kept back", "learned": "learned from"}
+
+
+def _shown(value: float | None) -> str:
+    return "diverged" if value is None else f"{value:.4g}"
 
 
 def _by_kind(scores: Sequence[TrialScore]) -> list[str]:

@@ -10,13 +10,27 @@ run                  all of it, as ``mmgtune learn rnn``
 hybrid, gains        a network beside a model of forces, and what it gains on unseen runs
 refitting            the model of forces tuned anew without the runs kept back
 hybrid_run           all of that, as ``mmgtune learn hybrid``
+ensemble             feed-forward networks by the likelihood of what was observed
+ensemble_run         several of them side by side, as ``mmgtune learn ensemble``
 following, known     runs where a hybrid takes them; what coefficients and effects would add along them
 selecting, reading   terms chosen by what they explain on unseen runs: what a network says, in known terms
 """
 
+from .ensemble_run import LearnedEnsemble, learn_ensemble
 from .folder import write_learned
 from .hybrid_run import LearnedHybrid, learn_hybrid
 from .reading import Reading, read_network
 from .run import Hooks, Learned, learn_rnn
 
-__all__ = ["Hooks", "Learned", "LearnedHybrid", "Reading", "learn_hybrid", "learn_rnn", "read_network", "write_learned"]
+__all__ = [
+    "Hooks",
+    "Learned",
+    "LearnedEnsemble",
+    "LearnedHybrid",
+    "Reading",
+    "learn_ensemble",
+    "learn_hybrid",
+    "learn_rnn",
+    "read_network",
+    "write_learned",
+]

@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import IntArray
 from ..backends import STATES
 from ..backends.twins import jax_module
-from ..networks.predicting import WIND
+from ..networks.marching import WIND
 from ..networks.recurrent import Scales, Weights
 from .choosing import Chooser, Single, from_origin, squares_of
 from .losses import acceleration_loss, trajectory_loss

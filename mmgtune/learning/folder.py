@@ -10,21 +10,23 @@ from typing import Any
 
 from ..arrays import FloatArray
 from ..files import write_text
-from ..networks import HybridPredictor, NetworkPredictor, save_network
+from ..networks import EnsemblePredictor, HybridPredictor, NetworkPredictor, save_network
 from ..objective import spread
 from ..predictor import Predictor, as_predictor
 from ..simulation import simulate
 from ..trial import Trial
 from ..validation import score, summary
 from .choosing import pieces_of
+from .ensemble_run import LearnedEnsemble
 from .hybrid_run import LearnedHybrid
+from .keeping import CHECKPOINTS
 from .reading import read_network
 from .run import Learned
 
 RESULT = "learning.json"
 HYBRID_RESULT = "hybrid.json"
+ENSEMBLE_RESULT = "ensemble.json"
 MODEL = "model.safetensors"
-CHECKPOINTS = "training-*.safetensors"
 
 POINTS = 200
 """Points of a drawn track, about."""
@@ -89,6 +91,36 @@ def hybrid_document(result: LearnedHybrid) -> dict[str, Any]:
     }
 
 
+def ensemble_document(result: LearnedEnsemble) -> dict[str, Any]:
+    """Everything but the weights of an ensemble, for JSON."""
+    task, part = result.task, result.ensemble.motion
+    shown = {"test": task.test, "validation": task.split.choose, "learned": task.split.learn}[result.role]
+    return {
+        "schema": 1,
+        "kind": "ensemble",
+        "ship": result.ensemble.ship,
+        "layers": part.n_layers,
+        "width": part.width,
+        "initial": result.ensemble.initial,
+        "noise": dict(zip(("u", "v_m", "r"), task.noise.tolist(), strict=True)),
+        "horizon_s": task.options.horizon * result.ensemble.step,
+        "step_s": result.ensemble.step,
+        "inputs": list(result.ensemble.inputs),
+        "window_s": task.options.restart,
+        "sigma": task.sigma,
+        "members": [one.to_dict() for one in result.members],
+        "learned_from": [trial.id for trial in task.split.learn],
+        "watched_by": [trial.id for trial in task.split.choose],
+        "held_out": [trial.id for trial in task.test],
+        "scores": {role: summary(scores) for role, scores in result.scores.items()},
+        "drawn": drawn([EnsemblePredictor(result.ensemble)], shown, task.options.restart, result.role),
+        "options": task.options.to_dict(),
+        "provenance": result.provenance,
+        "interrupted": result.interrupted,
+        "wall_s": result.wall_s,
+    }
+
+
 def _reading(result: LearnedHybrid) -> dict[str, Any] | None:
     """What the network says along the runs it was trained on, None where there is none."""
     if not result.gained:
@@ -138,11 +170,14 @@ def _track(states: FloatArray) -> dict[str, list[float | None]]:
     }
 
 
-def write_learned(result: Learned | LearnedHybrid, folder: Path) -> dict[str, Any]:
+def write_learned(result: Learned | LearnedHybrid | LearnedEnsemble, folder: Path) -> dict[str, Any]:
     """Write a run folder, the record last; checkpoints stay where the training was stopped.  Returns the record."""
     if isinstance(result, LearnedHybrid):
         save_network(result.hybrid, folder / MODEL, overwrite=True)
         document, name = hybrid_document(result), HYBRID_RESULT
+    elif isinstance(result, LearnedEnsemble):
+        save_network(result.ensemble, folder / MODEL, overwrite=True)
+        document, name = ensemble_document(result), ENSEMBLE_RESULT
     else:
         save_network(result.network, folder / MODEL, overwrite=True)
         document, name = document_of(result), RESULT

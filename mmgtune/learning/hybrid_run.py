@@ -32,7 +32,7 @@ from .refitting import refitted, tuned_names
 from .run import Hooks
 from .samples import Samples, samples_of
 from .splitting import Split, fold_runs, split_runs
-from .training import Plan, Progressed, Trainer, Update, needed
+from .training import Plan, Progressed, Trainer, needed
 
 LAG, STEP = 0.5, 0.03
 """Memory, and step of training, as shares of the time the ship takes for her length at her root mean square speed."""
@@ -192,6 +192,7 @@ class _Work:
     done: int = 0
     stopped: bool = False
     _without: dict[tuple[str, ...], Model] = field(default_factory=dict)
+    _trainer: Trainer | None = None
 
     @cached_property
     def model(self) -> Model:
@@ -239,11 +240,6 @@ class _Work:
         one = self.options
         return Plan(one.steps, one.batch, one.rate, one.validate_every, DECAY)
 
-    @cached_property
-    def update(self) -> Update:
-        """One step of all trainings."""
-        return Update(self.loss, self.plan)
-
     def train(self, penalty: float, split: Split) -> Trained:
         """Train on the one part of the runs, judge by the other."""
         model = self.unseen(split.learn)
@@ -283,7 +279,7 @@ class _Work:
 
     def _run(self, aim: HybridAim, words: str, until: int | None) -> Progressed:
         options = self.options
-        trainer = Trainer(aim, self.plan, self.update)
+        self._trainer = trainer = self._trainer.on(aim) if self._trainer else Trainer(aim, self.plan)
         begin = first_residual(len(self.ranges.deviation), options.width, options.seed)
         before, number = self.done, self.done // options.steps
         now = self.kept.begun(number, trainer.begin(begin))

@@ -16,6 +16,8 @@ from ..files import atomic
 from ..fitting.checkpoint import differing
 from .training import Progressed
 
+CHECKPOINTS = "training-*.safetensors"
+
 
 def named(number: int) -> str:
     """The file of a training in the folder of a run."""
@@ -29,19 +31,17 @@ class Kept:
     folder    None for nowhere
     identity  everything the weights depend on, but for the versions of what trains them
     resume    whether trainings go on where they were stopped
-    first     number of the first training
     """
 
     folder: Path | None
     identity: dict[str, Any]
     resume: bool
-    first: int = 0
 
     def __post_init__(self) -> None:
         """Raises OptionError where there is nothing to resume."""
         versions = {name: version(name) for name in ("jax", "jaxlib", "optax", "numpy")}
         object.__setattr__(self, "identity", {**self.identity, "versions": versions})
-        if self.resume and self.folder is not None and not (self.folder / named(self.first)).is_file():
+        if self.resume and self.folder is not None and not any(self.folder.glob(CHECKPOINTS)):
             why = "the folder holds no checkpoint: the run ended, or never came to its first validation"
             raise OptionError(Problem("nothing to resume", str(self.folder), why, "run without resume=True"))
 

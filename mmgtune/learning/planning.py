@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ..backends.compiled import cores
 from ..fitting import Plan
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
-from ..options.learning import HybridOptions, LearnOptions
+from ..options.learning import EnsembleOptions, HybridOptions, LearnOptions
 from ..trial import Trial
 from .hybrid_run import splits_of, times_of
 from .refitting import tuned_names
-from .task import make_task
+from .task import Material, ensemble_task, make_task
 
 RATE = 5e10, 2e11
 """Operations a second that training was measured at on two cores of different machines, busy and idle."""
+
+ALONE = 4e10, 1.2e11
+"""The same on one core."""
 
 LANE_STEP = 5e-7, 2e-6
 """Seconds for the gradient of one step of one window of a hybrid."""
@@ -27,20 +31,37 @@ WRITES = ("learning.json", "model.safetensors", "report.html", "training-SEED.sa
 def plan_rnn(ship: ShipGiven, trials: TrialsGiven, options: LearnOptions) -> Plan:
     """What ``learn_rnn`` would do.  Raises what it would refuse with."""
     task = make_task(ship_of(ship), trials_of(trials).series_only("a network"), options)
-    split, samples = task.split, task.samples
+    split = task.split
     layers = 2 + (task.memory or 1)
-    windows = len(samples.starts(options.horizon))
     operations = 6.0 * task.updates * options.batch * options.horizon * layers * options.width**2
     lines = (
         f"learn     type {options.type}: {task.recipe.words}",
-        f"ship      {task.profile.id}, driven by {', '.join(task.inputs)}",
-        f"learn     {_of(split.learn)}: {windows} windows of {options.horizon} samples of {samples.step:g} s",
+        *_material(task, options.horizon),
         f"choose    {_of(split.choose)}: {', '.join(one.id for one in split.choose)}",
         f"test      {len(task.test)} trials",
         f"train     {options.seeds} seeds of {options.steps} updates by {options.batch} windows",
     )
     low, high = (operations / rate for rate in (RATE[1], RATE[0]))
     return Plan(lines, (low, high), WRITES)
+
+
+def plan_ensemble(ship: ShipGiven, trials: TrialsGiven, options: EnsembleOptions) -> Plan:
+    """What ``learn_ensemble`` would do.  Raises what it would refuse with."""
+    task = ensemble_task(ship_of(ship), trials_of(trials).series_only("a network"), options)
+    watch = task.split.choose
+    inside = options.width * (len(task.inputs) + 8 + (options.layers - 1) * options.width)
+    operations = 6.0 * options.members * options.steps * options.batch * options.horizon * inside
+    start = f"{options.initial} observations" if options.initial else "as observed"
+    lines = (
+        f"learn     an ensemble of {options.members} networks of {options.layers} x {options.width} units",
+        *_material(task, options.horizon),
+        f"start     {start}",
+        f"watch     {_of(watch)}, {', '.join(one.id for one in watch)}" if watch else "watch     what it learns from",
+        f"test      {len(task.test)} trials",
+        f"train     {options.steps} updates by {options.batch} windows, {min(cores(), options.members)} side by side",
+    )
+    low, high = (operations / rate / min(cores(), options.members) for rate in (ALONE[1], ALONE[0]))
+    return Plan(lines, (low, high), ("ensemble.json", *WRITES[1:3], "training-MEMBER.safetensors until it is complete"))
 
 
 def plan_hybrid(ship: ShipGiven, trials: TrialsGiven, options: HybridOptions) -> Plan:
@@ -63,6 +84,14 @@ def plan_hybrid(ship: ShipGiven, trials: TrialsGiven, options: HybridOptions) ->
     )
     low, high = (lane_steps * seconds + FIT * len(splits) * bool(names) for seconds in LANE_STEP)
     return Plan(lines, (low, high), ("hybrid.json", *WRITES[1:]))
+
+
+def _material(task: Material, horizon: int) -> tuple[str, ...]:
+    windows = len(task.samples.starts(horizon))
+    return (
+        f"ship      {task.profile.id}, driven by {', '.join(task.inputs)}",
+        f"learn     {_of(task.split.learn)}: {windows} windows of {horizon} samples of {task.samples.step:g} s",
+    )
 
 
 def _of(trials: Sequence[Trial]) -> str:

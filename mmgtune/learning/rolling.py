@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..backends.twins import jax_module, twin
-from ..networks import recurrent
+from ..networks import motion, recurrent
 from ..networks.recurrent import Scales, Weights
 
 
@@ -19,7 +19,7 @@ def roll(w: Weights, scales: Scales, initial: Any, controls: Any, wind: Any, h: 
     """
     jax = jax_module()
     jnp = jax.numpy
-    see, move, accelerate = twin(recurrent.features), twin(recurrent.moved), twin(recurrent.accelerations)
+    see, move, accelerate = twin(recurrent.features), twin(motion.moved), twin(recurrent.accelerations)
 
     def step(carry: Any, given: Any) -> Any:
         states, held = carry

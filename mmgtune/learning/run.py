@@ -22,7 +22,7 @@ from .choosing import pieces_of
 from .keeping import Kept
 from .provenance import provenance_of, travelling
 from .starting import first_weights, scales_of
-from .task import Task, make_task
+from .task import Material, Task, make_task
 from .training import Plan, Progressed, Trainer, needed
 
 
@@ -112,7 +112,7 @@ def learn_rnn(
     task = make_task(ship_of(ship), trials_of(trials).series_only("a network"), options)
     scales = scales_of(task.samples)
     plan = Plan(options.steps, options.batch, options.rate, options.validate_every)
-    kept = Kept(folder, identity_of(task), resume, options.seed)
+    kept = Kept(folder, identity_of(task), resume)
     members = _members(Trainer(RecurrentAim(task, scales), plan), task, hooks, kept)
     if not members:
         why = "nothing is known of weights before"
@@ -145,7 +145,7 @@ def learn_rnn(
     )
 
 
-def identity_of(task: Task) -> dict[str, Any]:
+def identity_of(task: Material) -> dict[str, Any]:
     """Everything the weights depend on, but for versions."""
     return {
         "ship": task.profile.id,

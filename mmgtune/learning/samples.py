@@ -9,7 +9,7 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..errors import OptionError, Problem
-from ..networks.predicting import WIND
+from ..networks.marching import WIND
 from ..physics.quantities import HELD, Surroundings
 from ..trial import Trial, surroundings
 

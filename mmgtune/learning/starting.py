@@ -6,6 +6,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..networks.model import shapes
+from ..networks.motion import observed
 from ..networks.recurrent import Scales, Weights
 from .samples import Samples
 
@@ -45,23 +46,25 @@ def scales_of(samples: Samples) -> Scales:
 
 
 def acceleration_deviations(samples: Samples) -> FloatArray:
-    """(3,) root mean squares of accelerations [m/s^2, m/s^2, rad/s^2]; 1 where there are none.
+    """(3,) root mean squares of accelerations [m/s^2, m/s^2, rad/s^2]; 1 where there are none."""
+    rates = differences(samples)
+    moving = np.sqrt(np.mean(rates**2, axis=0)) if len(rates) else np.ones(3)
+    return np.asarray(np.where(moving > 0.0, moving, 1.0))
+
+
+def differences(samples: Samples) -> FloatArray:
+    """(n, 3) accelerations [m/s^2, m/s^2, rad/s^2] wherever they are known.
 
     They are differences over a second or a step, whichever is longer: those of single samples are noise.
     """
     stride = max(1, round(1.0 / samples.step))
     starts = samples.starts(stride)
-    rates = (samples.states[starts + stride, 3:] - samples.states[starts, 3:]) / (stride * samples.step)
-    moving = np.sqrt(np.mean(rates**2, axis=0)) if len(starts) else np.ones(3)
-    return np.asarray(np.where(moving > 0.0, moving, 1.0))
+    return np.asarray((samples.states[starts + stride, 3:] - samples.states[starts, 3:]) / (stride * samples.step))
 
 
 def features_of(samples: Samples) -> FloatArray:
     """(n_rows, n_features) as the network sees them, undivided."""
-    from ..networks.recurrent import features
-
-    plain = Scales(features=np.ones(1), accelerations=np.ones(1))
-    return np.asarray(features(samples.states, samples.controls, samples.wind, plain))
+    return np.asarray(observed(samples.states, samples.controls, samples.wind))
 
 
 def accelerations_of(samples: Samples) -> FloatArray:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
+from ..arrays import FloatArray
 from ..errors import OptionError, Problem
 from ..objective import spread
-from ..options.learning import LearnOptions
+from ..options.learning import MOST_MEMBERS, EnsembleOptions, LearnOptions, TrainingOptions
 from ..profile import ShipProfile
 from ..trial import Trial, TrialSet
 from .recipes import RECIPES, Recipe
@@ -15,8 +19,8 @@ from .splitting import Split, split_runs
 
 
 @dataclass(frozen=True, eq=False)
-class Task:
-    """A training that can begin.
+class Material:
+    """What networks that need no model of forces are trained on.
 
     inputs   what drives the ship
     samples  of the runs that are learned from
@@ -26,13 +30,20 @@ class Task:
 
     profile: ShipProfile
     data: TrialSet
-    options: LearnOptions
-    recipe: Recipe
+    options: TrainingOptions
     inputs: tuple[str, ...]
     split: Split
     samples: Samples
     sigma: dict[str, float]
     test: tuple[Trial, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Task(Material):
+    """A training of recurrent networks that can begin."""
+
+    options: LearnOptions
+    recipe: Recipe
 
     @property
     def memory(self) -> int | None:
@@ -46,26 +57,59 @@ class Task:
 
 
 def make_task(profile: ShipProfile, data: TrialSet, options: LearnOptions) -> Task:
-    """The training of a type on the trials that tune.
+    """The training of a type on the trials that tune.  Raises what ``material_of`` does."""
+    recipe = RECIPES[options.type]
+    trials = recipe.trials([data.trials[id] for id in data.tune], str(data.path or "trials"))
+    return Task(**vars(material_of(profile, data, trials, options, options.horizon)), recipe=recipe)
+
+
+def material_of(
+    profile: ShipProfile, data: TrialSet, trials: Sequence[Trial], options: TrainingOptions, horizon: int
+) -> Material:
+    """Trials to learn from, some of them kept back, on one time step.
+
+    horizon  steps that a window of the loss has
 
     Raises OptionError for too few runs, and for trials from which nothing can be learned; TrialError for a trial that
     has not logged what drives the ship.
     """
-    recipe = RECIPES[options.type]
-    where = str(data.path or "trials")
-    split = split_runs(recipe.trials([data.trials[id] for id in data.tune], where), options.validation, options.seed)
+    kept = options.validation > 0.0
+    split = split_runs(trials, options.validation, options.seed) if kept else Split(tuple(trials), ())
     inputs = tuple(one.name for one in profile.arrangement.inputs)
     step = options.step or own_step(split.learn)
     samples = samples_of(split.learn, inputs, step)
-    if not len(samples.starts(options.horizon)):
+    if not len(samples.starts(horizon)):
         raise OptionError(
             Problem(
-                f"no trial is as long as a window of {options.horizon} samples, {options.horizon * step:g} s",
-                where,
+                f"no trial is as long as a window of {horizon} samples, {horizon * step:g} s",
+                str(data.path or "trials"),
                 "windows without gaps are what is learned from",
                 "write a smaller horizon, or give longer trials",
             )
         )
     sigma = spread([*split.learn, *split.choose])
     test = tuple(data.trials[id] for id in data.test)
-    return Task(profile, data, options, recipe, inputs, split, samples, sigma, test)
+    return Material(profile, data, options, inputs, split, samples, sigma, test)
+
+
+@dataclass(frozen=True, eq=False)
+class EnsembleTask(Material):
+    """A training of an ensemble that can begin."""
+
+    options: EnsembleOptions
+
+    @property
+    def noise(self) -> FloatArray:
+        """(3,) deviations of the measured u, v_m [m/s], r [rad/s]: the roots of Sigma of eq. 18."""
+        options = self.options
+        return np.array([options.sigma_u, options.sigma_v, np.radians(options.sigma_r)])
+
+    def seed(self, k: int) -> int:
+        """Seed of member k; no two ensembles of other seeds share one."""
+        return MOST_MEMBERS * self.options.seed + k
+
+
+def ensemble_task(profile: ShipProfile, data: TrialSet, options: EnsembleOptions) -> EnsembleTask:
+    """The training of an ensemble on the trials that tune.  Raises what ``material_of`` does."""
+    trials = [data.trials[id] for id in data.tune]
+    return EnsembleTask(**vars(material_of(profile, data, trials, options, options.horizon)))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from copy import copy
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -87,49 +88,43 @@ class Progressed:
     events: list[dict[str, Any]] = field(default_factory=list)
 
 
-class Update:
-    """One compiled step of a loss: for any number of seeds, and for all data of the same shapes."""
+class Trainer:
+    """One compiled step, for any number of seeds.
 
-    def __init__(self, loss: Callable[[Any, Any, Any], Any], plan: Plan):
+    alone  whether a step keeps to one core, for trainings side by side in threads
+    """
+
+    def __init__(self, aim: Aim, plan: Plan, *, alone: bool = False):
         jax, optax = jax_module(), optax_module()
+        self.aim, self.plan = aim, plan
         warm = max(1, round(WARM_UP * plan.steps))
         rate = optax.warmup_cosine_decay_schedule(0.0, plan.rate, warm, max(plan.steps, warm + 1), 0.0)
         self.optimiser = optax.chain(optax.clip_by_global_norm(CLIP), optax.adamw(rate, weight_decay=plan.decay))
 
         def update(parameters: Any, state: Any, mean: Any, starts: Any, factor: Any, past: Any, data: Any) -> Any:
-            value, gradient = jax.value_and_grad(loss)(parameters, starts, data)
+            loss, gradient = jax.value_and_grad(aim.loss)(parameters, starts, data)
             norm = optax.tree.norm(gradient)
-            sound = jax.numpy.isfinite(norm) & jax.numpy.isfinite(value)
+            sound = jax.numpy.isfinite(norm) & jax.numpy.isfinite(loss)
             gradient = jax.tree.map(lambda one: jax.numpy.where(sound, one, 0.0), gradient)
             change, moved = self.optimiser.update(gradient, state, parameters)
             new = jax.tree.map(lambda a, b: a + factor * b, parameters, change)
             kept = jax.tree.map(lambda a, b: past * a + (1.0 - past) * b, mean, new)
             old = (parameters, state, mean)
             found = jax.tree.map(lambda a, b: jax.numpy.where(sound, a, b), (new, moved, kept), old)
-            return *found, value, norm, sound
+            return *found, loss, norm, sound
 
-        self._compiled = jax.jit(update)
+        self.update = jax.jit(update, compiler_options={"xla_cpu_multi_thread_eigen": False} if alone else None)
 
-    def __call__(self, parameters: Any, state: Any, mean: Any, starts: Any, factor: Any, past: Any, data: Any) -> Any:
-        """Parameters, state of the optimiser and running mean after a step; loss, norm of its gradient, and whether
-        both are finite: where not, nothing has changed."""
-        return self._compiled(parameters, state, mean, starts, factor, past, data)
-
-
-class Trainer:
-    """Trains for an aim.
-
-    update  of the aim's loss and this plan, where it is compiled already
-    """
-
-    def __init__(self, aim: Aim, plan: Plan, update: Update | None = None):
-        self.aim, self.plan = aim, plan
-        self.update = update or Update(aim.loss, plan)
+    def on(self, aim: Aim) -> Trainer:
+        """The same compiled step for an aim that differs from the first in its data alone."""
+        other = copy(self)
+        other.aim = aim
+        return other
 
     def begin(self, parameters: Any) -> Progressed:
         """A training before its first step."""
         parameters = jax_module().tree.map(jax_module().numpy.asarray, parameters)
-        return Progressed(parameters, self.update.optimiser.init(parameters), parameters, parameters)
+        return Progressed(parameters, self.optimiser.init(parameters), parameters, parameters)
 
     def run(
         self,

@@ -13,6 +13,8 @@ from .. import limits
 from ..errors import NetworkError, Problem, brief
 from ..files import atomic
 from ..profile import parse_profile
+from .ensemble import Ensemble, Part
+from .feedforward import Layers, Standards
 from .hybrid import Hybrid
 from .model import Network
 from .recurrent import Scales, Weights
@@ -21,11 +23,12 @@ from .residual import Ranges, ResidualWeights
 SUFFIX = ".safetensors"
 FORMAT = "mmgtune network"
 SCHEMA = 1
+Trained = Network | Hybrid | Ensemble
 FIX = "give a file that mmgtune learn has written, or train the model again"
 
 
-def save_network(network: Network | Hybrid, path: Path, *, overwrite: bool = False) -> Path:
-    """Write a network, or a hybrid with its profile, whole or not at all.  Raises OutputError."""
+def save_network(network: Trained, path: Path, *, overwrite: bool = False) -> Path:
+    """Write networks, with the profile where there is one, whole or not at all.  Raises OutputError."""
     from safetensors.numpy import save
 
     header: dict[str, Any]
@@ -34,14 +37,20 @@ def save_network(network: Network | Hybrid, path: Path, *, overwrite: bool = Fal
         groups = {"weights": network.weights._asdict(), "ranges": network.ranges._asdict()}
     else:
         header = {
-            "kind": "recurrent",
             "ship": network.ship,
             "L_pp": network.L_pp,
             "inputs": list(network.inputs),
             "step": network.step,
-            "memory": network.memory,
         }
-        groups = {"weights": network.weights._asdict(), "scales": network.scales._asdict()}
+        if isinstance(network, Ensemble):
+            header |= {"kind": "ensemble", "initial": network.initial}
+            parts = {"motion": network.motion, **({"start": network.start} if network.start else {})}
+            groups = {}
+            for name, one in parts.items():
+                groups |= {name: one.layers._asdict(), f"{name}_standards": one.standards._asdict()}
+        else:
+            header |= {"kind": "recurrent", "memory": network.memory}
+            groups = {"weights": network.weights._asdict(), "scales": network.scales._asdict()}
     arrays = {
         f"{group}.{name}": np.ascontiguousarray(values, dtype=np.float32)
         for group, of in groups.items()
@@ -54,8 +63,8 @@ def save_network(network: Network | Hybrid, path: Path, *, overwrite: bool = Fal
     return path
 
 
-def load_network(path: str | Path) -> Network | Hybrid:
-    """Read a network or a hybrid.
+def load_network(path: str | Path) -> Trained:
+    """Read a network, a hybrid or an ensemble.
 
     Raises NetworkError for a file that is none, is damaged, or does not fit together; ProfileError for a hybrid whose
     profile this version cannot read.
@@ -69,7 +78,9 @@ def load_network(path: str | Path) -> Network | Hybrid:
         with safe_open(path, framework="numpy") as file:
             header = _header(file.metadata() or {}, where)
             made = _MADE[header["kind"]]
-            wanted = [f"{group}.{name}" for group, of in made.groups.items() for name in of._fields]
+            _hold(header, made.header, where)
+            groups_of = made.groups(header)
+            wanted = [f"{group}.{name}" for group, of in groups_of.items() for name in of._fields]
             lacking = sorted({*wanted} - {*file.keys()})
             if lacking:
                 raise NetworkError(Problem(f"the network lacks {', '.join(lacking)}", where, "", FIX))
@@ -79,8 +90,7 @@ def load_network(path: str | Path) -> Network | Hybrid:
     if any(one.dtype.kind != "f" for one in arrays):
         raise NetworkError(Problem("the network holds arrays that are no numbers", where, "", FIX))
     wide = iter([one.astype(np.float64) for one in arrays])
-    groups = [of(*(next(wide) for _ in of._fields)) for of in made.groups.values()]
-    _hold(header, made.header, where)
+    groups = [of(*(next(wide) for _ in of._fields)) for of in groups_of.values()]
     try:
         return made.make(header, *groups, where)
     except (ValueError, OverflowError) as error:
@@ -90,19 +100,17 @@ def load_network(path: str | Path) -> Network | Hybrid:
 class _Made(NamedTuple):
     """How a kind of file is read: its groups of arrays, the types of its header, and what makes the model of both."""
 
-    groups: dict[str, Any]
+    groups: Callable[[dict[str, Any]], dict[str, Any]]
     header: dict[str, tuple[type, ...]]
-    make: Callable[..., Network | Hybrid]
+    make: Callable[..., Trained]
 
 
 def _recurrent(header: dict[str, Any], weights: Weights, scales: Scales, where: str) -> Network:
-    inputs = header["inputs"]
-    if not all(isinstance(name, str) for name in inputs):
-        raise NetworkError(Problem(f"inputs of the network are {brief(inputs)}", where, "", FIX))
+    inputs = _inputs(header, where)
     if header["memory"] is not None:
         limits.NETWORK_MEMORY.hold(header["memory"], where, NetworkError)
     length, step = float(header["L_pp"]), float(header["step"])
-    return Network(header["ship"], length, tuple(inputs), step, header["memory"], weights, scales, header["facts"])
+    return Network(header["ship"], length, inputs, step, header["memory"], weights, scales, header["facts"])
 
 
 def _hybrid(header: dict[str, Any], weights: ResidualWeights, ranges: Ranges, where: str) -> Hybrid:
@@ -111,22 +119,45 @@ def _hybrid(header: dict[str, Any], weights: ResidualWeights, ranges: Ranges, wh
     return Hybrid(profile, weights, ranges, float(header["memory"]), header["facts"])
 
 
+def _ensemble(header: dict[str, Any], motion: Layers, standards: Standards, *others: Any) -> Ensemble:
+    *start, where = others
+    found = Ensemble(
+        ship=header["ship"],
+        L_pp=float(header["L_pp"]),
+        inputs=_inputs(header, where),
+        step=float(header["step"]),
+        motion=Part(motion, standards),
+        start=Part(*start) if start else None,
+        facts=header["facts"],
+    )
+    if found.initial != header["initial"]:
+        raise ValueError(f"the initial-state network sees {found.initial} observations, not {header['initial']}")
+    return found
+
+
+def _groups_of_ensemble(header: dict[str, Any]) -> dict[str, Any]:
+    parts = ("motion", "start") if header["initial"] else ("motion",)
+    return {name: of for part in parts for name, of in ((part, Layers), (f"{part}_standards", Standards))}
+
+
+def _inputs(header: dict[str, Any], where: str) -> tuple[str, ...]:
+    inputs = header["inputs"]
+    if not all(isinstance(name, str) for name in inputs):
+        raise NetworkError(Problem(f"inputs of the network are {brief(inputs)}", where, "", FIX))
+    return tuple(inputs)
+
+
 _NUMBER = (float, int)
+_ALONE = {"ship": (str,), "L_pp": _NUMBER, "inputs": (list,), "step": _NUMBER, "facts": (dict,)}
+"""In the header of networks that need no profile."""
+
 _MADE = {
     "recurrent": _Made(
-        {"weights": Weights, "scales": Scales},
-        {
-            "ship": (str,),
-            "L_pp": _NUMBER,
-            "inputs": (list,),
-            "step": _NUMBER,
-            "memory": (int, type(None)),
-            "facts": (dict,),
-        },
-        _recurrent,
+        lambda _: {"weights": Weights, "scales": Scales}, {**_ALONE, "memory": (int, type(None))}, _recurrent
     ),
+    "ensemble": _Made(_groups_of_ensemble, {**_ALONE, "initial": (int,)}, _ensemble),
     "hybrid": _Made(
-        {"weights": ResidualWeights, "ranges": Ranges},
+        lambda _: {"weights": ResidualWeights, "ranges": Ranges},
         {"profile": (str,), "memory": _NUMBER, "facts": (dict,)},
         _hybrid,
     ),

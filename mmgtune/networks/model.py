@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..arrays import IntArray
 from ..inputs import INPUTS
 from .recurrent import Scales, Weights
 
@@ -61,8 +62,12 @@ class Network:
 
     def member(self, k: int) -> Network:
         """One of the members alone."""
-        one = Weights(*(values[k : k + 1] for values in self.weights))
-        return Network(self.ship, self.L_pp, self.inputs, self.step, self.memory, one, self.scales, self.facts)
+        return self.only(np.array([k]))
+
+    def only(self, members: IntArray) -> Network:
+        """These members, in this order; one may be there again and again."""
+        own = Weights(*(values[members] for values in self.weights))
+        return Network(self.ship, self.L_pp, self.inputs, self.step, self.memory, own, self.scales, self.facts)
 
 
 def n_features(inputs: tuple[str, ...]) -> int:

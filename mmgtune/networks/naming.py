@@ -9,19 +9,21 @@ from ..backends import Integrator
 from ..given import ship_of
 from ..profile import ShipProfile
 from ..resources import folder, taken
-from .file import SUFFIX, load_network
+from .ensemble import Ensemble, EnsemblePredictor
+from .file import SUFFIX, Trained, load_network
 from .hybrid import Hybrid, HybridPredictor
 from .predicting import NetworkPredictor
 
 Other = TypeVar("Other")
+TrainedPredictor = NetworkPredictor | HybridPredictor | EnsemblePredictor
 
 
 def named_ship(
     given: str | Path | Other, integrator: Integrator = Integrator()
-) -> ShipProfile | NetworkPredictor | HybridPredictor | Other:
+) -> ShipProfile | TrainedPredictor | Other:
     """The profile, or the network, of a path or bundled name; anything else as it is.
 
-    integrator  of a hybrid; a network alone has its own step
+    integrator  of a hybrid; networks alone have a step of their own
     Raises ProfileError or NetworkError.
     """
     if not isinstance(given, (str, Path)):
@@ -30,5 +32,11 @@ def named_ship(
     path = taken(given, str(given).endswith(SUFFIX), bundled)
     if path is None:
         return ship_of(given)
-    found = load_network(path)
-    return HybridPredictor(found, integrator) if isinstance(found, Hybrid) else NetworkPredictor(found)
+    return predictor_of(load_network(path), integrator)
+
+
+def predictor_of(model: Trained, integrator: Integrator = Integrator()) -> TrainedPredictor:
+    """What was trained as a predictor; ``integrator`` of a hybrid."""
+    if isinstance(model, Hybrid):
+        return HybridPredictor(model, integrator)
+    return EnsemblePredictor(model) if isinstance(model, Ensemble) else NetworkPredictor(model)

@@ -2,30 +2,25 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..backends import Cases
-from ..backends.cases import SPEED_LIMIT
-from ..physics.quantities import Surroundings
 from ..predictor import Prediction
 from ..threads import blas_on_one_thread
+from .marching import RunStepper, marched, paired
 from .model import Network
-from .recurrent import Array, accelerations, features, moved, projected, remembered, truncated
-
-WIND = tuple(Surroundings._fields.index(name) for name in ("wind_north", "wind_east"))
+from .motion import Array, moved
+from .recurrent import accelerations, features, projected, remembered, truncated
 
 
 @dataclass(frozen=True, eq=False)
 class NetworkPredictor:
-    """All members of a network; see ``Predictor`` and ``Steerable``.
+    """All members of a network; see ``Predictor``, ``Steerable`` and ``Paired``.
 
-    It marches in its own step by Euler's method, as it was trained.  Inputs and wind are interpolated linearly to its
-    steps, and the states back to the samples of a case.  The memory begins at zero with each case.  Where no wind was
-    measured the air is still.
+    It marches in its own step by Euler's method, as it was trained.  The memory begins at zero with each case.
     """
 
     network: Network
@@ -63,40 +58,23 @@ class NetworkPredictor:
     @blas_on_one_thread
     def predict(self, cases: Cases) -> Prediction:
         """See ``Predictor``."""
-        h = self.network.step
-        span = cases.t - cases.t[:, :1]
-        n_steps = max(1, math.ceil(float(span.max(initial=0.0)) / h - 1e-9))
-        controls = _on_grid(span, cases.controls, cases.n_samples, h, n_steps)
-        wind = _on_grid(span, cases.around[:, :, WIND], cases.n_samples, h, n_steps)
-        run = NetworkRun(self.network, np.broadcast_to(cases.initial, (self.n_members, *cases.initial.shape)))
-        fine = np.empty((self.n_members, len(cases), n_steps + 1, 6))
-        fine[:, :, 0] = run.states
-        with np.errstate(all="ignore"):
-            for k in range(n_steps):
-                run.step(controls[:, k], wind[:, k], h)
-                fine[:, :, k + 1] = run.states
-        place = span / h
-        before = np.minimum(place.astype(np.int64), n_steps - 1)
-        share = (place - before)[None, :, :, None]
-        rows = np.arange(len(cases))[:, None]
-        with np.errstate(all="ignore"):
-            states = (1.0 - share) * fine[:, rows, before] + share * fine[:, rows, before + 1]
-        states = np.where(share == 0.0, fine[:, rows, before], states)  # 0 times infinite is no number
-        counts = np.arange(cases.t.shape[1]) < cases.n_samples[:, None]
-        sound = np.isfinite(states).all(axis=-1) & (np.hypot(states[..., 3], states[..., 4]) < SPEED_LIMIT)
-        diverged = np.any(~sound & counts, axis=-1)
-        return Prediction(np.ascontiguousarray(states.transpose(1, 0, 2, 3)), np.asarray(diverged).T)
+        begin = np.broadcast_to(cases.initial, (self.n_members, *cases.initial.shape))
+        return marched(NetworkRun(self.network, begin), cases, self.network.step)
 
-    def stepper(self, member: int, state: FloatArray, controls: FloatArray) -> NetworkStepper:
+    @blas_on_one_thread
+    def paired(self, cases: Cases, members: IntArray) -> FloatArray:
+        """See ``Paired``."""
+        run = NetworkRun(self.network.only(members), cases.initial[:, None])
+        return paired(run, cases, self.network.step)
+
+    def stepper(self, member: int, state: FloatArray, controls: FloatArray) -> RunStepper:
         """See ``Steerable``."""
-        return NetworkStepper(self.network.member(member), state, controls)
+        run = NetworkRun(self.network.member(member), np.asarray(state, dtype=float)[None, None])
+        return RunStepper(run, self.network.step)
 
 
 class NetworkRun:
-    """Networks on their way, with what they remember.
-
-    states  (n_members, n_lanes, 6)
-    """
+    """See ``Run``."""
 
     def __init__(self, network: Network, states: FloatArray):
         self.network = network
@@ -106,7 +84,7 @@ class NetworkRun:
         self._held: Array = np.zeros((members, rows, network.width))
 
     def step(self, controls: FloatArray, wind: FloatArray, h: float) -> None:
-        """March by h [s] with inputs (n_lanes, n_inputs) and wind (n_lanes, 2) over ground [m/s]."""
+        """See ``Run``."""
         net = self.network
         lanes = self.states.shape[:-1]
         seen = features(
@@ -121,30 +99,3 @@ class NetworkRun:
         else:
             first, self._held = truncated(part, self._held, net.weights)
         self.states = moved(self.states, accelerations(first, net.weights, net.scales), h)
-
-
-class NetworkStepper:
-    """One member under way, steered while it moves, in still air; see ``Stepper``."""
-
-    def __init__(self, network: Network, state: FloatArray, controls: FloatArray):
-        self._run = NetworkRun(network, np.asarray(state, dtype=float)[None, None])
-        self._step = network.step
-
-    def step(self, now: FloatArray, then: FloatArray, h: float) -> FloatArray:
-        """See ``Stepper``; the step is cut into equal parts as near as can be to those of the training."""
-        parts = max(1, round(h / self._step))
-        with np.errstate(all="ignore"):
-            for k in range(parts):
-                at = now + k / parts * (then - now)
-                self._run.step(at[None], np.zeros((1, 2)), h / parts)
-        return np.array(self._run.states[0, 0])
-
-
-def _on_grid(span: FloatArray, values: FloatArray, n_samples: IntArray, h: float, n_steps: int) -> FloatArray:
-    """(n_cases, n_steps, ...) values at multiples of h [s] from the start of each case; after its end its last."""
-    grid = h * np.arange(n_steps)
-    found = np.empty((len(span), n_steps, values.shape[-1]))
-    for into, t, columns, n in zip(found, span, values, n_samples, strict=True):
-        for k, column in enumerate(columns.T):
-            into[:, k] = np.interp(grid, t[:n], column[:n])
-    return found

@@ -6,16 +6,11 @@ inputs are then (n_members, n_lanes, n_features).  Training differentiates the s
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from ..physics.frame import to_ship
-from ..physics.integration import after_step
-from ..physics.kinematics import pose_rate
-
-Array = Any
-"""An array of NumPy or of JAX, of any number type."""
+from .motion import Array, observed
 
 
 class Weights(NamedTuple):
@@ -45,19 +40,8 @@ class Scales(NamedTuple):
 
 
 def features(states: Array, controls: Array, wind: Array, scales: Scales) -> Array:
-    """What the network sees, (..., n_features): u, v_m, r, the inputs, apparent wind ahead and to starboard (eq. 7).
-
-    states    (..., 6) x, y [m], psi [rad], u, v_m [m/s], r [rad/s]
-    controls  (..., n_inputs)
-    wind      (..., 2) velocity of the air over ground, north and east [m/s]
-
-    The vector of the apparent wind points to where it comes from.
-    """
-    ahead, starboard = to_ship(states[..., 2], wind[..., 0], wind[..., 1])
-    from_ahead = states[..., 3] - ahead
-    from_starboard = states[..., 4] - starboard
-    blows = np.stack([from_ahead, from_starboard], axis=-1)
-    return np.concatenate([states[..., 3:6], controls, blows], axis=-1) / scales.features
+    """What the network sees, (..., n_features): what is ``observed``, scaled (eq. 7)."""
+    return observed(states, controls, wind) / scales.features
 
 
 def projected(seen: Array, w: Weights) -> Array:
@@ -93,14 +77,3 @@ def truncated(part: Array, held: Array, w: Weights) -> tuple[Array, Array]:
     every = np.concatenate([begun, older], axis=-2)
     kept = held.shape[-2]
     return every[..., kept:, :], every[..., :kept, :]
-
-
-def moved(states: Array, rates: Array, h: Array) -> Array:
-    """States (..., 6) after a step of h [s] of Euler's method at these accelerations (..., 3): eq. 21-22.
-
-    h  a number, or an array that broadcasts with (..., 6)
-    """
-    psi, u, v_m, r = states[..., 2], states[..., 3], states[..., 4], states[..., 5]
-    north, east, turning = pose_rate(psi, u, v_m, r)
-    pose = np.stack([north, east, turning], axis=-1)
-    return after_step(states, h, np.concatenate([pose, rates], axis=-1))

@@ -17,7 +17,7 @@ from .choice import Choice, Options, again, choice, choices
 from .diagnosis import DiagnoseOptions
 from .estimating import EstimateOptions
 from .flags import FLAGS, flags_of, in_flags
-from .learning import HybridOptions, LearnOptions, TrainingOptions
+from .learning import EnsembleOptions, HybridOptions, LearnOptions, TrainingOptions
 from .orders import SimulateOptions
 from .scoring import FORMATS, CheckOptions, CompareModelsOptions, ValidateOptions, VoyageOptions
 from .simulation import BACKENDS, INTEGRATORS, SimulationOptions
@@ -33,6 +33,7 @@ __all__ = [
     "Choice",
     "CompareModelsOptions",
     "DiagnoseOptions",
+    "EnsembleOptions",
     "EstimateOptions",
     "FitOptions",
     "HybridOptions",
@@ -58,6 +59,7 @@ for _of in (
     CheckOptions,
     CompareModelsOptions,
     DiagnoseOptions,
+    EnsembleOptions,
     EstimateOptions,
     FitOptions,
     HybridOptions,

@@ -11,6 +11,9 @@ from .tuning import LeaveOutOptions
 TRAINING = "Training"
 """Panel of the help."""
 
+MOST_MEMBERS = 1000
+"""Networks of an ensemble."""
+
 TYPES = ("1", "2", "3", "4", "5")
 """Types of networks in Wakita et al. 2022, Table 7."""
 
@@ -98,3 +101,46 @@ class HybridOptions(TrainingOptions):
         panel=TRAINING,
     )
     step: float | None = again(TrainingOptions, "step", but="Default: three hundredths of the time of a ship length.")
+
+
+@dataclass(frozen=True)
+class EnsembleOptions(TrainingOptions):
+    """All choices of ``learn ensemble``."""
+
+    members: int = choice(
+        15, "Networks trained, each from a start of its own.", least=1, most=MOST_MEMBERS, panel=TRAINING
+    )
+    layers: int = choice(3, "Hidden layers of a network.", least=1, most=20, panel=TRAINING)
+    width: int = again(TrainingOptions, "width", 256)
+    steps: int = again(TrainingOptions, "steps", 3000)
+    batch: int = again(TrainingOptions, "batch", 32)
+    rate: float = again(TrainingOptions, "rate", 1e-3)
+    horizon: int = again(LearnOptions, "horizon", 100)
+    initial: int = choice(
+        30,
+        "Observations from which a further network estimates the velocities a window begins with; 0: they are taken "
+        "as observed.",
+        least=0,
+        most=1000,
+        panel=TRAINING,
+    )
+    sigma_u: float = choice(0.01, "Noise of the measured surge velocity.", unit="m/s", above=0.0, panel=TRAINING)
+    sigma_v: float = choice(0.01, "Noise of the measured sway velocity.", unit="m/s", above=0.0, panel=TRAINING)
+    sigma_r: float = choice(0.1, "Noise of the measured yaw rate.", unit="deg/s", above=0.0, panel=TRAINING)
+    validation: float = choice(
+        0.0,
+        "Share of each kind of manoeuvre kept back, as whole runs, to watch the training by; it chooses nothing.",
+        least=0.0,
+        most=0.8,
+        panel=TRAINING,
+    )
+    validate_every: int = again(TrainingOptions, "validate_every", 100)
+    step: float | None = again(TrainingOptions, "step", 1.0)
+
+    def problems(self) -> list[Problem]:
+        """The observations of a start lie in the window that begins there."""
+        found = super().problems()
+        if self.initial > self.horizon:
+            what = f"{self.initial} observations of a window of {self.horizon} steps"
+            found.append(Problem(what, "initial", fix=f"write initial={self.horizon} or less"))
+        return found

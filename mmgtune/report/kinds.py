@@ -8,6 +8,7 @@ from __future__ import annotations
 from . import (
     comparison_page,
     diagnosis_page,
+    ensemble_page,
     fit_page,
     hybrid_page,
     learning_page,
@@ -26,6 +27,7 @@ KINDS: tuple[Kind, ...] = tuple(
         voyages_page,
         comparison_page,
         learning_page,
+        ensemble_page,
         hybrid_page,
         models_page,
     )

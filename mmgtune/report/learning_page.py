@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_ROLES = {"test": "held out", "validation": "validation"}
-_MEANING = (
+ROLES = {"test": "held out", "validation": "validation", "learned": "learned from"}
+MEANING = (
     "L_MSE is the mean over time of the sum over all six states of squared differences over their variance in the "
     "trials that tune (Wakita et al. 2022, eq. 26): 0 is perfect, and a model that knows only the mean has about 6."
 )
@@ -42,7 +42,7 @@ class LearningRecord:
     @property
     def role(self) -> str:
         """The trials that the report speaks of first: those held out, where there are any."""
-        return "test" if "test" in self.data["scores"] else "validation"
+        return next((role for role in ROLES if role in self.data["scores"]), "validation")
 
     @property
     def scores(self) -> Mapping[str, Any]:
@@ -54,13 +54,13 @@ class LearningRecord:
 def build(record: LearningRecord) -> Page:
     """Everything the report of a training says."""
     data = record.data
-    tracks = Drawn("tracks", "Tracks as measured and as predicted", lambda: _draw_tracks(data["drawn"]))
-    curves = Drawn("curves", "Learning curves", lambda: _draw_curves(record.members))
+    tracks = Drawn("tracks", "Tracks as measured and as predicted", lambda: draw_tracks(data["drawn"]))
+    curves = Drawn("curves", "Learning curves", lambda: draw_curves(record.members, "L_MSE of validation [–]"))
     sections = [
-        Section("tracks", "What it predicts", (picture(tracks, "Tracks", _tracks_words(record)),)),
-        Section("scores", "Errors by kind of manoeuvre", (_scores(record), Prose((_MEANING,)))),
-        Section("learning", "How it learned", (picture(curves, "Learning curves", _CURVES), *_events(record))),
-        Section("next", "What to do next", (_next(record),)),
+        Section("tracks", "What it predicts", (picture(tracks, "Tracks", tracks_words(record)),)),
+        Section("scores", "Errors by kind of manoeuvre", (scores_table(record), Prose((MEANING,)))),
+        Section("learning", "How it learned", (picture(curves, "Learning curves", _CURVES), *events_said(record))),
+        Section("next", "What to do next", (next_steps(record),)),
         made_section(data, _more(data)),
     ]
     generated = data["provenance"]["trials"].get("sources") == ["generated"]
@@ -101,7 +101,7 @@ def rms_errors(data: Mapping[str, Any], row: Mapping[str, Any]) -> tuple[float |
 def _tiles(record: LearningRecord) -> tuple[Tile, ...]:
     data = record.data
     position, heading = rms_errors(data, record.scores)
-    where = _ROLES[record.role]
+    where = ROLES[record.role]
     best = [one["score"] for one in record.members if number(one["score"]) is not None]
     return (
         Tile(f"Position error, {where}", f"{shown(position, 2)} m", note="root mean square"),
@@ -111,15 +111,17 @@ def _tiles(record: LearningRecord) -> tuple[Tile, ...]:
     )
 
 
-def _tracks_words(record: LearningRecord) -> str:
+def tracks_words(record: LearningRecord) -> str:
+    """What the figure of tracks shows."""
     return (
-        f"Of each kind of manoeuvre the window of median error among the trials {_ROLES[record.role]}: measured, and "
-        f"as {count(record.data['provenance']['options']['seeds'], 'network')} predict it from the first state and the "
+        f"Of each kind of manoeuvre the window of median error among the trials {ROLES[record.role]}: measured, and "
+        f"as {count(len(record.members), 'network')} predict it from the first state and the "
         "inputs."
     )
 
 
-def _draw_tracks(drawn: Sequence[Mapping[str, Any]]) -> Figure:
+def draw_tracks(drawn: Sequence[Mapping[str, Any]]) -> Figure:
+    """Tracks as measured and as the members predict them, a kind of manoeuvre to each axes."""
     from matplotlib.lines import Line2D
 
     figure, axes = grid_of(max(len(drawn), 1), (2.9, 3.0))
@@ -151,7 +153,8 @@ _CURVES = (
 )
 
 
-def _draw_curves(members: Sequence[Mapping[str, Any]]) -> Figure:
+def draw_curves(members: Sequence[Mapping[str, Any]], label: str) -> Figure:
+    """Loss of each network by updates, and what it is watched by, named ``label``; a dot where one was kept."""
     figure = new_figure(7.6, 3.0)
     left, right = figure.subplots(1, 2)
     for one in members:
@@ -159,10 +162,10 @@ def _draw_curves(members: Sequence[Mapping[str, Any]]) -> Figure:
         left.plot([row["step"] for row in rows], [row["loss"] for row in rows], color=BEFORE, linewidth=1.0)
         rows = [row for row in one["curve"] if number(row["score"]) is not None]
         right.plot([row["step"] for row in rows], [row["score"] for row in rows], color=AFTER, linewidth=1.0)
-        if number(one["score"]) is not None:
+        if number(one["score"]) is not None and "best_step" in one:
             right.plot([one["best_step"]], [one["score"]], color=AFTER, marker="o", markersize=4)
     _scaled(left, "loss on short windows [–]")
-    _scaled(right, "L_MSE of validation [–]")
+    _scaled(right, label)
     return figure
 
 
@@ -174,9 +177,10 @@ def _scaled(ax: Axes, label: str) -> None:
         log_ticks(ax.yaxis)
 
 
-def _scores(record: LearningRecord) -> Table:
+def scores_table(record: LearningRecord) -> Table:
+    """Errors by role of the trials and kind of manoeuvre."""
     rows = []
-    for role, words in _ROLES.items():
+    for role, words in ROLES.items():
         found = record.data["scores"].get(role)
         if found is None:
             continue
@@ -188,14 +192,15 @@ def _scores(record: LearningRecord) -> Table:
             )
     return Table(
         "scores-table",
-        "Root mean square errors and L_MSE, means over the seeds",
+        "Root mean square errors and L_MSE, means over the networks",
         ("trials", "manoeuvre", "runs", "position [m]", "heading [°]", "L_MSE [–]"),
         tuple(rows),
         numeric=(2, 3, 4, 5),
     )
 
 
-def _events(record: LearningRecord) -> tuple[Prose, ...]:
+def events_said(record: LearningRecord) -> tuple[Prose, ...]:
+    """Where training diverged."""
     said = [
         f"Seed {one['seed']} diverged at update {event['step']} ({clean(event['why'])}) and went back to update "
         f"{event['back_to']} at {shown(100 * event['rate_factor'], 3)} % of the rate."
@@ -205,7 +210,8 @@ def _events(record: LearningRecord) -> tuple[Prose, ...]:
     return (Prose(tuple(said), listed=True, tone="warning"),) if said else ()
 
 
-def _next(record: LearningRecord) -> Commands:
+def next_steps(record: LearningRecord) -> Commands:
+    """What the model can be used for."""
     model = f"{record.folder.as_posix()}/model.safetensors"
     made = record.data["provenance"]
     ship = shortest(made["profile"].get("path") or record.data["ship"], "ship_profiles")

@@ -111,3 +111,17 @@ def test_a_run_that_leaves_the_world_is_marked_and_touches_no_other():
     found = predict(NetworkPredictor(both), a_case())
     assert found.diverged.tolist() == [[False, True]]
     np.testing.assert_allclose(found.states[0, 0], predict(NetworkPredictor(wild), a_case()).states[0, 0], rtol=1e-12)
+
+
+@pytest.mark.parametrize("memory", [None, 3])
+def test_a_member_on_each_case(memory):
+    """What every member makes of every case, and of it the pairs that are asked for."""
+    predictor = NetworkPredictor(network(members=3, memory=memory))
+    t, controls, initial, around = zip(*(a_case(n, seed=n) for n in (41, 20, 31, 41)), strict=True)
+    cases = pad(list(t), list(controls), list(initial), around=list(around))
+    every = predictor.predict(cases).states
+    members = np.array([2, 0, 2, 1])
+    found = predictor.paired(cases, members)
+    for k, member in enumerate(members):
+        n = cases.n_samples[k]
+        np.testing.assert_allclose(found[k, :n], every[k, member, :n], rtol=1e-12)

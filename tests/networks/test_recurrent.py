@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from mmgtune.networks.motion import moved
 from mmgtune.networks.predicting import NetworkRun
-from mmgtune.networks.recurrent import Scales, accelerations, features, moved, projected, remembered, truncated
+from mmgtune.networks.recurrent import Scales, accelerations, features, projected, remembered, truncated
 
 from .made import network
 

@@ -1,0 +1,208 @@
+"""An ensemble of feed-forward networks trained on trials: what ``mmgtune learn ensemble`` does.
+
+Members are trained side by side in threads, each on a core of its own: under ``vmap`` those of 64 units and more take
+longer than one after the other, since the compiler's products of stacked matrices are slower than plain ones.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from threading import Lock
+from typing import Any
+
+import numpy as np
+
+from ..backends.compiled import cores
+from ..backends.twins import jax_module
+from ..errors import OptionError, Problem
+from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
+from ..networks.ensemble import Ensemble, EnsemblePredictor, Part
+from ..networks.feedforward import Layers, Standards
+from ..options.learning import EnsembleOptions
+from ..trial import Trial
+from ..validation import TrialScore, score
+from .choosing import Single, pieces_of
+from .ensemble import EnsembleAim, MemberStandards, Trainable, first_member
+from .keeping import Kept
+from .provenance import provenance_of, travelling
+from .run import Hooks, identity_of
+from .task import EnsembleTask, ensemble_task
+from .training import Plan, Progressed, Trainer, needed
+
+
+@dataclass(frozen=True, eq=False)
+class EnsembleMember:
+    """One trained network.
+
+    weights    the running mean of the last updates
+    standards  what its inputs and outputs are standardised by
+    curve      a row for each time it was looked at: step, loss, score, norm of the gradient
+    events     where training diverged, and what was done
+    """
+
+    seed: int
+    weights: Trainable
+    standards: MemberStandards
+    step: int
+    curve: tuple[dict[str, float], ...]
+    events: tuple[dict[str, Any], ...]
+
+    @property
+    def score(self) -> float:
+        """Its loss on the windows it was watched by."""
+        return float(self.curve[-1]["score"])
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON; the weights are in the model's file."""
+        rows = [{key: float(value) if np.isfinite(value) else None for key, value in row.items()} for row in self.curve]
+        return {
+            "seed": self.seed,
+            "loss": rows[-1]["loss"],
+            "score": rows[-1]["score"],
+            "steps": self.step,
+            "curve": rows,
+            "events": list(self.events),
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class LearnedEnsemble:
+    """Networks that differ by their initial values and the order of windows alone.
+
+    task    what was learned from what
+    scores  of the trials held out, and of those kept back where some were, in windows, by role: "validation", "test";
+            of neither, those of the trials learned from: "learned"
+    """
+
+    ensemble: Ensemble
+    members: tuple[EnsembleMember, ...]
+    task: EnsembleTask
+    scores: dict[str, tuple[TrialScore, ...]]
+    provenance: dict[str, Any]
+    interrupted: bool
+    wall_s: float
+
+    @property
+    def role(self) -> str:
+        """The trials it is judged by first."""
+        return next(role for role in ("test", "validation", "learned") if role in self.scores)
+
+    def __repr__(self) -> str:
+        """In a line."""
+        losses = ", ".join(f"{one.score:.3g}" for one in self.members)
+        return f"LearnedEnsemble({self.ensemble.ship}: {len(self.members)} members, loss {losses})"
+
+
+def learn_ensemble(
+    ship: ShipGiven,
+    trials: TrialsGiven,
+    options: EnsembleOptions = EnsembleOptions(),
+    *,
+    hooks: Hooks = Hooks(),
+    folder: Path | None = None,
+    resume: bool = False,
+    command: str = "",
+) -> LearnedEnsemble:
+    """Train an ensemble on the trials that tune, and score it on those that test.
+
+    ship    profile that names the ship, her length and what drives her; her coefficients play no part
+    folder  for checkpoints; None for none
+    resume  go on with what is there: the result is that of a run without a stop, bit for bit
+    Raises what ``ensemble_task`` does, and OptionError where JAX is missing.
+    """
+    began = time.perf_counter()
+    needed()
+    task = ensemble_task(ship_of(ship), trials_of(trials).series_only("a network"), options)
+    members = _members(task, hooks, Kept(folder, identity_of(task), resume))
+    if not members:
+        why = "nothing is known of weights before"
+        raise OptionError(
+            Problem("stopped before any was looked at", "validate_every", why, "write a smaller validate_every")
+        )
+    used = (*task.split.learn, *task.split.choose)
+    made = provenance_of(task.profile, task.data, used, options, command)
+    facts = {**travelling(made), "type": "ensemble", "seeds": [one.seed for one in members]}
+    ensemble = ensemble_of(members, task, facts)
+    done = len(members) == options.members and all(one.step >= options.steps for one in members)
+    held = {"test": task.test, "validation": task.split.choose}
+    held = {role: of for role, of in held.items() if of} or {"learned": task.split.learn}
+    return LearnedEnsemble(
+        ensemble,
+        tuple(members),
+        task,
+        {role: _scored(ensemble, of, task.sigma, options.restart) for role, of in held.items()},
+        made,
+        not done,
+        time.perf_counter() - began,
+    )
+
+
+def ensemble_of(members: Sequence[EnsembleMember], task: EnsembleTask, facts: dict[str, Any]) -> Ensemble:
+    """What was trained as a model."""
+    motion = _part([one.weights.motion for one in members], [one.standards.motion for one in members])
+    starts = [(one.weights.start, one.standards.start) for one in members]
+    known = [(layers, standards) for layers, standards in starts if layers is not None and standards is not None]
+    return Ensemble(
+        ship=task.profile.id,
+        L_pp=task.profile.L_pp,
+        inputs=task.inputs,
+        step=task.samples.step,
+        motion=motion,
+        start=_part(*map(list, zip(*known, strict=True))) if known else None,
+        facts=facts,
+    )
+
+
+def _part(layers: list[Layers], standards: list[Standards]) -> Part:
+    return Part(
+        Layers(*(np.stack(parts) for parts in zip(*layers, strict=True))),
+        Standards(*(np.stack(parts) for parts in zip(*standards, strict=True))),
+    )
+
+
+def _members(task: EnsembleTask, hooks: Hooks, kept: Kept) -> list[EnsembleMember]:
+    """The networks side by side; those that an earlier run has trained are read."""
+    options = task.options
+    aim = EnsembleAim(task)
+    trainer = Trainer(aim, Plan(options.steps, options.batch, options.rate, options.validate_every), alone=True)
+    lock, done = Lock(), [0] * options.members
+
+    def trained(k: int) -> EnsembleMember | None:
+        seed = task.seed(k)
+        weights, standards = first_member(task, seed)
+        own = trainer.on(aim.of(standards))
+        now = kept.begun(k, own.begin(_single(weights)))
+
+        def told(one: Progressed) -> None:
+            kept.keep(k, one)
+            row = one.curve[-1]
+            words = f"member {k + 1} of {options.members}, loss {row['loss']:.4g}, watched {row['score']:.4g}"
+            with lock:
+                done[k] = one.step
+                hooks.on_progress(sum(done), options.members * options.steps, words)
+
+        done[k] = now.step
+        if now.step < options.steps and not hooks.stop():
+            now = own.run(now, seed, on_validation=told, stop=hooks.stop)
+        if not now.curve:
+            return None
+        mean = jax_module().tree.map(lambda one: np.asarray(one, dtype=np.float64), now.mean)
+        return EnsembleMember(seed, mean, standards, now.step, tuple(now.curve), tuple(now.events))
+
+    with ThreadPoolExecutor(min(cores(), options.members), "member") as pool:
+        return [one for one in pool.map(trained, range(options.members)) if one is not None]
+
+
+def _single(weights: Trainable) -> Any:
+    return jax_module().tree.map(lambda one: one.astype(Single), weights)
+
+
+def _scored(
+    ensemble: Ensemble, trials: Sequence[Trial], sigma: dict[str, float], restart: float | None
+) -> tuple[TrialScore, ...]:
+    """Windows of trials scored by all members."""
+    return tuple(score(EnsemblePredictor(ensemble), pieces_of(trials, restart), sigma))

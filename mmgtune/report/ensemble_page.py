@@ -1,0 +1,116 @@
+"""The report of an ensemble trained on trials."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .common import picture
+from .drawing import Drawn
+from .learning_page import (
+    MEANING,
+    ROLES,
+    LearningRecord,
+    draw_curves,
+    draw_tracks,
+    events_said,
+    made_section,
+    next_steps,
+    rms_errors,
+    scores_table,
+    tracks_words,
+)
+from .load import Kind
+from .page import Page, Prose, Section, Table, Tile, cells
+from .wording import clean, count, listing, number, shown
+
+_LOSS = (
+    "The loss is the mean over samples of the squared errors of u, v_m and r over the noise that was stated, of "
+    "roll-outs along windows of the trials (negative log-likelihood, eq. 27): 3 is as near as the noise lets it be."
+)
+
+
+def build(record: LearningRecord) -> Page:
+    """Everything the report of an ensemble says."""
+    data = record.data
+    watched = "runs kept back" if data["watched_by"] else "all windows learned from"
+    tracks = Drawn("tracks", "Tracks as measured and as predicted", lambda: draw_tracks(data["drawn"]))
+    curves = Drawn("curves", "Learning curves", lambda: draw_curves(record.members, f"loss on {watched} [–]"))
+    curves_words = (
+        "Loss of each network on the windows of an update, and, of the running mean of its weights, on "
+        f"{watched}. Each is trained to the end: none is chosen."
+    )
+    generated = data["provenance"]["trials"].get("sources") == ["generated"]
+    banner = "The trials it learned from are generated, not measured: this says how the method works, not the ship."
+    return Page(
+        title=f"Ensemble of {clean(data['ship'])}",
+        eyebrow=f"{count(len(record.members), 'network')} of {data['layers']} × {data['width']} units",
+        verdict=_verdict(record),
+        banners=(banner,) if generated else (),
+        warnings=("The training was stopped early; --resume continues it.",) if data["interrupted"] else (),
+        tiles=_tiles(record),
+        sections=(
+            Section("tracks", "What its members predict", (picture(tracks, "Tracks", tracks_words(record)),)),
+            Section("scores", "Errors by kind of manoeuvre", (scores_table(record), Prose((MEANING,)))),
+            Section(
+                "learning",
+                "How it learned",
+                (picture(curves, "Learning curves", curves_words), _members(record), Prose((_LOSS,))),
+            ),
+            *(Section("events", "Where it diverged", events_said(record)) for _ in events_said(record)),
+            Section("next", "What to do next", (next_steps(record),)),
+            made_section(data, _more(data)),
+        ),
+        figures={"tracks": tracks, "curves": curves},
+    )
+
+
+def _verdict(record: LearningRecord) -> str:
+    position, heading = rms_errors(record.data, record.scores)
+    window = number(record.data["window_s"])
+    over = f"over {shown(window, 3)} s" if window else "over whole trials"
+    return (
+        f"{over.capitalize()} from a measured state its members are {shown(position, 2)} m and {shown(heading, 2)}° "
+        f"off (root mean square) on {count(len(record.scores['trials']), 'trial')} {ROLES[record.role]}; how far they "
+        "disagree says where the data tell them little."
+    )
+
+
+def _tiles(record: LearningRecord) -> tuple[Tile, ...]:
+    data = record.data
+    position, heading = rms_errors(data, record.scores)
+    where = ROLES[record.role]
+    losses = [one["score"] for one in record.members if number(one["score"]) is not None]
+    mean = sum(losses) / len(losses) if losses else None
+    return (
+        Tile(f"Position error, {where}", f"{shown(position, 2)} m", note="root mean square, mean over members"),
+        Tile(f"Heading error, {where}", f"{shown(heading, 2)}°", note="root mean square, mean over members"),
+        Tile("Loss", shown(mean, 3), note="3 is as near as the noise lets it be"),
+        Tile("Learned from", count(len(data["learned_from"]), "trial"), note=count(len(record.members), "member")),
+    )
+
+
+def _members(record: LearningRecord) -> Table:
+    rows = [
+        cells(str(k), str(one["seed"]), str(one["steps"]), shown(one["loss"], 3), shown(one["score"], 3))
+        for k, one in enumerate(record.members)
+    ]
+    headings = ("member", "seed", "updates", "loss of updates [–]", "loss of what it is watched by [–]")
+    return Table("members-table", "Members", headings, tuple(rows), numeric=(0, 1, 2, 3, 4))
+
+
+def _more(data: Any) -> list[tuple[str, str]]:
+    noise = data["noise"]
+    watched = [clean(one) for one in data["watched_by"]]
+    return [
+        *([("watched by", listing(watched, 40))] if watched else []),
+        ("inputs", ", ".join(clean(one) for one in data["inputs"])),
+        ("window of the loss", f"{shown(data['horizon_s'], 3)} s"),
+        ("observations of a start", str(data["initial"]) if data["initial"] else "none: as observed"),
+        (
+            "noise of u, v_m, r",
+            f"{shown(noise['u'], 3)} m/s, {shown(noise['v_m'], 3)} m/s, {shown(noise['r'], 3)} rad/s",
+        ),
+    ]
+
+
+KIND = Kind("ensemble", ("members", "scores", "drawn", "provenance", "sigma", "noise"), LearningRecord, build)
