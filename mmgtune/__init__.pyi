@@ -32,8 +32,10 @@ from .importing import load_map as load_map
 from .learning import Learned as Learned
 from .learning import LearnedEnsemble as LearnedEnsemble
 from .learning import LearnedHybrid as LearnedHybrid
+from .learning import LearnedMixture as LearnedMixture
 from .learning import learn_ensemble as learn_ensemble
 from .learning import learn_hybrid as learn_hybrid
+from .learning import learn_mixture as learn_mixture
 from .learning import learn_rnn as learn_rnn
 from .learning import write_learned as write_learned
 from .manoeuvres import Track as Track
@@ -50,6 +52,7 @@ from .options import FitOptions as FitOptions
 from .options import HybridOptions as HybridOptions
 from .options import LearnOptions as LearnOptions
 from .options import LeaveOutOptions as LeaveOutOptions
+from .options import MixtureOptions as MixtureOptions
 from .options import SimulateOptions as SimulateOptions
 from .options import SweepOptions as SweepOptions
 from .options import ValidateOptions as ValidateOptions

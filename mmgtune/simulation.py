@@ -167,7 +167,7 @@ def as_trial(ship: ShipProfile | Predictor, motion: Motion, *, with_forces: bool
     Raises OptionError for forces of a predictor that has no profile to compute them by.
     """
     profile = ship if isinstance(ship, ShipProfile) else profile_of(ship)
-    id = profile.id if profile else ship.name
+    id = profile.id if profile else str(getattr(ship, "id", ship.name))
     by = f"profile '{id}', sha256 {profile.sha256}" if profile else f"predictor '{id}'"
     extra: dict[str, FloatArray] = {}
     if with_forces:

@@ -11,7 +11,7 @@ import typer
 
 from ..options.learning import EnsembleOptions, HybridOptions, LearnOptions, TrainingOptions
 from . import common as c
-from . import learn_compare
+from . import learn_compare, learn_mixture
 from .options import RunOptions, takes
 from .progress import Progress
 
@@ -26,6 +26,7 @@ app = typer.Typer(
 )
 
 app.command("compare")(learn_compare.command)
+app.command("mixture")(learn_mixture.command)
 
 
 @app.command("rnn")

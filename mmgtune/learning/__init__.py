@@ -19,6 +19,7 @@ selecting, reading   terms chosen by what they explain on unseen runs: what a ne
 from .ensemble_run import LearnedEnsemble, learn_ensemble
 from .folder import write_learned
 from .hybrid_run import LearnedHybrid, learn_hybrid
+from .mixing import LearnedMixture, learn_mixture
 from .reading import Reading, read_network
 from .run import Hooks, Learned, learn_rnn
 
@@ -27,9 +28,11 @@ __all__ = [
     "Learned",
     "LearnedEnsemble",
     "LearnedHybrid",
+    "LearnedMixture",
     "Reading",
     "learn_ensemble",
     "learn_hybrid",
+    "learn_mixture",
     "learn_rnn",
     "read_network",
     "write_learned",

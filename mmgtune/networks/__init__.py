@@ -3,6 +3,7 @@
 from .ensemble import Ensemble, EnsemblePredictor
 from .file import SUFFIX, load_network, save_network
 from .hybrid import Hybrid, HybridPredictor
+from .mixture import Mixture, MixturePredictor
 from .model import Network
 from .naming import named_ship, predictor_of
 from .predicting import NetworkPredictor
@@ -13,6 +14,8 @@ __all__ = [
     "EnsemblePredictor",
     "Hybrid",
     "HybridPredictor",
+    "Mixture",
+    "MixturePredictor",
     "Network",
     "NetworkPredictor",
     "load_network",

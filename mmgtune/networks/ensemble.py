@@ -16,7 +16,7 @@ from ..inputs import INPUTS
 from ..predictor import Prediction, Predictor, Sampling
 from ..threads import blas_on_one_thread
 from .feedforward import Layers, Standards, begun, dense, member, scaled, standardised, through
-from .marching import RunStepper, marched, paired
+from .marching import WIND, RunStepper, marched, paired
 from .model import N_ACCELERATIONS, N_VELOCITIES, n_features
 from .motion import Array, moved, observed
 
@@ -181,13 +181,13 @@ class EnsembleRun:
         single = Layers(*(np.asarray(one, dtype=Single) for one in part.layers))
         self._layers = [dense(member(single, k)) for k in range(part.n_members)]
 
-    def step(self, controls: FloatArray, wind: FloatArray, h: float) -> None:
+    def step(self, controls: FloatArray, around: FloatArray, h: float) -> None:
         """See ``Run``."""
         lanes = self.states.shape[:-1]
         seen = observed(
             self.states,
             np.broadcast_to(controls, (*lanes, controls.shape[-1])),
-            np.broadcast_to(wind, (*lanes, 2)),
+            np.broadcast_to(around[..., WIND], (*lanes, 2)),
         )
         rates = np.empty((*lanes, N_ACCELERATIONS))
         which = next(self._members)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -16,6 +16,7 @@ from ..profile import parse_profile
 from .ensemble import Ensemble, Part
 from .feedforward import Layers, Standards
 from .hybrid import Hybrid
+from .mixture import Mixture
 from .model import Network
 from .recurrent import Scales, Weights
 from .residual import Ranges, ResidualWeights
@@ -23,7 +24,7 @@ from .residual import Ranges, ResidualWeights
 SUFFIX = ".safetensors"
 FORMAT = "mmgtune network"
 SCHEMA = 1
-Trained = Network | Hybrid | Ensemble
+Trained = Network | Hybrid | Ensemble | Mixture
 FIX = "give a file that mmgtune learn has written, or train the model again"
 
 
@@ -31,40 +32,46 @@ def save_network(network: Trained, path: Path, *, overwrite: bool = False) -> Pa
     """Write networks, with the profile where there is one, whole or not at all.  Raises OutputError."""
     from safetensors.numpy import save
 
-    header: dict[str, Any]
-    if isinstance(network, Hybrid):
-        header = {"kind": "hybrid", "profile": network.profile.text, "memory": network.memory}
-        groups = {"weights": network.weights._asdict(), "ranges": network.ranges._asdict()}
-    else:
-        header = {
-            "ship": network.ship,
-            "L_pp": network.L_pp,
-            "inputs": list(network.inputs),
-            "step": network.step,
-        }
-        if isinstance(network, Ensemble):
-            header |= {"kind": "ensemble", "initial": network.initial}
-            parts = {"motion": network.motion, **({"start": network.start} if network.start else {})}
-            groups = {}
-            for name, one in parts.items():
-                groups |= {name: one.layers._asdict(), f"{name}_standards": one.standards._asdict()}
-        else:
-            header |= {"kind": "recurrent", "memory": network.memory}
-            groups = {"weights": network.weights._asdict(), "scales": network.scales._asdict()}
+    header, groups = _described(network)
     arrays = {
         f"{group}.{name}": np.ascontiguousarray(values, dtype=np.float32)
         for group, of in groups.items()
         for name, values in of.items()
     }
-    text = json.dumps({**header, "facts": network.facts}, sort_keys=True, allow_nan=False)
+    text = json.dumps(header, sort_keys=True, allow_nan=False)
     content = save(arrays, metadata={"format": FORMAT, "schema": str(SCHEMA), "network": text})
     with atomic(path, overwrite) as part:
         part.write_bytes(content)
     return path
 
 
+def _described(model: Trained) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
+    """Header of a model, and its arrays by group and name."""
+    if isinstance(model, Mixture):
+        header: dict[str, Any] = {"kind": "mixture", "share": model.share}
+        groups: dict[str, dict[str, Any]] = {}
+        for name, part in (("hybrid", model.hybrid), ("network", model.network)):
+            header[name], own = _described(part)
+            groups |= {f"{name}.{group}": of for group, of in own.items()}
+    elif isinstance(model, Hybrid):
+        header = {"kind": "hybrid", "profile": model.profile.text, "memory": model.memory}
+        groups = {"weights": model.weights._asdict(), "ranges": model.ranges._asdict()}
+    else:
+        header = {"ship": model.ship, "L_pp": model.L_pp, "inputs": list(model.inputs), "step": model.step}
+        if isinstance(model, Ensemble):
+            header |= {"kind": "ensemble", "initial": model.initial}
+            parts = {"motion": model.motion, **({"start": model.start} if model.start else {})}
+            groups = {}
+            for name, one in parts.items():
+                groups |= {name: one.layers._asdict(), f"{name}_standards": one.standards._asdict()}
+        else:
+            header |= {"kind": "recurrent", "memory": model.memory}
+            groups = {"weights": model.weights._asdict(), "scales": model.scales._asdict()}
+    return {**header, "facts": model.facts}, groups
+
+
 def load_network(path: str | Path) -> Trained:
-    """Read a network, a hybrid or an ensemble.
+    """Read a network, a hybrid, an ensemble or a mixture.
 
     Raises NetworkError for a file that is none, is damaged, or does not fit together; ProfileError for a hybrid whose
     profile this version cannot read.
@@ -97,11 +104,15 @@ def load_network(path: str | Path) -> Trained:
         raise NetworkError(Problem(str(error), where, "the parts of the network do not fit", FIX)) from error
 
 
+_Kinds = Mapping[str, Any]
+"""Types that what stands in a header may have, by key; or what stands in a table of it, likewise."""
+
+
 class _Made(NamedTuple):
     """How a kind of file is read: its groups of arrays, the types of its header, and what makes the model of both."""
 
     groups: Callable[[dict[str, Any]], dict[str, Any]]
-    header: dict[str, tuple[type, ...]]
+    header: _Kinds
     make: Callable[..., Trained]
 
 
@@ -135,6 +146,12 @@ def _ensemble(header: dict[str, Any], motion: Layers, standards: Standards, *oth
     return found
 
 
+def _mixture(header: dict[str, Any], *others: Any) -> Mixture:
+    weights, ranges, net, scales, where = others
+    hybrid = _hybrid(header["hybrid"], weights, ranges, where)
+    return Mixture(hybrid, _recurrent(header["network"], net, scales, where), float(header["share"]), header["facts"])
+
+
 def _groups_of_ensemble(header: dict[str, Any]) -> dict[str, Any]:
     parts = ("motion", "start") if header["initial"] else ("motion",)
     return {name: of for part in parts for name, of in ((part, Layers), (f"{part}_standards", Standards))}
@@ -151,15 +168,22 @@ _NUMBER = (float, int)
 _ALONE = {"ship": (str,), "L_pp": _NUMBER, "inputs": (list,), "step": _NUMBER, "facts": (dict,)}
 """In the header of networks that need no profile."""
 
+_RECURRENT = {**_ALONE, "memory": (int, type(None))}
+_HYBRID = {"profile": (str,), "memory": _NUMBER, "facts": (dict,)}
+
 _MADE = {
-    "recurrent": _Made(
-        lambda _: {"weights": Weights, "scales": Scales}, {**_ALONE, "memory": (int, type(None))}, _recurrent
-    ),
+    "recurrent": _Made(lambda _: {"weights": Weights, "scales": Scales}, _RECURRENT, _recurrent),
     "ensemble": _Made(_groups_of_ensemble, {**_ALONE, "initial": (int,)}, _ensemble),
-    "hybrid": _Made(
-        lambda _: {"weights": ResidualWeights, "ranges": Ranges},
-        {"profile": (str,), "memory": _NUMBER, "facts": (dict,)},
-        _hybrid,
+    "hybrid": _Made(lambda _: {"weights": ResidualWeights, "ranges": Ranges}, _HYBRID, _hybrid),
+    "mixture": _Made(
+        lambda _: {
+            "hybrid.weights": ResidualWeights,
+            "hybrid.ranges": Ranges,
+            "network.weights": Weights,
+            "network.scales": Scales,
+        },
+        {"share": _NUMBER, "hybrid": _HYBRID, "network": _RECURRENT, "facts": (dict,)},
+        _mixture,
     ),
 }
 
@@ -183,12 +207,14 @@ def _header(metadata: dict[str, str], where: str) -> dict[str, Any]:
     return found
 
 
-def _hold(header: dict[str, Any], kinds: dict[str, tuple[type, ...]], where: str) -> None:
+def _hold(header: dict[str, Any], kinds: _Kinds, where: str) -> None:
     """Raises NetworkError where something in a header is missing or of another type."""
-    wrong = [
-        Problem(f"{key} of the network is {brief(header.get(key))}", where, "", FIX)
-        for key, kind in kinds.items()
-        if not isinstance(header.get(key, ...), kind) or isinstance(header.get(key), bool)
-    ]
+    wrong = []
+    for key, kind in kinds.items():
+        given = header.get(key, ...)
+        if isinstance(kind, dict) and isinstance(given, dict):
+            _hold(given, kind, where)
+        elif isinstance(kind, dict) or not isinstance(given, kind) or isinstance(given, bool):
+            wrong.append(Problem(f"{key} of the network is {brief(header.get(key))}", where, "", FIX))
     if wrong:
         raise NetworkError(*wrong)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..backends import Cases
 from ..backends.cases import SPEED_LIMIT
-from ..physics.quantities import Surroundings
+from ..physics.quantities import HELD, UNKNOWN, Surroundings
 from ..predictor import Prediction
 from .motion import Array
 
@@ -25,8 +26,8 @@ class Run(Protocol):
 
     states: Array
 
-    def step(self, controls: FloatArray, wind: FloatArray, h: float) -> None:
-        """March by h [s] with inputs (n_lanes, n_inputs) and wind (n_lanes, 2) over ground [m/s].
+    def step(self, controls: FloatArray, around: FloatArray, h: float) -> None:
+        """March by h [s] with inputs (n_lanes, n_inputs) and surroundings (n_lanes, n_surroundings).
 
         Both may have an axis of members in front.
         """
@@ -40,36 +41,36 @@ def marched(run: Run, cases: Cases, h: float) -> Prediction:
 
 def paired(run: Run, cases: Cases, h: float) -> FloatArray:
     """States (n_cases, T, 6) of a run with a member to each case and one lane; not finite once one diverges."""
-    controls, wind = driven(cases, h)
-    fine = march(run, controls[:, None], wind[:, None], h)
+    controls, around = driven(cases, h)
+    fine = march(run, controls[:, None], around[:, None], h)
     found = at_samples(fine[None, :, 0], cases, h)
     return np.asarray(np.where(found.diverged[:, :, None], np.nan, found.states[:, 0]))
 
 
 def driven(cases: Cases, h: float) -> tuple[FloatArray, FloatArray]:
-    """Inputs (n_cases, n_steps, n_inputs) and wind (n_cases, n_steps, 2) at steps of h [s], interpolated linearly.
+    """Inputs (n_cases, n_steps, n_inputs) and surroundings (n_cases, n_steps, n_surroundings) at steps of h [s].
 
-    Where no wind was measured the air is still.
+    They are interpolated linearly but for those that are ``HELD``.  Where no wind was measured the air is still.
     """
     span = cases.t - cases.t[:, :1]
     n_steps = max(1, math.ceil(float(span.max(initial=0.0)) / h - 1e-9))
     return (
         _on_grid(span, cases.controls, cases.n_samples, h, n_steps),
-        _on_grid(span, cases.around[:, :, WIND], cases.n_samples, h, n_steps),
+        _on_grid(span, cases.around, cases.n_samples, h, n_steps, [name in HELD for name in Surroundings._fields]),
     )
 
 
-def march(run: Run, controls: FloatArray, wind: FloatArray, h: float) -> FloatArray:
+def march(run: Run, controls: FloatArray, around: FloatArray, h: float) -> FloatArray:
     """States (n_members, n_lanes, n_steps + 1, 6) of a run from where it is.
 
-    controls  (n_lanes, n_steps, n_inputs), or (n_members, n_lanes, n_steps, n_inputs); wind alike
+    controls  (n_lanes, n_steps, n_inputs), or (n_members, n_lanes, n_steps, n_inputs); around alike
     """
     n_steps = controls.shape[-2]
     fine = np.empty((*run.states.shape[:2], n_steps + 1, 6))
     fine[:, :, 0] = run.states
     with np.errstate(all="ignore"):
         for k in range(n_steps):
-            run.step(controls[..., k, :], wind[..., k, :], h)
+            run.step(controls[..., k, :], around[..., k, :], h)
             fine[:, :, k + 1] = run.states
     return fine
 
@@ -107,15 +108,21 @@ class RunStepper:
         with np.errstate(all="ignore"):
             for k in range(parts):
                 at = now + k / parts * (then - now)
-                self._run.step(at[None], np.zeros((1, 2)), h / parts)
+                self._run.step(at[None], np.array([UNKNOWN]), h / parts)
         return np.array(self._run.states[0, 0])
 
 
-def _on_grid(span: FloatArray, values: FloatArray, n_samples: IntArray, h: float, n_steps: int) -> FloatArray:
-    """(n_cases, n_steps, ...) values at multiples of h [s] from the start of each case; after its end its last."""
+def _on_grid(
+    span: FloatArray, values: FloatArray, n_samples: IntArray, h: float, n_steps: int, held: Sequence[bool] = ()
+) -> FloatArray:
+    """(n_cases, n_steps, ...) values at multiples of h [s] from the start of each case; after its end its last.
+
+    held  columns that keep between samples the value at their end
+    """
     grid = h * np.arange(n_steps)
     found = np.empty((len(span), n_steps, values.shape[-1]))
     for into, t, columns, n in zip(found, span, values, n_samples, strict=True):
+        after = np.minimum(np.searchsorted(t[:n], grid), n - 1)
         for k, column in enumerate(columns.T):
-            into[:, k] = np.interp(grid, t[:n], column[:n])
+            into[:, k] = column[after] if k < len(held) and held[k] else np.interp(grid, t[:n], column[:n])
     return found

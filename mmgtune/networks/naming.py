@@ -12,10 +12,11 @@ from ..resources import folder, taken
 from .ensemble import Ensemble, EnsemblePredictor
 from .file import SUFFIX, Trained, load_network
 from .hybrid import Hybrid, HybridPredictor
+from .mixture import Mixture, MixturePredictor
 from .predicting import NetworkPredictor
 
 Other = TypeVar("Other")
-TrainedPredictor = NetworkPredictor | HybridPredictor | EnsemblePredictor
+TrainedPredictor = NetworkPredictor | HybridPredictor | EnsemblePredictor | MixturePredictor
 
 
 def named_ship(
@@ -39,4 +40,6 @@ def predictor_of(model: Trained, integrator: Integrator = Integrator()) -> Train
     """What was trained as a predictor; ``integrator`` of a hybrid."""
     if isinstance(model, Hybrid):
         return HybridPredictor(model, integrator)
+    if isinstance(model, Mixture):
+        return MixturePredictor(model)
     return EnsemblePredictor(model) if isinstance(model, Ensemble) else NetworkPredictor(model)

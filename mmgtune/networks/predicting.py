@@ -10,7 +10,7 @@ from ..arrays import FloatArray, IntArray
 from ..backends import Cases
 from ..predictor import Prediction
 from ..threads import blas_on_one_thread
-from .marching import RunStepper, marched, paired
+from .marching import WIND, RunStepper, marched, paired
 from .model import Network
 from .motion import Array, moved
 from .recurrent import accelerations, features, projected, remembered, truncated
@@ -83,14 +83,14 @@ class NetworkRun:
         rows = lanes if network.memory is None else (network.memory - 1) * lanes
         self._held: Array = np.zeros((members, rows, network.width))
 
-    def step(self, controls: FloatArray, wind: FloatArray, h: float) -> None:
+    def step(self, controls: FloatArray, around: FloatArray, h: float) -> None:
         """See ``Run``."""
         net = self.network
         lanes = self.states.shape[:-1]
         seen = features(
             self.states,
             np.broadcast_to(controls, (*lanes, controls.shape[-1])),
-            np.broadcast_to(wind, (*lanes, 2)),
+            np.broadcast_to(around[..., WIND], (*lanes, 2)),
             net.scales,
         )
         part = projected(seen, net.weights)

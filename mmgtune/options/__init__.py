@@ -17,7 +17,7 @@ from .choice import Choice, Options, again, choice, choices
 from .diagnosis import DiagnoseOptions
 from .estimating import EstimateOptions
 from .flags import FLAGS, flags_of, in_flags
-from .learning import EnsembleOptions, HybridOptions, LearnOptions, TrainingOptions
+from .learning import EnsembleOptions, HybridOptions, LearnOptions, MixtureOptions, TrainingOptions
 from .orders import SimulateOptions
 from .scoring import FORMATS, CheckOptions, CompareModelsOptions, ValidateOptions, VoyageOptions
 from .simulation import BACKENDS, INTEGRATORS, SimulationOptions
@@ -39,6 +39,7 @@ __all__ = [
     "HybridOptions",
     "LearnOptions",
     "LeaveOutOptions",
+    "MixtureOptions",
     "Options",
     "SearchOptions",
     "SimulateOptions",
@@ -64,6 +65,7 @@ for _of in (
     FitOptions,
     HybridOptions,
     LearnOptions,
+    MixtureOptions,
     LeaveOutOptions,
     SimulateOptions,
     SweepOptions,

@@ -144,3 +144,17 @@ class EnsembleOptions(TrainingOptions):
             what = f"{self.initial} observations of a window of {self.horizon} steps"
             found.append(Problem(what, "initial", fix=f"write initial={self.horizon} or less"))
         return found
+
+
+@dataclass(frozen=True)
+class MixtureOptions(Options):
+    """All choices of ``learn mixture``."""
+
+    share: tuple[float, ...] = choice(
+        (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7),
+        "Shares of the networks in the accelerations, with commas, tried in turn; the trials choose.",
+        above=0.0,
+        most=0.99,
+        panel=TRAINING,
+    )
+    restart: float | None = again(LeaveOutOptions, "restart", 100.0)

@@ -8,6 +8,7 @@ import pytest
 from mmgtune.networks.motion import moved
 from mmgtune.networks.predicting import NetworkRun
 from mmgtune.networks.recurrent import Scales, accelerations, features, projected, remembered, truncated
+from mmgtune.physics.quantities import UNKNOWN
 
 from .made import network
 
@@ -66,9 +67,9 @@ def test_a_history_shorter_than_the_memory_is_remembered_whole():
     runs = NetworkRun(standard, state), NetworkRun(short, state)
     rng = np.random.default_rng(3)
     for k in range(8):
-        controls, wind = rng.standard_normal((1, 2)), rng.standard_normal((1, 2))
+        controls, around = rng.standard_normal((1, 2)), rng.standard_normal((1, len(UNKNOWN)))
         for run in runs:
-            run.step(controls, wind, 0.1)
+            run.step(controls, around, 0.1)
         same = np.array_equal(runs[0].states, runs[1].states)
         assert same == (k < 6)
 

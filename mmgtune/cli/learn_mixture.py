@@ -1,0 +1,99 @@
+"""``mmgtune learn mixture``: a hybrid and recurrent networks put together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from ..options import Options, again
+from ..options.learning import MixtureOptions
+from . import common as c
+from .options import RunOptions, takes
+
+
+@dataclass(frozen=True)
+class MixtureRunOptions(Options):
+    """What is left behind."""
+
+    out: Path | None = again(RunOptions, "out", but="Default: runs/TIME-SHIP.")
+    force: bool = again(RunOptions, "force")
+
+
+@takes(options=MixtureOptions, run=MixtureRunOptions)
+def command(
+    model: Annotated[str, typer.Argument(metavar="MODEL", help="Profile, or model.safetensors of learn hybrid.")],
+    network: Annotated[str, typer.Argument(metavar="NETWORK", help="model.safetensors of learn rnn, same ship.")],
+    trials: Annotated[
+        str | None,
+        typer.Argument(metavar="TRIALS", help="Trials that neither has seen: those that tune choose the share."),
+    ] = None,
+    *,
+    options: MixtureOptions,
+    run: MixtureRunOptions,
+    json: c.Json = False,
+    no_report: c.NoReport = False,
+) -> None:
+    """Let a model of forces and recurrent networks drive one ship together.
+
+    Her accelerations are a weighted mean of theirs. Both err, but differently, so that together they often err less
+    than either. The share is tried on trials that neither was trained on, and what does best is written as one file,
+    model.safetensors, that simulate and validate take in place of a profile; where no mixture does better, that is the
+    hybrid or the networks alone. Without trials one share must be given. Needs no JAX.
+
+    Examples:
+
+      mmgtune learn mixture esso_osaka_3m_tuned runs/type1/model.safetensors unseen --out runs/mixture
+
+      mmgtune learn mixture esso_osaka_3m_hybrid runs/type1/model.safetensors --share 0.35
+    """
+    from ..comparing_models import compare_models, write_model_comparison
+    from ..fitting import claimed
+    from ..learning import learn_mixture
+    from ..learning.mixing import MODEL
+    from ..networks import named_ship
+    from ..report import render
+
+    given = named_ship(model)
+    folder = run.out or c.default_out(given)
+    with claimed(folder, force=run.force):
+        result = learn_mixture(given, network, trials, options, command=c.command_line())
+        document = result.write(folder)
+        if trials is not None and not no_report:
+            several = {"model of forces": given, "networks": network, "kept": str(folder / MODEL)}
+            write_model_comparison(compare_models(several, trials), folder, c.command_line())
+            render(folder)
+    if json:
+        c.print_json(document)
+    else:
+        c.show(summary(document, repr(result.model), report=trials is not None and not no_report))
+
+
+def summary(document: Mapping[str, Any], model: str, *, report: bool) -> str:
+    """The result as a person wants to read it in a terminal."""
+    lines = []
+    if document["tried"]:
+        kinds = list(document["tried"][0]["L_MSE"])
+        lines.append(f"{'share':<8}{'error':>10}" + "".join(f"{kind or 'not stated':>12}" for kind in kinds))
+        for row in document["tried"]:
+            errors = ["diverged" if row["L_MSE"][kind] is None else f"{row['L_MSE'][kind]:.4g}" for kind in kinds]
+            total = "diverged" if row["score"] is None else f"{100 * row['score']:.1f} %"
+            chosen = " *" if row["share"] == document["share"] else ""
+            lines.append(f"{row['share']:<8g}{total:>10}" + "".join(f"{one:>12}" for one in errors) + chosen)
+        lines += ["error: mean over kinds of manoeuvre of L_MSE over that of the model of forces; * kept", ""]
+    if document["seen"]:
+        n = len(document["seen"])
+        lines += [
+            f"A part was trained on {n} of the trials that chose ({document['seen'][0]} ...): errors flatter it.",
+            "",
+        ]
+    if document["tried"] and document["share"] in (0.0, 1.0):
+        lines.append("No gain: no mixture does better than one of the two alone, which is kept.")
+    lines.append(model)
+    if report:
+        lines.append(f"Report: {document['out']}/report.html")
+    lines.append(f"Model: {document['out']}/model.safetensors.")
+    return "\n".join(lines)

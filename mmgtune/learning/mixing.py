@@ -1,0 +1,194 @@
+"""A hybrid and recurrent networks put together, with the share that does best on runs neither has seen."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ..errors import OptionError, Problem
+from ..files import write_text
+from ..fitting.run import made_by
+from ..given import TrialsGiven, trials_of
+from ..networks import (
+    HybridPredictor,
+    Mixture,
+    MixturePredictor,
+    Network,
+    NetworkPredictor,
+    named_ship,
+    save_network,
+)
+from ..networks.hybrid import Hybrid, silent
+from ..networks.naming import TrainedPredictor
+from ..objective import spread
+from ..options.learning import MixtureOptions
+from ..predictor import Predictor
+from ..profile import ShipProfile
+from ..trial import Trial, TrialSet
+from ..validation import L_MSE, by_manoeuvre, score
+from .choosing import pieces_of
+
+RESULT, MODEL = "mixture.json", "model.safetensors"
+
+
+@dataclass(frozen=True, eq=False)
+class Tried:
+    """A share of the networks, and what it does on the runs that choose.
+
+    errors  L_MSE by kind of manoeuvre
+    score   mean over kinds of the error over that of the hybrid alone; infinite where a run diverged
+    """
+
+    share: float
+    errors: dict[str, float]
+    score: float
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON; what diverged is null."""
+        errors = {kind: _finite(error) for kind, error in self.errors.items()}
+        return {"share": self.share, "score": _finite(self.score), "L_MSE": errors}
+
+
+@dataclass(frozen=True, eq=False)
+class LearnedMixture:
+    """The best of the shares that were tried; a hybrid or networks alone where no mixture does better.
+
+    tried  share by share, with 0, the hybrid alone, and 1, the networks alone; empty where nothing chose
+    seen   runs among those that chose which a part was trained on: their errors flatter it
+    """
+
+    model: Mixture | Hybrid | Network
+    tried: tuple[Tried, ...]
+    seen: tuple[str, ...]
+    options: MixtureOptions
+    provenance: dict[str, Any]
+
+    @property
+    def share(self) -> float:
+        """Of the networks."""
+        return self.model.share if isinstance(self.model, Mixture) else float(isinstance(self.model, Network))
+
+    def __repr__(self) -> str:
+        """In a line."""
+        return f"LearnedMixture({self.model!r})"
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "schema": 1,
+            "share": self.share,
+            "tried": [one.to_dict() for one in self.tried],
+            "seen": list(self.seen),
+            "options": self.options.to_dict(),
+            "provenance": self.provenance,
+        }
+
+    def write(self, folder: Path) -> dict[str, Any]:
+        """Write the model and the record into a run folder.  Returns the record; raises OutputError."""
+        document = {**self.to_dict(), "out": str(folder)}
+        save_network(self.model, folder / MODEL, overwrite=True)
+        write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+        return document
+
+
+def learn_mixture(
+    model: ShipProfile | Hybrid | TrainedPredictor | str | Path,
+    network: Network | TrainedPredictor | str | Path,
+    trials: TrialsGiven | None = None,
+    options: MixtureOptions = MixtureOptions(),
+    *,
+    command: str = "",
+) -> LearnedMixture:
+    """Put a model of forces and recurrent networks together.
+
+    model    profile, or hybrid
+    network  of the same ship; all its members count alike
+    trials   that neither was trained on: those that tune choose the share.  None takes the one share of the options
+    Raises OptionError where parts do not fit, or nothing says which of several shares is meant; NetworkError.
+    """
+    hybrid, net = _hybrid(named_ship(model)), _network(named_ship(network))
+    try:
+        mixtures = [Mixture(hybrid, net, share) for share in options.share]
+    except ValueError as error:
+        raise OptionError(
+            Problem("the two models do not fit together", "MODEL NETWORK", str(error), "give two models of one ship")
+        ) from error
+    tried: list[Tried] = []
+    seen: tuple[str, ...] = ()
+    parts = {"hybrid": hybrid.facts, "network": net.facts}
+    made = made_by(command)
+    facts: dict[str, Any] = {"type": "mixture", **{key: made[key] for key in ("mmgtune", "created", "environment")}}
+    if trials is None:
+        if len(mixtures) > 1:
+            why = f"{len(mixtures)} shares could be meant"
+            raise OptionError(Problem("nothing chooses the share", "share", why, "give trials, or write share=0.35"))
+        best: Mixture | Hybrid | Network = mixtures[0]
+    else:
+        data = trials_of(trials).series_only("a mixture")
+        chosen = [data.trials[id] for id in data.tune]
+        learned = {id for of in parts.values() for id in _learned(of)}
+        seen = tuple(one.id for one in chosen if {one.id, one.run} & learned)
+        candidates: list[tuple[float, Mixture | Hybrid | Network, Predictor]] = [
+            (0.0, hybrid, HybridPredictor(hybrid)),
+            *((one.share, one, MixturePredictor(one)) for one in mixtures),
+            (1.0, net, NetworkPredictor(net)),
+        ]
+        tried = _tried([(share, predictor) for share, _, predictor in candidates], data, chosen, options)
+        least = min(range(len(tried)), key=lambda k: tried[k].score)
+        best = candidates[least][1]
+        facts["chosen_by"] = [one.id for one in chosen]
+    if isinstance(best, Mixture):
+        best = Mixture(hybrid, net, best.share, facts)
+    return LearnedMixture(best, tuple(tried), seen, options, {**made, "parts": parts})
+
+
+def _tried(
+    several: Sequence[tuple[float, Predictor]], data: TrialSet, chosen: Sequence[Trial], options: MixtureOptions
+) -> list[Tried]:
+    """Each share on the runs that choose, the hybrid first."""
+    if not chosen:
+        raise OptionError(
+            Problem("no trial chooses the share", str(data.path or "trials"), "none of them tunes", "give a split")
+        )
+    sigma, pieces = spread(chosen), pieces_of(chosen, options.restart)
+    found: list[Tried] = []
+    for share, predictor in several:
+        scores = score(predictor, pieces, sigma)
+        errors = {kind: L_MSE(of) for kind, of in by_manoeuvre(scores).items()}
+        alone = found[0].errors if found else errors
+        ratios = [errors[kind] / alone[kind] for kind in errors]
+        mean = math.fsum(ratios) / len(ratios)
+        found.append(Tried(share, errors, mean if math.isfinite(mean) else math.inf))
+    return found
+
+
+def _hybrid(given: Any) -> Hybrid:
+    if isinstance(given, ShipProfile):
+        return silent(given)
+    found = given.hybrid if isinstance(given, HybridPredictor) else given
+    if not isinstance(found, Hybrid):
+        raise OptionError(Problem(f"{found!r} is no model of forces"[:200], "MODEL", "", "give a profile or a hybrid"))
+    return found
+
+
+def _network(given: Any) -> Network:
+    found = given.network if isinstance(given, NetworkPredictor) else given
+    if not isinstance(found, Network):
+        what = f"{found!r} is no recurrent network"[:200]
+        raise OptionError(Problem(what, "NETWORK", "", "give a model.safetensors of mmgtune learn rnn"))
+    return found
+
+
+def _learned(facts: dict[str, Any]) -> Sequence[str]:
+    """Ids of the runs that a part was trained on, as far as its file says."""
+    trials = facts.get("trials")
+    found = trials.get("learned_from") if isinstance(trials, dict) else None
+    return found if isinstance(found, list) else ()
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
