@@ -12,6 +12,7 @@ from . import (
     hybrid_page,
     learning_page,
     models_page,
+    predict_page,
     sweep_page,
     voyages_page,
 )
@@ -28,6 +29,7 @@ KINDS: tuple[Kind, ...] = tuple(
         learning_page,
         hybrid_page,
         models_page,
+        predict_page,
     )
 )
 """Every kind, in the order in which their files are looked for."""
