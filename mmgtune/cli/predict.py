@@ -10,7 +10,7 @@ import typer
 from ..errors import OptionError, Problem
 from ..options import PredictOptions
 from . import common as c
-from .learn_compare import FolderOptions
+from .compare import FolderOptions
 from .options import takes
 
 

@@ -132,7 +132,7 @@ def _read(one: Asked, steered: Steered, orders: Orders, at: slice) -> Sailed:
     if one.manoeuvre == "zigzag" and sound.any():
         end = min(end, int(last[sound].min()))
     h = float(steered.h[at][0])
-    t = h * np.arange(end + 1)
+    t: FloatArray = h * np.arange(end + 1, dtype=np.float64)
     particles = np.ascontiguousarray(states[: end + 1].transpose(2, 0, 1))
     return Sailed(t, particles, ~sound, of_lanes(values, sound), h * APPROACH)
 
@@ -144,7 +144,7 @@ def _done(one: Asked, states: FloatArray, given: FloatArray, last: IntArray) -> 
         return np.where(stopped, last.astype(float), np.inf)
     if one.manoeuvre == "zigzag":
         ordered = given[LEGS] if len(given) > LEGS else np.full(len(last), np.nan)
-        return np.nan_to_num(ordered, nan=np.inf)
+        return np.asarray(np.nan_to_num(ordered, nan=np.inf))
     with np.errstate(invalid="ignore"):
         there = np.abs(states[:, 2]) >= TURNED
     return np.where(there.any(axis=0), np.argmax(there, axis=0).astype(float), np.inf)

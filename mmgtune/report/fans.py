@@ -177,12 +177,13 @@ def _whiskers(ax: Axes, rows: Sequence[Mapping[str, Any]]) -> None:
     for place, row in enumerate(rows):
         low, high, mean, measured = (number(row[key]) for key in ("low", "high", "mean", "measured"))
         if low is not None:
-            open_end = high is None
-            ax.plot([low, 1.05 * reach if high is None else high], [place, place], color=AFTER, linewidth=1.6)
-            ends = [low] if open_end else [low, high]
-            ax.plot(ends, [place] * len(ends), color=AFTER, linestyle="none", marker="|", markersize=9)
-            if open_end:
-                ax.plot([1.05 * reach], [place], color=AFTER, linestyle="none", marker=">", markersize=5)
+            last = 1.05 * reach if high is None else high
+            ax.plot([low, last], [place, place], color=AFTER, linewidth=1.6)
+            ax.plot([low], [place], color=AFTER, linestyle="none", marker="|", markersize=9)
+            ends: dict[str, Any] = (
+                {"marker": ">", "markersize": 5} if high is None else {"marker": "|", "markersize": 9}
+            )
+            ax.plot([last], [place], color=AFTER, linestyle="none", **ends)
         if mean is not None:
             ax.plot([mean], [place], color=AFTER, linestyle="none", marker="o", markersize=5)
         if measured is not None:
@@ -200,8 +201,8 @@ def _legend(
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    dot = {"linestyle": "none", "marker": "o", "markersize": 5} if whiskers else {"linewidth": 1.8}
-    handles: list[Any] = [Line2D([], [], color=AFTER, label="mean" if several else "foretold", **dot)]  # type: ignore[arg-type]
+    dot: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 5} if whiskers else {"linewidth": 1.8}
+    handles: list[Any] = [Line2D([], [], color=AFTER, label="mean" if several else "foretold", **dot)]
     if several and whiskers:
         handles.append(Line2D([], [], color=AFTER, marker="|", markersize=8, label=f"band of {level:g}\u00a0%"))
     elif several:
@@ -210,6 +211,8 @@ def _legend(
         if particles_too:
             handles.append(Line2D([], [], color=AFTER, linewidth=0.5, alpha=0.6, label="particles"))
     if measured:
-        look = {"linestyle": "none", "marker": "D", "markersize": 4.5} if whiskers else {"linestyle": (0, (5, 2))}
-        handles.append(Line2D([], [], color=INK, label="measured", **look))  # type: ignore[arg-type]
+        look: dict[str, Any] = (
+            {"linestyle": "none", "marker": "D", "markersize": 4.5} if whiskers else {"linestyle": (0, (5, 2))}
+        )
+        handles.append(Line2D([], [], color=INK, label="measured", **look))
     figure.legend(handles=handles, loc="outside upper left", ncols=len(handles), handlelength=2.2)

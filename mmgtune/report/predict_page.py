@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import fans
+from .band_scores import MEANING, SCORE_HEADS, score_cells
 from .common import doubts, picture
 from .drawing import Drawn
 from .load import Kind, columns_in
@@ -136,7 +137,7 @@ def _verdict(record: PredictRecord) -> str:
             f"The bands that are to hold {meant:.0f} % hold {held:.0f} % of what was measured: they are {word}. "
             f"Half of it is to lie in the inner ones, and {100.0 * scores['coverage_50']:.0f} % does."
         )
-    said = []
+    said: list[str] = []
     for run in record.runs:
         for row in run["indices"]:
             if row["index"] in ("advance_m", "overshoot_1_deg") and len(said) < 3:
@@ -288,20 +289,12 @@ def _scores(record: PredictRecord, figures: dict[str, Drawn]) -> Section:
             "Below the diagonal bands are too narrow, above it wider than needed; all states and samples together."
         )
         blocks.append(picture(figures["calibration"], "Calibration", caption))
-    blocks.append(scores_table(record.data["runs"], scores))
+    blocks.append(_scores_table(record.data["runs"], scores))
     blocks.append(Prose((MEANING,)))
     return Section("scores", "Scores", tuple(blocks))
 
 
-MEANING = (
-    "L_Eucl is the mean squared distance of the particles' mean from what was measured, of velocities in m/s and "
-    "rad/s; L_Maha the same over the covariance of the particles, 3 where that is right (Wakita et al., eq. 30, 31). "
-    "CRPS and the width of the 90 % band are means over the states, in their spread over the trials. Measured samples "
-    "have the noise of their sensors, bands have none."
-)
-
-
-def scores_table(runs: Sequence[Mapping[str, Any]], whole: Mapping[str, Any]) -> Table:
+def _scores_table(runs: Sequence[Mapping[str, Any]], whole: Mapping[str, Any]) -> Table:
     """Scores of each run and of all."""
     rows = [cells(clean(run["id"]), *score_cells(run["scores"])) for run in runs if run["scores"]]
     rows.append(cells("all", *score_cells(whole)))
@@ -312,27 +305,6 @@ def scores_table(runs: Sequence[Mapping[str, Any]], whole: Mapping[str, Any]) ->
         tuple(rows),
         numeric=range(1, 1 + len(SCORE_HEADS)),
     )
-
-
-SCORE_HEADS = ("windows", "L_Eucl", "L_Maha", "correlation", "CRPS", "50 % holds", "90 % holds", "width of 90 %")
-
-
-def score_cells(scores: Mapping[str, Any]) -> list[str]:
-    """A row of scores as texts, in the order of ``SCORE_HEADS``."""
-
-    def held(value: Any) -> str:
-        return NONE if number(value) is None else f"{100.0 * value:.0f} %"
-
-    windows = str(scores["windows"])
-    if scores["windows_lost"]:
-        windows += f", {scores['windows_lost']} lost"
-    return [
-        windows,
-        *(shown(scores[name], 3) for name in ("L_Eucl", "L_Maha", "correlation", "CRPS")),
-        held(scores["coverage_50"]),
-        held(scores["coverage_90"]),
-        shown(scores["sharpness"], 3),
-    ]
 
 
 def _made(record: PredictRecord) -> Section:
