@@ -18,12 +18,14 @@ from ..errors import MmgtuneError, OptionError, OutputError, Problem, cannot_wri
 from . import (
     check,
     cite,
+    compare,
     diagnose,
     doctor,
     fit,
     interrupts,
     learn,
     leave_out,
+    predict,
     profiles,
     report,
     simulate,
@@ -89,7 +91,9 @@ app.command("diagnose", epilog=EPILOG)(diagnose.command)
 app.command("leave-out", epilog=EPILOG)(leave_out.command)
 app.command("check", epilog=EPILOG)(check.command)
 app.command("validate", epilog=EPILOG)(validate.command)
+app.command("compare", epilog=EPILOG)(compare.command)
 app.command("simulate", epilog=EPILOG)(simulate.command)
+app.command("predict", epilog=EPILOG)(predict.command)
 app.command("report", epilog=EPILOG)(report.command)
 app.command("cite", epilog=EPILOG)(cite.command)
 app.command("doctor", epilog=EPILOG)(doctor.command)

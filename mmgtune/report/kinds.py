@@ -13,6 +13,7 @@ from . import (
     hybrid_page,
     learning_page,
     models_page,
+    predict_page,
     sweep_page,
     voyages_page,
 )
@@ -30,6 +31,7 @@ KINDS: tuple[Kind, ...] = tuple(
         ensemble_page,
         hybrid_page,
         models_page,
+        predict_page,
     )
 )
 """Every kind, in the order in which their files are looked for."""
