@@ -167,7 +167,7 @@ def _on_orders(predictor: Predictor, options: SimulateOptions) -> list[Motion]:
         why = "orders are for a profile: they need its approach condition and its steering gear"
         raise OptionError(Problem(what, "trials", why, "name trials, whose inputs drive it"))
     model, ship = predictor.model, predictor.model.profile
-    speed = None if options.speed is None else _quantity(options.speed, "speed", "m/s", '"12 kn"')
+    speed = None if options.speed is None else approach_speed(options.speed)
     n = None if options.rpm is None else revolutions(options.rpm)
     L, V = ship.L_pp, speed or (ship.approach.speed if ship.approach else 1.0)
     # Models are quicker than ships: sample ten times per ship length travelled, once a second at most.
@@ -185,11 +185,21 @@ def _orders(options: SimulateOptions) -> list[tuple[str, Helmsman]]:
     turns = options.turn or (() if options.zigzag else ("35", "-35"))
     for text in turns:
         angle = rudder_angle(text)
-        orders.append((f"turn_{_signed(angle / DEG)}", TurningOrder(angle)))
+        orders.append((turn_name(angle), TurningOrder(angle)))
     for text in options.zigzag:
         rudder, heading = zigzag_angles(text)
-        orders.append((f"zigzag_{_signed(rudder)}_{heading:g}", ZigzagOrder(rudder * DEG, heading * DEG)))
+        orders.append((zigzag_name(rudder, heading), ZigzagOrder(rudder * DEG, heading * DEG)))
     return orders
+
+
+def turn_name(angle: float) -> str:
+    """What a turn at this rudder angle [rad] is called: turn_p35."""
+    return f"turn_{_signed(angle / DEG)}"
+
+
+def zigzag_name(rudder: float, heading: float) -> str:
+    """What a zigzag of these angles [deg] is called: zigzag_p10_10."""
+    return f"zigzag_{_signed(rudder)}_{heading:g}"
 
 
 def rudder_angle(text: str) -> float:
@@ -203,6 +213,11 @@ def rudder_angle(text: str) -> float:
         fix = "give an angle between -90 and 90 deg, not 0"
         raise OptionError(Problem(f"rudder angle {angle / DEG:g} deg", "turn", fix=fix))
     return angle
+
+
+def approach_speed(text: str) -> float:
+    """The speed [m/s] of "12 kn".  Raises OptionError."""
+    return _quantity(text, "speed", "m/s", '"12 kn"')
 
 
 def revolutions(text: str) -> float:

@@ -10,9 +10,10 @@ import numpy as np
 
 from .arrays import FloatArray
 from .backends import STATES, Integrator
+from .bands import WindowScore, score_window
 from .evaluation import TrialRecord, records
 from .model import Model
-from .predictor import Predictor, as_predictor
+from .predictor import Predictor, as_predictor, cases_from, draught_of, portions
 from .profile import ShipProfile
 from .trial import Trial
 
@@ -116,6 +117,22 @@ def score(
     """
     predictor = as_predictor(ship, theta=theta, integrator=integrator, backend=backend)
     return [score_of(record, sigma) for record in records(predictor, trials)]
+
+
+def window_scores(predictor: Predictor, trials: Sequence[Trial]) -> list[WindowScore]:
+    """How well all members together foretell trials, or windows of them, each from its first measured state.
+
+    Each sample of each state after the first counts where it was measured.
+    """
+    found = []
+    for portion in portions([trial.n_samples for trial in trials], predictor.n_members):
+        some = trials[portion]
+        made = predictor.predict(cases_from(some, tuple(predictor.inputs), draught_of(predictor)))
+        for i, trial in enumerate(some):
+            states, truth = made.states[i, :, 1 : trial.n_samples], trial.motion[1:]
+            facts = trial.id, trial.whole, trial.run, trial.manoeuvre
+            found.append(score_window(*facts, states, made.diverged[i], truth))
+    return found
 
 
 def score_of(record: TrialRecord, sigma: Mapping[str, float]) -> TrialScore:

@@ -24,6 +24,7 @@ from . import (
     interrupts,
     learn,
     leave_out,
+    predict,
     profiles,
     report,
     simulate,
@@ -90,6 +91,7 @@ app.command("leave-out", epilog=EPILOG)(leave_out.command)
 app.command("check", epilog=EPILOG)(check.command)
 app.command("validate", epilog=EPILOG)(validate.command)
 app.command("simulate", epilog=EPILOG)(simulate.command)
+app.command("predict", epilog=EPILOG)(predict.command)
 app.command("report", epilog=EPILOG)(report.command)
 app.command("cite", epilog=EPILOG)(cite.command)
 app.command("doctor", epilog=EPILOG)(doctor.command)

@@ -4,8 +4,10 @@ choice      a field that is an option, and what all such dataclasses do
 simulation  integrator, step, back end
 tuning      fit, sweep, leave-out
 diagnosis   diagnose
-scoring     validate, on trials and on voyages, check, and learn compare
+scoring     validate, on trials and on voyages, check, and compare
 orders      simulate
+particles   how particles are drawn: predict, compare
+predicting  predict
 estimating  profile new
 learning    learn
 flags       what fields are called on the command line
@@ -19,6 +21,8 @@ from .estimating import EstimateOptions
 from .flags import FLAGS, flags_of, in_flags
 from .learning import EnsembleOptions, HybridOptions, LearnOptions, TrainingOptions
 from .orders import SimulateOptions
+from .particles import SAMPLINGS, ParticleOptions
+from .predicting import PredictOptions
 from .scoring import FORMATS, CheckOptions, CompareModelsOptions, ValidateOptions, VoyageOptions
 from .simulation import BACKENDS, INTEGRATORS, SimulationOptions
 from .tuning import METHODS, FitOptions, LeaveOutOptions, SearchOptions, SweepOptions, TuningOptions
@@ -29,6 +33,7 @@ __all__ = [
     "FORMATS",
     "INTEGRATORS",
     "METHODS",
+    "SAMPLINGS",
     "CheckOptions",
     "Choice",
     "CompareModelsOptions",
@@ -40,6 +45,8 @@ __all__ = [
     "LearnOptions",
     "LeaveOutOptions",
     "Options",
+    "ParticleOptions",
+    "PredictOptions",
     "SearchOptions",
     "SimulateOptions",
     "SimulationOptions",
@@ -65,6 +72,7 @@ for _of in (
     HybridOptions,
     LearnOptions,
     LeaveOutOptions,
+    PredictOptions,
     SimulateOptions,
     SweepOptions,
     VoyageOptions,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from ..errors import Problem
 from .choice import INPUT, again, choice
+from .particles import ParticleOptions
 from .simulation import SimulationOptions
 from .tuning import LeaveOutOptions
 
@@ -32,8 +33,8 @@ class ValidateOptions(SimulationOptions):
 
 
 @dataclass(frozen=True)
-class CompareModelsOptions(SimulationOptions):
-    """All choices of ``learn compare``."""
+class CompareModelsOptions(SimulationOptions, ParticleOptions):
+    """All choices of ``compare``."""
 
     restart: float = again(LeaveOutOptions, "restart", 100.0)
     sigma_from: str | None = again(ValidateOptions, "sigma_from")

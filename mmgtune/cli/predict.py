@@ -1,0 +1,147 @@
+"""``mmgtune predict``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any
+
+import typer
+
+from ..errors import OptionError, Problem
+from ..options import PredictOptions
+from . import common as c
+from .learn_compare import FolderOptions
+from .options import takes
+
+
+@takes(options=PredictOptions, run=FolderOptions)
+def command(
+    model: Annotated[
+        str,
+        typer.Argument(
+            help="Profile, network, hybrid or ensemble: a file or a bundled name.", autocompletion=c.complete_profile
+        ),
+    ],
+    orders: Annotated[
+        str | None, typer.Argument(help="CSV file with a row an order: t [s], delta [deg], n [rpm].")
+    ] = None,
+    trials: Annotated[
+        str | None,
+        typer.Option(
+            "--trials", "-t", help="Predict these trials with their own inputs instead.", rich_help_panel=c.INPUT
+        ),
+    ] = None,
+    *,
+    options: PredictOptions,
+    run: FolderOptions,
+    keep_particles: Annotated[
+        bool, typer.Option("--keep-particles", help="Write all particles to --out.", rich_help_panel=c.OUTPUT)
+    ] = False,
+    json: c.Json = False,
+    no_report: c.NoReport = False,
+) -> None:
+    """Predict manoeuvres with bands: a model that knows its doubts says how sure it is.
+
+    Without orders: turning circles with 35 deg to both sides, zigzags 10/10 and 20/20. Particles are members of a
+    network of several seeds, or are drawn of an ensemble or of the coefficients of a fit; a single model has no band.
+    With trials, what was measured stands beside, and scores say whether the bands held it.
+
+    Examples:
+
+      mmgtune predict kvlcc2_tuned --turn 35 --zigzag 20/20
+
+      mmgtune predict runs/ensemble/model.safetensors orders.csv --speed "1.2 m/s" --rpm 400 --out runs/foretold
+
+      mmgtune predict runs/type1/model.safetensors --trials esso --restart 100 --level 50
+    """
+    from ..fitting import claimed
+    from ..predicting import predict, write_prediction
+    from ..report import render
+
+    if run.out is None and (keep_particles or no_report):
+        asked = "keep_particles" if keep_particles else "no_report"
+        raise OptionError(Problem("nothing is written", asked, fix="add out=FOLDER"))
+    if run.out is None:
+        document = predict(model, orders, trials, options).to_dict(c.command_line())
+    else:
+        with claimed(run.out, force=run.force):
+            result = predict(model, orders, trials, options)
+            document = write_prediction(result, run.out, c.command_line(), keep_particles=keep_particles)
+            if not no_report:
+                render(run.out)
+    if json:
+        c.print_json(document)
+        return
+    c.show(summary(document))
+    for note in document["notes"]:
+        c.say(f"note: {note}")
+    if run.out is not None:
+        c.say(f"wrote {run.out}")
+
+
+def summary(document: Mapping[str, Any]) -> str:
+    """The bands as a person wants to read them in a terminal."""
+    n, level = document["particles"], document["level"]
+    head = f"{document['model']['name']} ({document['model']['method']})"
+    lines = [f"{head}: {n} particles, ± half the band of {level:g} %" if document["has_band"] else f"{head}: one run"]
+    for run in document["runs"]:
+        lost = f", {run['diverged']} diverged" if run["diverged"] and n > 1 else ""
+        lines += ["", f"{run['id']}  ({run['order']}, {run['duration_s']:.0f} s{lost})"]
+        if run["diverged"] == n:
+            lines.append("  diverged")
+        for row in run["indices"]:
+            lines.append(_index(row, n, document["has_band"]))
+        if run["scores"]:
+            lines.append(f"  {_score(run['scores'])}")
+    if document["scores"] and len(document["runs"]) > 1:
+        lines += ["", f"all  {_score(document['scores'])}"]
+    return "\n".join(lines)
+
+
+def _index(row: Mapping[str, Any], n: int, has_band: bool) -> str:
+    shown = [_banded(row, row["unit"], has_band)]
+    if row["over_L"]:
+        shown.append(_banded(row["over_L"], "L", has_band))
+    never = "" if row["reached"] == row["particles"] else f"   {row['particles'] - row['reached']} of {n} never reach it"
+    measured = ""
+    if row["measured"] is not None:
+        beside = f" ({row['over_L']['measured']:.3g} L)" if row["over_L"] else ""
+        measured = f"   measured {row['measured']:.4g}{beside}"
+    text = f"  {row['words']:<26}" + "".join(f"{one:<26}" for one in shown) + ("" if row["over_L"] else " " * 26)
+    return (text + never + measured).rstrip()
+
+
+def _banded(row: Mapping[str, Any], unit: str, has_band: bool) -> str:
+    unit = "" if unit == "-" else f" {unit}"
+    if row["mean"] is None:
+        return "never reached"
+    if not has_band:
+        return f"{row['mean']:.4g}{unit}"
+    if row["half_width"] is None:
+        return f"{row['low']:.3g} or more{unit}" if row["low"] is not None else f"{row['mean']:.4g} ± ?{unit}"
+    decimals = decimals_of(row["half_width"])
+    return f"{row['mean']:.{decimals}f} ± {row['half_width']:.{decimals}f}{unit}"
+
+
+def decimals_of(half: float) -> int:
+    """Decimals that show two digits of half a band, 6 at most."""
+    from math import floor, log10
+
+    return 1 if half <= 0.0 else min(max(1 - floor(log10(half)), 0), 6)
+
+
+def _score(scores: Mapping[str, Any]) -> str:
+    """Scores in a line."""
+    said = [
+        ("L_Eucl", scores["L_Eucl"]),
+        ("L_Maha", scores["L_Maha"]),
+        ("correlation", scores["correlation"]),
+        ("CRPS", scores["CRPS"]),
+        ("width", scores["sharpness"]),
+    ]
+    parts = [f"{name} {value:.3g}" for name, value in said if value is not None]
+    for level in (50, 90):
+        if scores[f"coverage_{level}"] is not None:
+            parts.append(f"{level} % band holds {100.0 * scores[f'coverage_{level}']:.0f} %")
+    return ", ".join(parts) or "no score: too few particles are left"
+

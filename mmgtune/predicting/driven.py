@@ -1,0 +1,93 @@
+"""Particles driven by inputs that do not depend on them: lists of orders, and trials."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from .. import limits
+from ..arrays import FloatArray
+from ..backends import pad
+from ..errors import OptionError, TrialError
+from ..evaluation import Measured, TrialRecord
+from ..manoeuvres.summary import indices_of
+from ..predictor import Predictor, cases_from, draught_of, portions
+from ..simulation import Motion
+from ..trial import Trial
+from ..validation import window_scores
+from .asked import Approach, actuators_of
+from .order_list import OrderList
+from .reading import Values, of_records
+from .result import Foretold
+
+
+def on_orders(predictor: Predictor, orders: OrderList, approach: Approach) -> Foretold:
+    """All particles through a list of orders, from straight ahead.  Raises OptionError for one that takes too long."""
+    # As often as a simulated manoeuvre: ten samples per ship length travelled, one a second at least.
+    step = min(1.0, round(predictor.L_pp / approach.speed / 10.0, 1) or 0.1)
+    limits.ORDERS_STEPS.hold(orders.duration / step * predictor.n_members, str(orders.path), OptionError)
+    t, controls = orders.carried_out(tuple(predictor.inputs), actuators_of(predictor), approach.n, step)
+    initial = np.array([0.0, 0.0, 0.0, approach.speed, 0.0, 0.0])
+    found = predictor.predict(pad([t], [controls], [initial]))
+    states, diverged = found.states[0], found.diverged[0]
+    motions = [
+        Motion(orders.path.stem, t, one, controls, bool(lost), tuple(predictor.inputs), k)
+        for k, (one, lost) in enumerate(zip(states, diverged, strict=True))
+    ]
+    indices = of_records([_shown(motion, predictor.L_pp) for motion in motions])
+    words = f"{len(orders.t) - 1} orders of {orders.path.name}"
+    return Foretold(orders.path.stem, "orders", words, t, states, diverged, indices)
+
+
+def on_trials(predictor: Predictor, trials: Sequence[Trial], restart: float | None) -> Iterator[Foretold]:
+    """All particles on each trial, driven by its inputs, with the scores of its windows, or of the whole of it.
+
+    restart  length of the windows [s], None for whole trials
+    """
+    inputs = tuple(predictor.inputs)
+    for portion in portions([trial.n_samples for trial in trials], predictor.n_members):
+        some = trials[portion]
+        found = predictor.predict(cases_from(some, inputs, draught_of(predictor)))
+        for i, trial in enumerate(some):
+            states = np.array(found.states[i, :, : trial.n_samples])  # a copy: a view would hold all of them
+            yield replace(
+                _beside(predictor, trial, states, found.diverged[i]),
+                scores=tuple(window_scores(predictor, list(_windows(trial, restart)))),
+            )
+
+
+def _windows(trial: Trial, restart: float | None) -> Iterator[Trial]:
+    from ..trial.pieces import windows
+
+    yield from [trial] if restart is None else windows(trial, restart)
+
+
+def _beside(predictor: Predictor, trial: Trial, states: FloatArray, diverged: FloatArray) -> Foretold:
+    measured = Measured(trial, predictor.L_pp, np.zeros((trial.n_samples, 6)))
+    controls = trial.inputs(tuple(predictor.inputs))
+    values: Values = {}
+    if measured.kind != "other":
+        rows = [
+            TrialRecord(
+                measured,
+                Motion(trial.id, trial.t, one, controls, bool(lost), tuple(predictor.inputs), k),
+                predictor.method,
+            ).indices
+            for k, (one, lost) in enumerate(zip(states, diverged, strict=True))
+        ]
+        values = of_records(rows)
+    own = {key: float(of[0]) for key, of in of_records([measured.indices]).items()}
+    kind = trial.manoeuvre or measured.kind
+    return Foretold(trial.id, kind, f"{kind}, driven by its inputs", trial.t, states, diverged, values, trial, own)
+
+
+def _shown(motion: Motion, L_pp: float) -> dict[str, object]:
+    """Indices of a run, empty where it shows none."""
+    if motion.diverged:
+        return {}
+    try:
+        return indices_of(motion.track(), L_pp)
+    except TrialError:
+        return {}

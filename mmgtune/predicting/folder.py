@@ -1,0 +1,76 @@
+"""What a prediction leaves behind."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from ..backends import STATES
+from ..files import atomic, write_text
+from .result import Predicted
+
+RESULT = "predict.json"
+BANDS = "bands.parquet"
+TRACKS = "tracks.parquet"
+PATHS = "paths.parquet"
+
+DRAWN, POINTS = 40, 150
+"""Particles whose tracks are kept to be drawn, and places of each."""
+
+
+def write_prediction(
+    result: Predicted, folder: Path, command: str = "", *, keep_particles: bool = False
+) -> dict[str, Any]:
+    """Write the record, the bands and some tracks into a run folder; all particles too where they are to be kept.
+
+    Returns the record; raises OutputError.
+    """
+    document = {**result.to_dict(command), "out": str(folder)}
+    _table(folder / BANDS, _bands(result))
+    _table(folder / TRACKS, _tracks(result, ("x", "y"), DRAWN, POINTS))
+    if keep_particles:
+        _table(folder / PATHS, _tracks(result, STATES))
+    write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+    return document
+
+
+def _bands(result: Predicted) -> list[dict[str, Any]]:
+    """Columns of each run and state: t, mean, low, q25, median, q75, high, measured."""
+    found = []
+    for run in result.runs:
+        for k, name in enumerate(STATES):
+            band = run.band(name, result.level)
+            if not band:
+                continue
+            measured = run.trial.motion[:, k] if run.trial else np.full(len(run.t), np.nan)
+            n = len(run.t)
+            found.append({"run": [run.id] * n, "variable": [name] * n, "t": run.t, **band, "measured": measured})
+    return found
+
+
+def _tracks(result: Predicted, names: tuple[str, ...], most: int = 0, points: int = 0) -> list[dict[str, Any]]:
+    """Columns of each run and particle: t and states; at most so many particles and places, all where 0."""
+    found = []
+    for run in result.runs:
+        few = np.arange(len(run.states))
+        kept = few[~run.diverged]
+        if most and len(kept) > most:
+            kept = kept[np.linspace(0, len(kept) - 1, most).round().astype(int)]
+        n = len(run.t)
+        at = np.unique(np.linspace(0, n - 1, min(points, n)).round().astype(int)) if points else np.arange(n)
+        for k in kept if most else few:
+            states = {name: run.states[k, at, STATES.index(name)] for name in names}
+            lost = {} if most else {"diverged": [bool(run.diverged[k])] * len(at)}
+            found.append({"run": [run.id] * len(at), "particle": [int(k)] * len(at), "t": run.t[at], **states, **lost})
+    return found
+
+
+def _table(path: Path, parts: list[dict[str, Any]]) -> None:
+    with atomic(path) as part:
+        tables = [pa.table(one) for one in parts]
+        pq.write_table(pa.concat_tables(tables) if tables else pa.table({"run": []}), part)
