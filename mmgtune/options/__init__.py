@@ -8,6 +8,7 @@ scoring     validate, on trials and on voyages, check, and learn compare
 orders      simulate
 estimating  profile new
 learning    learn
+generating  trials make
 flags       what fields are called on the command line
 
 Nothing here is heavy to import: the command line builds its flags from it before it knows what is wanted.
@@ -17,6 +18,7 @@ from .choice import Choice, Options, again, choice, choices
 from .diagnosis import DiagnoseOptions
 from .estimating import EstimateOptions
 from .flags import FLAGS, flags_of, in_flags
+from .generating import MakeOptions
 from .learning import HybridOptions, LearnOptions, TrainingOptions
 from .orders import SimulateOptions
 from .scoring import FORMATS, CheckOptions, CompareModelsOptions, ValidateOptions, VoyageOptions
@@ -38,6 +40,7 @@ __all__ = [
     "HybridOptions",
     "LearnOptions",
     "LeaveOutOptions",
+    "MakeOptions",
     "Options",
     "SearchOptions",
     "SimulateOptions",
@@ -63,6 +66,7 @@ for _of in (
     HybridOptions,
     LearnOptions,
     LeaveOutOptions,
+    MakeOptions,
     SimulateOptions,
     SweepOptions,
     VoyageOptions,
