@@ -102,7 +102,9 @@ def _index(row: Mapping[str, Any], n: int, has_band: bool) -> str:
     shown = [_banded(row, row["unit"], has_band)]
     if row["over_L"]:
         shown.append(_banded(row["over_L"], "L", has_band))
-    never = "" if row["reached"] == row["particles"] else f"   {row['particles'] - row['reached']} of {n} never reach it"
+    never = (
+        "" if row["reached"] == row["particles"] else f"   {row['particles'] - row['reached']} of {n} never reach it"
+    )
     measured = ""
     if row["measured"] is not None:
         beside = f" ({row['over_L']['measured']:.3g} L)" if row["over_L"] else ""
@@ -144,4 +146,3 @@ def _score(scores: Mapping[str, Any]) -> str:
         if scores[f"coverage_{level}"] is not None:
             parts.append(f"{level} % band holds {100.0 * scores[f'coverage_{level}']:.0f} %")
     return ", ".join(parts) or "no score: too few particles are left"
-
