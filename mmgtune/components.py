@@ -11,18 +11,27 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from .inputs import INPUTS, Input, Role
-from .physics.arrangements import single_propeller_single_rudder
+from .physics.arrangements import single_propeller_single_rudder, single_propeller_twin_rudder
 from .physics.hull.cubic import CubicHull, cubic_hull
 from .physics.hull.derivatives import DerivativesHull, derivatives_hull
 from .physics.hull.unified import UnifiedHull, unified_hull
 from .physics.propeller.four_quadrant import FourQuadrantPropeller, four_quadrant_propeller
+from .physics.propeller.kang import KangPropeller, kang_propeller
 from .physics.propeller.open_water import OpenWaterPropeller, open_water_propeller
 from .physics.propeller.reversible import ReversiblePropeller, reversible_propeller
 from .physics.quantities import HARMONICS, AboveWater, Ship
 from .physics.rudder.flapped import FlappedRudder, flapped_rudder
+from .physics.rudder.kang import (
+    OneOfTwo,
+    RudderPair,
+    reaction_of_pair,
+    rudder_of_pair_to_port,
+    rudder_of_pair_to_starboard,
+)
 from .physics.rudder.plain import PlainRudder, plain_rudder
 from .physics.rudder.reversible import ReversibleRudder, reversible_rudder
 from .physics.rudder.slip import SlipRudder, slip_rudder
+from .physics.thruster.fading import FadingThruster, fading_thruster
 from .physics.wake.asymmetric import AsymmetricWake, asymmetric_wake
 from .physics.wake.exponential import ExponentialWake, exponential_wake
 from .physics.wake.quadratic import QuadraticWake, quadratic_wake
@@ -134,6 +143,12 @@ INOUE = "Inoue, Hirano & Kijima 1981, Int. Shipbuilding Progress 28, 112-125"
 KIJIMA = "Kijima et al. 1990, J. Society of Naval Architects of Japan 168, 247-256"
 MATHIOUDAKIS = "Mathioudakis et al., Towards real-world validation of a physics-based ship motion prediction model"
 MIYAUCHI = "Miyauchi et al. 2022, J. Marine Science and Technology, doi 10.1007/s00773-022-00889-3"
+KANG = "Kang, Nagarajan, Hasegawa & Sano 2008, J. Marine Science and Technology 13, 207-222"
+KOBAYASHI = "Kobayashi 1988, Mitsubishi Technical Bulletin 180"
+WAKITA = (
+    "Wakita, Akimoto & Maki, Probabilistic prediction of ship maneuvering motion using ensemble learning with "
+    "feedforward neural networks"
+)
 
 SHIP = Component(
     kind="particulars",
@@ -448,6 +463,139 @@ SLIP_RUDDER = Component(
     },
 )
 
+
+def _polynomial(of: str, letter: str, terms: tuple[str, ...], unit: str = "-") -> dict[str, Field]:
+    """Fields letter_1, letter_2, ... of the terms of a sum, in words."""
+    return {f"{letter}_{k}": Field(f"{of}, {term}", unit) for k, term in enumerate(terms, start=1)}
+
+
+_IN_J = ("constant term", "J term", "J^2 term")
+_IN_SLIP = ("constant term", "slip term", "slip^2 term")
+
+KANG_PROPELLER = Component(
+    kind="propulsion",
+    tag="kang",
+    title="propeller ahead on a ship that moves either way, with its wake",
+    params=KangPropeller,
+    function=kang_propeller,
+    cites=(KANG,),
+    fields={
+        "D_P": Field("diameter", "m", low=0.0, high=20.0),
+        "pitch_": Field("pitch over diameter", low=0.0, high=5.0),
+        "k_0": Field("thrust coefficient at J = 0, ship ahead"),
+        "k_1": Field("thrust coefficient, J term, ship ahead"),
+        "k_2": Field("thrust coefficient, J^2 term, ship ahead"),
+        "k_0n": Field("thrust coefficient, constant term, ship astern"),
+        "k_1n": Field("thrust coefficient, J term, ship astern"),
+        "k_2n": Field("thrust coefficient, J^2 term, ship astern"),
+        "J_max": Field("largest size of an advance ratio", default=1.5, low=0.0),
+        "x_P_": Field("longitudinal position of the propeller, over L_pp", low=-1.0, high=1.0),
+        **_polynomial("1 - w_P going straight", "a", ("constant term", "J_S term", "J_S^2 term")),
+        "b_1": Field("1 - w_P, gain by lateral velocity at the propeller v_P'"),
+        "b_2": Field("1 - w_P, v_P' term of that gain"),
+        "b_3": Field("1 - w_P, v_P'|v_P'| beside v_P' in the squared part of that gain"),
+        **_polynomial("1 - t_P going straight", "c", _IN_J),
+        "d_1": Field("1 - t_P, gain by lateral velocity at the propeller v_P'"),
+        "d_2": Field("1 - t_P, v_P' term of that gain"),
+        "d_3": Field("1 - t_P, v_P'|v_P'| beside v_P' in the squared part of that gain"),
+    },
+)
+
+RUDDER_PAIR = Component(
+    kind="rudder_pair",
+    tag="kang",
+    title="what two rudders behind one propeller share: geometry, hull reaction, normal force",
+    params=RudderPair,
+    function=reaction_of_pair,
+    cites=(KANG,),
+    fields={
+        "A_R": Field("area of each rudder", "m^2", low=0.0, high=500.0),
+        "H_R": Field("rudder span", "m", low=0.0, high=30.0),
+        "x_R_": Field("longitudinal position of the rudders, over L_pp", low=-1.0, high=1.0),
+        "k_x": Field("share of the propeller race's gain of velocity that reaches a rudder", low=-1e-12),
+        **_polynomial("steering resistance deduction t_R", "e", _IN_J),
+        **_polynomial("increase a_H of the rudder force by the hull", "f", _IN_J),
+        "a_H_low": Field("smallest a_H", low=-1.0, high=3.0),
+        "a_H_high": Field("largest a_H", low=-1.0, high=3.0),
+        **_polynomial("position x_H of that increase, over L_pp", "g", _IN_J),
+        "x_H_low": Field("smallest x_H, over L_pp", low=-3.0, high=3.0),
+        "x_H_high": Field("largest x_H, over L_pp", low=-3.0, high=3.0),
+        "C_N1": Field("normal force coefficient over sin(alpha), before stall", low=0.0),
+        "C_N2": Field("normal force coefficient in stall, constant term"),
+        "C_N3": Field("normal force coefficient in stall, alpha term", "1/rad"),
+        "C_N4": Field("normal force coefficient in stall, alpha^2 term", "1/rad^2"),
+    },
+)
+
+_CASES = (
+    "drift angle positive, rudder to port",
+    "drift angle negative, rudder to port",
+    "drift angle positive, rudder to starboard",
+    "drift angle negative, rudder to starboard",
+)
+_YAW_CASES = (
+    "turning to starboard, rudder to starboard",
+    "turning to starboard, rudder to port",
+    "turning to port, rudder to starboard",
+    "turning to port, rudder to port",
+)
+_STRAIGHTENING = ("|beta| term", "|beta|^2 term", "|beta| delta_2 term", "|beta|^2 delta_2 term")
+
+
+def _one_of_two(kind: str, words: str, function: Callable[..., Any]) -> Component:
+    return Component(
+        kind=kind,
+        tag="kang",
+        title=f"{words} rudder of a pair behind one propeller",
+        params=OneOfTwo,
+        function=function,
+        cites=(KANG,),
+        fields={
+            **_polynomial("1 - w_R", "a", ("constant term", "delta term", "delta^2 term", "delta^3 term")),
+            **_polynomial("neutral angle", "b", _IN_SLIP[:2], unit="rad"),
+            **_polynomial("deflection by the other rudder's angle", "d", _IN_SLIP),
+            **_polynomial("deflection by the other rudder's angle squared", "e", _IN_SLIP, unit="1/rad"),
+            **_polynomial("share of the inflow kept when turned outward", "g", _IN_SLIP),
+            **_polynomial("share of the inflow kept, delta_2 part", "h", _IN_SLIP, unit="1/rad"),
+            **_polynomial("share of the inflow kept, delta_2^2 part", "k", _IN_SLIP, unit="1/rad^2"),
+            **{
+                f"r_{4 * i + j + 1}": Field(f"flow straightening, {case}, {term}")
+                for i, case in enumerate(_CASES)
+                for j, term in enumerate(_STRAIGHTENING)
+            },
+            **{
+                f"gamma_{i}": Field(f"largest flow straightening, {case}", low=-1e-12, high=2.0)
+                for i, case in enumerate(_CASES, start=1)
+            },
+            **{
+                f"C_{i}": Field(f"effective position in yaw over x_R, {case}", low=-5.0, high=5.0)
+                for i, case in enumerate(_YAW_CASES, start=1)
+            },
+        },
+    )
+
+
+RUDDER_PORT = _one_of_two("rudder_port", "port", rudder_of_pair_to_port)
+RUDDER_STBD = _one_of_two("rudder_stbd", "starboard", rudder_of_pair_to_starboard)
+
+FADING_THRUSTER = Component(
+    kind="thruster",
+    tag="fading",
+    title="bow thruster in a tunnel whose force fades with speed",
+    params=FadingThruster,
+    function=fading_thruster,
+    cites=(KOBAYASHI, WAKITA),
+    fields={
+        "D": Field("diameter", "m", low=0.0, high=10.0),
+        "x": Field("longitudinal position, forward of midship", "m"),
+        "K_Tp": Field("thrust coefficient, pushing to starboard", low=0.0),
+        "K_Tn": Field("thrust coefficient, pushing to port", low=0.0),
+        **_polynomial("side force over thrust, less 1", "a", ("constant term", "Fr term", "Fr^2 term")),
+        **_polynomial("yaw moment over thrust times position, less 1", "b", ("constant term", "Fr term", "Fr^2 term")),
+        "u_off": Field("speed from which on the thruster has no force", "m/s", low=0.0),
+    },
+)
+
 WIND_FORCES = {"X": "surge force", "Y": "sway force", "N": "yaw moment"}
 HARMONIC_WORDS = (
     "mean over the angle of the wind",
@@ -495,6 +643,11 @@ COMPONENTS = (
     PLAIN_RUDDER,
     REVERSIBLE_RUDDER,
     SLIP_RUDDER,
+    KANG_PROPELLER,
+    RUDDER_PAIR,
+    RUDDER_PORT,
+    RUDDER_STBD,
+    FADING_THRUSTER,
     ABOVE_WATER,
 )
 """Every component there is, in the order documentation lists them."""
@@ -510,7 +663,18 @@ SINGLE_PROPELLER_SINGLE_RUDDER = Arrangement(
     cites=(SUYAMA,),
 )
 
-ARRANGEMENTS = (SINGLE_PROPELLER_SINGLE_RUDDER,)
+SINGLE_PROPELLER_TWIN_RUDDER = Arrangement(
+    tag="single-propeller-twin-rudder",
+    title="one propeller with two rudders behind it, and a bow thruster",
+    control=single_propeller_twin_rudder.Control,
+    components=single_propeller_twin_rudder.Components,
+    coefficients=single_propeller_twin_rudder.Coefficients,
+    breakdown=single_propeller_twin_rudder.Breakdown,
+    forces=single_propeller_twin_rudder.forces,
+    cites=(KANG, WAKITA),
+)
+
+ARRANGEMENTS = (SINGLE_PROPELLER_SINGLE_RUDDER, SINGLE_PROPELLER_TWIN_RUDDER)
 """Every arrangement there is; a profile that names none has the first."""
 
 KINDS = tuple(dict.fromkeys(kind for arrangement in ARRANGEMENTS for kind in arrangement.kinds))

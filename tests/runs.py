@@ -14,6 +14,13 @@ from mmgtune.physics.quantities import Surroundings
 FloatArray = npt.NDArray[np.float64]
 
 
+def driven(model: Model, n: npt.ArrayLike, delta: npt.ArrayLike) -> FloatArray:
+    """(n_samples, n_inputs) with n to every propeller and delta to every rudder, (n_samples,) each; thrusters rest."""
+    by_role = {"propeller": np.asarray(n, dtype=float), "rudder": np.asarray(delta, dtype=float)}
+    at_rest = 0.0 * by_role["rudder"]
+    return np.column_stack([by_role.get(one.role, at_rest) for one in model.arrangement.inputs])
+
+
 def turn(
     model: Model,
     degrees: float,
@@ -26,7 +33,7 @@ def turn(
     approach = model.profile.approach
     assert approach is not None
     t = np.arange(round(seconds / dt) + 1) * dt
-    controls = np.column_stack([np.full(len(t), approach.n if n is None else n), np.full(len(t), np.radians(degrees))])
+    controls = driven(model, np.full(len(t), approach.n if n is None else n), np.full(len(t), np.radians(degrees)))
     start = np.array([0.0, 0.0, 0.0, approach.speed, 0.0, 0.0] if initial is None else initial, dtype=float)
     return pad([t], [controls], [start])
 

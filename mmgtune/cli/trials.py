@@ -8,10 +8,12 @@ from typing import Annotated
 import typer
 
 from ..errors import OptionError, Problem
+from ..options import MakeOptions
 from . import common as c
 from .exitcodes import ExitCode
+from .options import takes
 
-app = typer.Typer(help="Make trial files from logs, check and inspect them.", no_args_is_help=True)
+app = typer.Typer(help="Make trial files from logs or from a model, check and inspect them.", no_args_is_help=True)
 
 Name = Annotated[
     str, typer.Argument(help="Folder of trial files, one file, or a bundled name.", autocompletion=c.complete_trials)
@@ -182,3 +184,30 @@ def import_(
     c.show(imported.text())
     done = "would be written" if dry_run else f"written to {out}"
     c.show(f"{len(imported.trials)} trials {done}")
+
+
+@app.command("make")
+@takes(options=MakeOptions)
+def make(
+    ship: Annotated[str, typer.Argument(help="Ship whose trials are made: vectwin.")],
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder for the sets.", rich_help_panel=c.OUTPUT)],
+    *,
+    options: MakeOptions,
+    force: Annotated[bool, typer.Option("--force", help="Replace what is there.", rich_help_panel=c.OUTPUT)] = False,
+    json: c.Json = False,
+) -> None:
+    """Make sets of trials from a model, with noise, and beside each set what was true.
+
+    Example:
+
+      mmgtune trials make vectwin --out vectwin --sets train-b,test-b
+    """
+    from ..generating import make_trials
+
+    made = make_trials(ship, out, options, force=force)
+    if json:
+        c.print_json(made.to_dict())
+        return
+    for row in made.sets:
+        c.show(f"{row['set']:<10}{row['trials']:>4} trials {row['seconds']:>7g} s  {row['about']}: {row['folder']}")
+    c.show(f"ship: {made.profile or made.ship}")

@@ -10,6 +10,7 @@ particles   how particles are drawn: predict, compare
 predicting  predict
 estimating  profile new
 learning    learn
+generating  trials make
 flags       what fields are called on the command line
 
 Nothing here is heavy to import: the command line builds its flags from it before it knows what is wanted.
@@ -19,6 +20,7 @@ from .choice import Choice, Options, again, choice, choices
 from .diagnosis import DiagnoseOptions
 from .estimating import EstimateOptions
 from .flags import FLAGS, flags_of, in_flags
+from .generating import MakeOptions
 from .learning import EnsembleOptions, HybridOptions, LearnOptions, MixtureOptions, TrainingOptions
 from .orders import SimulateOptions
 from .particles import SAMPLINGS, ParticleOptions
@@ -44,6 +46,7 @@ __all__ = [
     "HybridOptions",
     "LearnOptions",
     "LeaveOutOptions",
+    "MakeOptions",
     "MixtureOptions",
     "Options",
     "ParticleOptions",
@@ -75,6 +78,7 @@ for _of in (
     MixtureOptions,
     LeaveOutOptions,
     PredictOptions,
+    MakeOptions,
     SimulateOptions,
     SweepOptions,
     VoyageOptions,

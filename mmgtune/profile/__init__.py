@@ -3,6 +3,7 @@
 from .changing import missing_for, scale_of, tuned, with_all_effects, with_effects
 from .model import Actuator, Approach, Coefficient, Section, ShipProfile, SteeringGear
 from .reading import find_profile, load_profile, parse_profile
+from .scaling import froude_scaled
 from .writing import profile_text
 
 __all__ = [
@@ -13,6 +14,7 @@ __all__ = [
     "ShipProfile",
     "SteeringGear",
     "find_profile",
+    "froude_scaled",
     "load_profile",
     "missing_for",
     "parse_profile",

@@ -129,7 +129,7 @@ def impossible(values: FloatArray, unit: str) -> BoolArray:
     return np.asarray(np.abs(values) > LARGEST.get(unit, np.inf))
 
 
-LARGEST_RUDDER = 1.6
+LARGEST_RUDDER = 2.0
 """Rudder angle [rad] beyond which a column must be in degrees."""
 
 LARGEST_YAW_RATE = 0.5

@@ -12,7 +12,7 @@ from mmgtune.components import COMPONENTS, KINDS
 from mmgtune.model import Model
 from mmgtune.profile import load_profile, with_effects
 from mmgtune.resources import profile_names
-from tests.runs import measured, states, turn
+from tests.runs import driven, measured, states, turn
 
 
 def zigzag_like(model, seconds=900):
@@ -21,7 +21,7 @@ def zigzag_like(model, seconds=900):
     approach = model.profile.approach
     delta = np.radians(30.0) * np.sin(t / 25.0) * np.sign(np.sin(t / 140.0))
     n = approach.n * (0.8 + 0.3 * np.cos(t / 60.0))
-    return pad([t], [np.column_stack([n, delta])], [np.array([0.0, 0.0, 1.0, approach.speed, 0.0, 0.0])])
+    return pad([t], [driven(model, n, delta)], [np.array([0.0, 0.0, 1.0, approach.speed, 0.0, 0.0])])
 
 
 def backing(model, seconds=400):
@@ -46,8 +46,8 @@ def test_ahead_and_astern_agree(esso_osaka, integrator):
 @pytest.mark.parametrize("integrator", [Integrator("euler"), Integrator("rk4"), Integrator("euler", 3)])
 def test_900_steps_to_1e_9(any_model, integrator):
     rng = np.random.default_rng(1)
-    names = [next(iter(any_model.profile.sections["hull"].numbers)), "rudder.eps", "wake.w_P0"]
-    values = np.array([[any_model.profile.value(name)] for name in names]) * rng.uniform(0.8, 1.2, (3, 11))
+    names = [next(iter(any_model.profile.sections[kind].numbers)) for kind in any_model.arrangement.kinds[1:]]
+    values = np.array([[any_model.profile.value(name)] for name in names]) * rng.uniform(0.8, 1.2, (len(names), 11))
     theta = any_model.matrix(names, values)
     cases = zigzag_like(any_model)
     compiled, reference = (states(any_model, cases, theta, backend, integrator) for backend in ("compiled", "numpy"))

@@ -18,7 +18,7 @@ from mmgtune.physics.quantities import STATES, UNKNOWN, Surroundings
 from mmgtune.profile import load_profile, with_all_effects, with_effects
 from tests.backends.test_agree import backing, zigzag_like
 from tests.effects.test_effects import STRONG, blown
-from tests.runs import measured, turn
+from tests.runs import driven, measured, turn
 
 jax = pytest.importorskip("jax")
 
@@ -47,7 +47,8 @@ def agree(model, cases, integrator=RK4, theta=None, initial=None):
 @pytest.mark.slow(6)
 def test_every_profile_moves_as_on_numpy(any_model):
     integrator = Integrator("rk4", 2)  # euler is that of the tests below
-    theta = any_model.matrix(["rudder.eps"], any_model.profile.value("rudder.eps") * np.linspace(0.8, 1.2, 5)[None])
+    name = f"{any_model.parts[-1].kind}.{any_model.parts[-1].params._fields[0]}"
+    theta = any_model.matrix([name], any_model.profile.value(name) * np.linspace(0.8, 1.2, 5)[None])
     agree(any_model, zigzag_like(any_model, 150), integrator, theta)
 
 
@@ -139,12 +140,13 @@ TURNS = (-1.0, 0.0, 1.0)
 
 
 def special(model):
-    """States (n, 6) and inputs (n, 2) of all combinations."""
+    """States (n, 6) and inputs (n, n_inputs) of all combinations."""
     approach = model.profile.approach
     pairs = [(one, turns) for one in SPECIAL.values() for turns in TURNS]
     U = approach.speed
     states = np.array([(0.0, 0.0, 0.4, U * u, U * v, r) for (u, v, r, _), _ in pairs])
-    return states, np.array([(approach.n * turns, delta) for (*_, delta), turns in pairs])
+    n, delta = np.array([(approach.n * turns, delta) for (*_, delta), turns in pairs]).T
+    return states, driven(model, n, delta)
 
 
 def finite(tree):
@@ -184,7 +186,7 @@ def test_rates_have_derivatives_wherever_a_ship_can_be(any_model):
     U, n = any_model.profile.approach.speed, any_model.profile.approach.n
     plain = [0.0, 0.0, 0.4, 0.9 * U, -0.12 * U, 0.3 * U / any_model.L_pp]
     states = np.vstack([states, plain, plain])
-    controls = np.vstack([controls, [1.1 * n, 0.21], [1.1 * n, 0.0]])
+    controls = np.vstack([controls, driven(any_model, [1.1 * n, 1.1 * n], [0.21, 0.0])])
     theta = np.repeat(any_model.matrix(), len(states), axis=1)
     for name in ("effects.wind.speed", "effects.waves.height"):  # jump, or begin with a square, where there are none
         if name in any_model.rows:

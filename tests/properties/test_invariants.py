@@ -10,12 +10,29 @@ from mmgtune.model import Model
 from mmgtune.physics import prime
 from mmgtune.physics.arrangements.single_propeller_single_rudder import Control, derivatives, forces
 from mmgtune.physics.quantities import State
-from mmgtune.profile import load_profile
+from mmgtune.profile import froude_scaled, load_profile
 from tests.runs import states, turn
 
 PROPELLER_SIDE = ["C_PY0", "C_PY1", "C_PY2", "C_PN0_low", "C_PN1_low", "C_PN0_high", "C_PN1_high"]
 PROPELLER_SIDE += [f"{letter}_{i}" for letter in "AB" for i in range(1, 9)]
 finite = st.floats(-1.0, 1.0)
+
+
+CASES = {**{f"r_{4 * i + j}": f"r_{4 * (3 - i) + j}" for i in range(4) for j in range(1, 5)}, "C_1": "C_4"}
+CASES |= {"C_2": "C_3", "C_3": "C_2", "C_4": "C_1", **{f"gamma_{i}": f"gamma_{5 - i}" for i in range(1, 5)}}
+ODD = ["a_2", "a_4", "b_1", "b_2", *(f"{letter}_{k}" for letter in "eh" for k in (1, 2, 3))]
+ODD += [f"r_{4 * i + j}" for i in range(4) for j in (3, 4)]
+
+
+def mirrored_pair(model, theta):
+    """A port rudder that is the starboard one in a mirror, a propeller that does not know the side, one thrust."""
+    for symbol in model.profile.sections["rudder_stbd"].coefficients:
+        own = theta[model.rows[f"rudder_stbd.{CASES.get(symbol, symbol)}"]]
+        theta[model.rows[f"rudder_port.{symbol}"]] = -own if symbol in ODD else own
+    for name in ("b_2", "d_2"):
+        theta[model.rows[f"propulsion.{name}"]] = 0.0
+    theta[model.rows["thruster.K_Tn"]] = theta[model.rows["thruster.K_Tp"]]
+    return theta
 
 
 def symmetric(model):
@@ -24,6 +41,8 @@ def symmetric(model):
     for name in PROPELLER_SIDE:
         if f"propeller.{name}" in model.rows:
             theta[model.rows[f"propeller.{name}"]] = 0.0
+    if "rudder_pair" in model.arrangement.kinds:
+        return mirrored_pair(model, theta)
     theta[model.rows["rudder.gamma_Rn"]] = theta[model.rows["rudder.gamma_Rp"]]
     if "rudder.C_port" in model.rows:
         theta[model.rows["rudder.C_port"]] = theta[model.rows["rudder.C_stbd"]]
@@ -102,18 +121,11 @@ def test_prime_system_round_trip(L, d, U, rho, value):
 def test_froude_scaling(any_model):
     """A ship ten times as long moves alike: lengths times 10, times and speeds times the root of 10."""
     scale, root = 10.0, np.sqrt(10.0)
-    theta = any_model.matrix()
-    larger = theta.copy()
-    for name in ("L_pp", "B", "d", "x_G"):
-        larger[any_model.rows[f"particulars.{name}"]] *= scale
-    larger[any_model.rows["propeller.D_P"]] *= scale
-    larger[any_model.rows["rudder.H_R"]] *= scale
-    larger[any_model.rows["rudder.A_R"]] *= scale**2
+    larger = Model(froude_scaled(any_model.profile, scale, id="larger", name="ten times as long"))
     cases = turn(any_model, 30.0, 100.0)
-    slow = pad(
-        [cases.t[0] * root], [cases.controls[0] * [1 / root, 1]], [cases.initial[0] * [1, 1, 1, root, root, 1 / root]]
-    )
-    a, b = states(any_model, cases, theta)[0, 0], states(any_model, slow, larger)[0, 0]
+    turns = [1.0 if one.role == "rudder" else 1.0 / root for one in any_model.arrangement.inputs]
+    slow = pad([cases.t[0] * root], [cases.controls[0] * turns], [cases.initial[0] * [1, 1, 1, root, root, 1 / root]])
+    a, b = states(any_model, cases)[0, 0], states(larger, slow)[0, 0]
     np.testing.assert_allclose(b / [scale, scale, 1, root, root, 1 / root], a, rtol=1e-9, atol=1e-9)
 
 
@@ -159,7 +171,8 @@ def test_resistance_opposes_the_motion_either_way(any_model):
     p = any_model.coefficients(any_model.matrix())
     for u in (2.0, -2.0):
         state = State(0.0, 0.0, 0.0, np.array([u]), np.zeros(1), np.zeros(1))
-        assert forces(state, Control(np.zeros(1), np.zeros(1)), any_model.components, p).hull.X * u < 0.0
+        control = any_model.arrangement.control(*(np.zeros(1) for _ in any_model.inputs))
+        assert any_model.arrangement.forces(state, control, any_model.components, p).hull.X * u < 0.0
 
 
 def test_derivatives_of_position_are_velocities_in_the_earth_frame(suzaku):
