@@ -27,6 +27,8 @@ from .fitting import fit as fit
 from .fitting import leave_out as leave_out
 from .fitting import sweep as sweep
 from .fitting import write_run as write_run
+from .generating import Made as Made
+from .generating import make_trials as make_trials
 from .importing import import_logs as import_logs
 from .importing import load_map as load_map
 from .learning import Learned as Learned
@@ -52,6 +54,7 @@ from .options import FitOptions as FitOptions
 from .options import HybridOptions as HybridOptions
 from .options import LearnOptions as LearnOptions
 from .options import LeaveOutOptions as LeaveOutOptions
+from .options import MakeOptions as MakeOptions
 from .options import MixtureOptions as MixtureOptions
 from .options import SimulateOptions as SimulateOptions
 from .options import SweepOptions as SweepOptions
