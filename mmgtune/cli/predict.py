@@ -135,6 +135,7 @@ def decimals_of(half: float) -> int:
 def _score(scores: Mapping[str, Any]) -> str:
     """Scores in a line."""
     said = [
+        ("L_fit", scores["L_fit"]),
         ("L_Eucl", scores["L_Eucl"]),
         ("L_Maha", scores["L_Maha"]),
         ("correlation", scores["correlation"]),
