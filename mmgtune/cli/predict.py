@@ -23,7 +23,7 @@ def command(
         ),
     ],
     orders: Annotated[
-        str | None, typer.Argument(help="CSV file with a row an order: t [s], delta [deg], n [rpm].")
+        str | None, typer.Argument(help="CSV file: time and inputs with units in its header, a row an order.")
     ] = None,
     trials: Annotated[
         str | None,
