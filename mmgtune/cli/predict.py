@@ -54,9 +54,7 @@ def command(
 
       mmgtune predict runs/type1/model.safetensors --trials esso --restart 100 --level 50
     """
-    from ..fitting import claimed
     from ..predicting import predict, write_prediction
-    from ..report import render
 
     if run.out is None and (keep_particles or no_report):
         asked = "keep_particles" if keep_particles else "no_report"
@@ -64,6 +62,9 @@ def command(
     if run.out is None:
         document = predict(model, orders, trials, options).to_dict(c.command_line())
     else:
+        from ..fitting import claimed
+        from ..report import render
+
         with claimed(run.out, force=run.force):
             result = predict(model, orders, trials, options)
             document = write_prediction(result, run.out, c.command_line(), keep_particles=keep_particles)
