@@ -19,10 +19,10 @@ from typing import Any, TypeVar, cast
 from .bands import Pooled, WindowScore, pooled
 from .errors import OptionError, Problem, closest
 from .files import write_text
-from .fitting.run import made_by
 from .given import TrialsGiven, trials_of
 from .options import CompareModelsOptions
 from .predictor import Predictor, Sampling, Uncertain, particles_of, profile_of
+from .provenance import made_by
 from .trial import Trial, TrialSet
 from .validating import Scorable, predictors_of, sigma_of
 from .validation import L_MSE, TrialScore, by_manoeuvre, by_member, by_run, score, window_scores

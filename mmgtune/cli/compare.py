@@ -111,7 +111,7 @@ def _table(models: Sequence[Any], columns: Sequence[Any], of: Sequence[int], con
     return lines
 
 
-_HEADS = ("particles", "L_Eucl", "L_Maha", "correlation", "CRPS", "50 % holds", "90 % holds", "width")
+_HEADS = ("particles", "L_fit", "L_Eucl", "L_Maha", "correlation", "CRPS", "50 % holds", "90 % holds", "width")
 
 
 def _bands(document: Mapping[str, Any], of: Sequence[int], convention: str) -> list[str]:
@@ -124,7 +124,7 @@ def _bands(document: Mapping[str, Any], of: Sequence[int], convention: str) -> l
             best = column["best_CRPS"][convention] == model["name"]
             cells = [
                 str(row["particles"]),
-                *(_number(row[name]) for name in ("L_Eucl", "L_Maha", "correlation")),
+                *(_number(row[name]) for name in ("L_fit", "L_Eucl", "L_Maha", "correlation")),
                 _number(row["CRPS"]) + "*" * best,
                 *("-" if row[f"coverage_{n}"] is None else f"{100.0 * row[f'coverage_{n}']:.0f} %" for n in (50, 90)),
                 _number(row["sharpness"]),

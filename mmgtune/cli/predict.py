@@ -23,7 +23,7 @@ def command(
         ),
     ],
     orders: Annotated[
-        str | None, typer.Argument(help="CSV file with a row an order: t [s], delta [deg], n [rpm].")
+        str | None, typer.Argument(help="CSV file: time and inputs with units in its header, a row an order.")
     ] = None,
     trials: Annotated[
         str | None,
@@ -54,9 +54,7 @@ def command(
 
       mmgtune predict runs/type1/model.safetensors --trials esso --restart 100 --level 50
     """
-    from ..fitting import claimed
     from ..predicting import predict, write_prediction
-    from ..report import render
 
     if run.out is None and (keep_particles or no_report):
         asked = "keep_particles" if keep_particles else "no_report"
@@ -64,6 +62,9 @@ def command(
     if run.out is None:
         document = predict(model, orders, trials, options).to_dict(c.command_line())
     else:
+        from ..fitting import claimed
+        from ..report import render
+
         with claimed(run.out, force=run.force):
             result = predict(model, orders, trials, options)
             document = write_prediction(result, run.out, c.command_line(), keep_particles=keep_particles)
@@ -135,6 +136,7 @@ def decimals_of(half: float) -> int:
 def _score(scores: Mapping[str, Any]) -> str:
     """Scores in a line."""
     said = [
+        ("L_fit", scores["L_fit"]),
         ("L_Eucl", scores["L_Eucl"]),
         ("L_Maha", scores["L_Maha"]),
         ("correlation", scores["correlation"]),

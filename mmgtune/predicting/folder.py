@@ -7,8 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.parquet as pq
 
 from ..backends import STATES
 from ..files import atomic, write_text
@@ -73,6 +71,9 @@ def _tracks(result: Predicted, names: tuple[str, ...], most: int = 0, points: in
 
 def _table(path: Path, parts: list[dict[str, Any]], names: tuple[str, ...]) -> None:
     """Parts below each other; of none the ``names`` of the columns that there would be."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
     with atomic(path) as part:
         tables = [pa.table(one) for one in parts]
         pq.write_table(pa.concat_tables(tables) if tables else pa.table({name: [] for name in names}), part)

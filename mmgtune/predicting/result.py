@@ -12,10 +12,10 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray
 from ..backends import STATES
 from ..bands import IndexBand, Pooled, WindowScore, covariances, fan, index_band, pooled, widest
-from ..fitting.run import made_by
 from ..options import PredictOptions
 from ..predictor import Predictor
 from ..profile import ShipProfile
+from ..provenance import made_by
 from ..trial import Trial
 from .asked import profile_behind
 from .reading import BY_KEY, Values
