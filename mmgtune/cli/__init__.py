@@ -28,6 +28,7 @@ from . import (
     profiles,
     report,
     simulate,
+    study,
     sweep,
     trials,
     validate,
@@ -96,6 +97,7 @@ app.command("report", epilog=EPILOG)(report.command)
 app.command("cite", epilog=EPILOG)(cite.command)
 app.command("doctor", epilog=EPILOG)(doctor.command)
 app.add_typer(learn.app, name="learn", epilog=EPILOG)
+app.add_typer(study.app, name="study", epilog=EPILOG)
 app.add_typer(trials.app, name="trials", epilog=EPILOG)
 app.add_typer(profiles.app, name="profile", epilog=EPILOG)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Protocol
 
 import numpy as np
 
@@ -11,26 +10,9 @@ from ..arrays import FloatArray, IntArray
 from ..backends import Cases
 from ..backends.cases import SPEED_LIMIT
 from ..physics.quantities import Surroundings
-from ..predictor import Prediction
-from .motion import Array
+from ..predictor import Prediction, Run
 
 WIND = tuple(Surroundings._fields.index(name) for name in ("wind_north", "wind_east"))
-
-
-class Run(Protocol):
-    """Networks on their way, with what they remember.
-
-    states  (n_members, n_lanes, 6)
-    """
-
-    states: Array
-
-    def step(self, controls: FloatArray, wind: FloatArray, h: float) -> None:
-        """March by h [s] with inputs (n_lanes, n_inputs) and wind (n_lanes, 2) over ground [m/s].
-
-        Both may have an axis of members in front.
-        """
-        ...
 
 
 def marched(run: Run, cases: Cases, h: float) -> Prediction:

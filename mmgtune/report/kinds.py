@@ -10,6 +10,7 @@ from . import (
     diagnosis_page,
     ensemble_page,
     fit_page,
+    heading_page,
     hybrid_page,
     learning_page,
     models_page,
@@ -30,6 +31,7 @@ KINDS: tuple[Kind, ...] = tuple(
         ensemble_page,
         hybrid_page,
         models_page,
+        heading_page,
     )
 )
 """Every kind, in the order in which their files are looked for."""
