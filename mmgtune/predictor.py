@@ -13,9 +13,10 @@ from typing import Literal, Protocol, runtime_checkable
 import numpy as np
 
 from .arrays import BoolArray, FloatArray, IntArray
-from .backends import Cases, Integrator, get_backend, pad
+from .backends import STATES, Cases, Integrator, LaneModel, get_backend, pad
 from .errors import OptionError, Problem
 from .model import Model
+from .physics.quantities import State, Surroundings
 from .profile import ShipProfile
 from .trial import Trial, surroundings
 
@@ -83,6 +84,38 @@ class Steerable(Predictor, Protocol):
         ...
 
 
+class Run(Protocol):
+    """Members under way on many lanes at once, steered while they move.
+
+    states  (n_members, n_lanes, 6)
+    """
+
+    @property
+    def states(self) -> FloatArray: ...
+
+    def step(self, controls: FloatArray, around: FloatArray, h: float) -> None:
+        """March by h [s] with inputs (n_lanes, n_inputs) in surroundings (n_lanes, n_surroundings).
+
+        Both may have an axis of members in front.
+        """
+        ...
+
+
+@runtime_checkable
+class Fleet(Predictor, Protocol):
+    """A predictor whose members can be steered on many lanes at once, each with inputs of its own.
+
+    own_step  [s] it marches in, None where it is told
+    """
+
+    @property
+    def own_step(self) -> float | None: ...
+
+    def under_way(self, states: FloatArray, controls: FloatArray) -> Run:
+        """All members on lanes, from states (n_members, n_lanes, 6) with inputs (n_members, n_lanes, n_inputs)."""
+        ...
+
+
 @runtime_checkable
 class Paired(Predictor, Protocol):
     """A predictor that can run one member on each case, as a helmsman to each member asks for."""
@@ -145,6 +178,35 @@ def stepper_of(predictor: Predictor, member: int, state: FloatArray, controls: F
     return Restarted(predictor, member, state)
 
 
+class LaneFleet:
+    """Members of a model of forces on lanes, on NumPy; see ``Run``.  Inputs change linearly within a step.
+
+    ship  a model with the coefficients of every lane, the lanes of a member side by side
+    """
+
+    def __init__(self, ship: LaneModel, states: FloatArray, controls: FloatArray):
+        self._shape = states.shape[:2]
+        self._ship = ship
+        self._run = ship.start(State(*_on_lanes(states)), ship.arrangement.control(*_on_lanes(controls)))
+
+    @property
+    def states(self) -> FloatArray:
+        """See ``Run``."""
+        return np.stack(self._run.shown, axis=-1).reshape(*self._shape, len(STATES))
+
+    def step(self, controls: FloatArray, around: FloatArray, h: float) -> None:
+        """See ``Run``."""
+        inputs = np.broadcast_to(controls, (*self._shape, controls.shape[-1]))
+        here = Surroundings(*_on_lanes(np.broadcast_to(around, (*self._shape, around.shape[-1]))))
+        with np.errstate(all="ignore"):
+            self._run.step(self._ship.arrangement.control(*_on_lanes(inputs)), here, h, Integrator("rk4"))
+
+
+def _on_lanes(values: FloatArray) -> FloatArray:
+    """(n, n_members * n_lanes) of (n_members, n_lanes, n)."""
+    return np.ascontiguousarray(values.reshape(-1, values.shape[-1]).T)
+
+
 @dataclass(frozen=True, eq=False)
 class PhysicsPredictor:
     """A model with one or many parameter vectors.
@@ -189,6 +251,16 @@ class PhysicsPredictor:
         )
         assert result.states is not None  # asked for
         return Prediction(result.states, result.diverged)
+
+    @property
+    def own_step(self) -> None:
+        """See ``Fleet``."""
+        return None
+
+    def under_way(self, states: FloatArray, controls: FloatArray) -> Run:
+        """See ``Fleet``."""
+        theta = np.repeat(self.theta, states.shape[1], axis=1)
+        return LaneFleet(LaneModel(self.model, theta), states, controls)
 
 
 def as_predictor(

@@ -29,6 +29,7 @@ from . import (
     profiles,
     report,
     simulate,
+    study,
     sweep,
     trials,
     validate,
@@ -98,6 +99,7 @@ app.command("report", epilog=EPILOG)(report.command)
 app.command("cite", epilog=EPILOG)(cite.command)
 app.command("doctor", epilog=EPILOG)(doctor.command)
 app.add_typer(learn.app, name="learn", epilog=EPILOG)
+app.add_typer(study.app, name="study", epilog=EPILOG)
 app.add_typer(trials.app, name="trials", epilog=EPILOG)
 app.add_typer(profiles.app, name="profile", epilog=EPILOG)
 

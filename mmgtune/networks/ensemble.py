@@ -13,6 +13,7 @@ from ..arrays import FloatArray, IntArray
 from ..backends import Cases
 from ..errors import OptionError, Problem, closest
 from ..inputs import INPUTS
+from ..options.particles import SAMPLINGS
 from ..predictor import Prediction, Predictor, Sampling
 from ..threads import blas_on_one_thread
 from .feedforward import Layers, Standards, begun, dense, member, scaled, standardised, through
@@ -22,8 +23,6 @@ from .motion import Array, moved, observed
 
 Single = np.float32
 """Layers are evaluated in single precision, in which they are kept and were trained; states are in double."""
-
-SAMPLINGS = ("TS-infinity", "TS1")
 
 
 @dataclass(frozen=True, eq=False)
@@ -201,7 +200,7 @@ class EnsembleRun:
 
 @dataclass(frozen=True, eq=False)
 class EnsemblePredictor:
-    """All members of an ensemble; see ``Predictor``, ``Steerable``, ``Paired`` and ``Uncertain``.
+    """All members of an ensemble; see ``Predictor``, ``Steerable``, ``Paired``, ``Fleet`` and ``Uncertain``.
 
     Every member starts from the given state: what comes before it is not in a case, and what comes after it, from which
     the initial-state networks learned to estimate it, is what is to be predicted.
@@ -251,6 +250,15 @@ class EnsemblePredictor:
         """See ``Paired``."""
         return paired(EnsembleRun(self.ensemble, cases.initial[:, None], repeat(members)), cases, self.ensemble.step)
 
+    @property
+    def own_step(self) -> float:
+        """See ``Fleet``."""
+        return self.ensemble.step
+
+    def under_way(self, states: FloatArray, controls: FloatArray) -> EnsembleRun:
+        """See ``Fleet``."""
+        return EnsembleRun(self.ensemble, states, repeat(np.arange(self.n_members)))
+
     def stepper(self, member: int, state: FloatArray, controls: FloatArray) -> RunStepper:
         """See ``Steerable``."""
         return _steered(self.ensemble, state, repeat(np.array([member])))
@@ -268,7 +276,7 @@ class EnsemblePredictor:
 
 @dataclass(frozen=True, eq=False)
 class ParticlePredictor:
-    """Particles of an ensemble; see ``Predictor``, ``Steerable`` and ``Paired``.
+    """Particles of an ensemble; see ``Predictor``, ``Steerable``, ``Paired`` and ``Fleet``.
 
     TS-infinity gives each particle one member for its whole path, TS1 another at each step (eq. 28; Chua et al. 2018).
     Members are dealt out evenly: with as many particles as members each has one.  In TS1 a particle changes members at
@@ -324,6 +332,15 @@ class ParticlePredictor:
         """See ``Paired``."""
         of = (which[members] for which in self.members())
         return paired(EnsembleRun(self.ensemble, cases.initial[:, None], of), cases, self.ensemble.step)
+
+    @property
+    def own_step(self) -> float:
+        """See ``Fleet``."""
+        return self.ensemble.step
+
+    def under_way(self, states: FloatArray, controls: FloatArray) -> EnsembleRun:
+        """See ``Fleet``."""
+        return EnsembleRun(self.ensemble, states, self.members())
 
     def stepper(self, member: int, state: FloatArray, controls: FloatArray) -> RunStepper:
         """See ``Steerable``."""

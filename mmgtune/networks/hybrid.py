@@ -13,7 +13,7 @@ from ..backends import Cases, Integrator
 from ..backends.numpy_lanes import NUMPY, Arithmetic, LaneModel, Moment, NumpyLanes
 from ..model import Model
 from ..physics.quantities import State, Surroundings
-from ..predictor import Prediction, words_of
+from ..predictor import LaneFleet, Prediction, words_of
 from ..profile import ShipProfile
 from . import residual
 from .residual import Ranges, ResidualWeights
@@ -164,6 +164,16 @@ class HybridPredictor:
         )
         assert run.states is not None  # asked for
         return Prediction(run.states, run.diverged)
+
+    @property
+    def own_step(self) -> None:
+        """See ``Fleet``."""
+        return None
+
+    def under_way(self, states: FloatArray, controls: FloatArray) -> LaneFleet:
+        """See ``Fleet``."""
+        theta = np.repeat(self.model.matrix(), states.shape[1], axis=1)
+        return LaneFleet(self.lanes(self.model, theta), states, controls)
 
     @property
     def lanes(self) -> Any:

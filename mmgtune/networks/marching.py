@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Protocol
 
 import numpy as np
 
@@ -12,26 +11,9 @@ from ..arrays import FloatArray, IntArray
 from ..backends import Cases
 from ..backends.cases import SPEED_LIMIT
 from ..physics.quantities import HELD, UNKNOWN, Surroundings
-from ..predictor import Prediction
-from .motion import Array
+from ..predictor import Prediction, Run
 
 WIND = tuple(Surroundings._fields.index(name) for name in ("wind_north", "wind_east"))
-
-
-class Run(Protocol):
-    """Networks on their way, with what they remember.
-
-    states  (n_members, n_lanes, 6)
-    """
-
-    states: Array
-
-    def step(self, controls: FloatArray, around: FloatArray, h: float) -> None:
-        """March by h [s] with inputs (n_lanes, n_inputs) and surroundings (n_lanes, n_surroundings).
-
-        Both may have an axis of members in front.
-        """
-        ...
 
 
 def marched(run: Run, cases: Cases, h: float) -> Prediction:

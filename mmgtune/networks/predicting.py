@@ -18,7 +18,7 @@ from .recurrent import accelerations, features, projected, remembered, truncated
 
 @dataclass(frozen=True, eq=False)
 class NetworkPredictor:
-    """All members of a network; see ``Predictor``, ``Steerable`` and ``Paired``.
+    """All members of a network; see ``Predictor``, ``Steerable``, ``Paired`` and ``Fleet``.
 
     It marches in its own step by Euler's method, as it was trained.  The memory begins at zero with each case.
     """
@@ -66,6 +66,15 @@ class NetworkPredictor:
         """See ``Paired``."""
         run = NetworkRun(self.network.only(members), cases.initial[:, None])
         return paired(run, cases, self.network.step)
+
+    @property
+    def own_step(self) -> float:
+        """See ``Fleet``."""
+        return self.network.step
+
+    def under_way(self, states: FloatArray, controls: FloatArray) -> NetworkRun:
+        """See ``Fleet``."""
+        return NetworkRun(self.network, states)
 
     def stepper(self, member: int, state: FloatArray, controls: FloatArray) -> RunStepper:
         """See ``Steerable``."""

@@ -11,6 +11,7 @@ predicting  predict
 estimating  profile new
 learning    learn
 generating  trials make
+studying    study
 flags       what fields are called on the command line
 
 Nothing here is heavy to import: the command line builds its flags from it before it knows what is wanted.
@@ -27,6 +28,7 @@ from .particles import SAMPLINGS, ParticleOptions
 from .predicting import PredictOptions
 from .scoring import FORMATS, CheckOptions, CompareModelsOptions, ValidateOptions, VoyageOptions
 from .simulation import BACKENDS, INTEGRATORS, SimulationOptions
+from .studying import HeadingOptions
 from .tuning import METHODS, FitOptions, LeaveOutOptions, SearchOptions, SweepOptions, TuningOptions
 
 __all__ = [
@@ -43,6 +45,7 @@ __all__ = [
     "EnsembleOptions",
     "EstimateOptions",
     "FitOptions",
+    "HeadingOptions",
     "HybridOptions",
     "LearnOptions",
     "LeaveOutOptions",
@@ -73,6 +76,7 @@ for _of in (
     EnsembleOptions,
     EstimateOptions,
     FitOptions,
+    HeadingOptions,
     HybridOptions,
     LearnOptions,
     MixtureOptions,

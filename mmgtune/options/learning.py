@@ -114,7 +114,7 @@ class EnsembleOptions(TrainingOptions):
     width: int = again(TrainingOptions, "width", 256)
     steps: int = again(TrainingOptions, "steps", 3000)
     batch: int = again(TrainingOptions, "batch", 32)
-    rate: float = again(TrainingOptions, "rate", 1e-3)
+    rate: float = again(TrainingOptions, "rate", 3e-3)
     horizon: int = again(LearnOptions, "horizon", 100)
     initial: int = choice(
         30,

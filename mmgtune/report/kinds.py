@@ -10,6 +10,7 @@ from . import (
     diagnosis_page,
     ensemble_page,
     fit_page,
+    heading_page,
     hybrid_page,
     learning_page,
     models_page,
@@ -32,6 +33,7 @@ KINDS: tuple[Kind, ...] = tuple(
         hybrid_page,
         models_page,
         predict_page,
+        heading_page,
     )
 )
 """Every kind, in the order in which their files are looked for."""
