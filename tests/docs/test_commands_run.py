@@ -83,7 +83,7 @@ def own_trials(desk, name):
         write_trial(replace(whole, **thin), desk / name / f"{trial}.parquet", overwrite=True)
 
 
-SECONDS = {"README.md": 150, "calibrate.md": 70}
+SECONDS = {"README.md": 150, "calibrate.md": 70, "vectwin.md": 40}
 """About, of pages that take much longer than the others."""
 
 
