@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Any
 
 import typer
@@ -92,11 +92,18 @@ def summary(document: Mapping[str, Any]) -> str:
             lines.append("  diverged")
         for row in run["indices"]:
             lines.append(_index(row, n, document["has_band"]))
+        if not run["indices"] and run["diverged"] < n:
+            lines.append(f"  at the end: {ended(run['end'], document['has_band'])}")
         if run["scores"]:
             lines.append(f"  {_score(run['scores'])}")
     if document["scores"] and len(document["runs"]) > 1:
         lines += ["", f"all  {_score(document['scores'])}"]
     return "\n".join(lines)
+
+
+def ended(rows: Sequence[Mapping[str, Any]], has_band: bool) -> str:
+    """Where a run ends."""
+    return ", ".join(f"{row['words']} {_banded(row, row['unit'], has_band)}" for row in rows)
 
 
 def _index(row: Mapping[str, Any], n: int, has_band: bool) -> str:

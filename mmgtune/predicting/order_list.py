@@ -68,14 +68,13 @@ def _moved(
     if ordered is None:
         return found
     held, last = begin, begin
+    first = [*np.searchsorted(t, at).tolist(), len(t)]
     for k, when in enumerate(at):
-        end = at[k + 1] if k + 1 < len(at) else math.inf
         last = last if math.isnan(ordered[k]) else float(ordered[k])
-        part = (t >= when) & (t < end) if k else t < end
-        since = t[part] - when
-        found[part] = gear.moved(held, last, since) if gear else last
-        if math.isfinite(end):
-            held = float(gear.moved(held, last, end - when)) if gear else last
+        part = slice(first[k], first[k + 1])
+        found[part] = gear.moved(held, last, t[part] - when) if gear else last
+        if k + 1 < len(at):
+            held = float(gear.moved(held, last, at[k + 1] - when)) if gear else last
     return found
 
 

@@ -145,6 +145,10 @@ def _verdict(record: PredictRecord) -> str:
                 unit = "ship lengths" if row["over_L"] else row["unit"]
                 name = "the advance" if row["over_L"] else "the first overshoot"
                 said.append(f"{clean(run['order'])}: {name} is {_banded(banded)} {unit}")
+    if not said and record.runs[0]["diverged"] < record.data["particles"]:
+        run = record.runs[0]
+        where = ", ".join(f"{row['words']} {_banded(row)} {row['unit']}" for row in run["end"][:3])
+        said.append(f"after {shown(run['duration_s'], 3)} s of {clean(run['order'])}: {where}")
     text = "; ".join(said) + "." if said else f"{count(len(record.runs), 'run')} foretold."
     return text[:1].upper() + text[1:]
 

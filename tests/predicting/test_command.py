@@ -44,6 +44,7 @@ def test_a_list_of_orders_on_the_console(desk):
     assert "21 particles" in ended.out
     assert "± half the band of 90 %" in ended.out
     assert "orders  (3 orders of orders.csv, 90 s" in ended.out
+    assert "at the end: north" in ended.out or "advance" in ended.out
     assert "no steering gear" in ended.err
 
 

@@ -56,6 +56,9 @@ def test_a_turn_as_a_list_is_the_turn(suzaku, tmp_path):
     assert run.id == "orders"
     for key in ("advance_m", "tactical_diameter_m", "time_180_s"):
         assert run.indices[key][0] == pytest.approx(turn.runs[0].indices[key][0], rel=0.01)
+    (north, _, heading, _) = run.end(0.9)
+    assert (north["mean"], north["unit"]) == (pytest.approx(run.states[0, -1, 0]), "m")
+    assert heading["mean"] == pytest.approx(run.states[0, -1, 2] / DEG)
     np.testing.assert_allclose(run.states[0, -1, 3:], turn.runs[0].states[0, -1, 3:], rtol=2e-3)
 
 
