@@ -132,6 +132,9 @@ def validate(
     for name, predictor in several.items():
         repeated = tuple(repeat(predictor, whole)) if options.manoeuvres else ()
         notes = notes_on(predictor.model, whole) if isinstance(predictor, PhysicsPredictor) else ()
+        own = getattr(predictor, "id", None) if profile_of(predictor) is None else None
+        if own and data.ship and data.ship != own:
+            notes = [f"the trials are of '{data.ship}', '{name}' was trained for '{own}'", *notes]
         scores = tuple(score(predictor, pieces, sigma)) if pieces else ()
         stated = _stated(predictor, data, options.backend)
         scored.append(Scored(name, predictor, scores, repeated, stated, tuple(notes)))

@@ -10,20 +10,22 @@ from pathlib import Path
 
 from ..backends import Integrator
 from ..errors import OptionError, Problem, closest
-from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
+from ..given import ShipGiven, TrialsGiven, trials_of
 from ..metrics import METRICS
-from ..model import Model
+from ..predictor import Predictor
 from ..profile.doubts import in_words
+from ..trial import TrialSet
 from .baseline import Baseline, Recorded, read_baseline, write_baseline
 from .blame import changed_coefficients
 from .measuring import Values, applicable, default_tolerances, measure, measure_stated
 from .result import CheckReport, Item, Status
+from .subject import Subject, subject_of
 
 BaselineGiven = Baseline | str | Path | None
 
 
 def record_baseline(
-    profile: ShipGiven,
+    profile: ShipGiven | Predictor,
     trials: TrialsGiven,
     metrics: Sequence[str] = (),
     *,
@@ -38,23 +40,21 @@ def record_baseline(
     before   the baseline this one takes the place of: its tolerances stay
     Raises OptionError for an unknown metric.
     """
-    profile, trials = ship_of(profile), trials_of(trials)
-    model = Model(profile)
+    ship, trials = subject_of(profile, integrator, backend), trials_of(trials)
     names = _known(metrics) or (before.metrics if before else list(METRICS))
-    (found,) = measure(model, list(trials.trials.values()), names, integrator=integrator, backend=backend)
-    found |= measure_stated(model, list(trials.stated.values()), names, backend)
+    found = _measured(ship, trials, names, backend)
     hashes = trials.hashes()
     shown = names if before and not metrics else applicable(found)
-    tolerances = {name: dict(of) for name, of in default_tolerances(shown, model.L_pp).items()}
+    tolerances = {name: dict(of) for name, of in default_tolerances(shown, ship.L_pp).items()}
     if before:
         for name, of in before.tolerances.items():
             trial, _, metric = name.rpartition("/")
             if metric in tolerances and (not trial or trial in found):
                 tolerances[name] = dict(of)
     return Baseline(
-        ship=profile.id,
-        sha256=profile.sha256,
-        coefficients=model.numbers(),
+        ship=ship.id,
+        sha256=ship.sha256,
+        coefficients=ship.numbers,
         integrator=integrator.name,
         substeps=integrator.substeps,
         backend=backend,
@@ -65,7 +65,7 @@ def record_baseline(
 
 
 def check(
-    profile: ShipGiven,
+    profile: ShipGiven | Predictor,
     trials: TrialsGiven,
     baseline: BaselineGiven = None,
     *,
@@ -74,7 +74,7 @@ def check(
     integrator: Integrator | None = None,
     backend: str = "compiled",
 ) -> CheckReport:
-    """Compare a profile with its baseline, and with the limits it sets itself.
+    """Compare a profile with its baseline, and with the limits it sets itself; or a trained model with its baseline.
 
     profile, trials, baseline  objects, paths or bundled names
     names       what the user called them, for messages
@@ -86,34 +86,32 @@ def check(
     began = time.perf_counter()
     names = names or called(profile, trials, baseline)
     baseline = baseline_of(baseline)
-    profile, trials = ship_of(profile), trials_of(trials)
     chosen = _integrator(baseline, integrator, names[2] or "baseline")
-    if baseline is None and not profile.limits:
+    ship, trials = subject_of(profile, chosen, backend), trials_of(trials)
+    if baseline is None and not ship.limits:
         raise OptionError(
             Problem(
                 "there is nothing to compare with",
-                names[0] or profile.id,
+                names[0] or ship.id,
                 "neither a baseline nor limits were given",
                 "name a baseline with baseline=FILE, or put [limits] into the profile",
             )
         )
-    if baseline is not None and baseline.ship != profile.id:
+    if baseline is not None and baseline.ship != ship.id:
         raise OptionError(
             Problem(
-                f"the baseline is of ship '{baseline.ship}', the profile of '{profile.id}'",
+                f"the baseline is of ship '{baseline.ship}', the profile of '{ship.id}'",
                 names[2] or "baseline",
                 fix="name the baseline of this ship, or write one with update_baseline=True",
             )
         )
-    model = Model(profile)
     wanted = _known(metrics) or (baseline.metrics if baseline else [])
-    wanted = [name for name in METRICS if name in wanted or (name in profile.limits and not metrics)]
-    (found,) = measure(model, list(trials.trials.values()), wanted, integrator=chosen, backend=backend)
-    found |= measure_stated(model, list(trials.stated.values()), wanted, backend)
+    wanted = [name for name in METRICS if name in wanted or (name in ship.limits and not metrics)]
+    found = _measured(ship, trials, wanted, backend)
     hashes = trials.hashes()
     items: list[Item] = []
     for name, values in found.items():
-        items += compared(name, values, hashes[name], wanted, profile.limits, baseline)
+        items += compared(name, values, hashes[name], wanted, ship.limits, baseline)
     gone = [name for name in baseline.trials if name not in found] if baseline else []
     items += [
         Item(name, "", None, None, None, "not comparable", "the baseline has it, the trials do not") for name in gone
@@ -124,26 +122,26 @@ def check(
         if baseline and name in baseline.trials and baseline.trials[name].sha256 == trial.sha256
     ]
     return CheckReport(
-        profile=names[0] or profile.id,
+        profile=names[0] or ship.id,
         trials=names[1],
         baseline=names[2],
-        profile_file=str(profile.path or ""),
-        sha256=profile.sha256,
+        profile_file=ship.path,
+        sha256=ship.sha256,
         items=tuple(items),
-        changed=changed_coefficients(model, same, baseline, chosen, backend) if baseline else (),
-        notes=(*_notes(baseline, backend), *in_words(profile.doubts())),
+        changed=changed_coefficients(ship.model, same, baseline, chosen, backend) if baseline and ship.model else (),
+        notes=(*_notes(baseline, backend), *in_words(ship.doubts)),
         problems=(),
         made_by=made_by(),
         integrator=chosen.name,
         substeps=chosen.substeps,
         backend=backend,
         wall_s=time.perf_counter() - began,
-        doubts=tuple(profile.doubts()),
+        doubts=ship.doubts,
     )
 
 
 def update_baseline(
-    profile: ShipGiven,
+    profile: ShipGiven | Predictor,
     trials: TrialsGiven,
     path: str | Path,
     *,
@@ -160,7 +158,7 @@ def update_baseline(
     Raises OptionError for a file that is there and no baseline, or an unknown metric.
     """
     names = names or called(profile, trials, path)
-    profile, trials = ship_of(profile), trials_of(trials)
+    trials = trials_of(trials)
     file = Path(path)
     before = read_baseline(file) if file.exists() else None
     recorded = before.method if before else None
@@ -172,6 +170,20 @@ def update_baseline(
     now = record_baseline(profile, trials, metrics, before=before, integrator=chosen, backend=backend)
     write_baseline(now, file)
     return report
+
+
+def _measured(ship: Subject, trials: TrialSet, names: Sequence[str], backend: str) -> dict[str, Values]:
+    """Metrics by trial, of time series and of stated indices.
+
+    Raises OptionError for stated indices of a trained model: it has no approach and no steering gear.
+    """
+    (found,) = measure(ship.predictor, list(trials.trials.values()), names)
+    stated = list(trials.stated.values())
+    if stated and ship.model is None:
+        what = f"{len(stated)} trials state indices alone, and '{ship.predictor.name}' is no profile"
+        why = "a trained model knows neither approach nor steering gear"
+        raise OptionError(Problem(what, stated[0].id, why, "give trials that are time series"))
+    return found | (measure_stated(ship.model, stated, names, backend) if ship.model else {})
 
 
 def called(profile: object, trials: object, baseline: object) -> tuple[str, str, str | None]:

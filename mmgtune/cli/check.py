@@ -24,7 +24,7 @@ CODES = {"pass": ExitCode.GOOD, "regressed": ExitCode.NO, "not comparable": Exit
 
 @takes(options=CheckOptions)
 def command(
-    profile: Annotated[str, typer.Argument(help="Ship profile: a TOML file or a bundled name.")],
+    profile: Annotated[str, typer.Argument(help="Profile, or model.safetensors: a file or a bundled name.")],
     trials: Annotated[str, typer.Argument(help="Folder of trial files, one file, or a bundled name.")],
     *,
     options: CheckOptions,
@@ -88,6 +88,8 @@ def command(
       mmgtune check ship.toml trials/ -b check.json --sensitivity 0.02
     """
     from .. import checking
+    from ..networks import named_ship
+    from ..trial import load_trials
 
     chosen = "json" if json else format
     if chosen is not None and chosen not in FORMATS:
@@ -104,13 +106,14 @@ def command(
         recorded = None
         if baseline is not None and not (update_baseline and not baseline.exists()):
             recorded = checking.read_baseline(baseline)
-        ship, data = c.load(profile, trials)
+        ship, data = named_ship(profile), load_trials(trials)
+        c.warn_of_another_ship(ship, data)
         how: dict[str, Any] = {"names": names, "metrics": options.metrics, "backend": options.backend}
         how["integrator"] = options.asked_integrator(recorded.method if recorded else None)
         if update_baseline:
-            give.update(checking.update_baseline(ship, data, str(baseline), **how), str(baseline))
+            give.update(checking.update_baseline(profile, data, str(baseline), **how), str(baseline))
             return
-        report = checking.check(ship, data, recorded, **how)
+        report = checking.check(profile, data, recorded, **how)
     except MmgtuneError as error:
         give.elsewhere(checking.could_not_run(names, tuple(problems_in_flags(error))))
         raise

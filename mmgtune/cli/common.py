@@ -91,10 +91,10 @@ def load_with_voyages(profile: str, trials: str) -> tuple[ShipProfile, TrialSet 
     return ship, data
 
 
-def warn_of_another_ship(ship: ShipProfile, data: TrialSet | VoyageSet) -> None:
-    """Say on stderr that trials are of another ship than the profile."""
+def warn_of_another_ship(ship: HasId, data: TrialSet | VoyageSet) -> None:
+    """Say on stderr that trials are of another ship than the model."""
     if data.ship and data.ship != ship.id:
-        say(f"warning: the trials are of '{data.ship}', the profile is of '{ship.id}'")
+        say(f"warning: the trials are of '{data.ship}', the model is of '{ship.id}'")
 
 
 def say_doubts(doubts: Sequence[Doubt], whose: str = "") -> None:

@@ -29,11 +29,14 @@ def named_ship(
     """
     if not isinstance(given, (str, Path)):
         return given
+    path = file_of(given)
+    return ship_of(given) if path is None else predictor_of(load_network(path), integrator)
+
+
+def file_of(given: str | Path) -> Path | None:
+    """The file of a trained model of that path or bundled name; None where no such is meant."""
     bundled = folder("ship_profiles") / f"{given}{SUFFIX}"
-    path = taken(given, str(given).endswith(SUFFIX), bundled)
-    if path is None:
-        return ship_of(given)
-    return predictor_of(load_network(path), integrator)
+    return taken(given, str(given).endswith(SUFFIX), bundled)
 
 
 def predictor_of(model: Trained, integrator: Integrator = Integrator()) -> TrainedPredictor:

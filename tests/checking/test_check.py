@@ -18,9 +18,11 @@ from mmgtune.fitting import FitOptions, fit
 from mmgtune.measures import distance_measures, reference_of
 from mmgtune.metrics import METRICS
 from mmgtune.model import Model
+from mmgtune.networks import save_network
 from mmgtune.profile import parse_profile, with_effects
 from mmgtune.simulation import simulate
-from mmgtune.trial import load_trials
+from mmgtune.trial import TrialSet, load_trials
+from tests.networks.made import network
 
 
 def test_metrics_are_those_of_the_fit_and_of_the_measures(ship, data):
@@ -290,3 +292,26 @@ def test_the_committed_baseline_is_what_the_program_does(ship):
     for item in report.items:
         assert item.now == pytest.approx(item.baseline, rel=1e-6, abs=1e-9), (item.trial, item.metric)
     assert report.n_compared == len(report.items)
+
+
+def test_a_trained_model_stands_where_a_profile_does(tmp_path):
+    """Its baseline holds no coefficients; the same file passes, other weights do not, several networks are refused."""
+    trial = load_trials("suzaku").trials["turn_p35"]
+    data = TrialSet({trial.id: trial}, (trial.id,), (), ship="suzaku")
+    one = replace(network(step=1.0, size=0.05), ship="suzaku", L_pp=83.0)
+    path = save_network(one, tmp_path / "model.safetensors")
+    baseline = record_baseline(path, data)
+    assert not baseline.coefficients
+    assert len(baseline.sha256) == 64
+    same = check(path, data, baseline)
+    assert same.verdict == "pass"
+    assert same.sha256 == baseline.sha256
+    other = save_network(
+        replace(one, weights=one.weights._replace(W_3=3.0 * one.weights.W_3)), tmp_path / "b.safetensors"
+    )
+    assert check(other, data, baseline).verdict == "regressed"
+    several = save_network(replace(network(members=2), ship="suzaku"), tmp_path / "several.safetensors")
+    with pytest.raises(OptionError, match="2 networks"):
+        check(several, data, baseline)
+    with pytest.raises(OptionError, match="nothing to compare with"):
+        check(path, data)

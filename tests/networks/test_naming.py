@@ -37,6 +37,20 @@ def test_validate_and_simulate_take_them(models):
         assert run("simulate", "-p", f"{name}.safetensors", "--trials", "trials", cwd=models).code == 0
 
 
+def test_trials_of_another_ship_are_told(models):
+    """Scores of a network on trials of a ship that it was not trained for mean little."""
+    from mmgtune import validate
+    from mmgtune.trial import TrialSet
+
+    trial = load_trials("suzaku").trials["turn_p35"]
+    for ship, told in (("suzaku", 0), ("another", 1)):
+        data = TrialSet({trial.id: trial}, (trial.id,), (), ship=ship)
+        notes = [
+            validate([models / name], data).profiles[0].notes for name in ("rnn.safetensors", "hybrid.safetensors")
+        ]
+        assert [sum("'another'" in one for one in of) for of in notes] == [told, told]
+
+
 @pytest.mark.slow(5)
 def test_validate_on_voyages_takes_them(models):
     from mmgtune.model import Model
