@@ -54,6 +54,7 @@ from .options import HeadingOptions as HeadingOptions
 from .options import HybridOptions as HybridOptions
 from .options import LearnOptions as LearnOptions
 from .options import LeaveOutOptions as LeaveOutOptions
+from .options import PredictOptions as PredictOptions
 from .options import SimulateOptions as SimulateOptions
 from .options import SweepOptions as SweepOptions
 from .options import ValidateOptions as ValidateOptions
@@ -61,6 +62,9 @@ from .options import VoyageOptions as VoyageOptions
 from .orders import TurningOrder as TurningOrder
 from .orders import ZigzagOrder as ZigzagOrder
 from .orders import run_manoeuvre as run_manoeuvre
+from .predicting import Predicted as Predicted
+from .predicting import predict as predict
+from .predicting import write_prediction as write_prediction
 from .predictor import PhysicsPredictor as PhysicsPredictor
 from .predictor import Prediction as Prediction
 from .predictor import Predictor as Predictor

@@ -1,7 +1,8 @@
-"""Models of any kind on the same trials, by kind of manoeuvre: what ``mmgtune learn compare`` does.
+"""Models of any kind on the same trials, by kind of manoeuvre: what ``mmgtune compare`` does.
 
 The table of Wakita et al. 2022 (Table 9): L_MSE of each model, mean and deviation over its networks, in both
-conventions of restarting: begun anew in every window, and once in each whole run.
+conventions of restarting: begun anew in every window, and once in each whole run.  And how well the bands of each hold
+what was measured: distances from the particles, CRPS, coverage, width.
 """
 
 from __future__ import annotations
@@ -13,17 +14,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar, cast
 
+from .bands import Pooled, WindowScore, pooled
 from .errors import OptionError, Problem, closest
 from .files import write_text
-from .fitting.run import made_by
 from .given import TrialsGiven, trials_of
 from .options import CompareModelsOptions
-from .predictor import Predictor, profile_of
+from .predictor import Predictor, Sampling, Uncertain, particles_of, profile_of
+from .provenance import made_by
 from .trial import Trial, TrialSet
 from .validating import Scorable, predictors_of, sigma_of
-from .validation import L_MSE, TrialScore, by_manoeuvre, by_member, by_run, score
+from .validation import L_MSE, TrialScore, by_manoeuvre, by_member, by_run, score, window_scores
 
 RESULT = "model_comparison.json"
 
@@ -32,6 +34,9 @@ ONE_BY_ONE = "berthing"
 
 ALL = "all"
 CONVENTIONS = ("windows", "whole")
+
+
+OfTrial = TypeVar("OfTrial", TrialScore, WindowScore)
 
 
 @dataclass(frozen=True)
@@ -52,7 +57,7 @@ class Column:
             return ALL
         return self.run or self.kind or "not stated"
 
-    def of(self, scores: Sequence[TrialScore]) -> list[TrialScore]:
+    def of(self, scores: Sequence[OfTrial]) -> list[OfTrial]:
         """Those scores that belong to it."""
         return [
             one
@@ -102,15 +107,24 @@ class Cell:
 
 @dataclass(frozen=True, eq=False)
 class Compared:
-    """One model: what it was called, and its scores by convention, of all members."""
+    """One model: what it was called, and its scores by convention, of all members, and of its bands.
+
+    particles  what the bands are of: drawn where the model can draw them, else its members
+    """
 
     name: str
     predictor: Predictor
+    particles: Predictor
     scores: Mapping[str, tuple[TrialScore, ...]]
+    windows: Mapping[str, tuple[WindowScore, ...]]
 
     def cell(self, convention: str, column: Column) -> Cell:
         """Its L_MSE on a column."""
         return Cell(tuple(L_MSE(of) for of in by_member(column.of(self.scores[convention]))))
+
+    def bands(self, convention: str, column: Column, sigma: Mapping[str, float]) -> Pooled:
+        """How well its bands hold what was measured."""
+        return pooled(column.of(self.windows[convention]), sigma)
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,6 +162,23 @@ class ModelComparison:
         sound = {name: mean for name, mean in means.items() if mean is not None}
         return min(sound, key=lambda name: sound[name]) if sound else None
 
+    @cached_property
+    def bands(self) -> dict[str, dict[str, tuple[Pooled, ...]]]:
+        """Scores of bands by model and convention, of each column."""
+        return {
+            one.name: {
+                convention: tuple(one.bands(convention, column, self.sigma) for column in self.columns)
+                for convention in CONVENTIONS
+            }
+            for one in self.models
+        }
+
+    def surest(self, convention: str, k: int) -> str | None:
+        """The model of least CRPS on a column, which weighs its error and its band; None where none has one."""
+        scores = {name: of[convention][k] for name, of in self.bands.items()}
+        sound = {name: one.CRPS for name, one in scores.items() if one.CRPS is not None and not one.lost}
+        return min(sound, key=lambda name: sound[name]) if sound else None
+
     def to_dict(self, command: str = "") -> dict[str, Any]:
         """For JSON; what diverged is null."""
         first = self.models[0]
@@ -166,18 +197,22 @@ class ModelComparison:
             "sigma": dict(self.sigma),
             "sigma_from": self.options.sigma_from or self.trials,
             "options": self.options.to_dict(),
-            "columns": [self._described(column) for column in self.columns],
+            "columns": [self._described(k, column) for k, column in enumerate(self.columns)],
             "models": [
                 {
                     "name": one.name,
                     "id": one.predictor.name,
                     "method": one.predictor.method,
                     "members": one.predictor.n_members,
+                    "particles": one.particles.n_members,
                     "sha256": profile.sha256 if (profile := profile_of(one.predictor)) else None,
                     **{
                         convention: [
-                            one.cell(convention, column).to_dict(first.cell(convention, column))
-                            for column in self.columns
+                            {
+                                **one.cell(convention, column).to_dict(first.cell(convention, column)),
+                                "bands": self.bands[one.name][convention][k].to_dict(),
+                            }
+                            for k, column in enumerate(self.columns)
                         ]
                         for convention in CONVENTIONS
                     },
@@ -188,8 +223,8 @@ class ModelComparison:
             "wall_s": self.wall_s,
         }
 
-    def _described(self, column: Column) -> dict[str, Any]:
-        """A column, how much is in it, and the best model of each convention."""
+    def _described(self, k: int, column: Column) -> dict[str, Any]:
+        """A column, how much is in it, and the best models of each convention."""
         windows = column.of(self.models[0].scores["windows"])
         return {
             "name": column.name,
@@ -198,6 +233,7 @@ class ModelComparison:
             "runs": len(by_run(windows)),
             "windows": len({one.id for one in windows}),
             "best": {convention: self.best(convention, column) for convention in CONVENTIONS},
+            "best_CRPS": {convention: self.surest(convention, k) for convention in CONVENTIONS},
         }
 
 
@@ -221,10 +257,14 @@ def compare_models(
         "windows": list(data.in_windows(options.restart).trials.values()),
         "whole": list(data.trials.values()),
     }
-    found = [
-        Compared(name, predictor, {key: tuple(score(predictor, of, sigma)) for key, of in pieces.items()})
-        for name, predictor in several.items()
-    ]
+    found = []
+    for name, predictor in several.items():
+        # Who cannot sample otherwise than by members is compared as it is.
+        way = cast(Sampling, options.sampling if isinstance(predictor, Uncertain) else "TS-infinity")
+        particles = particles_of(predictor, options.particles, options.seed, way)
+        scores = {key: tuple(score(predictor, of, sigma)) for key, of in pieces.items()}
+        windows = {key: tuple(window_scores(particles, of)) for key, of in pieces.items()}
+        found.append(Compared(name, predictor, particles, scores, windows))
     return ModelComparison(tuple(found), data, called, sigma, options, time.perf_counter() - began)
 
 

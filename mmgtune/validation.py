@@ -131,8 +131,14 @@ def window_scores(predictor: Predictor, trials: Sequence[Trial]) -> list[WindowS
         for i, trial in enumerate(some):
             states, truth = made.states[i, :, 1 : trial.n_samples], trial.motion[1:]
             facts = trial.id, trial.whole, trial.run, trial.manoeuvre
-            found.append(score_window(*facts, states, made.diverged[i], truth))
+            found.append(score_window(*facts, states, made.diverged[i], truth, _noise_of(trial)))
     return found
+
+
+def _noise_of(trial: Trial) -> FloatArray:
+    """(3,) standard deviations of the sensors of u, v_m, r as the trial states them; NaN where it does not."""
+    stated = [trial.noise.get(column, 0.0) for column in ("u", "v", "r")]
+    return np.array([sigma if sigma > 0.0 else np.nan for sigma in stated])
 
 
 def score_of(record: TrialRecord, sigma: Mapping[str, float]) -> TrialScore:

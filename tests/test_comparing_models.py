@@ -106,6 +106,53 @@ def test_what_diverged_has_no_mean_and_is_never_best(suzaku, data):
     assert {one["best"]["windows"] for one in document["columns"]} == {"b"}
 
 
+def test_bands_of_models_whose_errors_are_known(suzaku, data):
+    """Of drifting members the track alone differs: those on both sides of the ship hold her, those on one do not."""
+    drifts = np.linspace(-0.05, 0.05, 21)
+    several = {"about": Drifting(suzaku, drifts), "beside": Drifting(suzaku, drifts + 0.2), "one": suzaku}
+    found = compare_models(several, data, CompareModelsOptions(restart=50.0))
+    for convention in ("windows", "whole"):
+        about, beside, one = (found.bands[name][convention][0] for name in several)
+        held = {name: of[convention][0].coverage_by_state for name, of in found.bands.items()}
+        assert held["about"]["x"] == (1.0,) * 10
+        assert held["beside"]["x"] == (0.0,) * 10
+        assert held["about"]["psi"][0] == 1.0  # no width, no error
+        assert about.width_by_state["x"] == pytest.approx(beside.width_by_state["x"])
+        assert about.CRPS < beside.CRPS
+        assert (about.L_Eucl, one.L_Eucl) == (pytest.approx(0.0, abs=1e-20), pytest.approx(0.0, abs=1e-20))
+        assert about.L_Maha is None  # all velocities are the same
+        assert about.singular > 0
+        assert one.coverage == (None,) * 10
+        assert found.surest(convention, 0) == "one"
+    document = found.to_dict()
+    assert document["models"][0]["particles"] == 21
+    assert document["models"][0]["windows"][0]["bands"] == about_in(found)
+    assert document["columns"][0]["best_CRPS"] == {"windows": "one", "whole": "one"}
+
+
+def about_in(found):
+    return found.bands["about"]["windows"][0].to_dict()
+
+
+class Drawing(Drifting):
+    """One that draws particles, and notes how."""
+
+    def drawn(self, n, seed, sampling="TS-infinity"):
+        self.asked = n, seed, sampling
+        return Drifting(self._own, np.linspace(-0.01, 0.01, n))
+
+    def __init__(self, ship, drifts):
+        super().__init__(ship, drifts)
+        self._own = ship
+
+
+def test_particles_are_drawn_of_what_can_draw_them(suzaku, data):
+    one = Drawing(suzaku, [0.01])
+    found = compare_models([one, suzaku], data, CompareModelsOptions(particles=7, seed=3, sampling="TS1"))
+    assert one.asked == (7, 3, "TS1")
+    assert [of.particles.n_members for of in found.models] == [7, 1]
+
+
 def test_a_cell_by_hand():
     assert (Cell((1.0, 2.0, 6.0)).mean, Cell((1.0, 2.0, 6.0)).deviation) == (3.0, pytest.approx(np.sqrt(7.0)))
     assert (Cell((2.0,)).mean, Cell((2.0,)).deviation) == (2.0, None)
@@ -150,9 +197,12 @@ def test_the_command(tmp_path, data):
     page = (tmp_path / "compared" / "report.md").read_text()
     assert "berthing" in page
     assert "±" in page
+    assert "least CRPS" in page
+    assert (tmp_path / "compared" / "figures" / "calibration.svg").is_file()
     again = run("learn", "compare", *names, "--out", "compared", cwd=tmp_path)
     assert again.code == 2
-    shown = run("learn", "compare", *names, "--only", "berthing", cwd=tmp_path)
+    shown = run("compare", *names, "--only", "berthing", cwd=tmp_path)
+    assert "90 % holds" in shown.out
     assert "±" in shown.out
     assert "begun once in each whole run" in shown.out
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from .quantiles import widest
-from .scores import covered, crps, squared_error, squared_mahalanobis
+from .scores import covered, crps, squared_error, squared_mahalanobis, standardised_error
 
 LEVELS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95)
 """Nominal shares at which bands are held against what they hold."""
@@ -32,6 +32,7 @@ class WindowScore:
     id, trial, run, manoeuvre  of the window, as in ``TrialScore``
     particles, diverged  how many there are, and how many of them diverged in it; scores are of the rest, and there is
                          none where fewer than two are left of several
+    fit           (n_samples,) squared distance over the noise, mean over particles; NaN in gaps, without noise known
     eucl, maha    (n_samples,) squared distances, NaN in gaps; maha where the covariance is singular too
     crps, width   (n_channels,) and (n_levels, n_channels) sums over samples [SI]
     inside        (n_levels, n_channels) samples in the band
@@ -44,6 +45,7 @@ class WindowScore:
     manoeuvre: str
     particles: int
     diverged: int
+    fit: FloatArray
     eucl: FloatArray
     maha: FloatArray
     crps: FloatArray
@@ -61,11 +63,19 @@ class WindowScore:
 
 
 def score_window(
-    id: str, trial: str, run: str, manoeuvre: str, states: FloatArray, diverged: BoolArray, truth: FloatArray
+    id: str,
+    trial: str,
+    run: str,
+    manoeuvre: str,
+    states: FloatArray,
+    diverged: BoolArray,
+    truth: FloatArray,
+    noise: FloatArray,
 ) -> WindowScore:
     """Scores of states (n_particles, n_samples, 6) against the truth (n_samples, 6), NaN where it does not count.
 
     diverged  (n_particles,)
+    noise     (3,) standard deviations of the sensors of u, v_m [m/s], r [rad/s]; NaN where they are not known
     """
     lost, n = int(diverged.sum()), len(states)
     sound = states[~diverged] if lost else states
@@ -74,7 +84,7 @@ def score_window(
         nothing = np.zeros((len(LEVELS), truth.shape[1]))
         zero = np.zeros(truth.shape[1], dtype=np.int64)
         return WindowScore(
-            id, trial, run, manoeuvre, n, lost, empty, empty, nothing[0], nothing, nothing, zero
+            id, trial, run, manoeuvre, n, lost, empty, empty, empty, nothing[0], nothing, nothing, zero
         )  # fmt: skip
     hit, width = covered(sound, truth, LEVELS)
     known = np.isfinite(truth)
@@ -86,6 +96,7 @@ def score_window(
         manoeuvre,
         n,
         lost,
+        standardised_error(sound[:, :, VELOCITIES], speeds, noise).mean(axis=0),
         squared_error(sound[:, :, VELOCITIES], speeds),
         squared_mahalanobis(sound[:, :, VELOCITIES], speeds),
         np.where(known, crps(sound, truth), 0.0).sum(axis=0),
@@ -102,6 +113,8 @@ class Pooled:
     windows, lost  how many, and in how many of them fewer than two particles were left, which nothing here counts
     particles   of each window
     diverged    particles that diverged, over all windows
+    L_fit       mean squared distance of a particle from the truth over the noise, of velocities (eq. 29); None where
+                the noise is not known
     L_Eucl      mean squared distance of the mean from the truth, of velocities (eq. 31a) [m^2/s^2, with rad^2/s^2]
     L_Maha      mean squared Mahalanobis distance (eq. 31b); 3 is what a right covariance gives
     singular    samples left out of L_Maha because the covariance was singular
@@ -116,6 +129,7 @@ class Pooled:
     lost: int
     particles: int
     diverged: int
+    L_fit: float | None
     L_Eucl: float | None
     L_Maha: float | None
     singular: int
@@ -139,6 +153,7 @@ class Pooled:
             "windows_lost": self.lost,
             "particles": self.particles,
             "diverged": self.diverged,
+            "L_fit": self.L_fit,
             "L_Eucl": self.L_Eucl,
             "L_Maha": self.L_Maha,
             "singular": self.singular,
@@ -183,6 +198,7 @@ def pooled(scores: Sequence[WindowScore], sigma: Mapping[str, float]) -> Pooled:
         lost=sum(one.particles - one.diverged < min(one.particles, 2) for one in scores),
         particles=scores[0].particles,
         diverged=sum(one.diverged for one in scores),
+        L_fit=_mean(np.concatenate([one.fit for one in scores])),
         L_Eucl=_mean(eucl),
         L_Maha=_mean(maha),
         singular=int((np.isfinite(eucl) & ~np.isfinite(maha)).sum()),

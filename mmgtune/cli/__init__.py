@@ -18,6 +18,7 @@ from ..errors import MmgtuneError, OptionError, OutputError, Problem, cannot_wri
 from . import (
     check,
     cite,
+    compare,
     diagnose,
     doctor,
     fit,
@@ -91,6 +92,7 @@ app.command("diagnose", epilog=EPILOG)(diagnose.command)
 app.command("leave-out", epilog=EPILOG)(leave_out.command)
 app.command("check", epilog=EPILOG)(check.command)
 app.command("validate", epilog=EPILOG)(validate.command)
+app.command("compare", epilog=EPILOG)(compare.command)
 app.command("simulate", epilog=EPILOG)(simulate.command)
 app.command("predict", epilog=EPILOG)(predict.command)
 app.command("report", epilog=EPILOG)(report.command)

@@ -11,7 +11,7 @@ import typer
 
 from ..options.learning import EnsembleOptions, HybridOptions, LearnOptions, TrainingOptions
 from . import common as c
-from . import learn_compare
+from . import compare
 from .options import RunOptions, takes
 from .progress import Progress
 
@@ -25,7 +25,7 @@ app = typer.Typer(
     help="Train networks that predict the motion of a ship, and hold them against other models.",
 )
 
-app.command("compare")(learn_compare.command)
+app.command("compare")(compare.command)
 
 
 @app.command("rnn")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Any
 
 import typer
@@ -10,7 +10,7 @@ import typer
 from ..errors import OptionError, Problem
 from ..options import PredictOptions
 from . import common as c
-from .learn_compare import FolderOptions
+from .compare import FolderOptions
 from .options import takes
 
 
@@ -23,7 +23,7 @@ def command(
         ),
     ],
     orders: Annotated[
-        str | None, typer.Argument(help="CSV file with a row an order: t [s], delta [deg], n [rpm].")
+        str | None, typer.Argument(help="CSV file: time and inputs with units in its header, a row an order.")
     ] = None,
     trials: Annotated[
         str | None,
@@ -54,9 +54,7 @@ def command(
 
       mmgtune predict runs/type1/model.safetensors --trials esso --restart 100 --level 50
     """
-    from ..fitting import claimed
     from ..predicting import predict, write_prediction
-    from ..report import render
 
     if run.out is None and (keep_particles or no_report):
         asked = "keep_particles" if keep_particles else "no_report"
@@ -64,6 +62,9 @@ def command(
     if run.out is None:
         document = predict(model, orders, trials, options).to_dict(c.command_line())
     else:
+        from ..fitting import claimed
+        from ..report import render
+
         with claimed(run.out, force=run.force):
             result = predict(model, orders, trials, options)
             document = write_prediction(result, run.out, c.command_line(), keep_particles=keep_particles)
@@ -91,11 +92,18 @@ def summary(document: Mapping[str, Any]) -> str:
             lines.append("  diverged")
         for row in run["indices"]:
             lines.append(_index(row, n, document["has_band"]))
+        if not run["indices"] and run["diverged"] < n:
+            lines.append(f"  at the end: {ended(run['end'], document['has_band'])}")
         if run["scores"]:
             lines.append(f"  {_score(run['scores'])}")
     if document["scores"] and len(document["runs"]) > 1:
         lines += ["", f"all  {_score(document['scores'])}"]
     return "\n".join(lines)
+
+
+def ended(rows: Sequence[Mapping[str, Any]], has_band: bool) -> str:
+    """Where a run ends."""
+    return ", ".join(f"{row['words']} {_banded(row, row['unit'], has_band)}" for row in rows)
 
 
 def _index(row: Mapping[str, Any], n: int, has_band: bool) -> str:
@@ -135,6 +143,7 @@ def decimals_of(half: float) -> int:
 def _score(scores: Mapping[str, Any]) -> str:
     """Scores in a line."""
     said = [
+        ("L_fit", scores["L_fit"]),
         ("L_Eucl", scores["L_Eucl"]),
         ("L_Maha", scores["L_Maha"]),
         ("correlation", scores["correlation"]),

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import platform
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +18,7 @@ from ..model import Model
 from ..objective import Objective, cases_of, make_objective, spread
 from ..options import FitOptions, Options, TuningOptions
 from ..profile import ShipProfile
+from ..provenance import made_by as made_by
 from ..stated import IndexComparison, compare_stated, possible
 from ..threads import blas_on_one_thread
 from ..trial import TrialSet
@@ -391,22 +389,6 @@ def identity_of(
     }
 
 
-def made_by(command: str) -> dict[str, Any]:
-    """Which program made a result, when, how, and with which versions."""
-    versions = {"python": platform.python_version()}
-    for package in ("numpy", "scipy", "numba", "cma"):
-        try:
-            versions[package] = version(package)
-        except PackageNotFoundError:  # pragma: no cover - all are dependencies
-            versions[package] = "unknown"
-    return {
-        "mmgtune": _own_version(),
-        "created": datetime.now(UTC).isoformat(timespec="seconds"),
-        "command": command,
-        "environment": versions,
-    }
-
-
 def make_provenance(profile: ShipProfile, trials: TrialSet, command: str) -> dict[str, Any]:
     """What a fit was made from, and with which versions."""
     made = made_by(command)
@@ -439,10 +421,3 @@ def facts_of_profile(profile: ShipProfile) -> dict[str, str]:
         "licence": profile.licence,
         "citation": profile.citation,
     }
-
-
-def _own_version() -> str:
-    try:
-        return version("mmgtune")
-    except PackageNotFoundError:
-        return "unknown"

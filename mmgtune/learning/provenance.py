@@ -7,9 +7,10 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from ..fitting.run import facts_of_profile, made_by
+from ..fitting.run import facts_of_profile
 from ..options import Options
 from ..profile import ShipProfile
+from ..provenance import made_by
 from ..trial import Trial, TrialSet
 
 

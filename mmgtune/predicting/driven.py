@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from .. import limits
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray
 from ..backends import pad
 from ..errors import OptionError, TrialError
 from ..evaluation import Measured, TrialRecord
@@ -64,7 +64,7 @@ def _windows(trial: Trial, restart: float | None) -> Iterator[Trial]:
     yield from [trial] if restart is None else windows(trial, restart)
 
 
-def _beside(predictor: Predictor, trial: Trial, states: FloatArray, diverged: FloatArray) -> Foretold:
+def _beside(predictor: Predictor, trial: Trial, states: FloatArray, diverged: BoolArray) -> Foretold:
     measured = Measured(trial, predictor.L_pp, np.zeros((trial.n_samples, 6)))
     controls = trial.inputs(tuple(predictor.inputs))
     values: Values = {}

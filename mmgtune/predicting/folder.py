@@ -7,8 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.parquet as pq
 
 from ..backends import STATES
 from ..files import atomic, write_text
@@ -17,6 +15,7 @@ from .result import Predicted
 RESULT = "predict.json"
 BANDS = "bands.parquet"
 TRACKS = "tracks.parquet"
+FAN = ("mean", "low", "q25", "median", "q75", "high")
 PATHS = "paths.parquet"
 
 DRAWN, POINTS = 40, 150
@@ -31,10 +30,10 @@ def write_prediction(
     Returns the record; raises OutputError.
     """
     document = {**result.to_dict(command), "out": str(folder)}
-    _table(folder / BANDS, _bands(result))
-    _table(folder / TRACKS, _tracks(result, ("x", "y"), DRAWN, POINTS))
+    _table(folder / BANDS, _bands(result), ("run", "variable", "t", *FAN, "measured"))
+    _table(folder / TRACKS, _tracks(result, ("x", "y"), DRAWN, POINTS), ("run", "particle", "t", "x", "y"))
     if keep_particles:
-        _table(folder / PATHS, _tracks(result, STATES))
+        _table(folder / PATHS, _tracks(result, STATES), ("run", "particle", "t", *STATES, "diverged"))
     write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
     return document
 
@@ -70,7 +69,11 @@ def _tracks(result: Predicted, names: tuple[str, ...], most: int = 0, points: in
     return found
 
 
-def _table(path: Path, parts: list[dict[str, Any]]) -> None:
+def _table(path: Path, parts: list[dict[str, Any]], names: tuple[str, ...]) -> None:
+    """Parts below each other; of none the ``names`` of the columns that there would be."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
     with atomic(path) as part:
         tables = [pa.table(one) for one in parts]
-        pq.write_table(pa.concat_tables(tables) if tables else pa.table({"run": []}), part)
+        pq.write_table(pa.concat_tables(tables) if tables else pa.table({name: [] for name in names}), part)

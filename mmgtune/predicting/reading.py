@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray
 from ..trial.index_trial import INDICES
 from ..units import DEG
 
@@ -56,7 +56,7 @@ KNOWN: Mapping[str, Known] = {
 BY_KEY: Mapping[str, Known] = {one.key: one for one in KNOWN.values()}
 
 
-def of_lanes(values: Mapping[str, FloatArray], sound: FloatArray) -> Values:
+def of_lanes(values: Mapping[str, FloatArray], sound: BoolArray) -> Values:
     """Indices in SI by name as ``on_lanes`` has them; NaN for particles that are not ``sound`` (n_particles,)."""
     return {
         one.key: np.where(sound, one.factor * values[name], np.nan) for name, one in KNOWN.items() if name in values

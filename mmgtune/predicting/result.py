@@ -12,13 +12,22 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray
 from ..backends import STATES
 from ..bands import IndexBand, Pooled, WindowScore, covariances, fan, index_band, pooled, widest
-from ..fitting.run import made_by
 from ..options import PredictOptions
 from ..predictor import Predictor
 from ..profile import ShipProfile
+from ..provenance import made_by
 from ..trial import Trial
+from ..units import DEG
 from .asked import profile_behind
 from .reading import BY_KEY, Values
+
+END = {
+    "x": ("north", "m", 1.0),
+    "y": ("east", "m", 1.0),
+    "psi": ("heading", "deg", 1.0 / DEG),
+    "u": ("speed", "m/s", 1.0),
+}
+"""States that a run ends with: words, the unit people read, the factor to it."""
 
 MARKS = 60
 """Places along a track at which the region of positions is told."""
@@ -69,6 +78,15 @@ class Foretold:
     def index(self, key: str, level: float) -> IndexBand:
         """The band on an index, in the unit of its key."""
         return index_band(self.indices[key], level, endless=BY_KEY[key].endless)
+
+    def end(self, level: float) -> list[dict[str, Any]]:
+        """Bands on where the ship is at the last sample, from where she began; those that diverged count as unknown."""
+        last = np.where(self.diverged[:, None], np.nan, self.states[:, -1])
+        found = []
+        for name, (words, unit, factor) in END.items():
+            band = index_band(factor * last[:, STATES.index(name)], level, endless=False)
+            found.append({"words": words, "unit": unit, **band.to_dict()})
+        return found
 
     def marks(self) -> Iterator[dict[str, Any]]:
         """Mean position, its covariance and the heading at some times."""
@@ -171,6 +189,7 @@ class Predicted:
             "duration_s": float(run.t[-1] - run.t[0]),
             "diverged": int(run.diverged.sum()),
             "indices": [self._index(run, key) for key in run.indices],
+            "end": run.end(self.level),
             "trial": {"source": trial.source, "sha256": trial.sha256} if trial else None,
             "windows": len(run.scores),
             "scores": pooled(run.scores, self.sigma).to_dict() if run.scores else None,

@@ -101,8 +101,9 @@ def _notes(particles: Predictor, options: PredictOptions, runs: Sequence[Foretol
     n = particles.n_members
     if n == 1:
         yield (
-            f"'{particles.name}' is one model and gives one run: there is no band. Bands come from models that know "
-            "their doubts: networks of several seeds (mmgtune learn rnn), ensembles, particles of coefficients"
+            f"'{particles.name}' is one model and gives one run: there is no band. Models that know their doubts have "
+            "one: particles of coefficients (mmgtune posterior), ensembles (mmgtune learn ensemble), networks of "
+            "several seeds (mmgtune learn rnn)"
         )
     elif 100.0 * widest(n) < options.level - 0.5:
         yield (

@@ -23,10 +23,11 @@ LEGS = 5
 """Times the rudder of a zigzag is reversed, as ``orders.ZigzagOrder`` does."""
 
 MORE = 3
-"""Times it is reversed besides by those that are done, so that all are under way while the last ones finish."""
+"""Times it is reversed besides, where there are several particles: those that are done stay under way until the last
+one is."""
 
 TURNED = 545.0 * DEG
-"""Change of heading after which a turn is done."""
+"""Change of heading after which a turn is done; several particles turn twice as far, for the same reason."""
 
 AT_ONCE = 2000
 """Lanes steered at one time; bounds the memory."""
@@ -98,7 +99,8 @@ def _lanes(predictor: Predictor, times: int) -> Lanes:
 
 
 def _orders(manoeuvres: Sequence[Asked], approach: Approach, n: int) -> Orders:
-    """The same orders to all particles of a manoeuvre; turns and zigzags go on for longer than they are wanted."""
+    """The same orders to all particles of a manoeuvre; turns and zigzags of several go on after they are done."""
+    several = n > 1
 
     def lanes(values: Sequence[float]) -> FloatArray:
         return np.repeat(np.array(values, dtype=float), n)
@@ -108,8 +110,8 @@ def _orders(manoeuvres: Sequence[Asked], approach: Approach, n: int) -> Orders:
         n=lanes([approach.n] * len(manoeuvres)),
         rudder=lanes([one.rudder for one in manoeuvres]),
         check=lanes([np.inf if one.check is None else one.check for one in manoeuvres]),
-        legs=lanes([1000 if one.check is None else LEGS + MORE for one in manoeuvres]).astype(np.int64),
-        until=lanes([np.inf] * len(manoeuvres)),
+        legs=lanes([1000 if one.check is None else LEGS + MORE * several for one in manoeuvres]).astype(np.int64),
+        until=lanes([(1 + several) * TURNED if one.manoeuvre == "turning" else np.inf for one in manoeuvres]),
         revolutions=lanes([one.n for one in manoeuvres]),
     )
 
@@ -129,10 +131,10 @@ def _read(one: Asked, steered: Steered, orders: Orders, at: slice) -> Sailed:
             values = stopping(record) if one.manoeuvre == "stopping" else zigzag(record, orders.check[at])
     final = until[sound & np.isfinite(done)]
     end = int(final.max()) if len(final) else int(last.max())
-    if one.manoeuvre == "zigzag" and sound.any():
+    if one.manoeuvre != "stopping" and sound.any():
         end = min(end, int(last[sound].min()))
     h = float(steered.h[at][0])
-    t = h * np.arange(end + 1)
+    t: FloatArray = h * np.arange(end + 1, dtype=np.float64)
     particles = np.ascontiguousarray(states[: end + 1].transpose(2, 0, 1))
     return Sailed(t, particles, ~sound, of_lanes(values, sound), h * APPROACH)
 
@@ -144,7 +146,7 @@ def _done(one: Asked, states: FloatArray, given: FloatArray, last: IntArray) -> 
         return np.where(stopped, last.astype(float), np.inf)
     if one.manoeuvre == "zigzag":
         ordered = given[LEGS] if len(given) > LEGS else np.full(len(last), np.nan)
-        return np.nan_to_num(ordered, nan=np.inf)
+        return np.asarray(np.nan_to_num(ordered, nan=np.inf))
     with np.errstate(invalid="ignore"):
         there = np.abs(states[:, 2]) >= TURNED
     return np.where(there.any(axis=0), np.argmax(there, axis=0).astype(float), np.inf)

@@ -14,6 +14,7 @@ from . import (
     hybrid_page,
     learning_page,
     models_page,
+    predict_page,
     sweep_page,
     voyages_page,
 )
@@ -32,6 +33,7 @@ KINDS: tuple[Kind, ...] = tuple(
         hybrid_page,
         models_page,
         heading_page,
+        predict_page,
     )
 )
 """Every kind, in the order in which their files are looked for."""

@@ -7,10 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from . import fans
+from .band_scores import MEANING, SCORE_HEADS, score_cells
 from .common import picture
 from .drawing import AFTER, BEFORE, FLAG, INK, MUTED, Drawn, log_ticks, new_figure
 from .load import Kind
-from .page import Cell, Details, Page, Prose, Section, Table, Tile, cells
+from .page import Block, Cell, Details, Page, Prose, Section, Table, Tile, cells
 from .tables import pairs
 from .wording import NONE, clean, count, listing, number, shown
 
@@ -62,6 +64,9 @@ def build(record: ModelsRecord) -> Page:
     ]
     caption = "L_MSE by kind of manoeuvre: mean and standard deviation over the networks; the number of runs below."
     sections.insert(0, Section("errors", "Errors", (picture(drawn, "Errors", caption), Prose((_MEANING,)))))
+    figures = {"errors": drawn}
+    if "bands" in data["models"][0]["windows"][0]:  # records of older versions have none
+        sections.append(_bands(record, figures))
     lost = _lost(record)
     if lost:
         sections.insert(1, Section("diverged", "What diverged", (Prose(tuple(lost), listed=True, tone="warning"),)))
@@ -73,7 +78,7 @@ def build(record: ModelsRecord) -> Page:
         banners=(banner,) if data["trials"]["sources"] == ["generated"] else (),
         tiles=_tiles(record),
         sections=(*sections, _made(record)),
-        figures={"errors": drawn},
+        figures=figures,
     )
 
 
@@ -126,6 +131,38 @@ def _tables(record: ModelsRecord, convention: str) -> list[Table]:
             Table(f"{convention}-{id}-table", caption, ("model", "networks", *heads), tuple(rows), numeric=numeric)
         )
     return found
+
+
+def _bands(record: ModelsRecord, figures: dict[str, Drawn]) -> Section:
+    """Whether the bands of the models held what was measured."""
+    blocks: list[Block] = []
+    several = [one for one in record.data["models"] if one["particles"] > 1]
+    if several:
+        nominal = several[0]["windows"][0]["bands"]["calibration"]["nominal"]
+        covered = {one["name"]: one["windows"][0]["bands"]["calibration"]["covered"] for one in several}
+        figures["calibration"] = Drawn(
+            "calibration",
+            "Share of the measured samples in bands against what the bands say, by model",
+            lambda: fans.draw_calibration(nominal, covered),
+        )
+        caption = f"All runs, {record.conventions['windows']}: below the diagonal bands are too narrow."
+        blocks.append(picture(figures["calibration"], "Calibration", caption))
+    for key, words in record.conventions.items():
+        rows = []
+        for k, column in record.columns(False):
+            for model in record.data["models"]:
+                of = model[key][k]["bands"]
+                best = column["best_CRPS"][key] == model["name"]
+                texts: list[str | Cell] = [clean(column["name"]), str(of["particles"]), *score_cells(of)]
+                at = 2 + SCORE_HEADS.index("CRPS")
+                texts[at] = Cell(f"{texts[at]} *", "good") if best else texts[at]
+                rows.append(cells(clean(model["name"]), *texts))
+        heads = ("model", "manoeuvre", "particles", *SCORE_HEADS)
+        caption = f"Bands, {words}; * the least CRPS"
+        numeric = range(2, len(heads))
+        blocks.append(Table(f"{key}-bands-table", caption, heads, tuple(rows), numeric=numeric))
+    blocks.append(Prose((MEANING,)))
+    return Section("bands", "Bands", tuple(blocks))
 
 
 def _mean(cell: Mapping[str, Any], members: int) -> str:

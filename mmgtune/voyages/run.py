@@ -15,11 +15,12 @@ from ..backends import Cases
 from ..circumstances import acts_on_surroundings, extremes, notes
 from ..errors import OptionError, Problem, TrialError
 from ..fitting.journal import journalled, remembered
-from ..fitting.run import facts_of_profile, made_by
+from ..fitting.run import facts_of_profile
 from ..given import trials_of
 from ..objective import spread
 from ..options import VoyageOptions
 from ..predictor import PhysicsPredictor, Predictor, draught_of, profile_of
+from ..provenance import made_by
 from ..threads import blas_on_one_thread
 from ..trial import Cutting, Voyage, VoyageSet, load_voyages, voyage_windows, window_at
 from ..trial.voyage_windows import Window, mean_speed, rest_speed

@@ -32,7 +32,7 @@ def normal(shape, seed=1):
 
 def window(states, truth, name="a", diverged=None):
     lost = np.zeros(len(states), dtype=bool) if diverged is None else np.array(diverged)
-    return score_window(name, name, name, "turning", states, lost, truth)
+    return score_window(name, name, name, "turning", states, lost, truth, np.array([0.5, 1.0, 2.0]))
 
 
 def test_quantiles_by_hand():
@@ -165,7 +165,7 @@ def test_windows_together_are_the_mean_over_their_samples():
     found = pooled([window(long, truths[0], "a"), window(short, truths[1], "b")], ONE)
     joined, truth = np.concatenate([long, short], axis=1), np.concatenate(truths)
     whole = pooled([window(joined, truth)], ONE)
-    for name in ("L_Eucl", "L_Maha", "CRPS", "sharpness", "coverage"):
+    for name in ("L_fit", "L_Eucl", "L_Maha", "CRPS", "sharpness", "coverage"):
         assert getattr(found, name) == pytest.approx(getattr(whole, name))
     assert found.windows == 2
     assert (found.correlation, found.singular, found.lost) == (None, 0, 0)
@@ -175,6 +175,7 @@ def test_windows_together_are_the_mean_over_their_samples():
 def test_bands_that_are_right_are_found_right():
     found = pooled([window(normal((99, 3000, 6)), normal((3000, 6), seed=2))], ONE)
     np.testing.assert_allclose(found.coverage, LEVELS, atol=0.02)
+    assert found.L_fit == pytest.approx(2.0 * (4.0 + 1.0 + 0.25), rel=0.03)  # of two draws, each over the noise
     assert found.L_Maha == pytest.approx(3.0, rel=0.1)
     assert found.sharpness == pytest.approx(2.0 * 1.645, rel=0.03)
     assert found.widest == pytest.approx(0.98)

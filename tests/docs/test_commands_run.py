@@ -14,12 +14,14 @@ from glob import glob
 import pytest
 
 from mmgtune.model import Model
+from mmgtune.networks import save_network
 from mmgtune.profile import load_profile
 from mmgtune.resources import folder
 from mmgtune.trial import read_trial, write_trial
 from mmgtune.trial.schema import ATTRIBUTES
 from tests.command import QUICK, run
 from tests.docs.test_docs import ROOT, code
+from tests.networks.made import network
 from tools.generate_voyage import make_voyage
 
 PAGES = [
@@ -68,6 +70,7 @@ def desk(tmp_path):
         (tmp_path / name).write_text(toml, encoding="utf-8")
     shutil.copytree(folder("trials"), tmp_path / "trials")
     shutil.copy(folder("trials") / "suzaku" / "check.json", tmp_path)
+    save_network(network(members=5, size=0.05, step=1.0), tmp_path / "model.safetensors")
     write_trial(make_voyage(Model(load_profile("suzaku")), 1.5), tmp_path / "voyages" / "voyage.parquet")
     return tmp_path
 
@@ -96,7 +99,9 @@ def test_commands_of_a_page_run(page, desk):
     lines = commands(page)
     if not any(MAKES_TRIALS in line for line in lines):
         own_trials(desk, "my_trials")
-    for name, text in re.findall(r'```toml title="([^"]+)"\n(.*?)```', page.read_text(encoding="utf-8"), re.DOTALL):
+    for name, text in re.findall(
+        r'```(?:toml|csv) title="([^"]+)"\n(.*?)```', page.read_text(encoding="utf-8"), re.DOTALL
+    ):
         (desk / name).write_text(text, encoding="utf-8")
     if page.name == "ci.md":
         shutil.rmtree(desk / "trials")

@@ -1,4 +1,4 @@
-"""``mmgtune learn compare``: models of any kind on the same trials."""
+"""``mmgtune compare``, also ``mmgtune learn compare``: models of any kind on the same trials."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def command(
         list[str],
         typer.Argument(
             metavar="MODEL... TRIALS",
-            help="Profiles and model.safetensors files, then the trials; ratios to the first.",
+            help="Profiles and model files, then the trials; ratios to the first.",
         ),
     ],
     *,
@@ -45,24 +45,25 @@ def command(
     run: FolderOptions,
     json: c.Json = False,
 ) -> None:
-    """Hold networks, hybrids and profiles against each other on the same trials.
+    """Hold profiles, networks, hybrids and ensembles against each other on the same trials, with their bands.
 
     A row a model, a column a kind of manoeuvre: L_MSE, mean and deviation over the networks of a model, its ratio to
     the first model, in both conventions: begun anew in every window, and once in each whole run (Wakita et al. 2022,
-    Table 9). Berthing runs also stand one by one. With --out the record and a report are written. Needs no JAX.
+    Table 9). Berthing runs also stand one by one. Then whether the bands held what was measured: L_Eucl, L_Maha and
+    their correlation, CRPS, coverage at 50 and 90 %, and width. With --out the record and a report are written.
 
     Examples:
 
-      mmgtune learn compare esso_osaka_3m esso_osaka_3m_tuned runs/type1/model.safetensors esso --only test
+      mmgtune compare esso_osaka_3m esso_osaka_3m_tuned runs/type1/model.safetensors esso --only test
 
-      mmgtune learn compare suzaku suzaku_fam suzaku --out runs/compared
+      mmgtune compare suzaku suzaku_fam suzaku --out runs/compared
     """
     from ..comparing_models import compare_models, write_model_comparison
     from ..fitting import claimed
     from ..report import render
 
     if len(names) < 2:
-        fix = "write mmgtune learn compare MODEL... TRIALS"
+        fix = "write mmgtune compare MODEL... TRIALS"
         raise OptionError(Problem("a model or the trials are missing", "MODEL... TRIALS", fix=fix))
     if run.out is None:
         document = compare_models(names[:-1], names[-1], options).to_dict(c.command_line())
@@ -88,6 +89,9 @@ def summary(document: Mapping[str, Any]) -> str:
         lines += ["", f"L_MSE, {said}: mean ± deviation over networks (ratio to the first model)"]
         for of in filter(None, (kinds, runs)):
             lines += _table(document["models"], columns, of, convention)
+    for convention, said in words.items():
+        lines += ["", f"Bands, {said}: CRPS and width over the spread of the states"]
+        lines += _bands(document, kinds, convention)
     lines += ["", f"* the best of a column. {document['wall_s']:.1f} s."]
     if "out" in document:
         lines.append(f"Report: {document['out']}/report.html")
@@ -105,6 +109,33 @@ def _table(models: Sequence[Any], columns: Sequence[Any], of: Sequence[int], con
         ]
         lines.append(f"  {model['name'][-32:]:<32}" + "".join(f"{text:>{width}}" for text in row))
     return lines
+
+
+_HEADS = ("particles", "L_fit", "L_Eucl", "L_Maha", "correlation", "CRPS", "50 % holds", "90 % holds", "width")
+
+
+def _bands(document: Mapping[str, Any], of: Sequence[int], convention: str) -> list[str]:
+    lines = [f"  {'':<32}" + "".join(f"{head:>12}" for head in _HEADS)]
+    for k in of:
+        column = document["columns"][k]
+        lines.append(f"  {column['name'][-40:]} ({column['runs']})")
+        for model in document["models"]:
+            row = model[convention][k]["bands"]
+            best = column["best_CRPS"][convention] == model["name"]
+            cells = [
+                str(row["particles"]),
+                *(_number(row[name]) for name in ("L_fit", "L_Eucl", "L_Maha", "correlation")),
+                _number(row["CRPS"]) + "*" * best,
+                *("-" if row[f"coverage_{n}"] is None else f"{100.0 * row[f'coverage_{n}']:.0f} %" for n in (50, 90)),
+                _number(row["sharpness"]),
+            ]
+            lost = f"  {row['windows_lost']} of {row['windows']} lost" if row["windows_lost"] else ""
+            lines.append(f"    {model['name'][-30:]:<30}" + "".join(f"{text:>12}" for text in cells) + lost)
+    return lines
+
+
+def _number(value: float | None) -> str:
+    return "-" if value is None else f"{value:.3g}"
 
 
 def _cell(cell: Mapping[str, Any], members: int) -> str:

@@ -1,0 +1,48 @@
+"""Scores of bands as reports show them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from .wording import NONE, number, shown
+
+MEANING = (
+    "L_fit is the mean squared distance of a particle from what was measured over the noise that a trial states "
+    "(Wakita et al., eq. 29); "
+    "L_Eucl is the mean squared distance of the particles' mean from what was measured, of velocities in m/s and "
+    "rad/s; L_Maha the same over the covariance of the particles, 3 where that is right (Wakita et al., eq. 30, 31). "
+    "CRPS and the width of the 90 % band are means over the states, in their spread over the trials. Measured samples "
+    "have the noise of their sensors, bands have none."
+)
+
+
+SCORE_HEADS = (
+    "windows",
+    "L_fit",
+    "L_Eucl",
+    "L_Maha",
+    "correlation",
+    "CRPS",
+    "50 % holds",
+    "90 % holds",
+    "width of 90 %",
+)
+
+
+def score_cells(scores: Mapping[str, Any]) -> list[str]:
+    """A row of scores as texts, in the order of ``SCORE_HEADS``."""
+
+    def held(value: Any) -> str:
+        return NONE if number(value) is None else f"{100.0 * value:.0f} %"
+
+    windows = str(scores["windows"])
+    if scores["windows_lost"]:
+        windows += f", {scores['windows_lost']} lost"
+    return [
+        windows,
+        *(shown(scores[name], 3) for name in ("L_fit", "L_Eucl", "L_Maha", "correlation", "CRPS")),
+        held(scores["coverage_50"]),
+        held(scores["coverage_90"]),
+        shown(scores["sharpness"], 3),
+    ]

@@ -1,0 +1,332 @@
+"""The report of a prediction with bands."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from . import fans
+from .band_scores import MEANING, SCORE_HEADS, score_cells
+from .common import doubts, picture
+from .drawing import Drawn
+from .load import Kind, columns_in
+from .page import Block, Cell, Details, Page, Prose, Section, Table, Tile, cells
+from .tables import pairs
+from .wording import NONE, PRINCIPAL, clean, count, fixed, number, shown
+
+if TYPE_CHECKING:
+    from ..arrays import FloatArray
+
+    Columns = Mapping[str, FloatArray]
+
+DRAWN = 12
+"""Runs that are drawn; of more trials those whose bands hold least."""
+
+BAND = ("mean", "low", "q25", "q75", "high", "measured")
+
+
+@dataclass(frozen=True)
+class PredictRecord:
+    """A prediction as its folder holds it: predict.json, bands.parquet, tracks.parquet.
+
+    bands   run -> state -> column -> values in SI
+    tracks  run -> of some particles x and y
+    """
+
+    folder: Path
+    data: Mapping[str, Any]
+    bands: Mapping[str, Mapping[str, Columns]]
+    tracks: Mapping[str, Sequence[Columns]]
+
+    @property
+    def several(self) -> bool:
+        """Whether there is a band."""
+        return bool(self.data["has_band"])
+
+    @property
+    def level(self) -> float:
+        """Percent that bands hold."""
+        return float(self.data["level"])
+
+    @property
+    def runs(self) -> list[dict[str, Any]]:
+        """Its runs."""
+        return list(self.data["runs"])
+
+    def drawn(self) -> list[dict[str, Any]]:
+        """Those that are drawn."""
+        runs = [run for run in self.runs if str(run["id"]) in self.bands]
+        if len(runs) <= DRAWN:
+            return runs
+        held = {run["id"]: number((run["scores"] or {}).get("coverage_90")) or 0.0 for run in runs}
+        worst = sorted(runs, key=lambda run: held[run["id"]])[:DRAWN]
+        return [run for run in runs if run in worst]
+
+
+def read(folder: Path, data: Mapping[str, Any]) -> PredictRecord:
+    """The run with its bands and tracks."""
+    bands = columns_in(folder / "bands.parquet", ("run", "variable", "t", *BAND), ("run", "variable"))
+    tracks = columns_in(folder / "tracks.parquet", ("run", "particle", "x", "y"), ("run",))
+    by_run: dict[str, dict[str, Columns]] = {}
+    for (run, variable), rows in _grouped(bands, ("run", "variable")):
+        by_run.setdefault(str(run), {})[str(variable)] = {name: bands[name][rows] for name in ("t", *BAND)}
+    threads: dict[str, list[Columns]] = {}
+    for (run, _), rows in _grouped(tracks, ("run", "particle")):
+        threads.setdefault(str(run), []).append({name: tracks[name][rows] for name in ("x", "y")})
+    return PredictRecord(folder, data, by_run, threads)
+
+
+def _grouped(columns: Mapping[str, Any], by: tuple[str, str]) -> list[tuple[tuple[Any, Any], slice]]:
+    """Neighbouring rows that agree in two columns."""
+    first, second = (columns[name] for name in by)
+    edges = [k for k in range(1, len(first)) if first[k] != first[k - 1] or second[k] != second[k - 1]]
+    ends = [0, *edges, len(first)] if len(first) else [0]
+    return [((first[a], second[a]), slice(a, b)) for a, b in pairwise(ends)]
+
+
+def build(record: PredictRecord) -> Page:
+    """Everything the report of a prediction says."""
+    data = record.data
+    figures: dict[str, Drawn] = {}
+    sections = []
+    whiskers = _whisker_rows(record)
+    if whiskers:
+        figures["indices"] = Drawn(
+            "indices",
+            "Indices of the manoeuvres with their bands",
+            partial(fans.draw_indices, whiskers, record.level, record.several),
+        )
+        caption = f"Mean and band of {shown(record.level, 3)} % of each index." if record.several else "Each index."
+        if any(row["measured"] is not None for of in whiskers.values() for row in of):
+            caption += " Diamonds: as measured."
+        sections.append(Section("indices", "Indices", (picture(figures["indices"], "Indices", caption),)))
+    if data["scores"]:
+        sections.append(_scores(record, figures))
+    for k, run in enumerate(record.drawn(), 1):
+        sections.append(_run(record, run, k, figures))
+    rest = [run for run in record.runs if run not in record.drawn()]
+    if rest:
+        blocks = tuple(table for run in rest if (table := _indices(record, run)))
+        said = Prose((f"{count(len(rest), 'run')} are not drawn: those whose bands hold more, or that diverged.",))
+        sections.append(Section("rest", "Other runs", (said, *(blocks and (Details("Indices", blocks),)))))
+    sources = {run["trial"]["source"] for run in record.runs if run["trial"]}
+    banner = "The trials are generated, not measured: this says how the method works, not how a real ship moves."
+    return Page(
+        title="Prediction",
+        eyebrow=f"{clean(data['model']['id'])} · {count(data['particles'], 'particle')}",
+        verdict=_verdict(record),
+        banners=(banner,) if sources == {"generated"} else (),
+        warnings=(*(f"{clean(note)}." for note in data["notes"]), *doubts(data)),
+        tiles=_tiles(record),
+        sections=(*sections, _made(record)),
+        figures=figures,
+    )
+
+
+def _verdict(record: PredictRecord) -> str:
+    scores = record.data["scores"]
+    if scores and number(scores["coverage_90"]) is not None:
+        held, widest = 100.0 * scores["coverage_90"], 100.0 * scores["widest"]
+        meant = min(90.0, widest)
+        word = "too narrow" if held < meant - 5.0 else "wider than needed" if held > meant + 5.0 else "about right"
+        return (
+            f"The bands that are to hold {meant:.0f} % hold {held:.0f} % of what was measured: they are {word}. "
+            f"Half of it is to lie in the inner ones, and {100.0 * scores['coverage_50']:.0f} % does."
+        )
+    said: list[str] = []
+    for run in record.runs:
+        for row in run["indices"]:
+            if row["index"] in ("advance_m", "overshoot_1_deg") and len(said) < 3:
+                banded = row["over_L"] or row
+                unit = "ship lengths" if row["over_L"] else row["unit"]
+                name = "the advance" if row["over_L"] else "the first overshoot"
+                said.append(f"{clean(run['order'])}: {name} is {_banded(banded)} {unit}")
+    if not said and record.runs[0]["diverged"] < record.data["particles"]:
+        run = record.runs[0]
+        where = ", ".join(f"{row['words']} {_banded(row)} {row['unit']}" for row in run["end"][:3])
+        said.append(f"after {shown(run['duration_s'], 3)} s of {clean(run['order'])}: {where}")
+    text = "; ".join(said) + "." if said else f"{count(len(record.runs), 'run')} foretold."
+    return text[:1].upper() + text[1:]
+
+
+def _tiles(record: PredictRecord) -> tuple[Tile, ...]:
+    data = record.data
+    drawn = "drawn" if data["drawn"] else "the members the model has"
+    tiles = [Tile("particles", str(data["particles"]), note=drawn if record.several else "one model: no band")]
+    scores = data["scores"]
+    if scores:
+        for level in (50, 90):
+            if number(scores[f"coverage_{level}"]) is not None:
+                tiles.append(Tile(f"held by bands of {level} %", f"{100.0 * scores[f'coverage_{level}']:.0f} %"))
+        tiles += [
+            Tile(name, shown(scores[name], 3)) for name in ("L_Eucl", "L_Maha") if number(scores[name]) is not None
+        ]
+        return tuple(tiles)
+    for run in record.runs:
+        for row in run["indices"]:
+            if row["index"] in ("advance_m", "tactical_diameter_m", "overshoot_1_deg", "track_reach_m"):
+                unit = "L" if row["over_L"] else row["unit"]
+                tiles.append(Tile(f"{row['words']}, {clean(run['id'])}", f"{_banded(row['over_L'] or row)} {unit}"))
+    return tuple(tiles[:7])
+
+
+def _banded(row: Mapping[str, Any]) -> str:
+    """A mean with half its band; "3.1 or more" where a share of the particles never gets there."""
+    mean, half, low = (number(row[key]) for key in ("mean", "half_width", "low"))
+    if mean is None:
+        return "never reached"
+    if row["particles"] == 1:
+        return shown(mean, 3)
+    if half is None:
+        return NONE if low is None else f"{shown(low, 3)} or more"
+    from math import floor, log10
+
+    decimals = 1 if half <= 0.0 else min(max(1 - floor(log10(half)), 0), 6)
+    return f"{fixed(mean, decimals)} ± {fixed(half, decimals)}"
+
+
+def _whisker_rows(record: PredictRecord) -> dict[str, list[dict[str, Any]]]:
+    """The principal indices of the runs that are drawn, by unit."""
+    found: dict[str, list[dict[str, Any]]] = {}
+    for run in record.drawn():
+        for row in run["indices"]:
+            if row["index"] not in (*PRINCIPAL, "track_reach_m", "head_reach_m") or row["unit"] not in ("m", "deg"):
+                continue
+            values = row["over_L"] or row
+            label = f"{clean(run['id'])[-22:]}: {row['words']}"
+            unit = "ship lengths" if row["over_L"] else row["unit"]
+            several = (
+                {"low": values["low"], "high": values["high"]} if record.several else dict.fromkeys(("low", "high"))
+            )
+            found.setdefault(unit, []).append(
+                {"label": label, "mean": values["mean"], "measured": values["measured"], **several}
+            )
+    return found
+
+
+def _run(record: PredictRecord, run: Mapping[str, Any], k: int, figures: dict[str, Drawn]) -> Section:
+    bands, name = record.bands[str(run["id"])], clean(run["id"])
+    trial = run["trial"] is not None
+    mean = {axis: bands[axis]["mean"] for axis in ("x", "y")}
+    measured = {axis: bands[axis]["measured"] for axis in ("x", "y")} if trial else None
+    threads = record.tracks.get(str(run["id"]), ())
+    L_pp = float(record.data["model"]["L_pp"])
+    figures[f"track_{k}"] = Drawn(
+        f"track_{k}",
+        f"Track of {name}",
+        partial(fans.draw_track, run["marks"], threads, mean, measured, L_pp, record.level),
+    )
+    figures[f"motions_{k}"] = Drawn(
+        f"motions_{k}",
+        f"Heading and velocities of {name} over time",
+        partial(fans.draw_motions, bands, record.level, record.several),
+    )
+    lost = f" {run['diverged']} of {record.data['particles']} particles diverged." if run["diverged"] else ""
+    first = f"{clean(run['order'])}, {shown(run['duration_s'], 3)} s.{lost}"
+    if record.several:
+        first += (
+            f" Regions hold half and {shown(record.level, 3)} % of the positions at a time, "
+            "as mean and covariance of the particles have it."
+        )
+    blocks: list[Block] = [
+        picture(figures[f"track_{k}"], "Track", first),
+        picture(figures[f"motions_{k}"], "Motions", "Heading, velocities and yaw rate over time."),
+    ]
+    table = _indices(record, run)
+    if table:
+        blocks.append(table)
+    return Section(f"run-{k}", name, tuple(blocks))
+
+
+def _indices(record: PredictRecord, run: Mapping[str, Any]) -> Table | None:
+    """All indices of a run."""
+    measured = any(number(row["measured"]) is not None for row in run["indices"])
+    rows = []
+    for row in run["indices"]:
+        lengths = row["over_L"]
+        band = f"{shown(row['low'], 3)} to {shown(row['high'], 3)}" if record.several else NONE
+        line: list[str | Cell] = [
+            f"{row['words']} [{row['unit']}]",
+            _banded(row),
+            _banded(lengths) if lengths else NONE,
+            band,
+        ]
+        if measured:
+            line.append(Cell(shown(row["measured"]), _tone(row) if record.several else ""))
+        never = row["particles"] - row["reached"]
+        line.append(Cell(str(never), "bad") if never else "0")
+        rows.append(cells(*line))
+    if not rows:
+        return None
+    heads = ["index", "mean ± half the band", "in ship lengths", f"band of {shown(record.level, 3)} %"]
+    heads += ["measured"] if measured else []
+    heads.append("never reach it")
+    caption = f"Indices of {clean(run['id'])}; particles that never reach one count as beyond all others"
+    return Table(f"indices-{clean(run['id'])}", caption, tuple(heads), tuple(rows), numeric=range(1, len(heads)))
+
+
+def _tone(row: Mapping[str, Any]) -> str:
+    """Whether the measured value lies in the band."""
+    value, low, high = (number(row[key]) for key in ("measured", "low", "high"))
+    if value is None:
+        return ""
+    return "good" if (low is None or value >= low) and (high is None or value <= high) else "bad"
+
+
+def _scores(record: PredictRecord, figures: dict[str, Drawn]) -> Section:
+    scores = record.data["scores"]
+    blocks: list[Block] = []
+    if record.several:
+        calibration = scores["calibration"]
+        figures["calibration"] = Drawn(
+            "calibration",
+            "Share of the measured samples in bands against what the bands say",
+            partial(
+                fans.draw_calibration, calibration["nominal"], {record.data["model"]["name"]: calibration["covered"]}
+            ),
+        )
+        caption = (
+            "Below the diagonal bands are too narrow, above it wider than needed; all states and samples together."
+        )
+        blocks.append(picture(figures["calibration"], "Calibration", caption))
+    blocks.append(_scores_table(record.data["runs"], scores))
+    blocks.append(Prose((MEANING,)))
+    return Section("scores", "Scores", tuple(blocks))
+
+
+def _scores_table(runs: Sequence[Mapping[str, Any]], whole: Mapping[str, Any]) -> Table:
+    """Scores of each run and of all."""
+    rows = [cells(clean(run["id"]), *score_cells(run["scores"])) for run in runs if run["scores"]]
+    rows.append(cells("all", *score_cells(whole)))
+    return Table(
+        "scores-table",
+        "Whether the bands held what was measured",
+        ("run", *SCORE_HEADS),
+        tuple(rows),
+        numeric=range(1, 1 + len(SCORE_HEADS)),
+    )
+
+
+def _made(record: PredictRecord) -> Section:
+    data = record.data
+    made, model = data["provenance"], data["model"]
+    items = [
+        ("model", f"{clean(model['name'])}; {clean(model['method'])}"),
+        ("profile's hash (SHA-256)", clean(model["sha256"] or NONE)),
+        ("particles", f"{data['particles']}, " + ("drawn" if data["drawn"] else "the members the model has")),
+        ("command", clean(made["command"] or NONE)),
+        ("made by", f"mmgtune {clean(made['mmgtune'])}, {clean(made['created'])}"),
+        ("time", f"{shown(data['wall_s'], 3)} s"),
+    ]
+    hashes = [(clean(run["id"]), clean(run["trial"]["sha256"])) for run in record.runs if run["trial"]]
+    folded = (Details("Hashes of the trials", (pairs("hashes-table", "Hashes", ("trial", "SHA-256"), hashes),)),)
+    return Section(
+        "made", "How it was made", (pairs("made-table", "What it was made from", ("", ""), items), *(hashes and folded))
+    )
+
+
+KIND = Kind("predict", ("model", "runs", "particles", "has_band", "level", "scores", "provenance"), read, build)
