@@ -27,6 +27,8 @@ from .fitting import fit as fit
 from .fitting import leave_out as leave_out
 from .fitting import sweep as sweep
 from .fitting import write_run as write_run
+from .generating import Made as Made
+from .generating import make_trials as make_trials
 from .heading_keeping import HeadingStudy as HeadingStudy
 from .heading_keeping import study_heading_keeping as study_heading_keeping
 from .heading_keeping import write_heading_study as write_heading_study
@@ -54,6 +56,7 @@ from .options import HeadingOptions as HeadingOptions
 from .options import HybridOptions as HybridOptions
 from .options import LearnOptions as LearnOptions
 from .options import LeaveOutOptions as LeaveOutOptions
+from .options import MakeOptions as MakeOptions
 from .options import PredictOptions as PredictOptions
 from .options import SimulateOptions as SimulateOptions
 from .options import SweepOptions as SweepOptions

@@ -28,8 +28,9 @@ SLOW = 0.15
 BURST, QUIET = 5.0, 8.0
 """Steps of the thruster's orders and the least of them [1/s]."""
 
-RELUCTANCE = 0.03
-"""How much a change of a rudder by 30 deg counts beside a force that is missed by its unit, squared."""
+RELUCTANCE, SPREAD = 0.03, 0.15
+"""How much a change of a rudder by 30 deg counts beside a force that is missed by its unit, squared; and, on the
+approach, rudders that stand 30 deg apart: there one steers with both together and lets the propeller push."""
 
 
 class Joystick:
@@ -38,7 +39,9 @@ class Joystick:
     def __init__(self, model: Model):
         port, stbd = (model.profile.actuators[name] for name in ("delta_port", "delta_stbd"))
         angles = [np.arange(one.low, one.high + 1e-9, STEP) for one in (port, stbd)]
-        self.port, self.stbd = (grid.ravel() for grid in np.meshgrid(*angles, indexing="ij"))
+        port_at, stbd_at = (grid.ravel() for grid in np.meshgrid(*angles, indexing="ij"))
+        apart = port_at <= stbd_at + 1e-9  # no rudder is turned towards the other
+        self.port, self.stbd = port_at[apart], stbd_at[apart]
         assert model.profile.approach is not None
         n = np.full(len(self.port), model.profile.approach.n)
         controls = np.column_stack([n, self.port, self.stbd, 0.0 * n])
@@ -54,12 +57,14 @@ class Joystick:
         self.unit_X = float(np.ptp(self.X[0])) / 4.0
         self.unit_N = float(np.ptp(self.N[0])) / 4.0
 
-    def pick(self, u: FloatArray, X: FloatArray, N: FloatArray, now: FloatArray) -> FloatArray:
-        """Angles (2, n_lanes) near those that are, ``now``, at speeds u [m/s]."""
+    def pick(self, u: FloatArray, X: FloatArray, N: FloatArray, free: FloatArray, now: FloatArray) -> FloatArray:
+        """Angles (2, n_lanes) near those that are, ``now``, at speeds u [m/s]; X does not matter where ``free``, 1."""
         k = np.abs(np.abs(u)[:, None] - SPEEDS).argmin(axis=1)
-        missed = ((self.X[k] - X[:, None]) / self.unit_X) ** 2 + ((self.N[k] - N[:, None]) / self.unit_N) ** 2
+        short = (1.0 - free)[:, None] * (self.X[k] - X[:, None]) / self.unit_X
+        missed = short**2 + ((self.N[k] - N[:, None]) / self.unit_N) ** 2
         moved = (self.port - now[0][:, None]) ** 2 + (self.stbd - now[1][:, None]) ** 2
-        best = (missed + RELUCTANCE * moved / np.radians(30.0) ** 2).argmin(axis=1)
+        preferred = RELUCTANCE * moved + SPREAD * free[:, None] * (self.stbd - self.port) ** 2
+        best = (missed + preferred / np.radians(30.0) ** 2).argmin(axis=1)
         return np.stack([self.port[best], self.stbd[best]])
 
 
@@ -73,23 +78,25 @@ class Berthing:
         n = len(seconds)
         self.stick = Joystick(model)
         uniform = rng.uniform
-        self.u_0 = uniform(0.30, 0.50, n)
+        self.u_0 = uniform(0.35, 0.52, n)
         slow_down, slowed = uniform(0.20, 0.35, n), uniform(0.50, 0.62, n)
         swung, berthed = slowed + uniform(0.15, 0.22, n), uniform(0.90, 0.96, n)
         crawl = uniform(0.0, 0.08, n)
         one = np.ones(n)
-        shares = np.stack([0.0 * one, slow_down, slowed, swung, berthed, one])
-        self.times = shares * seconds
-        self.u_plan = np.stack([self.u_0, self.u_0, crawl, 0.5 * crawl, 0.0 * one, 0.0 * one])
+        turn = uniform(0.03, 0.10, n)  # a new course, at once
+        shares = np.stack([0.0 * one, turn, turn + 0.02, slow_down, slowed, swung, berthed, one])
+        self.times, self.slow_down = shares * seconds, slow_down * seconds
+        none = 0.0 * one
+        self.u_plan = np.stack([self.u_0, self.u_0, self.u_0, self.u_0, crawl, 0.5 * crawl, none, none])
         side = np.where(uniform(size=n) < 0.5, -1.0, 1.0)
-        course = np.radians(uniform(-35.0, 35.0, n))
-        swing = side * np.radians(uniform(15.0, 90.0, n))
-        self.psi_plan = heading + np.stack([0.0 * one, course, course, course + swing, course + swing, course + swing])
+        course = np.radians(uniform(-50.0, 50.0, n))
+        berth = course + side * np.radians(uniform(15.0, 90.0, n))
+        self.psi_plan = heading + np.stack([none, none, course, course, course, berth, berth, berth])
         crab = np.where(uniform(size=n) < 0.5, -1.0, 1.0) * uniform(0.01, 0.045, n)
-        self.v_plan = np.stack([0.0 * one, 0.0 * one, 0.0 * one, crab, crab, 0.0 * one])
+        self.v_plan = np.stack([none, none, none, none, none, crab, crab, none])
         self.every = uniform(2.0, 6.0, n)
         self.next = uniform(0.0, 2.0, n)
-        self.k_u, self.k_psi = uniform(0.05, 0.12, n), uniform(0.010, 0.025, n)
+        self.k_u, self.k_psi = uniform(0.05, 0.12, n), uniform(0.015, 0.040, n)
         self.k_r, self.k_v = uniform(0.15, 0.30, n), uniform(0.03, 0.08, n)
         self.given = together(np.zeros(n))
         value = model.profile.value
@@ -131,4 +138,5 @@ class Berthing:
         n = np.sign(bow) * BURST * np.round(np.sqrt(np.abs(bow) / self.thrust) / BURST)
         n = np.where(np.abs(n) < QUIET, 0.0, np.clip(n, -30.0, 30.0))
         left = N - self.arm * self.thrust * n * np.abs(n)
-        return np.vstack([self.stick.pick(u, X, left, self.given[:2]), n])
+        approaching = (t < self.slow_down).astype(np.float64)
+        return np.vstack([self.stick.pick(u, X, left, approaching, self.given[:2]), n])

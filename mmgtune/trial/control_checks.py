@@ -6,13 +6,16 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray
 from ..inputs import INPUTS, Role
 from ..units import DEG
 from .finding import Finding
 from .model import Trial
 from .motion_checks import spikes
 from .schema import MAIN_INPUTS, directions
+
+BRAKING = 45.0 * DEG
+"""Rudder angle [rad] beyond which it is there to brake."""
 
 FASTEST_THRUSTER = 100.0
 """Revolutions [1/s] that no thruster makes, not even a model's."""
@@ -58,7 +61,7 @@ def _gaps(name: str, values: FloatArray, where: str) -> Finding | None:
 def _rudder_sign(trial: Trial, name: str, where: str) -> Finding | None:
     """A ship going ahead turns towards its rudder; only an overshoot goes the other way, and that one slows down."""
     delta = trial.columns[name]
-    over = (np.abs(delta) > 3.0 * DEG) & np.isfinite(trial.r) & (trial.u > 0.0) & (trial.n > 0.0)
+    over = (np.abs(delta) > 3.0 * DEG) & np.isfinite(trial.r) & (trial.u > 0.0) & (trial.n > 0.0) & _steering(trial)
     if over.sum() < 20:
         return None
     side = np.sign(delta)
@@ -74,6 +77,12 @@ def _rudder_sign(trial: Trial, name: str, where: str) -> Finding | None:
         f"a positive angle must turn the ship to starboard; agreement of sides {towards:.2f}, expected near 1",
         f"change the sign of '{name}'; if it is right, those of 'r', 'psi', 'v' and 'y'",
     )
+
+
+def _steering(trial: Trial) -> BoolArray:
+    """Samples at which no rudder is as far over as only those do that brake: turned outward, a pair steers little."""
+    rudders = [values for name, values in inputs_of(trial).items() if INPUTS[name].role == "rudder"]
+    return np.asarray(np.max(np.abs(rudders), axis=0) < BRAKING)
 
 
 def _rudder_speed(trial: Trial, name: str, where: str) -> Finding | None:
