@@ -9,7 +9,7 @@ import typer
 
 from ..options import HeadingOptions
 from . import common as c
-from .learn_compare import FolderOptions
+from .compare import FolderOptions
 from .options import takes
 
 app = typer.Typer(no_args_is_help=True, help="Judge controllers in simulation, and the simulators by what is true.")
