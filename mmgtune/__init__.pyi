@@ -29,6 +29,9 @@ from .fitting import sweep as sweep
 from .fitting import write_run as write_run
 from .generating import Made as Made
 from .generating import make_trials as make_trials
+from .heading_keeping import HeadingStudy as HeadingStudy
+from .heading_keeping import study_heading_keeping as study_heading_keeping
+from .heading_keeping import write_heading_study as write_heading_study
 from .importing import import_logs as import_logs
 from .importing import load_map as load_map
 from .learning import Learned as Learned
@@ -51,6 +54,7 @@ from .options import DiagnoseOptions as DiagnoseOptions
 from .options import EnsembleOptions as EnsembleOptions
 from .options import EstimateOptions as EstimateOptions
 from .options import FitOptions as FitOptions
+from .options import HeadingOptions as HeadingOptions
 from .options import HybridOptions as HybridOptions
 from .options import LearnOptions as LearnOptions
 from .options import LeaveOutOptions as LeaveOutOptions

@@ -134,7 +134,7 @@ class EnsembleOptions(TrainingOptions):
         most=0.8,
         panel=TRAINING,
     )
-    validate_every: int = again(TrainingOptions, "validate_every", 100)
+    validate_every: int = again(TrainingOptions, "validate_every", 50)
     step: float | None = again(TrainingOptions, "step", 1.0)
 
     def problems(self) -> list[Problem]:

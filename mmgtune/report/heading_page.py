@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..heading_keeping import shares_of
 from .common import picture
-from .drawing import Drawn, grid_of
+from .drawing import FLAG, Drawn, grid_of
 from .load import Kind
 from .page import Page, Prose, Section, Table, Tile, cells
 from .tables import pairs
@@ -41,11 +41,11 @@ class HeadingRecord:
     @property
     def maps(self) -> list[tuple[str, list[list[float]]]]:
         """Titles and scores of all maps, the truth first; infinite where a run diverged."""
-        found = [(f"{clean(self.data['truth']['name'])}: true", self.data["truth"]["scores"])]
+        found = [(f"{clean(self.data['truth']['name'])}\ntrue", self.data["truth"]["scores"])]
         for model in self.data["models"]:
             for view, of in model["views"].items():
                 words = _WORDS[view] if model["members"] > 1 else "as it is"
-                found.append((f"{clean(model['name'])}: {words}", of["scores"]))
+                found.append((f"{clean(model['name'])}\n{words}", of["scores"]))
         return [(title, [[math.inf if v is None else v for v in row] for row in rows]) for title, rows in found]
 
 
@@ -115,7 +115,7 @@ def _draw(record: HeadingRecord) -> Figure:
             if a < b
         ]
         if over:
-            ax.plot(*zip(*over, strict=True), linestyle="", marker="x", markersize=2.5, color="white")
+            ax.plot(*zip(*over, strict=True), linestyle="", marker="x", markersize=2.5, color=FLAG)
         ax.set_title(title, fontsize="small")
         ax.set_xlabel("K_D [deg s/rad]")
         ax.set_ylabel("K_P [deg/rad]")

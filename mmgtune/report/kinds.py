@@ -32,8 +32,8 @@ KINDS: tuple[Kind, ...] = tuple(
         ensemble_page,
         hybrid_page,
         models_page,
-        predict_page,
         heading_page,
+        predict_page,
     )
 )
 """Every kind, in the order in which their files are looked for."""

@@ -158,10 +158,12 @@ def draw_curves(members: Sequence[Mapping[str, Any]], label: str) -> Figure:
     figure = new_figure(7.6, 3.0)
     left, right = figure.subplots(1, 2)
     for one in members:
-        rows = [row for row in one["curve"] if number(row["loss"]) is not None]
-        left.plot([row["step"] for row in rows], [row["loss"] for row in rows], color=BEFORE, linewidth=1.0)
-        rows = [row for row in one["curve"] if number(row["score"]) is not None]
-        right.plot([row["step"] for row in rows], [row["score"] for row in rows], color=AFTER, linewidth=1.0)
+        for ax, key, color in ((left, "loss", BEFORE), (right, "score", AFTER)):
+            rows = [row for row in one["curve"] if number(row[key]) is not None]
+            marker = "." if len(rows) == 1 else None  # a line of one point is none
+            ax.plot(
+                [row["step"] for row in rows], [row[key] for row in rows], color=color, linewidth=1.0, marker=marker
+            )
         if number(one["score"]) is not None and "best_step" in one:
             right.plot([one["best_step"]], [one["score"]], color=AFTER, marker="o", markersize=4)
     _scaled(left, "loss on short windows [–]")

@@ -11,7 +11,7 @@ import pytest
 pytest.importorskip("jax", reason="networks are trained with the extra mmgtune[learn]")
 
 from mmgtune.backends import pad
-from mmgtune.bands import pooled, score_window
+from mmgtune.bands import pooled
 from mmgtune.cli.learn import ensemble_summary
 from mmgtune.errors import OptionError
 from mmgtune.learning import Hooks, learn_ensemble, write_learned
@@ -23,11 +23,11 @@ from mmgtune.learning.task import ensemble_task
 from mmgtune.networks import EnsemblePredictor, load_network
 from mmgtune.networks.feedforward import dense, evaluated
 from mmgtune.options.learning import EnsembleOptions
-from mmgtune.predictor import cases_from
 from mmgtune.profile import load_profile
 from mmgtune.report import render
 from mmgtune.trial import TrialSet
 from mmgtune.validating import validate
+from mmgtune.validation import window_scores
 
 from .sailed import NOISE, SHIP, noisy, sailed
 
@@ -70,14 +70,8 @@ def weights(result):
 
 def spread_of(ensemble, trials, sampling="TS-infinity"):
     """L_Eucl, L_Maha and so on of 48 particles on windows of 50 s."""
-    pieces = pieces_of(trials, 50.0)
     particles = EnsemblePredictor(ensemble).drawn(48, 1, sampling)
-    found = particles.predict(cases_from(pieces, particles.inputs, None))
-    begin = np.full((1, 6), np.nan)
-    scores = [
-        score_window(of.id, of.id, of.id, "", states[:, : of.n_samples], diverged, np.vstack([begin, of.motion[1:]]))
-        for of, states, diverged in zip(pieces, found.states, found.diverged, strict=True)
-    ]
+    scores = window_scores(particles, pieces_of(trials, 50.0))
     return pooled(scores, dict.fromkeys(("x", "y", "psi", "u", "v_m", "r"), 1.0))
 
 
