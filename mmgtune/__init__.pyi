@@ -47,6 +47,7 @@ from .options import FitOptions as FitOptions
 from .options import HybridOptions as HybridOptions
 from .options import LearnOptions as LearnOptions
 from .options import LeaveOutOptions as LeaveOutOptions
+from .options import PosteriorOptions as PosteriorOptions
 from .options import SimulateOptions as SimulateOptions
 from .options import SweepOptions as SweepOptions
 from .options import ValidateOptions as ValidateOptions
@@ -54,6 +55,12 @@ from .options import VoyageOptions as VoyageOptions
 from .orders import TurningOrder as TurningOrder
 from .orders import ZigzagOrder as ZigzagOrder
 from .orders import run_manoeuvre as run_manoeuvre
+from .particles import Particles as Particles
+from .particles import load_particles as load_particles
+from .particles import save_particles as save_particles
+from .posterior import Posterior as Posterior
+from .posterior import posterior as posterior
+from .posterior import write_posterior as write_posterior
 from .predictor import PhysicsPredictor as PhysicsPredictor
 from .predictor import Prediction as Prediction
 from .predictor import Predictor as Predictor

@@ -24,6 +24,7 @@ from . import (
     interrupts,
     learn,
     leave_out,
+    posterior,
     profiles,
     report,
     simulate,
@@ -87,6 +88,7 @@ app.command("fit", epilog=EPILOG)(fit.command)
 app.command("sweep", epilog=EPILOG)(sweep.command)
 app.command("diagnose", epilog=EPILOG)(diagnose.command)
 app.command("leave-out", epilog=EPILOG)(leave_out.command)
+app.command("posterior", epilog=EPILOG)(posterior.command)
 app.command("check", epilog=EPILOG)(check.command)
 app.command("validate", epilog=EPILOG)(validate.command)
 app.command("simulate", epilog=EPILOG)(simulate.command)

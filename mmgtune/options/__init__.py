@@ -6,6 +6,7 @@ tuning      fit, sweep, leave-out
 diagnosis   diagnose
 scoring     validate, on trials and on voyages, check, and learn compare
 orders      simulate
+posterior   posterior
 estimating  profile new
 learning    learn
 flags       what fields are called on the command line
@@ -19,6 +20,7 @@ from .estimating import EstimateOptions
 from .flags import FLAGS, flags_of, in_flags
 from .learning import HybridOptions, LearnOptions, TrainingOptions
 from .orders import SimulateOptions
+from .posterior import PosteriorOptions
 from .scoring import FORMATS, CheckOptions, CompareModelsOptions, ValidateOptions, VoyageOptions
 from .simulation import BACKENDS, INTEGRATORS, SimulationOptions
 from .tuning import METHODS, FitOptions, LeaveOutOptions, SearchOptions, SweepOptions, TuningOptions
@@ -39,6 +41,7 @@ __all__ = [
     "LearnOptions",
     "LeaveOutOptions",
     "Options",
+    "PosteriorOptions",
     "SearchOptions",
     "SimulateOptions",
     "SimulationOptions",
@@ -63,6 +66,7 @@ for _of in (
     HybridOptions,
     LearnOptions,
     LeaveOutOptions,
+    PosteriorOptions,
     SimulateOptions,
     SweepOptions,
     VoyageOptions,

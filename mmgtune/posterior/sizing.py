@@ -1,0 +1,139 @@
+"""How much trials are believed: residuals of a model that is wrong are not independent of each other.
+
+What the model with all its room cannot follow shows as residuals larger than the noise.  Such an error is the same
+along a run, so it counts as one number for each channel of each run, not as one a sample.  Where trials are of several
+kinds and sides, each group is left out besides, and predicted from the others: the trials are believed as little as
+makes these predictions most probable.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..manoeuvres import manoeuvre_kind
+from ..predictor import PhysicsPredictor, cases_from
+from ..simulation import track_if_whole
+from ..trial import Trial
+from ..units import DEG
+from .local import Mode, Windowed, find_mode
+
+BASE = 3.0
+"""Variance of residuals even where the model fits to the noise: what generated ships with a hidden effect call for."""
+
+SHARED = 2.0
+"""Weight of what is above the noise, over what one number a channel and run gives."""
+
+GRID = (1.0, 3.0, 10.0, 30.0, 100.0)
+"""Factors on the variance that left-out groups choose among."""
+
+N_LEFT_OUT = 80
+"""Particles that predict a left-out group."""
+
+STUDENT = 4.0
+"""Degrees of freedom of the distribution that scores them: one prediction that is far off does not decide alone."""
+
+SMALL_RUDDER = 15.0 * DEG
+"""Rudder below which a turn or zigzag counts as gentle."""
+
+
+@dataclass(frozen=True)
+class Sized:
+    """How much the trials are believed.
+
+    misfit     mean square of the residuals at the mode, 1 where the model is right
+    own        variance of residuals that follows from it
+    groups     what was left out in turn, kinds and sides in words; fewer than two: nothing was
+    factor     on ``own`` that predicts them best, 1 where nothing was left out
+    scores     mean logarithm of their probability, by factor
+    """
+
+    misfit: float
+    own: float
+    groups: tuple[str, ...] = ()
+    factor: float = 1.0
+    scores: tuple[float, ...] = ()
+
+    @property
+    def temper(self) -> float:
+        """Variance of residuals the distribution is made with."""
+        return self.own * self.factor
+
+    def sentence(self) -> str:
+        """In words."""
+        variance = f"{self.temper:.3g} times the variance of noise (their own is {self.misfit:.2f} times)"
+        said = f"Residuals count with {variance}"
+        if len(self.groups) < 2:
+            return f"{said}; all trials are of one kind and side, so nothing could be left out to check it."
+        return f"{said}, which predicts each of {', '.join(self.groups)} best from the others."
+
+
+def own_variance(data: Windowed, mode: Mode) -> float:
+    """Variance of residuals from their size at the mode."""
+    n = len(mode.residual)
+    above = max(mode.misfit - 1.0 - float(np.sqrt(2.0 / n)), 0.0)
+    return BASE + SHARED * above * n / data.n_series
+
+
+def group_of(trial: Trial) -> str:
+    """Kind, side and size of a trial in words: "starboard turning", "zigzag"."""
+    track = track_if_whole(trial)
+    kind = manoeuvre_kind(track) if track is not None else trial.manoeuvre or "other"
+    largest = float(trial.delta[np.nanargmax(np.abs(trial.delta))])
+    size = "gentle " if abs(largest) < SMALL_RUDDER else ""
+    side = ("starboard " if largest > 0.0 else "port ") if kind == "turning" else ""
+    return f"{size}{side}{kind}"
+
+
+def size(data: Windowed, mode: Mode, remake: Callable[[Sequence[Trial]], Windowed], seed: int = 1) -> Sized:
+    """How much the trials of ``data`` are to be believed.
+
+    remake  the same with other trials
+    """
+    own = own_variance(data, mode)
+    groups: dict[str, list[Trial]] = {}
+    for trial in data.trials:
+        groups.setdefault(group_of(trial), []).append(trial)
+    if len(groups) < 2:
+        return Sized(mode.misfit, own, tuple(groups))
+    total = np.zeros(len(GRID))
+    for left in groups.values():
+        rest = remake([trial for trial in data.trials if not any(trial is one for one in left)])
+        found = find_mode(rest, own)
+        variance = own_variance(rest, found)
+        total += [log_score(rest, found, factor * variance, left, seed) for factor in GRID]
+    total /= len(groups)
+    return Sized(mode.misfit, own, tuple(groups), GRID[int(np.argmax(total))], tuple(total.tolist()))
+
+
+def log_score(data: Windowed, mode: Mode, temper: float, trials: Sequence[Trial], seed: int) -> float:
+    """Mean logarithm of the probability density of whole left-out trials, sample by sample and channel by channel."""
+    z = draws(mode, temper, N_LEFT_OUT, seed)
+    theta = data.model.matrix(data.room.names, data.room.values(z))
+    predicted = PhysicsPredictor(data.model, theta, data.integrator, data.backend.name).predict(
+        cases_from(trials, data.model.inputs, data.model.draught)
+    )
+    scores = []
+    for case, trial in enumerate(trials):
+        at = np.arange(trial.n_samples // 40, trial.n_samples, max(1, trial.n_samples // 60))
+        runs = predicted.states[case][~predicted.diverged[case]][:, at, :3]
+        if len(runs) < N_LEFT_OUT // 2:  # hardly any particle stays in the world of ships
+            scores.append(-1e3)
+            continue
+        low, middle, high = np.quantile(runs, [0.16, 0.5, 0.84], axis=0)
+        variance = 0.25 * (high - low) ** 2 + 4.0 * data.sigma[:3] ** 2
+        with np.errstate(invalid="ignore"):
+            off = (trial.motion[at, :3] - middle) ** 2 / variance
+        density = -0.5 * np.log(variance) - 0.5 * (STUDENT + 1.0) * np.log1p(off / STUDENT)
+        scores.append(float(np.nanmean(density)))
+    return float(np.mean(scores))
+
+
+def draws(mode: Mode, temper: float, n: int, seed: int) -> FloatArray:
+    """n particles (n_names, n) of the distribution about a mode."""
+    mean, covariance = mode.gaussian(temper)
+    noise = np.random.default_rng(seed).standard_normal((len(mean), n))
+    return np.asarray(mean[:, None] + np.linalg.cholesky(covariance) @ noise)
