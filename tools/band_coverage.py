@@ -211,7 +211,7 @@ def main() -> None:
     parser.add_argument("--room", type=float, default=1.0)
     parser.add_argument("--leave-out", action="store_true")
     given = parser.parse_args()
-    os.nice(10)
+    os.nice(3)
     rows = [json.loads(line) for line in given.out.read_text().splitlines()] if given.out.is_file() else []
     done = {(row["case"], row["design"]) for row in rows}
     for _, case in zip(range(given.cases), cases(), strict=False):
