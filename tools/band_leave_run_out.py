@@ -33,7 +33,8 @@ from .band_coverage import prior_of, scored
 def turns(ship: PhysicsPredictor, degrees: float) -> dict[str, list[float | None]]:
     """5, 50 and 95 % of advance and tactical diameter over L, of turns from the approach; None where never reached."""
     approach = ship.model.profile.approach
-    assert approach is not None and approach.n is not None  # of the profiles this is for
+    assert approach is not None  # of the profiles this is for
+    assert approach.n is not None
     n = ship.n_members
     full = np.full(n, 1.0)
     orders = Orders(
@@ -64,12 +65,16 @@ def main() -> None:
     parser.add_argument("profile")
     parser.add_argument("trials")
     parser.add_argument("--out", type=Path)
+    parser.add_argument("--quick", action="store_true", help="no kinds and sides left out within what is learnt from")
+    parser.add_argument("--without", default="", help="effects to leave no room for, with commas between")
     parser.add_argument("--most", type=int, default=12, help="runs left out")
     parser.add_argument("--turn", type=float, default=35.0, help="rudder of the turns [deg]")
     given = parser.parse_args()
     profile = load_profile(given.profile)
     trials = list(load_trials(given.trials).trials.values())
-    options = PosteriorOptions(particles=200, leave_out=False)
+    options = PosteriorOptions(
+        particles=200, leave_out=not given.quick, without=tuple(filter(None, given.without.split(",")))
+    )
     before = prior_of(profile, options)
     rows: list[dict[str, Any]] = []
     runs = list(dict.fromkeys(trial.cut_from or trial.id for trial in trials))

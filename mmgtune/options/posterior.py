@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .choice import again, choice
+from .choice import REPRODUCE, choice
 from .simulation import SimulationOptions
-from .tuning import TuningOptions
 
 
 @dataclass(frozen=True)
@@ -21,4 +20,4 @@ class PosteriorOptions(SimulationOptions):
     leave_out: bool = choice(
         True, "Leave kinds and sides out in turn, to find how much the trials are to be believed.", flag="--leave-out"
     )
-    seed: int = again(TuningOptions, "seed", 1)
+    seed: int = choice(1, "Seed of every random number, 1 or more.", panel=REPRODUCE, least=1, most=2**63 - 1)

@@ -21,7 +21,7 @@ from ..threads import blas_on_one_thread
 from ..trial import Trial
 from .local import Mode, Windowed, find_mode, make_windowed
 from .room import Room, make_room, tags_of
-from .sizing import Sized, draws, own_variance, size
+from .sizing import Sized, draws, own_variance, shown_by, size
 
 EXPECTED = 2.0
 """Squares of residuals of particles over what a linear model has, up to which the Gaussian form counts as good."""
@@ -32,6 +32,7 @@ class Posterior:
     """What trials leave open of a ship.
 
     sized       how much the trials are believed
+    shown       what orders the trials hold, in a sentence
     learnt      number of combinations of numbers that the trials determine
     nonlinear   median over particles of the squares of residuals above those of the mode, over what it is if the
                 distribution is Gaussian
@@ -43,6 +44,7 @@ class Posterior:
     learnt: float
     nonlinear: float
     converged: bool
+    shown: str
     provenance: Mapping[str, Any]
 
     def __repr__(self) -> str:
@@ -67,6 +69,7 @@ class Posterior:
             f"Room for {len(self.room)} numbers: coefficients, and {', '.join(tags_of(self.room))}.",
             f"The trials determine {self.learnt:.0f} combinations of them; the rest is as open as before.",
             self.sized.sentence(),
+            self.shown,
         ]
 
     def to_dict(self) -> dict[str, Any]:
@@ -150,6 +153,7 @@ def posterior(
         learnt=mode.learnt(sized.temper),
         nonlinear=nonlinear,
         converged=mode.converged,
+        shown=shown_by(chosen),
         provenance=provenance,
     )
 

@@ -30,6 +30,9 @@ SHARED = 2.0
 GRID = (1.0, 3.0, 10.0, 30.0, 100.0)
 """Factors on the variance that left-out groups choose among."""
 
+CIRCLE = 150.0
+"""Change of heading [deg] from which a trial shows a turn to that side."""
+
 N_LEFT_OUT = 80
 """Particles that predict a left-out group."""
 
@@ -46,7 +49,8 @@ class Sized:
 
     misfit     mean square of the residuals at the mode, 1 where the model is right
     own        variance of residuals that follows from it
-    groups     what was left out in turn, kinds and sides in words; fewer than two: nothing was
+    groups     what was left out in turn, kinds and sides in words; none where that was not asked for, and of a
+               single one nothing could be
     factor     on ``own`` that predicts them best, 1 where nothing was left out
     scores     mean logarithm of their probability, by factor
     """
@@ -66,6 +70,8 @@ class Sized:
         """In words."""
         variance = f"{self.temper:.3g} times the variance of noise (their own is {self.misfit:.2f} times)"
         said = f"Residuals count with {variance}"
+        if not self.groups:
+            return f"{said}; no kind or side was left out to check it."
         if len(self.groups) < 2:
             return f"{said}; all trials are of one kind and side, so nothing could be left out to check it."
         return f"{said}, which predicts each of {', '.join(self.groups)} best from the others."
@@ -86,6 +92,22 @@ def group_of(trial: Trial) -> str:
     size = "gentle " if abs(largest) < SMALL_RUDDER else ""
     side = ("starboard " if largest > 0.0 else "port ") if kind == "turning" else ""
     return f"{size}{side}{kind}"
+
+
+def shown_by(trials: Sequence[Trial]) -> str:
+    """What orders trials hold, in a sentence: predictions beyond them rest on the room alone."""
+    largest = [float(np.nanmax(side * trial.delta)) / DEG for side in (1.0, -1.0) for trial in trials]
+    starboard, port = max(0.0, *largest[: len(trials)]), max(0.0, *largest[len(trials) :])
+    turned = [float(trial.psi[-1] - trial.psi[0]) / DEG for trial in trials if np.isfinite(trial.psi[[0, -1]]).all()]
+    circles = [
+        name for name, side in (("starboard", 1.0), ("port", -1.0)) if any(side * angle >= CIRCLE for angle in turned)
+    ]
+    turns = f"turns to {' and '.join(circles)}" if circles else "no turns"
+    astern = "" if any(np.nanmin(trial.n) < 0.0 for trial in trials) else ", no revolutions astern"
+    return (
+        f"The trials show rudder up to {starboard:.0f} deg to starboard and {port:.0f} deg to port, {turns}{astern}; "
+        "beyond that bands are as wide as the room allows."
+    )
 
 
 def size(data: Windowed, mode: Mode, remake: Callable[[Sequence[Trial]], Windowed], seed: int = 1) -> Sized:
