@@ -95,7 +95,11 @@ class Posterior:
             "particles": len(self.particles),
             "misfit": self.sized.misfit,
             "temper": self.sized.temper,
-            "left_out": {"groups": list(self.sized.groups), "factor": self.sized.factor},
+            "left_out": {
+                "groups": list(self.sized.groups),
+                "factor": self.sized.factor,
+                "covered": list(self.sized.covered),
+            },
             "learnt": self.learnt,
             "nonlinear": self.nonlinear,
             "converged": self.converged,

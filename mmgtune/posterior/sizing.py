@@ -2,8 +2,8 @@
 
 What the model with all its room cannot follow shows as residuals larger than the noise.  Such an error is the same
 along a run, so it counts as one number for each channel of each run, not as one a sample.  Where trials are of several
-kinds and sides, each group is left out besides, and predicted from the others: the trials are believed as little as
-makes these predictions most probable.
+kinds and sides, each group is left out besides, and predicted from the others: the trials are believed as far as bands
+then cover what was left out at the nominal rate.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ CIRCLE = 150.0
 N_LEFT_OUT = 80
 """Particles that predict a left-out group."""
 
-STUDENT = 4.0
-"""Degrees of freedom of the distribution that scores them: one prediction that is far off does not decide alone."""
+NOMINAL = 0.9
+"""Share of left-out samples that bands of this content are to cover."""
 
 SMALL_RUDDER = 15.0 * DEG
 """Rudder below which a turn or zigzag counts as gentle."""
@@ -51,15 +51,15 @@ class Sized:
     own        variance of residuals that follows from it
     groups     what was left out in turn, kinds and sides in words; none where that was not asked for, and of a
                single one nothing could be
-    factor     on ``own`` that predicts them best, 1 where nothing was left out
-    scores     mean logarithm of their probability, by factor
+    factor     on ``own`` from which bands cover them, 1 where nothing was left out
+    covered    share of left-out samples within bands, by factor
     """
 
     misfit: float
     own: float
     groups: tuple[str, ...] = ()
     factor: float = 1.0
-    scores: tuple[float, ...] = ()
+    covered: tuple[float, ...] = ()
 
     @property
     def temper(self) -> float:
@@ -74,7 +74,8 @@ class Sized:
             return f"{said}; no kind or side was left out to check it."
         if len(self.groups) < 2:
             return f"{said}; all trials are of one kind and side, so nothing could be left out to check it."
-        return f"{said}, which predicts each of {', '.join(self.groups)} best from the others."
+        share, of = 100.0 * self.covered[GRID.index(self.factor)], ", ".join(self.groups)
+        return f"{said}, with which bands from the others cover {share:.0f} % of {of}."
 
 
 def own_variance(data: Windowed, mode: Mode) -> float:
@@ -126,32 +127,35 @@ def size(data: Windowed, mode: Mode, remake: Callable[[Sequence[Trial]], Windowe
         rest = remake([trial for trial in data.trials if not any(trial is one for one in left)])
         found = find_mode(rest, own)
         variance = own_variance(rest, found)
-        total += [log_score(rest, found, factor * variance, left, seed) for factor in GRID]
+        total += [coverage(rest, found, factor * variance, left, seed) for factor in GRID]
     total /= len(groups)
-    return Sized(mode.misfit, own, tuple(groups), GRID[int(np.argmax(total))], tuple(total.tolist()))
+    enough = np.flatnonzero(total >= NOMINAL)
+    chosen = int(enough[0]) if len(enough) else int(np.argmax(total))
+    return Sized(mode.misfit, own, tuple(groups), GRID[chosen], tuple(total.tolist()))
 
 
-def log_score(data: Windowed, mode: Mode, temper: float, trials: Sequence[Trial], seed: int) -> float:
-    """Mean logarithm of the probability density of whole left-out trials, sample by sample and channel by channel."""
+def coverage(data: Windowed, mode: Mode, temper: float, trials: Sequence[Trial], seed: int) -> float:
+    """Share of samples of position and heading of whole left-out trials that bands of ``NOMINAL`` content cover.
+
+    Bands are those of the particles, wider by the noise of the sensors.
+    """
     z = draws(mode, temper, N_LEFT_OUT, seed)
     theta = data.model.matrix(data.room.names, data.room.values(z))
     predicted = PhysicsPredictor(data.model, theta, data.integrator, data.backend.name).predict(
         cases_from(trials, data.model.inputs, data.model.draught)
     )
-    scores = []
+    covered = []
     for case, trial in enumerate(trials):
         at = np.arange(trial.n_samples // 40, trial.n_samples, max(1, trial.n_samples // 60))
         runs = predicted.states[case][~predicted.diverged[case]][:, at, :3]
         if len(runs) < N_LEFT_OUT // 2:  # hardly any particle stays in the world of ships
-            scores.append(-1e3)
+            covered.append(0.0)
             continue
-        low, middle, high = np.quantile(runs, [0.16, 0.5, 0.84], axis=0)
-        variance = 0.25 * (high - low) ** 2 + 4.0 * data.sigma[:3] ** 2
-        with np.errstate(invalid="ignore"):
-            off = (trial.motion[at, :3] - middle) ** 2 / variance
-        density = -0.5 * np.log(variance) - 0.5 * (STUDENT + 1.0) * np.log1p(off / STUDENT)
-        scores.append(float(np.nanmean(density)))
-    return float(np.mean(scores))
+        low, high = np.quantile(runs, [0.5 - 0.5 * NOMINAL, 0.5 + 0.5 * NOMINAL], axis=0)
+        measured, noise = trial.motion[at, :3], 2.0 * data.sigma[:3]
+        inside = (measured >= low - noise) & (measured <= high + noise)
+        covered.append(float(np.mean(inside[np.isfinite(measured)])))
+    return float(np.mean(covered))
 
 
 def draws(mode: Mode, temper: float, n: int, seed: int) -> FloatArray:
