@@ -23,8 +23,8 @@ from .local import Mode, Windowed, find_mode, make_windowed
 from .room import Room, make_room, tags_of
 from .sizing import Sized, draws, own_variance, shown_by, size
 
-EXPECTED = 2.0
-"""Squares of residuals of particles over what a linear model has, up to which the Gaussian form counts as good."""
+EXPECTED = 4.0
+"""Squares of residuals of particles over what a linear model has, up to which bands of generated ships held."""
 
 
 @dataclass(frozen=True, eq=False)
