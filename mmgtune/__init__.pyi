@@ -60,6 +60,7 @@ from .options import LearnOptions as LearnOptions
 from .options import LeaveOutOptions as LeaveOutOptions
 from .options import MakeOptions as MakeOptions
 from .options import MixtureOptions as MixtureOptions
+from .options import PosteriorOptions as PosteriorOptions
 from .options import PredictOptions as PredictOptions
 from .options import SimulateOptions as SimulateOptions
 from .options import SweepOptions as SweepOptions
@@ -68,6 +69,12 @@ from .options import VoyageOptions as VoyageOptions
 from .orders import TurningOrder as TurningOrder
 from .orders import ZigzagOrder as ZigzagOrder
 from .orders import run_manoeuvre as run_manoeuvre
+from .particles import Particles as Particles
+from .particles import load_particles as load_particles
+from .particles import save_particles as save_particles
+from .posterior import Posterior as Posterior
+from .posterior import posterior as posterior
+from .posterior import write_posterior as write_posterior
 from .predicting import Predicted as Predicted
 from .predicting import predict as predict
 from .predicting import write_prediction as write_prediction

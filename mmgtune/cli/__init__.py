@@ -25,6 +25,7 @@ from . import (
     interrupts,
     learn,
     leave_out,
+    posterior,
     predict,
     profiles,
     report,
@@ -90,6 +91,7 @@ app.command("fit", epilog=EPILOG)(fit.command)
 app.command("sweep", epilog=EPILOG)(sweep.command)
 app.command("diagnose", epilog=EPILOG)(diagnose.command)
 app.command("leave-out", epilog=EPILOG)(leave_out.command)
+app.command("posterior", epilog=EPILOG)(posterior.command)
 app.command("check", epilog=EPILOG)(check.command)
 app.command("validate", epilog=EPILOG)(validate.command)
 app.command("compare", epilog=EPILOG)(compare.command)

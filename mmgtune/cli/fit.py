@@ -28,6 +28,10 @@ def command(
         bool,
         typer.Option("--strict", help="Exit 1 unless the searches agree on the optimum.", rich_help_panel=c.OUTPUT),
     ] = False,
+    bands: Annotated[
+        bool,
+        typer.Option("--bands", help="Also draw particles for bands, as posterior does.", rich_help_panel=c.OUTPUT),
+    ] = False,
     no_report: c.NoReport = False,
 ) -> None:
     """Fine-tune the coefficients of a profile to trials, within +-a_r of their pre-determined values.
@@ -41,6 +45,7 @@ def command(
       mmgtune fit --ar 0.5 --json --out runs/today | jq .J_test
     """
     from ..fitting import claimed, fit, plan_fit, refuse_taken, write_run
+    from ..posterior import posterior, write_posterior
     from ..report import render
 
     ship, data = c.load(profile, trials)
@@ -63,12 +68,18 @@ def command(
         )
         document = write_run(result, folder)
         progress.saved(result.interrupted)
+        particles = None
+        if bands and not result.interrupted:
+            particles = posterior(result.tuned_profile(), data, options.posterior_options(), command=c.command_line())
+            document["bands"] = write_posterior(particles, folder, overwrite=True)
         if not no_report:
             render(folder)
     if run.json:
         c.print_json(document)
     else:
         c.show(summary(result, str(folder), report=not no_report))
+        if particles:
+            c.show("\n".join([*particles.sentences(), f"Particles: {folder}/particles.parquet"]))
     progress.leave()
     if strict and not result.converged:
         raise typer.Exit(ExitCode.NO)

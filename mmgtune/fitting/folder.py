@@ -33,6 +33,8 @@ OWN_FILES = (
     "learning.json",
     "hybrid.json",
     "model.safetensors",
+    "posterior.json",
+    "particles.parquet",
     "windows.parquet",
     "drawn.parquet",
     "journal.jsonl",

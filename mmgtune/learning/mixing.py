@@ -23,7 +23,6 @@ from ..networks import (
     save_network,
 )
 from ..networks.hybrid import Hybrid, silent
-from ..networks.naming import TrainedPredictor
 from ..objective import spread
 from ..options.learning import MixtureOptions
 from ..predictor import Predictor
@@ -96,8 +95,8 @@ class LearnedMixture:
 
 
 def learn_mixture(
-    model: ShipProfile | Hybrid | TrainedPredictor | str | Path,
-    network: Network | TrainedPredictor | str | Path,
+    model: ShipProfile | Hybrid | Predictor | str | Path,
+    network: Network | Predictor | str | Path,
     trials: TrialsGiven | None = None,
     options: MixtureOptions = MixtureOptions(),
     *,

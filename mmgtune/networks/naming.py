@@ -1,4 +1,4 @@
-"""What commands are given as a ship: a profile, or the file of a trained network."""
+"""What commands are given as a ship: a profile, particles of one, or the file of a trained network."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import TypeVar
 
 from ..backends import Integrator
 from ..given import ship_of
+from ..particles import FILE, ParticlePredictor, load_particles
 from ..profile import ShipProfile
 from ..resources import folder, taken
 from .ensemble import Ensemble, EnsemblePredictor
@@ -21,20 +22,29 @@ TrainedPredictor = NetworkPredictor | HybridPredictor | EnsemblePredictor | Mixt
 
 def named_ship(
     given: str | Path | Other, integrator: Integrator = Integrator()
-) -> ShipProfile | TrainedPredictor | Other:
-    """The profile, or the network, of a path or bundled name; anything else as it is.
+) -> ShipProfile | TrainedPredictor | ParticlePredictor | Other:
+    """The profile, the particles or the network of a path or bundled name; anything else as it is.
 
-    integrator  of a hybrid; networks alone have a step of their own
-    Raises ProfileError or NetworkError.
+    integrator  of particles and of a hybrid; networks alone have a step of their own
+    A run folder with particles is meant by them.  Raises ProfileError or NetworkError.
     """
     if not isinstance(given, (str, Path)):
         return given
     path = file_of(given)
-    return ship_of(given) if path is None else predictor_of(load_network(path), integrator)
+    if path is None:
+        return ship_of(given)
+    if path.suffix == Path(FILE).suffix:
+        return load_particles(path).predictor(integrator)
+    return predictor_of(load_network(path), integrator)
 
 
 def file_of(given: str | Path) -> Path | None:
-    """The file of a trained model of that path or bundled name; None where no such is meant."""
+    """The file of particles or of a trained model of that path or bundled name; None where no such is meant."""
+    inside = Path(given) / FILE
+    if inside.is_file():
+        return inside
+    if str(given).endswith(inside.suffix):
+        return Path(given)
     bundled = folder("ship_profiles") / f"{given}{SUFFIX}"
     return taken(given, str(given).endswith(SUFFIX), bundled)
 

@@ -8,6 +8,7 @@ scoring     validate, on trials and on voyages, check, and compare
 orders      simulate
 particles   how particles are drawn: predict, compare
 predicting  predict
+posterior   posterior
 estimating  profile new
 learning    learn
 generating  trials make
@@ -25,6 +26,7 @@ from .generating import MakeOptions
 from .learning import EnsembleOptions, HybridOptions, LearnOptions, MixtureOptions, TrainingOptions
 from .orders import SimulateOptions
 from .particles import SAMPLINGS, ParticleOptions
+from .posterior import PosteriorOptions
 from .predicting import PredictOptions
 from .scoring import FORMATS, CheckOptions, CompareModelsOptions, ValidateOptions, VoyageOptions
 from .simulation import BACKENDS, INTEGRATORS, SimulationOptions
@@ -53,6 +55,7 @@ __all__ = [
     "MixtureOptions",
     "Options",
     "ParticleOptions",
+    "PosteriorOptions",
     "PredictOptions",
     "SearchOptions",
     "SimulateOptions",
@@ -83,6 +86,7 @@ for _of in (
     LeaveOutOptions,
     PredictOptions,
     MakeOptions,
+    PosteriorOptions,
     SimulateOptions,
     SweepOptions,
     VoyageOptions,

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..errors import Problem
-from .choice import OUTPUT, REPRODUCE, again, choice
+from .choice import OUTPUT, again, choice
+from .posterior import PosteriorOptions
 from .simulation import SimulationOptions
 
 OBJECTIVES = ("paper", "standardised")
@@ -62,7 +63,7 @@ class TuningOptions(SimulationOptions):
     starts: int = choice(
         20, "Starts of the least-squares solve: the values before, the rest at random.", least=1, most=1000
     )
-    seed: int = choice(1, "Seed of every random number, 1 or more.", panel=REPRODUCE, least=1, most=2**63 - 1)
+    seed: int = again(PosteriorOptions, "seed")
 
 
 @dataclass(frozen=True)
@@ -98,6 +99,10 @@ class FitOptions(SearchOptions):
         above=0,
         most=5,
     )
+
+    def posterior_options(self) -> PosteriorOptions:
+        """The choices of particles of the same ship and trials."""
+        return PosteriorOptions(seed=self.seed, backend=self.backend)
 
 
 @dataclass(frozen=True)

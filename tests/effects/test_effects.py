@@ -34,6 +34,7 @@ STRONG = {
     "wave-drift": {"force": 5000.0, "direction": 2.0},
     "rudder-stall": {"angle": 0.3},
     "hull-term": {"N_rabsr": -0.01, "Y_vvv": 0.1, "X_absr": 0.01},
+    "discrepancy": {"Y_odd0": 0.01, "N_odd3": -0.002, "X_even5": 0.002, "N_even1": 0.001},
     "memory": {"time_constant": 6.0},
     "antenna": {"x": 10.0, "y": 3.0},
     "heading-bias": {"angle": 0.03},

@@ -1,0 +1,160 @@
+"""Particles: coefficients of one ship many times over, as probable as her trials leave them, and their file.
+
+A particle is a column of numbers of a profile, coefficients and parameters of effects.  All weigh the same.  What is
+predicted by all of them is a prediction that knows how well it is known.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .arrays import FloatArray
+from .backends import Integrator
+from .components import split_name
+from .effects import FlowEffect, SensorEffect
+from .errors import OptionError, Problem, ProfileError
+from .files import atomic
+from .model import Model
+from .predictor import PhysicsPredictor, Sampling
+from .profile import ShipProfile, parse_profile
+
+FILE = "particles.parquet"
+"""What the file is called in a run folder."""
+
+KEY = b"mmgtune_particles"
+SCHEMA = 1
+
+AIR_AND_WAVES = ("wind", "waves", "wave-drift")
+"""Effects of what was around the ship that are forces."""
+
+
+@dataclass(frozen=True, eq=False)
+class Particles:
+    """Equally probable columns of coefficients.
+
+    profile  with every effect that any particle has; its own values are the most probable ones
+    names    of the numbers that differ between particles
+    values   (n_names, n_particles) in the profile's units
+    facts    what they were made from, for JSON
+    """
+
+    profile: ShipProfile
+    names: tuple[str, ...]
+    values: FloatArray
+    facts: Mapping[str, Any]
+
+    def __len__(self) -> int:
+        return int(self.values.shape[1])
+
+    def __repr__(self) -> str:
+        """In a line."""
+        return f"Particles({self.profile.id}: {len(self)} of {len(self.names)} numbers)"
+
+    def of_the_day(self) -> tuple[str, ...]:
+        """Names of what belongs to the trials and not to the ship: current, wind, waves and faults of sensors."""
+        sections = self.profile.sections
+        found = []
+        for name in self.names:
+            effect = sections[split_name(name)[0]].component
+            around = isinstance(effect, (FlowEffect, SensorEffect)) or effect.tag in AIR_AND_WAVES
+            found += [name] if around else []
+        return tuple(found)
+
+    def predictor(self, integrator: Integrator = Integrator(), *, as_logged: bool = False) -> ParticlePredictor:
+        """The ship as a predictor that can be asked for particles.
+
+        as_logged  in the surroundings and by the sensors of the trials; else the ship alone, both as in the profile
+        """
+        model = Model(self.profile)
+        return ParticlePredictor(model, model.matrix(), integrator, particles=self, as_logged=as_logged)
+
+
+@dataclass(frozen=True, eq=False)
+class ParticlePredictor(PhysicsPredictor):
+    """The most probable coefficients as its one member, and particles on demand; see ``Uncertain``."""
+
+    particles: Particles | None = None
+    as_logged: bool = False
+
+    @property
+    def id(self) -> str:
+        """Id of the ship."""
+        return self.model.profile.id
+
+    def drawn(self, n: int, seed: int, sampling: Sampling = "TS-infinity") -> PhysicsPredictor:
+        """n particles, none twice where there are as many.
+
+        Raises OptionError for TS1: coefficients of a ship do not change from step to step.
+        """
+        if sampling != "TS-infinity":
+            why = "a particle is a ship, and keeps to her coefficients"
+            raise OptionError(
+                Problem("a physical model has no other particle at each step", "sampling", why, "take TS-infinity")
+            )
+        assert self.particles is not None  # made by ``Particles.predictor``
+        of = self.particles
+        rng = np.random.default_rng(seed)
+        chosen = rng.permutation(len(of))[:n] if n <= len(of) else rng.integers(len(of), size=n)
+        kept = set() if self.as_logged else {*of.of_the_day()}
+        at = [k for k, name in enumerate(of.names) if name not in kept]
+        theta = self.model.matrix([of.names[k] for k in at], of.values[at][:, chosen])
+        return PhysicsPredictor(self.model, theta, self.integrator, self.backend)
+
+
+def save_particles(particles: Particles, path: Path | str, overwrite: bool = False) -> Path:
+    """Write particles as Parquet, a column a number and a row a particle; the profile is in the file.
+
+    Raises OutputError where the file exists and ``overwrite`` is false, or the system refuses to write.
+    """
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    path = Path(path)
+    facts = {"schema": SCHEMA, "profile": particles.profile.text, "facts": dict(particles.facts)}
+    table = pa.table(dict(zip(particles.names, particles.values, strict=True)))
+    table = table.replace_schema_metadata({KEY: json.dumps(facts, allow_nan=False).encode()})
+    with atomic(path, overwrite) as part:
+        pq.write_table(table, part, compression="zstd", write_page_checksum=True)
+    return path
+
+
+def load_particles(path: Path | str) -> Particles:
+    """Read particles.  Raises ProfileError with what is wrong with the file."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    path = Path(path)
+    try:
+        table = pq.read_table(path, page_checksum_verification=True)
+        raw = (table.schema.metadata or {})[KEY]
+        facts = json.loads(raw)
+        text, known, schema = facts["profile"], facts["facts"], facts["schema"]
+    except (OSError, pa.ArrowException) as error:
+        raise ProfileError(Problem("particles cannot be read", str(path), str(error).splitlines()[0])) from error
+    except (KeyError, TypeError, ValueError, RecursionError) as error:
+        fix = "make them with mmgtune posterior"
+        raise ProfileError(Problem("the file holds no particles", str(path), fix=fix)) from error
+    if schema != SCHEMA:
+        raise ProfileError(
+            Problem(f"particles of schema {schema!r:.20}", str(path), f"this program reads schema {SCHEMA}")
+        )
+    if not isinstance(text, str) or not isinstance(known, dict):
+        raise ProfileError(Problem("what the particles say of themselves is damaged", str(path)))
+    profile = parse_profile(text, path)
+    names = tuple(table.column_names)
+    there = Model(profile).rows
+    unknown = [name for name in names if name not in there]
+    numbers = all(pa.types.is_floating(column.type) for column in table.columns)
+    values = np.array([column.to_numpy() for column in table.columns], dtype=float) if numbers else np.empty((0, 0))
+    if unknown or not names or len(set(names)) < len(names):
+        what = f"particles of '{unknown[0][:60]}', which their profile does not have" if unknown else "no particles"
+        raise ProfileError(Problem(what, str(path)))
+    if not numbers or not values.size or not np.isfinite(values).all():
+        raise ProfileError(Problem("particles that are no finite numbers", str(path)))
+    return Particles(profile, names, values, known)

@@ -1,0 +1,179 @@
+"""What trials say of everything there is room for: residuals on short windows, nearly linear in all of it.
+
+Over a whole turn a small error of the yaw rate carries the ship to the other side of her circle, and no Gaussian
+distribution of coefficients follows that.  Over a window of some ship lengths, begun anew from what was measured, the
+motion is almost linear in the coefficients even where they are far off, so the mode is found in a few steps and the
+distribution about it is Gaussian to good approximation.  The noise of the state a window begins from is part of the
+covariance of its residuals.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..backends import STATES, Backend, Cases, Integrator
+from ..fitting.initial import noise_of
+from ..model import Model
+from ..objective import PAPER_CHANNELS, Objective, cases_of
+from ..profile import scale_of
+from ..trial import Trial
+from ..trial.pieces import windows
+from .room import Room
+
+LENGTHS = 2.5
+"""Length of a window, in times the ship takes for her own length at the approach speed."""
+
+APART = 0.4
+"""Time between samples that are compared, likewise."""
+
+STEP = 0.02
+"""Step of derivatives, in prior deviations."""
+
+AT_ONCE = 512
+"""Candidates run at one time; bounds the memory."""
+
+ITERATIONS = 30
+DAMPING = (0.0, 0.1, 1.0, 10.0, 100.0)
+SMALL = 0.05
+"""Fall of the sum of squares below which the mode is found."""
+
+
+@dataclass(frozen=True, eq=False)
+class Windowed:
+    """Residuals of trials in short windows, white and of variance 1 if the model is right.
+
+    sigma     (6,) deviations of the measured states
+    whitened  rows of each window, and what makes them white: the inverse of the lower factor of their covariance
+    """
+
+    room: Room
+    model: Model
+    trials: tuple[Trial, ...]
+    cases: Cases
+    sigma: FloatArray
+    whitened: tuple[tuple[IntArray, FloatArray], ...]
+    backend: Backend
+    integrator: Integrator
+
+    def residuals(self, z: FloatArray) -> FloatArray:
+        """Rows (n_rows, n) at z (n_names, n); not finite throughout where a run diverged."""
+        parts = [self._raw(z[:, first : first + AT_ONCE]) for first in range(0, z.shape[1], AT_ONCE)]
+        raw = np.hstack(parts)
+        out = np.empty_like(raw)
+        with np.errstate(invalid="ignore"):
+            for rows, factor in self.whitened:
+                out[rows] = factor @ raw[rows]
+        return out
+
+    def _raw(self, z: FloatArray) -> FloatArray:
+        theta = self.model.matrix(self.room.names, self.room.values(z))
+        found = self.backend.run(self.model, theta, self.cases, integrator=self.integrator, keep_residuals=True)
+        assert found.residuals is not None  # asked for
+        rows = np.array(found.residuals)
+        rows[:, found.diverged.any(axis=0)] = np.nan
+        return rows
+
+    def linearised(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Residuals (n_rows,) at z (n_names,) and their derivatives (n_rows, n_names), steps towards the centre."""
+        n = len(z)
+        steps = np.where(z > 0.0, -STEP, STEP)
+        columns = np.repeat(z[:, None], n + 1, axis=1)
+        columns[np.arange(n), 1 + np.arange(n)] += steps
+        found = self.residuals(columns)
+        return found[:, 0], np.nan_to_num((found[:, 1:] - found[:, :1]) / steps)
+
+    @property
+    def n_series(self) -> int:
+        """Channels of runs: time series that may each be off by a misfit of its own."""
+        return len(self.trials) * len(PAPER_CHANNELS)
+
+
+def make_windowed(
+    room: Room, trials: Sequence[Trial], backend: Backend, integrator: Integrator = Integrator("rk4")
+) -> Windowed:
+    """Trials cut into windows, compared in position and heading."""
+    model = Model(room.profile)
+    scale = scale_of(room.profile)
+    unit = scale.L / scale.U
+    # A model basin measures better than any model computes; below this nothing is believed.
+    least = np.array([1e-3 * scale.L, 1e-3 * scale.L, 2e-3, 2e-3 * scale.U, 2e-3 * scale.U, 2e-3 / unit])
+    sigma = np.maximum(np.median([noise_of(trial) for trial in trials], axis=0), least)
+    pieces = [piece for trial in trials for piece in windows(trial, LENGTHS * unit, APART * unit)]
+    objective = Objective(dict(zip(STATES, sigma, strict=True)), dict.fromkeys(PAPER_CHANNELS, 1.0), every=APART * unit)
+    cases = cases_of(pieces, objective, model.inputs, model.draught)
+    started = np.repeat(cases.initial[:, None], 7, axis=1)
+    started[:, 1 + np.arange(6), np.arange(6)] += sigma
+    theta = np.repeat(model.matrix(room.names, room.values(np.zeros((len(room), 1)))), 7, axis=1)
+    found = backend.run(model, theta, cases, initial=started, integrator=integrator, keep_residuals=True)
+    assert found.residuals is not None  # asked for
+    by_start = np.nan_to_num(found.residuals[:, 1:] - found.residuals[:, :1])
+    whitened = []
+    for case in range(len(cases)):
+        rows = cases.rows[case]
+        rows = np.sort(rows[rows >= 0])
+        if len(rows):
+            covariance = np.eye(len(rows)) + by_start[rows] @ by_start[rows].T
+            whitened.append((rows, np.linalg.inv(np.linalg.cholesky(covariance))))
+    return Windowed(room, model, tuple(trials), cases, sigma, tuple(whitened), backend, integrator)
+
+
+@dataclass(frozen=True, eq=False)
+class Mode:
+    """The most probable point, and everything linear about it.
+
+    z          (n_names,) prior deviations from the centre
+    residual   (n_rows,) there
+    slopes     (n_rows, n_names)
+    """
+
+    z: FloatArray
+    residual: FloatArray
+    slopes: FloatArray
+    converged: bool
+
+    @property
+    def misfit(self) -> float:
+        """Mean square of the residuals: 1 where the model with its room is right."""
+        return float(np.mean(self.residual**2))
+
+    def gaussian(self, temper: float) -> tuple[FloatArray, FloatArray]:
+        """Mean (n_names,) and covariance (n_names, n_names) with residuals of that variance."""
+        A = self.slopes / np.sqrt(temper)
+        b = A.T @ (A @ self.z - self.residual / np.sqrt(temper))
+        covariance = np.linalg.inv(A.T @ A + np.eye(len(self.z)))
+        return covariance @ b, covariance
+
+    def learnt(self, temper: float) -> float:
+        """Number of combinations that the trials determine better than the room does."""
+        return float(len(self.z) - np.trace(self.gaussian(temper)[1]))
+
+
+def find_mode(data: Windowed, temper: float = 1.0) -> Mode:
+    """Damped Gauss-Newton steps from the centre, all dampings as lanes of one call."""
+    n = len(data.room)
+    z = np.zeros(n)
+    r, J = data.linearised(z)
+
+    def cost(values: FloatArray, at: FloatArray) -> FloatArray:
+        total = np.sum(values**2, axis=0) / temper + np.sum(at**2, axis=0)
+        return np.where(np.isfinite(total), total, np.inf)
+
+    now = float(cost(r[:, None], z[:, None])[0])
+    converged = False
+    for _ in range(ITERATIONS):
+        H = J.T @ J / temper + np.eye(n)
+        g = J.T @ np.nan_to_num(r) / temper + z
+        tried = np.column_stack([z - np.linalg.solve(H + damping * np.eye(n), g) for damping in DAMPING])
+        found = cost(data.residuals(tried), tried)
+        k = int(np.argmin(found))
+        converged = bool(now - found[k] < SMALL)
+        if found[k] < now:
+            z, now = tried[:, k], float(found[k])
+            r, J = data.linearised(z)
+        if converged:
+            break
+    return Mode(z, np.nan_to_num(r), J, converged)

@@ -1,0 +1,174 @@
+"""Particles of a physical model from the trials of her ship."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..backends import Integrator, get_backend
+from ..components import split_name
+from ..errors import Problem, TrialError
+from ..fitting.run import make_provenance
+from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
+from ..options import PosteriorOptions
+from ..particles import Particles
+from ..profile import tuned
+from ..threads import blas_on_one_thread
+from ..trial import Trial
+from .local import Mode, Windowed, find_mode, make_windowed
+from .room import Room, make_room, tags_of
+from .sizing import Sized, draws, own_variance, shown_by, size
+
+EXPECTED = 4.0
+"""Squares of residuals of particles over what a linear model has, up to which bands of generated ships held."""
+
+
+@dataclass(frozen=True, eq=False)
+class Posterior:
+    """What trials leave open of a ship.
+
+    sized       how much the trials are believed
+    shown       what orders the trials hold, in a sentence
+    learnt      number of combinations of numbers that the trials determine
+    nonlinear   median over particles of the squares of residuals above those of the mode, over what it is if the
+                distribution is Gaussian
+    """
+
+    room: Room
+    particles: Particles
+    sized: Sized
+    learnt: float
+    nonlinear: float
+    converged: bool
+    shown: str
+    provenance: Mapping[str, Any]
+
+    def __repr__(self) -> str:
+        """In a line."""
+        return f"Posterior({self.particles.profile.id}: {len(self.particles)} particles of {len(self.room)} numbers)"
+
+    def warnings(self) -> list[str]:
+        """What a reader must know before trusting the bands."""
+        found = []
+        if not self.converged:
+            found.append("The most probable coefficients were not found to the end; bands are about the best so far.")
+        if self.nonlinear > EXPECTED:
+            found.append(
+                f"Particles miss the trials {self.nonlinear:.1f} times as far as a Gaussian distribution would have it;"
+                " bands near the trials are wider than they need be."
+            )
+        return found
+
+    def sentences(self) -> list[str]:
+        """What the bands are made of, in words."""
+        return [
+            f"Room for {len(self.room)} numbers: coefficients, and {', '.join(tags_of(self.room))}.",
+            f"The trials determine {self.learnt:.0f} combinations of them; the rest is as open as before.",
+            self.sized.sentence(),
+            self.shown,
+        ]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The document of ``posterior.json``."""
+        profile, names = self.particles.profile, self.room.names
+        spread = np.quantile(self.particles.values, [0.05, 0.5, 0.95], axis=1)
+        prior = self.room.deviation
+        numbers = [
+            {
+                "name": name,
+                "unit": profile.sections[split_name(name)[0]].component.fields[split_name(name)[1]].unit,
+                "low": float(spread[0, k]),
+                "median": float(spread[1, k]),
+                "high": float(spread[2, k]),
+                "prior_deviation": float(prior[k]),
+            }
+            for k, name in enumerate(names)
+        ]
+        return {
+            "schema": 1,
+            "kind": "posterior",
+            **self.provenance,
+            "particles": len(self.particles),
+            "misfit": self.sized.misfit,
+            "temper": self.sized.temper,
+            "left_out": {
+                "groups": list(self.sized.groups),
+                "factor": self.sized.factor,
+                "covered": list(self.sized.covered),
+            },
+            "learnt": self.learnt,
+            "nonlinear": self.nonlinear,
+            "converged": self.converged,
+            "sentences": self.sentences(),
+            "warnings": self.warnings(),
+            "numbers": numbers,
+        }
+
+
+@blas_on_one_thread
+def posterior(
+    profile: ShipGiven,
+    trials: TrialsGiven | Sequence[Trial],
+    options: PosteriorOptions = PosteriorOptions(),
+    *,
+    command: str = "",
+) -> Posterior:
+    """Particles of a ship from the tune trials of a set, or from all of a list.
+
+    profile, trials  objects, paths or bundled names; where coefficients are tuned, the room is about what they were
+    command          what to call this in the provenance
+    Raises TrialError where there is no time series to learn from, OptionError for choices that make no sense.
+    """
+    ship = ship_of(profile)
+    if isinstance(trials, Sequence) and not isinstance(trials, str):
+        chosen, provenance = list(trials), {"trials": [trial.id for trial in trials]}
+    else:
+        data = trials_of(trials)
+        chosen = [data.trials[name] for name in data.tune]
+        provenance = make_provenance(ship, data, command)
+    if not chosen:
+        raise TrialError(Problem("no time series to learn from", "trials", fix="give trial files, and tune to them"))
+    room = make_room(ship, size=options.room, without=options.without)
+    backend = get_backend(options.backend)
+    integrator = Integrator(options.integrator, options.substeps)
+
+    def remake(some: Sequence[Trial]) -> Windowed:
+        return make_windowed(room, some, backend, integrator)
+
+    windowed = remake(chosen)
+    mode = find_mode(windowed, 1.0)
+    if options.leave_out:
+        sized = size(windowed, mode, remake, options.seed)
+    else:
+        sized = Sized(mode.misfit, own_variance(windowed, mode))
+    mean, _ = mode.gaussian(sized.temper)
+    z, nonlinear = sound(windowed, mode, sized.temper, options.particles, options.seed)
+    said = {"made_by": "mmgtune posterior", "trials": [trial.id for trial in chosen], "temper": sized.temper}
+    best = dict(zip(room.names, room.values(mean[:, None])[:, 0].tolist(), strict=True))
+    likely = tuned(room.profile, best, {}, said, suffix="most probable")
+    return Posterior(
+        room=room,
+        particles=Particles(likely, room.names, room.values(z), {**said, "seed": options.seed}),
+        sized=sized,
+        learnt=mode.learnt(sized.temper),
+        nonlinear=nonlinear,
+        converged=mode.converged,
+        shown=shown_by(chosen),
+        provenance=provenance,
+    )
+
+
+def sound(data: Windowed, mode: Mode, temper: float, n: int, seed: int) -> tuple[FloatArray, float]:
+    """n particles (n_names, n) whose runs stay within the world of ships on the trials' windows, and ``nonlinear``.
+
+    Fewer where a fifth or more do not.
+    """
+    z = draws(mode, temper, n + n // 4, seed)
+    squares = np.sum(data.residuals(z) ** 2, axis=0)
+    kept = np.flatnonzero(np.isfinite(squares))[:n]
+    above = np.median(squares[kept]) - np.sum(mode.residual**2) if len(kept) else np.inf
+    return z[:, kept], float(above / temper / max(mode.learnt(temper), 1e-9))

@@ -1,0 +1,165 @@
+"""How much trials are believed: residuals of a model that is wrong are not independent of each other.
+
+What the model with all its room cannot follow shows as residuals larger than the noise.  Such an error is the same
+along a run, so it counts as one number for each channel of each run, not as one a sample.  Where trials are of several
+kinds and sides, each group is left out besides, and predicted from the others: the trials are believed as far as bands
+then cover what was left out at the nominal rate.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..manoeuvres import manoeuvre_kind
+from ..predictor import PhysicsPredictor, cases_from
+from ..simulation import track_if_whole
+from ..trial import Trial
+from ..units import DEG
+from .local import Mode, Windowed, find_mode
+
+BASE = 3.0
+"""Variance of residuals even where the model fits to the noise: what generated ships with a hidden effect call for."""
+
+SHARED = 2.0
+"""Weight of what is above the noise, over what one number a channel and run gives."""
+
+GRID = (1.0, 3.0, 10.0, 30.0, 100.0)
+"""Factors on the variance that left-out groups choose among."""
+
+CIRCLE = 150.0
+"""Change of heading [deg] from which a trial shows a turn to that side."""
+
+N_LEFT_OUT = 80
+"""Particles that predict a left-out group."""
+
+NOMINAL = 0.9
+"""Share of left-out samples that bands of this content are to cover."""
+
+SMALL_RUDDER = 15.0 * DEG
+"""Rudder below which a turn or zigzag counts as gentle."""
+
+
+@dataclass(frozen=True)
+class Sized:
+    """How much the trials are believed.
+
+    misfit     mean square of the residuals at the mode, 1 where the model is right
+    own        variance of residuals that follows from it
+    groups     what was left out in turn, kinds and sides in words; none where that was not asked for, and of a
+               single one nothing could be
+    factor     on ``own`` from which bands cover them, 1 where nothing was left out
+    covered    share of left-out samples within bands, by factor
+    """
+
+    misfit: float
+    own: float
+    groups: tuple[str, ...] = ()
+    factor: float = 1.0
+    covered: tuple[float, ...] = ()
+
+    @property
+    def temper(self) -> float:
+        """Variance of residuals the distribution is made with."""
+        return self.own * self.factor
+
+    def sentence(self) -> str:
+        """In words."""
+        variance = f"{self.temper:.3g} times the variance of noise (their own is {self.misfit:.2f} times)"
+        said = f"Residuals count with {variance}"
+        if not self.groups:
+            return f"{said}; no kind or side was left out to check it."
+        if len(self.groups) < 2:
+            return f"{said}; all trials are of one kind and side, so nothing could be left out to check it."
+        share, of = 100.0 * self.covered[GRID.index(self.factor)], ", ".join(self.groups)
+        return f"{said}, with which bands from the others cover {share:.0f} % of {of}."
+
+
+def own_variance(data: Windowed, mode: Mode) -> float:
+    """Variance of residuals from their size at the mode."""
+    n = len(mode.residual)
+    above = max(mode.misfit - 1.0 - float(np.sqrt(2.0 / n)), 0.0)
+    return BASE + SHARED * above * n / data.n_series
+
+
+def group_of(trial: Trial) -> str:
+    """Kind, side and size of a trial in words: "starboard turning", "zigzag"."""
+    track = track_if_whole(trial)
+    kind = manoeuvre_kind(track) if track is not None else trial.manoeuvre or "other"
+    largest = float(trial.delta[np.nanargmax(np.abs(trial.delta))])
+    size = "gentle " if abs(largest) < SMALL_RUDDER else ""
+    side = ("starboard " if largest > 0.0 else "port ") if kind == "turning" else ""
+    return f"{size}{side}{kind}"
+
+
+def shown_by(trials: Sequence[Trial]) -> str:
+    """What orders trials hold, in a sentence: predictions beyond them rest on the room alone."""
+    largest = [float(np.nanmax(side * trial.delta)) / DEG for side in (1.0, -1.0) for trial in trials]
+    starboard, port = max(0.0, *largest[: len(trials)]), max(0.0, *largest[len(trials) :])
+    turned = [float(trial.psi[-1] - trial.psi[0]) / DEG for trial in trials if np.isfinite(trial.psi[[0, -1]]).all()]
+    circles = [
+        name for name, side in (("starboard", 1.0), ("port", -1.0)) if any(side * angle >= CIRCLE for angle in turned)
+    ]
+    turns = f"turns to {' and '.join(circles)}" if circles else "no turns"
+    astern = "" if any(np.nanmin(trial.n) < 0.0 for trial in trials) else ", no revolutions astern"
+    return (
+        f"The trials show rudder up to {starboard:.0f} deg to starboard and {port:.0f} deg to port, {turns}{astern}; "
+        "beyond that bands are as wide as the room allows."
+    )
+
+
+def size(data: Windowed, mode: Mode, remake: Callable[[Sequence[Trial]], Windowed], seed: int = 1) -> Sized:
+    """How much the trials of ``data`` are to be believed.
+
+    remake  the same with other trials
+    """
+    own = own_variance(data, mode)
+    groups: dict[str, list[Trial]] = {}
+    for trial in data.trials:
+        groups.setdefault(group_of(trial), []).append(trial)
+    if len(groups) < 2:
+        return Sized(mode.misfit, own, tuple(groups))
+    total = np.zeros(len(GRID))
+    for left in groups.values():
+        rest = remake([trial for trial in data.trials if not any(trial is one for one in left)])
+        found = find_mode(rest, own)
+        variance = own_variance(rest, found)
+        total += [coverage(rest, found, factor * variance, left, seed) for factor in GRID]
+    total /= len(groups)
+    enough = np.flatnonzero(total >= NOMINAL)
+    chosen = int(enough[0]) if len(enough) else int(np.argmax(total))
+    return Sized(mode.misfit, own, tuple(groups), GRID[chosen], tuple(total.tolist()))
+
+
+def coverage(data: Windowed, mode: Mode, temper: float, trials: Sequence[Trial], seed: int) -> float:
+    """Share of samples of position and heading of whole left-out trials that bands of ``NOMINAL`` content cover.
+
+    Bands are those of the particles, wider by the noise of the sensors.
+    """
+    z = draws(mode, temper, N_LEFT_OUT, seed)
+    theta = data.model.matrix(data.room.names, data.room.values(z))
+    predicted = PhysicsPredictor(data.model, theta, data.integrator, data.backend.name).predict(
+        cases_from(trials, data.model.inputs, data.model.draught)
+    )
+    covered = []
+    for case, trial in enumerate(trials):
+        at = np.arange(trial.n_samples // 40, trial.n_samples, max(1, trial.n_samples // 60))
+        runs = predicted.states[case][~predicted.diverged[case]][:, at, :3]
+        if len(runs) < N_LEFT_OUT // 2:  # hardly any particle stays in the world of ships
+            covered.append(0.0)
+            continue
+        low, high = np.quantile(runs, [0.5 - 0.5 * NOMINAL, 0.5 + 0.5 * NOMINAL], axis=0)
+        measured, noise = trial.motion[at, :3], 2.0 * data.sigma[:3]
+        inside = (measured >= low - noise) & (measured <= high + noise)
+        covered.append(float(np.mean(inside[np.isfinite(measured)])))
+    return float(np.mean(covered))
+
+
+def draws(mode: Mode, temper: float, n: int, seed: int) -> FloatArray:
+    """n particles (n_names, n) of the distribution about a mode."""
+    mean, covariance = mode.gaussian(temper)
+    noise = np.random.default_rng(seed).standard_normal((len(mean), n))
+    return np.asarray(mean[:, None] + np.linalg.cholesky(covariance) @ noise)

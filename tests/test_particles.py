@@ -1,0 +1,124 @@
+"""Particles: drawing, the file, and what is said of a damaged one."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+from mmgtune.errors import OptionError, OutputError, ProfileError
+from mmgtune.networks import named_ship
+from mmgtune.particles import KEY, Particles, load_particles, save_particles
+from mmgtune.predictor import Uncertain
+from mmgtune.profile import load_profile, with_effects
+from mmgtune.trial import load_trials, write_trial
+from tests.command import run
+
+
+@pytest.fixture
+def particles():
+    profile = with_effects(load_profile("suzaku"), {"current": {"north": 0.1}}, "test")
+    values = np.random.default_rng(1).normal([[0.017], [0.1]], [[0.001], [0.05]], size=(2, 30))
+    return Particles(profile, ("hull.R_0", "effects.current.north"), values, {"trials": ["one"]})
+
+
+def test_they_are_drawn_once_each_and_the_same_again(particles):
+    predictor = particles.predictor(as_logged=True)
+    assert isinstance(predictor, Uncertain)
+    row = predictor.model.rows["hull.R_0"]
+    drawn = predictor.drawn(30, 4).theta[row]
+    assert sorted(drawn) == sorted(particles.values[0])
+    assert np.array_equal(predictor.drawn(10, 4).theta, predictor.drawn(10, 4).theta)
+    assert predictor.drawn(100, 1).n_members == 100
+    with pytest.raises(OptionError, match="each step"):
+        predictor.drawn(5, 1, "TS1")
+
+
+def test_the_day_of_the_trials_is_not_the_ship(particles):
+    assert particles.of_the_day() == ("effects.current.north",)
+    alone, logged = (particles.predictor(as_logged=on).drawn(20, 1) for on in (False, True))
+    row = alone.model.rows["effects.current.north"]
+    assert np.ptp(alone.theta[row]) == 0.0
+    assert np.ptp(logged.theta[row]) > 0.0
+
+
+def test_a_file_gives_back_what_was_written(particles, tmp_path):
+    path = save_particles(particles, tmp_path / "particles.parquet")
+    found = load_particles(path)
+    assert found.names == particles.names
+    assert np.array_equal(found.values, particles.values)
+    assert found.facts == particles.facts
+    assert found.profile.value("effects.current.north") == 0.1
+    with pytest.raises(OutputError):
+        save_particles(particles, path)
+    assert named_ship(tmp_path).particles.names == named_ship(path).particles.names
+
+
+def rewritten(path, change):
+    """The file with its table changed by a function of table and facts."""
+    table = pq.read_table(path)
+    facts = json.loads(table.schema.metadata[KEY])
+    table, facts = change(table, facts)
+    metadata = {KEY: json.dumps(facts).encode()} if facts is not None else {}
+    pq.write_table(table.replace_schema_metadata(metadata), path)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda t, f: (t, None), "holds no particles"),
+        (lambda t, f: (t, []), "holds no particles"),
+        (lambda t, f: (t, {**f, "schema": 99}), "schema 99"),
+        (lambda t, f: (t, {**f, "profile": 3}), "damaged"),
+        (lambda t, f: (t, {**f, "profile": "nonsense"}), "TOML"),
+        (lambda t, f: (t.rename_columns(["hull.R_0", "hull.unheard"]), f), "unheard"),
+        (lambda t, f: (t.rename_columns(["hull.R_0", "hull.R_0"]), f), "cannot be read"),
+        (lambda t, f: (t.slice(0, 0), f), "finite"),
+        (lambda t, f: (t.set_column(0, "hull.R_0", pa.array(["a"] * 30)), f), "finite"),
+        (lambda t, f: (t.set_column(0, "hull.R_0", pa.array([np.nan] * 30)), f), "finite"),
+    ],
+)
+def test_a_damaged_file_says_what_is_wrong(particles, tmp_path, change, words):
+    path = save_particles(particles, tmp_path / "particles.parquet")
+    rewritten(path, change)
+    with pytest.raises(ProfileError, match=words):
+        load_particles(path)
+
+
+@pytest.mark.parametrize("bytes_", [b"", b"PAR1", b"PAR1" + bytes(200) + b"PAR1"])
+def test_what_is_no_parquet_says_so(tmp_path, bytes_):
+    path = tmp_path / "particles.parquet"
+    path.write_bytes(bytes_)
+    with pytest.raises(ProfileError, match="cannot be read"):
+        load_particles(path)
+    found = run("simulate", "-p", "particles.parquet", "--turn", "20", cwd=tmp_path)
+    assert found.code == 2
+    assert "Traceback" not in found.err
+
+
+@pytest.mark.slow(20)
+def test_a_fit_leaves_them_beside_its_profile(tmp_path):
+    write_trial(load_trials("suzaku").trials["turn_p35"], tmp_path / "one.parquet")
+    few = ("--method", "least-squares", "--starts", "1", "--no-report", "--out", "fitted")
+    ended = run("fit", "-t", "one.parquet", *few, "--bands", "--json", cwd=tmp_path)
+    assert ended.code == 0, ended.err
+    assert "no revolutions astern" in ended.json()["bands"]["sentences"][-1]
+    assert named_ship(tmp_path / "fitted").drawn(7, 1).n_members == 7
+
+
+@pytest.mark.slow(15)
+def test_the_command_writes_them_and_others_take_them(tmp_path):
+    write_trial(load_trials("suzaku").trials["turn_p35"], tmp_path / "one.parquet")
+    ended = run("posterior", "-t", "one.parquet", "--particles", "20", "--out", "bands", "--json", cwd=tmp_path)
+    assert ended.code == 0, ended.err
+    document = ended.json()
+    assert document["particles"] == 20
+    assert {one["name"] for one in document["numbers"]} >= {"hull.R_0", "effects.current.north"}
+    assert any("nothing could be left out" in one for one in document["sentences"])
+    assert run("posterior", "-t", "one.parquet", "--out", "bands", cwd=tmp_path).code == 2
+    turned = run("simulate", "-p", "bands", "--turn", "35", "--json", cwd=tmp_path)
+    assert turned.code == 0, turned.err
+    assert len(turned.json()["runs"]) == 1
