@@ -159,6 +159,8 @@ def problems_of(ensemble: Ensemble) -> list[str]:
         found.append(f"the length is {ensemble.L_pp:g} m")
     n = np.shape(ensemble.motion.layers.W_in)[0] if np.ndim(ensemble.motion.layers.W_in) else 0
     found += ensemble.motion.problems(n, n_features(ensemble.inputs), N_ACCELERATIONS)
+    if ensemble.start is not None and np.ndim(ensemble.start.layers.W_in) < 2:
+        found.append(f"W_in of the initial-state network has the shape {np.shape(ensemble.start.layers.W_in)}")
     if ensemble.start is not None and not found:
         if ensemble.start.n_in % N_VELOCITIES or ensemble.start.n_in < N_VELOCITIES:
             found.append(f"the initial-state network sees {ensemble.start.n_in} numbers, not {N_VELOCITIES} an instant")

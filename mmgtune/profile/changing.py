@@ -100,8 +100,8 @@ def with_effects(
 
 
 def with_all_effects(profile: ShipProfile) -> ShipProfile:
-    """The profile with every effect that applies to it; those it does not have already at their null."""
-    return with_effects(profile, {e.tag: {} for e in effects() if not missing_for(e, profile)}, ABSENT)
+    """The profile with every effect that applies to it and can be a cause; those it does not have at their null."""
+    return with_effects(profile, {e.tag: {} for e in effects() if e.variants and not missing_for(e, profile)}, ABSENT)
 
 
 def joined(*texts: str) -> str:

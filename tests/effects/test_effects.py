@@ -12,7 +12,7 @@ from mmgtune.fitting.box import make_box
 from mmgtune.model import Model
 from mmgtune.orders import TurningOrder, run_manoeuvre
 from mmgtune.physics.quantities import UNKNOWN, State, Surroundings
-from mmgtune.profile import load_profile, missing_for, parse_profile, with_all_effects, with_effects
+from mmgtune.profile import load_profile, missing_for, parse_profile, with_effects
 from tests.backends.test_agree import zigzag_like
 from tests.runs import measured, states, turn
 
@@ -43,6 +43,11 @@ STRONG = {
     "gyro-bias": {"rate": 0.001},
 }
 TAGS = [effect.tag for effect in effects()]
+
+
+def with_every_effect(ship):
+    """The profile with all effects that apply to it, also those that are no cause; new ones at their null."""
+    return with_effects(ship, {e.tag: {} for e in effects() if not missing_for(e, ship)}, "test")
 
 
 @pytest.fixture(scope="module")
@@ -78,7 +83,7 @@ def test_null_is_the_base_run_bit_for_bit_on_numpy(ship, tag):
 @pytest.mark.parametrize("integrator", [Integrator("euler"), Integrator("rk4"), Integrator("rk4", 3)])
 def test_null_is_the_base_run_bit_for_bit_compiled(ship, integrator):
     cases = blown(Model(ship))
-    base, null = (states(Model(p), cases, integrator=integrator) for p in (ship, with_all_effects(ship)))
+    base, null = (states(Model(p), cases, integrator=integrator) for p in (ship, with_every_effect(ship)))
     assert np.array_equal(base, null)
 
 
@@ -103,7 +108,7 @@ def test_back_ends_agree_with_every_effect_at_once(ship, integrator):
 
 
 def test_lanes_with_different_effects_do_not_touch_each_other(ship):
-    model = Model(with_all_effects(ship))
+    model = Model(with_every_effect(ship))
     names = ["effects.current.north", "effects.memory.time_constant", "effects.clock-offset.seconds"]
     values = np.array([[0.0, 0.3, 0.0, 0.0], [0.0, 0.0, 7.0, 0.0], [0.0, 0.0, 0.0, -2.0]])
     cases = zigzag_like(model, 300)
@@ -226,7 +231,7 @@ def test_one_lane_of_numbers_is_bit_equal_to_an_array_of_one(ship):
 
 
 def test_parameters_are_targets_with_boxes_of_their_own(ship):
-    model = Model(with_all_effects(ship))
+    model = Model(with_every_effect(ship))
     names = ("effects.current.north", "effects.shallow-water.depth", "effects.wind.speed", "effects.wind.direction")
     box = make_box(model, names, 0.5)
     rng = np.random.default_rng(1)
@@ -267,7 +272,7 @@ def test_what_a_profile_gets_wrong_is_said(ship):
 
 def test_costs_of_all_lanes_stay_finite_at_the_corners_of_every_box(ship):
     """No value a search may try makes the simulator fail."""
-    model = Model(with_all_effects(ship))
+    model = Model(with_every_effect(ship))
     names = [f"effects.{e.tag}.{name}" for e in effects() for name in e.parameters]
     box = make_box(model, names, 0.5)
     corners = np.repeat(box.to_unit(box.pre)[:, None], 2 * len(names), axis=1)
