@@ -18,6 +18,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from ..errors import OptionError, Problem
+from .kernel_folder import kernel_folder
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -33,9 +34,11 @@ than half the time.  A release that does not know it passes it over."""
 def jax_module() -> Any:
     """JAX.  Raises OptionError with the command that installs it where it is not there.
 
-    Imported here first, it is told to ``FUSE``; where XLA_FLAGS is set, that counts.
+    Imported here first, it is told to ``FUSE``; where XLA_FLAGS is set, that counts.  What it compiles is then kept
+    beside the kernels, for the next run; where JAX_COMPILATION_CACHE_DIR is set, there.
     """
-    if "jax" not in sys.modules:
+    first = "jax" not in sys.modules
+    if first:
         os.environ.setdefault("XLA_FLAGS", f"{2 * '-'}{FUSE}")
     try:
         import jax
@@ -48,6 +51,8 @@ def jax_module() -> Any:
                 "install it with: pip install 'mmgtune[learn]'",
             )
         ) from error
+    if first and not jax.config.jax_compilation_cache_dir:
+        jax.config.update("jax_compilation_cache_dir", str(kernel_folder() / "jax"))
     return jax
 
 

@@ -406,6 +406,20 @@ def test_angles_and_speeds_at_rest(zero):
         assert finite(jax.grad(lambda u: flow(u, u, 0.0, 83.0).beta)(np.float32(1e-25)))
 
 
+def test_what_is_compiled_is_kept_beside_the_kernels(tmp_path):
+    """In a process of its own, which imports JAX through the program; a setting of one's own counts."""
+    import os
+    import subprocess
+    import sys
+
+    text = "from mmgtune.backends.twins import jax_module; print(jax_module().config.jax_compilation_cache_dir)"
+    usual = {k: v for k, v in os.environ.items() if not k.startswith("JAX_")} | {"MMGTUNE_CACHE": str(tmp_path)}
+    for more, folder in (({}, tmp_path / "kernels" / "jax"), ({"JAX_COMPILATION_CACHE_DIR": "mine"}, "mine")):
+        command = [sys.executable, "-c", text]
+        found = subprocess.run(command, env=usual | more, capture_output=True, text=True, check=True)
+        assert found.stdout.strip() == str(folder)
+
+
 def test_without_jax(monkeypatch, suzaku):
     monkeypatch.setitem(sys.modules, "jax", None)
     get_backend.cache_clear()
