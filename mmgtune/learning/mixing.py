@@ -27,6 +27,7 @@ from ..objective import spread
 from ..options.learning import MixtureOptions
 from ..predictor import Predictor
 from ..profile import ShipProfile
+from ..profile.changing import joined
 from ..trial import Trial, TrialSet
 from ..validation import L_MSE, by_manoeuvre, score
 from .choosing import pieces_of
@@ -121,6 +122,7 @@ def learn_mixture(
     parts = {"hybrid": hybrid.facts, "network": net.facts}
     made = made_by(command)
     facts: dict[str, Any] = {"type": "mixture", **{key: made[key] for key in ("mmgtune", "created", "environment")}}
+    facts["trials"] = _trials_of(list(parts.values()))
     if trials is None:
         if len(mixtures) > 1:
             why = f"{len(mixtures)} shares could be meant"
@@ -187,6 +189,15 @@ def _learned(facts: dict[str, Any]) -> Sequence[str]:
     trials = facts.get("trials")
     found = trials.get("learned_from") if isinstance(trials, dict) else None
     return found if isinstance(found, list) else ()
+
+
+def _trials_of(parts: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """What the parts say of their trials, together: licence, citation, sources, and which were learned from."""
+    told = [one["trials"] for one in parts if isinstance(one.get("trials"), dict)]
+    texts = {key: joined(*(str(one.get(key) or "") for one in told)) for key in ("licence", "citation")}
+    sources = sorted({source for one in told for source in one.get("sources") or ()})
+    learned = list(dict.fromkeys(id for one in parts for id in _learned(one)))
+    return {**texts, "sources": sources, "learned_from": learned}
 
 
 def _finite(value: float) -> float | None:
