@@ -86,12 +86,7 @@ def summary(document: Mapping[str, Any]) -> str:
     head = f"{document['model']['name']} ({document['model']['method']})"
     lines = [f"{head}: {n} particles, ± half the band of {level:g} %" if document["has_band"] else f"{head}: one run"]
     for run in document["runs"]:
-        lost = f", {run['diverged']} diverged" if run["diverged"] and n > 1 else ""
-        lines += ["", f"{run['id']}  ({run['order']}, {run['duration_s']:.0f} s{lost})"]
-        if run["diverged"] == n:
-            lines.append("  diverged")
-        for row in run["indices"]:
-            lines.append(_index(row, n, document["has_band"]))
+        lines += ["", *indices_text(run, n)]
         if not run["indices"] and run["diverged"] < n:
             lines.append(f"  at the end: {ended(run['end'], document['has_band'])}")
         if run["scores"]:
@@ -101,15 +96,23 @@ def summary(document: Mapping[str, Any]) -> str:
     return "\n".join(lines)
 
 
+def indices_text(run: Mapping[str, Any], n: int) -> list[str]:
+    """Lines of a run by n particles: what was ordered, and its indices with their bands."""
+    lost = f", {run['diverged']} diverged" if run["diverged"] and n > 1 else ""
+    lines = [f"{run['id']}  ({run['order']}, {run['duration_s']:.0f} s{lost})"]
+    lines += ["  diverged"] if run["diverged"] == n else []
+    return lines + [_index(row, n, n > 1) for row in run["indices"]]
+
+
 def ended(rows: Sequence[Mapping[str, Any]], has_band: bool) -> str:
     """Where a run ends."""
-    return ", ".join(f"{row['words']} {_banded(row, row['unit'], has_band)}" for row in rows)
+    return ", ".join(f"{row['words']} {banded(row, row['unit'], has_band)}" for row in rows)
 
 
 def _index(row: Mapping[str, Any], n: int, has_band: bool) -> str:
-    shown = [_banded(row, row["unit"], has_band)]
+    shown = [banded(row, row["unit"], has_band)]
     if row["over_L"]:
-        shown.append(_banded(row["over_L"], "L", has_band))
+        shown.append(banded(row["over_L"], "L", has_band))
     never = (
         "" if row["reached"] == row["particles"] else f"   {row['particles'] - row['reached']} of {n} never reach it"
     )
@@ -121,7 +124,8 @@ def _index(row: Mapping[str, Any], n: int, has_band: bool) -> str:
     return (text + never + measured).rstrip()
 
 
-def _banded(row: Mapping[str, Any], unit: str, has_band: bool) -> str:
+def banded(row: Mapping[str, Any], unit: str, has_band: bool = True) -> str:
+    """A mean with half its band and the unit."""
     unit = "" if unit == "-" else f" {unit}"
     if row["mean"] is None:
         return "never reached"
