@@ -27,6 +27,9 @@ from .candidates import candidates
 from .expected import POINTS, answers, gradient, share_left, slopes_of
 from .question import Question, read_question
 
+MOSTLY = 0.5
+"""Share of the variance of an answer that its mean slopes must account for, else there is a note."""
+
 REACHED = 0.9
 """Share of the particles that must reach the index."""
 
@@ -149,6 +152,7 @@ def plan_trial(model: str | Path | Particles, question: str, options: PlanOption
     noise = _noise(particles)
     temper = _temper(particles)
     backend, integrator = get_backend(options.backend), options.make_integrator()
+    linear = float(g @ C @ g) / band.deviation**2
     found, lost = [], []
     for one in candidates(particles.profile, approach, options.kind, options.half_speed):
         trial = one.sailed(particles.profile, noise)
@@ -170,10 +174,10 @@ def plan_trial(model: str | Path | Particles, question: str, options: PlanOption
         question=asked,
         band=band,
         half=band.half,
-        linear=float(g @ C @ g) / band.deviation**2,
+        linear=linear,
         trials=tuple(sorted(found, key=lambda one: -one.shrinks)),
         lost=tuple(lost),
-        notes=tuple(_notes(particles, band)),
+        notes=tuple(_notes(particles, band, linear)),
         options=options,
         wall_s=time.perf_counter() - began,
     )
@@ -219,8 +223,13 @@ def _noise(particles: Particles) -> FloatArray:
     return np.maximum([float(one) if isinstance(one, (int, float)) else 0.0 for one in known], least)
 
 
-def _notes(particles: Particles, band: IndexBand) -> list[str]:
+def _notes(particles: Particles, band: IndexBand, linear: float) -> list[str]:
     found = []
+    if linear < MOSTLY:
+        found.append(
+            "the answer bends much over what is open: ships like that shrank their bands further than is said here, "
+            "and the order held"
+        )
     if band.reached < band.particles:
         found.append(f"{band.particles - band.reached} of {band.particles} particles never reach it and are left out")
     if "noise" not in particles.facts:
