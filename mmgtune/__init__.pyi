@@ -60,6 +60,7 @@ from .options import LearnOptions as LearnOptions
 from .options import LeaveOutOptions as LeaveOutOptions
 from .options import MakeOptions as MakeOptions
 from .options import MixtureOptions as MixtureOptions
+from .options import PlanOptions as PlanOptions
 from .options import PosteriorOptions as PosteriorOptions
 from .options import PredictOptions as PredictOptions
 from .options import SimulateOptions as SimulateOptions
@@ -72,6 +73,8 @@ from .orders import run_manoeuvre as run_manoeuvre
 from .particles import Particles as Particles
 from .particles import load_particles as load_particles
 from .particles import save_particles as save_particles
+from .planning import TrialPlan as TrialPlan
+from .planning import plan_trial as plan_trial
 from .posterior import Posterior as Posterior
 from .posterior import posterior as posterior
 from .posterior import write_posterior as write_posterior

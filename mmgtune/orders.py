@@ -102,6 +102,59 @@ class ZigzagOrder:
         return self._given > self.legs
 
 
+@dataclass
+class SpiralOrder:
+    """Dieudonne's spiral: rudder from one side to the other in ``steps``, each kept for ``hold`` [s].
+
+    rudder  of the first and, to the other side, of the last step [rad]
+    """
+
+    rudder: float
+    hold: float
+    steps: int = 9
+    at: float = 20.0
+    _t: float = 0.0
+
+    def order(self, t: float, heading: float) -> float:
+        """See ``Helmsman``."""
+        self._t = t
+        k = min(math.floor((t - self.at) / self.hold), self.steps - 1)
+        return 0.0 if t < self.at else self.rudder * (1.0 - 2.0 * k / (self.steps - 1))
+
+    def finished(self, heading: float) -> bool:
+        """See ``Helmsman``."""
+        return self._t >= self.at + self.steps * self.hold
+
+
+@dataclass
+class Weave:
+    """Rudder orders of changing size and sign every ``hold`` seconds: excites everything a little."""
+
+    hold: float
+
+    def order(self, t: float, heading: float) -> float:
+        """See ``Helmsman``."""
+        k = int(t // self.hold)
+        return math.radians(25.0) * math.sin(2.4 * k) * (0.4 + 0.6 * math.cos(1.1 * k) ** 2)
+
+    def finished(self, heading: float) -> bool:
+        """See ``Helmsman``."""
+        return False
+
+
+@dataclass
+class Straight:
+    """Rudder amidships."""
+
+    def order(self, t: float, heading: float) -> float:
+        """See ``Helmsman``."""
+        return 0.0
+
+    def finished(self, heading: float) -> bool:
+        """See ``Helmsman``."""
+        return False
+
+
 def run_manoeuvre(
     ship: ShipGiven | Model,
     helmsman: Helmsman,

@@ -25,6 +25,7 @@ from . import (
     interrupts,
     learn,
     leave_out,
+    plan,
     posterior,
     predict,
     profiles,
@@ -97,6 +98,7 @@ app.command("validate", epilog=EPILOG)(validate.command)
 app.command("compare", epilog=EPILOG)(compare.command)
 app.command("simulate", epilog=EPILOG)(simulate.command)
 app.command("predict", epilog=EPILOG)(predict.command)
+app.command("plan", epilog=EPILOG)(plan.command)
 app.command("report", epilog=EPILOG)(report.command)
 app.command("cite", epilog=EPILOG)(cite.command)
 app.command("doctor", epilog=EPILOG)(doctor.command)

@@ -12,39 +12,10 @@ import numpy as np
 from ..arrays import FloatArray
 from ..backends import STATES
 from ..objective import Objective, cases_of
-from ..orders import Helmsman, TurningOrder, ZigzagOrder, run_manoeuvre
+from ..orders import Helmsman, Straight, TurningOrder, Weave, ZigzagOrder, run_manoeuvre
 from ..simulation import Motion, as_trial
 from ..units import DEG
 from .workbench import Point, Workbench
-
-
-@dataclass
-class Weave:
-    """Rudder orders of changing size and sign every ``hold`` seconds: excites everything a little."""
-
-    hold: float
-
-    def order(self, t: float, heading: float) -> float:
-        """See ``Helmsman``."""
-        k = int(t // self.hold)
-        return 25.0 * DEG * math.sin(2.4 * k) * (0.4 + 0.6 * math.cos(1.1 * k) ** 2)
-
-    def finished(self, heading: float) -> bool:
-        """See ``Helmsman``."""
-        return False
-
-
-@dataclass
-class Straight:
-    """Rudder amidships."""
-
-    def order(self, t: float, heading: float) -> float:
-        """See ``Helmsman``."""
-        return 0.0
-
-    def finished(self, heading: float) -> bool:
-        """See ``Helmsman``."""
-        return False
 
 
 @dataclass(frozen=True)

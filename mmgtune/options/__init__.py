@@ -9,6 +9,7 @@ orders      simulate
 particles   how particles are drawn: predict, compare
 predicting  predict
 posterior   posterior
+planning    plan
 estimating  profile new
 learning    learn
 generating  trials make
@@ -26,6 +27,7 @@ from .generating import MakeOptions
 from .learning import EnsembleOptions, HybridOptions, LearnOptions, MixtureOptions, TrainingOptions
 from .orders import SimulateOptions
 from .particles import SAMPLINGS, ParticleOptions
+from .planning import PlanOptions
 from .posterior import PosteriorOptions
 from .predicting import PredictOptions
 from .scoring import FORMATS, CheckOptions, CompareModelsOptions, ValidateOptions, VoyageOptions
@@ -55,6 +57,7 @@ __all__ = [
     "MixtureOptions",
     "Options",
     "ParticleOptions",
+    "PlanOptions",
     "PosteriorOptions",
     "PredictOptions",
     "SearchOptions",
@@ -86,6 +89,7 @@ for _of in (
     LeaveOutOptions,
     PredictOptions,
     MakeOptions,
+    PlanOptions,
     PosteriorOptions,
     SimulateOptions,
     SweepOptions,

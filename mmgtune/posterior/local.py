@@ -19,7 +19,7 @@ from ..backends import STATES, Backend, Cases, Integrator
 from ..fitting.initial import noise_of
 from ..model import Model
 from ..objective import PAPER_CHANNELS, Objective, cases_of
-from ..profile import scale_of
+from ..profile import ShipProfile, scale_of
 from ..trial import Trial
 from ..trial.pieces import windows
 from .room import Room
@@ -99,9 +99,7 @@ def make_windowed(
     model = Model(room.profile)
     scale = scale_of(room.profile)
     unit = scale.L / scale.U
-    # A model basin measures better than any model computes; below this nothing is believed.
-    least = np.array([1e-3 * scale.L, 1e-3 * scale.L, 2e-3, 2e-3 * scale.U, 2e-3 * scale.U, 2e-3 / unit])
-    sigma = np.maximum(np.median([noise_of(trial) for trial in trials], axis=0), least)
+    sigma = np.maximum(np.median([noise_of(trial) for trial in trials], axis=0), least_noise(room.profile))
     pieces = [piece for trial in trials for piece in windows(trial, LENGTHS * unit, APART * unit)]
     objective = Objective(dict(zip(STATES, sigma, strict=True)), dict.fromkeys(PAPER_CHANNELS, 1.0), every=APART * unit)
     cases = cases_of(pieces, objective, model.inputs, model.draught)
@@ -119,6 +117,13 @@ def make_windowed(
             covariance = np.eye(len(rows)) + by_start[rows] @ by_start[rows].T
             whitened.append((rows, np.linalg.inv(np.linalg.cholesky(covariance))))
     return Windowed(room, model, tuple(trials), cases, sigma, tuple(whitened), backend, integrator)
+
+
+def least_noise(profile: ShipProfile) -> FloatArray:
+    """Deviations (6,) of x, y, psi, u, v_m, r below which nothing is believed: basins measure better than any model."""
+    scale = scale_of(profile)
+    rate = scale.U / scale.L
+    return np.array([1e-3 * scale.L, 1e-3 * scale.L, 2e-3, 2e-3 * scale.U, 2e-3 * scale.U, 2e-3 * rate])
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,7 +15,9 @@ import numpy as np
 from ..arrays import FloatArray
 from ..components import split_name
 from ..effects import Effect, Parameter, discrepancy, find_effect
+from ..errors import Problem, ProfileError
 from ..model import Model
+from ..particles import Particles
 from ..profile import ShipProfile, missing_for, scale_of, with_effects
 
 TARGET = 0.2
@@ -88,6 +90,13 @@ class Room:
             found[i], found[j] = np.hypot(found[i], found[j]), np.arctan2(found[j], found[i])
         return np.asarray(found)
 
+    def coordinates(self, values: FloatArray) -> FloatArray:
+        """z (n_names, n) of numbers (n_names, n) in profile units; the inverse of ``values`` within the bounds."""
+        found = np.array(values)
+        for i, j in self.polar:
+            found[i], found[j] = values[i] * np.cos(values[j]), values[i] * np.sin(values[j])
+        return np.asarray((found - self.centre[:, None]) / self.deviation[:, None])
+
 
 def make_room(profile: ShipProfile, *, size: float = 1.0, without: tuple[str, ...] = ()) -> Room:
     """The room of a ship.
@@ -109,6 +118,18 @@ def make_room(profile: ShipProfile, *, size: float = 1.0, without: tuple[str, ..
     names, *numbers = zip(*rows, strict=True)
     centre, deviation, low, high = np.array(numbers)
     return Room(whole, tuple(names), centre, size * deviation, low, high, tuple(polar))
+
+
+def room_of(particles: Particles) -> Room:
+    """The room that particles were drawn in.  Raises ProfileError for particles that ``posterior`` did not make."""
+    there = {split_name(name)[0].partition(".")[2] for name in particles.names if name.startswith("effects.")}
+    said = particles.facts.get("room", 1.0)
+    size = float(said) if isinstance(said, (int, float)) and said > 0.0 else 1.0
+    room = make_room(particles.profile, size=size, without=tuple(tag for tag in IN_ROOM if tag not in there))
+    if sorted(room.names) != sorted(particles.names):
+        what = f"the particles of '{particles.profile.id}' are not those of a posterior"
+        raise ProfileError(Problem(what, fix="draw them with mmgtune posterior"))
+    return room
 
 
 def _coefficients(profile: ShipProfile) -> list[tuple[str, float, float, float, float]]:

@@ -149,11 +149,12 @@ def posterior(
     mean, _ = mode.gaussian(sized.temper)
     z, nonlinear = sound(windowed, mode, sized.temper, options.particles, options.seed)
     said = {"made_by": "mmgtune posterior", "trials": [trial.id for trial in chosen], "temper": sized.temper}
+    facts = {"seed": options.seed, "room": options.room, "noise": windowed.sigma.tolist()}
     best = dict(zip(room.names, room.values(mean[:, None])[:, 0].tolist(), strict=True))
     likely = tuned(room.profile, best, {}, said, suffix="most probable")
     return Posterior(
         room=room,
-        particles=Particles(likely, room.names, room.values(z), {**said, "seed": options.seed}),
+        particles=Particles(likely, room.names, room.values(z), {**said, **facts}),
         sized=sized,
         learnt=mode.learnt(sized.temper),
         nonlinear=nonlinear,

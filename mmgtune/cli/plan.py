@@ -1,0 +1,73 @@
+"""``mmgtune plan``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any
+
+import typer
+
+from ..options import PlanOptions
+from . import common as c
+from .options import takes
+from .predict import decimals_of
+
+
+@takes(options=PlanOptions)
+def command(
+    model: Annotated[str, typer.Argument(help="Particles of posterior: a run folder or its particles.parquet.")],
+    question: Annotated[
+        str,
+        typer.Option(
+            "--question",
+            "-q",
+            help='Index and manoeuvre: "tactical diameter, turn -35", "1st overshoot, zigzag 10/10".',
+            rich_help_panel=c.INPUT,
+        ),
+    ],
+    *,
+    options: PlanOptions,
+    json: c.Json = False,
+) -> None:
+    """Which trial to sail next: by how much each would shrink the band of a question, best first.
+
+    Turns of 10, 20 and 35 deg and zigzags 10/10 and 20/20 to both sides, at full and half speed, spirals, a crash stop
+    where the propeller's equations reach astern, a straight run and orders of changing size. Nothing is sailed: each
+    trial is simulated, and its information added to what the particles know.
+
+    Examples:
+
+      mmgtune plan runs/bands --question "tactical diameter, turn -35"
+
+      mmgtune plan runs/bands --question "1st overshoot, zigzag 20/20" --kind turn --kind zigzag
+    """
+    from ..planning import plan_trial
+
+    document = plan_trial(model, question, options).to_dict(c.command_line())
+    if json:
+        c.print_json(document)
+        return
+    c.show(summary(document))
+    for note in document["notes"]:
+        c.say(f"note: {note}")
+
+
+def summary(document: Mapping[str, Any]) -> str:
+    """The trials as a person wants to read them in a terminal."""
+    asked = document["question"]
+    unit = "" if asked["unit"] == "-" else f" {asked['unit']}"
+    halves = [one["half_width_after"] for one in document["trials"]]
+    decimals = decimals_of(min(halves))
+    level = document["options"]["level"]
+    now = f"{asked['mean']:.{decimals}f} ± {asked['half_width']:.{decimals}f}{unit}"
+    lines = [
+        f"{asked['words']}, {asked['order']}: {now} (half the band of {level:g} %)",
+        "",
+        f"  {'trial':<56}{'after it':>14}{'of the band goes':>18}{'takes':>9}",
+    ]
+    for one in document["trials"]:
+        after = f"± {one['half_width_after']:.{decimals}f}{unit}"
+        goes, takes_s = f"{100.0 * one['shrinks']:.0f} %", f"{one['duration_s']:.0f} s"
+        lines.append(f"  {one['trial']:<56}{after:>14}{goes:>18}{takes_s:>9}")
+    lines += [f"  left out: {one}" for one in document["left_out"]]
+    return "\n".join(lines)

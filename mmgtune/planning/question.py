@@ -1,0 +1,83 @@
+"""What somebody wants to know: an index of a standard manoeuvre, as people write it."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from ..errors import OptionError, Problem, closest
+from ..options import PredictOptions
+from ..predicting.asked import Approach, Asked, asked
+from ..predicting.reading import KNOWN, Known
+from ..predictor import Predictor
+from ..trial.index_trial import INDICES
+
+SUCH_AS = 'write it as "tactical diameter, turn -35", "1st overshoot, zigzag 10/10" or "track reach, stop"'
+MANOEUVRES = ("turn", "zigzag", "stop")
+_BY_WORDS = {**{one.words.lower(): name for name, one in KNOWN.items()}, **{name: name for name in KNOWN}}
+_OTHERS = {"overshoot_4": ("zigzag",), "lateral_deviation": ("stopping",)}
+_OF = {"turn": "turning", "zigzag": "zigzag", "stop": "stopping"}
+
+
+@dataclass(frozen=True)
+class Question:
+    """An index of a manoeuvre.
+
+    text   as it was asked
+    index  what is asked, with its unit
+    asked  the manoeuvre
+    """
+
+    text: str
+    index: Known
+    asked: Asked
+
+
+def read_question(text: str, predictor: Predictor, approach: Approach) -> Question:
+    """A question as people write it.  Raises OptionError where it is none, with what is near."""
+    words, comma, manoeuvre = text.partition(",")
+    if not comma:
+        raise OptionError(Problem(f"'{text[:80]}' names no index and manoeuvre", "question", fix=SUCH_AS))
+    name = _index(words)
+    kind, rest = _manoeuvre(manoeuvre)
+    options = {
+        "turn": lambda: PredictOptions(turn=(rest,)),
+        "zigzag": lambda: PredictOptions(zigzag=(rest,)),
+        "stop": lambda: PredictOptions(stop=True),
+    }[kind]()
+    if _OF[kind] not in _shown_by(name):
+        fitting = tuple(one.words for other, one in KNOWN.items() if _OF[kind] in _shown_by(other))
+        raise OptionError(
+            Problem(f"a {kind} has no {KNOWN[name].words}", "question", fix=closest(words.strip(), fitting))
+        )
+    (one,) = asked(predictor, options, approach)
+    return Question(text, KNOWN[name], one)
+
+
+def _shown_by(name: str) -> tuple[str, ...]:
+    """Manoeuvres that show an index."""
+    return INDICES[name].of if name in INDICES else _OTHERS[name]
+
+
+def _index(words: str) -> str:
+    plain = " ".join(words.lower().split())
+    if plain not in _BY_WORDS:
+        known = tuple(dict.fromkeys(one.words.lower() for one in KNOWN.values()))
+        raise OptionError(Problem(f"unknown index '{plain[:60]}'", "question", fix=closest(plain, known)))
+    return _BY_WORDS[plain]
+
+
+def _manoeuvre(words: str) -> tuple[str, str]:
+    """Kind and angles; "turn 35 deg to port" is "turn", "-35"."""
+    kind, _, rest = " ".join(words.lower().split()).partition(" ")
+    if kind not in MANOEUVRES:
+        raise OptionError(Problem(f"unknown manoeuvre '{kind[:60]}'", "question", fix=closest(kind, MANOEUVRES)))
+    side = re.search(r"\s*(?:to )?(port|starboard)(?: first)?$", f" {rest}")
+    if side:
+        rest = f" {rest}"[: side.start()].strip().lstrip("+-")
+        rest = f"-{rest}" if side[1] == "port" else rest
+    rest = rest.removesuffix(" deg")
+    if (kind == "stop") == bool(rest):
+        what = "a stop has no angle" if rest else f"the {kind} has no angle"
+        raise OptionError(Problem(f"{what}: '{words.strip()[:60]}'", "question", fix=SUCH_AS))
+    return kind, rest
