@@ -12,6 +12,7 @@ import pytest
 from mmgtune.errors import OptionError, OutputError, ProfileError
 from mmgtune.networks import named_ship
 from mmgtune.particles import KEY, Particles, load_particles, save_particles
+from mmgtune.predicting import predict
 from mmgtune.predictor import Uncertain
 from mmgtune.profile import load_profile, with_effects
 from mmgtune.trial import load_trials, write_trial
@@ -103,10 +104,21 @@ def test_what_is_no_parquet_says_so(tmp_path, bytes_):
 def test_a_fit_leaves_them_beside_its_profile(tmp_path):
     write_trial(load_trials("suzaku").trials["turn_p35"], tmp_path / "one.parquet")
     few = ("--method", "least-squares", "--starts", "1", "--no-report", "--out", "fitted")
-    ended = run("fit", "-t", "one.parquet", *few, "--bands", "--json", cwd=tmp_path)
+    ended = run("fit", "-t", "one.parquet", *few, "--bands", cwd=tmp_path)
     assert ended.code == 0, ended.err
-    assert "no revolutions astern" in ended.json()["bands"]["sentences"][-1]
     assert named_ship(tmp_path / "fitted").drawn(7, 1).n_members == 7
+    bands = json.loads((tmp_path / "fitted" / "fit.json").read_text())["bands"]
+    assert "no revolutions astern" in bands["sentences"][-1]
+    assert "turns to starboard alone" in bands["warnings"][0]
+    runs = {one["id"]: one for one in bands["predicted"]["runs"]}
+    assert [*runs] == ["turn_p35", "turn_m35", "zigzag_p10_10", "zigzag_p20_20"]
+    shown, other = (runs[name]["indices"][0]["over_L"] for name in ("turn_p35", "turn_m35"))
+    assert other["half_width"] > 2.0 * shown["half_width"] > 0.0  # the side that no trial shows
+    text = f"{shown['mean']:.2f} ± {shown['half_width']:.2f} L"
+    assert text in ended.out
+    assert ended.out.count("turns to starboard alone") == 1
+    foretold = predict(tmp_path / "fitted")
+    assert foretold.indices()["runs"] == bands["predicted"]["runs"]
 
 
 @pytest.mark.slow(15)

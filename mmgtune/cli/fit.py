@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from shlex import quote
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from ..options import FitOptions, in_flags
 from . import common as c
+from .banded import bands_on
 from .exitcodes import ExitCode
 from .options import RunOptions, takes
+from .predict import indices_text
 from .progress import Progress
 from .stated import stated_table
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
     from ..fitting import FitResult
 
 
@@ -44,7 +50,8 @@ def command(
 
       mmgtune fit --ar 0.5 --json --out runs/today | jq .J_test
     """
-    from ..fitting import claimed, fit, plan_fit, refuse_taken, write_run
+    from ..fitting import claimed, fit, plan_fit, refuse_taken, write_document, write_run
+    from ..options import PredictOptions
     from ..posterior import posterior, write_posterior
     from ..report import render
 
@@ -68,21 +75,37 @@ def command(
         )
         document = write_run(result, folder)
         progress.saved(result.interrupted)
-        particles = None
         if bands and not result.interrupted:
-            particles = posterior(result.tuned_profile(), data, options.posterior_options(), command=c.command_line())
-            document["bands"] = write_posterior(particles, folder, overwrite=True)
+            drawn = posterior(result.tuned_profile(), data, options.posterior_options(), command=c.command_line())
+            found, notes = bands_on(drawn.particles.predictor(options.make_integrator()), PredictOptions())
+            made = write_posterior(drawn, folder, overwrite=True)
+            document["bands"] = {**made, "warnings": [*made["warnings"], *notes], "predicted": found}
+            write_document(document, folder)
         if not no_report:
             render(folder)
     if run.json:
         c.print_json(document)
     else:
         c.show(summary(result, str(folder), report=not no_report))
-        if particles:
-            c.show("\n".join([*particles.sentences(), f"Particles: {folder}/particles.parquet"]))
+        if "bands" in document:
+            c.show(bands_text(document["bands"], folder))
+        elif result.compared and not result.interrupted:
+            tuned = quote(str(folder / "profile.toml"))
+            c.show(f"Bands: mmgtune posterior -p {tuned} -t {quote(trials)} --out {quote(str(folder))}")
     progress.leave()
     if strict and not result.converged:
         raise typer.Exit(ExitCode.NO)
+
+
+def bands_text(bands: Mapping[str, Any], folder: Path) -> str:
+    """The usual manoeuvres with bands as a person wants to read them in a terminal, and what these are made of."""
+    found, lines = bands["predicted"], [""]
+    if found:
+        lines.append(f"{found['particles']} particles, ± half the band of {found['level']:g} %")
+        for run in found["runs"]:
+            lines += ["", *indices_text(run, found["particles"])]
+    said = [*bands["sentences"], *(f"Note: {warning}" for warning in bands["warnings"])]
+    return "\n".join([*lines, "", *said, f"Particles: {folder}/particles.parquet"])
 
 
 def summary(result: FitResult, folder: str, report: bool) -> str:

@@ -86,12 +86,7 @@ def summary(document: Mapping[str, Any]) -> str:
     head = f"{document['model']['name']} ({document['model']['method']})"
     lines = [f"{head}: {n} particles, ± half the band of {level:g} %" if document["has_band"] else f"{head}: one run"]
     for run in document["runs"]:
-        lost = f", {run['diverged']} diverged" if run["diverged"] and n > 1 else ""
-        lines += ["", f"{run['id']}  ({run['order']}, {run['duration_s']:.0f} s{lost})"]
-        if run["diverged"] == n:
-            lines.append("  diverged")
-        for row in run["indices"]:
-            lines.append(_index(row, n, document["has_band"]))
+        lines += ["", *indices_text(run, n)]
         if not run["indices"] and run["diverged"] < n:
             lines.append(f"  at the end: {ended(run['end'], document['has_band'])}")
         if run["scores"]:
@@ -99,6 +94,14 @@ def summary(document: Mapping[str, Any]) -> str:
     if document["scores"] and len(document["runs"]) > 1:
         lines += ["", f"all  {_score(document['scores'])}"]
     return "\n".join(lines)
+
+
+def indices_text(run: Mapping[str, Any], n: int) -> list[str]:
+    """Lines of a run by n particles: what was ordered, and its indices with their bands."""
+    lost = f", {run['diverged']} diverged" if run["diverged"] and n > 1 else ""
+    lines = [f"{run['id']}  ({run['order']}, {run['duration_s']:.0f} s{lost})"]
+    lines += ["  diverged"] if run["diverged"] == n else []
+    return lines + [_index(row, n, n > 1) for row in run["indices"]]
 
 
 def ended(rows: Sequence[Mapping[str, Any]], has_band: bool) -> str:

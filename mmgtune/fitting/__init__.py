@@ -1,7 +1,7 @@
 """Calibration: search, least squares, certificate, identifiability, sweep and run folders."""
 
 from ..options import METHODS, FitOptions, LeaveOutOptions, SweepOptions
-from .folder import claimed, prepare, refuse_taken, write_run
+from .folder import claimed, prepare, refuse_taken, write_document, write_run
 from .leaving_out import LeftOut, leave_out, write_left_out
 from .planning import Plan, plan_fit, plan_leave_out, plan_sweep
 from .result import FitResult
@@ -29,6 +29,7 @@ __all__ = [
     "prepare",
     "refuse_taken",
     "sweep",
+    "write_document",
     "write_left_out",
     "write_run",
 ]

@@ -116,10 +116,15 @@ def write_run(result: FitResult, folder: Path) -> dict[str, Any]:
     inputs = [one.name for one in result.profile.arrangement.inputs]
     write_table(folder / "motions.parquet", motions_table(result.compared, inputs))
     document = {**result.to_dict(), "out": str(folder)}
-    write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+    write_document(document, folder)
     if not result.interrupted:
         finished(folder)
     return document
+
+
+def write_document(document: dict[str, Any], folder: Path) -> None:
+    """Write the document of a fit, anew where something is added to it."""
+    write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
 
 
 def _history(history: Iterable[Generation]) -> dict[str, Any]:

@@ -21,7 +21,7 @@ from ..threads import blas_on_one_thread
 from ..trial import Trial
 from .local import Mode, Windowed, find_mode, make_windowed
 from .room import Room, make_room, tags_of
-from .sizing import Sized, draws, own_variance, shown_by, size
+from .sizing import Shown, Sized, draws, own_variance, shown_by, size
 
 EXPECTED = 4.0
 """Squares of residuals of particles over what a linear model has, up to which bands of generated ships held."""
@@ -32,7 +32,7 @@ class Posterior:
     """What trials leave open of a ship.
 
     sized       how much the trials are believed
-    shown       what orders the trials hold, in a sentence
+    shown       what orders the trials hold
     learnt      number of combinations of numbers that the trials determine
     nonlinear   median over particles of the squares of residuals above those of the mode, over what it is if the
                 distribution is Gaussian
@@ -44,7 +44,7 @@ class Posterior:
     learnt: float
     nonlinear: float
     converged: bool
-    shown: str
+    shown: Shown
     provenance: Mapping[str, Any]
 
     def __repr__(self) -> str:
@@ -53,7 +53,8 @@ class Posterior:
 
     def warnings(self) -> list[str]:
         """What a reader must know before trusting the bands."""
-        found = []
+        one_sided = self.shown.one_sided()
+        found = [one_sided] if one_sided else []
         if not self.converged:
             found.append("The most probable coefficients were not found to the end; bands are about the best so far.")
         if self.nonlinear > EXPECTED:
@@ -69,7 +70,7 @@ class Posterior:
             f"Room for {len(self.room)} numbers: coefficients, and {', '.join(tags_of(self.room))}.",
             f"The trials determine {self.learnt:.0f} combinations of them; the rest is as open as before.",
             self.sized.sentence(),
-            self.shown,
+            self.shown.sentence(),
         ]
 
     def to_dict(self) -> dict[str, Any]:

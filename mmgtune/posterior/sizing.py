@@ -95,20 +95,51 @@ def group_of(trial: Trial) -> str:
     return f"{size}{side}{kind}"
 
 
-def shown_by(trials: Sequence[Trial]) -> str:
-    """What orders trials hold, in a sentence: predictions beyond them rest on the room alone."""
-    largest = [float(np.nanmax(side * trial.delta)) / DEG for side in (1.0, -1.0) for trial in trials]
-    starboard, port = max(0.0, *largest[: len(trials)]), max(0.0, *largest[len(trials) :])
+@dataclass(frozen=True)
+class Shown:
+    """What orders trials hold: predictions beyond them rest on the room alone.
+
+    rudder   largest to starboard and to port [deg]
+    circles  sides that a turn goes to
+    astern   whether revolutions are ever astern
+    """
+
+    rudder: tuple[float, float]
+    circles: tuple[str, ...]
+    astern: bool
+
+    def sentence(self) -> str:
+        """In words."""
+        starboard, port = self.rudder
+        turns = f"turns to {' and '.join(self.circles)}" if self.circles else "no turns"
+        astern = "" if self.astern else ", no revolutions astern"
+        return (
+            f"The trials show rudder up to {starboard:.0f} deg to starboard and {port:.0f} deg to port, {turns}{astern}"
+            "; beyond that bands are as wide as the room allows."
+        )
+
+    def one_sided(self) -> str | None:
+        """A warning where turns go to one side alone, or rudder to one side less than half as far; else None."""
+        other = {"starboard": "port", "port": "starboard"}
+        if len(self.circles) == 1:
+            side = self.circles[0]
+            what = f"turns to {side} alone"
+        elif min(self.rudder) < 0.5 * max(self.rudder):
+            side = "starboard" if self.rudder[0] > self.rudder[1] else "port"
+            what = f"little rudder to {other[side]}"
+        else:
+            return None
+        return f"The trials show {what}: bands to {other[side]} rest on what the ship does to {side} and on the room."
+
+
+def shown_by(trials: Sequence[Trial]) -> Shown:
+    """What orders trials hold."""
+    starboard, port = (max(0.0, *(float(np.nanmax(side * one.delta)) / DEG for one in trials)) for side in (1.0, -1.0))
     turned = [float(trial.psi[-1] - trial.psi[0]) / DEG for trial in trials if np.isfinite(trial.psi[[0, -1]]).all()]
-    circles = [
+    circles = tuple(
         name for name, side in (("starboard", 1.0), ("port", -1.0)) if any(side * angle >= CIRCLE for angle in turned)
-    ]
-    turns = f"turns to {' and '.join(circles)}" if circles else "no turns"
-    astern = "" if any(np.nanmin(trial.n) < 0.0 for trial in trials) else ", no revolutions astern"
-    return (
-        f"The trials show rudder up to {starboard:.0f} deg to starboard and {port:.0f} deg to port, {turns}{astern}; "
-        "beyond that bands are as wide as the room allows."
     )
+    return Shown((starboard, port), circles, any(np.nanmin(trial.n) < 0.0 for trial in trials))
 
 
 def size(data: Windowed, mode: Mode, remake: Callable[[Sequence[Trial]], Windowed], seed: int = 1) -> Sized:

@@ -180,8 +180,15 @@ class Predicted:
             "wall_s": self.wall_s,
         }
 
-    def _described(self, run: Foretold) -> dict[str, Any]:
-        trial = run.trial
+    def indices(self) -> dict[str, Any]:
+        """The bands on indices alone, for JSON: what records of other commands hold of a prediction."""
+        return {
+            "level": self.options.level,
+            "particles": self.predictor.n_members,
+            "runs": [self._indexed(run) for run in self.runs],
+        }
+
+    def _indexed(self, run: Foretold) -> dict[str, Any]:
         return {
             "id": run.id,
             "manoeuvre": run.manoeuvre,
@@ -189,6 +196,12 @@ class Predicted:
             "duration_s": float(run.t[-1] - run.t[0]),
             "diverged": int(run.diverged.sum()),
             "indices": [self._index(run, key) for key in run.indices],
+        }
+
+    def _described(self, run: Foretold) -> dict[str, Any]:
+        trial = run.trial
+        return {
+            **self._indexed(run),
             "end": run.end(self.level),
             "trial": {"source": trial.source, "sha256": trial.sha256} if trial else None,
             "windows": len(run.scores),

@@ -58,6 +58,15 @@ def after_fit(data: Mapping[str, Any]) -> Advice:
     return tuple(items)
 
 
+def for_bands(data: Mapping[str, Any]) -> Advice:
+    """(reason, command) pairs that give the tuned ship bands."""
+    _, trials = _inputs(data)
+    folder = clean(data.get("out") or "RUN").rstrip("/")
+    made = f"mmgtune posterior -p {shlex.quote(folder + '/profile.toml')} {trials} --out {shlex.quote(folder)}"
+    reason = "This fit says nothing of how sure its predictions are: draw particles, then predict with bands"
+    return ((reason, f"{made} && mmgtune predict {shlex.quote(folder)}"),)
+
+
 def after_sweep(data: Mapping[str, Any]) -> Advice:
     """(reason, command) pairs that follow from a sweep."""
     profile, trials = _inputs(data)

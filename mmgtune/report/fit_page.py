@@ -7,11 +7,15 @@ from pathlib import Path
 from typing import Any
 
 from . import advice, charts, confidence, figures, findings, tables, tables_of_motion, tracks
+from .band_indices import indices_table
 from .common import assumptions, generated_banner, misfit_tile, picture, provenance, warnings
 from .drawing import Drawn
 from .load import Kind, RunRecord, history_in, inputs_of, motions_in
 from .page import Commands, Details, Histories, Page, Prose, Section, Tile
-from .wording import change, clean, count, number, percent, shown
+from .wording import change, clean, count, number, percent, sentence, shown
+
+BANDS = "How sure predictions are"
+"""Heading of the section."""
 
 
 def build(record: RunRecord) -> Page:
@@ -27,6 +31,7 @@ def build(record: RunRecord) -> Page:
         _coefficients(record, drawings),
         confidence.best_fit(record, drawings),
         confidence.identifiability(record, drawings),
+        _bands(record),
         Section("next", "What to do next", (Commands(advice.after_fit(data)),)),
         assumptions(data),
         provenance(data),
@@ -199,6 +204,20 @@ def _coefficients(record: RunRecord, drawings: dict[str, Drawn]) -> Section | No
             tables.coefficients(rows),
         ),
     )
+
+
+def _bands(record: RunRecord) -> Section | None:
+    """The usual manoeuvres with bands, and what these are made of; of a fit without them the command that gives some.
+
+    None of a fit to stated indices alone, which show no motion that bands could be made of.
+    """
+    bands = record.data.get("bands") or {}
+    if not bands:
+        return Section("bands", BANDS, (Commands(advice.for_bands(record.data)),)) if record.results else None
+    found = bands.get("predicted") or {"runs": (), "level": 90.0, "particles": 0}
+    shown_runs = [indices_table(run, float(found["level"]), found["particles"] > 1) for run in found["runs"]]
+    said = [sentence(text) for text in (*(bands.get("warnings") or ()), *(bands.get("sentences") or ()))]
+    return Section("bands", BANDS, (Prose(tuple(said), listed=True), *filter(None, shown_runs)))
 
 
 def _read(folder: Path, data: Mapping[str, Any]) -> RunRecord:

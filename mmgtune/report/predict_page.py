@@ -10,13 +10,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import fans
+from .band_indices import banded, indices_table
 from .band_scores import MEANING, SCORE_HEADS, score_cells
 from .common import doubts, picture
 from .drawing import Drawn
 from .load import Kind, columns_in
-from .page import Block, Cell, Details, Page, Prose, Section, Table, Tile, cells
+from .page import Block, Details, Page, Prose, Section, Table, Tile, cells
 from .tables import pairs
-from .wording import NONE, PRINCIPAL, clean, count, fixed, number, shown
+from .wording import NONE, PRINCIPAL, clean, count, number, shown
 
 if TYPE_CHECKING:
     from ..arrays import FloatArray
@@ -110,7 +111,7 @@ def build(record: PredictRecord) -> Page:
         sections.append(_run(record, run, k, figures))
     rest = [run for run in record.runs if run not in record.drawn()]
     if rest:
-        blocks = tuple(table for run in rest if (table := _indices(record, run)))
+        blocks = tuple(table for run in rest if (table := indices_table(run, record.level, record.several)))
         said = Prose((f"{count(len(rest), 'run')} are not drawn: those whose bands hold more, or that diverged.",))
         sections.append(Section("rest", "Other runs", (said, *(blocks and (Details("Indices", blocks),)))))
     sources = {run["trial"]["source"] for run in record.runs if run["trial"]}
@@ -141,13 +142,13 @@ def _verdict(record: PredictRecord) -> str:
     for run in record.runs:
         for row in run["indices"]:
             if row["index"] in ("advance_m", "overshoot_1_deg") and len(said) < 3:
-                banded = row["over_L"] or row
+                values = row["over_L"] or row
                 unit = "ship lengths" if row["over_L"] else row["unit"]
                 name = "the advance" if row["over_L"] else "the first overshoot"
-                said.append(f"{clean(run['order'])}: {name} is {_banded(banded)} {unit}")
+                said.append(f"{clean(run['order'])}: {name} is {banded(values)} {unit}")
     if not said and record.runs[0]["diverged"] < record.data["particles"]:
         run = record.runs[0]
-        where = ", ".join(f"{row['words']} {_banded(row)} {row['unit']}" for row in run["end"][:3])
+        where = ", ".join(f"{row['words']} {banded(row)} {row['unit']}" for row in run["end"][:3])
         said.append(f"after {shown(run['duration_s'], 3)} s of {clean(run['order'])}: {where}")
     text = "; ".join(said) + "." if said else f"{count(len(record.runs), 'run')} foretold."
     return text[:1].upper() + text[1:]
@@ -170,23 +171,8 @@ def _tiles(record: PredictRecord) -> tuple[Tile, ...]:
         for row in run["indices"]:
             if row["index"] in ("advance_m", "tactical_diameter_m", "overshoot_1_deg", "track_reach_m"):
                 unit = "L" if row["over_L"] else row["unit"]
-                tiles.append(Tile(f"{row['words']}, {clean(run['id'])}", f"{_banded(row['over_L'] or row)} {unit}"))
+                tiles.append(Tile(f"{row['words']}, {clean(run['id'])}", f"{banded(row['over_L'] or row)} {unit}"))
     return tuple(tiles[:7])
-
-
-def _banded(row: Mapping[str, Any]) -> str:
-    """A mean with half its band; "3.1 or more" where a share of the particles never gets there."""
-    mean, half, low = (number(row[key]) for key in ("mean", "half_width", "low"))
-    if mean is None:
-        return "never reached"
-    if row["particles"] == 1:
-        return shown(mean, 3)
-    if half is None:
-        return NONE if low is None else f"{shown(low, 3)} or more"
-    from math import floor, log10
-
-    decimals = 1 if half <= 0.0 else min(max(1 - floor(log10(half)), 0), 6)
-    return f"{fixed(mean, decimals)} ± {fixed(half, decimals)}"
 
 
 def _whisker_rows(record: PredictRecord) -> dict[str, list[dict[str, Any]]]:
@@ -236,45 +222,10 @@ def _run(record: PredictRecord, run: Mapping[str, Any], k: int, figures: dict[st
         picture(figures[f"track_{k}"], "Track", first),
         picture(figures[f"motions_{k}"], "Motions", "Heading, velocities and yaw rate over time."),
     ]
-    table = _indices(record, run)
+    table = indices_table(run, record.level, record.several)
     if table:
         blocks.append(table)
     return Section(f"run-{k}", name, tuple(blocks))
-
-
-def _indices(record: PredictRecord, run: Mapping[str, Any]) -> Table | None:
-    """All indices of a run."""
-    measured = any(number(row["measured"]) is not None for row in run["indices"])
-    rows = []
-    for row in run["indices"]:
-        lengths = row["over_L"]
-        band = f"{shown(row['low'], 3)} to {shown(row['high'], 3)}" if record.several else NONE
-        line: list[str | Cell] = [
-            f"{row['words']} [{row['unit']}]",
-            _banded(row),
-            _banded(lengths) if lengths else NONE,
-            band,
-        ]
-        if measured:
-            line.append(Cell(shown(row["measured"]), _tone(row) if record.several else ""))
-        never = row["particles"] - row["reached"]
-        line.append(Cell(str(never), "bad") if never else "0")
-        rows.append(cells(*line))
-    if not rows:
-        return None
-    heads = ["index", "mean ± half the band", "in ship lengths", f"band of {shown(record.level, 3)} %"]
-    heads += ["measured"] if measured else []
-    heads.append("never reach it")
-    caption = f"Indices of {clean(run['id'])}; particles that never reach one count as beyond all others"
-    return Table(f"indices-{clean(run['id'])}", caption, tuple(heads), tuple(rows), numeric=range(1, len(heads)))
-
-
-def _tone(row: Mapping[str, Any]) -> str:
-    """Whether the measured value lies in the band."""
-    value, low, high = (number(row[key]) for key in ("measured", "low", "high"))
-    if value is None:
-        return ""
-    return "good" if (low is None or value >= low) and (high is None or value <= high) else "bad"
 
 
 def _scores(record: PredictRecord, figures: dict[str, Drawn]) -> Section:

@@ -13,7 +13,7 @@ from mmgtune.model import Model
 from mmgtune.options import PosteriorOptions
 from mmgtune.posterior import posterior
 from mmgtune.posterior.room import make_room, tags_of
-from mmgtune.posterior.sizing import group_of
+from mmgtune.posterior.sizing import Shown, group_of, shown_by
 from mmgtune.profile import load_profile
 from tests.hidden.cases import null
 from tests.hidden.plant import SILENT, simulate
@@ -129,3 +129,18 @@ def test_kinds_and_sides_have_names(sailed):
     assert group_of(trials["turn_p35"]) == "starboard turning"
     assert group_of(trials["turn_m10"]) == "gentle port turning"
     assert group_of(trials["zigzag_20"]) == "zigzag"
+
+
+def test_one_side_alone_is_said(sailed):
+    trials = sailed[0]
+
+    def said(*names):
+        return shown_by([trials[name] for name in names]).one_sided()
+
+    assert said("turn_p35", "turn_m35") is None
+    assert said("zigzag_10", "zigzag_20") is None
+    assert "turns to starboard alone: bands to port" in said("turn_p35", "zigzag_10")
+    assert "turns to port alone: bands to starboard" in said("turn_m35", "zigzag_10")
+    weak = Shown((10.0, 35.0), ("starboard", "port"), astern=False)
+    assert "little rudder to starboard: bands to starboard rest on what the ship does to port" in weak.one_sided()
+    assert "no revolutions astern" in weak.sentence()

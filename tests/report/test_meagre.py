@@ -72,6 +72,25 @@ def test_little_is_known(tmp_path: Path) -> None:
     assert "0 of 12 coefficients" in page
 
 
+def test_bands_or_how_to_get_them(tmp_path: Path) -> None:
+    data, history, motions = fake_run.fit_data()
+    without = fake_run.write_fit(tmp_path / "without", data, history, motions)
+    render(without)
+    assert "mmgtune posterior -p" in (without / "report.md").read_text()
+    advance = {"mean": 3.104, "half_width": 0.21, "low": 2.9, "high": 3.32, "reached": 99, "particles": 100}
+    row = {"index": "advance_m", "words": "advance", "unit": "m", "measured": None}
+    run = {"id": "turn_p35", "indices": [{**row, **advance, "over_L": {**advance, "measured": None}}]}
+    found = {"level": 90.0, "particles": 100, "runs": [run]}
+    data["bands"] = {"sentences": ["The trials show little."], "warnings": ["One side alone"], "predicted": found}
+    render(fake_run.write_fit(tmp_path / "bands", data, history, motions))
+    text = (tmp_path / "bands" / "report.md").read_text()
+    assert "mmgtune posterior" not in text
+    assert text.index("- One side alone") < text.index("- The trials show little") < text.index("3.10 ± 0.21")
+    data["bands"]["predicted"] = None  # a ship that no manoeuvre can be ordered of
+    render(fake_run.write_fit(tmp_path / "none", data, history, motions))
+    assert "- One side alone" in (tmp_path / "none" / "report.md").read_text()
+
+
 def test_diverged_trial(tmp_path: Path) -> None:
     data, history, motions = fake_run.edited()
     data["trial_results"][0] |= {"status_after": "diverged", "J_after": None}

@@ -60,8 +60,8 @@ def test_files_of_a_fit(fit_folder: Path) -> None:
 
 def test_order_of_content(page: str) -> None:
     sections = re.findall(r'<section id="([a-z]+)"', page)
-    assert sections == ["trials", "tracks", "histories", "indices", "coefficients", "trust", "identifiability", "next",
-                        "assumptions", "provenance"]  # fmt: skip
+    assert sections == ["trials", "tracks", "histories", "indices", "coefficients", "trust", "identifiability", "bands",
+                        "next", "assumptions", "provenance"]  # fmt: skip
     verdict = page.index("<h1>Within ±50")
     assert verdict < page.index("generated, not measured") < page.index('class="tile') < page.index("<section")
 
