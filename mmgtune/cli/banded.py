@@ -8,10 +8,10 @@ from ..errors import OptionError
 
 if TYPE_CHECKING:
     from ..options import PredictOptions
-    from ..particles import ParticlePredictor
+    from ..predictor import Uncertain
 
 
-def bands_on(ship: ParticlePredictor, options: PredictOptions) -> tuple[dict[str, Any] | None, list[str]]:
+def bands_on(ship: Uncertain, options: PredictOptions) -> tuple[dict[str, Any] | None, list[str]]:
     """Bands on the indices of the manoeuvres of the options, the usual ones where there are none, and notes on them.
 
     None, with the reason, for a ship that they cannot be ordered of: what stands beside them is worth as much.

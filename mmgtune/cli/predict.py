@@ -106,13 +106,13 @@ def indices_text(run: Mapping[str, Any], n: int) -> list[str]:
 
 def ended(rows: Sequence[Mapping[str, Any]], has_band: bool) -> str:
     """Where a run ends."""
-    return ", ".join(f"{row['words']} {_banded(row, row['unit'], has_band)}" for row in rows)
+    return ", ".join(f"{row['words']} {banded(row, row['unit'], has_band)}" for row in rows)
 
 
 def _index(row: Mapping[str, Any], n: int, has_band: bool) -> str:
-    shown = [_banded(row, row["unit"], has_band)]
+    shown = [banded(row, row["unit"], has_band)]
     if row["over_L"]:
-        shown.append(_banded(row["over_L"], "L", has_band))
+        shown.append(banded(row["over_L"], "L", has_band))
     never = (
         "" if row["reached"] == row["particles"] else f"   {row['particles'] - row['reached']} of {n} never reach it"
     )
@@ -124,7 +124,8 @@ def _index(row: Mapping[str, Any], n: int, has_band: bool) -> str:
     return (text + never + measured).rstrip()
 
 
-def _banded(row: Mapping[str, Any], unit: str, has_band: bool) -> str:
+def banded(row: Mapping[str, Any], unit: str, has_band: bool = True) -> str:
+    """A mean with half its band and the unit."""
     unit = "" if unit == "-" else f" {unit}"
     if row["mean"] is None:
         return "never reached"

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from ..errors import OptionError, Problem
-from ..options import SimulateOptions
+from ..options import PredictOptions, SimulateOptions
 from . import common as c
+from .banded import bands_on
 from .options import takes
+from .predict import banded
+
+if TYPE_CHECKING:
+    from ..predictor import Uncertain
 
 
 @takes(options=SimulateOptions)
@@ -54,6 +59,7 @@ def command(
       mmgtune simulate --trials suzaku --out simulated --forces
     """
     from ..files import refuse_existing
+    from ..predictor import Uncertain
     from ..simulating import files_of, simulate
 
     if forces and out is None:
@@ -61,28 +67,44 @@ def command(
     if out is not None and not force:
         refuse_existing(files_of(out, trials, options))
     result = simulate(profile, trials, options)
+    rows = result.rows()
+    notes = list(result.notes)
+    if trials is None and isinstance(result.predictor, Uncertain):
+        notes += _add_bands(rows, result.predictor, options)
     files = result.write(out, with_forces=forces, overwrite=force) if out is not None else []
     if json:
-        c.print_json({**result.to_dict(), "files": [str(f) for f in files]})
+        c.print_json({**result.to_dict(), "runs": rows, "notes": notes, "files": [str(f) for f in files]})
         return
-    for row in result.rows():
+    for row in rows:
         c.show(_text(row))
-    for note in result.notes:
+    for note in notes:
         c.say(f"note: {note}")
     c.say_doubts(result.ship.doubts() if result.ship else ())
     for file in files:
         c.say(f"wrote {file}")
 
 
+def _add_bands(rows: list[dict[str, Any]], ship: Uncertain, options: SimulateOptions) -> list[str]:
+    """Give each run ``bands``: rows by index, as ``predict`` has them.  Returns notes."""
+    turn = options.turn or (() if options.zigzag else ("35", "-35"))
+    found, notes = bands_on(ship, PredictOptions(**{**options.shared_with(PredictOptions), "turn": turn}))
+    if found is None:
+        return notes
+    by_id = {run["id"]: {one["index"]: one for one in run["indices"]} for run in found["runs"]}
+    for row in rows:
+        row["bands"] = by_id[row["id"]]
+    return [f"±: half the band of {found['level']:g} % of {found['particles']} particles", *notes]
+
+
 def _text(result: dict[str, Any]) -> str:
     from ..measures import UNITS
 
     lines = [f"{result['id']}  ({result['status']}, {result['duration_s']:.0f} s, {result['integrator']})"]
-    measured = result["measured"] or {}
+    measured, bands = result["measured"] or {}, result.get("bands", {})
     for name, value in result["indices"].items():
         if value is not None and value != []:
             beside = f"   measured {_value(measured[name])}" if measured.get(name) is not None else ""
-            lines.append(f"  {name:<34}{_value(value)}{beside}")
+            lines.append(f"  {name:<34}{_value(value)}{beside}{_band(bands, name)}")
     for name, value in (result["measures"] or {}).items():
         lines.append(f"  {name:<34}{value:.4g} {UNITS[name]}")
     for criterion in result["criteria"]:
@@ -91,6 +113,16 @@ def _text(result: dict[str, Any]) -> str:
         value = "-" if criterion["value"] is None else f"{criterion['value']:.3g}"
         lines.append(f"  IMO {criterion['name']}: {value} (limit {criterion['limit']:.3g} {criterion['unit']}) {word}")
     return "\n".join(lines)
+
+
+def _band(bands: dict[str, Any], name: str) -> str:
+    """The band as it stands beside the value of an index, nothing where there is none."""
+    length = name.removesuffix("_over_L")
+    if name in bands:
+        return f"   {banded(bands[name], bands[name]['unit'])}"
+    if length != name and f"{length}_m" in bands:
+        return f"   {banded(bands[f'{length}_m']['over_L'], 'L')}"
+    return ""
 
 
 def _value(value: Any) -> str:
