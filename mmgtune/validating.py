@@ -8,19 +8,20 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
+from .bands import Pooled, pooled
 from .circumstances import notes_on
 from .errors import OptionError, Problem
 from .given import ShipGiven, TrialsGiven, trials_of
 from .model import Model
 from .networks import named_ship
 from .objective import spread
-from .options import SimulationOptions, ValidateOptions
-from .predictor import PhysicsPredictor, Predictor, as_predictor, profile_of, words_of
+from .options import ParticleOptions, SimulationOptions, ValidateOptions
+from .predictor import PhysicsPredictor, Predictor, as_predictor, particles_of, profile_of, words_of
 from .profile.doubts import Doubt
 from .repeating import Repeated, document, repeat
 from .stated import IndexComparison, compare_stated, model_of, possible
-from .trial import TrialSet
-from .validation import L_MSE, TrialScore, score, summary
+from .trial import Trial, TrialSet
+from .validation import L_MSE, TrialScore, score, summary, window_scores
 
 Scorable = ShipGiven | Model | Predictor
 """What can be scored: a profile, its path or bundled name, a model, or any predictor."""
@@ -29,7 +30,8 @@ Scorable = ShipGiven | Model | Predictor
 @dataclass(frozen=True, eq=False)
 class Scored:
     """One predictor: what it was called, its scores by trial or window, its manoeuvres repeated where asked for, and
-    what it makes of indices that are stated, and notes on what was around the ship.
+    what it makes of indices that are stated, notes on what was around the ship, and of several particles how well their
+    bands hold what was measured, by kind of manoeuvre ("" where trials do not say) and under None all together.
     """
 
     name: str
@@ -38,6 +40,7 @@ class Scored:
     repeated: tuple[Repeated, ...] = ()
     stated: tuple[IndexComparison, ...] = ()
     notes: tuple[str, ...] = ()
+    bands: Mapping[str | None, Pooled] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         """In a line."""
@@ -52,12 +55,17 @@ class Scored:
     def to_dict(self) -> dict[str, Any]:
         """Scores over everything, by kind of manoeuvre and by run, for JSON; what diverged is null."""
         profile = profile_of(self.predictor)
+        found = summary(self.scores) if self.scores else {}
+        if self.bands:
+            found["bands"] = self.bands[None].to_dict()
+            for kind, row in found["by_manoeuvre"].items():
+                row["bands"] = self.bands[kind].to_dict()
         return {
             "profile": self.name,
             "id": self.predictor.name,
             "sha256": profile.sha256 if profile else None,
             "method": self.predictor.method,
-            **(summary(self.scores) if self.scores else {}),
+            **found,
             **({"stated": [one.to_dict(self.predictor.L_pp) for one in self.stated]} if self.stated else {}),
             "notes": list(self.notes),
             "doubts": [one.to_dict() for one in self.doubts],
@@ -137,7 +145,8 @@ def validate(
             notes = [f"the trials are of '{data.ship}', '{name}' was trained for '{own}'", *notes]
         scores = tuple(score(predictor, pieces, sigma)) if pieces else ()
         stated = _stated(predictor, data, options.backend)
-        scored.append(Scored(name, predictor, scores, repeated, stated, tuple(notes)))
+        bands = _bands(predictor, pieces, sigma) if pieces else {}
+        scored.append(Scored(name, predictor, scores, repeated, stated, tuple(notes), bands))
     return Validation(tuple(scored), called, sigma, options.sigma_from or called, options)
 
 
@@ -180,6 +189,19 @@ def predictors_of(
             backend=options.backend,
         )
         for name, one in several
+    }
+
+
+def _bands(predictor: Predictor, pieces: Sequence[Trial], sigma: Mapping[str, float]) -> dict[str | None, Pooled]:
+    """Scores of the bands of a predictor that draws particles, or has several members; of others nothing."""
+    how = ParticleOptions()
+    particles = particles_of(predictor, how.particles, how.seed)
+    if particles.n_members < 2:
+        return {}
+    found = window_scores(particles, pieces)
+    kinds = dict.fromkeys(one.manoeuvre for one in found)
+    return {None: pooled(found, sigma)} | {
+        kind: pooled([one for one in found if one.manoeuvre == kind], sigma) for kind in kinds
     }
 
 

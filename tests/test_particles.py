@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 import numpy as np
 import pyarrow as pa
@@ -11,6 +12,7 @@ import pytest
 
 from mmgtune.errors import OptionError, OutputError, ProfileError
 from mmgtune.networks import named_ship
+from mmgtune.options import PredictOptions
 from mmgtune.particles import KEY, Particles, load_particles, save_particles
 from mmgtune.predicting import predict
 from mmgtune.predictor import Uncertain
@@ -133,4 +135,43 @@ def test_the_command_writes_them_and_others_take_them(tmp_path):
     assert run("posterior", "-t", "one.parquet", "--out", "bands", cwd=tmp_path).code == 2
     turned = run("simulate", "-p", "bands", "--turn", "35", "--json", cwd=tmp_path)
     assert turned.code == 0, turned.err
-    assert len(turned.json()["runs"]) == 1
+    (row,) = turned.json()["runs"]
+    (foretold,) = predict(tmp_path / "bands", options=PredictOptions(turn=("35",))).indices()["runs"]
+    assert [*row["bands"].values()] == foretold["indices"]
+    band = row["bands"]["advance_m"]
+    assert band["low"] < row["indices"]["advance_m"] < band["high"]
+    ended = run("simulate", "-p", "bands", "--zigzag", "20/20", cwd=tmp_path)
+    assert ended.code == 0, ended.err
+    assert re.search(r"overshoot_1_deg +[\d.]+ +[\d.]+ ± [\d.]+ deg\n", ended.out)
+    assert "band of 90 % of 100 particles" in ended.err
+    lengths = run("simulate", "-p", "bands", "--turn", "35", cwd=tmp_path).out
+    assert re.search(r"advance_m +[\d.]+ +\d+ ± [\d.]+ m\n +advance_over_L +[\d.]+ +[\d.]+ ± [\d.]+ L\n", lengths)
+    steep = run("simulate", "-p", "bands", "--turn", "80", cwd=tmp_path)  # beyond the steering gear
+    assert steep.code == 0, steep.err
+    assert "±" not in steep.out
+    assert "No bands: the order is 80 deg" in steep.err
+    alone = run("simulate", "--turn", "35", "--json", cwd=tmp_path).json()
+    assert "bands" not in alone["runs"][0]
+
+
+@pytest.mark.slow(5)
+def test_validate_scores_their_bands_as_compare_does(particles, tmp_path):
+    save_particles(particles, tmp_path / "particles.parquet")
+    arguments = "particles.parquet", "suzaku", "suzaku", "--restart", "200"
+    ended = run("validate", *arguments, "--json", cwd=tmp_path)
+    assert ended.code == 0, ended.err
+    banded, single = ended.json()["profiles"]
+    compared = run("compare", *arguments, "--json", cwd=tmp_path).json()
+    windows = compared["models"][0]["windows"]
+    assert banded["bands"] == windows[0]["bands"]  # all
+    assert banded["by_manoeuvre"]["turning"]["bands"] == windows[1]["bands"]
+    assert banded["bands"]["particles"] == 100
+    assert 0.0 < banded["bands"]["coverage_90"] < 1.0
+    assert "bands" not in single
+    assert "bands" not in single["by_manoeuvre"]["turning"]
+    shown = run("validate", *arguments[:1], *arguments[2:], cwd=tmp_path).out
+    held = f"{100.0 * banded['bands']['coverage_90']:.0f} %"
+    (line,) = [line for line in shown.splitlines() if line.startswith("  all ")]
+    assert line.split()[-3:-1] == held.split()
+    assert "90 % holds" in shown
+    assert "90 % holds" not in run("validate", "suzaku", "suzaku", cwd=tmp_path).out

@@ -116,16 +116,26 @@ def summary(result: Validation) -> str:
             ]
         if "J" not in one:
             continue
-        lines.append(f"  {'':<34}{'runs':>6}{'J':>12}{'L_MSE':>10}")
+        heads = f"{'90 % holds':>12}{'CRPS':>8}" if "bands" in one else ""
+        lines.append(f"  {'':<34}{'runs':>6}{'J':>12}{'L_MSE':>10}{heads}")
         for kind, row in one["by_manoeuvre"].items():
             name = kind or "manoeuvre not stated"
-            lines.append(f"  {name:<34}{row['runs']:>6}{_shown(row['J'])}{_shown(row['L_MSE'], 10)}")
-        lines.append(f"  {'all':<34}{len(one['trials']):>6}{_shown(one['J'])}{_shown(one['L_MSE'], 10)}")
+            lines.append(f"  {name:<34}{row['runs']:>6}{_shown(row['J'])}{_shown(row['L_MSE'], 10)}{_held(row)}")
+        lines.append(f"  {'all':<34}{len(one['trials']):>6}{_shown(one['J'])}{_shown(one['L_MSE'], 10)}{_held(one)}")
         for row in one["trials"]:
             lines.append(f"    {row['id']:<38}{_shown(row['J'])}{_shown(row['L_MSE'], 10)}")
     if result.options.manoeuvres:
         lines.append(table({one.name: one.repeated for one in result.profiles}))
     return "\n".join(lines)
+
+
+def _held(row: dict[str, Any]) -> str:
+    """What the bands of a row hold, and their CRPS; nothing where there are none."""
+    if "bands" not in row:
+        return ""
+    share, crps = row["bands"]["coverage_90"], row["bands"]["CRPS"]
+    held = "-" if share is None else f"{100.0 * share:.0f} %"
+    return f"{held:>12}{'-' if crps is None else f'{crps:.3g}':>8}"
 
 
 def _rms(rows: list[dict[str, Any]]) -> str:
