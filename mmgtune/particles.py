@@ -22,7 +22,7 @@ from .errors import OptionError, Problem, ProfileError
 from .files import atomic
 from .model import Model
 from .predictor import PhysicsPredictor, Sampling
-from .profile import ShipProfile, parse_profile
+from .profile import ShipProfile, parse_profile, with_effects
 
 FILE = "particles.parquet"
 """What the file is called in a run folder."""
@@ -71,8 +71,18 @@ class Particles:
 
         as_logged  in the surroundings and by the sensors of the trials; else the ship alone, both as in the profile
         """
-        model = Model(self.profile)
+        model = Model(self.profile if as_logged else self.without_the_day())
         return ParticlePredictor(model, model.matrix(), integrator, particles=self, as_logged=as_logged)
+
+    def without_the_day(self) -> ShipProfile:
+        """The most probable ship in what the profile had around her before any trial was seen."""
+        before: dict[str, dict[str, float]] = {}
+        for name in self.of_the_day():
+            kind, symbol = split_name(name)
+            value = self.profile.coefficient(name).pre_determined
+            if value is not None:
+                before.setdefault(kind.partition(".")[2], {})[symbol] = float(value)
+        return with_effects(self.profile, before, "as before the trials") if before else self.profile
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pyarrow as pa
@@ -46,6 +47,19 @@ def test_the_day_of_the_trials_is_not_the_ship(particles):
     row = alone.model.rows["effects.current.north"]
     assert np.ptp(alone.theta[row]) == 0.0
     assert np.ptp(logged.theta[row]) > 0.0
+
+
+def test_the_most_probable_day_is_not_the_ship_either(particles):
+    """What the trials told of the current is in the profile; orders are foretold in what was there before."""
+    from mmgtune.profile import tuned
+
+    name = "effects.current.north"
+    likely = replace(particles, profile=tuned(particles.profile, {name: 0.7}, {}, {}))
+    ship, logged = likely.predictor(), likely.predictor(as_logged=True)
+    row = ship.model.rows[name]
+    assert logged.theta[row, 0] == 0.7
+    assert ship.theta[row, 0] == particles.profile.value(name)
+    assert (ship.drawn(5, 1).theta[row] == particles.profile.value(name)).all()
 
 
 def test_a_file_gives_back_what_was_written(particles, tmp_path):

@@ -142,10 +142,10 @@ def _verdict(record: PredictRecord) -> str:
     for run in record.runs:
         for row in run["indices"]:
             if row["index"] in ("advance_m", "overshoot_1_deg") and len(said) < 3:
-                banded = row["over_L"] or row
+                values = row["over_L"] or row
                 unit = "ship lengths" if row["over_L"] else row["unit"]
                 name = "the advance" if row["over_L"] else "the first overshoot"
-                said.append(f"{clean(run['order'])}: {name} is {banded(banded)} {unit}")
+                said.append(f"{clean(run['order'])}: {name} is {banded(values)} {unit}")
     if not said and record.runs[0]["diverged"] < record.data["particles"]:
         run = record.runs[0]
         where = ", ".join(f"{row['words']} {banded(row)} {row['unit']}" for row in run["end"][:3])
