@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..arrays import FloatArray
+from ..physics.frame import to_earth
 from .drawing import AFTER, BEFORE, BOX, GRID, INK, MUTED, grid_of, new_figure, thinned
 from .wording import CHANNELS, clean, number
 
@@ -150,9 +151,8 @@ def _outline(ax: Axes, mark: Mapping[str, float], L_pp: float) -> None:
     half, side = 0.5 * L_pp, 0.5 * L_pp / SLENDER
     ahead = np.array([half, 0.6 * half, -half, -half, 0.6 * half])
     abeam = np.array([0.0, side, side, -side, -side])
-    cos, sin = math.cos(mark["psi"]), math.sin(mark["psi"])
-    north, east = mark["x"] + ahead * cos - abeam * sin, mark["y"] + ahead * sin + abeam * cos
-    ax.fill(east, north, facecolor="none", edgecolor=BEFORE, linewidth=1.0)
+    north, east = to_earth(mark["psi"], ahead, abeam)
+    ax.fill(mark["y"] + east, mark["x"] + north, facecolor="none", edgecolor=BEFORE, linewidth=1.0)
 
 
 def _spread(marks: Sequence[Mapping[str, float]], most: int) -> list[Mapping[str, float]]:
