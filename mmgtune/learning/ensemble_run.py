@@ -23,13 +23,12 @@ from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..networks.ensemble import Ensemble, EnsemblePredictor, Part
 from ..networks.feedforward import Layers, Standards
 from ..options.learning import EnsembleOptions
-from ..trial import Trial
-from ..validation import TrialScore, score
-from .choosing import Single, pieces_of
+from ..validation import TrialScore
+from .choosing import Single
 from .ensemble import EnsembleAim, MemberStandards, Trainable, first_member
 from .keeping import Kept
 from .provenance import provenance_of, travelling
-from .run import Hooks, identity_of
+from .run import Hooks, finite, identity_of, scored
 from .task import EnsembleTask, ensemble_task
 from .training import Plan, Progressed, Trainer, needed
 
@@ -58,7 +57,7 @@ class EnsembleMember:
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON; the weights are in the model's file."""
-        rows = [{key: float(value) if np.isfinite(value) else None for key, value in row.items()} for row in self.curve]
+        rows = [{key: finite(value) for key, value in row.items()} for row in self.curve]
         return {
             "seed": self.seed,
             "loss": rows[-1]["loss"],
@@ -134,7 +133,7 @@ def learn_ensemble(
         ensemble,
         tuple(members),
         task,
-        {role: _scored(ensemble, of, task.sigma, options.restart) for role, of in held.items()},
+        {role: scored(EnsemblePredictor(ensemble), of, task.sigma, options.restart) for role, of in held.items()},
         made,
         not done,
         time.perf_counter() - began,
@@ -199,10 +198,3 @@ def _members(task: EnsembleTask, hooks: Hooks, kept: Kept) -> list[EnsembleMembe
 
 def _single(weights: Trainable) -> Any:
     return jax_module().tree.map(lambda one: one.astype(Single), weights)
-
-
-def _scored(
-    ensemble: Ensemble, trials: Sequence[Trial], sigma: dict[str, float], restart: float | None
-) -> tuple[TrialScore, ...]:
-    """Windows of trials scored by all members."""
-    return tuple(score(EnsemblePredictor(ensemble), pieces_of(trials, restart), sigma))

@@ -31,6 +31,7 @@ from ..profile.changing import joined
 from ..trial import Trial, TrialSet
 from ..validation import L_MSE, by_manoeuvre, score
 from .choosing import pieces_of
+from .run import finite
 
 RESULT, MODEL = "mixture.json", "model.safetensors"
 
@@ -49,8 +50,8 @@ class Tried:
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON; what diverged is null."""
-        errors = {kind: _finite(error) for kind, error in self.errors.items()}
-        return {"share": self.share, "score": _finite(self.score), "L_MSE": errors}
+        errors = {kind: finite(error) for kind, error in self.errors.items()}
+        return {"share": self.share, "score": finite(self.score), "L_MSE": errors}
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,7 +199,3 @@ def _trials_of(parts: Sequence[dict[str, Any]]) -> dict[str, Any]:
     sources = sorted({source for one in told for source in one.get("sources") or ()})
     learned = list(dict.fromkeys(id for one in parts for id in _learned(one)))
     return {**texts, "sources": sources, "learned_from": learned}
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None

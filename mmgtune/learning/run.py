@@ -15,6 +15,7 @@ from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..networks import Network, NetworkPredictor
 from ..networks.recurrent import Scales, Weights
 from ..options.learning import LearnOptions
+from ..predictor import Predictor
 from ..trial import Trial
 from ..validation import TrialScore, score
 from .aims import RecurrentAim
@@ -60,10 +61,10 @@ class Member:
         best = min(self.curve, key=lambda row: row["score"])
         return {
             "seed": self.seed,
-            "score": _finite(self.score),
+            "score": finite(self.score),
             "best_step": int(best["step"]),
             "steps": self.step,
-            "curve": [{key: _finite(value) for key, value in row.items()} for row in self.curve],
+            "curve": [{key: finite(value) for key, value in row.items()} for row in self.curve],
             "events": list(self.events),
         }
 
@@ -138,7 +139,7 @@ def learn_rnn(
         network,
         tuple(members),
         task,
-        {role: _scored(network, of, task.sigma, options.restart) for role, of in held.items()},
+        {role: scored(NetworkPredictor(network), of, task.sigma, options.restart) for role, of in held.items()},
         made,
         not done,
         time.perf_counter() - began,
@@ -185,14 +186,15 @@ def _single(weights: Weights) -> Weights:
     return Weights(*(one.astype(np.float32) for one in weights))
 
 
-def _scored(
-    network: Network, trials: Sequence[Trial], sigma: dict[str, float], restart: float | None
+def scored(
+    predictor: Predictor, trials: Sequence[Trial], sigma: dict[str, float], restart: float | None
 ) -> tuple[TrialScore, ...]:
     """Windows of trials scored by all members."""
     if not trials:
         return ()
-    return tuple(score(NetworkPredictor(network), pieces_of(trials, restart), sigma))
+    return tuple(score(predictor, pieces_of(trials, restart), sigma))
 
 
-def _finite(value: float) -> float | None:
+def finite(value: float) -> float | None:
+    """A number for JSON, which knows no infinite ones."""
     return float(value) if np.isfinite(value) else None

@@ -12,13 +12,12 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..backends import Cases
 from ..errors import OptionError, Problem, closest
-from ..inputs import INPUTS
 from ..options.particles import SAMPLINGS
 from ..predictor import Prediction, Predictor, Sampling
 from ..threads import blas_on_one_thread
 from .feedforward import Layers, Standards, begun, dense, member, scaled, standardised, through
 from .marching import WIND, RunStepper, marched, paired
-from .model import N_ACCELERATIONS, N_VELOCITIES, n_features
+from .model import N_ACCELERATIONS, N_VELOCITIES, n_features, problems_of_ship
 from .motion import Array, moved, observed
 
 Single = np.float32
@@ -149,14 +148,7 @@ class Ensemble:
 
 def problems_of(ensemble: Ensemble) -> list[str]:
     """What is wrong with an ensemble, in words."""
-    found = []
-    unknown = [name for name in ensemble.inputs if name not in INPUTS]
-    if unknown:
-        found.append(f"no input is called {', '.join(unknown)}")
-    if not (np.isfinite(ensemble.step) and ensemble.step > 0.0):
-        found.append(f"the step is {ensemble.step:g} s")
-    if not (np.isfinite(ensemble.L_pp) and ensemble.L_pp > 0.0):
-        found.append(f"the length is {ensemble.L_pp:g} m")
+    found = problems_of_ship(ensemble.inputs, ensemble.step, ensemble.L_pp)
     n = np.shape(ensemble.motion.layers.W_in)[0] if np.ndim(ensemble.motion.layers.W_in) else 0
     found += ensemble.motion.problems(n, n_features(ensemble.inputs), N_ACCELERATIONS)
     if ensemble.start is not None and np.ndim(ensemble.start.layers.W_in) < 2:

@@ -92,16 +92,22 @@ def shapes(n_members: int, n_inputs: int, width: int) -> tuple[Weights, Scales]:
     return weights, Scales(features=(1, 1, seen), accelerations=(1, 1, N_ACCELERATIONS))
 
 
-def problems_of(network: Network) -> list[str]:
-    """What is wrong with a network, in words."""
+def problems_of_ship(inputs: tuple[str, ...], step: float, L_pp: float) -> list[str]:
+    """What is wrong with what networks of all kinds say of their ship and step, in words."""
     found = []
-    unknown = [name for name in network.inputs if name not in INPUTS]
+    unknown = [name for name in inputs if name not in INPUTS]
     if unknown:
         found.append(f"no input is called {', '.join(unknown)}")
-    if not (np.isfinite(network.step) and network.step > 0.0):
-        found.append(f"the step is {network.step:g} s")
-    if not (np.isfinite(network.L_pp) and network.L_pp > 0.0):
-        found.append(f"the length is {network.L_pp:g} m")
+    if not (np.isfinite(step) and step > 0.0):
+        found.append(f"the step is {step:g} s")
+    if not (np.isfinite(L_pp) and L_pp > 0.0):
+        found.append(f"the length is {L_pp:g} m")
+    return found
+
+
+def problems_of(network: Network) -> list[str]:
+    """What is wrong with a network, in words."""
+    found = problems_of_ship(network.inputs, network.step, network.L_pp)
     if network.memory is not None and network.memory < 1:
         found.append(f"the memory has {network.memory} samples")
     first = np.shape(network.weights.W_x)
