@@ -18,7 +18,7 @@ from .manoeuvres.summary import criteria_of, indices_of
 from .model import Model
 from .networks import named_ship
 from .options import SimulateOptions
-from .orders import Helmsman, TurningOrder, ZigzagOrder, run_manoeuvre
+from .orders import Helmsman, Sailing, TurningOrder, ZigzagOrder, run_manoeuvres
 from .predictor import PhysicsPredictor, Predictor, as_predictor, profile_of
 from .profile import ShipProfile
 from .simulation import Motion, as_trial
@@ -173,10 +173,10 @@ def _on_orders(predictor: Predictor, options: SimulateOptions) -> list[Motion]:
     # Models are quicker than ships: sample ten times per ship length travelled, once a second at most.
     sample = min(1.0, round(L / V / 10.0, 1) or 0.1)
     longest = max(600.0, 150.0 * L / V)
-    return [
-        run_manoeuvre(model, helmsman, id=name, speed=speed, n=n, longest=longest, sample=sample, theta=predictor.theta)
-        for name, helmsman in _orders(options)
+    sailings = [
+        Sailing(helmsman, name, speed, n, longest=longest, sample=sample) for name, helmsman in _orders(options)
     ]
+    return run_manoeuvres(model, sailings, theta=predictor.theta.repeat(len(sailings), axis=1))
 
 
 def _orders(options: SimulateOptions) -> list[tuple[str, Helmsman]]:

@@ -268,6 +268,11 @@ class Moment(NamedTuple):
     chain: list[Any]
     around: Surroundings
 
+    def of(self, lanes: Any) -> Moment:
+        """Some of several lanes, or one of them by its number; the surroundings are those of all."""
+        chain = [type(control)(*(values[lanes] for values in control)) for control in self.chain]
+        return Moment(self.s[:, lanes], chain, self.around)
+
 
 class LaneRun:
     """Lanes that march in place."""
@@ -285,6 +290,10 @@ class LaneRun:
     def shown(self) -> State:
         """The six states as the sensors show them."""
         return self.ship.sensed(State(*self.s[:N_STATES]))
+
+    def keep(self, ship: LaneModel, lanes: Any) -> None:
+        """Go on with some of several lanes, whose coefficients ``ship`` has."""
+        self.ship, self.now = ship, self.now.of(lanes)
 
     def step(self, logged: Any, around: Surroundings, h: Any, integrator: Integrator) -> None:
         """March by h [s] to where these inputs are logged and these surroundings measured."""
