@@ -208,7 +208,7 @@ def run_manoeuvre(
     def control() -> Any:
         return model.arrangement.control(*map(np.float64, driven))
 
-    run = ship_now.start(start, control())
+    run = ship_now.under_way(start, control())
     longest_step = step or min(LONGEST_STEP, FINE * model.L_pp / U_0)
     steps = max(1, math.ceil(sample / longest_step - 1e-9))
     h = sample / steps
@@ -233,6 +233,7 @@ def run_manoeuvre(
             break
     times: FloatArray = sample * np.arange(len(rows), dtype=np.float64)
     logged = np.array(controls)
-    if ship_now.shift is not None:
-        logged = np.column_stack([np.interp(times - ship_now.shift, times, column) for column in logged.T])
+    for k, late in enumerate(ship_now.late_log):
+        if late is not None:
+            logged[:, k] = np.interp(times - late, times, logged[:, k])
     return Motion(id, times, np.vstack(rows), logged, diverged, model.inputs)
