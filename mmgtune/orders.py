@@ -261,10 +261,10 @@ class _Fleet:
         self.steps = 0
         ship = LaneModel(model, theta[:, self._lanes])
         start = np.array([[0.0, 0.0, one.sailing.heading, one.U_0, 0.0, 0.0] for one in watches]).T
-        self.run = ship.start(State(*start[:, self._lanes]), self._control())
+        self.run = ship.under_way(State(*start[:, self._lanes]), self._control())
         for k, shown in enumerate(self._shown()):
             watches[k].log(shown, self.driven[:, k])
-            watches[k].shift = None if ship.shift is None else float(np.atleast_1d(ship.shift)[k])
+            watches[k].late = [None if late is None else float(np.atleast_1d(late)[k]) for late in ship.late_log]
 
     @property
     def under_way(self) -> bool:
@@ -329,7 +329,7 @@ class _Watch:
         self.samples = round(sailing.longest / sailing.sample)
         self.over = self.samples < 1
         self.diverged = False
-        self.shift: float | None = None  # of the clock of the log [s]
+        self.late: list[float | None] = []  # how late the log of each input is [s]
         self.states: list[FloatArray] = []
         self.controls: list[FloatArray] = []
 
@@ -362,6 +362,7 @@ class _Watch:
         """What was logged."""
         times: FloatArray = self.sailing.sample * np.arange(len(self.states), dtype=np.float64)
         logged = np.array(self.controls)
-        if self.shift is not None:
-            logged = np.column_stack([np.interp(times - self.shift, times, column) for column in logged.T])
+        for k, late in enumerate(self.late):
+            if late is not None:
+                logged[:, k] = np.interp(times - late, times, logged[:, k])
         return Motion(self.sailing.id, times, np.vstack(self.states), logged, self.diverged, model.inputs)
