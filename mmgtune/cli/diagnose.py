@@ -111,6 +111,10 @@ def summary(result: Diagnosis, folder: str, report: bool) -> str:
         lines.append(f"{label:<44}{row.score:>12.4g}{row.gain:>12.4g}{row.p_value:>12.2g}{J:>10}")
     before, after = result.gain.J
     lines += ["", f"verdict: {result.verdict}", result.sentence()]
+    if result.record:
+        lines.append(result.record.sentence)
+    for trace in result.traces:
+        lines.append(f"Trace, nothing that would be noticed, and in no profile: {trace.cause.sentence}.")
     if before is not None and after is not None and result.causes and not result.interrupted:
         low, high = result.gain.share_removed[1:]
         lines.append(

@@ -11,10 +11,12 @@ from ..effects import Effect
 from ..fitting.comparison import finite, finite_values
 from ..options import DiagnoseOptions
 from ..profile import ShipProfile, tuned, with_effects
+from .contributions import Contribution
 from .gain import Gain
 from .intervals import Estimate
 from .leftover import Leftover
 from .legs import Difference
+from .record import Record, kind_of, record_of
 from .separate import Suggestion
 from .voyages import Choice
 from .wording import parameters_in_words
@@ -64,9 +66,22 @@ class Cause:
         }
 
 
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """A cause that is statistically there, and without which a user would notice nothing."""
+
+    cause: Cause
+    contribution: Contribution
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {**self.cause.to_dict(), "contribution": self.contribution.to_dict()}
+
+
 @dataclass(frozen=True)
 class Candidate:
-    """A hypothesis that was looked at: score and refit at the first look; J on the test trials."""
+    """A hypothesis that was looked at: score and refit at the first look; J on the test trials; what the trials would
+    have to visit for it to be believed, "" where they do."""
 
     effect: str
     parameters: tuple[str, ...]
@@ -74,6 +89,7 @@ class Candidate:
     gain: float
     p_value: float
     J_test: float | None
+    unvisited: str = ""
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
@@ -84,6 +100,7 @@ class Candidate:
             "gain": self.gain,
             "p_value": self.p_value,
             "J_test": self.J_test,
+            "unvisited": self.unvisited,
         }
 
 
@@ -123,6 +140,8 @@ class Diagnosis:
     """A finished diagnosis.
 
     theta     tuned targets with all causes in place
+    traces    what is statistically there besides and changes nothing that a user would notice; in no profile
+    contributions  of the causes, by tag in their order, the others in place
     groups    causes that cannot be told apart, each a list of tags
     chi2      of the trials it looked at per residual: before, after
     evidence  residuals, residual forces and what explains them, for the report
@@ -132,6 +151,8 @@ class Diagnosis:
     profile: ShipProfile
     options: DiagnoseOptions
     causes: tuple[Cause, ...]
+    traces: tuple[Trace, ...]
+    contributions: tuple[tuple[str, Contribution], ...]
     groups: tuple[tuple[str, ...], ...]
     candidates: tuple[Candidate, ...]
     detectability: tuple[Detectability, ...]
@@ -166,6 +187,17 @@ class Diagnosis:
         if self.groups:
             return "not-separable"
         return "found" if self.causes or self.between else "none"
+
+    @property
+    def kind(self) -> str:
+        """What kind of answer this is, as the study counts them; "" for one that was stopped."""
+        verdict = self.verdict
+        return kind_of(verdict, self.named, self.groups if verdict == "not-separable" else ())
+
+    @property
+    def record(self) -> Record | None:
+        """How often such an answer was right in the study; None of a search that was stopped, and of voyages."""
+        return record_of(self.kind) if self.kind and not self.between else None
 
     @property
     def between(self) -> tuple[Difference, ...]:
@@ -286,8 +318,11 @@ class Diagnosis:
             "interrupted": self.interrupted,
             "verdict": self.verdict,
             "sentence": self.sentence(),
+            "record": self.record.to_dict() if self.record else None,
             "doubts": [one.to_dict() for one in self.profile.doubts()],
             "causes": [cause.to_dict() for cause in self.named],
+            "traces": [trace.to_dict() for trace in self.traces],
+            "contributions": [{"effect": tag, **one.to_dict()} for tag, one in self.contributions],
             "groups": [list(group) for group in self.groups] if self.verdict == "not-separable" else [],
             "candidates": [candidate.to_dict() for candidate in self.candidates],
             "suggested_trial": self.suggestion.to_dict() if self.suggestion else None,

@@ -24,6 +24,7 @@ from ..profile import ShipProfile, with_all_effects
 from ..threads import blas_on_one_thread
 from ..trial import Trial, TrialSet, VoyageSet
 from ..trial.smoothing import FEWEST
+from .contributions import Aside, set_aside
 from .evidence import explain_forces, noise_share, residual_forces, short_horizon
 from .gain import J_of, held_out
 from .hypotheses import INTEGRATION_STEP, Hypothesis, known_causes
@@ -31,7 +32,7 @@ from .intervals import Estimate, estimates
 from .leftover import Leftover, leftover
 from .legs import LEG_NAMES, differences
 from .linear import typical
-from .result import Candidate, Cause, Detectability, Diagnosis
+from .result import Candidate, Cause, Detectability, Diagnosis, Trace
 from .screening import angles
 from .search import ENOUGH, WORTH, Found, Refit, Step, search
 from .separate import Suggestion, suggest
@@ -93,6 +94,7 @@ def _diagnose(
     known = [h for h in known if not {h.effect.absorbed.get(v) for v in h.variant} & set(bench.targets)]
     found = search(bench, known, hooks.on_phase, hooks.stop)
     hooks.on_phase("measuring the gain")
+    traces, brought = set_aside(bench, found, test)
     sizes = estimates(bench, found.final)
     gain = held_out(bench, found, test)
     before = leftover(bench, found.base)
@@ -113,6 +115,8 @@ def _diagnose(
         profile=profile,
         options=options,
         causes=tuple(_causes(bench, found, sizes, test)),
+        traces=tuple(_trace(one) for one in traces),
+        contributions=tuple((h.tag, one) for h, one in zip(found.causes, brought, strict=True)),
         groups=groups,
         candidates=tuple(_candidates(bench, found, test)),
         detectability=tuple(_detectability(bench, found.steps[0], known)) if found.steps else (),
@@ -164,6 +168,11 @@ def _causes(bench: Workbench, found: Found, sizes: Mapping[str, Estimate], test:
     return causes
 
 
+def _trace(aside: Aside) -> Trace:
+    cause = Cause(aside.hypothesis.tag, aside.hypothesis.effect, aside.estimates, aside.p_value, None)
+    return Trace(cause, aside.contribution)
+
+
 def _candidates(bench: Workbench, found: Found, test: Sequence[Trial]) -> list[Candidate]:
     """Every hypothesis of the first look that was refitted, best first; then scores of the others."""
     if not found.steps:
@@ -177,6 +186,7 @@ def _candidates(bench: Workbench, found: Found, test: Sequence[Trial]) -> list[C
             r.gain,
             r.p_value,
             J_of(bench, r.point, test) if _promising(r, first) else None,
+            r.unvisited if _promising(r, first) else "",
         )
         for r in first.refits
     ]

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..backends import STATES, Integrator, get_backend
-from ..effects import Effect
+from ..effects import Effect, Visited
 from ..fitting.box import Box, choose_targets, make_box
 from ..fitting.least_squares import LeastSquaresResult, solve
 from ..fitting.problem import FitProblem
@@ -18,7 +18,7 @@ from ..model import Model
 from ..objective import Objective, cases_of
 from ..options import DiagnoseOptions
 from ..profile import ShipProfile, with_all_effects
-from ..trial import Trial
+from ..trial import Trial, visited_by
 from ..trial.kinematics import white_noise
 from .noise import NoiseModel, white
 
@@ -68,6 +68,11 @@ class Workbench:
     noise: NoiseModel
     own_effects: tuple[str, ...] = ()
     refits: int = field(default=0)
+
+    @cached_property
+    def visited(self) -> Visited:
+        """What the trials visit."""
+        return visited_by(self.trials, self.model.L_pp)
 
     @property
     def channels(self) -> tuple[str, ...]:

@@ -49,6 +49,7 @@ from .effect import (
     Scale,
     SensorEffect,
 )
+from .visited import Visited
 
 __all__ = [
     "PLACES",
@@ -63,6 +64,7 @@ __all__ = [
     "Parameter",
     "Scale",
     "SensorEffect",
+    "Visited",
     "effect_tags",
     "effects",
     "find_effect",

@@ -1,5 +1,6 @@
 """Resistance going straight differs from the model's, by a factor or in how it grows with speed."""
 
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -7,6 +8,10 @@ import numpy as np
 from ..physics.constants import GRAVITY
 from ..physics.quantities import Flow, Force, Forces, Lanes, State, Surroundings
 from .effect import ForceEffect, Parameter
+from .visited import Visited
+
+SPEEDS = 0.1
+"""Share by which speed must vary to say how something grows with it."""
 
 
 class Resistance(NamedTuple):
@@ -26,6 +31,13 @@ def resistance(state: State, around: Surroundings, found: Forces, components: An
     straight = Flow(u=found.flow.u, v_m=zero, r=zero, U=found.flow.U, beta=zero, v_=zero, r_=zero)
     X = (e.factor - 1.0 + e.slope * Fn) * components.hull(straight, p.ship, p.hull).X
     return Force(X=X, Y=zero, N=zero)
+
+
+def unvisited(found: Mapping[str, float], visited: Visited) -> str:
+    """More than one speed, for how the coefficient grows with it."""
+    if "slope" not in found or visited.varies(visited.speed) > SPEEDS:
+        return ""
+    return f"speeds that differ by {100.0 * SPEEDS:.0f} %"
 
 
 _WORDS = {"factor": "it was {} times as large", "slope": "its coefficient grew by {} per unit of Froude number"}
@@ -55,6 +67,7 @@ EFFECT = ForceEffect(
         ),
     },
     variants=(("factor",), ("slope",)),
+    unvisited=unvisited,
     on_demand=True,
     absorbed={"factor": "hull.R_0"},
     sentence=lambda v: (
