@@ -121,6 +121,8 @@ def summary(result: Diagnosis, folder: str, report: bool) -> str:
             f"J held out ({result.gain.words}; {result.gain.method}): {before:.4g} -> {after:.4g}; "
             f"95 % interval of the share removed {100.0 * low:.1f} to {100.0 * high:.1f} %."
         )
+    if result.whereabouts:
+        lines += ["", *result.whereabouts.sentences()]
     for one in result.differing:
         lines += ["", one.sentence, *_by_voyage(one)]
     if result.suggestion:

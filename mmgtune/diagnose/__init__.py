@@ -10,6 +10,7 @@ contributions     what each cause brings beside the others; traces; record: how 
 intervals, gain, leftover, separate   sizes, held-out gain, what is left, the trial that would tell
 voyages, legs     windows of logs of hours; what differs from voyage to voyage
 evidence          residual forces and short horizons, before any cause
+whereabouts       where an error lives that nothing explains
 """
 
 import sys

@@ -19,6 +19,7 @@ from .legs import Difference
 from .record import Record, kind_of, record_of
 from .separate import Suggestion
 from .voyages import Choice
+from .whereabouts import Whereabouts
 from .wording import parameters_in_words
 
 SCHEMA = 1
@@ -31,6 +32,13 @@ LARGE = 10.0
 MOSTLY = 0.95
 """Share of the error above noise on the trials it was found on that a cause must remove to be named alone, where
 something of a shape is left besides."""
+
+
+TOO_MANY = 4
+"""Terms of a sum of causes from which it is not believed."""
+
+NEEDED = 0.15
+"""Share of the fall of chi-squared that the terms of a sum must lose, one left out at a time, all added up."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,6 +153,7 @@ class Diagnosis:
     groups    causes that cannot be told apart, each a list of tags
     chi2      of the trials it looked at per residual: before, after
     evidence  residuals, residual forces and what explains them, for the report
+    whereabouts  where the error lives, where nothing explains it; None else
     choice    windows of voyages that were looked at, None for trials; differing: what differs between the voyages
     """
 
@@ -167,6 +176,7 @@ class Diagnosis:
     provenance: Mapping[str, Any]
     wall_s: float
     interrupted: bool = False
+    whereabouts: Whereabouts | None = None
     choice: Choice | None = None
     differing: tuple[Difference, ...] = ()
 
@@ -182,6 +192,7 @@ class Diagnosis:
             return "interrupted"
         # Held-out error alone does not tell: with few trials the targets themselves are known too badly for that.
         fails = self.gain.remains and self.leftover.noticed
+        fails = fails or bool(self.unclear)
         if self.leftover.structured if not self.causes else fails or self._mostly_left:
             return "found" if any(one.explained >= MOSTLY for one in self.between) else "unexplained"
         if self.groups:
@@ -203,6 +214,27 @@ class Diagnosis:
     def between(self) -> tuple[Difference, ...]:
         """What differs from voyage to voyage."""
         return tuple(one for one in self.differing if one.pattern in ("each", "trend"))
+
+    @property
+    def unclear(self) -> str:
+        """Why a sum of causes is not believed, in words; "" where it is, and for a single cause.
+
+        An effect that no registry holds looks like a sum of those that one does; the study says how such sums look.
+        """
+        brought = [one for _, one in self.contributions]
+        if len(brought) < 2:
+            return ""
+        if len(brought) >= TOO_MANY:
+            return f"it takes {len(brought)} terms"
+        if len(brought) > 2 and self.groups:
+            return "not all of them can be told from others"
+        if sum(one.seen for one in brought) < NEEDED:
+            return "each of them can be left out with little loss"
+        if self.leftover.structured:
+            return "what they leave is no noise"
+        if any(one.share <= 0.0 for one in brought):
+            return "one of them makes trials that were held out no better"
+        return ""
 
     @property
     def _mostly_left(self) -> bool:
@@ -247,6 +279,13 @@ class Diagnosis:
                 if self.causes
                 else ("no known cause accounts for it")
             )
+            if self.unclear:
+                tags = " + ".join(tag for tag, _ in self.contributions)
+                return (
+                    f"Something is wrong that this program cannot name. The best partial explanation, {tags}, removes "
+                    f"{_percent(self.explained_share)} of the error it was found on, but {self.unclear}: it stands for "
+                    "something else, or for more than these trials can tell apart."
+                )
             excess = self.leftover.excess
             left = (
                 f"{excess:.0%} beyond the noise of the measurements is left"
@@ -329,6 +368,7 @@ class Diagnosis:
             "gain": self.gain.to_dict(),
             "unexplained": {
                 "structured": self.leftover.structured,
+                "unclear": self.unclear,
                 "share_of_noise_variance": self.leftover.excess,
                 "by_channel": self.leftover.channels,
                 "share_explained_by_causes": self.explained_share,
@@ -340,6 +380,7 @@ class Diagnosis:
                 if self.verdict in ("unexplained", "interrupted")
                 else [],
             },
+            "whereabouts": self.whereabouts.to_dict() if self.whereabouts else None,
             "detectability": [one.to_dict() for one in self.detectability],
             "noise": {name: dict(values) for name, values in self.noise.items()},
             "chi2_per_residual": {"before": self.chi2[0], "after": self.chi2[1]},

@@ -25,11 +25,11 @@ from ..threads import blas_on_one_thread
 from ..trial import Trial, TrialSet, VoyageSet
 from ..trial.smoothing import FEWEST
 from .contributions import Aside, set_aside
-from .evidence import explain_forces, noise_share, residual_forces, short_horizon
+from .evidence import ResidualForces, explain_forces, noise_share, residual_forces, short_horizon
 from .gain import J_of, held_out
 from .hypotheses import INTEGRATION_STEP, Hypothesis, known_causes
 from .intervals import Estimate, estimates
-from .leftover import Leftover, leftover
+from .leftover import Leftover, leftover, residuals_of
 from .legs import LEG_NAMES, differences
 from .linear import typical
 from .result import Candidate, Cause, Detectability, Diagnosis, Trace
@@ -37,6 +37,7 @@ from .screening import angles
 from .search import ENOUGH, WORTH, Found, Refit, Step, search
 from .separate import Suggestion, suggest
 from .voyages import Choice, looked_at
+from .whereabouts import Whereabouts, whereabouts
 from .workbench import Point, Workbench, make_workbench
 
 TWINS = 3
@@ -111,7 +112,7 @@ def _diagnose(
     suggestion = _suggestion(bench, found)
     hooks.on_phase("gathering the evidence")
     values = bench.values(found.final)
-    return Diagnosis(
+    result = Diagnosis(
         profile=profile,
         options=options,
         causes=tuple(_causes(bench, found, sizes, test)),
@@ -137,6 +138,48 @@ def _diagnose(
         wall_s=time.perf_counter() - began,
         interrupted=hooks.stop(),
     )
+    if result.verdict != "unexplained":
+        return result
+    return replace(result, whereabouts=_whereabouts(bench, found))
+
+
+def _whereabouts(bench: Workbench, found: Found) -> Whereabouts:
+    """Where the error of the model without any cause lives."""
+    by_run = _excess_by_run(bench, found.base)
+    whole = sum(by_run.values())
+    removable: dict[str, float] = {}
+    for refit in found.steps[0].refits if found.steps and whole > 0.0 else ():
+        tag = refit.hypothesis.tag
+        left = sum(_excess_by_run(bench, refit.point).values())
+        removable[tag] = max(removable.get(tag, 0.0), min(1.0, 1.0 - left / whole))
+    ranked = dict(sorted(removable.items(), key=lambda one: -one[1]))
+    return whereabouts(_forces(bench, found.base), by_run, ranked)
+
+
+def _excess_by_run(bench: Workbench, point: Point) -> dict[str, float]:
+    """Squared error of the motion beyond white noise of the sensors, in variances of that noise, by run."""
+    at = [STATES.index(name) for name in bench.channels]
+    found: dict[str, float] = {}
+    for trial, off in zip(bench.trials, residuals_of(bench, point), strict=True):
+        square = (off[1:, at] / bench.sigma[at]) ** 2
+        found[trial.run] = found.get(trial.run, 0.0) + float(np.nansum(square - 1.0))
+    return found
+
+
+def _forces(bench: Workbench, point: Point) -> list[tuple[ResidualForces, Trial]]:
+    """Residual forces of the trials that are long and whole enough for inverse dynamics."""
+    model = Model(_tuned(bench, point))
+    found = []
+    for trial in _long_enough(bench):
+        try:
+            found.append((residual_forces(model, trial), trial))
+        except ValueError:  # too short or too full of gaps
+            continue
+    return found
+
+
+def _long_enough(bench: Workbench) -> list[Trial]:
+    return [trial for trial in bench.trials if np.isfinite(trial.motion[:, 3:]).all(axis=1).sum() >= FEWEST]
 
 
 def _legs(profile: ShipProfile, names: Sequence[str]) -> list[str]:
@@ -272,20 +315,13 @@ def _noise(bench: Workbench) -> dict[str, dict[str, float]]:
 def _evidence(bench: Workbench, found: Found, before: Leftover, left: Leftover) -> dict[str, Any]:
     """Residuals before and after by trial and channel, short horizons, and residual forces with what explains them."""
     shown: dict[str, Any] = {"excess_before": before.channels, "excess_after": left.channels}
-    long_enough = [trial for trial in bench.trials if np.isfinite(trial.motion[:, 3:]).all(axis=1).sum() >= FEWEST]
+    long_enough = _long_enough(bench)
     for which, point in (("before", found.base), ("after", found.final)):
-        profile = _tuned(bench, point)
-        model = Model(profile)
         shown[f"short_horizon_{which}"] = {}
         if long_enough:
-            short = short_horizon(model, long_enough, integrator=point.integrator)
+            short = short_horizon(Model(_tuned(bench, point)), long_enough, integrator=point.integrator)
             shown[f"short_horizon_{which}"] = dict(zip(STATES, map(float, short.pooled_rms_in_noise), strict=True))
-        forces = []
-        for trial in long_enough:
-            try:
-                forces.append(residual_forces(model, trial))
-            except ValueError:  # too short or too full of gaps for inverse dynamics
-                continue
+        forces = [forces for forces, _ in _forces(bench, point)]
         if forces:
             shown[f"forces_{which}"] = {
                 "explained": {axis: dict(shares) for axis, shares in explain_forces(forces).items()},

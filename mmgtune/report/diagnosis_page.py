@@ -53,6 +53,7 @@ def build(record: DiagnosisRecord) -> Page:
     sections = [
         _causes(data),
         _voyages(data, drawings),
+        unexplained.section(data, drawings),
         _why(data, drawings),
         _gain(record, drawings),
         _evidence(data),

@@ -1,13 +1,17 @@
 """Traces and what trials must visit: what is there by the statistics and what a user may be told."""
 
+import json
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from mmgtune.diagnose import DiagnoseOptions, diagnose
+from mmgtune.diagnose import DiagnoseOptions, Diagnosis, diagnose
 from mmgtune.diagnose.contributions import Contribution
+from mmgtune.diagnose.record import ANSWERS, kind_of, record_of
 from mmgtune.effects import Visited, effects, find_effect
 from mmgtune.profile import load_profile
 from mmgtune.trial import load_trials, visited_by
@@ -15,6 +19,9 @@ from mmgtune.units import DEG
 from tests.hidden import plant
 from tests.hidden.cases import Case, single
 from tests.hidden.plant import simulate, write
+from tools.write_answers import answers, right
+
+ROOT = Path(__file__).parent.parent.parent
 
 SMALL = {"x": 0.01, "psi": 0.02}
 
@@ -101,3 +108,69 @@ def test_ten_degree_zigzags_name_no_stall(tmp_path, monkeypatch):
     assert all("rudder angles beyond" in one.unvisited for one in result.candidates if one.gain > 10.0)
     assert result.candidates[0].p_value < 1e-6  # but for that it would have been
     assert result.verdict in ("unexplained", "none")
+
+
+def sum_of(*brought, groups=(), structured=False):
+    """What ``Diagnosis.unclear`` sees of a sum of causes."""
+    return SimpleNamespace(
+        contributions=[("tag", one) for one in brought],
+        groups=groups,
+        leftover=SimpleNamespace(structured=structured),
+    )
+
+
+CLEAR = Contribution(0.8)
+SMALL_BUT_CLEAR = Contribution(0.01, 0.004, {"r": 0.5}, {})
+HARMFUL = Contribution(0.01, -0.02, {"r": 0.5}, {})
+GROUP = (("a", "b"),)
+
+
+@pytest.mark.parametrize(
+    ("one", "said"),
+    [
+        (sum_of(CLEAR), ""),
+        (sum_of(CLEAR, SMALL_BUT_CLEAR), ""),
+        (sum_of(CLEAR, SMALL_BUT_CLEAR, SMALL_BUT_CLEAR), ""),
+        (sum_of(CLEAR, SMALL_BUT_CLEAR, groups=GROUP), ""),
+        (sum_of(CLEAR, CLEAR, CLEAR, CLEAR), "4 terms"),
+        (sum_of(CLEAR, CLEAR, CLEAR, groups=GROUP), "told from others"),
+        (sum_of(SMALL_BUT_CLEAR, SMALL_BUT_CLEAR), "left out"),
+        (sum_of(CLEAR, SMALL_BUT_CLEAR, structured=True), "no noise"),
+        (sum_of(CLEAR, HARMFUL), "no better"),
+        (sum_of(CLEAR, structured=True), ""),
+    ],
+)
+def test_a_sum_is_believed_where_each_of_it_is_clear(one, said):
+    found = Diagnosis.unclear.fget(one)
+    assert (found == "") == (said == "")
+    assert said in found
+
+
+def test_how_often_answers_were_right_is_what_the_study_says():
+    """The file that travels with the program is what the tool makes of the study's results."""
+    rows = [json.loads(line) for line in (ROOT / "docs" / "hidden.jsonl").read_text(encoding="utf-8").splitlines()]
+    assert json.loads(ANSWERS.read_text(encoding="utf-8")) == answers(rows)
+    assert sum(one["of"] for one in answers(rows)["answers"].values()) == len(rows)
+
+
+@pytest.mark.parametrize(
+    ("row", "is_right"),
+    [
+        ({"verdict": "none", "outcome": "clear", "hidden": {}, "above_limit": None}, True),
+        ({"verdict": "none", "outcome": "missed", "hidden": {"wind": {}}, "above_limit": False}, True),
+        ({"verdict": "none", "outcome": "missed", "hidden": {"wind": {}}, "above_limit": True}, False),
+        ({"verdict": "unexplained", "outcome": "right", "hidden": {"unknown-bank": {}}, "above_limit": None}, True),
+        ({"verdict": "unexplained", "outcome": "unexplained", "hidden": {"wind": {}}, "above_limit": True}, False),
+        ({"verdict": "found", "outcome": "partly", "hidden": {"wind": {}, "flap": {}}, "above_limit": True}, False),
+        ({"verdict": "not-separable", "outcome": "grouped", "hidden": {"wind": {}}, "above_limit": True}, True),
+    ],
+)
+def test_which_answers_count_as_right(row, is_right):
+    assert right(row) == is_right
+
+
+def test_a_kind_the_study_never_gave_says_so():
+    assert "No answer of this kind" in record_of("a new kind").sentence
+    assert kind_of("found", [1, 2], []) == "two causes"
+    assert kind_of("not-separable", [1], [("a", "b")]) == "a group"
+    assert record_of("two causes").of >= record_of("two causes").right > 0
