@@ -127,6 +127,8 @@ def summary(result: Diagnosis, folder: str, report: bool) -> str:
         lines += ["", one.sentence, *_by_voyage(one)]
     if result.suggestion:
         lines.append(f"A trial that would tell: {result.suggestion.manoeuvre}.")
+    if result.coverage and result.coverage.to_dict():
+        lines += ["", result.coverage.sentence, *(f"Note: {words}" for words in result.warnings)]
     doubts = in_words(result.profile.doubts())
     lines += ["", *(f"Note: {words}." for words in doubts)] if doubts else []
     lines += ["", f"{'Stopped after' if result.interrupted else 'Finished in'} {result.wall_s:.1f} s."]

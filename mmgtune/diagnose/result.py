@@ -11,6 +11,7 @@ from ..effects import Effect
 from ..fitting.comparison import finite, finite_values
 from ..options import DiagnoseOptions
 from ..profile import ShipProfile, tuned, with_effects
+from ..trial import Coverage
 from .contributions import Contribution
 from .gain import Gain
 from .intervals import Estimate
@@ -153,6 +154,7 @@ class Diagnosis:
     groups    causes that cannot be told apart, each a list of tags
     chi2      of the trials it looked at per residual: before, after
     evidence  residuals, residual forces and what explains them, for the report
+    coverage  what the trials it looked at visit; warnings: what of that a reader must know
     whereabouts  where the error lives, where nothing explains it; None else
     choice    windows of voyages that were looked at, None for trials; differing: what differs between the voyages
     """
@@ -175,6 +177,8 @@ class Diagnosis:
     evidence: Mapping[str, Any]
     provenance: Mapping[str, Any]
     wall_s: float
+    coverage: Coverage | None = None
+    warnings: tuple[str, ...] = ()
     interrupted: bool = False
     whereabouts: Whereabouts | None = None
     choice: Choice | None = None
@@ -330,6 +334,7 @@ class Diagnosis:
             "trials": self.provenance["trials"]["sha256"],
             "verdict": self.verdict,
             "causes": [cause.tag for cause in self.causes],
+            **({"coverage": self.coverage.to_dict()} if self.coverage and self.coverage.to_dict() else {}),
         }
         values: dict[str, dict[str, float]] = {}
         stderr: dict[str, dict[str, float | None]] = {}
@@ -357,6 +362,8 @@ class Diagnosis:
             "interrupted": self.interrupted,
             "verdict": self.verdict,
             "sentence": self.sentence(),
+            "warnings": list(self.warnings),
+            "coverage": self.coverage.to_dict() if self.coverage else {},
             "record": self.record.to_dict() if self.record else None,
             "doubts": [one.to_dict() for one in self.profile.doubts()],
             "causes": [cause.to_dict() for cause in self.named],

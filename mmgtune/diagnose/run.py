@@ -16,13 +16,14 @@ from ..components import split_name
 from ..fitting.box import parameter_of
 from ..fitting.extending import with_width
 from ..fitting.journal import journalled
+from ..fitting.one_sided import coverage_notes, followers
 from ..fitting.run import Hooks, identity_of, in_pieces, make_provenance
 from ..given import ShipGiven, TrialsGiven, ship_of
 from ..model import Model
 from ..options import DiagnoseOptions
 from ..profile import ShipProfile, with_all_effects
 from ..threads import blas_on_one_thread
-from ..trial import Trial, TrialSet, VoyageSet
+from ..trial import Coverage, Trial, TrialSet, VoyageSet
 from ..trial.smoothing import FEWEST
 from .contributions import Aside, set_aside
 from .evidence import ResidualForces, explain_forces, noise_share, residual_forces, short_horizon
@@ -112,6 +113,8 @@ def _diagnose(
     suggestion = _suggestion(bench, found)
     hooks.on_phase("gathering the evidence")
     values = bench.values(found.final)
+    theta = {name: values[name] for name in bench.targets}
+    coverage = Coverage.of(bench.trials, profile.L_pp)
     result = Diagnosis(
         profile=profile,
         options=options,
@@ -125,7 +128,9 @@ def _diagnose(
         gain=gain,
         leftover=left,
         explained_share=_explained(found, before, left),
-        theta={name: values[name] for name in bench.targets},
+        theta=theta | followers(bench.model.ties, theta),
+        coverage=coverage,
+        warnings=tuple(coverage_notes(bench.model, bench.targets, coverage)),
         noise=_noise(bench),
         chi2=(
             found.base.chi2 / max(1, bench.problem.n_residuals),
@@ -334,7 +339,8 @@ def _tuned(bench: Workbench, point: Point) -> ShipProfile:
     """The profile with the values of a point."""
     profile = bench.model_of(point.names).profile
     sections = dict(profile.sections)
-    for name, value in bench.values(point).items():
+    values = bench.values(point)
+    for name, value in (values | followers(bench.model.ties, values)).items():
         kind, symbol = split_name(name)
         coefficients = dict(sections[kind].coefficients)
         coefficients[symbol] = replace(coefficients[symbol], value=value)

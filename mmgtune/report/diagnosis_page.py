@@ -72,6 +72,7 @@ def build(record: DiagnosisRecord) -> Page:
         warnings=(
             *(("The search was interrupted; this is what was known by then.",) if data.get("interrupted") else ()),
             *doubts(data),
+            *(clean(text) for text in data.get("warnings") or ()),
         ),
         tiles=_tiles(data),
         sections=tuple(section for section in sections if section is not None),

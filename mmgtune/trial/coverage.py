@@ -7,14 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
 from ..arrays import FloatArray
 from ..effects import Visited
 from ..units import DEG
-from .model import Trial
 
 AT_REST = 0.02
 """Speed below which drift and r L / U are not asked for, as a share of the largest."""
@@ -32,24 +31,43 @@ SLACK = 1.0 * DEG
 """The same of rudder angles [rad], for gears that miss their angle."""
 
 
-def visited_by(trials: Iterable[Trial], L_pp: float) -> Visited:
+class Sailed(Protocol):
+    """A trial, or the track of a simulated run: columns (n_samples,) in SI units."""
+
+    @property
+    def t(self) -> FloatArray: ...
+    @property
+    def u(self) -> FloatArray: ...
+    @property
+    def v_m(self) -> FloatArray: ...
+    @property
+    def r(self) -> FloatArray | None: ...
+    @property
+    def n(self) -> FloatArray | None: ...
+    @property
+    def delta(self) -> FloatArray: ...
+
+
+def visited_by(trials: Iterable[Sailed], L_pp: float) -> Visited:
     """What trials visit, sample by sample.  L_pp [m]."""
     rows = [_samples(trial, L_pp) for trial in trials]
     columns: FloatArray = np.concatenate(rows) if rows else np.zeros((0, 7))
     return Visited(*columns.T)
 
 
-def _samples(trial: Trial, L_pp: float) -> FloatArray:
+def _samples(trial: Sailed, L_pp: float) -> FloatArray:
     """(n_samples, 7) the fields of ``Visited``."""
+    unknown = np.full(len(trial.t), np.nan)
+    r, n = (unknown if column is None else column for column in (trial.r, trial.n))
     step = np.diff(trial.t)
-    seconds = np.concatenate([step[:1], step]) if len(step) else np.zeros(trial.n_samples)
+    seconds = np.concatenate([step[:1], step]) if len(step) else np.zeros(len(trial.t))
     seconds = np.minimum(seconds, 2.0 * float(np.median(seconds)))  # a pause of the log is no time spent anywhere
     speed = np.hypot(trial.u, trial.v_m)
     fastest = float(np.max(speed[np.isfinite(speed)], initial=0.0))
     under_way = speed > max(AT_REST * fastest, 1e-9)
-    rate = np.where(under_way, trial.r * L_pp / np.where(under_way, speed, 1.0), np.nan)
+    rate = np.where(under_way, r * L_pp / np.where(under_way, speed, 1.0), np.nan)
     drift = np.where(under_way, np.arctan2(-trial.v_m, trial.u), np.nan)
-    return np.column_stack([seconds, trial.delta, speed, trial.u, rate, drift, trial.n])
+    return np.column_stack([seconds, trial.delta, speed, trial.u, rate, drift, n])
 
 
 @dataclass(frozen=True)
@@ -70,7 +88,7 @@ class Coverage:
     ahead: tuple[float, float]
 
     @classmethod
-    def of(cls, trials: Iterable[Trial], L_pp: float) -> Coverage:
+    def of(cls, trials: Iterable[Sailed], L_pp: float) -> Coverage:
         """That of trials; NaN where a channel was never measured, and without trials.  L_pp [m]."""
         seen = visited_by(trials, L_pp)
         return cls(*(seen.span(getattr(seen, name)) for name in ("rudder", "rate", "drift", "speed", "ahead")))
