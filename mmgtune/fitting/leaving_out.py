@@ -24,12 +24,13 @@ from ..profile.doubts import Doubt, in_words
 from ..repeating import Repeated, document, repeat
 from ..stated import IndexComparison, compare_stated
 from ..threads import blas_on_one_thread
-from ..trial import Trial, TrialSet
+from ..trial import Coverage, Trial, TrialSet
 from ..validation import L_MSE, TrialScore, by_manoeuvre, improvement, score
 from .comparison import finite, finite_values
 from .extending import held_words, settled, tune_trials
 from .journal import finished, journalled
 from .least_squares import solve
+from .one_sided import coverage_notes
 from .robust import weigh_down
 from .run import (
     Hooks,
@@ -317,10 +318,20 @@ def _leave_out(
 def _warnings(model: Model, targets: Sequence[str], trials: TrialSet, options: LeaveOutOptions) -> list[str]:
     """What a reader must know before trusting the numbers."""
     tuned = tune_trials(trials)
+    runs = {trial.run: [one for one in tuned if one.run == trial.run] for trial in tuned}
+    beyond = [
+        f"Left out, {run} goes where the others do not, {words}."
+        for run, own in (runs.items() if len(runs) > 1 else ())
+        for words in Coverage.of([one for one in tuned if one.run != run], model.L_pp).unvisited_by(
+            Coverage.of(own, model.L_pp)
+        )
+    ]
     around = notes_on(model, tuned, free=targets)
     return [
         *(f"{words}." for words in in_words(model.profile.doubts())),
         *(f"{note[0].upper()}{note[1:]}." for note in around),
+        *coverage_notes(model, targets, Coverage.of(tuned, model.L_pp)),
+        *beyond,
         *held_words(model.profile, options, tuned),
     ]
 
