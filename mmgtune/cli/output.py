@@ -7,8 +7,7 @@ import re
 import sys
 from typing import Any
 
-_STEERING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff\ud800-\udfff]")
-"""Control characters but for tab and line feed, marks that turn the direction of writing, half characters."""
+from ..displayed import inert
 
 _AZURE = re.compile(r"##(?=(?:vso|teamcity)?\[)")
 _GITHUB = re.compile(r"(?m)^(\s*):(?=:)")
@@ -20,7 +19,7 @@ def harmless(text: str, commands: bool = False) -> str:
 
     commands  whether lines that GitHub takes for commands are meant as such
     """
-    text = _STEERING.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
+    text = inert(text)
     text = _AZURE.sub(r"#\\u0023", text)
     return text if commands else _GITHUB.sub(r"\1\\u003a", text)
 

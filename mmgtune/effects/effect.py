@@ -58,7 +58,7 @@ def factor_on_measured(what: str, most: float, typical: float, source: str) -> P
     )
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Effect(Component):
     """An effect: a component of kind "effects.<tag>".  Each place of the data flow has a class of its own below.
 
@@ -117,7 +117,7 @@ class Effect(Component):
         return {name: field for name, field in self.fields.items() if isinstance(field, Parameter)}
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class ClockEffect(Effect):
     """When the logged inputs acted: its first parameter is how late their log is [s]; simulators sample accordingly."""
 
@@ -134,7 +134,7 @@ class ActuatorFunction(Protocol):
     def __call__(self, start: Lanes, end: Lanes, before: Lanes, h: Lanes, e: Any, /) -> Lanes: ...
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class ActuatorEffect(Effect):
     """On the way from a logged input to the ship; acts on every input of one role, each by itself."""
 
@@ -149,7 +149,7 @@ class FlowFunction(Protocol):
     def __call__(self, state: State, around: Surroundings, e: Any, /) -> tuple[Lanes, Lanes]: ...
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class FlowEffect(Effect):
     """Water that moves.
 
@@ -167,7 +167,7 @@ class CoefficientsFunction(Protocol):
     def __call__(self, values: Mapping[str, Lanes], e: Any, /) -> Mapping[str, Lanes]: ...
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class CoefficientsEffect(Effect):
     """Other coefficients than the profile's; acts before any run."""
 
@@ -181,7 +181,7 @@ class FactorsFunction(Protocol):
     def __call__(self, around: Surroundings, e: Any, /) -> tuple[Lanes, ...]: ...
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class FactorsEffect(Effect):
     """Coefficients that change on the way, with what is measured around the ship.
 
@@ -204,7 +204,7 @@ class ForceFunction(Protocol):
     def __call__(self, state: State, around: Surroundings, found: Any, components: Any, p: Any, e: Any, /) -> Force: ...
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class ForceEffect(Effect):
     """A further force."""
 
@@ -224,7 +224,7 @@ class StartFunction(Protocol):
     def __call__(self, found: Any, e: Any, /) -> tuple[Lanes, ...]: ...
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class LagEffect(Effect):
     """A force with a memory: any part of the breakdown, remembered in states that the integrator carries along.
 
@@ -243,7 +243,7 @@ class SensorFunction(Protocol):
     def __call__(self, state: State, e: Any, /) -> State: ...
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class SensorEffect(Effect):
     """Between the motion and its log; ``inverse`` leads back."""
 

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..circumstances import notes_on
+from ..displayed import Displayed
 from ..files import write_text
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..model import Model
@@ -63,7 +64,7 @@ def leaving_out(trials: TrialSet, folds: int = 0) -> Iterator[tuple[tuple[str, .
 
 
 @dataclass(frozen=True, eq=False)
-class LeftOut:
+class LeftOut(Displayed):
     """Every tune trial scored by coefficients that were fitted without its run.
 
     thetas   for each part of the runs, values by name in profile units

@@ -120,6 +120,15 @@ def choices(of: type[Options]) -> dict[str, Choice]:
 class Options:
     """Choices that belong together; they are looked at when they are made."""
 
+    def __init_subclass__(cls) -> None:
+        """Dataclasses keep a ``repr`` that their class has, not one that it inherits."""
+        cls.__repr__ = Options.__repr__  # type: ignore[method-assign]
+
+    def __repr__(self) -> str:
+        """What differs from the defaults."""
+        chosen = {one.name: getattr(self, one.name) for one in fields(self) if getattr(self, one.name) != one.default}
+        return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in chosen.items())})"
+
     def __post_init__(self) -> None:
         """Raises OptionError with everything that makes no sense; it names fields."""
         problems = self._of_other_kinds() or self.problems()
@@ -175,14 +184,22 @@ def _of_another_kind(name: str, value: Any, hint: Any) -> list[Problem]:
     parts = get_args(kind)
     if parts:
         if isinstance(value, str) or not isinstance(value, Sequence):
-            return [Problem(f"{name} is {_short(value)}", name, fix=f"give a tuple, each part {_KINDS[parts[0]][1]}")]
+            such = f": {name}=({_part(value, parts[0])},)" if isinstance(value, (str, int, float)) else ""
+            fix = f"give a tuple, each part {_KINDS[parts[0]][1]}{such}"
+            return [Problem(f"{name} is {_short(value)}", name, fix=fix)]
         if ... not in parts and len(value) != len(parts):
             return [Problem(f"{name} is {_short(value)}", name, fix=f"give {len(parts)} numbers")]
         return [problem for part in value for problem in _of_another_kind(name, part, parts[0])][:1]
     known, words = _KINDS[kind]
     if isinstance(value, known) and (kind is bool or not isinstance(value, bool)):
         return []
-    return [Problem(f"{name} is {_short(value)}", name, fix=f"give {words}")]
+    such = f": {_part(value, kind)}" if kind is str and isinstance(value, (int, float)) else ""
+    return [Problem(f"{name} is {_short(value)}", name, fix=f"give {words}{such}")]
+
+
+def _part(value: Any, kind: type) -> str:
+    """A value as it might have been meant."""
+    return _short(str(value) if kind is str else value)
 
 
 def _short(value: Any) -> str:
