@@ -4,10 +4,16 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import sys
+from collections.abc import Sequence
 from typing import Any
 
+from .. import columns
 from ..displayed import inert
+
+WIDE = 1000
+"""Letters in a line where there is no terminal: as many as there are."""
 
 _AZURE = re.compile(r"##(?=(?:vso|teamcity)?\[)")
 _GITHUB = re.compile(r"(?m)^(\s*):(?=:)")
@@ -32,6 +38,16 @@ def show(text: str = "", end: str = "\n", commands: bool = False) -> None:
 def say(text: str) -> None:
     """A line for people, on stderr: stdout is data."""
     print(harmless(text), file=sys.stderr, flush=True)
+
+
+def width() -> int:
+    """Letters in a line of the terminal; more where stdout goes elsewhere."""
+    return shutil.get_terminal_size((WIDE, 24)).columns
+
+
+def table(head: Sequence[str], rows: Sequence[Sequence[str]], *, less: int = 0, **how: Any) -> list[str]:
+    """Lines of a table that fits the terminal, less some letters; ``how`` as for ``columns.table``."""
+    return columns.table(head, rows, width=width() - less, **how)
 
 
 def print_json(document: dict[str, Any]) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import math
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from numbers import Integral, Real
 from pathlib import Path
@@ -30,6 +30,7 @@ class Choice:
     short   the flag of one letter, if any
     panel   of the help
     values  words it may be, empty for any
+    names   the words that it, or each part of it, may be, asked for when they are shown or completed; None for any
     called  what it is called where a word is wrong
     unit    of a number, for messages
     least, above, most, below  limits of a number: from, more than, up to, less than
@@ -40,6 +41,7 @@ class Choice:
     short: str = ""
     panel: str = SEARCH
     values: tuple[str, ...] = ()
+    names: Callable[[], Sequence[str]] | None = None
     called: str = ""
     unit: str = ""
     least: float | None = None
@@ -92,6 +94,13 @@ class Choice:
 def choice(default: Any, help: str, **known: Any) -> Any:
     """A field of a dataclass of options; ``known`` as for ``Choice``."""
     return field(default=default, metadata={_KEY: Choice(help, **known)})
+
+
+def effects() -> Sequence[str]:
+    """Names of the effects there are, those of installed packages among them."""
+    from ..effects import effect_tags
+
+    return effect_tags()
 
 
 def again(of: type[Options], name: str, default: Any = _UNSET, *, but: str = "") -> Any:
