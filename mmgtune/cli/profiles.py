@@ -73,7 +73,8 @@ def show(profile: Name, json: c.Json = False) -> None:
     for row in rows:
         value = row["value"]
         listed = ", ".join(f"{v:.4g}" for v in value) if isinstance(value, list) else ""
-        numbers.append((str(row["name"]), f"{len(value)} numbers" if listed else f"{value:g}", str(row["unit"])))
+        shown = f"{len(value)} numbers" if isinstance(value, list) else f"{value:g}"
+        numbers.append((str(row["name"]), shown, str(row["unit"])))
         mark = "  ASSUMPTION" + (f": {row['note']}" if row["note"] else "") if row["assumption"] else ""
         texts.append(f"{row['label']}{f': {listed}' if listed else ''}{mark}")
     lines = c.table(("coefficient", "value", "unit"), numbers, words=(0, 2))

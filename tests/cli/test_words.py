@@ -20,8 +20,6 @@ def completed(typed, cwd):
     words = f"mmgtune {typed}"
     env = {"_MMGTUNE_COMPLETE": "complete_bash", "COMP_WORDS": words, "COMP_CWORD": str(len(words.split(" ")) - 1)}
     code = "import sys; sys.argv = ['mmgtune']; from mmgtune.cli import app; app(prog_name='mmgtune')"
-    import os
-
     done = subprocess.run(
         [sys.executable, "-c", code], cwd=cwd, env={**os.environ, **env}, capture_output=True, text=True
     )
