@@ -116,6 +116,11 @@ class Effect(Component):
         """The parameters by name."""
         return {name: field for name, field in self.fields.items() if isinstance(field, Parameter)}
 
+    @property
+    def of_the_day(self) -> bool:
+        """Whether it is of the trials, not of the ship: current, wind, shallow water, errors of clocks and sensors."""
+        return self.place in ("clock", "flow", "sensor") or bool(self.of_measured)
+
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class ClockEffect(Effect):

@@ -12,13 +12,22 @@ from ..columns import cut
 from ..displayed import inert
 from ..errors import OptionError, Problem, closest
 from ..inputs import INPUTS
-from ..report.drawing import AFTER, BEFORE, BOX, FLAG, LINES, MUTED
+from ..report.svg import FILE_COLORS
 from ..report.wording import CHANNELS, Channel, input_channel
 from .view import Line, Room, View
 from .words import words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+BEFORE, AFTER, BOX, FLAG, MUTED = (FILE_COLORS[name] for name in ("before", "after", "box", "flag", "muted"))
+
+LINES: Mapping[str, Mapping[str, Any]] = {
+    "measured": {"color": FILE_COLORS["ink"], "linewidth": 1.5, "linestyle": "-"},
+    "before": {"color": BEFORE, "linewidth": 1.3, "linestyle": (0, (1.2, 1.6))},
+    "after": {"color": AFTER, "linewidth": 1.5, "linestyle": (0, (6, 2.2))},
+}
+"""How the motions of a fit are drawn: colour and dash both differ."""
 
 MOST = 16
 """Trials that are drawn where none is named."""
@@ -176,7 +185,7 @@ def _styles(motions: Mapping[str, Sequence[Line]], names: Sequence[str]) -> dict
 
 def _style(line: Line, k: int) -> dict[str, Any]:
     if line.kind in LINES:
-        style = {key: value for key, value in LINES[line.kind].items() if key != "marker"}
+        style = dict(LINES[line.kind])
     elif line.kind == "member":
         style = {"color": AFTER, "linewidth": 0.8, "alpha": 0.35}
     else:
