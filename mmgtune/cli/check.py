@@ -12,6 +12,7 @@ import typer
 from ..errors import MmgtuneError, OptionError, Problem, closest
 from ..options import FORMATS, CheckOptions
 from . import common as c
+from . import completing
 from .exitcodes import ExitCode
 from .options import problems_in_flags, takes
 
@@ -24,8 +25,16 @@ CODES = {"pass": ExitCode.GOOD, "regressed": ExitCode.NO, "not comparable": Exit
 
 @takes(options=CheckOptions)
 def command(
-    profile: Annotated[str, typer.Argument(help="Profile, or model.safetensors: a file or a bundled name.")],
-    trials: Annotated[str, typer.Argument(help="Folder of trial files, one file, or a bundled name.")],
+    profile: Annotated[
+        str,
+        typer.Argument(
+            help="Profile, or model.safetensors: a file or a bundled name.", autocompletion=completing.models
+        ),
+    ],
+    trials: Annotated[
+        str,
+        typer.Argument(help="Folder of trial files, one file, or a bundled name.", autocompletion=completing.trials),
+    ],
     *,
     options: CheckOptions,
     baseline: Annotated[
@@ -45,7 +54,9 @@ def command(
         str | None,
         typer.Option(
             "--format",
-            help=f"{', '.join(FORMATS[:-1])} or {FORMATS[-1]}. Default: text; on GitHub Actions annotations follow it.",
+            help="How the result is told. Default: text; on GitHub Actions annotations follow it.",
+            metavar="|".join(FORMATS),
+            autocompletion=completing.words(FORMATS),
             rich_help_panel=c.OUTPUT,
         ),
     ] = None,

@@ -10,6 +10,7 @@ import typer
 from ..errors import OptionError, Problem
 from ..options import PredictOptions, SimulateOptions
 from . import common as c
+from . import completing
 from .banded import bands_on
 from .options import takes
 from .predict import banded
@@ -24,7 +25,12 @@ def command(
     trials: Annotated[
         str | None,
         typer.Option(
-            "--trials", "-t", help="Simulate these trials with their own inputs instead.", rich_help_panel=c.INPUT
+            "--trials",
+            "-t",
+            help="Simulate these trials with their own inputs instead.",
+            rich_help_panel=c.INPUT,
+            metavar=c.TRIALS,
+            autocompletion=completing.trials,
         ),
     ] = None,
     *,

@@ -10,6 +10,7 @@ import typer
 from ..errors import OptionError, Problem
 from ..options import ValidateOptions, VoyageOptions
 from . import common as c
+from . import completing
 from .options import WrittenOptions, takes
 from .stated import stated_table
 
@@ -23,7 +24,11 @@ OF_VOYAGES = 'a log that says manoeuvre "voyage" or lasts more than an hour'
 def command(
     names: Annotated[
         list[str],
-        typer.Argument(metavar="PROFILE... TRIALS", help="Profiles, then the trials: files, folders or bundled names."),
+        typer.Argument(
+            metavar="PROFILE... TRIALS",
+            help="Profiles, then the trials: files, folders or bundled names.",
+            autocompletion=completing.models_and_trials,
+        ),
     ],
     *,
     options: VoyageOptions,
@@ -116,26 +121,28 @@ def summary(result: Validation) -> str:
             ]
         if "J" not in one:
             continue
-        heads = f"{'90 % holds':>12}{'CRPS':>8}" if "bands" in one else ""
-        lines.append(f"  {'':<34}{'runs':>6}{'J':>12}{'L_MSE':>10}{heads}")
-        for kind, row in one["by_manoeuvre"].items():
-            name = kind or "manoeuvre not stated"
-            lines.append(f"  {name:<34}{row['runs']:>6}{_shown(row['J'])}{_shown(row['L_MSE'], 10)}{_held(row)}")
-        lines.append(f"  {'all':<34}{len(one['trials']):>6}{_shown(one['J'])}{_shown(one['L_MSE'], 10)}{_held(one)}")
-        for row in one["trials"]:
-            lines.append(f"    {row['id']:<38}{_shown(row['J'])}{_shown(row['L_MSE'], 10)}")
+        rows = [
+            (kind or "manoeuvre not stated", str(row["runs"]), _shown(row["J"]), _shown(row["L_MSE"]), *_held(row))
+            for kind, row in one["by_manoeuvre"].items()
+        ]
+        rows.append(("all", str(len(one["trials"])), _shown(one["J"]), _shown(one["L_MSE"]), *_held(one)))
+        bands = ("90 % holds", "CRPS") if "bands" in one else ()
+        rows += [
+            (f"  {row['id']}", "", _shown(row["J"]), _shown(row["L_MSE"]), *("" for _ in bands))
+            for row in one["trials"]
+        ]
+        lines += [f"  {line}" for line in c.table(("", "runs", "J", "L_MSE", *bands), rows, less=2)]
     if result.options.manoeuvres:
         lines.append(table({one.name: one.repeated for one in result.profiles}))
     return "\n".join(lines)
 
 
-def _held(row: dict[str, Any]) -> str:
+def _held(row: dict[str, Any]) -> tuple[str, ...]:
     """What the bands of a row hold, and their CRPS; nothing where there are none."""
     if "bands" not in row:
-        return ""
+        return ()
     share, crps = row["bands"]["coverage_90"], row["bands"]["CRPS"]
-    held = "-" if share is None else f"{100.0 * share:.0f} %"
-    return f"{held:>12}{'-' if crps is None else f'{crps:.3g}':>8}"
+    return ("-" if share is None else f"{100.0 * share:.0f} %", "-" if crps is None else f"{crps:.3g}")
 
 
 def _rms(rows: list[dict[str, Any]]) -> str:
@@ -146,5 +153,5 @@ def _rms(rows: list[dict[str, Any]]) -> str:
     return f"{(sum(one**2 for one in off) / len(off)) ** 0.5:.3g} tolerances, root mean square over {len(off)} indices"
 
 
-def _shown(value: float | None, width: int = 12) -> str:
-    return f"{'diverged':>{width}}" if value is None else f"{value:>{width}.4g}"
+def _shown(value: float | None) -> str:
+    return "diverged" if value is None else f"{value:.4g}"

@@ -13,6 +13,7 @@ import numpy as np
 
 from ..bands import Pooled
 from ..circumstances import notes_on
+from ..displayed import Displayed
 from ..files import write_text
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..model import Model
@@ -87,7 +88,7 @@ class BandsLeftOut:
 
 
 @dataclass(frozen=True, eq=False)
-class LeftOut:
+class LeftOut(Displayed):
     """Every tune trial scored by coefficients that were fitted without its run.
 
     thetas   for each part of the runs, values by name in profile units

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import resources
+from ..effects import find_effect
 from .wording import clean, count, number, shown
 
 Advice = tuple[tuple[str, str], ...]
@@ -87,3 +88,44 @@ def after_sweep(data: Mapping[str, Any]) -> Advice:
     if data.get("command"):
         items.append(("Repeat this sweep", clean(data["command"])))
     return tuple(items)
+
+
+def after_diagnosis(data: Mapping[str, Any]) -> Advice:
+    """(reason, command) pairs that follow from a diagnosis."""
+    profile, trials = _inputs(data)
+    where = clean(data.get("out") or "RUN").rstrip("/")
+    extended = shlex.quote(f"{where}/profile.toml")
+    items = []
+    if data["causes"]:
+        causes = ", ".join(clean(cause["effect"]) for cause in data["causes"])
+        day = [clean(cause["effect"]) for cause in data["causes"] if of_the_day(cause["effect"])]
+        items.append(
+            (f"See the model with {causes} on every trial", f"mmgtune simulate -p {extended} --trials {trials[3:]}")
+        )
+        if day:
+            calm = shlex.quote(f"{where}/calm.toml")
+            reason = (
+                f"Predict calm water: {' and '.join(day)} {'was' if len(day) == 1 else 'were'} of these trials, not of "
+                "the ship. Take that out first; calm.toml is the profile without it"
+            )
+            items.append((reason, f"mmgtune simulate -p {calm} --turn 35 --turn -35 --zigzag 10/10 --zigzag 20/20"))
+        reason = "Re-tune the coefficients with what was found in the model, within the same range of their values"
+        items.append((reason, f"mmgtune fit -p {extended} {trials} --initial estimated"))
+    if data["verdict"] in ("unexplained", "interrupted"):
+        items.append(("Look for faults of the measurement itself", f"mmgtune trials check {trials[3:]}"))
+    if data["verdict"] == "none":
+        reason = "Nothing is missing from the model that these trials show: fit its coefficients to them"
+        items.append((reason, f"mmgtune fit {profile} {trials}"))
+    elif data["causes"]:
+        items.append(
+            ("Look for more, from the profile with what was found", f"mmgtune diagnose -p {extended} {trials}")
+        )
+    if data.get("interrupted") and data.get("command"):
+        items.append(("Go on where the search was stopped", f"{clean(data['command'])} --out {where} --resume"))
+    return tuple(items)
+
+
+def of_the_day(tag: str) -> bool:
+    """Whether an effect is of the trials rather than of the ship: current, wind, errors of sensors."""
+    effect = find_effect(tag)
+    return effect is not None and effect.of_the_day

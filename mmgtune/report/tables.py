@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from .blocks import Cell, Table, cells
 from .findings import off_track
-from .page import Cell, Table, cells
 from .tracks import ROLES
 from .wording import (
     CHANNELS,
@@ -204,6 +204,8 @@ def coefficients(rows: Iterable[Mapping[str, Any]]) -> Table:
         ("symbol", "meaning", "pre-determined", "box", "tuned", "change", "std. error", "state"),
         tuple(lines),
         numeric=range(2, 7),
+        cards=True,
+        about=(("box", "what the search was allowed"), ("std. error", "standard deviation that the noise gives it")),
     )
 
 
