@@ -9,6 +9,8 @@ from pathlib import Path
 from ..inputs import INPUTS
 from ..trial.schema import MAIN_INPUTS
 
+ASKS = "?"
+"""How a value begins that is a question to who uses the map."""
 FORMATS = ("csv", "parquet", "nmea", "xlsx", "mat")
 TIME_FORMATS = ("number", "iso", "clock", "date", "dmy", "mdy", "ymd")
 PROJECTIONS = ("transverse-mercator", "azimuthal-equidistant")

@@ -1,0 +1,13 @@
+"""Maps proposed from what logs hold.
+
+sampling    the beginning of a log without a map; words: what names say; clocks: which column is time
+windows     columns on average and by their change
+bearings    position and heading; look: the motion that follows from them
+motions     yaw rate and velocities; orders: rudder and propeller; winds: true and apparent
+finding     every quantity, of several logs at once; guess: one of them
+writing     the map and a table; proposal: all of it, tried by the import
+"""
+
+from .proposal import Proposal, propose_map
+
+__all__ = ["Proposal", "propose_map"]
