@@ -31,6 +31,9 @@ from .weighing import Weight
 
 SCHEMA = 1
 
+MISSED = 3.0
+"""J of a sample on trials not used for tuning, over that on those that were, from which a fit misses them."""
+
 
 @dataclass(frozen=True)
 class Beside:
@@ -122,6 +125,15 @@ class FitResult(Plotted):
     def tuned_values(self) -> dict[str, float]:
         """The same with those of coefficients that are tied to targets."""
         return self.theta | followers(self.ties, self.theta)
+
+    @property
+    def misses(self) -> bool:
+        """Whether it misses trials not used for tuning: one is worse than before, or J a sample far larger."""
+        tests, tunes = ([one for one in self.compared if one.role == role] for role in ("test", "tune"))
+        if not tests or not tunes:
+            return False
+        each = [sum(one.J["after"] for one in of) / sum(one.trial.n_samples for one in of) for of in (tests, tunes)]
+        return any(one.J["after"] > one.J["before"] for one in tests) or each[0] > MISSED * each[1]
 
     @property
     def coverage(self) -> Coverage:
@@ -302,6 +314,7 @@ class FitResult(Plotted):
             "J_test": self.J_of("test", "after"),
             "J_tune_before": self.J_of("tune", "before"),
             "J_test_before": self.J_of("test", "before"),
+            "misses": self.misses,
             "theta": finite_values(self.theta),
             "stderr": self.identifiability.stderr,
             "at_bound": self.at_bound,

@@ -44,7 +44,10 @@ def after_fit(data: Mapping[str, Any]) -> Advice:
         items.append((reason, f"mmgtune leave-out {profile} {trials}"))
     elif data.get("J_test") is None:
         reason = "No test set: leave each trial out in turn, to see how the fit does on trials it was not tuned on"
-        items.append((reason, f"mmgtune sweep {profile} {trials}"))
+        items.append((reason, f"mmgtune leave-out {profile} {trials}"))
+    if data.get("misses"):
+        reason = "It misses trials that it was not tuned to: what is wrong, and how much of it the cause explains"
+        items.append((reason, f"mmgtune diagnose {profile} {trials}"))
     loose = len(data.get("undetermined") or ())
     if loose:
         reason = (
