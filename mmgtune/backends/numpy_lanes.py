@@ -375,14 +375,18 @@ class LateRun(LaneRun):
     def __init__(self, ship: LaneModel, shown: State, logged: Any, around: Surroundings):
         super().__init__(ship, ship.unsensed(shown), logged, around)
         self._dead = ship.dead_time
+        self._longest = max(float(np.max(dead)) for dead in self._dead if dead is not None)
         self._times, self._given = [0.0], [logged]
 
     def step(self, logged: Any, around: Surroundings, h: Any, integrator: Integrator) -> None:
         """March by h [s], one number for all lanes."""
-        self._times.append(self._times[-1] + float(h))
+        now = self._times[-1] + float(h)
+        self._times.append(now)
         self._given.append(logged)
+        while self._times[1] <= now - self._longest and len(self._times) > 2:
+            del self._times[0], self._given[0]
         acts = (
-            one if dead is None else self._at(k, self._times[-1] - np.asarray(dead))
+            one if dead is None else self._at(k, now - np.asarray(dead))
             for k, (one, dead) in enumerate(zip(logged, self._dead, strict=True))
         )
         super().step(type(logged)(*acts), around, h, integrator)
@@ -392,10 +396,9 @@ class LateRun(LaneRun):
         times = np.array(self._times)
         j = np.clip(np.searchsorted(times, time), 1, len(times) - 1)
         share = np.clip((time - times[j - 1]) / (times[j] - times[j - 1]), 0.0, 1.0)
-        first = int(np.min(j)) - 1
-        near = np.array([np.broadcast_to(given[k], time.shape) for given in self._given[first:]])
+        given = np.array([np.broadcast_to(one[k], time.shape) for one in self._given])
         lane = np.indices(time.shape)
-        return np.asarray(between(near[(j - 1 - first, *lane)], near[(j - first, *lane)], share))
+        return np.asarray(between(given[(j - 1, *lane)], given[(j, *lane)], share))
 
 
 def _between(before: Surroundings, after: Surroundings, f: float) -> Surroundings:

@@ -14,7 +14,10 @@ class GovernorLag(NamedTuple):
 
 
 def governor_lag(start: Lanes, end: Lanes, before: Lanes, h: Lanes, e: GovernorLag) -> Lanes:
-    """Revolutions after a step of h [s], for an order that changes linearly over the step; settled at the first."""
+    """Revolutions after a step of h [s], for an order that changes linearly over the step.
+
+    A lag of first order, settled at the first sample (assumptions: governor, engine and shaft are not modelled).
+    """
     return followed(start, end, before, h, e.time_constant)
 
 

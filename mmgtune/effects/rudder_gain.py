@@ -16,7 +16,10 @@ class RudderGain(NamedTuple):
 
 
 def rudder_gain(start: Lanes, end: Lanes, before: Lanes, h: Lanes, e: RudderGain) -> Lanes:
-    """Blade angle = factor [-] times logged, times another factor on the side it is logged on."""
+    """Blade angle = factor [-] times logged, times another factor on the side it is logged on.
+
+    Constant on each side (assumption: a linkage out of square is more nearly a sine of the angle).
+    """
     return end * e.factor * where(end > 0.0, e.starboard, e.port)
 
 
@@ -46,6 +49,7 @@ EFFECT = ActuatorEffect(
         "port": _factor(" to port, beside that factor"),
     },
     variants=(("factor",), ("starboard", "port")),
+    besides=("starboard", "port"),
     sentence=lambda v: (
         "The rudder moved by "
         + " and ".join(
