@@ -346,6 +346,10 @@ class Moment(NamedTuple):
     around: Surroundings
     logs: tuple[Filtered, ...] = ()
 
+    def of(self, lanes: Any) -> Moment:
+        """Some of several lanes, or one of them by its number; the surroundings are those of all."""
+        return Moment(self.s[:, lanes], _of(self.chain, lanes), self.around, _of(self.logs, lanes))
+
 
 class LaneRun:
     """Lanes that march in place."""
@@ -364,6 +368,10 @@ class LaneRun:
         """The six states as they are logged."""
         return self.ship.shown(self.now)
 
+    def keep(self, ship: LaneModel, lanes: Any) -> None:
+        """Go on with some of several lanes, whose coefficients ``ship`` has."""
+        self.ship, self.now = ship, self.now.of(lanes)
+
     def step(self, logged: Any, around: Surroundings, h: Any, integrator: Integrator) -> None:
         """March by h [s] to where these inputs are logged and these surroundings measured."""
         self.now = self.ship.step(self.now, logged, around, h, integrator)
@@ -375,30 +383,39 @@ class LateRun(LaneRun):
     def __init__(self, ship: LaneModel, shown: State, logged: Any, around: Surroundings):
         super().__init__(ship, ship.unsensed(shown), logged, around)
         self._dead = ship.dead_time
-        self._longest = max(float(np.max(dead)) for dead in self._dead if dead is not None)
-        self._times, self._given = [0.0], [logged]
+        self._given = [logged]
+
+    def keep(self, ship: LaneModel, lanes: Any) -> None:
+        """See ``LaneRun``."""
+        super().keep(ship, lanes)
+        self._dead = ship.dead_time
+        self._given = _of(self._given, lanes)
 
     def step(self, logged: Any, around: Surroundings, h: Any, integrator: Integrator) -> None:
-        """March by h [s], one number for all lanes."""
-        now = self._times[-1] + float(h)
-        self._times.append(now)
+        """March by h [s], the same at every step of a lane."""
         self._given.append(logged)
-        while self._times[1] <= now - self._longest and len(self._times) > 2:
-            del self._times[0], self._given[0]
         acts = (
-            one if dead is None else self._at(k, now - np.asarray(dead))
+            one if dead is None else self._at(k, len(self._given) - 1 - np.asarray(dead) / h)
             for k, (one, dead) in enumerate(zip(logged, self._dead, strict=True))
         )
         super().step(type(logged)(*acts), around, h, integrator)
 
-    def _at(self, k: int, time: FloatArray) -> FloatArray:
-        """Input k at times (n_lanes,), linear between what was given."""
-        times = np.array(self._times)
-        j = np.clip(np.searchsorted(times, time), 1, len(times) - 1)
-        share = np.clip((time - times[j - 1]) / (times[j] - times[j - 1]), 0.0, 1.0)
-        given = np.array([np.broadcast_to(one[k], time.shape) for one in self._given])
-        lane = np.indices(time.shape)
-        return np.asarray(between(given[(j - 1, *lane)], given[(j, *lane)], share))
+    def _at(self, k: int, steps: FloatArray) -> FloatArray:
+        """Input k after so many steps (n_lanes,), linear between what was given."""
+        j = np.clip(np.ceil(steps).astype(np.int64), 1, len(self._given) - 1)
+        share = np.clip(steps - (j - 1), 0.0, 1.0)
+        first = int(np.min(j)) - 1
+        near = np.array([np.broadcast_to(given[k], steps.shape) for given in self._given[first:]])
+        lane = np.indices(steps.shape)
+        return np.asarray(between(near[(j - 1 - first, *lane)], near[(j - first, *lane)], share))
+
+
+def _of(values: Any, lanes: Any) -> Any:
+    """Some of the lanes of arrays in tuples and lists; what is one number for all of them stays as it is."""
+    if isinstance(values, (list, tuple)):
+        parts = [_of(one, lanes) for one in values]
+        return type(values)(*parts) if hasattr(values, "_fields") else type(values)(parts)
+    return values[lanes] if np.ndim(values) else values
 
 
 def _between(before: Surroundings, after: Surroundings, f: float) -> Surroundings:

@@ -84,6 +84,7 @@ class Refit:
     evidence  the gain over its inflation, less the cost
     size      largest of its parameters' distances from their null, in typical sizes
     p_value   probability of such a fall anywhere in the search, were there nothing to find
+    unvisited what the trials would have to visit for it to be believed, "" where they do
     """
 
     hypothesis: Hypothesis
@@ -94,6 +95,7 @@ class Refit:
     evidence: float
     size: float
     p_value: float
+    unvisited: str = ""
 
     def beats(self, other: Refit) -> bool:
         """Whether this explains so much more that the other is out of the question."""
@@ -236,7 +238,7 @@ def look(
         point = bench.refit(point.names, point.unit[:, None], point.offsets)
         linear = linearise(bench, point, names)
         ranked = scores(linear, hypotheses)
-    refits = _refit_best(bench, point, ranked, linear, quick=False, stop=stop)
+    refits = _believable_first(_refit_best(bench, point, ranked, linear, quick=False, stop=stop))
     finer_gain = None
     if first:
         other = bench.refit(point.names, point.unit[:, None], point.offsets, integrator=finer(point.integrator))
@@ -244,6 +246,16 @@ def look(
     rivals = _rivals(refits) if refits else []
     accepted, reason = _decide(bench, refits, rivals)
     return Step(point, linear, ranked, refits, rivals, accepted, reason, finer_gain)
+
+
+def _believable_first(refits: list[Refit]) -> list[Refit]:
+    """The best that is about what the trials visit in front, unless it is far from as good as the best of all."""
+    for k, refit in enumerate(refits):
+        if refits[0].beats(refit):
+            break
+        if not refit.unvisited:
+            return [refit, *refits[:k], *refits[k + 1 :]]
+    return refits
 
 
 def _go_on(stop: Stop) -> None:
@@ -354,13 +366,25 @@ def _judged(
         gain / score.inflation - cost,
         float(np.max(np.abs(end.unit[len(point.names) :] - null) / size)),
         chance.p_value(evidence(gain / score.inflation, k)) if chance else 1.0,
+        _unvisited(bench, end, hypothesis),
     )
+
+
+def _unvisited(bench: Workbench, end: Point, hypothesis: Hypothesis) -> str:
+    """What the trials would have to visit for a fitted hypothesis to be believed; "" where they do."""
+    if hypothesis.effect.unvisited is None:
+        return ""
+    values = bench.values(end)
+    found = {name.rpartition(".")[2]: values[name] for name in hypothesis.names}
+    return hypothesis.effect.unvisited(found, bench.visited)
 
 
 def _decide(bench: Workbench, refits: Sequence[Refit], rivals: Sequence[Refit]) -> tuple[bool, str]:
     if not refits:
         return False, "no effect applies"
     best = refits[0]
+    if best.unvisited:
+        return False, f"{best.hypothesis.tag} would be believed only where trials visit {best.unvisited}"
     if best.p_value > bench.options.level:
         return False, f"chance brings as much in {best.p_value:.2g} of all searches"
     if best.evidence < ENOUGH:
@@ -380,7 +404,7 @@ def _rivals(refits: Sequence[Refit]) -> list[Refit]:
     return list(found.values())
 
 
-def _without(bench: Workbench, point: Point, hypothesis: Hypothesis) -> Point:
+def without(bench: Workbench, point: Point, hypothesis: Hypothesis) -> Point:
     """The point refitted without one of its hypotheses."""
     kept = [i for i, name in enumerate(point.names) if name not in hypothesis.names]
     return bench.refit([point.names[i] for i in kept], point.unit[kept][:, None], point.offsets)
@@ -389,7 +413,7 @@ def _without(bench: Workbench, point: Point, hypothesis: Hypothesis) -> Point:
 def _drop_superfluous(bench: Workbench, found: Found) -> None:
     """Drop causes that those found later explain."""
     for hypothesis in list(found.causes[:-1]):
-        fewer = _without(bench, found.final, hypothesis)
+        fewer = without(bench, found.final, hypothesis)
         share = len(hypothesis.names) * np.log(bench.problem.n_residuals)
         if fewer.chi2 - found.final.chi2 < share + ENOUGH:
             found.causes.remove(hypothesis)
@@ -405,17 +429,17 @@ def _rivals_of(bench: Workbench, found: Found, k: int) -> list[Refit]:
     near = [r for r in step.refits[1:] if r.hypothesis.tag != cause.tag and r.gain > 0.5 * step.refits[0].gain]
     if len(found.causes) == 1:
         return _rivals(step.refits)
-    without = _without(bench, found.final, cause)
-    best = replace(step.refits[0], point=found.final, gain=without.chi2 - found.final.chi2)
+    fewer = without(bench, found.final, cause)
+    best = replace(step.refits[0], point=found.final, gain=fewer.chi2 - found.final.chi2)
     rivals: dict[str, Refit] = {}
     for rival in near:
-        if set(rival.hypothesis.names) & set(without.names):
+        if set(rival.hypothesis.names) & set(fewer.names):
             continue
         start = rival.point.unit[len(step.base.names) :]
         other = bench.refit(
-            (*without.names, *rival.hypothesis.names), np.concatenate([without.unit, start])[:, None], without.offsets
+            (*fewer.names, *rival.hypothesis.names), np.concatenate([fewer.unit, start])[:, None], fewer.offsets
         )
-        rival = replace(rival, point=other, gain=without.chi2 - other.chi2)
+        rival = replace(rival, point=other, gain=fewer.chi2 - other.chi2)
         if not best.beats(rival):
             rivals.setdefault(rival.hypothesis.tag, rival)
     return list(rivals.values())

@@ -58,6 +58,7 @@ from .effect import (
     Scale,
     SensorEffect,
 )
+from .visited import Visited
 
 __all__ = [
     "PLACES",
@@ -73,6 +74,7 @@ __all__ = [
     "Parameter",
     "Scale",
     "SensorEffect",
+    "Visited",
     "effect_tags",
     "effects",
     "find_effect",

@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Literal, NamedTuple, Protocol
 from ..components import Component, Field
 from ..inputs import Role
 from ..physics.quantities import KNOWN, Force, Lanes, State, Surroundings
+from .visited import Visited
 
 
 class Scale(NamedTuple):
@@ -81,6 +82,8 @@ class Effect(Component):
     beyond     what to say where surroundings are beyond what the effect holds for, from {section.symbol: number} and
                the surroundings of samples (n_samples,) each, of voyages those with the least and the largest of
                everything; "" where they are not, None where it holds in any
+    unvisited  what trials would have to visit for a diagnosis to believe in the effect, from {parameter: value fitted}
+               and what they do visit; "" where they visit it, None where any trials will do
     """
 
     place: ClassVar[str]
@@ -98,6 +101,7 @@ class Effect(Component):
     of_measured: Mapping[str, str] = field(default_factory=dict)
     stand_in: tuple[str, ...] = ()
     beyond: Callable[[Mapping[str, float], Surroundings], str] | None = None
+    unvisited: Callable[[Mapping[str, float], Visited], str] | None = None
 
     def __post_init__(self) -> None:
         if (*self.fields, *self.borrowed) != self.params._fields:

@@ -1,6 +1,7 @@
 """Resistance going straight differs from the model's, by a factor or in how it grows with speed."""
 
 import math
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -8,6 +9,10 @@ import numpy as np
 from ..physics.constants import GRAVITY
 from ..physics.quantities import Flow, Force, Forces, Lanes, State, Surroundings
 from .effect import ForceEffect, Parameter, Scale
+from .visited import Visited
+
+SPEEDS = 0.1
+"""Share by which speed must vary to say how something grows with it."""
 
 
 class Resistance(NamedTuple):
@@ -33,6 +38,13 @@ def resistance(state: State, around: Surroundings, found: Forces, components: An
 
 def _froude(ship: Scale) -> float:
     return ship.U / math.sqrt(GRAVITY * ship.L)
+
+
+def unvisited(found: Mapping[str, float], visited: Visited) -> str:
+    """More than one speed, for how the coefficient grows with it."""
+    if "slope" not in found or visited.varies(visited.speed) > SPEEDS:
+        return ""
+    return f"speeds that differ by {100.0 * SPEEDS:.0f} %"
 
 
 _WORDS = {"factor": "it was {} times as large", "slope": "its coefficient grew by {} per unit of Froude number"}
@@ -64,6 +76,7 @@ EFFECT = ForceEffect(
     },
     pivots={"pivot": lambda ship: ship.U},
     variants=(("factor",), ("slope",)),
+    unvisited=unvisited,
     on_demand=True,
     absorbed={"factor": "hull.R_0"},
     sentence=lambda v: (

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ..bands import Pooled
 from ..circumstances import notes_on
 from ..files import write_text
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
@@ -23,12 +24,13 @@ from ..profile.doubts import Doubt, in_words
 from ..repeating import Repeated, document, repeat
 from ..stated import IndexComparison, compare_stated
 from ..threads import blas_on_one_thread
-from ..trial import Trial, TrialSet
+from ..trial import Coverage, Trial, TrialSet
 from ..validation import L_MSE, TrialScore, by_manoeuvre, improvement, score
 from .comparison import finite, finite_values
 from .extending import held_words, settled, tune_trials
 from .journal import finished, journalled
 from .least_squares import solve
+from .one_sided import coverage_notes
 from .robust import weigh_down
 from .run import (
     Hooks,
@@ -63,6 +65,28 @@ def leaving_out(trials: TrialSet, folds: int = 0) -> Iterator[tuple[tuple[str, .
 
 
 @dataclass(frozen=True, eq=False)
+class BandsLeftOut:
+    """Bands against runs that their particles have not seen.
+
+    by_kind  all together under "", and each kind of manoeuvre; empty where no part was finished
+    by_run   each run
+    parts    number of parts whose bands were drawn
+    """
+
+    by_kind: Mapping[str, Pooled]
+    by_run: Mapping[str, Pooled]
+    parts: int
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "parts": self.parts,
+            "by_manoeuvre": {kind or "all": of.to_dict() for kind, of in self.by_kind.items()},
+            "by_run": {run: of.to_dict() for run, of in self.by_run.items()},
+        }
+
+
+@dataclass(frozen=True, eq=False)
 class LeftOut:
     """Every tune trial scored by coefficients that were fitted without its run.
 
@@ -75,6 +99,7 @@ class LeftOut:
     interrupted  stopped by the user; scores are of the parts finished by then
     weight   of what is known beforehand, found with all runs; None where J is all
     warnings what a reader must know first; doubts: which of the profile's numbers may be wrong
+    bands    of each part from the other runs, where asked for: ``posterior.leave_out_with_bands``
     """
 
     thetas: tuple[dict[str, float], ...]
@@ -94,6 +119,7 @@ class LeftOut:
     L_pp: float = 1.0
     warnings: tuple[str, ...] = ()
     doubts: tuple[Doubt, ...] = ()
+    bands: BandsLeftOut | None = None
 
     @property
     def method(self) -> str:
@@ -152,6 +178,8 @@ class LeftOut:
             found["stated_rms"] = {which: finite(value) for which, value in self.stated_rms().items()}
         if self.weight:
             found["weight"] = self.weight.to_dict()
+        if self.bands:
+            found["bands"] = self.bands.to_dict()
         if self.options.manoeuvres:
             found["manoeuvres"] = {
                 "before": document(self.repeated_before),
@@ -290,10 +318,20 @@ def _leave_out(
 def _warnings(model: Model, targets: Sequence[str], trials: TrialSet, options: LeaveOutOptions) -> list[str]:
     """What a reader must know before trusting the numbers."""
     tuned = tune_trials(trials)
+    runs = {trial.run: [one for one in tuned if one.run == trial.run] for trial in tuned}
+    beyond = [
+        f"Left out, {run} goes where the others do not, {words}."
+        for run, own in (runs.items() if len(runs) > 1 else ())
+        for words in Coverage.of([one for one in tuned if one.run != run], model.L_pp).unvisited_by(
+            Coverage.of(own, model.L_pp)
+        )
+    ]
     around = notes_on(model, tuned, free=targets)
     return [
         *(f"{words}." for words in in_words(model.profile.doubts())),
         *(f"{note[0].upper()}{note[1:]}." for note in around),
+        *coverage_notes(model, targets, Coverage.of(tuned, model.L_pp)),
+        *beyond,
         *held_words(model.profile, options, tuned),
     ]
 

@@ -11,12 +11,13 @@ import numpy as np
 from ..arrays import FloatArray
 from ..circumstances import notes_on
 from ..components import split_name
-from ..model import Model
+from ..model import Model, Tie
 from ..options import FitOptions
 from ..predictor import words_of
 from ..profile import ShipProfile, tuned
 from ..profile.doubts import in_words
 from ..stated import IndexComparison
+from ..trial import Coverage
 from .box import Box, width_words
 from .certificate import Certificate
 from .cmaes import Generation, Restart
@@ -24,6 +25,7 @@ from .comparison import TrialComparison, finite, finite_values, total
 from .extending import held_words
 from .identifiability import Identifiability
 from .least_squares import LeastSquaresResult
+from .one_sided import coverage_notes, followers
 from .weighing import Weight
 
 SCHEMA = 1
@@ -70,6 +72,7 @@ class FitResult:
     provenance   what it was made from: profile, trials with their hashes, command, versions, time
     beside       what was made small beside J; None where J is all
     J_free_start  J of the tuned values if each tune trial started from an estimated state; None where it does
+    ties         coefficients that follow targets, see ``one_sided``
     stated       every stated index beside what the model makes of it
     interrupted  stopped by the user; the values are the best so far
     """
@@ -93,6 +96,7 @@ class FitResult:
     diverged: int
     wall_s: float
     held: tuple[str, ...]
+    ties: tuple[Tie, ...]
     scales: Mapping[str, float]
     channels: tuple[str, ...]
     provenance: Mapping[str, Any]
@@ -112,6 +116,16 @@ class FitResult:
     def theta(self) -> dict[str, float]:
         """Tuned values by name, in profile units."""
         return dict(zip(self.box.names, self.box.from_unit(self.unit).tolist(), strict=True))
+
+    @property
+    def tuned_values(self) -> dict[str, float]:
+        """The same with those of coefficients that are tied to targets."""
+        return self.theta | followers(self.ties, self.theta)
+
+    @property
+    def coverage(self) -> Coverage:
+        """What the trials it was tuned to visit."""
+        return Coverage.of([one.trial for one in self.compared if one.role == "tune"], self.profile.L_pp)
 
     @property
     def at_bound(self) -> list[str]:
@@ -186,6 +200,7 @@ class FitResult:
         trials = [c.trial for c in self.compared]
         around = notes_on(Model(self.profile), trials, self.theta, self.box.names)
         found += [f"{note[0].upper()}{note[1:]}." for note in around]
+        found += coverage_notes(Model(self.profile, self.ties), self.box.names, self.coverage)
         found += held_words(self.profile, self.options, [c.trial for c in self.compared if c.role == "tune"])
         never = sorted({f"{one.name} of {one.trial}" for one in self.stated if one.simulated["after"] is None})
         if never:
@@ -243,7 +258,7 @@ class FitResult:
         told = self.provenance["trials"]
         return tuned(
             self.profile,
-            self.theta,
+            self.tuned_values,
             self.identifiability.stderr,
             {
                 "made_by": f"mmgtune {self.provenance['mmgtune']}",
@@ -252,6 +267,7 @@ class FitResult:
                 "profile": self.profile.id,
                 "profile_sha256": self.profile.sha256,
                 "trials": {whole.get(name, name): sha256 for name, sha256 in told["sha256"].items()},
+                **({"coverage": told["coverage"]} if told.get("coverage") else {}),
                 "tuned_on": list(dict.fromkeys(whole.get(name, name) for name in told["tune"])),
                 "source_of_trials": {whole.get(name, name): source for name, source in told["source"].items()},
                 **({"box": self.box_words()} if self.options.a_r is None else {"a_r": self.options.a_r}),
@@ -290,6 +306,8 @@ class FitResult:
             "at_bound": self.at_bound,
             "undetermined": list(self.identifiability.undetermined),
             "held": list(self.held),
+            "tied": {tie.name: {"to": tie.to, "ratio": tie.ratio} for tie in self.ties},
+            "coverage": self.coverage.to_dict(),
             "options": {
                 **self.options.to_dict(),
                 "targets": list(self.box.names),

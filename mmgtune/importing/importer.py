@@ -23,10 +23,12 @@ from . import conventions, motion
 from .cleaning import without_spikes
 from .clock import put_right
 from .cutting import kept, pull_out
+from .forms import form_of, refuse_binary
 from .geodesy import not_mirrored, with_local_positions
 from .gridding import FEWEST, Grid, on_grid, stretches
 from .jumps import cut_at_jumps
 from .mapping import LogMap
+from .matlab import read_matlab
 from .means import with_mean
 from .nmea import read_nmea
 from .parquet_log import read_parquet
@@ -35,6 +37,7 @@ from .quantities import MEASURED
 from .record import Record, record_of, time_in_seconds
 from .table import Table
 from .text import binary, read_text, start_of
+from .workbook import read_workbook
 from .yaw import heading_recovered
 
 REPORT = "import-report.json"
@@ -190,26 +193,18 @@ def _trials(log: Path, log_map: LogMap, step: float | None) -> list[tuple[Trial,
 
 def _records(log: Path, log_map: LogMap) -> list[Record]:
     """A log in the program's units, in parts where its clock was set back."""
+    form = log_map.format or form_of(log)
     content = start_of(log)
-    form = log_map.format or (
-        "parquet"
-        if content.startswith(b"PAR1")
-        else "nmea"
-        if re.match(rb"\s*[$!][A-Z]{4,},", content.removeprefix(b"\xef\xbb\xbf"))
-        else "csv"
-    )
     if form == "nmea":
         if binary(content):
             raise LogError(
                 Problem("the log is binary, not NMEA 0183", str(log), fix="convert it with its logger's software")
             )
         return read_nmea(log, log_map)
-    wide = log_map.encoding.lower().replace("_", "-").startswith(("utf-16", "utf-32"))
-    if form == "csv" and binary(content) and not (wide and log_map.format in (None, "csv")):
-        kind = "a Parquet file" if content.startswith(b"PAR1") else "binary"
-        fix = "convert it to CSV, Parquet or NMEA 0183 with its logger's own software; or say the right encoding"
-        raise LogError(Problem(f"the log is {kind}, not text", str(log), "it has zero bytes in it", fix))
-    table = (read_parquet if form == "parquet" else read_text)(log, log_map)
+    if form == "csv":
+        refuse_binary(log, content, log_map)
+    readers = {"csv": read_text, "parquet": read_parquet, "xlsx": read_workbook, "mat": read_matlab}
+    table = readers[form](log, log_map)
     _drop_duplicates(table)
     line = put_right(time_in_seconds(table, log_map), log_map.time, table.place)
     table.columns = {name: values[line.keep] for name, values in table.columns.items()}

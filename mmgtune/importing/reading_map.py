@@ -15,7 +15,7 @@ from ..resources import import_map_names, import_maps
 from ..toml_reading import TomlReader, finite, toml_of
 from ..trial.schema import COLUMNS, SOURCES, impossible, known_column
 from .checking_map import check
-from .mapping import FORMATS, PROJECTIONS, TABLES, Cut, LogMap, Source, TimeSource
+from .mapping import FORMATS, PROJECTIONS, TABLES, TIME_FORMATS, Cut, LogMap, Source, TimeSource
 from .quantities import QUANTITIES, known_quantity, meaning, quantity_of
 
 SCHEMA = 1
@@ -148,6 +148,8 @@ class _Reader(TomlReader):
             header=self.flag(log, "header"),
             fields=self.count(log, "fields") or None,
             missing=self.texts(log, "missing"),
+            sheet=self.text_of("log", log, "sheet"),
+            variable=self.text_of("log", log, "variable"),
             time=self.time(),
             sources=sources,
             axes=self.choice("velocity", self.table("velocity"), "axes", ("ship", "earth")),
@@ -269,7 +271,7 @@ class _Reader(TomlReader):
         recover = self.choice("time", table, "recover", ("auto", "uniform", "never")) or "auto"
         return TimeSource(
             column=self.column("time", table),
-            format=self.choice("time", table, "format", ("number", "iso", "clock")),
+            format=self.choice("time", table, "format", TIME_FORMATS),
             unit=unit,
             scale=self.number("time", table, "scale", 1.0),
             recover=recover,

@@ -69,6 +69,8 @@ def unit_of(name: str, table: Table, stated: str | None, target: str, values: Fl
 
     Raises LogError where neither says it, with the question to answer, and where they contradict each other.
     """
+    if name in table.stated:
+        return table.stated[name]
     header = table.headers[name]
     known = units.factors(target)
     printed = unit_in(header)
@@ -86,6 +88,9 @@ def unit_of(name: str, table: Table, stated: str | None, target: str, values: Fl
         if unit in ("deg", "rad", "m/s", "kn", "s", "ms", "m", "ft", "rpm", "1/s", "deg/s", "rad/s", "deg/min")
     ]
     first = "deg" if "deg" in short else short[-1]
+    days = target == "s" and len(finite) > 1 and finite.min() > 1e4 and finite.max() < 1e6 and np.ptp(finite) < 100.0
+    if days:
+        span, first = f"{span}: days, as Excel and MATLAB count them?", "d"
     raise LogError(
         Problem(
             f"is '{header}' in {' or '.join(short)}?",

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import findings, tracks
+from . import findings, tracks, unexplained
 from .advice import shortest
 from .common import assumptions, doubts, generated_banner, picture, provenance
 from .differences import draw_differences
@@ -53,6 +53,7 @@ def build(record: DiagnosisRecord) -> Page:
     sections = [
         _causes(data),
         _voyages(data, drawings),
+        unexplained.section(data, drawings),
         _why(data, drawings),
         _gain(record, drawings),
         _evidence(data),
@@ -71,6 +72,7 @@ def build(record: DiagnosisRecord) -> Page:
         warnings=(
             *(("The search was interrupted; this is what was known by then.",) if data.get("interrupted") else ()),
             *doubts(data),
+            *(clean(text) for text in data.get("warnings") or ()),
         ),
         tiles=_tiles(data),
         sections=tuple(section for section in sections if section is not None),
@@ -151,9 +153,13 @@ def _with_error(value: Mapping[str, Any]) -> tuple[str, str]:
 
 def _causes(data: Mapping[str, Any]) -> Section | None:
     listed = data["causes"] or data["unexplained"]["best_known"]
-    if not listed:
-        return None
     blocks: list[Block] = []
+    if data.get("record"):
+        blocks.append(Prose((clean(data["record"]["sentence"]),)))
+    if not (listed or blocks):
+        return None
+    if not listed:
+        return Section("causes", "Causes", tuple(blocks))
     if not data["causes"]:
         blocks.append(
             Prose(("None of these can be relied on while something unknown is at work besides.",), tone="warning")
@@ -187,6 +193,7 @@ def _causes(data: Mapping[str, Any]) -> Section | None:
         sentence = f"The trial that would: {clean(suggestion['manoeuvre'])}."
         sentence += f" There the explanations differ by up to {apart} m, in all {in_all} deviations of the noise."
         blocks.append(Prose((sentence,)))
+    blocks += unexplained.traces(data)
     return Section("causes", "Causes", tuple(blocks))
 
 
