@@ -1,10 +1,16 @@
 """The rudder moves more or less than its indicator says."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from ..physics.elementary import where
 from ..physics.quantities import Lanes
+from ..units import DEG
 from .effect import ActuatorEffect, Parameter
+from .visited import Visited
+
+LEAST = 2.0 * DEG
+"""Rudder to either side from which its gain there can be told."""
 
 
 class RudderGain(NamedTuple):
@@ -35,6 +41,14 @@ def _factor(words: str) -> Parameter:
     )
 
 
+def unvisited(found: Mapping[str, float], visited: Visited) -> str:
+    """Rudder to both sides, for how they differ."""
+    low, high = visited.span(visited.rudder)
+    if "starboard" not in found or low < -LEAST < LEAST < high:
+        return ""
+    return f"{LEAST / DEG:.0f}° of rudder to either side"
+
+
 EFFECT = ActuatorEffect(
     kind="effects.rudder-gain",
     tag="rudder-gain",
@@ -50,6 +64,7 @@ EFFECT = ActuatorEffect(
     },
     variants=(("factor",), ("starboard", "port")),
     besides=("starboard", "port"),
+    unvisited=unvisited,
     sentence=lambda v: (
         "The rudder moved by "
         + " and ".join(
