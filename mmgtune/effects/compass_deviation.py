@@ -23,6 +23,9 @@ class CompassDeviation(NamedTuple):
 def compass_deviation(state: State, e: CompassDeviation) -> State:
     """Heading shown = heading + B sin(heading) + C cos(heading), the semicircular deviation of a magnetic compass.
 
+    B and C are those of a table of deviation (Handbook of Magnetic Compass Adjustment, NGA Pub. 226), here of the true
+    heading; the constant A is a bias, and the quadrantal D and E are left out (assumption).
+
     The velocity over ground is logged in the axes of the heading shown, but for the part that is of it alone.
     """
     s, c = sin(state.psi), cos(state.psi)

@@ -1,4 +1,7 @@
-"""The steering gear does nothing for a while after each order, then does what it was told."""
+"""The steering gear does nothing for a while after each order, then does what it was told.
+
+The time is the same for every order (assumption): that of relays and pumps, beside a lag and a limited rate.
+"""
 
 from typing import NamedTuple
 

@@ -70,6 +70,7 @@ class Effect(Component):
     told_as    pairs of parameters, north and east [SI], told as a size and a direction too: names of these two
     pivots     parameters about which others are meant, {parameter: its value by ship where the effect is put into a
                profile}; they are never searched for
+    besides    parameters that a search looks for, and a fit with the effect tunes only where they are named
     absorbed   coefficients of the profile that do the same as a parameter, {parameter: section.symbol}: where that one
                is tuned, the parameter is not searched for
     needs      coefficients the effect changes; it does not apply to a profile without them
@@ -91,6 +92,7 @@ class Effect(Component):
     sentence: Callable[[Mapping[str, str]], str] = lambda _: ""
     told_as: Mapping[tuple[str, str], tuple[str, str]] = field(default_factory=dict)
     pivots: Mapping[str, Callable[[Scale], float]] = field(default_factory=dict)
+    besides: tuple[str, ...] = ()
     absorbed: Mapping[str, str] = field(default_factory=dict)
     needs: tuple[str, ...] = ()
     of_parts: tuple[str, ...] = ()
@@ -126,7 +128,12 @@ class Effect(Component):
     @property
     def of_the_day(self) -> bool:
         """Whether it is of the trials, not of the ship: current, wind, shallow water, errors of clocks and sensors."""
-        return self.place in ("clock", "flow", "sensor") or bool(self.of_measured)
+        return self.place in ("clock", "filter", "flow", "sensor") or bool(self.of_measured)
+
+    @property
+    def plain(self) -> dict[str, Parameter]:
+        """Those that stand for the effect where nothing more is said: all but pivots and those beside."""
+        return {name: one for name, one in self.parameters.items() if name not in {*self.pivots, *self.besides}}
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -142,6 +149,11 @@ class ClockEffect(Effect):
     function: None = None
     of: Role | None = None
     late: Literal["log", "ship"] = "log"
+
+    @property
+    def of_the_day(self) -> bool:
+        """See ``Effect``; a ship that answers late does so on any day."""
+        return self.late == "log"
 
 
 class ActuatorFunction(Protocol):

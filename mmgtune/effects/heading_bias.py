@@ -59,6 +59,7 @@ EFFECT = SensorEffect(
         "alone": _angle("velocities being logged in the ship's own axes"),
     },
     variants=(("angle",), ("alone",)),
+    besides=("alone",),
     sentence=lambda v: (
         "The compass showed " + " and ".join(_WORDS[name].format(v[name]) for name in _WORDS if name in v)
     ),

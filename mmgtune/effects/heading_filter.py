@@ -18,8 +18,8 @@ class HeadingFilter(NamedTuple):
 def heading_filter(
     start: State, end: State, held: tuple[Lanes, Lanes], h: Lanes, e: HeadingFilter
 ) -> tuple[State, tuple[Lanes, Lanes]]:
-    """Heading behind a first-order low-pass; the velocity over ground is logged in the axes of the heading shown, but
-    for that part of the lag that is of the heading alone."""
+    """Heading behind a first-order low-pass (assumption); the velocity over ground is logged in the axes of the heading
+    shown, but for that part of the lag that is of the heading alone."""
     turned = followed(start.psi, end.psi, held[0], h, e.time_constant)
     alone = followed(start.psi, end.psi, held[1], h, e.alone)
     return heading_shown(end, turned - end.psi, alone - end.psi), (turned, alone)

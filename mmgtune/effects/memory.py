@@ -28,7 +28,8 @@ def settled(found: Forces, e: Memory) -> tuple[Lanes, Lanes]:
 def memory(found: Forces, behind: tuple[Lanes, Lanes], h: Lanes, e: Memory) -> tuple[Force, tuple[Lanes, Lanes]]:
     """Hull side force and moment as first-order lags of the model's: dY/dt = (Y_H - Y) / T.
 
-    The time constant of each is the one of both and its own together.
+    The time constant of each is the one of both and its own together (assumption: a lag of first order, as a wake that
+    is washed out).
     -> Force that is added to the model's; dY/dt [N/s], dN/dt [N m/s].
     """
     hull = found.hull
@@ -85,5 +86,6 @@ EFFECT = LagEffect(
         "yaw": _constant("the yaw moment alone, beside that of both"),
     },
     variants=(("time_constant",), ("sway",), ("yaw",)),
+    besides=("sway", "yaw"),
     sentence=_said,
 )

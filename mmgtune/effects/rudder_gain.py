@@ -1,10 +1,16 @@
 """The rudder moves more or less than its indicator says."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from ..physics.elementary import where
 from ..physics.quantities import Lanes
+from ..units import DEG
 from .effect import ActuatorEffect, Parameter
+from .visited import Visited
+
+LEAST = 2.0 * DEG
+"""Rudder to either side from which its gain there can be told."""
 
 
 class RudderGain(NamedTuple):
@@ -16,7 +22,10 @@ class RudderGain(NamedTuple):
 
 
 def rudder_gain(start: Lanes, end: Lanes, before: Lanes, h: Lanes, e: RudderGain) -> Lanes:
-    """Blade angle = factor [-] times logged, times another factor on the side it is logged on."""
+    """Blade angle = factor [-] times logged, times another factor on the side it is logged on.
+
+    Constant on each side (assumption: a linkage out of square is more nearly a sine of the angle).
+    """
     return end * e.factor * where(end > 0.0, e.starboard, e.port)
 
 
@@ -30,6 +39,14 @@ def _factor(words: str) -> Parameter:
         typical=lambda _: 0.05,
         bounds_source="half as much again either way",
     )
+
+
+def unvisited(found: Mapping[str, float], visited: Visited) -> str:
+    """Rudder to both sides, for how they differ."""
+    low, high = visited.span(visited.rudder)
+    if "starboard" not in found or low < -LEAST < LEAST < high:
+        return ""
+    return f"{LEAST / DEG:.0f}° of rudder to either side"
 
 
 EFFECT = ActuatorEffect(
@@ -46,6 +63,8 @@ EFFECT = ActuatorEffect(
         "port": _factor(" to port, beside that factor"),
     },
     variants=(("factor",), ("starboard", "port")),
+    besides=("starboard", "port"),
+    unvisited=unvisited,
     sentence=lambda v: (
         "The rudder moved by "
         + " and ".join(

@@ -26,7 +26,8 @@ def _with(state: State, u: Lanes, v_m: Lanes, r: Lanes) -> State:
 
 def velocity_filter(start: State, end: State, held: Held, h: Lanes, e: VelocityFilter) -> tuple[State, Held]:
     """Velocity over ground smoothed north and east, as a satellite receiver does, and then ahead and to starboard, as
-    a log in the ship does; the yaw rate by itself.  First-order low-passes, exact for what is linear over a step."""
+    a log in the ship does; the yaw rate by itself.  First-order low-passes (assumption: what receivers
+    and logs do is not published), exact for what is linear over a step."""
     north_0, east_0 = to_earth(start.psi, start.u, start.v_m)
     north_1, east_1 = to_earth(end.psi, end.u, end.v_m)
     north = followed(north_0, north_1, held[0], h, e.over_ground)

@@ -433,7 +433,8 @@ def _low_pass(values: np.ndarray, time_constant: float) -> np.ndarray:
     if time_constant <= 0.0:
         return values
     share = np.exp(-STEP / time_constant)
-    return _recursion(values, share, (1.0 - share), values[0])
+    over_step = np.concatenate([values[:1], 0.5 * (values[1:] + values[:-1])])  # so that a ramp is trailed by it
+    return _recursion(over_step, share, 1.0 - share, values[0])
 
 
 @njit(cache=True)
