@@ -21,6 +21,7 @@ def command(
     *,
     options: LeaveOutOptions,
     run: RunOptions,
+    no_report: c.NoReport = False,
 ) -> None:
     """Fit without each tune trial in turn and score the trials left out: what a tuning is worth on unseen runs.
 
@@ -33,6 +34,7 @@ def command(
       mmgtune leave-out -p my_ship.toml -t my_trials/ --restart 100 --objective standardised --folds 5
     """
     from ..fitting import claimed, leave_out, plan_leave_out, refuse_taken, write_left_out
+    from ..report import render
 
     ship, data = c.load(profile, trials)
     folder = run.out or c.default_out(ship)
@@ -48,14 +50,16 @@ def command(
         )
         document = write_left_out(result, folder)
         progress.saved(result.interrupted)
+        if not no_report:
+            render(folder)
     if run.json:
         c.print_json(document)
     else:
-        c.show(summary(result, str(folder)))
+        c.show(summary(result, str(folder), report=not no_report))
     progress.leave()
 
 
-def summary(result: LeftOut, folder: str) -> str:
+def summary(result: LeftOut, folder: str, report: bool = False) -> str:
     """The result as a person wants to read it in a terminal."""
     from .repeated import table
 
@@ -82,5 +86,6 @@ def summary(result: LeftOut, folder: str) -> str:
     lines += [f"Note: {in_flags(warning)}" for warning in result.warnings]
     if result.interrupted:
         lines.append(f"Stopped after {len(result.parts)} of {result.n_parts} parts; scores are of those alone.")
-    lines.append(f"{len(result.parts)} fits in {result.wall_s:.1f} s, simulated by {result.method}. Results: {folder}")
+    lines.append(f"{len(result.parts)} fits in {result.wall_s:.1f} s, simulated by {result.method}.")
+    lines.append(f"Report: {folder}/report.html" if report else f"Results: {folder}")
     return "\n".join(lines)

@@ -44,7 +44,10 @@ def after_fit(data: Mapping[str, Any]) -> Advice:
         items.append((reason, f"mmgtune leave-out {profile} {trials}"))
     elif data.get("J_test") is None:
         reason = "No test set: leave each trial out in turn, to see how the fit does on trials it was not tuned on"
-        items.append((reason, f"mmgtune sweep {profile} {trials}"))
+        items.append((reason, f"mmgtune leave-out {profile} {trials}{same}"))
+    if fails_held_out(data):
+        reason = "It does worse on the test trials than on those it was tuned on: look for what the model lacks"
+        items.append((reason, f"mmgtune diagnose {profile} {trials}"))
     loose = len(data.get("undetermined") or ())
     if loose:
         reason = (
@@ -129,3 +132,77 @@ def of_the_day(tag: str) -> bool:
     """Whether an effect is of the trials rather than of the ship: current, wind, errors of sensors."""
     effect = find_effect(tag)
     return effect is not None and effect.of_the_day
+
+
+FAILS = 4.0
+"""J per sample on test trials over that on those tuned on, from which the model lacks something."""
+
+
+def fails_held_out(data: Mapping[str, Any]) -> bool:
+    """Whether a fit follows test trials much less well than those it was tuned on, or no better than before."""
+    before, after = number(data.get("J_test_before")), number(data.get("J_test"))
+    if after is None:
+        return False
+    if before is not None and after >= before:
+        return True
+    per = {role: _per_sample(data, role) for role in ("tune", "test")}
+    tuned, tested = per["tune"], per["test"]
+    return tuned is not None and tested is not None and tested > FAILS * tuned > 0.0
+
+
+def _per_sample(data: Mapping[str, Any], role: str) -> float | None:
+    rows = [row for row in data.get("trial_results") or () if row.get("role") == role]
+    samples = sum(int(row.get("n_samples") or 0) for row in rows)
+    sizes = [number(row.get("J_after")) for row in rows]
+    known = [size for size in sizes if size is not None]
+    return sum(known) / samples if samples and len(known) == len(sizes) else None
+
+
+def after_leave_out(data: Mapping[str, Any]) -> Advice:
+    """(reason, command) pairs that follow from leaving trials out."""
+    profile, trials = _inputs(data)
+    a_r = number((data.get("options") or {}).get("a_r"))
+    same = f" --ar {a_r:g}" if a_r is not None else ""
+    whole: Mapping[str, Any] = next((row for row in data["scores"] if row["manoeuvre"] == "all"), {})
+    items = []
+    if (number(whole.get("share_removed")) or 0.0) > 0.0:
+        items.append(("Tuning helps on unseen trials: tune to all of them", f"mmgtune fit {profile} {trials}{same}"))
+    else:
+        reason = "Tuning does not help on unseen trials: look for what the model lacks"
+        items.append((reason, f"mmgtune diagnose {profile} {trials}"))
+    items.append(("See whether a narrower or a wider range does better", f"mmgtune sweep {profile} {trials}"))
+    return tuple(items)
+
+
+def after_simulation(data: Mapping[str, Any], measured: bool) -> Advice:
+    """(reason, command) pairs that follow from a simulation."""
+    out = shlex.quote(clean(data.get("out") or "RUN"))
+    items = []
+    if not measured:
+        items.append(("The runs are trial files: their indices by the same code as of measured ones",
+                      f"mmgtune trials inspect {out}"))  # fmt: skip
+    if data.get("command"):
+        items.append(("Repeat this simulation", f"{clean(data['command'])} --force"))
+    return tuple(items)
+
+
+def after_validation(data: Mapping[str, Any]) -> Advice:
+    """(reason, command) pairs that follow from a validation."""
+    trials = shlex.quote(clean(data["trials"]))
+    first = shlex.quote(clean(data["profiles"][0]["profile"]))
+    items = []
+    if data["profiles"][0].get("sha256"):
+        reason = "See what the first model gets wrong on these trials, and why"
+        items.append((reason, f"mmgtune diagnose -p {first} -t {trials}"))
+    names = " ".join(shlex.quote(clean(one["profile"])) for one in data["profiles"])
+    if not data.get("window_s"):
+        reason = "Score short windows instead, in which errors do not add up along a run"
+        items.append((reason, f"mmgtune validate {names} {trials} --restart 60"))
+    return tuple(items)
+
+
+def after_check(data: Mapping[str, Any]) -> Advice:
+    """(reason, command) pairs that follow from a check."""
+    if data["verdict"] == "regressed":
+        return (("See what the profile now gets wrong, and why", clean(data["next"])),)
+    return (("Take what it does now as the baseline from here on", clean(data["next"])),)
