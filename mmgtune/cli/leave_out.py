@@ -27,6 +27,7 @@ def command(
         bool,
         typer.Option("--bands", help="Also bands from the other runs, and what they hold.", rich_help_panel=c.OUTPUT),
     ] = False,
+    no_report: c.NoReport = False,
 ) -> None:
     """Fit without each tune trial in turn and score the trials left out: what a tuning is worth on unseen runs.
 
@@ -42,6 +43,7 @@ def command(
     """
     from ..fitting import claimed, leave_out, plan_leave_out, refuse_taken, write_left_out
     from ..posterior import leave_out_with_bands
+    from ..report import render
 
     ship, data = c.load(profile, trials)
     folder = run.out or c.default_out(ship)
@@ -58,14 +60,16 @@ def command(
         )
         document = write_left_out(result, folder)
         progress.saved(result.interrupted)
+        if not no_report:
+            render(folder)
     if run.json:
         c.print_json(document)
     else:
-        c.show(summary(result, str(folder)))
+        c.show(summary(result, str(folder), report=not no_report))
     progress.leave()
 
 
-def summary(result: LeftOut, folder: str) -> str:
+def summary(result: LeftOut, folder: str, report: bool = False) -> str:
     """The result as a person wants to read it in a terminal."""
     from .repeated import table
 
@@ -101,5 +105,6 @@ def summary(result: LeftOut, folder: str) -> str:
     lines += [f"Note: {in_flags(warning)}" for warning in result.warnings]
     if result.interrupted:
         lines.append(f"Stopped after {len(result.parts)} of {result.n_parts} parts; scores are of those alone.")
-    lines.append(f"{len(result.parts)} fits in {result.wall_s:.1f} s, simulated by {result.method}. Results: {folder}")
+    lines.append(f"{len(result.parts)} fits in {result.wall_s:.1f} s, simulated by {result.method}.")
+    lines.append(f"Report: {folder}/report.html" if report else f"Results: {folder}")
     return "\n".join(lines)
