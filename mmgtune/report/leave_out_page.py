@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from . import advice, measures, tables
+from .band_scores import MEANING, SCORE_HEADS, score_cells
 from .blocks import Card, Commands, Fold, Nothing, Page, Prose, Section, Table, cells
 from .common import assumptions, doubts, generated_banner, picture, provenance, warnings
 from .load import Kind
@@ -19,6 +20,7 @@ def build(data: Mapping[str, Any]) -> Page:
     ship = clean(data["profile"].get("name") or data["profile"].get("id") or "the ship")
     sections = [
         _scores(data),
+        _bands(data),
         _stated(data),
         _coefficients(data),
         Section("next", "What to do next", (Commands(advice.after_leave_out(data)),)),
@@ -125,6 +127,34 @@ def _scores(data: Mapping[str, Any]) -> Section:
     )
     caption = "Each trial is scored by the fit that has not seen it; lower is better."
     return Section("scores", "Trials left out", (picture(figure, "Scores", caption), table))
+
+
+def _bands(data: Mapping[str, Any]) -> Section | None:
+    """What bands drawn from the other trials hold; records without them have none."""
+    bands = data.get("bands") or {}
+    kinds = bands.get("by_manoeuvre") or {}
+    if not kinds:
+        return None
+    heads = ("windows", "50 % holds", "90 % holds", "CRPS", "width of 90 %")
+    at = [SCORE_HEADS.index(head) for head in heads]
+
+    def table(id: str, caption: str, first: str, of: Mapping[str, Any]) -> Table:
+        rows = tuple(cells(clean(name), *(score_cells(one)[k] for k in at)) for name, one in of.items())
+        return Table(id, caption, (first, *heads), rows, range(1, 1 + len(heads)))
+
+    held = number(kinds["all"]["coverage_90"]) if "all" in kinds else None
+    said = NONE if held is None else share(held)
+    sentence = f"Bands of 90 % drawn from the other trials hold {said} of what was measured on those left out."
+    runs = table("bands-by-run", "By run", "run", bands["by_run"])
+    return Section(
+        "bands",
+        "Bands from the other trials",
+        (
+            Prose((sentence, MEANING)),
+            table("bands-table", "By kind of manoeuvre", "manoeuvre", kinds),
+            Fold("By run", (runs,)),
+        ),
+    )
 
 
 def _stated(data: Mapping[str, Any]) -> Section | None:
