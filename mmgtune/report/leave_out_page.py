@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from . import advice, measures, tables
-from .band_scores import MEANING, SCORE_HEADS, score_cells
+from .band_scores import SCORE_HEADS, score_cells
 from .blocks import Card, Commands, Fold, Nothing, Page, Prose, Section, Table, cells
 from .common import assumptions, doubts, generated_banner, picture, provenance, warnings
 from .load import Kind
@@ -140,7 +140,12 @@ def _bands(data: Mapping[str, Any]) -> Section | None:
 
     def table(id: str, caption: str, first: str, of: Mapping[str, Any]) -> Table:
         rows = tuple(cells(clean(name), *(score_cells(one)[k] for k in at)) for name, one in of.items())
-        return Table(id, caption, (first, *heads), rows, range(1, 1 + len(heads)))
+        about = (
+            ("holds", "share of measured samples inside the band; samples have the noise of their sensors, bands none"),
+            ("CRPS", "distance of the particles from what was measured, less half of that between them"),
+            ("CRPS, width", "mean over the states, each over its spread over the trials"),
+        )
+        return Table(id, caption, (first, *heads), rows, range(1, 1 + len(heads)), about)
 
     held = number(kinds["all"]["coverage_90"]) if "all" in kinds else None
     said = NONE if held is None else share(held)
@@ -150,7 +155,7 @@ def _bands(data: Mapping[str, Any]) -> Section | None:
         "bands",
         "Bands from the other trials",
         (
-            Prose((sentence, MEANING)),
+            Prose((sentence,)),
             table("bands-table", "By kind of manoeuvre", "manoeuvre", kinds),
             Fold("By run", (runs,)),
         ),
