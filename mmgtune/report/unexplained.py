@@ -105,7 +105,7 @@ def section(data: Mapping[str, Any], drawings: dict[str, Drawn]) -> Section | No
             "against-what",
             "Residual forces against what they follow most",
             "Averages over a ship length: mean in bins of equal numbers, their scatter (bars), and what noise of the "
-            "sensors makes of a single sample (band).",
+            "sensors makes of such an average (band).",
             lambda: _draw_curves(found["curves"]),
             _follow_table(found),
         )
