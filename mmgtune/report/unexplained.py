@@ -90,7 +90,7 @@ def blocks(data: Mapping[str, Any]) -> list[Block]:
     if found["curves"]:
         caption = (
             "Averages over a ship length: mean in bins of equal numbers, their scatter (upright lines), and what noise "
-            "of the sensors makes of a single sample (band)."
+            "of the sensors makes of such an average (band)."
         )
         title = "Residual forces against what they follow most"
         made.append(picture(_curves(found["curves"]), title, caption, _follow_table(found)))
