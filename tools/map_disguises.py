@@ -27,9 +27,8 @@ import pandas as pd
 from mmgtune import units
 from mmgtune.arrays import FloatArray
 from mmgtune.errors import LogError
-from mmgtune.importing import import_logs, load_map, parse_map
+from mmgtune.importing import import_logs, load_map, parse_map, propose_map
 from mmgtune.importing.importer import _records
-from mmgtune.importing.proposing import propose_map
 from mmgtune.importing.proposing.sampling import sample_of
 from mmgtune.physics.frame import to_earth, to_ship
 from mmgtune.trial import Trial, load_trials

@@ -397,7 +397,7 @@ class _Reader(TomlReader):
 
     def cut(self) -> Cut:
         table = self.table("cut")
-        begin = self.choice("cut", table, "from", ("first-rudder-order",))
+        begin = self.choice("cut", table, "from", ("first-rudder-order", "first-order"))
         start, end = self.quantity("cut", "start", "s"), self.quantity("cut", "end", "s")
         if end == 0.0:
             fix = 'write end = "600 s", or end = "-20 s" to drop the last 20 s'

@@ -5,9 +5,6 @@ windows     columns on average and by their change
 bearings    position and heading; look: the motion that follows from them
 motions     yaw rate and velocities; orders: rudder and propeller; winds: true and apparent
 finding     every quantity, of several logs at once; guess: one of them
-writing     the map and a table; proposal: all of it, tried by the import
+writing     the map and a table
+elsewhere   which column is what another one is said to be
 """
-
-from .proposal import Proposal, propose_map
-
-__all__ = ["Proposal", "propose_map"]

@@ -31,6 +31,7 @@ class Finder:
     guesses           by quantity, in the order they were found; guess_t: time, before its unit is known
     used, numeric     columns that are something already, and those whose behaviour can be looked at
     looks             logs whose motion is known; unit: of time; axes: of the velocities
+    tables, comments  further tables of the map, and what is said above them
     notes             what else is to be said
     """
 
@@ -57,6 +58,8 @@ class Finder:
         self.guesses: dict[str, Guess] = {}
         self.used: set[int] = set()
         self.notes: list[str] = []
+        self.tables: dict[str, dict[str, Any]] = {}
+        self.comments: dict[str, str] = {}
         self.numeric: list[int] = []
         self.unit = "s"
         self.clock: Clock

@@ -12,16 +12,17 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import LogError, Problem
-from ..forms import form_of
-from ..importer import Imported, import_logs
-from ..mapping import ASKS, LogMap
-from ..reading_map import parse_map
-from .finder import MOST_LOGS, Finder
-from .finding import found_in
-from .guess import Guess
-from .sampling import Sample, sample_of
-from .writing import guess_dict, table_of_guesses, toml_of_map
+from ..errors import LogError, Problem
+from .doubts import shifted_lever
+from .forms import form_of
+from .importer import Imported, import_logs
+from .mapping import ASKS, LogMap
+from .proposing.finder import MOST_LOGS, Finder
+from .proposing.finding import found_in
+from .proposing.guess import Guess
+from .proposing.sampling import Sample, sample_of
+from .proposing.writing import guess_dict, table_of_guesses, toml_of_map
+from .reading_map import parse_map
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,11 +128,10 @@ def propose_map(logs: Sequence[Path | str]) -> Proposal:
 
 def _made(finder: Finder, paths: tuple[Path, ...], left: tuple[str, ...]) -> Proposal:
     guesses = finder.guesses
-    tables: dict[str, dict[str, Any]] = {}
-    comments: dict[str, str] = {}
+    tables = {name: dict(keys) for name, keys in finder.tables.items()}
     if finder.axes and "u" in guesses and "v" in guesses:
-        tables["velocity"] = {"axes": finder.axes}
-    text = toml_of_map(guesses, finder.first, len(paths), tables, comments, left, finder.notes)
+        tables["velocity"] = {"axes": finder.axes, **tables.get("velocity", {})}
+    text = toml_of_map(guesses, finder.first, len(paths), tables, finder.comments, left, finder.notes)
     asks = tuple(
         f"columns.{name}.{key}" if name != "t" else f"time.{key}"
         for name, guess in guesses.items()
@@ -151,7 +151,34 @@ def _tried(proposal: Proposal, finder: Finder) -> Proposal:
             finder.guesses[name] = replace(finder.guesses[name], keys=keys)
         proposal = _made(finder, proposal.logs, proposal.left)
         found, problems = _imported(proposal)
+    if found is not None:
+        proposal, found = _with_findings(proposal, finder, found)
     return replace(proposal, problems=problems, imported=None if found is None else len(found.trials))
+
+
+def _with_findings(proposal: Proposal, finder: Finder, found: Imported) -> tuple[Proposal, Imported]:
+    """The proposal with what only the trials show: a lever undone the wrong way, and a ship handled by people."""
+    warnings = [one for quality in found.quality for one in quality["findings"] if one["severity"] == "warning"]
+    fixes = [str(one["fix"]) for one in warnings]
+    before = found
+    for key, value in (("from", "first-order"), ("to", "last-order")):
+        if (many := sum(f'{key} = "{value}" in [cut]' in one for one in fixes)) > 0:
+            finder.tables.setdefault("cut", {})[key] = value
+            finder.comments["cut"] = f"likely: in {many} of {len(found.trials)} trials people handle the ship meanwhile"
+    levers = [one for one in map(shifted_lever, found.trials) if one is not None]
+    if levers and len(levers) > 0.2 * len(found.trials) and any('shifted = "earth-axes"' in one for one in fixes):
+        best = min(levers, key=lambda one: one.left)
+        point = {"x": f"{best.ahead:.3g} m", "y": f"{best.across:.3g} m"}
+        finder.tables.setdefault("velocity", {}).update({"point": point, "shifted": "earth-axes"})
+        finder.comments["velocity"] = (
+            f"likely: velocities were moved to midship from there along earth axes, not the ship's, which explains "
+            f"{100.0 * (1.0 - best.left):.0f} % of what they miss the positions by"
+        )
+    if not finder.tables:
+        return proposal, found
+    other = _made(finder, proposal.logs, proposal.left)
+    after, problems = _imported(other)
+    return (proposal, before) if after is None or problems else (other, after)
 
 
 def _imported(proposal: Proposal) -> tuple[Imported | None, tuple[Problem, ...]]:
