@@ -19,6 +19,7 @@ from ..clock import CLOCK
 from ..degrees import degrees
 from ..forms import form_of, refuse_binary
 from ..mapping import LogMap, TimeSource
+from ..parquet_log import is_text, shortened
 from ..text import PEEK, Lines, start_of
 from .words import known_unit
 
@@ -97,7 +98,7 @@ def _made(path: Path, layout: dict[str, Any], names: Sequence[str], units: Seque
             text = text.astype("string").str.strip()
             bare = text.str.replace(",", ".", regex=False) if comma else text
             found = pd.to_numeric(bare, errors="coerce").to_numpy(dtype=np.float64, na_value=np.nan)
-            clock = bool(len(text)) and text.str.fullmatch(CLOCK).mean() > 0.5
+            clock = bool(len(text)) and text.str.fullmatch(CLOCK).fillna(False).mean() > 0.5
             if len(text) and np.isfinite(found).mean() < 0.5 and not clock:
                 angles = degrees(text)
                 if np.isfinite(angles).mean() > 0.5:
@@ -173,12 +174,21 @@ def _of_parquet(path: Path) -> Sample:
             for k, one in enumerate(file.schema_arrow)
             if not kinds.is_nested(one.type) and not kinds.is_binary(one.type) and names.count(one.name) == 1
         ]
-        batch = next(file.iter_batches(ROWS, columns=[names[k] for k in flat], use_threads=False), None)
-        texts = [] if batch is None else [batch.column(k).to_pandas() for k in range(len(flat))]
+        columns = [names[k] for k in flat]
+        # A text stands in a file once, however many rows repeat it: it is cut before it is repeated.
+        repeated = [name for name in columns if is_text(file.schema_arrow.field(name).type)]
+        file = pq.ParquetFile(path, pre_buffer=False, page_checksum_verification=True, read_dictionary=repeated)
+        batch = next(file.iter_batches(ROWS, columns=columns, use_threads=False), None)
+        texts = [] if batch is None else [_plain(shortened(batch.column(k)).to_pandas()) for k in range(len(flat))]
     except (OSError, ValueError, pa.ArrowException) as error:
         why = (str(error).splitlines() or [""])[0]
         raise LogError(Problem("the Parquet log cannot be read", str(path), why, "copy it again")) from error
     return _made(path, {"format": "parquet"}, [names[k] for k in flat], [""] * len(flat), texts)
+
+
+def _plain(column: Any) -> Any:
+    """A pandas column that is no category of texts."""
+    return column.astype("string") if str(column.dtype) == "category" else column
 
 
 def _of_workbook(path: Path) -> Sample:
