@@ -10,6 +10,7 @@ from typing import Any, overload
 
 from .backends import Integrator
 from .circumstances import notes_on
+from .displayed import Plotted, inert
 from .errors import OptionError, Problem
 from .evaluation import TrialRecord, evaluate
 from .files import refuse_existing
@@ -18,7 +19,7 @@ from .manoeuvres.summary import criteria_of, indices_of
 from .model import Model
 from .networks import named_ship
 from .options import SimulateOptions
-from .orders import Helmsman, TurningOrder, ZigzagOrder, run_manoeuvre
+from .orders import Helmsman, Sailing, TurningOrder, ZigzagOrder, run_manoeuvres
 from .predictor import PhysicsPredictor, Predictor, as_predictor, profile_of
 from .profile import ShipProfile
 from .simulation import Motion, as_trial
@@ -36,7 +37,7 @@ PER_SECOND = 20.0
 
 
 @dataclass(frozen=True, eq=False)
-class Simulated(Sequence[Motion]):
+class Simulated(Plotted, Sequence[Motion]):
     """Simulated runs, a sequence of ``Motion``, with what they are judged by: trial by trial, of each all members.
 
     records  each beside the trial it is of; empty for manoeuvres given as orders
@@ -63,7 +64,7 @@ class Simulated(Sequence[Motion]):
         """In a line."""
         ids = [motion.id for motion in self.motions]
         more = f" and {len(ids) - 4} more" if len(ids) > 4 else ""
-        return f"Simulated({self.predictor.name}: {', '.join(ids[:4])}{more})"
+        return inert(f"Simulated({self.predictor.name}: {', '.join(ids[:4])}{more})")
 
     @property
     def ship(self) -> ShipProfile | None:
@@ -196,10 +197,10 @@ def _on_orders(predictor: Predictor, options: SimulateOptions) -> list[Motion]:
     # Models are quicker than ships: sample ten times per ship length travelled, once a second at most.
     sample = min(1.0, round(L / V / 10.0, 1) or 0.1)
     longest = max(600.0, 150.0 * L / V)
-    return [
-        run_manoeuvre(model, helmsman, id=name, speed=speed, n=n, longest=longest, sample=sample, theta=predictor.theta)
-        for name, helmsman in _orders(options)
+    sailings = [
+        Sailing(helmsman, name, speed, n, longest=longest, sample=sample) for name, helmsman in _orders(options)
     ]
+    return run_manoeuvres(model, sailings, theta=predictor.theta.repeat(len(sailings), axis=1))
 
 
 def _orders(options: SimulateOptions) -> list[tuple[str, Helmsman]]:

@@ -24,7 +24,7 @@ STARTS = 6
 """Starts of the base fit."""
 
 STRONG = 1.2
-"""Chi-squared per residual beyond which every named hypothesis is refitted."""
+"""Chi-squared per residual beyond which every named hypothesis makes a step before the best are refitted."""
 
 AGAIN = 8
 """Times the base fit may begin again where it ended."""
@@ -36,14 +36,19 @@ REFITTED = 9
 TERMS_REFITTED = 4
 """Hypotheses that are refitted each time, named ones and terms out of many: those of the best scores."""
 
+LIKELY = 9
+"""Hypotheses of the best first steps that are refitted where scores alone cannot choose."""
+
 ROUGH = 4
 """Steps of a refit before it is compared with the others."""
 
 SIZES = (1.0, 0.5, 2.0)
 """Sizes of effects with one side only at which refits start, in typical sizes."""
 
-WORTH_GOING_ON = 0.2
-"""Share of the best gain from which a refit is continued to its end."""
+WORTH_GOING_ON = 0.5
+"""Share of the best gain from which a refit is continued to its end, besides those of the best few."""
+
+FEW = 4
 
 ENOUGH = 10.0
 """A hypothesis must beat none by this much of chi-squared beyond its share by the information criterion (BIC), and
@@ -283,22 +288,35 @@ def _refit_best(
     if quick:
         chosen = named[:3] + terms[:1]
     else:
-        chosen = named[: None if strong else REFITTED] + terms[: (2 if strong else 1) * TERMS_REFITTED]
+        chosen = _likely(bench, point, named, stop) if strong else named[:REFITTED]
+        chosen += terms[: (2 if strong else 1) * TERMS_REFITTED]
     chosen = [s for s in chosen if s.power > 0.0]
     rough = []
     for score in chosen:
         _go_on(stop)
         rough.append(_rough(bench, point, score, strong))
-    most = max((point.chi2 - end.chi2 for end in rough), default=0.0)
+    gains = sorted((point.chi2 - end.chi2 for end in rough), reverse=True)
+    enough = min([WORTH_GOING_ON * gains[0], *gains[FEW - 1 : FEW]]) if gains else 0.0
     chance = None if quick else ChanceScores(linear, [s.hypothesis for s in ranked], bench.options.seed)
     refits = []
     for score, end in zip(chosen, rough, strict=True):
         _go_on(stop)
         gain = point.chi2 - end.chi2
-        if gain >= WORTH_GOING_ON * most and gain > 0.5 * ENOUGH * score.inflation:
+        if gain >= enough and gain > 0.5 * ENOUGH * score.inflation:
             end = bench.refit(end.names, end.unit[:, None], end.offsets)
         refits.append(_judged(bench, point, score, end, chance, n_terms=max(1, len(terms))))
     return sorted(refits, key=lambda refit: refit.cost - refit.gain)
+
+
+def _likely(bench: Workbench, point: Point, named: Sequence[Score], stop: Stop) -> list[Score]:
+    """Of named hypotheses, best scores first, those whose first step from any start explains most, and a few of the
+    best scores."""
+    first = []
+    for score in named:
+        _go_on(stop)
+        first.append(_rough(bench, point, score, True, iterations=1).chi2 if score.power > 0.0 else np.inf)
+    kept = {*np.argsort(first)[:LIKELY].tolist(), *range(REFITTED // 2)}
+    return [score for k, score in enumerate(named) if k in kept]
 
 
 def _starts(bench: Workbench, point: Point, score: Score, strong: bool) -> FloatArray:
@@ -314,14 +332,14 @@ def _starts(bench: Workbench, point: Point, score: Score, strong: bool) -> Float
     return np.column_stack([np.concatenate([point.unit, np.clip(place, 0.0, 1.0)]) for place in places])
 
 
-def _rough(bench: Workbench, point: Point, score: Score, strong: bool) -> Point:
+def _rough(bench: Workbench, point: Point, score: Score, strong: bool, iterations: int = ROUGH) -> Point:
     """A few steps towards the best fit with a hypothesis."""
     excess = max(point.chi2 - bench.problem.n_residuals, 0.0)
     return bench.refit(
         (*point.names, *score.hypothesis.names),
         _starts(bench, point, score, strong),
         point.offsets,
-        max_iterations=ROUGH,
+        max_iterations=iterations,
         tolerance=max(TOLERANCE, 1e-3 * excess),
     )
 

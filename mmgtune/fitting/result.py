@@ -11,6 +11,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..circumstances import notes_on
 from ..components import split_name
+from ..displayed import Plotted
 from ..model import Model, Tie
 from ..options import FitOptions
 from ..predictor import words_of
@@ -68,7 +69,7 @@ class Beside:
 
 
 @dataclass(frozen=True, eq=False)
-class FitResult:
+class FitResult(Plotted):
     """A finished (or interrupted) fit, complete enough to write every output from it.
 
     unit         (n_targets,) position of the tuned values in the box

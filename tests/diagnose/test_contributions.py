@@ -86,6 +86,19 @@ def test_effects_of_speed_and_load_need_several():
     assert not find_effect("shallow-water").unvisited({"depth": 8.0}, one)
 
 
+def test_effects_of_changes_and_of_sides_need_them():
+    both = zigzags(20.0)
+    missing = find_effect("governor-lag").unvisited({"time_constant": 20.0}, both)
+    assert missing == "revolutions that change by 2 %"
+    slowed = replace(both, shaft=np.linspace(1.7, 1.5, 400))
+    assert not find_effect("governor-lag").unvisited({"time_constant": 20.0}, slowed)
+    gain = find_effect("rudder-gain")
+    assert not gain.unvisited({"starboard": 1.1, "port": 0.9}, both)
+    one = replace(both, rudder=np.abs(both.rudder))
+    assert gain.unvisited({"starboard": 1.1, "port": 0.9}, one) == "2° of rudder to either side"
+    assert not gain.unvisited({"factor": 1.1}, one)
+
+
 def test_the_bundled_trials_visit_what_every_effect_is_about():
     seen = visited_by(load_trials("suzaku").trials.values(), 83.0)
     for effect in effects():
