@@ -83,7 +83,7 @@ def figure(name: str, words: str, uri: str, files: Files) -> str:
     report = f"made/{name.partition('/')[0]}/report.html"
     more = f' <a href="{up}{report}">The whole report</a>.' if files.get_file_from_path(report) else ""
     seen = html.escape(words)
-    picture = f'<img src="{up}made/{name}" alt="{seen}" loading="lazy">'
+    picture = f'<img src="{up}made/{name}" alt="{seen}">'
     return f'<figure class="made">{picture}<figcaption>{seen}{more}</figcaption></figure>\n'
 
 
