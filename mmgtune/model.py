@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,14 @@ from .given import ShipGiven, ship_of
 E = TypeVar("E", bound=Effect)
 
 
+class Tie(NamedTuple):
+    """A coefficient that follows another of the same ship where that one is changed: ``ratio`` times its value."""
+
+    name: str
+    to: str
+    ratio: float
+
+
 class Model:
     """The components and effects of a profile and their coefficients as one column of numbers.
 
@@ -24,10 +32,12 @@ class Model:
     any coefficient can differ between lanes.
 
     profile  object, path or bundled name
+    ties     coefficients that follow others
     """
 
-    def __init__(self, profile: ShipGiven):
+    def __init__(self, profile: ShipGiven, ties: Sequence[Tie] = ()):
         self.profile = profile = ship_of(profile)
+        self.ties = tuple(ties)
         self.arrangement = profile.arrangement
         self.parts: tuple[Component, ...] = tuple(profile.sections[kind].component for kind in self.arrangement.kinds)
         self.components = self.arrangement.components(*(part.function for part in self.parts[1:]))
@@ -87,6 +97,9 @@ class Model:
             changed = np.asarray(values, dtype=float)
             theta = np.repeat(self.base[:, None], changed.shape[1], axis=1)
             theta[[self.rows[name] for name in names]] = changed
+            for tie in self.ties:
+                if tie.to in names and tie.name not in names:
+                    theta[self.rows[tie.name]] = tie.ratio * theta[self.rows[tie.to]]
         for effect in self.acting(CoefficientsEffect):
             now = {name: theta[row] for name, row in self.rows.items()}
             for name, value in effect.function(now, self.parameters(effect, theta)).items():

@@ -188,7 +188,7 @@ class LaneFleet:
     def __init__(self, ship: LaneModel, states: FloatArray, controls: FloatArray):
         self._shape = states.shape[:2]
         self._ship = ship
-        self._run = ship.start(State(*_on_lanes(states)), ship.arrangement.control(*_on_lanes(controls)))
+        self._run = ship.under_way(State(*_on_lanes(states)), ship.arrangement.control(*_on_lanes(controls)))
 
     @property
     def states(self) -> FloatArray:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
+from json import dumps
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -75,6 +76,12 @@ def command(
             rich_help_panel=CI,
         ),
     ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out", "-o", help="Also write check.json and a report to this folder.", rich_help_panel=c.OUTPUT
+        ),
+    ] = None,
     sensitivity: Annotated[
         float | None,
         typer.Option(
@@ -111,7 +118,7 @@ def command(
     if sensitivity is not None:
         _sensitivity(profile, trials, baseline, options, sensitivity, json)
         return
-    give = Given(chosen, everything, junit, summary)
+    give = Given(chosen, everything, junit, summary, out)
     names = (profile, trials, None if baseline is None else str(baseline))
     try:
         recorded = None
@@ -155,6 +162,7 @@ class Given:
     everything: bool
     junit: Path | None
     summary: Path | None
+    out: Path | None = None
 
     def __call__(self, report: CheckReport) -> None:
         """Print the report, and write it to the files asked for."""
@@ -193,6 +201,13 @@ class Given:
         from ..checking.renderers import RENDERERS
         from ..files import cannot_write, write_text
 
+        if self.out is not None:
+            from ..provenance import made_by
+            from ..report import render
+
+            document = {**report.to_dict(), **made_by(c.command_line()), "out": str(self.out)}
+            write_text(self.out / "check.json", dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+            render(self.out)
         if self.junit is not None:
             write_text(self.junit, RENDERERS["junit"](report))
         if self.summary is not None:

@@ -146,17 +146,24 @@ def summary(result: Diagnosis, folder: str, report: bool) -> str:
     lines = [head, "", *rest]
     before, after = result.gain.J
     lines += ["", f"verdict: {result.verdict}", result.sentence()]
-    lines += ["", f"verdict: {result.verdict}", result.sentence()]
+    if result.record:
+        lines.append(result.record.sentence)
+    for trace in result.traces:
+        lines.append(f"Trace, nothing that would be noticed, and in no profile: {trace.cause.sentence}.")
     if before is not None and after is not None and result.causes and not result.interrupted:
         low, high = result.gain.share_removed[1:]
         lines.append(
             f"J held out ({result.gain.words}; {result.gain.method}): {before:.4g} -> {after:.4g}; "
             f"95 % interval of the share removed {100.0 * low:.1f} to {100.0 * high:.1f} %."
         )
+    if result.whereabouts:
+        lines += ["", *result.whereabouts.sentences()]
     for one in result.differing:
         lines += ["", one.sentence, *_by_voyage(one)]
     if result.suggestion:
         lines.append(f"A trial that would tell: {result.suggestion.manoeuvre}.")
+    if result.coverage and result.coverage.to_dict():
+        lines += ["", result.coverage.sentence, *(f"Note: {words}" for words in result.warnings)]
     doubts = in_words(result.profile.doubts())
     lines += ["", *(f"Note: {words}." for words in doubts)] if doubts else []
     lines += ["", f"{'Stopped after' if result.interrupted else 'Finished in'} {result.wall_s:.1f} s."]

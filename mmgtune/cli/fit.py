@@ -90,11 +90,25 @@ def command(
         if "bands" in document:
             c.show(bands_text(document["bands"], folder))
         elif result.compared and not result.interrupted:
+            for line in next_steps(result, profile, trials):
+                c.show(line)
             tuned = quote(str(folder / "profile.toml"))
             c.show(f"Bands: mmgtune posterior -p {tuned} -t {quote(trials)} --out {quote(str(folder))}")
     progress.leave()
     if strict and not result.converged:
         raise typer.Exit(ExitCode.NO)
+
+
+def next_steps(result: FitResult, profile: str, trials: str) -> list[str]:
+    """What the outcome asks for, as commands."""
+    given = f"-p {quote(profile)} -t {quote(trials)}"
+    tested = any(one.role == "test" for one in result.compared)
+    runs = {one.trial.run for one in result.compared if one.role == "tune"}
+    if result.misses:
+        return [f"It misses trials it was not tuned to; what is wrong: mmgtune diagnose {given}"]
+    if not tested and len(runs) > 1:
+        return [f"How it does on trials it was not tuned to: mmgtune leave-out {given}"]
+    return []
 
 
 def bands_text(bands: Mapping[str, Any], folder: Path) -> str:
@@ -143,6 +157,8 @@ def summary(result: FitResult, folder: str, report: bool) -> str:
         lines += ["", *result.beside.words()]
     lines += ["", *result.certificate.sentences[:2], *map(in_flags, result.identifiability.sentences[:2])]
     lines += [f"Note: {in_flags(warning)}" for warning in result.warnings()]
+    if result.compared and result.coverage.to_dict():
+        lines += ["", result.coverage.sentence]
     lines += ["", result.verdict(), f"{result.evaluations} evaluations in {result.wall_s:.1f} s."]
     lines.append(f"Report: {folder}/report.html" if report else f"Results: {folder}")
     return "\n".join(lines)

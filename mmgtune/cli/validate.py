@@ -44,7 +44,7 @@ def command(
 
     Logs of hours and days are voyages: they say manoeuvre "voyage", or last more than an hour. They are cut into
     windows of 120 s, or --restart, and seven distance measures tell how far each model is off, and where its error
-    lives. That has a run folder and a report.
+    lives. That has a run folder and a report; of trials, --out names a folder for them.
 
     Examples:
 
@@ -52,11 +52,14 @@ def command(
 
       mmgtune validate before.toml after.toml my_trials/ --restart 100 --json
 
-      mmgtune validate suzaku suzaku --manoeuvres
+      mmgtune validate suzaku suzaku --manoeuvres --out runs/scores
 
       mmgtune validate before.toml after.toml voyages/ --out runs/voyages
     """
-    from ..trial import holds_voyages
+    from ..fitting import claimed, refuse_taken
+    from ..recording import write_validation
+    from ..report import render
+    from ..trial import holds_voyages, load_trials
     from ..validating import validate
 
     if formerly is not None:
@@ -74,7 +77,14 @@ def command(
         on_voyages(names[:-1], names[-1], options, run, json=json, no_report=no_report)
         return
     _refuse(options, run, no_report)
+    if run.out is not None:
+        refuse_taken(run.out, force=run.force)
     result = validate(names[:-1], names[-1], ValidateOptions(**options.shared_with(ValidateOptions)))
+    if run.out is not None:
+        with claimed(run.out, force=run.force):
+            write_validation(result, load_trials(names[-1]), run.out, c.command_line())
+            if not no_report:
+                render(run.out)
     if json:
         c.print_json(result.to_dict())
     else:
@@ -83,21 +93,24 @@ def command(
             c.say(f"note: {note}")
         for one in result.profiles:
             c.say_doubts(one.doubts, f"{one.name}: ")
+        if run.out is not None:
+            c.say(f"Results: {run.out}" if no_report else f"Report: {run.out}/report.html")
 
 
 def _refuse(options: VoyageOptions, run: WrittenOptions, no_report: bool) -> None:
     """Raises OptionError for what was asked of voyages where there are none."""
     own = {one.name for one in fields(VoyageOptions)} - {one.name for one in fields(ValidateOptions)}
     asked = [name for name in sorted(own) if getattr(options, name) != getattr(VoyageOptions, name)]
-    asked += [one.name for one in fields(run) if getattr(run, one.name) != one.default]
-    asked += ["no_report"] if no_report else []
+    asked += [name for name in ("resume", "quiet") if getattr(run, name)]
+    asked += [name for name in ("force",) if run.force and run.out is None]
+    asked += ["no_report"] if no_report and run.out is None else []
     if asked:
         raise OptionError(
             *(
                 Problem(
                     "these trials are no voyages",
                     name,
-                    "of trials the scores are printed, and nothing is written",
+                    "of trials the scores are printed, and written where --out names a folder",
                     f"leave it out, or give {OF_VOYAGES}",
                 )
                 for name in asked

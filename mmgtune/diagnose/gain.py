@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -143,25 +143,34 @@ def held_out(bench: Workbench, found: Found, test: Sequence[Trial]) -> Gain:
         return Gain("test", tuple(compared), excess, *_chance(bench, test))
     every: list[TrialComparison] = []
     rows = []
+    for (before, after), trials in held_out_fits(bench, (found.base, found.final), ()):
+        compared, excess = _on(bench, before, after, trials)
+        every += compared
+        rows.append(excess)
+    how: HeldOut = "each" if len({trial.run for trial in bench.trials}) > 1 else "only"
+    return Gain(how, tuple(every), np.concatenate(rows), *_chance(bench, bench.trials))
+
+
+def held_out_fits(
+    bench: Workbench, points: Sequence[Point], test: Sequence[Trial]
+) -> Iterator[tuple[list[Point], list[Trial]]]:
+    """Fitted points with trials they were not fitted to: the test trials, or each run in turn, all refitted without it.
+
+    Where there is but one run, that run.
+    """
     runs = list(dict.fromkeys(trial.run for trial in bench.trials))
-    for run in runs if len(runs) > 1 else []:
+    if test or len(runs) < 2:
+        yield list(points), list(test or bench.trials)
+        return
+    for run in runs:
         others = [trial for trial in bench.trials if trial.run != run]
         names = [name for name in bench.box.names if name not in bench.targets]
         rest = make_workbench(bench.model.profile, others, bench.options, names)
         rest.targets = bench.targets
         rest.know(replace(bench.noise, cases=rest.problem.cases))
         keep = [i for i, trial in enumerate(bench.trials) if trial.run != run]
-        before, after = (
-            rest.refit(p.names, p.unit[:, None], p.offsets[keep], integrator=p.integrator)
-            for p in (found.base, found.final)
-        )
-        compared, excess = _on(bench, before, after, [trial for trial in bench.trials if trial.run == run])
-        every += compared
-        rows.append(excess)
-    if not rows:
-        every, whole = _on(bench, found.base, found.final, bench.trials)
-        return Gain("only", tuple(every), whole, *_chance(bench, bench.trials))
-    return Gain("each", tuple(every), np.concatenate(rows), *_chance(bench, bench.trials))
+        refitted = [rest.refit(p.names, p.unit[:, None], p.offsets[keep], integrator=p.integrator) for p in points]
+        yield refitted, [trial for trial in bench.trials if trial.run == run]
 
 
 def _chance(bench: Workbench, trials: Sequence[Trial]) -> tuple[float, float]:
@@ -179,12 +188,13 @@ def J_of(bench: Workbench, point: Point, test: Sequence[Trial]) -> float | None:
     """J of a point over test trials, their initial states estimated; None without such trials."""
     if not test:
         return None
-    problem = _problem(bench, point, test, make_objective(bench.model.L_pp))
+    problem = problem_on(bench, point, test, make_objective(bench.model.L_pp))
     offsets = fit_offsets(problem, point.unit)
     return finite(float(problem.costs(point.unit[:, None], offsets[:, None])[0]))
 
 
-def _problem(bench: Workbench, point: Point, trials: Sequence[Trial], objective: Objective) -> FitProblem:
+def problem_on(bench: Workbench, point: Point, trials: Sequence[Trial], objective: Objective) -> FitProblem:
+    """The problem of what is free in a point, on other trials."""
     own = bench.problem_of(point.names, point.integrator)
     sigma = np.repeat(bench.sigma[None], len(trials), axis=0)
     cases = cases_of(list(trials), objective, own.model.inputs, own.model.draught)
@@ -195,24 +205,31 @@ def _on(
     bench: Workbench, before: Point, after: Point, trials: Sequence[Trial]
 ) -> tuple[list[TrialComparison], FloatArray]:
     """Comparisons and chi-squared above noise (n_trials, 2) on trials."""
-    names = (*before.names, *(name for name in after.names if name not in before.names))
-    wide = Point(names, bench.null(names), after.offsets, after.chi2, after.integrator)
-    units = []
-    for point in (before, after):
-        unit = wide.unit.copy()
-        unit[[names.index(name) for name in point.names]] = point.unit
-        units.append(unit)
+    wide, units = together(bench, (before, after))
     roles = dict.fromkeys((trial.id for trial in trials), "test")
     by_paper = make_objective(bench.model.L_pp)
-    compared = compare(_problem(bench, wide, trials, by_paper), trials, by_paper, roles, *units)
+    compared = compare(problem_on(bench, wide, trials, by_paper), trials, by_paper, roles, *units)
     objective = Objective(dict(zip(STATES, bench.sigma, strict=True)), dict.fromkeys(bench.channels, 1.0))
-    scaled = _problem(bench, wide, trials, objective)
+    scaled = problem_on(bench, wide, trials, objective)
     floor = np.array([_floor(bench, scaled, case) for case in range(len(trials))])
     excess = np.empty((len(trials), 2))
     for k, unit in enumerate(units):
         offsets = fit_offsets(scaled, unit)
         excess[:, k] = scaled.costs_by_case(unit[:, None], offsets[:, None])[:, 0] - floor
     return compared, np.where(np.isfinite(excess), excess, 1e12)
+
+
+def together(bench: Workbench, points: Sequence[Point]) -> tuple[Point, list[FloatArray]]:
+    """A point whose names are those of all, what is not free in one at its null, and the positions of each in it."""
+    names = tuple(dict.fromkeys(name for point in points for name in point.names))
+    last = points[-1]
+    wide = Point(names, bench.null(names), last.offsets, last.chi2, last.integrator)
+    units = []
+    for point in points:
+        unit = wide.unit.copy()
+        unit[[names.index(name) for name in point.names]] = point.unit
+        units.append(unit)
+    return wide, units
 
 
 def _floor(bench: Workbench, problem: FitProblem, case: int) -> float:

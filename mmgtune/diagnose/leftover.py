@@ -78,7 +78,7 @@ class Leftover(Brief):
 
 def leftover(bench: Workbench, point: Point) -> Leftover:
     """What is left at a point, on the trials of the workbench."""
-    residuals = _residuals(bench, point)
+    residuals = residuals_of(bench, point)
     level = _white(residuals)
     left_open = _left_open(bench, point)
     excess = {}
@@ -98,7 +98,7 @@ def leftover(bench: Workbench, point: Point) -> Leftover:
     )
 
 
-def _residuals(bench: Workbench, point: Point) -> list[FloatArray]:
+def residuals_of(bench: Workbench, point: Point) -> list[FloatArray]:
     """Simulated less measured by trial, (n_samples, 6), in SI units; NaN in gaps."""
     problem = bench.problem_of(point.names, point.integrator)
     states = problem.states(point.unit[:, None], point.offsets[:, None]).states

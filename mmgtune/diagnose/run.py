@@ -16,26 +16,29 @@ from ..components import split_name
 from ..fitting.box import parameter_of
 from ..fitting.extending import with_width
 from ..fitting.journal import journalled
+from ..fitting.one_sided import coverage_notes, followers
 from ..fitting.run import Hooks, identity_of, in_pieces, make_provenance
 from ..given import ShipGiven, TrialsGiven, ship_of
 from ..model import Model
 from ..options import DiagnoseOptions
 from ..profile import ShipProfile, with_all_effects
 from ..threads import blas_on_one_thread
-from ..trial import Trial, TrialSet, VoyageSet
+from ..trial import Coverage, Trial, TrialSet, VoyageSet
 from ..trial.smoothing import FEWEST
-from .evidence import explain_forces, noise_share, residual_forces, short_horizon
+from .contributions import Aside, set_aside
+from .evidence import ResidualForces, explain_forces, noise_share, residual_forces, short_horizon
 from .gain import J_of, held_out
 from .hypotheses import INTEGRATION_STEP, Hypothesis, known_causes
 from .intervals import Estimate, estimates
-from .leftover import Leftover, leftover
+from .leftover import Leftover, leftover, residuals_of
 from .legs import LEG_NAMES, differences
 from .linear import typical
-from .result import Candidate, Cause, Detectability, Diagnosis
+from .result import Candidate, Cause, Detectability, Diagnosis, Trace
 from .screening import angles
 from .search import ENOUGH, WORTH, Found, Refit, Step, search
 from .separate import Suggestion, suggest
 from .voyages import Choice, looked_at
+from .whereabouts import Whereabouts, whereabouts
 from .workbench import Point, Workbench, make_workbench
 
 TWINS = 3
@@ -93,6 +96,7 @@ def _diagnose(
     known = [h for h in known if not {h.effect.absorbed.get(v) for v in h.variant} & set(bench.targets)]
     found = search(bench, known, hooks.on_phase, hooks.stop)
     hooks.on_phase("measuring the gain")
+    traces, brought = set_aside(bench, found, test)
     sizes = estimates(bench, found.final)
     gain = held_out(bench, found, test)
     before = leftover(bench, found.base)
@@ -109,10 +113,14 @@ def _diagnose(
     suggestion = _suggestion(bench, found)
     hooks.on_phase("gathering the evidence")
     values = bench.values(found.final)
-    return Diagnosis(
+    theta = {name: values[name] for name in bench.targets}
+    coverage = Coverage.of(bench.trials, profile.L_pp)
+    result = Diagnosis(
         profile=profile,
         options=options,
         causes=tuple(_causes(bench, found, sizes, test)),
+        traces=tuple(_trace(one) for one in traces),
+        contributions=tuple((h.tag, one) for h, one in zip(found.causes, brought, strict=True)),
         groups=groups,
         candidates=tuple(_candidates(bench, found, test)),
         detectability=tuple(_detectability(bench, found.steps[0], known)) if found.steps else (),
@@ -120,7 +128,9 @@ def _diagnose(
         gain=gain,
         leftover=left,
         explained_share=_explained(found, before, left),
-        theta={name: values[name] for name in bench.targets},
+        theta=theta | followers(bench.model.ties, theta),
+        coverage=coverage,
+        warnings=tuple(coverage_notes(bench.model, bench.targets, coverage)),
         noise=_noise(bench),
         chi2=(
             found.base.chi2 / max(1, bench.problem.n_residuals),
@@ -133,6 +143,48 @@ def _diagnose(
         wall_s=time.perf_counter() - began,
         interrupted=hooks.stop(),
     )
+    if result.verdict != "unexplained":
+        return result
+    return replace(result, whereabouts=_whereabouts(bench, found))
+
+
+def _whereabouts(bench: Workbench, found: Found) -> Whereabouts:
+    """Where the error of the model without any cause lives."""
+    by_run = _excess_by_run(bench, found.base)
+    whole = sum(by_run.values())
+    removable: dict[str, float] = {}
+    for refit in found.steps[0].refits if found.steps and whole > 0.0 else ():
+        tag = refit.hypothesis.tag
+        left = sum(_excess_by_run(bench, refit.point).values())
+        removable[tag] = max(removable.get(tag, 0.0), min(1.0, 1.0 - left / whole))
+    ranked = dict(sorted(removable.items(), key=lambda one: -one[1]))
+    return whereabouts(_forces(bench, found.base), by_run, ranked)
+
+
+def _excess_by_run(bench: Workbench, point: Point) -> dict[str, float]:
+    """Squared error of the motion beyond white noise of the sensors, in variances of that noise, by run."""
+    at = [STATES.index(name) for name in bench.channels]
+    found: dict[str, float] = {}
+    for trial, off in zip(bench.trials, residuals_of(bench, point), strict=True):
+        square = (off[1:, at] / bench.sigma[at]) ** 2
+        found[trial.run] = found.get(trial.run, 0.0) + float(np.nansum(square - 1.0))
+    return found
+
+
+def _forces(bench: Workbench, point: Point) -> list[tuple[ResidualForces, Trial]]:
+    """Residual forces of the trials that are long and whole enough for inverse dynamics."""
+    model = Model(_tuned(bench, point))
+    found = []
+    for trial in _long_enough(bench):
+        try:
+            found.append((residual_forces(model, trial), trial))
+        except ValueError:  # too short or too full of gaps
+            continue
+    return found
+
+
+def _long_enough(bench: Workbench) -> list[Trial]:
+    return [trial for trial in bench.trials if np.isfinite(trial.motion[:, 3:]).all(axis=1).sum() >= FEWEST]
 
 
 def _legs(profile: ShipProfile, names: Sequence[str]) -> list[str]:
@@ -164,6 +216,11 @@ def _causes(bench: Workbench, found: Found, sizes: Mapping[str, Estimate], test:
     return causes
 
 
+def _trace(aside: Aside) -> Trace:
+    cause = Cause(aside.hypothesis.tag, aside.hypothesis.effect, aside.estimates, aside.p_value, None)
+    return Trace(cause, aside.contribution)
+
+
 def _candidates(bench: Workbench, found: Found, test: Sequence[Trial]) -> list[Candidate]:
     """Every hypothesis of the first look that was refitted, best first; then scores of the others."""
     if not found.steps:
@@ -177,6 +234,7 @@ def _candidates(bench: Workbench, found: Found, test: Sequence[Trial]) -> list[C
             r.gain,
             r.p_value,
             J_of(bench, r.point, test) if _promising(r, first) else None,
+            r.unvisited if _promising(r, first) else "",
         )
         for r in first.refits
     ]
@@ -262,20 +320,13 @@ def _noise(bench: Workbench) -> dict[str, dict[str, float]]:
 def _evidence(bench: Workbench, found: Found, before: Leftover, left: Leftover) -> dict[str, Any]:
     """Residuals before and after by trial and channel, short horizons, and residual forces with what explains them."""
     shown: dict[str, Any] = {"excess_before": before.channels, "excess_after": left.channels}
-    long_enough = [trial for trial in bench.trials if np.isfinite(trial.motion[:, 3:]).all(axis=1).sum() >= FEWEST]
+    long_enough = _long_enough(bench)
     for which, point in (("before", found.base), ("after", found.final)):
-        profile = _tuned(bench, point)
-        model = Model(profile)
         shown[f"short_horizon_{which}"] = {}
         if long_enough:
-            short = short_horizon(model, long_enough, integrator=point.integrator)
+            short = short_horizon(Model(_tuned(bench, point)), long_enough, integrator=point.integrator)
             shown[f"short_horizon_{which}"] = dict(zip(STATES, map(float, short.pooled_rms_in_noise), strict=True))
-        forces = []
-        for trial in long_enough:
-            try:
-                forces.append(residual_forces(model, trial))
-            except ValueError:  # too short or too full of gaps for inverse dynamics
-                continue
+        forces = [forces for forces, _ in _forces(bench, point)]
         if forces:
             shown[f"forces_{which}"] = {
                 "explained": {axis: dict(shares) for axis, shares in explain_forces(forces).items()},
@@ -288,7 +339,8 @@ def _tuned(bench: Workbench, point: Point) -> ShipProfile:
     """The profile with the values of a point."""
     profile = bench.model_of(point.names).profile
     sections = dict(profile.sections)
-    for name, value in bench.values(point).items():
+    values = bench.values(point)
+    for name, value in (values | followers(bench.model.ties, values)).items():
         kind, symbol = split_name(name)
         coefficients = dict(sections[kind].coefficients)
         coefficients[symbol] = replace(coefficients[symbol], value=value)

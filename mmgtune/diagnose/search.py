@@ -24,7 +24,7 @@ STARTS = 6
 """Starts of the base fit."""
 
 STRONG = 1.2
-"""Chi-squared per residual beyond which every named hypothesis is refitted."""
+"""Chi-squared per residual beyond which every named hypothesis makes a step before the best are refitted."""
 
 AGAIN = 8
 """Times the base fit may begin again where it ended."""
@@ -36,14 +36,19 @@ REFITTED = 9
 TERMS_REFITTED = 4
 """Hypotheses that are refitted each time, named ones and terms out of many: those of the best scores."""
 
+LIKELY = 9
+"""Hypotheses of the best first steps that are refitted where scores alone cannot choose."""
+
 ROUGH = 4
 """Steps of a refit before it is compared with the others."""
 
 SIZES = (1.0, 0.5, 2.0)
 """Sizes of effects with one side only at which refits start, in typical sizes."""
 
-WORTH_GOING_ON = 0.2
-"""Share of the best gain from which a refit is continued to its end."""
+WORTH_GOING_ON = 0.5
+"""Share of the best gain from which a refit is continued to its end, besides those of the best few."""
+
+FEW = 4
 
 ENOUGH = 10.0
 """A hypothesis must beat none by this much of chi-squared beyond its share by the information criterion (BIC), and
@@ -79,6 +84,7 @@ class Refit:
     evidence  the gain over its inflation, less the cost
     size      largest of its parameters' distances from their null, in typical sizes
     p_value   probability of such a fall anywhere in the search, were there nothing to find
+    unvisited what the trials would have to visit for it to be believed, "" where they do
     """
 
     hypothesis: Hypothesis
@@ -89,6 +95,7 @@ class Refit:
     evidence: float
     size: float
     p_value: float
+    unvisited: str = ""
 
     def beats(self, other: Refit) -> bool:
         """Whether this explains so much more that the other is out of the question."""
@@ -231,7 +238,7 @@ def look(
         point = bench.refit(point.names, point.unit[:, None], point.offsets)
         linear = linearise(bench, point, names)
         ranked = scores(linear, hypotheses)
-    refits = _refit_best(bench, point, ranked, linear, quick=False, stop=stop)
+    refits = _believable_first(_refit_best(bench, point, ranked, linear, quick=False, stop=stop))
     finer_gain = None
     if first:
         other = bench.refit(point.names, point.unit[:, None], point.offsets, integrator=finer(point.integrator))
@@ -239,6 +246,16 @@ def look(
     rivals = _rivals(refits) if refits else []
     accepted, reason = _decide(bench, refits, rivals)
     return Step(point, linear, ranked, refits, rivals, accepted, reason, finer_gain)
+
+
+def _believable_first(refits: list[Refit]) -> list[Refit]:
+    """The best that is about what the trials visit in front, unless it is far from as good as the best of all."""
+    for k, refit in enumerate(refits):
+        if refits[0].beats(refit):
+            break
+        if not refit.unvisited:
+            return [refit, *refits[:k], *refits[k + 1 :]]
+    return refits
 
 
 def _go_on(stop: Stop) -> None:
@@ -271,22 +288,35 @@ def _refit_best(
     if quick:
         chosen = named[:3] + terms[:1]
     else:
-        chosen = named[: None if strong else REFITTED] + terms[: (2 if strong else 1) * TERMS_REFITTED]
+        chosen = _likely(bench, point, named, stop) if strong else named[:REFITTED]
+        chosen += terms[: (2 if strong else 1) * TERMS_REFITTED]
     chosen = [s for s in chosen if s.power > 0.0]
     rough = []
     for score in chosen:
         _go_on(stop)
         rough.append(_rough(bench, point, score, strong))
-    most = max((point.chi2 - end.chi2 for end in rough), default=0.0)
+    gains = sorted((point.chi2 - end.chi2 for end in rough), reverse=True)
+    enough = min([WORTH_GOING_ON * gains[0], *gains[FEW - 1 : FEW]]) if gains else 0.0
     chance = None if quick else ChanceScores(linear, [s.hypothesis for s in ranked], bench.options.seed)
     refits = []
     for score, end in zip(chosen, rough, strict=True):
         _go_on(stop)
         gain = point.chi2 - end.chi2
-        if gain >= WORTH_GOING_ON * most and gain > 0.5 * ENOUGH * score.inflation:
+        if gain >= enough and gain > 0.5 * ENOUGH * score.inflation:
             end = bench.refit(end.names, end.unit[:, None], end.offsets)
         refits.append(_judged(bench, point, score, end, chance, n_terms=max(1, len(terms))))
     return sorted(refits, key=lambda refit: refit.cost - refit.gain)
+
+
+def _likely(bench: Workbench, point: Point, named: Sequence[Score], stop: Stop) -> list[Score]:
+    """Of named hypotheses, best scores first, those whose first step from any start explains most, and a few of the
+    best scores."""
+    first = []
+    for score in named:
+        _go_on(stop)
+        first.append(_rough(bench, point, score, True, iterations=1).chi2 if score.power > 0.0 else np.inf)
+    kept = {*np.argsort(first)[:LIKELY].tolist(), *range(REFITTED // 2)}
+    return [score for k, score in enumerate(named) if k in kept]
 
 
 def _starts(bench: Workbench, point: Point, score: Score, strong: bool) -> FloatArray:
@@ -302,14 +332,14 @@ def _starts(bench: Workbench, point: Point, score: Score, strong: bool) -> Float
     return np.column_stack([np.concatenate([point.unit, np.clip(place, 0.0, 1.0)]) for place in places])
 
 
-def _rough(bench: Workbench, point: Point, score: Score, strong: bool) -> Point:
+def _rough(bench: Workbench, point: Point, score: Score, strong: bool, iterations: int = ROUGH) -> Point:
     """A few steps towards the best fit with a hypothesis."""
     excess = max(point.chi2 - bench.problem.n_residuals, 0.0)
     return bench.refit(
         (*point.names, *score.hypothesis.names),
         _starts(bench, point, score, strong),
         point.offsets,
-        max_iterations=ROUGH,
+        max_iterations=iterations,
         tolerance=max(TOLERANCE, 1e-3 * excess),
     )
 
@@ -336,13 +366,25 @@ def _judged(
         gain / score.inflation - cost,
         float(np.max(np.abs(end.unit[len(point.names) :] - null) / size)),
         chance.p_value(evidence(gain / score.inflation, k)) if chance else 1.0,
+        _unvisited(bench, end, hypothesis),
     )
+
+
+def _unvisited(bench: Workbench, end: Point, hypothesis: Hypothesis) -> str:
+    """What the trials would have to visit for a fitted hypothesis to be believed; "" where they do."""
+    if hypothesis.effect.unvisited is None:
+        return ""
+    values = bench.values(end)
+    found = {name.rpartition(".")[2]: values[name] for name in hypothesis.names}
+    return hypothesis.effect.unvisited(found, bench.visited)
 
 
 def _decide(bench: Workbench, refits: Sequence[Refit], rivals: Sequence[Refit]) -> tuple[bool, str]:
     if not refits:
         return False, "no effect applies"
     best = refits[0]
+    if best.unvisited:
+        return False, f"{best.hypothesis.tag} would be believed only where trials visit {best.unvisited}"
     if best.p_value > bench.options.level:
         return False, f"chance brings as much in {best.p_value:.2g} of all searches"
     if best.evidence < ENOUGH:
@@ -362,7 +404,7 @@ def _rivals(refits: Sequence[Refit]) -> list[Refit]:
     return list(found.values())
 
 
-def _without(bench: Workbench, point: Point, hypothesis: Hypothesis) -> Point:
+def without(bench: Workbench, point: Point, hypothesis: Hypothesis) -> Point:
     """The point refitted without one of its hypotheses."""
     kept = [i for i, name in enumerate(point.names) if name not in hypothesis.names]
     return bench.refit([point.names[i] for i in kept], point.unit[kept][:, None], point.offsets)
@@ -371,7 +413,7 @@ def _without(bench: Workbench, point: Point, hypothesis: Hypothesis) -> Point:
 def _drop_superfluous(bench: Workbench, found: Found) -> None:
     """Drop causes that those found later explain."""
     for hypothesis in list(found.causes[:-1]):
-        fewer = _without(bench, found.final, hypothesis)
+        fewer = without(bench, found.final, hypothesis)
         share = len(hypothesis.names) * np.log(bench.problem.n_residuals)
         if fewer.chi2 - found.final.chi2 < share + ENOUGH:
             found.causes.remove(hypothesis)
@@ -387,17 +429,17 @@ def _rivals_of(bench: Workbench, found: Found, k: int) -> list[Refit]:
     near = [r for r in step.refits[1:] if r.hypothesis.tag != cause.tag and r.gain > 0.5 * step.refits[0].gain]
     if len(found.causes) == 1:
         return _rivals(step.refits)
-    without = _without(bench, found.final, cause)
-    best = replace(step.refits[0], point=found.final, gain=without.chi2 - found.final.chi2)
+    fewer = without(bench, found.final, cause)
+    best = replace(step.refits[0], point=found.final, gain=fewer.chi2 - found.final.chi2)
     rivals: dict[str, Refit] = {}
     for rival in near:
-        if set(rival.hypothesis.names) & set(without.names):
+        if set(rival.hypothesis.names) & set(fewer.names):
             continue
         start = rival.point.unit[len(step.base.names) :]
         other = bench.refit(
-            (*without.names, *rival.hypothesis.names), np.concatenate([without.unit, start])[:, None], without.offsets
+            (*fewer.names, *rival.hypothesis.names), np.concatenate([fewer.unit, start])[:, None], fewer.offsets
         )
-        rival = replace(rival, point=other, gain=without.chi2 - other.chi2)
+        rival = replace(rival, point=other, gain=fewer.chi2 - other.chi2)
         if not best.beats(rival):
             rivals.setdefault(rival.hypothesis.tag, rival)
     return list(rivals.values())

@@ -9,7 +9,7 @@ from ..effects import Effect
 from ..units import DEG
 from .intervals import Estimate
 
-_SHOWN = {"rad": (1.0 / DEG, "°"), "rad/s": (1.0 / DEG, "°/s"), "N": (1e-3, " kN")}
+_SHOWN = {"rad": (1.0 / DEG, "°"), "rad/s": (1.0 / DEG, "°/s"), "rad/s^2": (1.0 / DEG, "°/s²"), "N": (1e-3, " kN")}
 
 
 def quantity(value: float, error: float | None, unit: str) -> str:

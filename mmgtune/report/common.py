@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -83,6 +84,16 @@ def cards_of_misfit(data: Mapping[str, Any], results: Sequence[Mapping[str, Any]
     return tuple(cards)
 
 
+def rms_errors(data: Mapping[str, Any], row: Mapping[str, Any]) -> tuple[float | None, float | None]:
+    """Root mean square error of position [m] and heading [deg]; None where it diverged."""
+    parts, sigma = row["L_MSE_by_state"], data["sigma"]
+    squares = {name: number(parts.get(name)) for name in ("x", "y", "psi")}
+    if any(value is None for value in squares.values()):
+        return None, None
+    x, y, psi = ((squares[name] or 0.0) * sigma[name] ** 2 for name in ("x", "y", "psi"))
+    return math.sqrt(x + y), math.degrees(math.sqrt(psi))
+
+
 def picture(figure: Figure, title: str, caption: str, *data: Table) -> Picture:
     """A figure with its caption and data."""
     return Picture(figure.name, title, caption, figure, data)
@@ -148,6 +159,15 @@ def provenance(data: Mapping[str, Any]) -> Section:
     sources = (Prose(("To be cited with these results:",)), Prose(cited, listed=True)) if cited else ()
     table = pairs("provenance-table", "How this run was made", ("what", "value"), known)
     return Section("provenance", "Provenance", (table, *folded, *sources))
+
+
+def made_table(data: Mapping[str, Any], items: Sequence[tuple[str, str]]) -> Table:
+    """How a run was made, of records with little of it."""
+    known = [("command", data.get("command")), ("made", data.get("created")), ("mmgtune", data.get("mmgtune"))]
+    if number(data.get("wall_s")) is not None:
+        known.append(("time taken", f"{shown(data['wall_s'], 3)} s"))
+    rows = [(name, str(text)) for name, text in known if text not in (None, "")]
+    return pairs("provenance-table", "How this was made", ("what", "value"), [*rows, *items])
 
 
 def _option(value: Any) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from . import advice, findings, measures, motion_block
+from . import advice, findings, measures, motion_block, unexplained
 from .blocks import Block, Card, Cell, Commands, Fold, Nothing, Page, Prose, Section, Table, cells
 from .common import assumptions, cards_of_misfit, doubts, generated_banner, picture, provenance
 from .differences import differences
@@ -88,6 +88,7 @@ def build(record: DiagnosisRecord) -> Page:
         warnings=(
             *(("The search was interrupted; this is what was known by then.",) if data.get("interrupted") else ()),
             *doubts(data),
+            *(clean(text) for text in data.get("warnings") or ()),
         ),
         cards=_cards(record),
         sections=tuple(section for section in sections if section is not None),
@@ -193,15 +194,18 @@ def _with_error(value: Mapping[str, Any]) -> tuple[str, str]:
 
 def _causes(data: Mapping[str, Any]) -> Section | None:
     listed = data["causes"] or data["unexplained"]["best_known"]
+    said: list[Block] = [Prose((clean(data["record"]["sentence"]),))] if data.get("record") else []
     if not listed and data["verdict"] == "none":
         looked = len(
             {row["effect"] for row in data["candidates"]} | {row["effect"] for row in data.get("detectability") or ()}
         )
         more = f"{looked} effects were looked at; which of them these trials would have shown stands below."
-        return Section("causes", "Causes", (Nothing("No cause was found.", more if looked else ""),))
+        nothing = Nothing("No cause was found.", more if looked else "")
+        return Section("causes", "Causes", (nothing, *said, *unexplained.traces(data)))
+    blocks: list[Block] = [*said]
     if not listed:
-        return None
-    blocks: list[Block] = []
+        blocks += unexplained.traces(data)
+        return Section("causes", "Causes", tuple(blocks)) if blocks else None
     if not data["causes"]:
         blocks.append(
             Prose(("None of these can be relied on while something unknown is at work besides.",), tone="warning")
@@ -237,6 +241,7 @@ def _causes(data: Mapping[str, Any]) -> Section | None:
         sentence = f"The trial that would: {clean(suggestion['manoeuvre'])}."
         sentence += f" There the explanations differ by up to {apart} m, in all {in_all} deviations of the noise."
         blocks.append(Prose((sentence,)))
+    blocks += unexplained.traces(data)
     return Section("causes", "Causes", tuple(blocks))
 
 
@@ -359,7 +364,7 @@ def _where(data: Mapping[str, Any]) -> Section | None:
     """Where the error lives: by channel and by force, and what is left."""
     evidence = data.get("evidence") or {}
     unknown = data["verdict"] == "unexplained"
-    blocks: list[Block] = [_left(data)]
+    blocks: list[Block] = [*(unexplained.blocks(data) if unknown else ()), _left(data)]
     if "excess_before" in evidence:
         blocks.append(_residuals(evidence, bool(data["causes"])))
     forces = [

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from .blocks import Card, Page, Prose, Section, Table, cells
-from .common import picture
+from .common import picture, rms_errors
 from .learning_page import (
     MEANING,
     ROLES,
@@ -14,7 +14,6 @@ from .learning_page import (
     events_said,
     made_section,
     next_steps,
-    rms_errors,
     scores_table,
     tracks_figure,
     tracks_words,

@@ -9,8 +9,8 @@ from typing import Any
 
 from .advice import shortest
 from .blocks import Block, Card, Commands, Page, Prose, Section, Table, cells
-from .common import picture
-from .learning_page import made_section, rms_errors, track_line
+from .common import picture, rms_errors
+from .learning_page import made_section, track_line
 from .load import Kind
 from .plot import Axis, Figure, Line, Look, Mark, Panel, Rule, model_look
 from .tables import tone

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,7 +9,7 @@ from typing import Any
 
 from .advice import shortest
 from .blocks import Card, Commands, Fold, Page, Prose, Section, Table, cells
-from .common import picture
+from .common import picture, rms_errors
 from .load import Kind
 from .plot import Axis, Dots, Figure, Line, Look, Mark, Panel
 from .tables import pairs
@@ -80,16 +79,6 @@ def _verdict(record: LearningRecord) -> str:
         f"off (root mean square) on {count(len(record.scores['trials']), 'trial')} "
         f"{'that played no part' if record.role == 'test' else 'that chose among their weights'}."
     )
-
-
-def rms_errors(data: Mapping[str, Any], row: Mapping[str, Any]) -> tuple[float | None, float | None]:
-    """Root mean square error of position [m] and heading [deg]; None where it diverged."""
-    parts, sigma = row["L_MSE_by_state"], data["sigma"]
-    squares = {name: number(parts.get(name)) for name in ("x", "y", "psi")}
-    if any(value is None for value in squares.values()):
-        return None, None
-    x, y, psi = ((squares[name] or 0.0) * sigma[name] ** 2 for name in ("x", "y", "psi"))
-    return math.sqrt(x + y), math.degrees(math.sqrt(psi))
 
 
 def _cards(record: LearningRecord) -> tuple[Card, ...]:

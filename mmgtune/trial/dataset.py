@@ -15,6 +15,7 @@ from .index_trial import IndexTrial, has_index_trials, read_index_trials
 from .model import Trial
 from .parquet import id_in, read_trial
 from .pieces import windows
+from .raw_logs import logs_instead
 from .split import SPLIT, Split, read_split
 from .voyage import Voyage
 
@@ -115,9 +116,13 @@ def load_trials(name: str | Path) -> TrialSet:
     Without ``split.toml`` every trial tunes.  Raises TrialError with everything wrong in any of the files.
     """
     path = find_trials(name)
+    if path.is_file() and (log := logs_instead(path)):
+        raise TrialError(log)
     files = files_of(path)
     stated, wrong_there = _stated(path)
     if not files and not stated and not wrong_there:
+        if logs := logs_instead(path):
+            raise TrialError(logs)
         fix = "put *.parquet files there, one a trial, or a *.toml file of stated indices"
         raise TrialError(Problem("the folder has no trial files", str(path), fix=fix))
     trials: dict[str, Trial] = {}
