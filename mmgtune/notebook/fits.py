@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..options import in_flags
 from .ships import measured, simulated
 from .view import Line, Room, Row, View
 
@@ -26,7 +25,7 @@ def fit(result: FitResult) -> View:
     """A row a coefficient: value, standard error, box, and what is to be known of it."""
     return View(
         repr(result), [result.verdict()], [coefficient(row) for row in result.coefficients()],
-        [in_flags(one) for one in result.warnings()], spare=("what", "unit", "before"),
+        result.warnings(), spare=("what", "unit", "before"),
         rooms=lambda: {"": rooms(result)}, motions=lambda: compared(result.compared),
     )  # fmt: skip
 
@@ -83,7 +82,7 @@ def sweep(result: SweepResult) -> View:
     ]
     says = [result.recommended()["sentence"], result.overfitting()["sentence"]]
     return View(
-        repr(result), says, rows, [in_flags(one) for one in result.warnings()],
+        repr(result), says, rows, result.warnings(),
         spare=tuple(reversed(list(result.runs[0].theta))),
         rooms=lambda: {f"a_r {a_r:g}": rooms(run) for a_r, run in zip(result.widths, result.runs, strict=True)},
         motions=lambda: compared(result.runs[result.best].compared),
@@ -102,7 +101,7 @@ def left_out(result: LeftOut) -> View:
         }
         for row in result.rows()
     ]
-    return View(repr(result), [], rows, [in_flags(one) for one in result.warnings])
+    return View(repr(result), [], rows, result.warnings)
 
 
 def posterior(result: Posterior) -> View:

@@ -8,8 +8,8 @@ from ..report.blocks import Block, Cell, Page, Prose, Section, Table
 from .view import View
 from .words import is_number, words
 
-MOST = 40
-"""Rows of a table that are shown; the frame has all."""
+MOST, COLUMNS = 40, 9
+"""Rows and columns of a table that are shown; the frame has all."""
 
 
 def html(view: View) -> str:
@@ -29,6 +29,9 @@ def html(view: View) -> str:
 
 def _table(view: View) -> Table:
     head = [name for k, name in enumerate(view.rows[0]) if not k or any(words(row[name]) for row in view.rows)]
+    for name in view.spare:
+        if len(head) > COLUMNS and name in head:
+            head.remove(name)
     numeric = [k for k, name in enumerate(head) if all(is_number(row[name]) for row in view.rows)]
     rows = [tuple(Cell(inert(words(row[name]))) for name in head) for row in view.rows[:MOST]]
     return Table("mmgtune-table", "", tuple(inert(name) for name in head), tuple(rows), numeric)
