@@ -15,6 +15,7 @@ from .progress import Progress
 
 if TYPE_CHECKING:
     from ..diagnose import Diagnosis
+    from ..diagnose.by_run import ByRun
     from ..diagnose.legs import Difference
 
 
@@ -100,13 +101,22 @@ def _by_voyage(one: Difference) -> list[str]:
     return rows
 
 
+def _of_runs(one: ByRun) -> list[str]:
+    """A line for each run, or group of runs, with its 95 % interval."""
+    rows = one.table()
+    widths = [max(len(row[k]) for row in rows) for k in range(3)]
+    return [
+        "  " + "   ".join(word.ljust(width) for word, width in zip(row, widths, strict=True)).rstrip() for row in rows
+    ]
+
+
 def summary(result: Diagnosis, folder: str, report: bool) -> str:
     """The result as a person wants to read it in a terminal."""
     from ..profile.doubts import in_words
 
     lines = [f"{'hypothesis':<44}{'score':>12}{'gain':>12}{'by chance':>12}{'J test':>10}", ""]
     for row in result.candidates[:12]:
-        label = f"{row.effect} ({', '.join(row.parameters)})"
+        label = row.label
         J = "" if row.J_test is None else f"{row.J_test:.4g}"
         lines.append(f"{label:<44}{row.score:>12.4g}{row.gain:>12.4g}{row.p_value:>12.2g}{J:>10}")
     before, after = result.gain.J
@@ -117,6 +127,8 @@ def summary(result: Diagnosis, folder: str, report: bool) -> str:
             f"J held out ({result.gain.words}; {result.gain.method}): {before:.4g} -> {after:.4g}; "
             f"95 % interval of the share removed {100.0 * low:.1f} to {100.0 * high:.1f} %."
         )
+    for cause in result.causes:
+        lines += ["", *_of_runs(cause.runs)] if cause.runs and not result.interrupted else []
     for one in result.differing:
         lines += ["", one.sentence, *_by_voyage(one)]
     if result.suggestion:

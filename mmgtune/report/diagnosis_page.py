@@ -13,6 +13,7 @@ from .common import assumptions, doubts, generated_banner, picture, provenance
 from .differences import draw_differences
 from .drawing import AFTER, MUTED, Drawn, log_ticks, new_figure
 from .load import DiagnosisRecord, Kind, inputs_of, motions_in
+from .of_runs import of_runs, parameters_of
 from .page import Block, Cell, Commands, Details, Page, Prose, Section, Table, Tile, cells
 from .tables import tone
 from .wording import CHANNELS, NONE, change, clean, number, percent, shown
@@ -166,17 +167,20 @@ def _causes(data: Mapping[str, Any]) -> Section | None:
             interval = f"{_end(low, factor)} … {_end(high, factor)}"
             size = shown(factor * value["value"]) if number(value["value"]) is not None else "∞"
             rows.append(cells(clean(cause["effect"]), clean(name), size, interval, unit, _p(cause["p_value"])))
-        if not cause["parameters"]:
+        if not cause["parameters"] and not cause.get("by_run"):
             rows.append(cells(clean(cause["effect"]), NONE, NONE, NONE, NONE, _p(cause["p_value"])))
-    blocks.append(
-        Table(
-            "causes-table",
-            "Each parameter with its 95 % interval, and the probability that chance brings as much in any search",
-            ("effect", "parameter", "value", "95 % interval", "unit", "by chance"),
-            tuple(rows),
-            (2, 3),
+    if rows:
+        blocks.append(
+            Table(
+                "causes-table",
+                "Each parameter with its 95 % interval, and the probability that chance brings as much in any search",
+                ("effect", "parameter", "value", "95 % interval", "unit", "by chance"),
+                tuple(rows),
+                (2, 3),
+            )
         )
-    )
+    for cause in listed:
+        blocks += of_runs(cause)
     if data["groups"]:
         for group in data["groups"]:
             blocks.append(Prose((f"These trials do not tell apart: {', '.join(map(clean, group))}.",)))
@@ -199,7 +203,7 @@ def _why(data: Mapping[str, Any], drawings: dict[str, Drawn]) -> Section:
         tuple(
             cells(
                 clean(row["effect"]),
-                clean(", ".join(row["parameters"])),
+                clean(", ".join(parameters_of(row))),
                 shown(row["score"], 3),
                 shown(row["gain"], 3) if row["gain"] >= 1.0 else "none",
                 _p(row["p_value"]) if row["gain"] >= 1.0 else NONE,
@@ -232,7 +236,7 @@ def _draw_candidates(rows: Sequence[Mapping[str, Any]]) -> Figure:
     ax = figure.subplots()
     gains = [max(float(row["gain"]), 0.1) for row in rows]
     ax.barh(range(len(rows)), gains, height=0.62, color=[AFTER, *[MUTED] * (len(rows) - 1)])
-    ax.set_yticks(range(len(rows)), [f"{clean(row['effect'])} ({', '.join(row['parameters'])})"[:44] for row in rows])
+    ax.set_yticks(range(len(rows)), [f"{clean(row['effect'])} ({', '.join(parameters_of(row))})"[:44] for row in rows])
     ax.set_ylim(len(rows) - 0.4, -0.6)
     if max(gains) > 30.0 * min(gains):
         ax.set_xscale("log")
