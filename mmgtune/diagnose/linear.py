@@ -115,10 +115,14 @@ class Linear:
                 small[:, i] = self.small[:, self.one_sided.index(name)]
         return [typical, small]
 
-    def chance(self, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def chance(self, Q: FloatArray, own: bool = False) -> tuple[FloatArray, FloatArray]:
         """What noise has along orthonormal directions Q (n_rows, k): by block (n_blocks, k), by trial and draw of the
-        input noise (n_cases, DRAWS, k)."""
-        by_block = np.add.reduceat(Q * self.noise[:, None], self.blocks, axis=0)
+        input noise (n_cases, DRAWS, k).
+
+        own  whether ``noise`` still holds what lies along these directions themselves, which is no noise then
+        """
+        noise = self.noise - Q @ (Q.T @ self.noise) if own else self.noise
+        by_block = np.add.reduceat(Q * noise[:, None], self.blocks, axis=0)
         ends = np.append(self.cases[1:], len(Q))
         by_trial = [self.wander[a:b].T @ Q[a:b] for a, b in zip(self.cases, ends, strict=True)]
         return by_block, np.array(by_trial)

@@ -101,7 +101,7 @@ def _worked_out(linear: Linear, hypothesis: Hypothesis) -> _Between | None:
     if not _shown(columns):
         return None
     Q = basis(columns)
-    chance, shown = linear.chance(Q), Q.T @ columns
+    chance, shown = linear.chance(Q, own=True), Q.T @ columns
     noise = _covariance(*chance)
     hierarchy = Hierarchy(shown, noise, len(hypothesis.variant))
     return _Between(chance, noise, Q.T @ linear.residual, shown, np.linalg.norm(columns, axis=0), hierarchy)
@@ -184,6 +184,9 @@ class ChanceScores:
             if found is None:
                 continue
             drawn = self._drawn(found.chance, signs, pick)
+            # Blocks that were freed of a signature hold less than noise has along it.
+            lacking = np.sqrt(np.maximum(0.0, 1.0 - np.sum(found.chance[0] ** 2, axis=0)))
+            drawn += lacking[:, None] * rng.standard_normal(drawn.shape)
             gain = found.hierarchy.gains(drawn, found.hierarchy.spreads(ROUGHLY)).max(axis=0)
             self.largest = np.maximum(self.largest, _evidence(np.maximum(gain, 0.0), degrees(hypothesis)))
         for hypothesis in (one for one in hypotheses if not one.by):

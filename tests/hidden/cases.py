@@ -38,6 +38,11 @@ class Case:
     noise: Noise
     of_trial: dict[str, dict[str, dict[str, float]]] = field(default_factory=dict)
 
+    @property
+    def hidden(self) -> dict[str, dict[str, float]]:
+        """What there is to be found: effects of all trials, and of single ones without their numbers."""
+        return {**self.effects, **{tag: {} for own in self.of_trial.values() for tag in own}}
+
 
 def _motion(typical: float) -> Sizes:
     """Levels of what changes the motion: about a tenth of the noise, twice, fifteen times it, typical, twice that.
