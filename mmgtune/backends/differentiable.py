@@ -265,7 +265,7 @@ class JaxLanes:
         paired: bool = False,
     ) -> LaneResult:
         """See ``Backend.run``."""
-        n_cases, n_candidates = len(cases), 1 if paired else theta.shape[1]
+        n_cases, n_candidates = len(cases), 1 if paired else theta.shape[-1]
         T = cases.t.shape[1]
         if initial is None:
             initial = np.repeat(cases.initial[:, None], n_candidates, axis=1)
@@ -282,6 +282,8 @@ class JaxLanes:
                 case_of, candidate_of = case[lanes], candidate[lanes]
                 own, log_of = np.unique(case_of, return_inverse=True)
                 of_lane = theta[:, case_of if paired else candidate_of]
+                if theta.ndim == 3:
+                    of_lane = theta[:, case_of, candidate_of]
                 found = march(of_lane, initial[case_of, candidate_of], _given(cases, own, log_of, steps))
                 J, v2, end, shown = (np.asarray(values) for values in found)
                 cost[case, candidate], fastest2[case, candidate], last[case, candidate] = J[:of], v2[:of], end.T[:of]

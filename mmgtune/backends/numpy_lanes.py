@@ -77,7 +77,7 @@ class NumpyLanes:
         paired: bool = False,
     ) -> LaneResult:
         """See ``Backend.run``."""
-        n_cases, n_candidates = len(cases), 1 if paired else theta.shape[1]
+        n_cases, n_candidates = len(cases), 1 if paired else theta.shape[-1]
         shape = (n_cases, n_candidates)
         ship = self.lanes(model, np.ascontiguousarray(lanes_of(theta, n_cases, paired)))
         if initial is None:

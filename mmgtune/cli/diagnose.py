@@ -18,6 +18,7 @@ from .progress import Progress
 
 if TYPE_CHECKING:
     from ..diagnose import Diagnosis
+    from ..diagnose.by_run import ByRun
     from ..diagnose.legs import Difference
 
 
@@ -133,6 +134,15 @@ def _by_voyage(one: Difference) -> list[str]:
     return rows
 
 
+def _of_runs(one: ByRun) -> list[str]:
+    """A line for each run, or group of runs, with its 95 % interval."""
+    rows = one.table()
+    widths = [max(len(row[k]) for row in rows) for k in range(3)]
+    return [
+        "  " + "   ".join(word.ljust(width) for word, width in zip(row, widths, strict=True)).rstrip() for row in rows
+    ]
+
+
 def summary(result: Diagnosis, folder: str, report: bool) -> str:
     """The result as a person wants to read it in a terminal."""
     from ..profile.doubts import in_words
@@ -140,8 +150,7 @@ def summary(result: Diagnosis, folder: str, report: bool) -> str:
     rows = []
     for row in result.candidates[:12]:
         J = "" if row.J_test is None else f"{row.J_test:.4g}"
-        label = f"{row.effect} ({', '.join(row.parameters)})"
-        rows.append((label, f"{row.score:.4g}", f"{row.gain:.4g}", f"{row.p_value:.2g}", J))
+        rows.append((row.label, f"{row.score:.4g}", f"{row.gain:.4g}", f"{row.p_value:.2g}", J))
     head, *rest = c.table(("hypothesis", "score", "gain", "by chance", "J test"), rows, spare=(1,))
     lines = [head, "", *rest]
     before, after = result.gain.J
@@ -156,6 +165,8 @@ def summary(result: Diagnosis, folder: str, report: bool) -> str:
             f"J held out ({result.gain.words}; {result.gain.method}): {before:.4g} -> {after:.4g}; "
             f"95 % interval of the share removed {100.0 * low:.1f} to {100.0 * high:.1f} %."
         )
+    for cause in result.causes:
+        lines += ["", *_of_runs(cause.runs)] if cause.runs and not result.interrupted else []
     if result.whereabouts:
         lines += ["", *result.whereabouts.sentences()]
     for one in result.differing:

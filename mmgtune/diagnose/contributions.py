@@ -18,7 +18,8 @@ from ..fitting.comparison import compare
 from ..fitting.least_squares import fit_offsets
 from ..objective import Objective, cases_of, make_objective
 from ..trial import Trial
-from .gain import INDICES, held_out_fits, problem_on, together
+from .elsewhere import estimated_there, first_part
+from .gain import INDICES, after_first, held_out_fits, problem_on, together
 from .hypotheses import Hypothesis
 from .intervals import Estimate, estimates
 from .search import Found, without
@@ -142,11 +143,12 @@ def _errors(
 ) -> tuple[FloatArray, FloatArray, dict[str, list[float]]]:
     """Squared errors by point and channel (n_points, 6) in variances of white noise, samples by channel (6,), and
     changes of indices from the last point but one to the last."""
-    wide, units = together(bench, points)
+    begins = first_part(points[-1], trials)
+    wide, units = together(bench, [estimated_there(bench, point, trials) for point in points])
     objective = Objective(dict(zip(STATES, bench.sigma, strict=True)), dict.fromkeys(bench.channels, 1.0))
     scaled = problem_on(bench, wide, trials, objective)
     cases = cases_of(list(trials), objective, scaled.model.inputs, scaled.model.draught)
-    counted = cases.weight > 0.0
+    counted = after_first(scaled, begins).cases.weight > 0.0
     errors = np.zeros((len(units), len(STATES)))
     for k, unit in enumerate(units):
         states = scaled.states(unit[:, None], fit_offsets(scaled, unit)[:, None]).states[:, 0]

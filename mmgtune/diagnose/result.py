@@ -13,12 +13,14 @@ from ..fitting.comparison import finite, finite_values
 from ..options import DiagnoseOptions
 from ..profile import ShipProfile, tuned, with_effects
 from ..trial import Coverage
+from .by_run import ByRun
 from .contributions import Contribution
 from .gain import Gain
 from .intervals import Estimate
 from .leftover import Leftover
 from .legs import Difference
 from .record import Record, kind_of, record_of
+from .runs import IN_WORDS
 from .separate import Suggestion
 from .voyages import Choice
 from .whereabouts import Whereabouts
@@ -45,19 +47,26 @@ NEEDED = 0.15
 
 @dataclass(frozen=True, eq=False)
 class Cause:
-    """An effect that was found, with the sizes of its parameters; ``effect`` None for the integration step."""
+    """An effect that was found, with the sizes of its parameters; ``effect`` None for the integration step.
+
+    estimates  of what is the same in all runs
+    runs       what differs between them, None where nothing does
+    """
 
     tag: str
     effect: Effect | None
     estimates: Mapping[str, Estimate]
     p_value: float
     gain_test: float | None
+    runs: ByRun | None = None
 
     @property
     def sentence(self) -> str:
         """The cause in words."""
         if self.effect is None:
             return "The integration step of the simulation is too coarse"
+        if self.runs is not None:
+            return self.runs.sentence
         return self.effect.sentence(parameters_in_words(self.effect, self.estimates))
 
     def to_dict(self) -> dict[str, Any]:
@@ -72,6 +81,7 @@ class Cause:
             },
             "p_value": self.p_value,
             "gain_test": self.gain_test,
+            "by_run": self.runs.to_dict() if self.runs else None,
             "sentence": self.sentence,
         }
 
@@ -90,8 +100,11 @@ class Trace:
 
 @dataclass(frozen=True)
 class Candidate:
-    """A hypothesis that was looked at: score and refit at the first look; J on the test trials; what the trials would
-    have to visit for it to be believed, "" where they do."""
+    """A hypothesis that was looked at: score and refit at the first look; J on the test trials.
+
+    unvisited  what the trials would have to visit for it to be believed, "" where they do
+    by         what has a value of its own: "" for one for all, else a grouping of runs
+    """
 
     effect: str
     parameters: tuple[str, ...]
@@ -100,12 +113,20 @@ class Candidate:
     p_value: float
     J_test: float | None
     unvisited: str = ""
+    by: str = ""
+
+    @property
+    def label(self) -> str:
+        """In a line."""
+        each = f", by {IN_WORDS[self.by]}" if self.by else ""
+        return f"{self.effect} ({', '.join(self.parameters)}{each})"
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
         return {
             "effect": self.effect,
             "parameters": list(self.parameters),
+            "by": self.by or None,
             "score": self.score,
             "gain": self.gain,
             "p_value": self.p_value,
@@ -304,7 +325,15 @@ class Diagnosis(Plotted):
             groups = "; ".join(" or ".join(group) for group in self.groups)
             text = f"These trials cannot tell which it was: {groups}. If the first: {text}"
         them = "it" if len(self.causes) == 1 else "them"
-        return f"{text} Adding {them} removes {_percent(share)} of the error {where}."
+        gained = f"{text} Adding {them} removes {_percent(share)} of the error {where}."
+        if not any(cause.runs for cause in self.causes):
+            return gained
+        if not self.gain.first_part:
+            return f"{gained} The extended profile leaves out what differs between runs."
+        return (
+            f"{gained} What differs between runs was estimated there from the first {100.0 * self.gain.first_part:.0f} "
+            "% of each run, and the rest was judged; the extended profile leaves it out."
+        )
 
     def _voyages(self) -> dict[str, Any] | None:
         """What was looked at of voyages, and what differs from one to the next."""
@@ -325,7 +354,10 @@ class Diagnosis(Plotted):
         return list(dict.fromkeys([*self.profile.cites(), *causes]))
 
     def extended_profile(self) -> ShipProfile:
-        """The profile with re-tuned targets and the causes, each in its own section."""
+        """The profile with re-tuned targets and the causes, each in its own section.
+
+        What differs between runs belongs to these, not to the ship, and is left out.
+        """
         made_by = f"mmgtune {self.provenance['mmgtune']}"
         facts = {
             "made_by": made_by,
@@ -337,6 +369,9 @@ class Diagnosis(Plotted):
             "causes": [cause.tag for cause in self.causes],
             **({"coverage": self.coverage.to_dict()} if self.coverage and self.coverage.to_dict() else {}),
         }
+        left_out = [cause.tag for cause in self.causes if cause.runs]
+        if left_out:
+            facts["left_out"] = left_out
         values: dict[str, dict[str, float]] = {}
         stderr: dict[str, dict[str, float | None]] = {}
         for cause in self.causes:

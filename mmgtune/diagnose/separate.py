@@ -121,6 +121,7 @@ def suggest(bench: Workbench, rivals: Sequence[tuple[str, Point]]) -> Suggestion
 
 
 def _predicted(bench: Workbench, point: Point, motion: Motion, objective: Objective) -> FloatArray:
-    problem = bench.problem_of(point.names, point.integrator)
+    problem = bench.problem_of(point.names, point.integrator).with_groups([frozenset()])
     cases = cases_of([as_trial(bench.model.profile, motion)], objective, problem.model.inputs, problem.model.draught)
+    problem = problem.with_cases(cases)
     return np.asarray(problem.predictor(point.unit[:, None]).predict(cases).states[0, 0])

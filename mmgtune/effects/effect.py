@@ -78,6 +78,9 @@ class Effect(Component):
     on_demand  costs simulation time where it is absent: a search has it only in models that ask for it
     one_of_many  its variants are many of one kind, of which chance finds the best: a search charges for the choice
     of_measured  parameters that act on what was measured around the ship, {parameter: one of ``quantities.KNOWN``}
+    varies     parameters that may differ from run to run: what surrounds the ship, and what a crew changes between
+               runs; variants of these alone are searched for with a value of each run, or group of runs, too
+    subject    what differs then, as the subject of a sentence; the title where empty
     stand_in   parameters that say what there is where that was not measured; none where they are at their null
     beyond     what to say where surroundings are beyond what the effect holds for, from {section.symbol: number} and
                the surroundings of samples (n_samples,) each, of voyages those with the least and the largest of
@@ -99,6 +102,8 @@ class Effect(Component):
     on_demand: bool = False
     one_of_many: bool = False
     of_measured: Mapping[str, str] = field(default_factory=dict)
+    varies: tuple[str, ...] = ()
+    subject: str = ""
     stand_in: tuple[str, ...] = ()
     beyond: Callable[[Mapping[str, float], Surroundings], str] | None = None
     unvisited: Callable[[Mapping[str, float], Visited], str] | None = None
@@ -109,6 +114,8 @@ class Effect(Component):
         unknown = set(self.of_measured.values()) - {*KNOWN}
         if unknown:
             raise TypeError(f"effect '{self.tag}': {', '.join(sorted(unknown))} is not one of {KNOWN}")
+        if set(self.varies) - set(self.fields):
+            raise TypeError(f"effect '{self.tag}': {', '.join(self.varies)} are not all parameters")
         if self.kind != f"effects.{self.tag}":
             raise TypeError(f"effect '{self.tag}': its kind is '{self.kind}', not 'effects.{self.tag}'")
 

@@ -92,6 +92,8 @@ EFFECT = FactorsEffect(
     on_demand=True,
     of_measured={"measured": "depth"},
     stand_in=("depth",),
+    varies=("depth",),
+    subject="depth of the water",
     beyond=beyond,
     changes=("hull.Y_v", "hull.Y_r", "hull.N_v", "hull.N_r"),
 )

@@ -13,6 +13,7 @@ from .common import assumptions, cards_of_misfit, doubts, generated_banner, pict
 from .differences import differences
 from .forces import ship_of
 from .load import DiagnosisRecord, Kind, inputs_of, motions_in
+from .of_runs import of_runs, parameters_of
 from .plot import Axis, Bar, Figure, Panel
 from .tables import tone
 from .wording import (
@@ -218,19 +219,22 @@ def _causes(data: Mapping[str, Any]) -> Section | None:
             interval = f"{_end(low, factor)} … {_end(high, factor)}"
             size = shown(factor * value["value"]) if number(value["value"]) is not None else "∞"
             rows.append(cells(clean(cause["effect"]), clean(name), size, interval, unit, _p(cause["p_value"])))
-        if not cause["parameters"]:
+        if not cause["parameters"] and not cause.get("by_run"):
             rows.append(cells(clean(cause["effect"]), NONE, NONE, NONE, NONE, _p(cause["p_value"])))
-    blocks.append(
-        Table(
-            "causes-table",
-            "What was found, with its size",
-            ("effect", "parameter", "value", "95 % interval", "unit", "by chance"),
-            tuple(rows),
-            (2, 3, 5),
-            (("by chance", "probability that chance alone brings as much in a search like this one"),),
-            cards=True,
+    if rows:
+        blocks.append(
+            Table(
+                "causes-table",
+                "What was found, with its size",
+                ("effect", "parameter", "value", "95 % interval", "unit", "by chance"),
+                tuple(rows),
+                (2, 3, 5),
+                (("by chance", "probability that chance alone brings as much in a search like this one"),),
+                cards=True,
+            )
         )
-    )
+    for cause in listed:
+        blocks += of_runs(cause)
     if data["groups"]:
         for group in data["groups"]:
             blocks.append(Prose((f"These trials do not tell apart: {', '.join(map(clean, group))}.",)))
@@ -256,7 +260,7 @@ def _why(data: Mapping[str, Any]) -> Section | None:
         tuple(
             cells(
                 clean(row["effect"]),
-                clean(", ".join(row["parameters"])),
+                clean(", ".join(parameters_of(row))),
                 shown(row["score"], 3),
                 shown(row["gain"], 3) if row["gain"] >= 1.0 else "none",
                 _p(row["p_value"]) if row["gain"] >= 1.0 else NONE,
@@ -309,7 +313,7 @@ def _candidates_figure(rows: Sequence[Mapping[str, Any]], found: bool) -> Figure
         for k, gain in enumerate(gains)
     )
     ticks = tuple(
-        (float(k), f"{clean(row['effect'])} ({clean(', '.join(row['parameters']))})"[:44]) for k, row in enumerate(rows)
+        (float(k), f"{clean(row['effect'])} ({', '.join(parameters_of(row))})"[:44]) for k, row in enumerate(rows)
     )
     y = Axis(low=len(rows) - 0.4, high=-0.6, ticks=ticks, grid=False)
     x = Axis("fall of chi-squared when refitted [–]", low=least, log=log)

@@ -34,6 +34,8 @@ class Trial(Plotted):
     sealed     whether the file holds a digest of columns and facts, which agreed with them
     ignored    columns of the file that hold no numbers and were left out
     part_of    id of the trial this is a window of, "" for a whole trial
+    begins     when the time of a window begins, in the time of its whole trial [s]
+    group      what it has in common with other runs, such as the day or the loading; "" where the file does not say
     cut_from   name of the run that this and other trials were cut from, "" where it is a run of its own
 
     Raises ValueError where arrays differ in length or ``extra`` repeats a required column.
@@ -60,7 +62,9 @@ class Trial(Plotted):
     sealed: bool = False
     ignored: tuple[str, ...] = ()
     part_of: str = ""
+    begins: float = 0.0
     cut_from: str = ""
+    group: str = ""
 
     def __post_init__(self) -> None:
         shape = (len(self.t),)

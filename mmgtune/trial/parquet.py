@@ -62,6 +62,7 @@ def read_trial(path: Path | str) -> Trial:
         noise={name: float(value) for name, value in facts.get("noise", {}).items()},
         note=facts.get("note", ""),
         cut_from=facts.get("cut_from", ""),
+        group=facts.get("group", ""),
         path=path,
         sha256=held.sha256,
         sealed=DIGEST_KEY in held.metadata,
@@ -94,6 +95,8 @@ def write_trial(trial: Trial, path: Path | str, overwrite: bool = False) -> Path
     }
     if trial.cut_from:
         facts["cut_from"] = trial.cut_from
+    if trial.group:
+        facts["group"] = trial.group
     written = json.dumps(facts).encode()
     schema = pa.schema(fields, metadata={METADATA_KEY: written, DIGEST_KEY: digest(values, written)})
     table = pa.table([pa.array(column) for column in values.values()], schema=schema)

@@ -223,6 +223,19 @@ def test_a_candidate_for_each_case_is_the_same_as_every_case_with_every_candidat
     np.testing.assert_allclose(alone.states[0, 0], paired.states[3, 0, : one.n_samples[0]], rounding, rounding)
 
 
+@pytest.mark.parametrize("backend", ["compiled", "numpy", "jax"])
+@pytest.mark.parametrize("n_candidates", [1, 9])
+def test_candidates_that_differ_from_case_to_case_are_those_of_each_case_alone(suzaku, backend, n_candidates):
+    turns = [turn(suzaku, degrees, seconds) for degrees, seconds in ((20.0, 90.0), (-35.0, 60.0), (10.0, 90.0))]
+    whole = pad([one.t[0] for one in turns], [one.controls[0] for one in turns], [one.initial[0] for one in turns])
+    values = np.random.default_rng(4).uniform(0.9, 1.1, (3, n_candidates)) * 0.017
+    theta = np.stack([suzaku.matrix(["hull.R_0"], own[None]) for own in values], axis=1)
+    together = states(suzaku, whole, theta, backend)
+    for k, one in enumerate(turns):
+        alone = states(suzaku, one, theta[:, k], backend)[0]
+        np.testing.assert_allclose(together[k, :, : one.t.shape[1]], alone, rtol=1e-12, atol=1e-12)
+
+
 def test_weights_at_the_first_sample_are_refused(suzaku):
     cases = turn(suzaku, 20.0)
     weight = np.ones((len(cases.t[0]), 6))

@@ -263,6 +263,8 @@ def test_every_cause_can_be_said_whichever_parameters_were_found(effect):
         shown = {name: f"<{name}>" for name in found}
         if effect.tag == "current" and "north" in found:
             shown = {"speed": "<north>", "towards": "<east>"}
+            if "north_rate" in found:
+                shown |= {"gain": "<north_rate>", "gaining": "<east_rate>"}
         sentence = effect.sentence(shown)
         for variant in effect.variants:
             if set(variant) <= set(found):

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from .plant import WHITE, Noise, sail
+from .plant import NAMES, TUNING, WHITE, Noise, sail
 from .suzaku import HULL_TERMS, PROFILE, TARGETS
 from .unknown import UNKNOWN
 
@@ -36,6 +36,12 @@ class Case:
     effects: dict[str, dict[str, float]]
     seed: int
     noise: Noise
+    of_trial: dict[str, dict[str, dict[str, float]]] = field(default_factory=dict)
+
+    @property
+    def hidden(self) -> dict[str, dict[str, float]]:
+        """What there is to be found: effects of all trials, and of single ones without their numbers."""
+        return {**self.effects, **{tag: {} for own in self.of_trial.values() for tag in own}}
 
 
 def _motion(typical: float) -> Sizes:
@@ -205,6 +211,40 @@ def pair(seed: int, noise: Noise = WHITE) -> Case:
     tags = [str(tag) for tag in rng.choice(list(LADDER), size=2, replace=False)]
     hidden = {tag: LADDER[tag](TYPICAL, rng) for tag in tags}
     return Case(f"pair-{'-and-'.join(tags)}-{seed}", _ship(seed), hidden, seed, noise)
+
+
+RUNS: dict[str, Draw] = {
+    "current": lambda k, rng: _vector(("north", "east"), (0.02, 0.06, 0.15, 0.35, 0.5))(k, rng),
+    "rudder-offset": lambda k, rng: {"angle": float(np.radians((0.05, 0.2, 0.5, 1.0, 2.0)[k]) * rng.standard_normal())},
+    "clock-offset": lambda k, rng: {"seconds": (0.1, 0.3, 0.8, 2.0, 4.0)[k] * float(rng.standard_normal())},
+    "wind": lambda k, rng: _from("speed", (0.5, 2.0, 4.0, 8.0, 12.0))(k, rng),
+    "loading": lambda k, rng: {"draught": 1.0 + (0.005, 0.02, 0.05, 0.1, 0.15)[k] * float(rng.uniform(-1.0, 1.0))},
+}
+"""What differs from trial to trial: an effect of one trial, at five levels."""
+
+
+def of_runs(tag: str, level: int, seed: int, noise: Noise = WHITE) -> Case:
+    """An effect with another value in each trial."""
+    rng = _rng(f"runs-{tag}", seed)
+    own = {name: {tag: RUNS[tag](level, rng)} for name in NAMES}
+    return Case(f"runs-{tag}-{level}-{seed}", _ship(seed), {}, seed, noise, own)
+
+
+def of_one_run(seed: int, noise: Noise = WHITE) -> Case:
+    """A current in one trial of those that are looked at, and in none else."""
+    rng = _rng("one-run", seed)
+    own = {str(rng.choice(TUNING)): {"current": RUNS["current"](TYPICAL, rng)}}
+    return Case(f"one-run-{seed}", _ship(seed), {}, seed, noise, own)
+
+
+def tide(seed: int, noise: Noise = WHITE) -> Case:
+    """A current that changes within runs as it does in time, another in each trial."""
+    rng = _rng("tide", seed)
+    own = {}
+    for name in NAMES:
+        first, gain = (_vector(("north", "east"), (0.2,) * 5)(0, rng) for _ in range(2))
+        own[name] = {"current": {**first, **{f"{way}_rate": value / 400.0 for way, value in gain.items()}}}
+    return Case(f"tide-{seed}", _ship(seed), {}, seed, noise, own)
 
 
 def unknown(k: int, seed: int, noise: Noise = WHITE) -> Case:

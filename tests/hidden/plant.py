@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import astuple, dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -63,6 +64,9 @@ TRIALS: tuple[tuple[str, float, float], ...] = (
 """Id, rudder angle [deg] and longest duration [s]."""
 
 NAMES = tuple(name for name, *_ in TRIALS)
+
+TUNING = ("turn_p10", "turn_m20", "turn_p35", "turn_m40", "zigzag_10")
+"""Trials that causes are looked for on; the others are held out."""
 
 SPLIT = """ship = "suzaku"
 tune = ["turn_p10", "turn_m20", "turn_p35", "turn_m40", "zigzag_10"]
@@ -181,9 +185,9 @@ def current(s, t, x):
     turning = s.unknown_tide_turning * (t / 300.0 - 1.0)
     rotating = 2.0 * np.pi * t / 900.0
     south = s.unknown_current_south / (1.0 + np.exp(np.minimum(x / (0.25 * s.L_pp), 700.0)))
-    north = s.current_north + turning * np.cos(0.8) + s.unknown_current_rotating * np.cos(rotating)
-    east = s.current_east + turning * np.sin(0.8) + s.unknown_current_rotating * np.sin(rotating) + south
-    return north, east
+    north = turning * np.cos(0.8) + s.unknown_current_rotating * np.cos(rotating)
+    east = turning * np.sin(0.8) + s.unknown_current_rotating * np.sin(rotating) + south
+    return s.current_north + s.current_north_rate * t + north, s.current_east + s.current_east_rate * t + east
 
 
 @njit(cache=True)
@@ -354,17 +358,25 @@ def voyage(s, n_0, psi_0, angle, zigzag, steps, more):
 
 
 def sail(
-    ship: Mapping[str, float], effects: Parameters, seed: int, names: Collection[str] = NAMES
+    ship: Mapping[str, float],
+    effects: Parameters,
+    seed: int,
+    names: Collection[str] = NAMES,
+    of_trial: Mapping[str, Parameters] = MappingProxyType({}),
 ) -> dict[str, np.ndarray]:
     """What perfect sensors log of the trials of those names, by id: rows (t, x, y, psi, u, v, r, n, delta) each second.
 
     Revolutions and heading of a trial are drawn from ``seed`` alone, the same whatever the effects.
+
+    of_trial  effects of single trials, beside those of all or instead of them
     """
-    e = complete(effects)
+    of_all = effects
     logs = {}
     for k, (name, degrees, longest) in enumerate(TRIALS):
         if name not in names:
             continue
+        effects = {**of_all, **of_trial.get(name, {})}
+        e = complete(effects)
         lighter = {**e["loading"]}
         lighter["draught"] *= 1.0 - e["unknown-lighter"]["magnitude"] * k / (len(TRIALS) - 1)
         s = coefficients(ship, {**effects, "loading": lighter})
@@ -457,17 +469,24 @@ def noisy(rows: np.ndarray, noise: Noise, rng: np.random.Generator) -> np.ndarra
     return rows + np.column_stack([np.zeros(len(rows)), errors * np.array(astuple(noise)[:8])])
 
 
-def simulate(ship: Mapping[str, float], effects: Parameters, seed: int, noise: Noise = WHITE) -> list[Trial]:
+def simulate(
+    ship: Mapping[str, float],
+    effects: Parameters,
+    seed: int,
+    noise: Noise = WHITE,
+    of_trial: Mapping[str, Parameters] = MappingProxyType({}),
+) -> list[Trial]:
     """The ten trials of a ship with hidden effects.
 
     ship     coefficients overriding the profile's, as {"hull.R_0": 0.02}
     effects  parameters by tag, as {"current": {"north": 0.2, "east": 0.0}}; parameters left out stay null
     seed     of headings, revolutions and noise
+    of_trial effects of single trials, by id, beside those of all or instead of them
     """
     from mmgtune.trial import Trial
 
     trials = []
-    for k, (name, rows) in enumerate(sail(ship, effects, seed).items()):
+    for k, (name, rows) in enumerate(sail(ship, effects, seed, of_trial=of_trial).items()):
         t, x, y, psi, u, v, r, n, delta = noisy(rows, noise, np.random.default_rng([seed, k, 1])).T.copy()
         trials.append(
             Trial(

@@ -114,7 +114,7 @@ NULL: dict[str, dict[str, float]] = {
     "rpm-scale": {"factor": 1.0},
     "flap": {"factor": 1.0},
     "clock-offset": {"seconds": 0.0},
-    "current": {"north": 0.0, "east": 0.0},
+    "current": {"north": 0.0, "east": 0.0, "north_rate": 0.0, "east_rate": 0.0},
     "resistance": {"factor": 1.0, "slope": 0.0},
     "shallow-water": {"depth": np.inf},
     "loading": {"draught": 1.0, "trim": 0.0, "displacement": 1.0},
@@ -173,7 +173,7 @@ def coefficients(ship: Mapping[str, float], effects: Parameters) -> np.void:
     p["gain_stbd"], p["gain_port"] = e["rudder-gain"]["starboard"], e["rudder-gain"]["port"]
     p["governor_lag"] = e["governor-lag"]["time_constant"]
     p["rpm_scale"], p["flap_scale"] = e["rpm-scale"]["factor"], e["flap"]["factor"]
-    p["current_north"], p["current_east"] = e["current"]["north"], e["current"]["east"]
+    p.update({f"current_{name}": value for name, value in e["current"].items()})
     p["wind_speed"], p["wind_direction"] = e["wind"]["speed"], e["wind"]["direction"]
     p["wave_force"], p["wave_direction"] = e["wave-drift"]["force"], e["wave-drift"]["direction"]
     p["side_force"], p["side_moment"] = e["propeller-side-force"]["force"], e["propeller-side-force"]["moment"]

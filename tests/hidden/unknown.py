@@ -12,11 +12,15 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Unknown:
-    """One such effect: how it acts, the magnitude's unit, and magnitudes that are clearly visible but plausible."""
+    """One such effect: how it acts, the magnitude's unit, and magnitudes that are clearly visible but plausible.
+
+    since  the effect of the registry that has come to hold it, "" for none
+    """
 
     acts: str
     unit: str
     magnitudes: tuple[float, ...]
+    since: str = ""
 
 
 def _degrees(*angles: float) -> tuple[float, ...]:
@@ -26,7 +30,9 @@ def _degrees(*angles: float) -> tuple[float, ...]:
 UNKNOWN: dict[str, Unknown] = {
     "unknown-wake-speed": Unknown("wake fraction times 1 + magnitude (1 - U/U0)", "-", (-0.5, -0.35, 0.35)),
     "unknown-wake-side": Unknown("wake fraction times 1 + magnitude tanh(beta_P / 0.1)", "-", (-0.25, 0.15, 0.25)),
-    "unknown-tide-turning": Unknown("current to 046 deg, magnitude (t / 300 s - 1)", "m/s", (0.2, 0.3, 0.45)),
+    "unknown-tide-turning": Unknown(
+        "current to 046 deg, magnitude (t / 300 s - 1)", "m/s", (0.2, 0.3, 0.45), "current"
+    ),
     "unknown-current-rotating": Unknown("current turning clockwise once in 900 s", "m/s", (0.2, 0.3, 0.45)),
     "unknown-current-south": Unknown("current to the east, only south of the start", "m/s", (0.2, 0.3, 0.4)),
     "unknown-gust": Unknown("wind from 230 deg, magnitude sin^2(pi t / 300 s)", "m/s", (9.0, 12.0, 15.0)),
@@ -36,7 +42,9 @@ UNKNOWN: dict[str, Unknown] = {
     "unknown-rpm-hunting": Unknown("unlogged factor 1 + magnitude sin(2 pi t / 60 s) on n", "-", (0.1, 0.15, 0.2)),
     "unknown-roll-yaw": Unknown("yaw moment N' = magnitude x heel of the turning ship", "1/rad", (-0.3, 0.2, 0.4)),
     "unknown-side-force-drift": Unknown("propeller side force times 1 + magnitude |beta|", "1/rad", (3.0, 5.0, 8.0)),
-    "unknown-lighter": Unknown("draught less by the share magnitude, trial after trial", "-", (0.12, 0.18, 0.25)),
+    "unknown-lighter": Unknown(
+        "draught less by the share magnitude, trial after trial", "-", (0.12, 0.18, 0.25), "loading"
+    ),
     "unknown-straightening-yaw": Unknown("gamma_R times 1 + magnitude tanh|r'|", "-", (-0.3, 0.25, 0.4)),
     "unknown-delayed-sway": Unknown("side force magnitude m u r, lagging by 20 s", "-", (0.1, -0.1, 0.18)),
     "unknown-fouling-growing": Unknown("R_0' times 1 + magnitude t / 600 s", "-", (0.4, 0.6, 0.9)),
