@@ -121,7 +121,7 @@ def _diagnose(
         profile=profile,
         options=options,
         causes=tuple(_causes(bench, found, sizes, test)),
-        traces=tuple(_trace(one) for one in traces),
+        traces=tuple(_trace(bench, one) for one in traces),
         contributions=tuple((h.tag, one) for h, one in zip(found.causes, brought, strict=True)),
         groups=groups,
         candidates=tuple(_candidates(bench, found, test)),
@@ -221,8 +221,10 @@ def _causes(bench: Workbench, found: Found, sizes: Mapping[str, Estimate], test:
     return causes
 
 
-def _trace(aside: Aside) -> Trace:
-    cause = Cause(aside.hypothesis.tag, aside.hypothesis.effect, aside.estimates, aside.p_value, None)
+def _trace(bench: Workbench, aside: Aside) -> Trace:
+    one = aside.hypothesis
+    runs = ByRun.of(one.effect, one.variant, one.by, one.groups, bench.trials, aside.estimates) if one.by else None
+    cause = Cause(one.tag, one.effect, {} if one.by else aside.estimates, aside.p_value, None, runs)
     return Trace(cause, aside.contribution)
 
 
@@ -240,14 +242,14 @@ def _candidates(bench: Workbench, found: Found, test: Sequence[Trial]) -> list[C
             r.p_value,
             J_of(bench, r.point, test) if _promising(r, first) else None,
             r.unvisited if _promising(r, first) else "",
-            r.hypothesis.by,
+            by=r.hypothesis.by,
         )
         for r in first.refits
     ]
     refitted = [r.hypothesis for r in first.refits]
     others = sorted((s for s in first.scores if s.hypothesis not in refitted), key=lambda s: -s.score)
     return listed + [
-        Candidate(s.hypothesis.tag, s.hypothesis.variant, s.score, 0.0, 1.0, None, s.hypothesis.by) for s in others
+        Candidate(s.hypothesis.tag, s.hypothesis.variant, s.score, 0.0, 1.0, None, by=s.hypothesis.by) for s in others
     ]
 
 
