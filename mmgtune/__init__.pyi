@@ -34,6 +34,7 @@ from .heading_keeping import study_heading_keeping as study_heading_keeping
 from .heading_keeping import write_heading_study as write_heading_study
 from .importing import import_logs as import_logs
 from .importing import load_map as load_map
+from .importing import propose_map as propose_map
 from .learning import Learned as Learned
 from .learning import LearnedEnsemble as LearnedEnsemble
 from .learning import LearnedHybrid as LearnedHybrid

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from .arrays import FloatArray
 from .components import Component
 from .effects import ClockEffect, CoefficientsEffect, Effect
-from .profile import ShipProfile
+from .given import ShipGiven, ship_of
 
 E = TypeVar("E", bound=Effect)
 
@@ -31,11 +31,12 @@ class Model:
     Simulators take a matrix with one row per number (a table has several) and one column per candidate, so that
     any coefficient can differ between lanes.
 
-    ties  coefficients that follow others
+    profile  object, path or bundled name
+    ties     coefficients that follow others
     """
 
-    def __init__(self, profile: ShipProfile, ties: Sequence[Tie] = ()):
-        self.profile = profile
+    def __init__(self, profile: ShipGiven, ties: Sequence[Tie] = ()):
+        self.profile = profile = ship_of(profile)
         self.ties = tuple(ties)
         self.arrangement = profile.arrangement
         self.parts: tuple[Component, ...] = tuple(profile.sections[kind].component for kind in self.arrangement.kinds)
@@ -45,6 +46,10 @@ class Model:
         numbers = {name: value for section in profile.sections.values() for name, value in section.numbers.items()}
         self.rows: dict[str, int] = {name: row for row, name in enumerate(numbers)}
         self.base: FloatArray = np.array(list(numbers.values()))
+
+    def __repr__(self) -> str:
+        """In a line."""
+        return f"Model({self.profile.id}: {len(self.rows)} coefficients, {len(self.effects)} effects)"
 
     def acting(self, kind: type[E]) -> tuple[E, ...]:
         """The effects that act at one place of the data flow, in the order in which they act."""

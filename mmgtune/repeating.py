@@ -14,7 +14,9 @@ from typing import Any
 import numpy as np
 
 from .arrays import FloatArray
+from .displayed import Brief
 from .errors import TrialError
+from .given import ShipGiven, TrialsGiven, list_of
 from .inputs import INPUTS
 from .manoeuvres import (
     Track,
@@ -25,9 +27,9 @@ from .manoeuvres import (
     zigzag_indices,
 )
 from .model import Model
+from .networks import named_ship
 from .orders import LONGEST_STEP, Helmsman, Sailing, TurningOrder, ZigzagOrder, run_manoeuvres
 from .predictor import PhysicsPredictor, Predictor, as_predictor, stepper_of
-from .profile import ShipProfile
 from .simulation import Motion, ordered_angles, track_if_whole
 from .trial import Trial
 from .units import DEG
@@ -50,8 +52,8 @@ REST = 10.0
 """Samples before the order at least: the order is found by the rudder's rest before it."""
 
 
-@dataclass(frozen=True)
-class Repeated:
+@dataclass(frozen=True, repr=False)
+class Repeated(Brief):
     """A measured turning circle or zigzag beside the model's own.
 
     id          of the trial
@@ -77,10 +79,14 @@ class Repeated:
 
 
 def repeat(
-    ship: Predictor | ShipProfile | Model, trials: Sequence[Trial], *, theta: FloatArray | None = None
+    ship: ShipGiven | Model | Predictor,
+    trials: TrialsGiven | Sequence[Trial],
+    *,
+    theta: FloatArray | None = None,
 ) -> list[Repeated]:
     """Repeat each trial that is a turning circle or a zigzag without gaps; others are left out.
 
+    ship, trials  objects, paths or bundled names; ``ship`` may be any predictor, ``trials`` a list of trials
     theta  (n_rows, n_members) coefficients of a profile or model, its own where None
     -> trial by trial, and of each all members
 
@@ -90,10 +96,10 @@ def repeat(
     The rudder moves as the profile's steering gear does, at once where it has none.  There is no measured wind.
     Any predictor can be steered, see ``predictor.stepper_of``.
     """
-    predictor = as_predictor(ship, theta=theta)
+    predictor = as_predictor(named_ship(ship), theta=theta)
     read: dict[str, _Read] = {"turning": _turn, "zigzag": _zigzag}
     given = []
-    for trial in trials:
+    for trial in list_of(trials):
         track = track_if_whole(trial)
         kind = "other" if track is None else manoeuvre_kind(track)
         if track is not None and kind in read:

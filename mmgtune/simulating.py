@@ -10,6 +10,7 @@ from typing import Any, overload
 
 from .backends import Integrator
 from .circumstances import notes_on
+from .displayed import Plotted, inert
 from .errors import OptionError, Problem
 from .evaluation import TrialRecord, evaluate
 from .files import refuse_existing
@@ -36,7 +37,7 @@ PER_SECOND = 20.0
 
 
 @dataclass(frozen=True, eq=False)
-class Simulated(Sequence[Motion]):
+class Simulated(Plotted, Sequence[Motion]):
     """Simulated runs, a sequence of ``Motion``, with what they are judged by: trial by trial, of each all members.
 
     records  each beside the trial it is of; empty for manoeuvres given as orders
@@ -63,7 +64,7 @@ class Simulated(Sequence[Motion]):
         """In a line."""
         ids = [motion.id for motion in self.motions]
         more = f" and {len(ids) - 4} more" if len(ids) > 4 else ""
-        return f"Simulated({self.predictor.name}: {', '.join(ids[:4])}{more})"
+        return inert(f"Simulated({self.predictor.name}: {', '.join(ids[:4])}{more})")
 
     @property
     def ship(self) -> ShipProfile | None:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ..errors import OptionError, Problem, closest
 from ..options import DiagnoseOptions
+from ..units import in_time
 from . import common as c
+from . import completing
 from .exitcodes import ExitCode
 from .options import RunOptions, split, takes
 from .progress import Progress
@@ -16,6 +19,34 @@ from .progress import Progress
 if TYPE_CHECKING:
     from ..diagnose import Diagnosis
     from ..diagnose.legs import Difference
+
+
+class Left:
+    """About how long a diagnosis still takes.
+
+    seconds  what was reckoned before it began, from and to [s]
+    most     causes that may be looked for
+    """
+
+    def __init__(self, seconds: tuple[float, float], most: int):
+        self.seconds, self.most = seconds, most
+        self.began = time.monotonic()
+        self.looks: list[tuple[str, float]] = []
+
+    def words(self, phase: str) -> str:
+        """While it looks: before the first look is over what was reckoned, then what as many looks would take."""
+        now = time.monotonic()
+        if not phase.startswith("looking for"):
+            return ""
+        if not self.looks or self.looks[-1][0] != phase:
+            self.looks.append((phase, now))
+        done = len(self.looks) - 1
+        if not done:
+            low, high = (seconds - (now - self.began) for seconds in self.seconds)
+            return f"about {in_time(low)} to {in_time(high)} left" if low > 0.0 else f"up to {in_time(high)} left"
+        each = (self.looks[-1][1] - self.looks[0][1]) / done
+        rest = each * max(1, self.most - done) - (now - self.looks[-1][1])
+        return f"up to {in_time(rest)} left"
 
 
 @takes(options=DiagnoseOptions, run=RunOptions)
@@ -30,6 +61,7 @@ def command(
         typer.Option(
             "--fail-on",
             help="Exit 1 on these verdicts: none, found, not-separable, unexplained, interrupted.",
+            autocompletion=completing.words(("none", "found", "not-separable", "unexplained", "interrupted")),
             rich_help_panel=c.OUTPUT,
         ),
     ] = None,
@@ -68,7 +100,8 @@ def command(
     if run.dry_run:
         c.print_plan(plan, folder)
         return
-    with claimed(folder, force=run.force, resume=run.resume), Progress(run.quiet, folder) as progress:
+    left = Left(plan.seconds, options.most).words
+    with claimed(folder, force=run.force, resume=run.resume), Progress(run.quiet, folder, left=left) as progress:
         result = diagnose(
             ship, data, options, hooks=progress.hooks(), folder=folder, resume=run.resume, command=c.command_line()
         )
@@ -104,11 +137,13 @@ def summary(result: Diagnosis, folder: str, report: bool) -> str:
     """The result as a person wants to read it in a terminal."""
     from ..profile.doubts import in_words
 
-    lines = [f"{'hypothesis':<44}{'score':>12}{'gain':>12}{'by chance':>12}{'J test':>10}", ""]
+    rows = []
     for row in result.candidates[:12]:
-        label = f"{row.effect} ({', '.join(row.parameters)})"
         J = "" if row.J_test is None else f"{row.J_test:.4g}"
-        lines.append(f"{label:<44}{row.score:>12.4g}{row.gain:>12.4g}{row.p_value:>12.2g}{J:>10}")
+        label = f"{row.effect} ({', '.join(row.parameters)})"
+        rows.append((label, f"{row.score:.4g}", f"{row.gain:.4g}", f"{row.p_value:.2g}", J))
+    head, *rest = c.table(("hypothesis", "score", "gain", "by chance", "J test"), rows, spare=(1,))
+    lines = [head, "", *rest]
     before, after = result.gain.J
     lines += ["", f"verdict: {result.verdict}", result.sentence()]
     if result.record:

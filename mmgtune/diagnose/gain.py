@@ -10,6 +10,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..backends import STATES
+from ..displayed import Brief
 from ..fitting.comparison import TrialComparison, compare, finite
 from ..fitting.least_squares import fit_offsets
 from ..fitting.problem import FitProblem
@@ -39,8 +40,8 @@ INDICES = ("tactical_diameter_m", "advance_m", "overshoot_1_deg", "overshoot_2_d
 """Indices whose errors are reported."""
 
 
-@dataclass(frozen=True, eq=False)
-class Gain:
+@dataclass(frozen=True, eq=False, repr=False)
+class Gain(Brief):
     """Before and after the causes, on held-out trials with their initial states estimated.
 
     held_out    the test trials; each in turn where there are none; the only one where there is but one

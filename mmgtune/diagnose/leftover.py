@@ -15,6 +15,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..backends import STATES
+from ..displayed import Brief
 from ..physics.frame import to_earth
 from ..trial import Trial
 from .evidence import FEWEST_BLOCKS, share_explained
@@ -42,8 +43,8 @@ BLOCK = 20.0
 """Time [s] residuals are averaged over before asking what explains them."""
 
 
-@dataclass(frozen=True)
-class Leftover:
+@dataclass(frozen=True, repr=False)
+class Leftover(Brief):
     """What is left at a point.
 
     excess     variance of all residuals beyond the white noise of the sensors and what the logged inputs leave open, as

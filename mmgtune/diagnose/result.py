@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from ..displayed import Brief, Plotted
 from ..effects import Effect
 from ..fitting.comparison import finite, finite_values
 from ..options import DiagnoseOptions
@@ -113,8 +114,8 @@ class Candidate:
         }
 
 
-@dataclass(frozen=True)
-class Detectability:
+@dataclass(frozen=True, repr=False)
+class Detectability(Brief):
     """What these trials could tell of a hypothesis, before looking at what they do tell.
 
     share    of its signature that re-tuning does not imitate
@@ -145,7 +146,7 @@ class Detectability:
 
 
 @dataclass(frozen=True, eq=False)
-class Diagnosis:
+class Diagnosis(Plotted):
     """A finished diagnosis.
 
     theta     tuned targets with all causes in place

@@ -43,6 +43,12 @@ BINS = 12
 FOLLOWS = 0.1
 """Share of the variance of a force predicted by one quantity from which it is spoken of."""
 
+ELSEWHERE = ("north", "east", "time")
+"""Quantities that are of the place and the hour, not of the ship."""
+
+NEAR = 0.1
+"""By this much one share must exceed another to be told from it."""
+
 MOST_POINTS = 240
 """Points of a run's history that are kept."""
 
@@ -97,7 +103,7 @@ class Whereabouts:
     samples  by phase, the share of the time
     axes     by axis, the same over all
     follows  by axis and quantity, share of its variance that the quantity alone predicts on stretches left out
-    curves   by axis, the quantity it follows most: bins of it with mean force, its scatter and the noise of a sample
+    curves   by axis, the quantity it follows most: bins of it with mean force, its scatter and the noise
     histories  of the worst runs: time, phase and residual forces
                forces of both are averages over the time of a ship length, over 0.5 rho L d U^2, U the rms speed
     removable  by effect, the largest share of the error beyond noise that it alone removes when refitted
@@ -116,10 +122,9 @@ class Whereabouts:
     def strongest(self) -> tuple[str, str, float] | None:
         """Axis, quantity and share of the force that follows one most, weighed by how it stands out of its noise."""
         found = [
-            (axis, name, share)
+            (axis, name, shares[name])
             for axis, shares in self.follows.items()
-            for name, share in shares.items()
-            if share >= FOLLOWS
+            if (name := _followed(shares)) and shares[name] >= FOLLOWS
         ]
         return max(found, key=lambda one: one[2] * max(self.axes.get(one[0], 0.0), 0.0), default=None)
 
@@ -153,8 +158,12 @@ class Whereabouts:
             )
         best = self.strongest
         if best:
+            shares = self.follows[best[0]]
+            others = [name for name in shares if name != best[1] and shares[name] >= max(FOLLOWS, best[2] - NEAR)]
+            beside = ", ".join(f"{WORDS[name]} {_percent(shares[name])}" for name in others)
             found.append(
-                f"The {AXES[best[0]]} follows the {WORDS[best[1]]}, which alone predicts {_percent(best[2])} of it."
+                f"The {AXES[best[0]]} follows the {WORDS[best[1]]}, which alone predicts {_percent(best[2])} of it"
+                + (f"; nearly as well do: {beside}." if beside else ".")
             )
         elif self.follows:
             found.append("No force follows any single quantity that was logged.")
@@ -180,6 +189,13 @@ class Whereabouts:
             "removable": dict(self.removable),
             "suggestion": self.suggestion,
         }
+
+
+def _followed(shares: Mapping[str, float]) -> str:
+    """The quantity a force follows; place and hour last, as they go with all else that happens in a run."""
+    own = max((name for name in shares if name not in ELSEWHERE), key=lambda one: shares[one], default="")
+    best = max(shares, key=lambda one: shares[one], default="")
+    return own if own and shares[own] >= max(FOLLOWS, shares[best] - NEAR) else best
 
 
 def _percent(share: float) -> str:
@@ -215,7 +231,7 @@ def whereabouts(
     follows = slow.follows()
     curves = {}
     for k, (axis, shares) in enumerate(follows.items()):
-        name = max(shares, key=lambda one: shares[one])
+        name = _followed(shares)
         curves[axis] = {"quantity": name, "share": shares[name], **slow.curve(name, k)}
     worst = sorted(forces, key=lambda one: -runs.get(one[1].run, 0.0))[:RUNS_DRAWN]
     return Whereabouts(
@@ -300,12 +316,17 @@ class _Slow:
             whole = np.concatenate([getattr(found, name) for found, _ in forces])
             return np.column_stack([mean(column) for column in whole.T])
 
+        # Noise within a time scale of the smoothing goes together.
+        fewer = np.concatenate(
+            [np.full(len(one.time), math.sqrt(max(1.0, 0.5 * moment / one.tau))) for one, _ in forces]
+        )
+
         variables = {}
         for name, values in _variables(forces).items():
             turning = name in PERIODIC
             variables[name] = np.arctan2(mean(np.sin(values)), mean(np.cos(values))) if turning else mean(values)
         stretch = np.round(mean(np.concatenate(labels).astype(float))).astype(np.int64)
-        return cls(columns("force"), columns("noise"), columns("unit"), variables, stretch)
+        return cls(columns("force"), columns("noise") / mean(fewer)[:, None], columns("unit"), variables, stretch)
 
     def follows(self) -> dict[str, dict[str, float]]:
         """By axis, the share each quantity predicts of the force, in newtons or in prime values, whichever is more."""

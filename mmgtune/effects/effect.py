@@ -59,7 +59,7 @@ def factor_on_measured(what: str, most: float, typical: float, source: str) -> P
     )
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Effect(Component):
     """An effect: a component of kind "effects.<tag>".  Each place of the data flow has a class of its own below.
 
@@ -126,12 +126,17 @@ class Effect(Component):
         return {name: field for name, field in self.fields.items() if isinstance(field, Parameter)}
 
     @property
+    def of_the_day(self) -> bool:
+        """Whether it is of the trials, not of the ship: current, wind, shallow water, errors of clocks and sensors."""
+        return self.place in ("clock", "filter", "flow", "sensor") or bool(self.of_measured)
+
+    @property
     def plain(self) -> dict[str, Parameter]:
         """Those that stand for the effect where nothing more is said: all but pivots and those beside."""
         return {name: one for name, one in self.parameters.items() if name not in {*self.pivots, *self.besides}}
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class ClockEffect(Effect):
     """When logged inputs acted: its first parameter is a time [s], and simulators sample the log accordingly.
 
@@ -145,6 +150,11 @@ class ClockEffect(Effect):
     of: Role | None = None
     late: Literal["log", "ship"] = "log"
 
+    @property
+    def of_the_day(self) -> bool:
+        """See ``Effect``; a ship that answers late does so on any day."""
+        return self.late == "log"
+
 
 class ActuatorFunction(Protocol):
     """What leaves the actuator of one input at the end of a step of h [s].
@@ -155,7 +165,7 @@ class ActuatorFunction(Protocol):
     def __call__(self, start: Lanes, end: Lanes, before: Lanes, h: Lanes, e: Any, /) -> Lanes: ...
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class ActuatorEffect(Effect):
     """On the way from a logged input to the ship; acts on every input of one role, each by itself."""
 
@@ -170,7 +180,7 @@ class FlowFunction(Protocol):
     def __call__(self, state: State, around: Surroundings, e: Any, /) -> tuple[Lanes, Lanes]: ...
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class FlowEffect(Effect):
     """Water that moves.
 
@@ -188,7 +198,7 @@ class CoefficientsFunction(Protocol):
     def __call__(self, values: Mapping[str, Lanes], e: Any, /) -> Mapping[str, Lanes]: ...
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class CoefficientsEffect(Effect):
     """Other coefficients than the profile's; acts before any run."""
 
@@ -202,7 +212,7 @@ class FactorsFunction(Protocol):
     def __call__(self, around: Surroundings, e: Any, /) -> tuple[Lanes, ...]: ...
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class FactorsEffect(Effect):
     """Coefficients that change on the way, with what is measured around the ship.
 
@@ -225,7 +235,7 @@ class ForceFunction(Protocol):
     def __call__(self, state: State, around: Surroundings, found: Any, components: Any, p: Any, e: Any, /) -> Force: ...
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class ForceEffect(Effect):
     """A further force."""
 
@@ -245,7 +255,7 @@ class StartFunction(Protocol):
     def __call__(self, found: Any, e: Any, /) -> tuple[Lanes, ...]: ...
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class LagEffect(Effect):
     """A force with a memory: any part of the breakdown, remembered in states that the integrator carries along.
 
@@ -264,7 +274,7 @@ class SensorFunction(Protocol):
     def __call__(self, state: State, e: Any, /) -> State: ...
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class SensorEffect(Effect):
     """Between the motion and its log; ``inverse`` leads back."""
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from ..bands import Pooled
 from ..circumstances import notes_on
+from ..displayed import Displayed
 from ..files import write_text
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..model import Model
@@ -25,7 +26,7 @@ from ..repeating import Repeated, document, repeat
 from ..stated import IndexComparison, compare_stated
 from ..threads import blas_on_one_thread
 from ..trial import Coverage, Trial, TrialSet
-from ..validation import L_MSE, TrialScore, by_manoeuvre, improvement, score
+from ..validation import L_MSE, L_MSE_by_state, TrialScore, by_manoeuvre, improvement, score
 from .comparison import finite, finite_values
 from .extending import held_words, settled, tune_trials
 from .journal import finished, journalled
@@ -87,7 +88,7 @@ class BandsLeftOut:
 
 
 @dataclass(frozen=True, eq=False)
-class LeftOut:
+class LeftOut(Displayed):
     """Every tune trial scored by coefficients that were fitted without its run.
 
     thetas   for each part of the runs, values by name in profile units
@@ -144,7 +145,7 @@ class LeftOut:
         groups = {"": (self.before, self.after)}
         after = by_manoeuvre(self.after)
         groups |= {kind: (tuple(of), tuple(after[kind])) for kind, of in by_manoeuvre(self.before).items() if kind}
-        return [_row(kind, old, new) for kind, (old, new) in groups.items()]
+        return [_row(kind, old, new, self.sigma) for kind, (old, new) in groups.items()]
 
     def stated_rms(self) -> dict[str, float]:
         """Root mean square of what stated indices are off by, in tolerances, before and left out."""
@@ -188,7 +189,9 @@ class LeftOut:
         return found
 
 
-def _row(kind: str, before: Sequence[TrialScore], after: Sequence[TrialScore]) -> dict[str, Any]:
+def _row(
+    kind: str, before: Sequence[TrialScore], after: Sequence[TrialScore], sigma: Mapping[str, float]
+) -> dict[str, Any]:
     share, interval = improvement(before, after)
     return {
         "manoeuvre": kind or "all",
@@ -197,8 +200,20 @@ def _row(kind: str, before: Sequence[TrialScore], after: Sequence[TrialScore]) -
         "L_MSE_after": finite(L_MSE(after)),
         "J_before": finite(sum(one.J for one in before)),
         "J_after": finite(sum(one.J for one in after)),
+        **_off(before, sigma, "before"),
+        **_off(after, sigma, "after"),
         "share_removed": finite(share),
         "share_removed_ci95": list(interval) if interval and np.isfinite(interval).all() else None,
+    }
+
+
+def _off(scores: Sequence[TrialScore], sigma: Mapping[str, float], which: str) -> dict[str, float | None]:
+    """Root mean square distance off track [m] and error of heading [deg]; None where it diverged."""
+    squares = {name: part * sigma[name] ** 2 for name, part in L_MSE_by_state(scores).items()}
+    place, heading = (squares.get("x", np.nan) + squares.get("y", np.nan)), squares.get("psi", np.nan)
+    return {
+        f"position_rms_m_{which}": finite(float(np.sqrt(place))),
+        f"heading_rms_deg_{which}": finite(float(np.degrees(np.sqrt(heading)))),
     }
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..circumstances import notes_on
 from ..components import split_name
+from ..displayed import Plotted
 from ..model import Model, Tie
 from ..options import FitOptions
 from ..predictor import words_of
@@ -29,6 +30,9 @@ from .one_sided import coverage_notes, followers
 from .weighing import Weight
 
 SCHEMA = 1
+
+MISSED = 3.0
+"""J of a sample on trials not used for tuning, over that on those that were, from which a fit misses them."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +69,7 @@ class Beside:
 
 
 @dataclass(frozen=True, eq=False)
-class FitResult:
+class FitResult(Plotted):
     """A finished (or interrupted) fit, complete enough to write every output from it.
 
     unit         (n_targets,) position of the tuned values in the box
@@ -121,6 +125,15 @@ class FitResult:
     def tuned_values(self) -> dict[str, float]:
         """The same with those of coefficients that are tied to targets."""
         return self.theta | followers(self.ties, self.theta)
+
+    @property
+    def misses(self) -> bool:
+        """Whether it misses trials not used for tuning: one is worse than before, or J a sample far larger."""
+        tests, tunes = ([one for one in self.compared if one.role == role] for role in ("test", "tune"))
+        if not tests or not tunes:
+            return False
+        each = [sum(one.J["after"] for one in of) / sum(one.trial.n_samples for one in of) for of in (tests, tunes)]
+        return any(one.J["after"] > one.J["before"] for one in tests) or each[0] > MISSED * each[1]
 
     @property
     def coverage(self) -> Coverage:
@@ -301,6 +314,7 @@ class FitResult:
             "J_test": self.J_of("test", "after"),
             "J_tune_before": self.J_of("tune", "before"),
             "J_test_before": self.J_of("test", "before"),
+            "misses": self.misses,
             "theta": finite_values(self.theta),
             "stderr": self.identifiability.stderr,
             "at_bound": self.at_bound,

@@ -14,10 +14,13 @@ conventions     signs and axes a map does not state
 cutting         what is kept of a record, and a pull-out as a trial of its own
 quality         what the result is worth
 importer        all of it
+doubts          what a trial shows of its sensors unasked
+proposing       what columns are, by behaviour and name; proposal: a map of it, tried by the import
 """
 
 from .importer import Imported, import_logs
 from .mapping import LogMap
+from .proposal import Proposal, propose_map
 from .reading_map import load_map, parse_map
 
-__all__ = ["Imported", "LogMap", "import_logs", "load_map", "parse_map"]
+__all__ = ["Imported", "LogMap", "Proposal", "import_logs", "load_map", "parse_map", "propose_map"]

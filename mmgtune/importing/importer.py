@@ -7,7 +7,7 @@ import json
 import re
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +23,7 @@ from . import conventions, motion
 from .cleaning import without_spikes
 from .clock import put_right
 from .cutting import kept, pull_out
+from .doubts import fix_in_map
 from .forms import form_of, refuse_binary
 from .geodesy import not_mirrored, with_local_positions
 from .gridding import FEWEST, Grid, on_grid, stretches
@@ -32,6 +33,7 @@ from .matlab import read_matlab
 from .means import with_mean
 from .nmea import read_nmea
 from .parquet_log import read_parquet
+from .proposing.elsewhere import yaw_rate_elsewhere
 from .quality import quality_of, quality_text, same_units_throughout
 from .quantities import MEASURED
 from .record import Record, record_of, time_in_seconds
@@ -256,8 +258,13 @@ def _of_record(record: Record, log_map: LogMap, step: float | None) -> list[Piec
     if grid.bridged:
         notes.append(f"holes of up to {log_map.gap:g} steps in inputs were bridged linearly")
     notes += motion.at_midship(columns, log_map)
+    if log_map.antenna is None and log_map.point is None:
+        notes.append("positions are taken to be of midship, as the map has no [antenna]")
     notes += motion.with_yaw_rate(grid.t, columns)
-    notes += conventions.settle(grid.t, columns, log_map, measured, where)
+    try:
+        notes += conventions.settle(grid.t, columns, log_map, measured, where)
+    except conventions.NoYawRate as error:
+        raise _elsewhere(error, record.path, log_map) from error
     notes += motion.over_ground(columns, log_map)
     notes += motion.with_velocities(grid.t, columns)
     notes += with_mean(columns, "n", log_map)
@@ -294,6 +301,19 @@ def _of_record(record: Record, log_map: LogMap, step: float | None) -> list[Piec
     return found
 
 
+def _elsewhere(error: LogError, log: Path, log_map: LogMap) -> LogError:
+    """What is wrong with a record whose yaw rate is none: where it is instead, rather than a question for its sign."""
+    found = yaw_rate_elsewhere(log, log_map)
+    if found is None:
+        return error
+    said, fix = found
+    first, *others = error.problems
+    column = log_map.sources["r"].column
+    shown = f"'{column}'" if isinstance(column, str) else f"column {column}"
+    what = f"{shown} is not the yaw rate, which the map says it is"
+    return LogError(Problem(what, first.where, f"{first.why}; {said}", fix), *others)
+
+
 def _split(piece: Piece) -> list[Piece]:
     """A turning circle and its pull-out, where it has one."""
     first = pull_out(piece.columns["t"], piece.columns)
@@ -324,7 +344,7 @@ def _trial(id: str, piece: Piece, notes: list[str], log_map: LogMap, cut_from: s
     notes = [note.replace(str(record.path), record.path.name) for note in notes]
     problems = unusable(columns, str(record.path))
     if problems:
-        raise LogError(*problems)
+        raise LogError(*(replace(one, fix=fix_in_map(one.fix, one.where)) for one in problems))
     kept = {ATTRIBUTES.get(name, name): values for name, values in columns.items()}
     required: Any = {name: kept.pop(name) for name in ATTRIBUTES.values()}
     for name in directions(kept):

@@ -9,6 +9,8 @@ from pathlib import Path
 from ..inputs import INPUTS
 from ..trial.schema import MAIN_INPUTS
 
+ASKS = "?"
+"""How a value begins that is a question to who uses the map."""
 FORMATS = ("csv", "parquet", "nmea", "xlsx", "mat")
 TIME_FORMATS = ("number", "iso", "clock", "date", "dmy", "mdy", "ymd")
 PROJECTIONS = ("transverse-mercator", "azimuthal-equidistant")
@@ -93,7 +95,8 @@ class Cut:
     """The part of the record to keep: seconds from its start, and what to begin with.
 
     start, end  [s], None for the record's own; an end below 0 counts back from the record's
-    begin       "first-rudder-order", or None
+    begin       "first-rudder-order", "first-order" (without the head in which propellers and rudders all stand at
+                zero), or None
     lead        seconds kept before that order
     to          "last-order": without the tail in which propellers and rudders all stand at zero; or None
     split       "pull-out": what follows a turn's rudder order becomes a trial of its own; or None

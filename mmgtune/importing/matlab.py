@@ -64,13 +64,9 @@ def read_matlab(path: Path, log_map: LogMap) -> Table:
 def columns_of(path: Path, variable: str = "") -> Columns:
     """The columns in a file: of a structure or matrix, or the variables that are equally long vectors.
 
-    Raises LogError where the file is damaged, of another version, or holds none.
+    Raises LogError where the file cannot be read, or holds none.
     """
-    try:
-        return _columns(path, variables(path), variable)
-    except (_Damaged, struct.error, zlib.error, ValueError) as error:
-        fix = 'save it again with save("file.mat", "-v7")'
-        raise LogError(Problem("the MATLAB file cannot be read", str(path), str(error)[:200], fix)) from error
+    return _columns(path, variables(path), variable)
 
 
 def _columns(path: Path, held: dict[str, Any], variable: str) -> Columns:
@@ -119,7 +115,7 @@ def _spread(held: dict[str, Any]) -> dict[str, Any]:
 def variables(path: Path) -> dict[str, Any]:
     """Arrays of numbers (of any shape), lists of texts and structures of them by name; words for anything else.
 
-    Raises LogError for files of version 4 and 7.3, and where there is more in it than may be.
+    Raises LogError where it is damaged, for files of version 4 and 7.3, and where there is more in it than may be.
     """
     data = content(path, MATLAB_BYTES, LogError)
     fix = 'save it again with save("file.mat", "-v7")'
@@ -129,8 +125,10 @@ def variables(path: Path) -> dict[str, Any]:
     mark = data[126:128]
     if len(data) < HEADER or mark not in (b"IM", b"MI"):
         raise LogError(Problem("the file is no MATLAB file of version 5 to 7", str(path), fix=fix))
-    reader = _Reader("<" if mark == b"IM" else ">")
-    return reader.variables(data)
+    try:
+        return _Reader("<" if mark == b"IM" else ">").variables(data)
+    except (_Damaged, struct.error, zlib.error, ValueError) as error:
+        raise LogError(Problem("the MATLAB file cannot be read", str(path), str(error)[:200], fix)) from error
 
 
 class _Reader:

@@ -14,6 +14,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..components import split_name
+from ..displayed import Brief
 from ..effects import Effect, Parameter, discrepancy, find_effect
 from ..errors import Problem, ProfileError
 from ..model import Model
@@ -59,8 +60,8 @@ GEOMETRY = ("D_P", "A_R", "H_R", "x_R_", "flap_step", "phi_switch", "phi_min", "
 SOURCE = "room for what the profile leaves out"
 
 
-@dataclass(frozen=True, eq=False)
-class Room:
+@dataclass(frozen=True, eq=False, repr=False)
+class Room(Brief):
     """What may differ, and by how much, as independent normal distributions cut at bounds.
 
     profile    with every effect that there is room for

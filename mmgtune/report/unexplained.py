@@ -4,21 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from .blocks import Block, Fold, Prose, Table, cells
 from .common import picture
-from .drawing import AFTER, BEFORE, BOX, GRID, INK, MUTED, Drawn, new_figure
-from .page import Block, Details, Prose, Section, Table, cells
-from .wording import CHANNELS, NONE, clean, index_words, number, shown
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from .plot import Area, Axis, Bar, Color, Dots, Figure, Line, Look, Mark, Panel, Rule
+from .wording import CHANNELS, NONE, clean, index_words, number, share, shown
 
 _AXES = {"X": "surge force X\u2032", "Y": "sway force Y\u2032", "N": "yaw moment N\u2032"}
-_COLOURS = {"X": INK, "Y": AFTER, "N": BEFORE}
+_COLOURS: dict[str, Color] = {"X": "ink", "Y": "after", "N": "before"}
+_DASHES = {"X": Look("ink", 1.2), "Y": Look("after", 1.2, "dash"), "N": Look("before", 1.2, "dot")}
 _PHASES = {"before": "before the first order", "entry": "entry", "checking": "checking", "steady": "steady"}
 _QUANTITIES = {
     "heading": ("heading [deg]", 180.0 / math.pi),
@@ -50,11 +47,11 @@ def traces(data: Mapping[str, Any]) -> list[Block]:
     rows = []
     for trace in listed:
         found = trace["contribution"]
-        share = found["share_held_out"]
+        removed = found["share_held_out"]
         rows.append(
             cells(
                 clean(trace["sentence"]),
-                NONE if share is None else f"{100.0 * share:.2g} %",
+                NONE if removed is None else f"{100.0 * removed:.2g} %",
                 _largest(found["error_over_noise"], 100.0, " %", {name: one.words for name, one in CHANNELS.items()}),
                 _largest(found["index_changes"], 1.0, "", {}),
             )
@@ -67,7 +64,7 @@ def traces(data: Mapping[str, Any]) -> list[Block]:
         tuple(rows),
         (1,),
     )
-    return [Details(f"Traces ({len(listed)}), in no profile", (table,))]
+    return [Fold(f"Traces ({len(listed)}), in no profile", (table,))]
 
 
 def _largest(values: Mapping[str, float], factor: float, unit: str, words: Mapping[str, str]) -> str:
@@ -81,53 +78,36 @@ def _largest(values: Mapping[str, float], factor: float, unit: str, words: Mappi
     return f"{clean(told)} {shown(factor * values[name], 2)}{unit or (' ' + of)}"
 
 
-def section(data: Mapping[str, Any], drawings: dict[str, Drawn]) -> Section | None:
-    """Where an error lives that nothing explains; None where something does, and for records of older versions."""
+def blocks(data: Mapping[str, Any]) -> list[Block]:
+    """Where an error lives that nothing explains; nothing where something does, and for records of older versions."""
     found = data.get("whereabouts")
     if not found:
-        return None
-    blocks: list[Block] = [Prose(tuple(clean(text) for text in found["sentences"]), listed=True)]
-
-    def draw(name: str, title: str, caption: str, figure: Any, *tables: Table) -> None:
-        drawings[name] = Drawn(name, title, figure)
-        blocks.append(picture(drawings[name], title, caption, *tables))
-
+        return []
+    made: list[Block] = [Prose(tuple(clean(text) for text in found["sentences"]), listed=True)]
     if found["runs"]:
-        draw(
-            "where-and-when",
-            "Which runs, and when in them",
-            "Share of the error of the motion beyond noise by run; residual force over its noise by part of a run.",
-            lambda: _draw_where(found),
-            _phase_table(found),
-        )
+        caption = "Share of the error beyond noise by run; residual force over its noise by part of a run."
+        made.append(picture(_where(found), "Which runs, and when in them", caption, _phase_table(found)))
     if found["curves"]:
-        draw(
-            "against-what",
-            "Residual forces against what they follow most",
-            "Averages over a ship length: mean in bins of equal numbers, their scatter (bars), and what noise of the "
-            "sensors makes of a single sample (band).",
-            lambda: _draw_curves(found["curves"]),
-            _follow_table(found),
+        caption = (
+            "Averages over a ship length: mean in bins of equal numbers, their scatter (upright lines), and what noise "
+            "of the sensors makes of such an average (band)."
         )
+        title = "Residual forces against what they follow most"
+        made.append(picture(_curves(found["curves"]), title, caption, _follow_table(found)))
     if found["histories"]:
-        draw(
-            "force-histories",
-            "Residual forces over time in the worst runs",
+        caption = (
             "Averaged over the time of a ship length; the yaw moment ten times. Shaded: checking, the rudder against "
-            "the turn. Dotted: rudder angle, on the scale of the right.",
-            lambda: _draw_histories(found["histories"]),
+            "the turn."
         )
+        title = "Residual forces over time in the worst runs"
+        made.append(picture(_histories(found["histories"]), title, caption))
     if found["removable"]:
-        rows = list(found["removable"].items())[:_BARS]
-        draw(
-            "removable",
-            "What each known cause would remove at most",
-            "Each refitted alone, with targets and initial states; together they remove less than the sum.",
-            lambda: _draw_bars(
-                [name for name, _ in rows], [share for _, share in rows], "share of the error beyond noise"
-            ),
-        )
-    return Section("whereabouts", "Where the error lives", tuple(blocks))
+        names, shares = zip(*list(found["removable"].items())[:_BARS], strict=True)
+        title = "What each known cause would remove at most"
+        drawn = Figure("removable", title, (_bars(names, shares, "share of the error beyond noise"),))
+        caption = "Each refitted alone, with targets and initial states; together they remove less than the sum."
+        made.append(picture(drawn, title, caption))
+    return made
 
 
 def _phase_table(found: Mapping[str, Any]) -> Table:
@@ -138,7 +118,7 @@ def _phase_table(found: Mapping[str, Any]) -> Table:
         tuple(
             cells(
                 _PHASES.get(name, clean(name)),
-                f"{100.0 * found['share_of_time'][name]:.0f} %",
+                share(found["share_of_time"][name]),
                 *(shown(of.get(axis), 3) for axis in _AXES),
             )
             for name, of in found["phases"].items()
@@ -154,89 +134,80 @@ def _follow_table(found: Mapping[str, Any]) -> Table:
         "Share of the variance of each residual force that one quantity alone predicts, on stretches left out",
         ("force", *(_QUANTITIES.get(name, (clean(name), 1.0))[0].partition(" [")[0] for name in names)),
         tuple(
-            cells(_AXES.get(axis, axis), *(f"{100.0 * shares[name]:.0f} %" for name in names))
+            cells(_AXES.get(axis, axis), *(share(shares[name]) for name in names))
             for axis, shares in found["follows"].items()
         ),
         tuple(range(1, 1 + len(names))),
     )
 
 
-def _draw_where(found: Mapping[str, Any]) -> Figure:
+def _where(found: Mapping[str, Any]) -> Figure:
     runs = list(found["runs"].items())[:_BARS]
-    figure = new_figure(7.6, max(0.27 * len(runs), 1.6) + 0.9)
-    left, right = figure.subplots(1, 2)
-    _bars(left, [name for name, _ in runs], [share for _, share in runs], "share of the error beyond noise")
+    names, shares = zip(*runs, strict=True)
+    panels = [_bars(names, shares, "share of the error beyond noise", "By run")]
     phases = found["phases"]
-    width = 0.26
-    for k, (axis, words) in enumerate(_AXES.items()):
-        sizes = [math.sqrt(max(number(of.get(axis)) or 0.0, 0.0)) for of in phases.values()]
-        at = np.arange(len(sizes)) + (k - 1) * width
-        right.barh(at, sizes, height=width, color=_COLOURS[axis], label=words)
-    right.set_yticks(range(len(phases)), [_PHASES.get(name, name) for name in phases])
-    right.set_ylim(len(phases) - 0.4, -0.6)
-    right.set_xlabel("residual force over its noise")
-    right.grid(axis="y", visible=False)
     if phases:
-        figure.legend(loc="outside upper right", ncols=3)
-    return figure
+        marks: list[Mark] = []
+        for k, axis in enumerate(_AXES):
+            for at, of in enumerate(phases.values()):
+                size = math.sqrt(max(number(of.get(axis)) or 0.0, 0.0))
+                middle = at + 0.26 * (k - 1)
+                marks.append(Bar((0.0, size), (middle - 0.12, middle + 0.12), _COLOURS[axis]))
+        ticks = tuple((float(k), _PHASES.get(name, clean(name))) for k, name in enumerate(phases))
+        y = Axis(low=len(phases) - 0.4, high=-0.6, ticks=ticks, grid=False)
+        x = Axis("residual force over its noise [–]", low=0.0)
+        panels.append(Panel(tuple(marks), x, y, "By part of a run", shape=-_height(len(runs))))
+    legend = tuple((words, (_COLOURS[axis], 1.0)) for axis, words in _AXES.items())
+    return Figure("where-and-when", "Which runs, and when in them", tuple(panels), legend if phases else ())
 
 
-def _draw_bars(names: Sequence[str], shares: Sequence[float], what: str) -> Figure:
-    figure = new_figure(7.6, 0.27 * len(names) + 0.8)
-    _bars(figure.subplots(), names, shares, what)
-    return figure
+def _height(n_rows: int) -> float:
+    """Pixels of a panel of bars."""
+    return max(25.0 * n_rows, 100.0) + 60.0
 
 
-def _bars(ax: Axes, names: Sequence[str], shares: Sequence[float], what: str) -> None:
-    ax.barh(
-        range(len(names)), [100.0 * share for share in shares], height=0.62, color=[AFTER, *[MUTED] * (len(names) - 1)]
+def _bars(names: Sequence[str], shares: Sequence[float], what: str, title: str = "") -> Panel:
+    marks = tuple(
+        Bar((0.0, 100.0 * of), (k - 0.31, k + 0.31), "after" if k == 0 else "muted", 1.0 if k == 0 else 0.7)
+        for k, of in enumerate(shares)
     )
-    ax.set_yticks(range(len(names)), [clean(name)[-28:] for name in names])
-    ax.set_ylim(len(names) - 0.4, -0.6)
-    ax.set_xlim(0.0, None)
-    ax.set_xlabel(f"{what} [%]")
-    ax.grid(axis="y", visible=False)
+    ticks = tuple((float(k), clean(name)[-28:]) for k, name in enumerate(names))
+    y = Axis(low=len(names) - 0.4, high=-0.6, ticks=ticks, grid=False)
+    return Panel(marks, Axis(f"{what} [%]", low=0.0), y, title, shape=-_height(len(names)))
 
 
-def _draw_curves(curves: Mapping[str, Mapping[str, Any]]) -> Figure:
-    figure = new_figure(7.6, 2.7)
-    for ax, (axis, curve) in zip(figure.subplots(1, len(curves), squeeze=False)[0], curves.items(), strict=True):
+def _curves(curves: Mapping[str, Mapping[str, Any]]) -> Figure:
+    panels = []
+    for axis, curve in curves.items():
         title, factor = _QUANTITIES.get(curve["quantity"], (clean(curve["quantity"]), 1.0))
         at = factor * np.array(curve["at"], dtype=float)
         mean, spread, noise = (_MILLI * np.array(curve[name], dtype=float) for name in ("mean", "spread", "noise"))
-        ax.fill_between(at, -noise, noise, color=BOX, linewidth=0.0)
-        ax.axhline(0.0, color=GRID, linewidth=1.0)
-        ax.errorbar(
-            at, mean, spread, color=_COLOURS.get(axis, INK), linewidth=1.4, marker="o", markersize=3.0, elinewidth=0.6
-        )
-        ax.set_xlabel(title)
-        ax.set_title(f"{_AXES.get(axis, axis)} \u00b7 1000 ({100.0 * max(curve['share'], 0.0):.0f} %)")
-    return figure
+        look = Look(_COLOURS.get(axis, "ink"), 1.4, "", "o")
+        marks: list[Mark] = [Area(at, -noise, noise), Rule(0.0, Look("muted", 1.0), upright=False)]
+        for place, middle, wide in zip(at, mean, spread, strict=True):
+            ends = (float(middle - wide), float(middle + wide))
+            marks.append(Line((float(place), float(place)), ends, Look(look.color, 0.8)))
+        marks += [Line(at, mean, Look(look.color, 1.4)), Dots(at, mean, look)]
+        words = f"{_AXES.get(axis, clean(axis))} · 1000 ({share(curve['share'])} of it)"
+        panels.append(Panel(tuple(marks), Axis(title), Axis(), words))
+    return Figure("against-what", "Residual forces against what they follow most", tuple(panels))
 
 
-def _ten_times(axis: str, words: str) -> str:
-    return f"{words} \u00d7 10" if axis == "N" else words
-
-
-def _draw_histories(histories: Sequence[Mapping[str, Any]]) -> Figure:
-    figure = new_figure(7.6, 1.7 * len(histories) + 0.5)
-    for k, (ax, run) in enumerate(zip(figure.subplots(len(histories), 1, squeeze=False)[:, 0], histories, strict=True)):
+def _histories(histories: Sequence[Mapping[str, Any]]) -> Figure:
+    """Forces, and under each run its rudder."""
+    panels = []
+    for run in histories:
         t = np.array(run["t"], dtype=float)
+        forces = {axis: (10.0 if axis == "N" else 1.0) * _MILLI * np.array(run[axis], dtype=float) for axis in _AXES}
+        largest = 1.15 * max([float(np.nanquantile(np.abs(force), 0.98)) for force in forces.values()]) or 1.0
         against = np.array([phase == "checking" for phase in run["phase"]])
-        largest = 0.0
-        for axis, words in _AXES.items():
-            force = (10.0 if axis == "N" else 1.0) * _MILLI * np.array(run[axis], dtype=float)
-            largest = max(largest, float(np.quantile(np.abs(force), 0.98)))
-            ax.plot(t, force, color=_COLOURS[axis], linewidth=1.0, label=_ten_times(axis, words) if k == 0 else None)
-        largest = largest or 1.0
-        ax.set_ylim(-1.15 * largest, 1.15 * largest)
-        ax.fill_between(t, -1.15 * largest, 1.15 * largest, where=against.tolist(), color=BOX, linewidth=0.0)
-        rudder = ax.twinx()
-        rudder.plot(t, run["rudder_deg"], color=MUTED, linewidth=0.9, linestyle=(0, (1.2, 1.6)))
-        rudder.set_ylabel("rudder [deg]")
-        rudder.grid(visible=False)
-        ax.set_title(clean(run["trial"]))
-        ax.set_ylabel("thousandths")
-    ax.set_xlabel("time [s]")
-    figure.legend(loc="outside upper right", ncols=3)
-    return figure
+        shade = np.where(against, largest, np.nan)
+        marks: list[Mark] = [Area(t, -shade, shade)]
+        marks += [Line(t, force, _DASHES[axis]) for axis, force in forces.items()]
+        y = Axis("force · 1000 [–]", low=-largest, high=largest)
+        panels.append(Panel(tuple(marks), Axis("time [s]"), y, clean(run["trial"])))
+        rudder = Line(t, np.array(run["rudder_deg"], dtype=float), Look("muted", 1.2))
+        panels.append(Panel((rudder,), Axis("time [s]"), Axis("rudder [deg]"), f"{clean(run['trial'])}: rudder"))
+    legend = tuple((f"{words} × 10" if axis == "N" else words, _DASHES[axis]) for axis, words in _AXES.items())
+    title = "Residual forces over time in the worst runs"
+    return Figure("force-histories", title, tuple(panels), legend, 2)

@@ -15,8 +15,11 @@ from ..arrays import FloatArray
 from ..effects import Visited
 from ..units import DEG
 
+SLOW = 0.2
+"""Speed below which drift and r L / U are not asked for, as a share of the largest: near rest they may be anything."""
+
 AT_REST = 0.02
-"""Speed below which drift and r L / U are not asked for, as a share of the largest."""
+"""Speed that is hardly any, as a share of the largest."""
 
 ONE_SIDE = 0.25
 """A side is visited where rudder or turning go to it by more than this share of what they go to the other."""
@@ -64,7 +67,7 @@ def _samples(trial: Sailed, L_pp: float) -> FloatArray:
     seconds = np.minimum(seconds, 2.0 * float(np.median(seconds)))  # a pause of the log is no time spent anywhere
     speed = np.hypot(trial.u, trial.v_m)
     fastest = float(np.max(speed[np.isfinite(speed)], initial=0.0))
-    under_way = speed > max(AT_REST * fastest, 1e-9)
+    under_way = speed > max(SLOW * fastest, 1e-9)
     rate = np.where(under_way, r * L_pp / np.where(under_way, speed, 1.0), np.nan)
     drift = np.where(under_way, np.arctan2(-trial.v_m, trial.u), np.nan)
     return np.column_stack([seconds, trial.delta, speed, trial.u, rate, drift, n])

@@ -22,6 +22,8 @@ from tests.runs import driven, measured, turn
 
 jax = pytest.importorskip("jax")
 
+pytestmark = pytest.mark.slow(2)  # each compiles something
+
 
 EULER, RK4 = Integrator("euler"), Integrator("rk4")
 

@@ -8,7 +8,7 @@ import pytest
 
 from mmgtune.diagnose.evidence import ResidualForces
 from mmgtune.diagnose.evidence.forces import time_since_order
-from mmgtune.diagnose.whereabouts import PHASES, REPEAT, TELLS, phases_of, whereabouts
+from mmgtune.diagnose.whereabouts import PHASES, REPEAT, TELLS, Whereabouts, phases_of, whereabouts
 from mmgtune.trial import load_trials
 from mmgtune.units import DEG
 
@@ -113,3 +113,27 @@ def test_a_measured_wind_is_among_what_forces_may_follow():
     axis, quantity, share = whereabouts(forces, {}, {}).strongest
     assert (axis, quantity) == ("N", "wind_angle")
     assert share > 0.8
+
+
+@pytest.mark.parametrize(
+    ("shares", "followed"),
+    [
+        ({"drift": 0.34, "east": 0.36}, "drift"),
+        ({"drift": 0.2, "east": 0.36}, "east"),
+        ({"drift": 0.01, "time": 0.05}, "time"),
+        ({"drift": 0.5, "yaw_rate": 0.6}, "yaw_rate"),
+        ({"heading": 0.02, "east": 0.11}, "east"),
+    ],
+)
+def test_the_place_is_blamed_last(shares, followed):
+    found = Whereabouts({}, {}, {}, {"Y": 10.0}, {"Y": shares}, {}, (), {})
+    best = found.strongest
+    assert (best[1] if best else "time") == followed
+
+
+def test_what_does_nearly_as_well_is_named_beside():
+    phases = {"entry": {"N": 10.0}}
+    found = Whereabouts({}, phases, {}, {"N": 10.0}, {"N": {"drift": 0.34, "east": 0.36, "speed": 0.1}}, {}, (), {})
+    assert (
+        "drift angle, which alone predicts 34 % of it; nearly as well do: position east 36 %." in found.sentences()[1]
+    )

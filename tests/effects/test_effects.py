@@ -88,6 +88,7 @@ def test_null_is_the_base_run_bit_for_bit_on_numpy(ship, tag):
     assert np.array_equal(base, null)
 
 
+@pytest.mark.slow(6)
 @pytest.mark.parametrize("integrator", [Integrator("euler"), Integrator("rk4"), Integrator("rk4", 3)])
 def test_null_is_the_base_run_bit_for_bit_compiled(ship, integrator):
     cases = blown(Model(ship))
@@ -187,6 +188,7 @@ def test_the_first_sample_is_what_the_sensors_showed(ship):
         assert np.allclose(states(model, cases, backend=backend)[0, 0, 1], cases.initial[0], atol=4.0)
 
 
+@pytest.mark.slow(3)
 def test_measured_wind_counts_where_there_is_some(ship):
     steady = Model(with_effects(ship, {"wind": {"speed": 9.0, "direction": 0.7}}, "test"))
     by_log = Model(with_effects(ship, {"wind": {"measured": 1.0}}, "test"))

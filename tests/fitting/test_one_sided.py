@@ -1,10 +1,12 @@
 """Trials that turn to one side only: what is tied, what is said, and that the unseen side is not made wrong."""
 
+import shlex
 from dataclasses import replace
 
 import pytest
 
 from mmgtune.backends import Integrator
+from mmgtune.cli.fit import next_steps
 from mmgtune.fitting import fit
 from mmgtune.fitting.one_sided import coverage_notes, followers, tied
 from mmgtune.model import Model, Tie
@@ -113,3 +115,25 @@ def test_simulate_says_where_nothing_was_measured(one_sided):
     assert any("no turn to port" in words for words in by_id["turn_m35"])
     untold = simulate("suzaku", options=SimulateOptions(turn=("35",)))
     assert untold.rows()[0]["unvisited"] == []
+
+
+def test_a_fit_without_test_trials_does_not_miss_them(one_sided):
+    result, _ = one_sided
+    assert not result.misses
+    (tune,) = result.compared
+    worse = replace(tune, role="test", records={"before": tune.records["after"], "after": tune.records["before"]})
+    assert replace(result, compared=(tune, worse)).misses
+    as_good = replace(tune, role="test")
+    assert not replace(result, compared=(tune, as_good)).misses
+
+
+def test_next_steps_are_commands_for_what_was_given(one_sided):
+    result, _ = one_sided
+    (tune,) = result.compared
+    assert next_steps(result, "suzaku", "my trials") == []  # one run cannot be left out
+    other = replace(tune, trial=replace(tune.trial, id="other"))
+    (line,) = next_steps(replace(result, compared=(tune, other)), "a ship.toml", "my trials")
+    assert shlex.split(line.partition(": ")[2]) == ["mmgtune", "leave-out", "-p", "a ship.toml", "-t", "my trials"]
+    worse = replace(tune, role="test", records={"before": tune.records["after"], "after": tune.records["before"]})
+    (line,) = next_steps(replace(result, compared=(tune, worse)), "suzaku", "my_trials")
+    assert shlex.split(line.partition(": ")[2]) == ["mmgtune", "diagnose", "-p", "suzaku", "-t", "my_trials"]

@@ -100,8 +100,8 @@ def test_one_day_leaves_its_order_open(tmp_path, columns, plain):
 
 
 def test_order_is_asked_where_nothing_shows_it(tmp_path, columns):
-    # From 1 February to 3 April, or from 2 January to 4 March.
-    stamps = [f"{'01/02' if k < 200 else '03/04'}/2024 10:{k // 60:02d}:{k % 60:02d}" for k in range(400)]
+    # From 1 February to 5 July, or from 2 January to 7 May.
+    stamps = [f"{'01/02' if k < 200 else '05/07'}/2024 10:{k // 60:02d}:{k % 60:02d}" for k in range(400)]
     log = write_csv(tmp_path / "log.csv", {**columns, "time": stamps})
     assert 'say format = "dmy" or format = "mdy" in [time]' in refusal(lambda: imported(log, UNITLESS))
 

@@ -81,6 +81,16 @@ def test_gaps_and_a_ship_at_rest_do_no_harm(turn):
     assert Coverage.of([], L).to_dict() == {}
 
 
+def test_spinning_near_rest_hides_no_side(turn):
+    """After a turn to port the ship is nearly stopped and still turns to starboard: r L / U is 100 there."""
+    port = mirrored(turn)
+    stopping = turn.t >= 150.0
+    u = np.where(stopping, 0.01, port.u)
+    spun = replace(port, u=u, v_m=np.where(stopping, 0.0, port.v_m), r=np.where(stopping, 1.0 / L, port.r))
+    assert Coverage.of([spun], L).sides == ("port",)
+    assert Coverage.of([spun, turn], L).sides == ("port", "starboard")
+
+
 def test_what_a_run_goes_to_beyond_is_told(turn):
     seen = Coverage.of([turn], L)
     port = Coverage.of([mirrored(turn)], L)
