@@ -3,11 +3,11 @@
 import json
 
 import pytest
+from mmgtune.report.page import Picture
 
 from mmgtune.diagnose.contributions import Contribution
 from mmgtune.diagnose.whereabouts import whereabouts
 from mmgtune.report import unexplained
-from mmgtune.report.page import Picture
 from tests.diagnose.test_whereabouts import run as force_run
 
 pytestmark = pytest.mark.slow(3)
