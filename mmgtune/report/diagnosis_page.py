@@ -42,7 +42,12 @@ _RUNS = {"measured": "measured", "before": "without a cause", "after": "with the
 _BARS = 12
 """Hypotheses drawn."""
 
-_READ = {"rad": (180.0 / math.pi, "°"), "rad/s": (180.0 / math.pi, "°/s"), "N": (1e-3, "kN")}
+_READ = {
+    "rad": (180.0 / math.pi, "°"),
+    "rad/s": (180.0 / math.pi, "°/s"),
+    "rad/s^2": (180.0 / math.pi, "°/s²"),
+    "N": (1e-3, "kN"),
+}
 """Factor and unit in which people read a quantity."""
 
 _BEYOND = "variance of the error less that of the sensor's noise, as a share of it; where large, multiples of the noise"
