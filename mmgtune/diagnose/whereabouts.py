@@ -169,7 +169,10 @@ class Whereabouts:
             found.append("No force follows any single quantity that was logged.")
         if self.removable:
             tag = next(iter(self.removable))
-            found.append(f"No known cause would remove more than {_percent(self.removable[tag])} of the error ({tag}).")
+            most = _percent(self.removable[tag])
+            found.append(
+                f"None of {len(self.removable)} effects tried alone removes more than {most} of the error ({tag})."
+            )
         found.append(f"What would tell: {self.suggestion}.")
         return found
 
