@@ -35,7 +35,7 @@ MOST = 16
 COLOURS = ("#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#d55e00")
 """Of models, told apart by those who see colours otherwise too (Okabe & Ito)."""
 
-DASHES = ("--", "-.", (0, (1.2, 1.6)), (0, (7, 2, 1, 2, 1, 2)))
+DASHES = ("dashed", "dashdot", (0, (1.2, 1.6)), (0, (7, 2, 1, 2, 1, 2)))
 
 SHOWN = ("psi", "u", "v_m", "r")
 """Motions in histories where none is named."""
