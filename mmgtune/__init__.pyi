@@ -68,9 +68,11 @@ from .options import SimulateOptions as SimulateOptions
 from .options import SweepOptions as SweepOptions
 from .options import ValidateOptions as ValidateOptions
 from .options import VoyageOptions as VoyageOptions
+from .orders import Sailing as Sailing
 from .orders import TurningOrder as TurningOrder
 from .orders import ZigzagOrder as ZigzagOrder
 from .orders import run_manoeuvre as run_manoeuvre
+from .orders import run_manoeuvres as run_manoeuvres
 from .particles import Particles as Particles
 from .particles import load_particles as load_particles
 from .particles import save_particles as save_particles

@@ -126,3 +126,11 @@ def shown(value: float, unit: str) -> str:
             if text and parse(text, unit) == (value,):
                 return text
     return f"{value!r} {unit}"
+
+
+def in_time(seconds: float) -> str:
+    """A time as people say it, to about a tenth: "40 s", "12 min", "1.5 h"; a second at least."""
+    if seconds < 99.5:
+        return f"{max(1.0, seconds):.2g} s"
+    minutes = seconds / 60.0
+    return f"{minutes:.2g} min" if minutes < 99.5 else f"{minutes / 60.0:.2g} h"

@@ -151,6 +151,8 @@ class LaneResult:
 
 def lanes_of(theta: FloatArray, n_cases: int, paired: bool) -> FloatArray:
     """Coefficients of every lane (n_rows, n_cases * n_candidates), candidates of a case side by side."""
+    if theta.ndim == 3:
+        return theta.reshape(len(theta), -1)
     return theta if paired else np.tile(theta, n_cases)
 
 
@@ -173,7 +175,8 @@ class Backend(Protocol):
     ) -> LaneResult:
         """Simulate every case with every candidate, or, ``paired``, each with its own.
 
-        theta (n_rows, n_candidates); initial (n_cases, n_candidates, 6), the cases' own where None.
+        theta (n_rows, n_candidates), or (n_rows, n_cases, n_candidates) where candidates differ from case to case;
+        initial (n_cases, n_candidates, 6), the cases' own where None.
         Paired, theta is (n_rows, n_cases), a column to a case, and everything else is as with one candidate.
         A lane that diverges has infinite cost; it never raises and never touches other lanes.
         """

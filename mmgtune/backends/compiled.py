@@ -90,7 +90,7 @@ def first_states(
 
     The latter is worked out by the reference, once a run: a kernel would need all forces a second time for it.
     """
-    n_candidates = 1 if paired else theta.shape[1]
+    n_candidates = 1 if paired else theta.shape[-1]
     if initial is None:
         initial = np.broadcast_to(cases.initial[:, None], (len(cases), n_candidates, N_STATES))
     if not model.acting(LagEffect):
@@ -133,7 +133,7 @@ class Compiled:
         paired: bool = False,
     ) -> LaneResult:
         """See ``Backend.run``."""
-        n_cases, n_candidates = len(cases), 1 if paired else theta.shape[1]
+        n_cases, n_candidates = len(cases), 1 if paired else theta.shape[-1]
         blocks = make_blocks(cases, n_candidates, paired)
         n_blocks = len(blocks.case_of)
         first = first_states(model, theta, cases, initial, paired)
@@ -145,10 +145,15 @@ class Compiled:
         residuals = np.empty((cases.n_residuals, columns) if keep_residuals else (1, 1))
         rows = cases.rows if keep_residuals else np.zeros((1, 1, 1), dtype=np.int64)
         position, share = integrator.tableau
-        thetas = theta[:, blocks.thetas].transpose(1, 0, 2).reshape(len(blocks.thetas), -1)
+        theta_of = blocks.theta_of
+        if theta.ndim == 3:
+            thetas = theta[:, blocks.case_of, blocks.candidate_of].transpose(1, 0, 2).reshape(n_blocks, -1)
+            theta_of = np.arange(n_blocks)
+        else:
+            thetas = theta[:, blocks.thetas].transpose(1, 0, 2).reshape(len(blocks.thetas), -1)
         fixed = (
             np.ascontiguousarray(thetas),
-            blocks.theta_of,
+            theta_of,
             np.ascontiguousarray(start).reshape(n_blocks, -1),
             blocks.case_of,
             blocks.candidate_of,

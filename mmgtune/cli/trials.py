@@ -10,13 +10,14 @@ import typer
 from ..errors import OptionError, Problem
 from ..options import MakeOptions
 from . import common as c
+from . import completing
 from .exitcodes import ExitCode
 from .options import takes
 
 app = typer.Typer(help="Make trial files from logs or from a model, check and inspect them.", no_args_is_help=True)
 
 Name = Annotated[
-    str, typer.Argument(help="Folder of trial files, one file, or a bundled name.", autocompletion=c.complete_trials)
+    str, typer.Argument(help="Folder of trial files, one file, or a bundled name.", autocompletion=completing.trials)
 ]
 
 
@@ -67,7 +68,7 @@ def inspect(
             "--profile",
             "-p",
             help="Ship profile, for her length. Default: the bundled one the trials name.",
-            autocompletion=c.complete_profile,
+            autocompletion=completing.profiles,
         ),
     ] = None,
     json: c.Json = False,
@@ -119,12 +120,6 @@ def inspect(
                 c.show(f"  {index:<34}{value if isinstance(value, str) else f'{value:.4g}'}")
         if row["note"]:
             c.show(f"  {row['note']}")
-
-
-def _complete_map(incomplete: str) -> list[str]:
-    from ..resources import import_map_names
-
-    return [name for name in import_map_names() if name.startswith(incomplete)]
 
 
 @app.command("map")
@@ -179,7 +174,9 @@ def import_(
     ] = None,
     preset: Annotated[
         str | None,
-        typer.Option("--preset", help="A bundled map by name.", rich_help_panel=c.INPUT, autocompletion=_complete_map),
+        typer.Option(
+            "--preset", help="A bundled map by name.", rich_help_panel=c.INPUT, autocompletion=completing.maps
+        ),
     ] = None,
     step: Annotated[
         str | None,

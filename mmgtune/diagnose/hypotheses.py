@@ -6,10 +6,12 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from ..effects import Effect
+from ..fitting.box import AT
 from ..model import Model
 from ..options import DiagnoseOptions
 from ..profile import ShipProfile, with_all_effects
 from ..trial import Trial, measured_around
+from .runs import IN_WORDS, groupings
 
 INTEGRATION_STEP = "integration-step"
 
@@ -19,10 +21,14 @@ class Hypothesis:
     """One effect with the parameters that are fitted together.
 
     names  of the parameters as targets, "effects.<tag>.<parameter>"
+    by     the grouping of runs that have values of their own, "" for one value for all; see ``runs``
+    groups labels of the groups
     """
 
     effect: Effect
     variant: tuple[str, ...]
+    by: str = ""
+    groups: tuple[str, ...] = ()
 
     @property
     def tag(self) -> str:
@@ -31,13 +37,26 @@ class Hypothesis:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Parameters as targets."""
+        """Parameters as targets, group by group."""
+        if self.by:
+            return tuple(f"{base}{AT}{group}" for group in self.groups for base in self.bases)
+        return self.bases
+
+    @property
+    def bases(self) -> tuple[str, ...]:
+        """Parameters, whatever runs they are of."""
         return tuple(f"{self.effect.kind}.{name}" for name in self.variant)
+
+    def holds(self, other: Hypothesis) -> bool:
+        """Whether the other is a special case of this: fewer parameters, or the same for more runs."""
+        finer = self.by == "trial" or self.by == other.by or not other.by
+        return self != other and self.tag == other.tag and set(other.variant) <= set(self.variant) and finer
 
     @property
     def label(self) -> str:
-        """Effect, and its parameters where it could have others."""
-        return self.tag if len(self.effect.variants) == 1 else f"{self.tag} ({', '.join(self.variant)})"
+        """Effect, its parameters where it could have others, and whose they are."""
+        label = self.tag if len(self.effect.variants) == 1 else f"{self.tag} ({', '.join(self.variant)})"
+        return f"{label}, one for each {IN_WORDS[self.by]}" if self.by else label
 
 
 def known_causes(profile: ShipProfile, trials: Sequence[Trial], options: DiagnoseOptions) -> list[Hypothesis]:
@@ -71,3 +90,13 @@ def hypotheses(
             if not taken and not idle and not set(hypothesis.names) & {*targets, *present}:
                 found.append(hypothesis)
     return found
+
+
+def of_runs(known: Sequence[Hypothesis], trials: Sequence[Trial]) -> list[Hypothesis]:
+    """Those of some hypotheses whose parameters may differ between runs, with values for each group of them."""
+    return [
+        Hypothesis(one.effect, one.variant, by, groups)
+        for by, groups in groupings(trials).items()
+        for one in known
+        if set(one.variant) <= set(one.effect.varies)
+    ]

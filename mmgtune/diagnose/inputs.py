@@ -50,9 +50,9 @@ def wander(bench: Workbench, point: Point) -> FloatArray:
         target=np.zeros_like(np.repeat(cases.target, copies, axis=0)),
         weight=np.repeat(cases.weight, copies, axis=0),
     )
-    result = problem.backend.run(
-        problem.model, problem.theta(point.unit[:, None]), many, integrator=problem.integrator, keep_residuals=True
-    )
+    theta = problem.theta(point.unit[:, None])
+    theta = theta if theta.ndim == 2 else np.repeat(theta, copies, axis=1)
+    result = problem.backend.run(problem.model, theta, many, integrator=problem.integrator, keep_residuals=True)
     assert result.residuals is not None  # asked for
     changed = np.empty((problem.n_residuals, DRAWS))
     at = 0

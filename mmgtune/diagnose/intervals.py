@@ -9,6 +9,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from .linear import linearise, typical
+from .runs import between
 from .workbench import Point, Workbench
 
 NORMAL = 1.96
@@ -42,7 +43,13 @@ def estimates(bench: Workbench, point: Point) -> dict[str, Estimate]:
     noise = memory * np.eye(len(names)) + np.einsum("cdk,cdl->kl", by_trial, by_trial) / by_trial.shape[1]
     back = np.linalg.pinv(R, rcond=1e-10)
     size = np.array([typical(bench, name) for name in names])
-    covariance = (back @ noise @ back.T) * np.outer(size, size)
+    covariance = back @ noise @ back.T
+    believed = between(names, point.spreads)
+    if believed is not None:  # what other runs say of a run that says little itself
+        alike = believed * size
+        told = R.T @ np.linalg.solve(noise, R)
+        covariance = np.linalg.pinv(told + alike.T @ alike, rcond=1e-12, hermitian=True)
+    covariance = covariance * np.outer(size, size)
     return _in_units(bench, point, names, covariance)
 
 

@@ -7,14 +7,15 @@ one.  They are whitened, and freed of what the initial states and the free coeff
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..backends import STATES
-from ..fitting.box import parameter_of
+from ..fitting.box import base_of, parameter_of
 from ..fitting.least_squares import flat_where_lost
 from ..fitting.problem import FitProblem
 from ..profile import scale_of
@@ -48,6 +49,10 @@ class Linear:
     wander      (n_rows, DRAWS) what other noise of the logged inputs would change
     blocks      first rows of pieces of about a minute of one trial
     cases       first rows of the trials
+    tuned       (n_rows, n_free) orthonormal basis of what free coefficients can change
+    plain       signatures (n_rows,) of what may differ between runs, by name, coefficients not taken out
+    groups      of each trial
+    kept        what was worked out from it once
     """
 
     residual: FloatArray
@@ -60,6 +65,10 @@ class Linear:
     wander: FloatArray
     blocks: IntArray
     cases: IntArray
+    tuned: FloatArray
+    plain: Mapping[str, FloatArray]
+    groups: tuple[frozenset[str], ...]
+    kept: dict[Any, Any] = field(default_factory=dict)
 
     @property
     def measured(self) -> BoolArray:
@@ -73,9 +82,30 @@ class Linear:
         """Signatures of some parameters, (n_rows, n_parameters)."""
         return np.asarray(self.signature[:, [self.names.index(name) for name in names]])
 
+    def columns_of(self, bases: Sequence[str], groups: Sequence[str]) -> FloatArray:
+        """Signatures of values that groups of trials have of their own, (n_rows, n_groups * n_parameters).
+
+        A parameter that is free for all already has none in the direction of all.
+        """
+        ends = np.append(self.cases[1:], len(self.residual))
+        found = np.zeros((len(self.residual), len(groups) * len(bases)))
+        k = 0
+        for group in groups:
+            for base in bases:
+                for first, end, own in zip(self.cases, ends, self.groups, strict=True):
+                    if group in own:
+                        found[first:end, k] = self.plain[base][first:end]
+                k += 1
+        return np.asarray(found - self.tuned @ (self.tuned.T @ found))
+
+    def absent(self, names: Sequence[str]) -> list[str]:
+        """Those of some parameters that are not free already."""
+        return [name for name in names if name in self.names]
+
     def looks(self, names: Sequence[str]) -> list[FloatArray]:
         """What some parameters may look like, each (n_rows, n_parameters): at a typical size and, where it differs, at
         a small one."""
+        names = self.absent(names)
         typical = self.columns(names)
         if not set(names) & set(self.one_sided):
             return [typical]
@@ -85,10 +115,14 @@ class Linear:
                 small[:, i] = self.small[:, self.one_sided.index(name)]
         return [typical, small]
 
-    def chance(self, Q: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def chance(self, Q: FloatArray, own: bool = False) -> tuple[FloatArray, FloatArray]:
         """What noise has along orthonormal directions Q (n_rows, k): by block (n_blocks, k), by trial and draw of the
-        input noise (n_cases, DRAWS, k)."""
-        by_block = np.add.reduceat(Q * self.noise[:, None], self.blocks, axis=0)
+        input noise (n_cases, DRAWS, k).
+
+        own  whether ``noise`` still holds what lies along these directions themselves, which is no noise then
+        """
+        noise = self.noise - Q @ (Q.T @ self.noise) if own else self.noise
+        by_block = np.add.reduceat(Q * noise[:, None], self.blocks, axis=0)
         ends = np.append(self.cases[1:], len(Q))
         by_trial = [self.wander[a:b].T @ Q[a:b] for a, b in zip(self.cases, ends, strict=True)]
         return by_block, np.array(by_trial)
@@ -114,6 +148,7 @@ def typical(bench: Workbench, name: str) -> float:
     """A typical size of a parameter as a step in the unit cube."""
     parameter = parameter_of(bench.model, name)
     assert parameter is not None  # asked of parameters of effects only
+    name = base_of(name)
     i = bench.box.names.index(name)
     size = {direction: first for first, direction in bench.box.polar}.get(i)
     if size is not None:  # the second component of a size
@@ -121,13 +156,21 @@ def typical(bench: Workbench, name: str) -> float:
     return float(parameter.typical(scale_of(bench.model.profile)) / bench.box.width[i])
 
 
-def linearise(bench: Workbench, point: Point, absent: Sequence[str] = (), apart: Sequence[str] = ()) -> Linear:
+def linearise(
+    bench: Workbench,
+    point: Point,
+    absent: Sequence[str] = (),
+    apart: Sequence[str] = (),
+    varying: Sequence[str] = (),
+) -> Linear:
     """The problem made linear at ``point``.
 
     absent  parameters at their null that get a signature over a typical size
     apart   parameters that are free in the point and get a signature, by their derivative, instead of being re-tuned
+    varying parameters, free or among the absent, that trials may have values of their own of
     """
-    wanted = tuple(dict.fromkeys(name for name in absent if name not in point.names))
+    there = {base_of(name) for name in point.names}
+    wanted = tuple(dict.fromkeys(name for name in absent if name not in there))
     names = (*point.names, *wanted)
     problem = bench.problem_of(names, point.integrator).with_offsets(point.offsets)
     null = bench.null(wanted)
@@ -160,6 +203,10 @@ def linearise(bench: Workbench, point: Point, absent: Sequence[str] = (), apart:
     columns = np.column_stack([values[:, 0], slopes, wander(bench, point)])
     left = problem.without_offsets(columns, by_offset, problem.prior, point.offsets)
     free = np.array([name not in apart and 0.0 < z < 1.0 for name, z in zip(point.names, point.unit, strict=True)])
+    plain = {
+        base: np.sum(left[:, [1 + i for i, name in enumerate(names) if base_of(name) == base]], axis=1)
+        for base in dict.fromkeys(varying)
+    }
     Q = basis(left[:, 1 : 1 + n_free][:, free])
     left -= Q @ (Q.T @ left)
     chosen = (*apart, *wanted)
@@ -179,6 +226,9 @@ def linearise(bench: Workbench, point: Point, absent: Sequence[str] = (), apart:
         wander=left[:, 1 + n_moved :],
         blocks=blocks,
         cases=first,
+        tuned=Q,
+        plain=plain,
+        groups=problem.groups,
     )
 
 

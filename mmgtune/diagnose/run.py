@@ -11,31 +11,35 @@ from typing import Any
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..backends import STATES
-from ..components import split_name
-from ..fitting.box import parameter_of
+from ..fitting.box import group_of, parameter_of
 from ..fitting.extending import with_width
 from ..fitting.journal import journalled
+from ..fitting.one_sided import coverage_notes, followers
 from ..fitting.run import Hooks, identity_of, in_pieces, make_provenance
 from ..given import ShipGiven, TrialsGiven, ship_of
 from ..model import Model
 from ..options import DiagnoseOptions
 from ..profile import ShipProfile, with_all_effects
 from ..threads import blas_on_one_thread
-from ..trial import Trial, TrialSet, VoyageSet
+from ..trial import Coverage, Trial, TrialSet, VoyageSet
 from ..trial.smoothing import FEWEST
-from .evidence import explain_forces, noise_share, residual_forces, short_horizon
+from .by_run import ByRun
+from .contributions import Aside, set_aside
+from .evidence import ResidualForces, explain_forces, noise_share, residual_forces, short_horizon
 from .gain import J_of, held_out
-from .hypotheses import INTEGRATION_STEP, Hypothesis, known_causes
+from .hypotheses import INTEGRATION_STEP, Hypothesis, known_causes, of_runs
 from .intervals import Estimate, estimates
-from .leftover import Leftover, leftover
+from .leftover import Leftover, leftover, residuals_of
 from .legs import LEG_NAMES, differences
 from .linear import typical
-from .result import Candidate, Cause, Detectability, Diagnosis
+from .result import Candidate, Cause, Detectability, Diagnosis, Trace
 from .screening import angles
 from .search import ENOUGH, WORTH, Found, Refit, Step, search
 from .separate import Suggestion, suggest
 from .voyages import Choice, looked_at
+from .whereabouts import Whereabouts, whereabouts
 from .workbench import Point, Workbench, make_workbench
 
 TWINS = 3
@@ -91,8 +95,10 @@ def _diagnose(
     bench = make_workbench(profile, seen, options, [*names, *(_legs(profile, names) if choice else ())])
     known = [h for h in known if not set(h.names) & set(bench.targets)]
     known = [h for h in known if not {h.effect.absorbed.get(v) for v in h.variant} & set(bench.targets)]
-    found = search(bench, known, hooks.on_phase, hooks.stop)
+    differing_by_run = of_runs(known, seen) if choice is None else []
+    found = search(bench, [*known, *differing_by_run], hooks.on_phase, hooks.stop)
     hooks.on_phase("measuring the gain")
+    traces, brought = set_aside(bench, found, test)
     sizes = estimates(bench, found.final)
     gain = held_out(bench, found, test)
     before = leftover(bench, found.base)
@@ -109,10 +115,14 @@ def _diagnose(
     suggestion = _suggestion(bench, found)
     hooks.on_phase("gathering the evidence")
     values = bench.values(found.final)
-    return Diagnosis(
+    theta = {name: values[name] for name in bench.targets}
+    coverage = Coverage.of(bench.trials, profile.L_pp)
+    result = Diagnosis(
         profile=profile,
         options=options,
         causes=tuple(_causes(bench, found, sizes, test)),
+        traces=tuple(_trace(one) for one in traces),
+        contributions=tuple((h.tag, one) for h, one in zip(found.causes, brought, strict=True)),
         groups=groups,
         candidates=tuple(_candidates(bench, found, test)),
         detectability=tuple(_detectability(bench, found.steps[0], known)) if found.steps else (),
@@ -120,7 +130,9 @@ def _diagnose(
         gain=gain,
         leftover=left,
         explained_share=_explained(found, before, left),
-        theta={name: values[name] for name in bench.targets},
+        theta=theta | followers(bench.model.ties, theta),
+        coverage=coverage,
+        warnings=tuple(coverage_notes(bench.model, bench.targets, coverage)),
         noise=_noise(bench),
         chi2=(
             found.base.chi2 / max(1, bench.problem.n_residuals),
@@ -133,6 +145,48 @@ def _diagnose(
         wall_s=time.perf_counter() - began,
         interrupted=hooks.stop(),
     )
+    if result.verdict != "unexplained":
+        return result
+    return replace(result, whereabouts=_whereabouts(bench, found))
+
+
+def _whereabouts(bench: Workbench, found: Found) -> Whereabouts:
+    """Where the error of the model without any cause lives."""
+    by_run = _excess_by_run(bench, found.base)
+    whole = sum(by_run.values())
+    removable: dict[str, float] = {}
+    for refit in found.steps[0].refits if found.steps and whole > 0.0 else ():
+        tag = refit.hypothesis.tag
+        left = sum(_excess_by_run(bench, refit.point).values())
+        removable[tag] = max(removable.get(tag, 0.0), min(1.0, 1.0 - left / whole))
+    ranked = dict(sorted(removable.items(), key=lambda one: -one[1]))
+    return whereabouts(_forces(bench, found.base), by_run, ranked)
+
+
+def _excess_by_run(bench: Workbench, point: Point) -> dict[str, float]:
+    """Squared error of the motion beyond white noise of the sensors, in variances of that noise, by run."""
+    at = [STATES.index(name) for name in bench.channels]
+    found: dict[str, float] = {}
+    for trial, off in zip(bench.trials, residuals_of(bench, point), strict=True):
+        square = (off[1:, at] / bench.sigma[at]) ** 2
+        found[trial.run] = found.get(trial.run, 0.0) + float(np.nansum(square - 1.0))
+    return found
+
+
+def _forces(bench: Workbench, point: Point) -> list[tuple[ResidualForces, Trial]]:
+    """Residual forces of the trials that are long and whole enough for inverse dynamics."""
+    found = []
+    trials = _long_enough(bench)
+    for trial, model in zip(trials, _models(bench, point, trials), strict=True):
+        try:
+            found.append((residual_forces(model, trial), trial))
+        except ValueError:  # too short or too full of gaps
+            continue
+    return found
+
+
+def _long_enough(bench: Workbench) -> list[Trial]:
+    return [trial for trial in bench.trials if np.isfinite(trial.motion[:, 3:]).all(axis=1).sum() >= FEWEST]
 
 
 def _legs(profile: ShipProfile, names: Sequence[str]) -> list[str]:
@@ -153,15 +207,23 @@ def _causes(bench: Workbench, found: Found, sizes: Mapping[str, Estimate], test:
     if found.finer_step is not None:
         causes.append(Cause(INTEGRATION_STEP, None, {}, 0.0, None))
     J_before = J_of(bench, found.base, test)
-    for tag in dict.fromkeys(h.tag for h in found.causes):
-        own = [h for h in found.causes if h.tag == tag]
+    for tag, by in dict.fromkeys((h.tag, h.by) for h in found.causes):
+        own = [h for h in found.causes if (h.tag, h.by) == (tag, by)]
         names = [name for h in own for name in h.names]
         steps = [s for s in found.steps if s.refits and s.refits[0].hypothesis in own]
         J_after = J_of(bench, steps[0].refits[0].point, test) if steps else None
         gain = 1.0 - J_after / J_before if J_before and J_after is not None else None
         p_value = max((s.refits[0].p_value for s in steps), default=0.0)
-        causes.append(Cause(tag, own[0].effect, {name: sizes[name] for name in names}, p_value, gain))
+        estimated = {name: sizes[name] for name in names}
+        effect, variant = own[0].effect, tuple(dict.fromkeys(name for h in own for name in h.variant))
+        runs = ByRun.of(effect, variant, by, own[0].groups, bench.trials, estimated) if by else None
+        causes.append(Cause(tag, effect, {} if by else estimated, p_value, gain, runs))
     return causes
+
+
+def _trace(aside: Aside) -> Trace:
+    cause = Cause(aside.hypothesis.tag, aside.hypothesis.effect, aside.estimates, aside.p_value, None)
+    return Trace(cause, aside.contribution)
 
 
 def _candidates(bench: Workbench, found: Found, test: Sequence[Trial]) -> list[Candidate]:
@@ -177,12 +239,16 @@ def _candidates(bench: Workbench, found: Found, test: Sequence[Trial]) -> list[C
             r.gain,
             r.p_value,
             J_of(bench, r.point, test) if _promising(r, first) else None,
+            r.unvisited if _promising(r, first) else "",
+            r.hypothesis.by,
         )
         for r in first.refits
     ]
     refitted = [r.hypothesis for r in first.refits]
     others = sorted((s for s in first.scores if s.hypothesis not in refitted), key=lambda s: -s.score)
-    return listed + [Candidate(s.hypothesis.tag, s.hypothesis.variant, s.score, 0.0, 1.0, None) for s in others]
+    return listed + [
+        Candidate(s.hypothesis.tag, s.hypothesis.variant, s.score, 0.0, 1.0, None, s.hypothesis.by) for s in others
+    ]
 
 
 def _promising(refit: Refit, step: Step) -> bool:
@@ -191,7 +257,7 @@ def _promising(refit: Refit, step: Step) -> bool:
 
 def _detectability(bench: Workbench, step: Step, known: Sequence[Hypothesis]) -> list[Detectability]:
     """The table for every named hypothesis, from the first look."""
-    named = [s for s in step.scores if not s.hypothesis.effect.one_of_many]
+    named = [s for s in step.scores if not s.hypothesis.effect.one_of_many and not s.hypothesis.by]
     cosine = angles(step.linear, [s.hypothesis for s in named])
     found = []
     for i, score in enumerate(named):
@@ -262,20 +328,14 @@ def _noise(bench: Workbench) -> dict[str, dict[str, float]]:
 def _evidence(bench: Workbench, found: Found, before: Leftover, left: Leftover) -> dict[str, Any]:
     """Residuals before and after by trial and channel, short horizons, and residual forces with what explains them."""
     shown: dict[str, Any] = {"excess_before": before.channels, "excess_after": left.channels}
-    long_enough = [trial for trial in bench.trials if np.isfinite(trial.motion[:, 3:]).all(axis=1).sum() >= FEWEST]
+    long_enough = _long_enough(bench)
     for which, point in (("before", found.base), ("after", found.final)):
-        profile = _tuned(bench, point)
-        model = Model(profile)
+        models = _models(bench, point, long_enough)
         shown[f"short_horizon_{which}"] = {}
         if long_enough:
-            short = short_horizon(model, long_enough, integrator=point.integrator)
-            shown[f"short_horizon_{which}"] = dict(zip(STATES, map(float, short.pooled_rms_in_noise), strict=True))
-        forces = []
-        for trial in long_enough:
-            try:
-                forces.append(residual_forces(model, trial))
-            except ValueError:  # too short or too full of gaps for inverse dynamics
-                continue
+            short = _short_horizon(models, long_enough, point)
+            shown[f"short_horizon_{which}"] = dict(zip(STATES, map(float, short), strict=True))
+        forces = [forces for forces, _ in _forces(bench, point)]
         if forces:
             shown[f"forces_{which}"] = {
                 "explained": {axis: dict(shares) for axis, shares in explain_forces(forces).items()},
@@ -284,13 +344,19 @@ def _evidence(bench: Workbench, found: Found, before: Leftover, left: Leftover) 
     return shown
 
 
-def _tuned(bench: Workbench, point: Point) -> ShipProfile:
-    """The profile with the values of a point."""
-    profile = bench.model_of(point.names).profile
-    sections = dict(profile.sections)
-    for name, value in bench.values(point).items():
-        kind, symbol = split_name(name)
-        coefficients = dict(sections[kind].coefficients)
-        coefficients[symbol] = replace(coefficients[symbol], value=value)
-        sections[kind] = replace(sections[kind], coefficients=coefficients)
-    return replace(profile, sections=sections)
+def _models(bench: Workbench, point: Point, trials: Sequence[Trial]) -> list[Model]:
+    """The model of a point for each trial: one for all where nothing differs between runs."""
+    if any(group_of(name) for name in point.names):
+        return [Model(bench.tuned(point, trial)) for trial in trials]
+    return [Model(bench.tuned(point))] * len(trials)
+
+
+def _short_horizon(models: Sequence[Model], trials: Sequence[Trial], point: Point) -> FloatArray:
+    """(6,) root mean square over the trials of short runs, in deviations of the noise."""
+    if models[0] is models[-1]:
+        return short_horizon(models[0], trials, integrator=point.integrator).pooled_rms_in_noise
+    each = [
+        short_horizon(model, [trial], integrator=point.integrator).pooled_rms_in_noise
+        for model, trial in zip(models, trials, strict=True)
+    ]
+    return np.asarray(np.sqrt(np.average(np.array(each) ** 2, axis=0, weights=[t.n_samples for t in trials])))

@@ -6,6 +6,7 @@ chance would bring anywhere in the search, its size is worth speaking of, and no
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -13,18 +14,20 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..backends import Integrator
+from ..fitting.box import base_of
 from ..fitting.least_squares import solve
 from . import noise as noises
 from .hypotheses import Hypothesis
 from .linear import Linear, inwards, linearise, typical
-from .screening import ChanceScores, Score, evidence, scores
+from .runs import spread_key
+from .screening import ChanceScores, Score, evidence, scores, told_by
 from .workbench import TOLERANCE, Point, Workbench
 
 STARTS = 6
 """Starts of the base fit."""
 
 STRONG = 1.2
-"""Chi-squared per residual beyond which every named hypothesis is refitted."""
+"""Chi-squared per residual beyond which every named hypothesis makes a step before the best are refitted."""
 
 AGAIN = 8
 """Times the base fit may begin again where it ended."""
@@ -36,14 +39,30 @@ REFITTED = 9
 TERMS_REFITTED = 4
 """Hypotheses that are refitted each time, named ones and terms out of many: those of the best scores."""
 
+LIKELY = 9
+"""Hypotheses of the best first steps that are refitted where scores alone cannot choose."""
+HOPELESS = 10.0
+"""Where much is left, values of runs that leave so many times what the best of them leave are not refitted further."""
+
+RUNS_REFITTED = 6
+"""Hypotheses of values that differ between runs that are refitted each time, at most."""
+
+FAR_LESS = 1.0 / 3.0
+"""Share of the error left by the best value for all that such values may leave, where much is left."""
+
+LEAST_SPREAD = 0.01
+"""Smallest spread of such values in a refit, in typical sizes."""
+
 ROUGH = 4
 """Steps of a refit before it is compared with the others."""
 
 SIZES = (1.0, 0.5, 2.0)
 """Sizes of effects with one side only at which refits start, in typical sizes."""
 
-WORTH_GOING_ON = 0.2
-"""Share of the best gain from which a refit is continued to its end."""
+WORTH_GOING_ON = 0.5
+"""Share of the best gain from which a refit is continued to its end, besides those of the best few."""
+
+FEW = 4
 
 ENOUGH = 10.0
 """A hypothesis must beat none by this much of chi-squared beyond its share by the information criterion (BIC), and
@@ -79,6 +98,7 @@ class Refit:
     evidence  the gain over its inflation, less the cost
     size      largest of its parameters' distances from their null, in typical sizes
     p_value   probability of such a fall anywhere in the search, were there nothing to find
+    unvisited what the trials would have to visit for it to be believed, "" where they do
     """
 
     hypothesis: Hypothesis
@@ -89,11 +109,17 @@ class Refit:
     evidence: float
     size: float
     p_value: float
+    unvisited: str = ""
 
     def beats(self, other: Refit) -> bool:
-        """Whether this explains so much more that the other is out of the question."""
+        """Whether this explains so much more that the other is out of the question.
+
+        One value for all runs need not fit better than values of each run do: these are charged for what they could
+        have been, not by their number.
+        """
         better = (self.gain - other.gain) / max(self.score.inflation, other.score.inflation)
-        return better >= BETTER and better - self.cost + other.cost >= ENOUGH
+        simpler = self.hypothesis is not None and other.hypothesis.by and not self.hypothesis.by
+        return (better >= BETTER or bool(simpler)) and better - self.cost + other.cost >= ENOUGH
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,6 +192,7 @@ def search(
     base = base_fit(bench)
     found = Found(base, base)
     left = list(hypotheses)
+    dropped: list[Hypothesis] = []
     while not stop():
         say("looking for a cause" if not found.causes else f"looking for cause {len(found.causes) + 1}")
         try:
@@ -183,9 +210,13 @@ def search(
             found.final = step.base
             break
         best = step.refits[0]
-        found.causes.append(best.hypothesis)
+        found.causes = [*(cause for cause in found.causes if not best.hypothesis.holds(cause)), best.hypothesis]
         found.final = best.point
-        left = [h for h in left if not set(h.names) & set(best.hypothesis.names)]
+        bench.spreads = dict(best.point.spreads)
+        known = list(found.causes)
+        _drop_superfluous(bench, found, [cause for cause in known[:-1] if cause.by])  # these bend to much
+        dropped += [cause for cause in known if cause not in found.causes]
+        left = [h for h in hypotheses if h not in dropped and all(_beside(h, cause) for cause in found.causes)]
         if len(found.causes) >= bench.options.most:
             break
     if found.steps:
@@ -196,10 +227,15 @@ def search(
         found.rivals = [[] for _ in found.causes]
         return found
     if len(found.causes) > 1:
-        _drop_superfluous(bench, found)
+        _drop_superfluous(bench, found, found.causes[:-1])
     say("comparing the causes with their rivals")
     found.rivals = [_rivals_of(bench, found, k) for k in range(len(found.causes))]
     return found
+
+
+def _beside(hypothesis: Hypothesis, cause: Hypothesis) -> bool:
+    """Whether a hypothesis may be looked at where a cause is known: it is of something else, or says more of it."""
+    return hypothesis.holds(cause) or not set(hypothesis.bases) & set(cause.bases)
 
 
 def _gain(step: Step) -> float:
@@ -219,19 +255,20 @@ def look(
     Noise is estimated anew from what the best refit and all other signatures together leave: any less, and a cause
     would pass for noise with a memory.
     """
-    names = [name for h in hypotheses for name in h.names]
-    linear = linearise(bench, point, names)
+    names = [name for h in hypotheses for name in h.bases]
+    varying = [name for h in hypotheses if h.by for name in h.bases]
+    linear = linearise(bench, point, names, varying=varying)
     ranked = scores(linear, hypotheses)
     best = _refit_best(bench, point, ranked, linear, quick=True, stop=stop)
     richest = best[0].point if best and best[0].gain > 2.0 * ENOUGH else point
-    at_best = linear if richest is point else linearise(bench, richest, [n for n in names if n not in richest.names])
+    at_best = linear if richest is point else linearise(bench, richest, names)
     known = _noise_at(bench, at_best)
     if _differs(bench.noise, known):
         bench.know(known)
         point = bench.refit(point.names, point.unit[:, None], point.offsets)
-        linear = linearise(bench, point, names)
+        linear = linearise(bench, point, names, varying=varying)
         ranked = scores(linear, hypotheses)
-    refits = _refit_best(bench, point, ranked, linear, quick=False, stop=stop)
+    refits = _believable_first(_refit_best(bench, point, ranked, linear, quick=False, stop=stop))
     finer_gain = None
     if first:
         other = bench.refit(point.names, point.unit[:, None], point.offsets, integrator=finer(point.integrator))
@@ -239,6 +276,16 @@ def look(
     rivals = _rivals(refits) if refits else []
     accepted, reason = _decide(bench, refits, rivals)
     return Step(point, linear, ranked, refits, rivals, accepted, reason, finer_gain)
+
+
+def _believable_first(refits: list[Refit]) -> list[Refit]:
+    """The best that is about what the trials visit in front, unless it is far from as good as the best of all."""
+    for k, refit in enumerate(refits):
+        if refits[0].beats(refit):
+            break
+        if not refit.unvisited:
+            return [refit, *refits[:k], *refits[k + 1 :]]
+    return refits
 
 
 def _go_on(stop: Stop) -> None:
@@ -265,68 +312,176 @@ def _refit_best(
 ) -> list[Refit]:
     """The most promising hypotheses refitted, best first."""
     order = sorted(ranked, key=lambda score: -score.score)
-    named = [s for s in order if not s.hypothesis.effect.one_of_many]
+    named = [s for s in order if not s.hypothesis.effect.one_of_many and not s.hypothesis.by]
     terms = [s for s in order if s.hypothesis.effect.one_of_many]
     strong = point.chi2 > STRONG * bench.problem.n_residuals  # too far away for a linear score to choose
     if quick:
         chosen = named[:3] + terms[:1]
     else:
-        chosen = named[: None if strong else REFITTED] + terms[: (2 if strong else 1) * TERMS_REFITTED]
+        chosen = _likely(bench, point, named, stop) if strong else named[:REFITTED]
+        chosen += terms[: (2 if strong else 1) * TERMS_REFITTED]
     chosen = [s for s in chosen if s.power > 0.0]
+    fitted = _fitted(bench, linear, point, chosen, strong, stop)
+    differing = _of_runs_worth(bench, point, order, [end for _, end in fitted], quick=quick)
+    fitted += _fitted(bench, linear, point, differing, strong, stop)
+    chance = None if quick else ChanceScores(linear, [s.hypothesis for s in ranked], bench.options.seed)
+    n_terms = max(1, len(terms))
+    refits = [_judged(bench, linear, point, score, end, chance, n_terms=n_terms) for score, end in fitted]
+    return _ordered(bench, point, refits, strong)
+
+
+def _fitted(
+    bench: Workbench, linear: Linear, point: Point, chosen: Sequence[Score], strong: bool, stop: Stop
+) -> list[tuple[Score, Point]]:
+    """Hypotheses refitted, those that promise much to the end."""
     rough = []
     for score in chosen:
         _go_on(stop)
         rough.append(_rough(bench, point, score, strong))
-    most = max((point.chi2 - end.chi2 for end in rough), default=0.0)
-    chance = None if quick else ChanceScores(linear, [s.hypothesis for s in ranked], bench.options.seed)
-    refits = []
+    gains = sorted((point.chi2 - end.chi2 for end in rough), reverse=True)
+    enough = min([WORTH_GOING_ON * gains[0], *gains[FEW - 1 : FEW]]) if gains else 0.0
+    left = min((end.chi2 for end in rough), default=point.chi2) - bench.problem.n_residuals
+    found = []
     for score, end in zip(chosen, rough, strict=True):
         _go_on(stop)
         gain = point.chi2 - end.chi2
-        if gain >= WORTH_GOING_ON * most and gain > 0.5 * ENOUGH * score.inflation:
-            end = bench.refit(end.names, end.unit[:, None], end.offsets)
-        refits.append(_judged(bench, point, score, end, chance, n_terms=max(1, len(terms))))
-    return sorted(refits, key=lambda refit: refit.cost - refit.gain)
+        if score.hypothesis.by and strong and end.chi2 - bench.problem.n_residuals > HOPELESS * max(left, 0.0):
+            found.append((score, end))
+            continue
+        if gain >= enough and gain > 0.5 * ENOUGH * score.inflation:
+            spreads = _spreads(bench, point, score.hypothesis, _spread(bench, linear, point, score, end))
+            end = bench.refit(end.names, end.unit[:, None], end.offsets, spreads=spreads)
+        found.append((score, end))
+    return found
+
+
+def _of_runs_worth(
+    bench: Workbench, point: Point, order: Sequence[Score], fitted: Sequence[Point], *, quick: bool
+) -> list[Score]:
+    """Hypotheses of values that differ between runs that are worth a refit beside those of one value for all.
+
+    Where one value for all leaves little more than noise, that it differs is seen once it is in place.
+    """
+    differing = [s for s in order if s.hypothesis.by and s.spread > 0.0]
+    n = bench.problem.n_residuals
+    left = min((end.chi2 for end in fitted), default=point.chi2)
+    price = math.log(n)
+    earned = [s for s in differing if s.score - _new(point, s.hypothesis) * price > 0.5 * ENOUGH]
+    if left > STRONG * n:
+        return earned[: 1 if quick else RUNS_REFITTED]
+    alike = max((s.score / s.inflation - len(s.step) * price for s in order if not s.hypothesis.by), default=0.0)
+    return [s for s in earned if s.score - _new(point, s.hypothesis) * price > alike][: 1 if quick else 2]
+
+
+def _new(point: Point, hypothesis: Hypothesis) -> int:
+    """Numbers that a hypothesis adds to a point: means that are not free there, and a spread."""
+    there = {base_of(name) for name in point.names}
+    return sum(base not in there for base in hypothesis.bases) + bool(hypothesis.by)
+
+
+def _ordered(bench: Workbench, point: Point, refits: Sequence[Refit], strong: bool) -> list[Refit]:
+    """The best first: one value for all before values that differ between runs, unless these explain far more."""
+    found = sorted(refits, key=lambda refit: refit.cost - refit.gain)
+    alike = next((refit for refit in found if not refit.hypothesis.by), None)
+    if alike is None or not found[0].hypothesis.by:
+        return found
+    n = bench.problem.n_residuals
+    left = [max(refit.point.chi2 - n, math.sqrt(2.0 * n)) for refit in (found[0], alike)]
+    inflation = max(found[0].score.inflation, alike.score.inflation)
+    better = (found[0].gain - alike.gain) / inflation - found[0].cost + alike.cost
+    none = alike.evidence < ENOUGH
+    if (better >= ENOUGH or none) and (not strong or left[0] <= FAR_LESS * left[1]):
+        return found
+    return [alike, *(refit for refit in found if refit is not alike)]
+
+
+def _likely(bench: Workbench, point: Point, named: Sequence[Score], stop: Stop) -> list[Score]:
+    """Of named hypotheses, best scores first, those whose first step from any start explains most, and a few of the
+    best scores."""
+    first = []
+    for score in named:
+        _go_on(stop)
+        first.append(_rough(bench, point, score, True, iterations=1).chi2 if score.power > 0.0 else np.inf)
+    kept = {*np.argsort(first)[:LIKELY].tolist(), *range(REFITTED // 2)}
+    return [score for k, score in enumerate(named) if k in kept]
 
 
 def _starts(bench: Workbench, point: Point, score: Score, strong: bool) -> FloatArray:
     """Where the refit of a hypothesis starts, (n_names, n_starts): where its score says, and for an effect with one
     side only, whose slope at the null misleads, at sizes around the typical."""
     names = score.hypothesis.names
-    null = bench.null(names)
+    null = origin(bench, point, names)
     size = np.array([typical(bench, name) for name in names])
     places = [null + np.clip(score.step, -4.0, 4.0) * size]
-    away = inwards(null)
+    away = inwards(bench.null(names))
     if away.any():
         places += [null + away * size * factor for factor in (SIZES if strong else SIZES[:1])]
-    return np.column_stack([np.concatenate([point.unit, np.clip(place, 0.0, 1.0)]) for place in places])
+    kept = point.unit[_kept(point, score.hypothesis)]
+    return np.column_stack([np.concatenate([kept, np.clip(place, 0.0, 1.0)]) for place in places])
 
 
-def _rough(bench: Workbench, point: Point, score: Score, strong: bool) -> Point:
+def _kept(point: Point, hypothesis: Hypothesis) -> list[int]:
+    """What stays free beside a hypothesis: all but the parameters it has itself, for all runs or for fewer."""
+    return [i for i, name in enumerate(point.names) if base_of(name) not in hypothesis.bases]
+
+
+def origin(bench: Workbench, point: Point, names: Sequence[str]) -> FloatArray:
+    """(n_names,) where parameters stand in a point: their own value, that of all runs, or their null."""
+    unit = dict(zip(point.names, point.unit, strict=True))
+    null = bench.null(names)
+    return np.array([unit.get(name, unit.get(base_of(name), z)) for name, z in zip(names, null, strict=True)])
+
+
+def _spreads(bench: Workbench, point: Point, hypothesis: Hypothesis, spread: float) -> dict[str, float]:
+    """Spreads at a point and of a hypothesis, the latter in typical sizes."""
+    keys = {spread_key(name): spread * typical(bench, name) for name in hypothesis.names} if hypothesis.by else {}
+    return {**point.spreads, **bench.spreads, **keys}
+
+
+def _spread(bench: Workbench, linear: Linear, point: Point, score: Score, end: Point) -> float:
+    """Spread [typical sizes] of the values that a refit ended with."""
+    if not score.hypothesis.by:
+        return 0.0
+    return max(told_by(linear, score.hypothesis, _values(bench, point, score.hypothesis, end))[0], LEAST_SPREAD)
+
+
+def _values(bench: Workbench, point: Point, hypothesis: Hypothesis, end: Point) -> FloatArray:
+    """(n_names,) how far the parameters of a hypothesis moved from where they stood, in typical sizes."""
+    names = hypothesis.names
+    size = np.array([typical(bench, name) for name in names])
+    return np.asarray((end.unit[-len(names) :] - origin(bench, point, names)) / size)
+
+
+def _rough(bench: Workbench, point: Point, score: Score, strong: bool, iterations: int = ROUGH) -> Point:
     """A few steps towards the best fit with a hypothesis."""
     excess = max(point.chi2 - bench.problem.n_residuals, 0.0)
+    hypothesis = score.hypothesis
     return bench.refit(
-        (*point.names, *score.hypothesis.names),
+        (*(point.names[i] for i in _kept(point, hypothesis)), *hypothesis.names),
         _starts(bench, point, score, strong),
         point.offsets,
-        max_iterations=ROUGH,
+        max_iterations=iterations,
         tolerance=max(TOLERANCE, 1e-3 * excess),
+        spreads=_spreads(bench, point, hypothesis, max(score.spread, 1.0 if strong else LEAST_SPREAD)),
     )
 
 
 def _judged(
-    bench: Workbench, point: Point, score: Score, end: Point, chance: ChanceScores | None, n_terms: int
+    bench: Workbench, linear: Linear, point: Point, score: Score, end: Point, chance: ChanceScores | None, n_terms: int
 ) -> Refit:
     hypothesis = score.hypothesis
     null = bench.null(hypothesis.names)
     size = np.array([typical(bench, name) for name in hypothesis.names])
     if end.chi2 > point.chi2:  # a wind of nearly nothing is not quite nothing; the null itself is always open
-        unit = np.concatenate([point.unit, null])
-        end = Point(end.names, unit, point.offsets, point.chi2, point.integrator)
+        kept = point.unit[_kept(point, hypothesis)]
+        unit = np.concatenate([kept, origin(bench, point, hypothesis.names)])
+        end = Point(end.names, unit, point.offsets, point.chi2, point.integrator, end.spreads)
     gain = point.chi2 - end.chi2
     assert gain >= 0.0, "a nested refit ended above the model it extends"
-    k = len(hypothesis.names)
+    volume = told_by(linear, hypothesis, _values(bench, point, hypothesis, end))[1] if hypothesis.by else 0.0
+    k = _new(point, hypothesis)
     cost = k * np.log(bench.problem.n_residuals) + (2.0 * np.log(n_terms) if hypothesis.effect.one_of_many else 0.0)
+    cost += volume
     return Refit(
         hypothesis,
         score,
@@ -334,15 +489,27 @@ def _judged(
         gain,
         cost,
         gain / score.inflation - cost,
-        float(np.max(np.abs(end.unit[len(point.names) :] - null) / size)),
-        chance.p_value(evidence(gain / score.inflation, k)) if chance else 1.0,
+        float(np.max(np.abs(end.unit[-len(null) :] - null) / size)),
+        chance.p_value(evidence(max(gain / score.inflation - volume, 0.0), k)) if chance else 1.0,
+        _unvisited(bench, end, hypothesis),
     )
+
+
+def _unvisited(bench: Workbench, end: Point, hypothesis: Hypothesis) -> str:
+    """What the trials would have to visit for a fitted hypothesis to be believed; "" where they do."""
+    if hypothesis.effect.unvisited is None:
+        return ""
+    values = bench.values(end)
+    found = {name.rpartition(".")[2]: values[name] for name in hypothesis.names}
+    return hypothesis.effect.unvisited(found, bench.visited)
 
 
 def _decide(bench: Workbench, refits: Sequence[Refit], rivals: Sequence[Refit]) -> tuple[bool, str]:
     if not refits:
         return False, "no effect applies"
     best = refits[0]
+    if best.unvisited:
+        return False, f"{best.hypothesis.tag} would be believed only where trials visit {best.unvisited}"
     if best.p_value > bench.options.level:
         return False, f"chance brings as much in {best.p_value:.2g} of all searches"
     if best.evidence < ENOUGH:
@@ -362,20 +529,26 @@ def _rivals(refits: Sequence[Refit]) -> list[Refit]:
     return list(found.values())
 
 
-def _without(bench: Workbench, point: Point, hypothesis: Hypothesis) -> Point:
+def without(bench: Workbench, point: Point, hypothesis: Hypothesis) -> Point:
     """The point refitted without one of its hypotheses."""
     kept = [i for i, name in enumerate(point.names) if name not in hypothesis.names]
-    return bench.refit([point.names[i] for i in kept], point.unit[kept][:, None], point.offsets)
+    names = [point.names[i] for i in kept]
+    return bench.refit(names, point.unit[kept][:, None], point.offsets, spreads=point.spreads)
 
 
-def _drop_superfluous(bench: Workbench, found: Found) -> None:
-    """Drop causes that those found later explain."""
-    for hypothesis in list(found.causes[:-1]):
-        fewer = _without(bench, found.final, hypothesis)
-        share = len(hypothesis.names) * np.log(bench.problem.n_residuals)
-        if fewer.chi2 - found.final.chi2 < share + ENOUGH:
+def _drop_superfluous(bench: Workbench, found: Found, asked: Sequence[Hypothesis]) -> None:
+    """Drop causes of those asked for that others explain."""
+    for hypothesis in list(asked):
+        fewer = without(bench, found.final, hypothesis)
+        if fewer.chi2 - found.final.chi2 < _price(bench, found, hypothesis) + ENOUGH:
             found.causes.remove(hypothesis)
             found.final = fewer
+
+
+def _price(bench: Workbench, found: Found, hypothesis: Hypothesis) -> float:
+    """What a cause must explain at least: its share by BIC, or what it was charged when it was found."""
+    paid = [r.cost for step in found.steps for r in step.refits[:1] if r.hypothesis == hypothesis and hypothesis.by]
+    return paid[0] if paid else len(hypothesis.names) * float(np.log(bench.problem.n_residuals))
 
 
 def _rivals_of(bench: Workbench, found: Found, k: int) -> list[Refit]:
@@ -387,17 +560,20 @@ def _rivals_of(bench: Workbench, found: Found, k: int) -> list[Refit]:
     near = [r for r in step.refits[1:] if r.hypothesis.tag != cause.tag and r.gain > 0.5 * step.refits[0].gain]
     if len(found.causes) == 1:
         return _rivals(step.refits)
-    without = _without(bench, found.final, cause)
-    best = replace(step.refits[0], point=found.final, gain=without.chi2 - found.final.chi2)
+    fewer = without(bench, found.final, cause)
+    best = replace(step.refits[0], point=found.final, gain=fewer.chi2 - found.final.chi2)
     rivals: dict[str, Refit] = {}
     for rival in near:
-        if set(rival.hypothesis.names) & set(without.names):
+        if set(rival.hypothesis.bases) & {base_of(name) for name in fewer.names}:
             continue
-        start = rival.point.unit[len(step.base.names) :]
+        start = rival.point.unit[-len(rival.hypothesis.names) :]
         other = bench.refit(
-            (*without.names, *rival.hypothesis.names), np.concatenate([without.unit, start])[:, None], without.offsets
+            (*fewer.names, *rival.hypothesis.names),
+            np.concatenate([fewer.unit, start])[:, None],
+            fewer.offsets,
+            spreads={**fewer.spreads, **rival.point.spreads},
         )
-        rival = replace(rival, point=other, gain=without.chi2 - other.chi2)
+        rival = replace(rival, point=other, gain=fewer.chi2 - other.chi2)
         if not best.beats(rival):
             rivals.setdefault(rival.hypothesis.tag, rival)
     return list(rivals.values())

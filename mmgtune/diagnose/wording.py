@@ -9,7 +9,13 @@ from ..effects import Effect
 from ..units import DEG
 from .intervals import Estimate
 
-_SHOWN = {"rad": (1.0 / DEG, "°"), "rad/s": (1.0 / DEG, "°/s"), "N": (1e-3, " kN")}
+_SHOWN = {
+    "rad": (1.0 / DEG, "°"),
+    "rad/s": (1.0 / DEG, "°/s"),
+    "rad/s^2": (1.0 / DEG, "°/s²"),
+    "N": (1e-3, " kN"),
+    "m/s^2": (600.0, " m/s in ten minutes"),
+}
 
 
 def quantity(value: float, error: float | None, unit: str) -> str:
@@ -23,6 +29,13 @@ def quantity(value: float, error: float | None, unit: str) -> str:
     error *= factor
     digits = max(0, min(6, 1 - math.floor(math.log10(error))))
     return f"{value:.{digits}f} ± {error:.{digits}f}{word}"
+
+
+def range_in_words(low: float, high: float, unit: str) -> str:
+    """From the least to the largest: "0.2 to 0.4 m/s"."""
+    factor, word = _SHOWN.get(unit, (1.0, "" if unit in ("-", "prime") else f" {unit}"))
+    ends = [f"{end * factor:.2g}" for end in (low, high)]
+    return f"{' to '.join(dict.fromkeys(ends))}{word}"
 
 
 def parameters_in_words(effect: Effect, estimates: Mapping[str, Estimate]) -> dict[str, str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -10,17 +10,20 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..backends import STATES, Integrator, get_backend
-from ..effects import Effect
-from ..fitting.box import Box, choose_targets, make_box
+from ..components import split_name
+from ..effects import Effect, Visited
+from ..fitting.box import Box, base_of, choose_targets, group_of, make_box
 from ..fitting.least_squares import LeastSquaresResult, solve
+from ..fitting.one_sided import followers, tied
 from ..fitting.problem import FitProblem
 from ..model import Model
 from ..objective import Objective, cases_of
 from ..options import DiagnoseOptions
 from ..profile import ShipProfile, with_all_effects
-from ..trial import Trial
+from ..trial import Coverage, Trial, visited_by
 from ..trial.kinematics import white_noise
 from .noise import NoiseModel, white
+from .runs import between, labels_of
 
 TOLERANCE = 0.2
 """Fall of chi-squared that counts as none while searching; a fiftieth of what matters."""
@@ -36,7 +39,9 @@ class Point:
     names    what was free: targets, then parameters of effects
     unit     (n_names,) position in the box
     offsets  (n_cases, 6) of the initial states
-    chi2     sum of squared whitened residuals, and of offsets over their deviations
+    chi2     sum of squared whitened residuals, of offsets over their deviations, and of what differs between runs over
+             its spread
+    spreads  of that, by ``runs.spread_key``, in the unit cube
     """
 
     names: tuple[str, ...]
@@ -44,6 +49,7 @@ class Point:
     offsets: FloatArray
     chi2: float
     integrator: Integrator
+    spreads: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(eq=False)
@@ -56,6 +62,7 @@ class Workbench:
     box       of the targets and of every parameter of every hypothesis
     noise     as known so far
     own_effects  tags of effects the profile itself has
+    spreads   of values that groups of runs have of their own, by ``runs.spread_key``, in the unit cube
     """
 
     model: Model
@@ -67,7 +74,13 @@ class Workbench:
     problem: FitProblem
     noise: NoiseModel
     own_effects: tuple[str, ...] = ()
+    spreads: dict[str, float] = field(default_factory=dict)
     refits: int = field(default=0)
+
+    @cached_property
+    def visited(self) -> Visited:
+        """What the trials visit."""
+        return visited_by(self.trials, self.model.L_pp)
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -90,20 +103,11 @@ class Workbench:
     def _quick_model(self) -> Model:
         left_out = {effect.kind for effect in self._on_demand}
         sections = {kind: s for kind, s in self.model.profile.sections.items() if kind not in left_out}
-        return Model(replace(self.model.profile, sections=sections))
+        return Model(replace(self.model.profile, sections=sections), self.model.ties)
 
     def sub_box(self, names: Sequence[str]) -> Box:
         """The box of some of its names, in their order."""
-        at = [self.box.names.index(name) for name in names]
-        place = {old: new for new, old in enumerate(at)}
-        return Box(
-            tuple(names),
-            self.box.pre[at],
-            self.box.low[at],
-            self.box.high[at],
-            tuple(place[i] for i in self.box.reciprocal if i in place),
-            tuple((place[i], place[j]) for i, j in self.box.polar if i in place and j in place),
-        )
+        return self.box.part(names)
 
     def problem_of(self, names: Sequence[str], integrator: Integrator | None = None) -> FitProblem:
         """The problem of fitting ``names``, everything else at its value in the profile."""
@@ -124,17 +128,31 @@ class Workbench:
         integrator: Integrator | None = None,
         max_iterations: int = 30,
         tolerance: float = TOLERANCE,
+        spreads: Mapping[str, float] | None = None,
     ) -> Point:
-        """The best fit of ``names`` from starts (n_names, n_starts), initial states beginning at ``offsets``."""
+        """The best fit of ``names`` from starts (n_names, n_starts), initial states beginning at ``offsets``.
+
+        spreads  of values that groups of runs have of their own, those of the workbench where None
+        """
         problem = self.problem_of(names, integrator).with_offsets(offsets)
         whiten = self.noise.apply if self.noise_known else None
-        ends = solve(problem, starts, max_iterations=max_iterations, whiten=whiten, tolerance=tolerance)
+        spreads = self.spreads if spreads is None else spreads
+        apart = between(names, spreads)
+        ends = solve(
+            problem,
+            starts,
+            max_iterations=max_iterations,
+            whiten=whiten,
+            tolerance=tolerance,
+            beliefs=None if apart is None else (apart, np.zeros(len(names))),
+        )
         self.refits += len(ends)
-        best = min(ends, key=lambda end: self._total(end))
-        return Point(tuple(names), best.unit, best.offsets, self._total(best), problem.integrator)
+        best = min(ends, key=lambda end: self._total(end, apart))
+        return Point(tuple(names), best.unit, best.offsets, self._total(best, apart), problem.integrator, spreads)
 
-    def _total(self, end: LeastSquaresResult) -> float:
-        return float(end.J + np.sum(self.problem.prior * end.offsets**2))
+    def _total(self, end: LeastSquaresResult, apart: FloatArray | None) -> float:
+        unlike = 0.0 if apart is None else float(np.sum((apart @ end.unit) ** 2))
+        return float(end.J + np.sum(self.problem.prior * end.offsets**2) + unlike)
 
     @property
     def noise_known(self) -> bool:
@@ -152,6 +170,21 @@ class Workbench:
     def integrate(self, integrator: Integrator) -> None:
         """Simulate by another method in all that follows."""
         self.problem = self.problem.with_integrator(integrator)
+
+    def tuned(self, point: Point, trial: Trial | None = None) -> ShipProfile:
+        """The profile with the values of a point, those of the groups of a trial too."""
+        profile = self.model_of(point.names).profile
+        sections = dict(profile.sections)
+        own = labels_of(trial) if trial is not None else frozenset()
+        values = self.values(point)
+        for name, value in (values | followers(self.model.ties, values)).items():
+            if group_of(name) and group_of(name) not in own:
+                continue
+            kind, symbol = split_name(base_of(name))
+            coefficients = dict(sections[kind].coefficients)
+            coefficients[symbol] = replace(coefficients[symbol], value=value)
+            sections[kind] = replace(sections[kind], coefficients=coefficients)
+        return replace(profile, sections=sections)
 
     def values(self, point: Point) -> dict[str, float]:
         """What was free, by name, in profile units."""
@@ -173,9 +206,10 @@ def make_workbench(
     names  parameters of effects that will be fitted, besides the targets
     Raises OptionError for targets, box or channels that make no sense.
     """
-    model = Model(with_all_effects(profile))
     own = Model(profile)
     targets = choose_targets(own, options.targets, options.fixed)
+    targets, ties = tied(profile, targets, Coverage.of(trials, own.L_pp))
+    model = Model(with_all_effects(profile), ties)
     sigma = noise_levels(trials)
     channels = [c for c in STATES if not options.channels or c in {"v_m" if o == "v" else o for o in options.channels}]
     objective = Objective(dict(zip(STATES, sigma, strict=True)), dict.fromkeys(channels, 1.0))
@@ -188,6 +222,6 @@ def make_workbench(
         backend=get_backend(options.backend),
         integrator=Integrator(options.integrator, options.substeps),
         sigma=np.repeat(LOOSE * sigma[None], len(trials), axis=0),
-    )
+    ).with_groups([labels_of(trial) for trial in trials])
     own_effects = tuple(effect.tag for effect in own.effects)
     return Workbench(model, list(trials), options, sigma, targets, box, problem, white(cases), own_effects)

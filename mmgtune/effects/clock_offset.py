@@ -28,5 +28,7 @@ EFFECT = ClockEffect(
         )
     },
     variants=(("seconds",),),
+    varies=("seconds",),
+    subject="clock of the control log against that of the motion log",
     sentence=lambda v: f"The control log ran {v['seconds']} behind the motion log (negative: ahead of it)",
 )

@@ -1,5 +1,6 @@
-"""Water that moves over ground, uniform: steady, or as it was measured in time."""
+"""Water that moves over ground, uniform: steady, changing steadily as a tide does, or as it was measured in time."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from ..physics.elementary import where
@@ -13,26 +14,30 @@ class Current(NamedTuple):
 
     north: Lanes
     east: Lanes
+    north_rate: Lanes
+    east_rate: Lanes
     measured: Lanes
 
 
 def current(state: State, around: Surroundings, e: Current) -> tuple[Lanes, Lanes]:
     """Velocity of the water in the ship's axes: surge and sway [m/s].
 
-    Where the trial has measured current it counts, times ``measured``; else the steady one.  With velocities through
-    water the equations of motion hold unchanged (Mathioudakis et al., eq. 9).
+    Where the trial has measured current it counts, times ``measured``; else one that is linear in time.  With
+    velocities through water the equations of motion hold unchanged (Mathioudakis et al., eq. 9).
     """
     by_log = around.current_known * e.measured > 0.0
-    north = where(by_log, around.current_north * e.measured, e.north)
-    east = where(by_log, around.current_east * e.measured, e.east)
+    north = where(by_log, around.current_north * e.measured, e.north + e.north_rate * around.elapsed)
+    east = where(by_log, around.current_east * e.measured, e.east + e.east_rate * around.elapsed)
     ahead, starboard = to_ship(state.psi, north, east)
     return ahead, starboard
 
 
 def rate_of_current(state: State, around: Surroundings, e: Current) -> tuple[Lanes, Lanes]:
-    """How fast the measured current changes over ground, in the ship's axes [m/s^2]: constant between two samples."""
-    share = around.current_known * e.measured
-    ahead, starboard = to_ship(state.psi, around.current_north_rate * share, around.current_east_rate * share)
+    """How fast the current changes over ground, in the ship's axes [m/s^2]: constant between two samples."""
+    by_log = around.current_known * e.measured > 0.0
+    north = where(by_log, around.current_north_rate * e.measured, e.north_rate)
+    east = where(by_log, around.current_east_rate * e.measured, e.east_rate)
+    ahead, starboard = to_ship(state.psi, north, east)
     return ahead, starboard
 
 
@@ -46,6 +51,25 @@ def _component(direction: str) -> Parameter:
     )
 
 
+def _rate(direction: str) -> Parameter:
+    return Parameter(
+        f"what that velocity gains in a second from the beginning of a run on, {direction}",
+        "m/s^2",
+        bounds=lambda ship: (-0.6 * ship.U**2 / (20.0 * ship.L), 0.6 * ship.U**2 / (20.0 * ship.L)),
+        typical=lambda ship: 0.05 * ship.U**2 / (20.0 * ship.L),
+        bounds_source="six tenths of the approach speed in the time of twenty ship lengths",
+    )
+
+
+def _sentence(v: Mapping[str, str]) -> str:
+    if "measured" in v:
+        return f"The current measured in the trials acts on the ship, with {v['measured']} times its measured speed"
+    steady = f"The trials were run in a current of {v['speed']} setting towards {v['towards']}"
+    if "gain" not in v:
+        return steady
+    return f"{steady} at the beginning of a run, which gained {v['gain']} towards {v['gaining']}"
+
+
 EFFECT = FlowEffect(
     kind="effects.current",
     tag="current",
@@ -57,15 +81,14 @@ EFFECT = FlowEffect(
     fields={
         "north": _component("north"),
         "east": _component("east"),
+        "north_rate": _rate("north"),
+        "east_rate": _rate("east"),
         "measured": factor_on_measured("the current", 2.0, 0.2, "from no current to twice the measured"),
     },
-    variants=(("north", "east"), ("measured",)),
-    told_as={("north", "east"): ("speed", "towards")},
-    sentence=lambda v: (
-        f"The current measured in the trials acts on the ship, with {v['measured']} times its measured speed"
-        if "measured" in v
-        else f"The trials were run in a current of {v['speed']} setting towards {v['towards']}"
-    ),
+    variants=(("north", "east"), ("north", "east", "north_rate", "east_rate"), ("measured",)),
+    told_as={("north", "east"): ("speed", "towards"), ("north_rate", "east_rate"): ("gain", "gaining")},
+    sentence=_sentence,
     of_measured={"measured": "current"},
-    stand_in=("north", "east"),
+    stand_in=("north", "east", "north_rate", "east_rate"),
+    varies=("north", "east", "north_rate", "east_rate"),
 )

@@ -37,5 +37,7 @@ EFFECT = ActuatorEffect(
         )
     },
     variants=(("factor",),),
+    varies=("factor",),
+    subject="scale of the revolutions",
     sentence=lambda v: f"The propeller turned at {v['factor']} times the revolutions logged",
 )

@@ -38,5 +38,7 @@ EFFECT = ActuatorEffect(
         )
     },
     variants=(("angle",),),
+    varies=("angle",),
+    subject="zero of the rudder",
     sentence=lambda v: f"The rudder stood {v['angle']} off its indicator (positive to starboard)",
 )

@@ -77,4 +77,5 @@ EFFECT = ForceEffect(
     needs=("above_water.A_T",),
     of_measured={"measured": "wind"},
     stand_in=("speed",),
+    varies=("speed", "direction"),
 )

@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from ..arrays import FloatArray, IntArray
 from ..components import split_name
+from ..displayed import Brief
 from ..effects import Parameter
 from ..errors import OptionError, Problem, closest
 from ..model import Model
@@ -34,8 +35,22 @@ def width_words(a_r: float | None, sign: str = "+-") -> str:
     return f"{sign}{a_r:g}"
 
 
-@dataclass(frozen=True, eq=False)
-class Box:
+AT = "@"
+"""Between a coefficient and the group of cases it is of, in the name of a target: "wake.w_P0@trial:run_1"."""
+
+
+def base_of(name: str) -> str:
+    """The coefficient that a target is the value of, for all cases or for a group of them."""
+    return name.partition(AT)[0]
+
+
+def group_of(name: str) -> str:
+    """The group of cases that a target is of, "" for all."""
+    return name.partition(AT)[2]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Box(Brief):
     """Targets by name with their pre-determined values, (n_targets,), in profile units, and bounds.
 
     Searches work in the unit cube: 0 at the lower bound, 1 at the upper.
@@ -63,6 +78,27 @@ class Box:
     def width(self) -> FloatArray:
         """Distance between the bounds."""
         return self.high - self.low
+
+    def part(self, names: Sequence[str]) -> Box:
+        """The box of some targets, in their order; one of a group of cases has the bounds of its coefficient."""
+        bases = [base_of(name) for name in names]
+        at = [self.names.index(base) for base in bases]
+        place = {name: k for k, name in enumerate(names)}
+
+        def beside(k: int, j: int) -> int | None:
+            """The place of coefficient j of the group that target k is of."""
+            group = group_of(names[k])
+            return place.get(f"{self.names[j]}{AT}{group}" if group else self.names[j])
+
+        pairs = ((k, beside(k, j)) for k, i in enumerate(at) for first, j in self.polar if i == first)
+        return Box(
+            tuple(names),
+            self.pre[at],
+            self.low[at],
+            self.high[at],
+            tuple(k for k, i in enumerate(at) if i in self.reciprocal),
+            tuple((k, other) for k, other in pairs if other is not None),
+        )
 
     @property
     def from_formula(self) -> IntArray:
@@ -221,7 +257,7 @@ def _formulas(model: Model, targets: Sequence[str]) -> tuple[FloatArray | None, 
 
 def parameter_of(model: Model, name: str) -> Parameter | None:
     """The parameter of an effect called that, None for a coefficient of a component."""
-    section, symbol = split_name(name)
+    section, symbol = split_name(base_of(name))
     found = model.profile.sections[section].component.fields[symbol]
     return found if isinstance(found, Parameter) else None
 

@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arrays import BoolArray, FloatArray
+from ..displayed import Brief
 from .initial import LARGEST
 from .journal import remembered
 from .problem import FitProblem
@@ -29,8 +30,8 @@ AHEAD = 0.1
 """Share of a step at which its second derivative is taken."""
 
 
-@dataclass(frozen=True, eq=False)
-class LeastSquaresResult:
+@dataclass(frozen=True, eq=False, repr=False)
+class LeastSquaresResult(Brief):
     """Where one start ended.
 
     unit        (n_targets,) position in the unit cube
@@ -50,8 +51,9 @@ def _asked(problem: FitProblem, starts: FloatArray, *given: Any, **named: Any) -
     """What tells one solve from another."""
     named = {name: "a function" if callable(value) else value for name, value in named.items()}
     anchor = named.pop("anchor", None)
+    beliefs = named.pop("beliefs", None)
     plain = [value for value in given if not callable(value)]
-    return ["solve", *problem.asked(), starts, anchor, repr(plain), repr(sorted(named.items()))]
+    return ["solve", *problem.asked(), starts, anchor, repr(plain), repr(sorted(named.items())), *(beliefs or ())]
 
 
 def _noted(ends: list[LeastSquaresResult]) -> list[Any]:
@@ -75,6 +77,7 @@ def solve(
     stop: Callable[[], bool] = lambda: False,
     whiten: Callable[[FloatArray], FloatArray] | None = None,
     tolerance: float = 0.0,
+    beliefs: tuple[FloatArray, FloatArray] | None = None,
 ) -> list[LeastSquaresResult]:
     """Minimise J within the unit cube from every column of ``starts`` (n_targets, n_starts).
 
@@ -87,6 +90,8 @@ def solve(
     whiten          linear map of residuals (n_residuals, ...) within each case, such as ``Whitening.apply``; J is then
                     the sum of squares of what it makes of them
     tolerance       fall of what is minimised that counts as none, if larger than a share of QUIET
+    beliefs         (k, n_targets) matrix A and (n_targets,) centre: adds |A (unit - centre)|^2 to what is minimised
+                    (not to the J reported)
     Returns a result per start, never above what it began with.
     """
     n_starts = starts.shape[1]
@@ -94,10 +99,15 @@ def solve(
     d = np.repeat(problem.offsets[:, None], n_starts, axis=1)
     centre = np.zeros(len(z)) if anchor is None else anchor
     prior = problem.prior
+    believed = np.zeros((len(z), len(z))) if beliefs is None else beliefs[0].T @ beliefs[0]
+    likely = centre if beliefs is None else beliefs[1]
 
     def penalty(unit: FloatArray, offsets: FloatArray) -> FloatArray:
         away = np.sum((unit - centre[:, None]) ** 2, axis=0)
-        return np.asarray(ridge * away + np.einsum("cps,cs->p", offsets**2, prior))
+        own = ridge * away + np.einsum("cps,cs->p", offsets**2, prior)
+        if beliefs is not None:
+            own = own + np.sum((beliefs[0] @ (unit - likely[:, None])) ** 2, axis=0)
+        return np.asarray(own)
 
     def residuals_of(unit: FloatArray, offsets: FloatArray) -> FloatArray:
         found = problem.residuals(unit, offsets).T
@@ -122,8 +132,8 @@ def solve(
         tried = np.empty((len(z), len(rows), 2, len(DAMPINGS)))
         moved = np.empty((len(problem.cases), len(rows), 2, len(DAMPINGS), 6))
         for i, row in enumerate(rows):
-            hessian = linear[i].hessian + ridge * np.eye(len(z))
-            gradient = linear[i].gradient + ridge * (z[:, row] - centre)
+            hessian = linear[i].hessian + ridge * np.eye(len(z)) + believed
+            gradient = linear[i].gradient + ridge * (z[:, row] - centre) + believed @ (z[:, row] - likely)
             scale = np.maximum(np.diag(hessian), 1e-12 * np.diag(hessian).max() + 1e-300)
             for k, factor in enumerate(DAMPINGS):
                 damped = hessian + np.diag(damping[row] * factor * scale)

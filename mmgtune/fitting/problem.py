@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Self
 
@@ -11,7 +12,7 @@ from ..arrays import FloatArray
 from ..backends import WIDTH, Backend, Cases, Integrator
 from ..model import Model
 from ..predictor import PhysicsPredictor, Prediction
-from .box import Box
+from .box import Box, base_of, group_of
 from .initial import prior_weight
 from .terms import Term
 
@@ -35,6 +36,7 @@ class FitProblem:
     prior    (n_cases, 6) weight of squared offsets beside J; zero where initial states are held
     terms    rows of residuals besides those of the cases, behind them in this order
     weight   of the squares of these rows beside J
+    groups   (n_cases) groups each case belongs to: a target "coefficient@group" is of these cases alone
     """
 
     model: Model
@@ -47,6 +49,7 @@ class FitProblem:
     prior: FloatArray
     terms: tuple[Term, ...] = ()
     weight: float = 1.0
+    groups: tuple[frozenset[str], ...] = ()
     counter: Counter = field(default_factory=Counter)
 
     @classmethod
@@ -85,6 +88,10 @@ class FitProblem:
         """Other coefficients free, of a model of the same ship."""
         return replace(self, model=model, box=box)
 
+    def with_groups(self, groups: Sequence[frozenset[str]]) -> Self:
+        """Cases of these groups."""
+        return replace(self, groups=tuple(groups))
+
     def with_prior(self, sigma: FloatArray, prior: FloatArray) -> Self:
         """Initial states estimated, (n_cases, 6) deviations and weights of squared offsets given apart."""
         return replace(self, sigma=sigma, prior=prior)
@@ -109,6 +116,10 @@ class FitProblem:
         box = (self.box.names, self.box.low, self.box.high)
         method = (self.model.tags, self.backend.name, self.integrator)
         found: list[Any] = [*box, *method, self.model.base, self.cases.sha256, self.sigma, self.offsets, self.prior]
+        if self.model.ties:
+            found.append(self.model.ties)
+        if self.groups:
+            found += [sorted(groups) for groups in self.groups]
         if self.terms:
             found += [self.weight, *(part for term in self.terms for part in term.asked(self))]
         return found
@@ -126,8 +137,30 @@ class FitProblem:
         return [slice(int(end - count), int(end)) for end, count in zip(ends, counts, strict=True)]
 
     def theta(self, unit: FloatArray) -> FloatArray:
-        """Coefficient matrix (n_rows, n_candidates) at positions (n_targets, n_candidates) in the unit cube."""
-        return self.model.matrix(self.box.names, self.box.from_unit(unit))
+        """Coefficient matrix (n_rows, n_candidates) at positions (n_targets, n_candidates) in the unit cube.
+
+        (n_rows, n_cases, n_candidates) where targets are of groups of cases.
+        """
+        values = self.box.from_unit(unit)
+        if not self.grouped:
+            return self.model.matrix(self.box.names, values)
+        made: dict[tuple[int, ...], FloatArray] = {}
+        for case in range(len(self.cases)):
+            own = tuple(k for k in range(len(self.box)) if self._is_of(k, case))
+            if own not in made:
+                made[own] = self.model.matrix([base_of(self.box.names[k]) for k in own], values[list(own)])
+        each = [tuple(k for k in range(len(self.box)) if self._is_of(k, case)) for case in range(len(self.cases))]
+        return np.stack([made[own] for own in each], axis=1)
+
+    @property
+    def grouped(self) -> bool:
+        """Whether any target is of a group of cases."""
+        return any(group_of(name) for name in self.box.names)
+
+    def _is_of(self, k: int, case: int) -> bool:
+        """Whether target ``k`` is a coefficient of a case."""
+        group = group_of(self.box.names[k])
+        return not group or group in self.groups[case]
 
     def initial(self, n_candidates: int, offsets: FloatArray | None) -> FloatArray:
         """Initial states (n_cases, n_candidates, 6)."""
@@ -136,8 +169,11 @@ class FitProblem:
         return self.cases.initial[:, None] + offsets
 
     def predictor(self, unit: FloatArray) -> PhysicsPredictor:
-        """Candidates (n_targets, n_candidates) as members of a predictor."""
-        return PhysicsPredictor(self.model, self.theta(unit), self.integrator, self.backend.name)
+        """Candidates (n_targets, n_candidates) as members of a predictor; of one case where targets are of groups."""
+        theta = self.theta(unit)
+        if theta.ndim == 3:
+            (theta,) = theta.transpose(1, 0, 2)
+        return PhysicsPredictor(self.model, theta, self.integrator, self.backend.name)
 
     def states(self, unit: FloatArray, offsets: FloatArray | None = None) -> Prediction:
         """Motion of candidates (n_targets, n_candidates) on every case; offsets as for ``costs``."""
@@ -229,32 +265,57 @@ class FitProblem:
 
         -> residuals (n_points, n_rows), derivatives by target (n_points, n_rows, n_targets), and by the six initial
         offsets of the case a residual belongs to (n_points, n_rows, 6; empty where they are held).
-        Steps go inwards where a point is on the upper bound.  All points and columns run as lanes of one call.
+        Steps go inwards where a point is on the upper bound.  All points and columns run as lanes of one call;
+        values of different groups of cases are moved in the same lanes.
         """
         n_targets, n_points = unit.shape
+        together = self._moved_together()
+        n_moved = len(together)
         extra = 0 if self.sigma is None else 6
-        n_columns = 1 + n_targets + extra
+        n_columns = 1 + n_moved + extra
         steps = np.where(unit + step > 1.0, -step, step)
         columns = np.repeat(unit[:, :, None], n_columns, axis=2)
-        for k in range(n_targets):
-            columns[k, :, 1 + k] += steps[k]
+        for i, moved_here in enumerate(together):
+            columns[moved_here, :, 1 + i] += steps[moved_here]
         base_offsets = np.repeat(self.offsets[:, None], n_points, axis=1) if offsets is None else offsets
         moved = np.repeat(base_offsets[:, :, None], n_columns, axis=2)
         if self.sigma is not None:
             for k in range(6):
-                moved[:, :, 1 + n_targets + k, k] += step * self.sigma[:, None, k] * 1e3
+                moved[:, :, 1 + n_moved + k, k] += step * self.sigma[:, None, k] * 1e3
         n_lanes = n_points * n_columns
         values = self.residuals(columns.reshape(n_targets, n_lanes), moved.reshape(len(self.cases), n_lanes, 6))
         values = values.T.reshape(-1, n_points, n_columns).transpose(1, 0, 2)
         base = values[:, :, :1]
         with np.errstate(invalid="ignore"):
-            slopes = values[:, :, 1 : 1 + n_targets] - base
+            slopes = values[:, :, 1 : 1 + n_moved] - base
+            if self.grouped:
+                slopes = self._apart(slopes, together)
             slopes /= steps.T[:, None, :]
-            by_offset = values[:, :, 1 + n_targets :] - base
+            by_offset = values[:, :, 1 + n_moved :] - base
             if self.sigma is not None:
                 for case, rows in enumerate(self.rows_of_cases):
                     by_offset[:, rows] /= step * self.sigma[case] * 1e3
         return base[:, :, 0], slopes, by_offset
+
+    def _moved_together(self) -> list[list[int]]:
+        """Targets by number that no case has two of: values of one coefficient for different groups."""
+        if not self.grouped:
+            return [[k] for k in range(len(self.box))]
+        found: dict[tuple[str, str], list[int]] = {}
+        for k, name in enumerate(self.box.names):
+            found.setdefault((base_of(name), group_of(name).partition(":")[0]), []).append(k)
+        return list(found.values())
+
+    def _apart(self, moved: FloatArray, together: Sequence[Sequence[int]]) -> FloatArray:
+        """Differences (n_points, n_rows, n_targets) by target, of those (n_points, n_rows, n_moved) moved together."""
+        apart = np.zeros((*moved.shape[:2], len(self.box)))
+        for i, targets in enumerate(together):
+            for k in targets:
+                for case, rows in enumerate(self.rows_of_cases):
+                    if self._is_of(k, case):
+                        apart[:, rows, k] = moved[:, rows, i]
+                apart[:, self.n_residuals :, k] = moved[:, self.n_residuals :, i]
+        return apart
 
     def central_jacobian(self, unit: FloatArray, step: float = 1e-5) -> tuple[FloatArray, FloatArray]:
         """Residuals (n_rows,) and derivatives (n_rows, n_targets) at one point, by central differences.

@@ -104,7 +104,7 @@ class Forces(Protocol):
 
 
 class Surroundings(NamedTuple):
-    """What was measured around the ship, at one instant."""
+    """What was measured around the ship, and since when she has been under way, at one instant."""
 
     wind_north: Lanes  # velocity of the air over ground, north [m/s]
     wind_east: Lanes  # and east [m/s]
@@ -119,10 +119,11 @@ class Surroundings(NamedTuple):
     wave_known: Lanes  # 1 where waves were measured, 0 where not
     depth: Lanes  # of the water [m]
     depth_known: Lanes  # 1 where the depth was measured, 0 where not
+    elapsed: Lanes  # time since the beginning of the run [s]
 
 
 UNKNOWN = Surroundings(*(0.0 for _ in Surroundings._fields))
-"""Nothing measured."""
+"""Nothing measured, at the beginning of a run."""
 
 HELD = tuple(name for name in Surroundings._fields if name.endswith(("_known", "_rate")))
 """Surroundings that hold over a step between samples with the value at its end; the others change linearly."""

@@ -39,7 +39,7 @@ def facts_of(raw: bytes | None, path: Path, columns: Sequence[str]) -> tuple[dic
     if facts.get("schema", SCHEMA) != SCHEMA:
         fix = "update mmgtune, or write the file again"
         problems.append(Problem(f"schema is {brief(facts['schema'])}, not {SCHEMA}", where, fix=fix))
-    for key in ("id", "ship", "manoeuvre", "source", "note", "cut_from"):
+    for key in ("id", "ship", "manoeuvre", "source", "note", "cut_from", "group"):
         if key in facts and not _is_text(facts[key]):
             problems.append(Problem(f"'{key}' is {brief(facts[key])}, not text", where, fix=f'write "{key}": "..."'))
     name = facts.get("id", "")

@@ -9,13 +9,14 @@ from pathlib import Path
 import numpy as np
 
 from ..arrays import FloatArray
+from ..displayed import Plotted, inert
 from ..errors import Problem, TrialError
 from ..inputs import INPUTS
 from .schema import ATTRIBUTES, CHANNELS
 
 
 @dataclass(frozen=True, eq=False)
-class Trial:
+class Trial(Plotted):
     """One manoeuvre: time, motion, inputs, and what is known about them.  All arrays (n_samples,), read-only.
 
     id         unique within a data set
@@ -33,6 +34,8 @@ class Trial:
     sealed     whether the file holds a digest of columns and facts, which agreed with them
     ignored    columns of the file that hold no numbers and were left out
     part_of    id of the trial this is a window of, "" for a whole trial
+    begins     when the time of a window begins, in the time of its whole trial [s]
+    group      what it has in common with other runs, such as the day or the loading; "" where the file does not say
     cut_from   name of the run that this and other trials were cut from, "" where it is a run of its own
 
     Raises ValueError where arrays differ in length or ``extra`` repeats a required column.
@@ -59,7 +62,9 @@ class Trial:
     sealed: bool = False
     ignored: tuple[str, ...] = ()
     part_of: str = ""
+    begins: float = 0.0
     cut_from: str = ""
+    group: str = ""
 
     def __post_init__(self) -> None:
         shape = (len(self.t),)
@@ -79,7 +84,7 @@ class Trial:
     def __repr__(self) -> str:
         """In a line."""
         words = ", ".join(word for word in (self.ship, self.manoeuvre, self.source) if word)
-        return f"Trial({self.id}: {words}, {self.n_samples} samples)"
+        return f"Trial({inert(self.id)}: {inert(words)}, {self.n_samples} samples)"
 
     @property
     def n_samples(self) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import shlex
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -20,6 +21,7 @@ from .digest import DIGEST_KEY, digest
 from .footer import rows_of
 from .metadata import facts_of
 from .model import Trial
+from .raw_logs import import_commands
 from .schema import ATTRIBUTES, METADATA_KEY, REQUIRED, SCHEMA, known_column
 from .unusable import unusable
 
@@ -60,6 +62,7 @@ def read_trial(path: Path | str) -> Trial:
         noise={name: float(value) for name, value in facts.get("noise", {}).items()},
         note=facts.get("note", ""),
         cut_from=facts.get("cut_from", ""),
+        group=facts.get("group", ""),
         path=path,
         sha256=held.sha256,
         sealed=DIGEST_KEY in held.metadata,
@@ -92,6 +95,8 @@ def write_trial(trial: Trial, path: Path | str, overwrite: bool = False) -> Path
     }
     if trial.cut_from:
         facts["cut_from"] = trial.cut_from
+    if trial.group:
+        facts["group"] = trial.group
     written = json.dumps(facts).encode()
     schema = pa.schema(fields, metadata={METADATA_KEY: written, DIGEST_KEY: digest(values, written)})
     table = pa.table([pa.array(column) for column in values.values()], schema=schema)
@@ -223,7 +228,7 @@ def unreadable(begins: bytes, where: str, error: Exception) -> TrialError:
     elif begins.startswith(b"PAR1"):
         what, fix = "the Parquet file is damaged", "copy it again from where it was made: it may be cut off"
     else:
-        what, fix = "the file is not Parquet", "trials are Parquet files; convert it, for example with pandas"
+        what, fix = "the file is not Parquet", import_commands(shlex.quote(where))
     return TrialError(Problem(what, where, (str(error).splitlines() or [""])[0], fix))
 
 

@@ -94,6 +94,7 @@ def _piece(trial: Trial, first: int, end: int) -> Trial:
         trial,
         id=named(trial.id, float(trial.t[first] - trial.t[0])),
         part_of=trial.part_of or trial.id,
+        begins=trial.begins + float(trial.t[first]),
         extra={name: values[first:end] for name, values in trial.extra.items()},
         **columns,
     )

@@ -173,6 +173,7 @@ def _window(voyage: Voyage, block: Block, first: int, last: int) -> Window:
         extra={name: values for name, values in columns.items() if name not in ATTRIBUTES},
         path=voyage.path,
         part_of=voyage.id,
+        begins=begins - voyage.begins,
         cut_from=voyage.cut_from,
         **own,
     )

@@ -136,6 +136,7 @@ def test_residuals_are_the_roots_of_the_cost(suzaku, backend):
             np.testing.assert_allclose(result.residuals[row], expected, atol=1e-12)
 
 
+@pytest.mark.slow(5)
 @pytest.mark.parametrize("n_candidates", [1, 3, 11])
 def test_lanes_over_cases_and_candidates_are_bit_equal_to_single_runs(esso_osaka, n_candidates):
     """Few candidates on cases of many lengths share blocks: nothing of one lane may show in another."""
@@ -182,6 +183,7 @@ def test_lanes_over_cases_and_candidates_are_bit_equal_to_single_runs(esso_osaka
             assert np.array_equal(alone.residuals[:, 0], together.residuals[own, candidate])
 
 
+@pytest.mark.slow(12)
 @pytest.mark.parametrize("backend", ["compiled", "numpy", "jax"])
 def test_a_candidate_for_each_case_is_the_same_as_every_case_with_every_candidate(suzaku, backend):
     """Cases of many lengths and steps, with a lag that remembers and a clock that is late."""
@@ -219,6 +221,19 @@ def test_a_candidate_for_each_case_is_the_same_as_every_case_with_every_candidat
     one = pad([runs[3].t[0]], [runs[3].controls[0]], [runs[3].initial[0]])
     alone = run(model, theta[:, [3]], one, paired=True, **known)
     np.testing.assert_allclose(alone.states[0, 0], paired.states[3, 0, : one.n_samples[0]], rounding, rounding)
+
+
+@pytest.mark.parametrize("backend", ["compiled", "numpy", "jax"])
+@pytest.mark.parametrize("n_candidates", [1, 9])
+def test_candidates_that_differ_from_case_to_case_are_those_of_each_case_alone(suzaku, backend, n_candidates):
+    turns = [turn(suzaku, degrees, seconds) for degrees, seconds in ((20.0, 90.0), (-35.0, 60.0), (10.0, 90.0))]
+    whole = pad([one.t[0] for one in turns], [one.controls[0] for one in turns], [one.initial[0] for one in turns])
+    values = np.random.default_rng(4).uniform(0.9, 1.1, (3, n_candidates)) * 0.017
+    theta = np.stack([suzaku.matrix(["hull.R_0"], own[None]) for own in values], axis=1)
+    together = states(suzaku, whole, theta, backend)
+    for k, one in enumerate(turns):
+        alone = states(suzaku, one, theta[:, k], backend)[0]
+        np.testing.assert_allclose(together[k, :, : one.t.shape[1]], alone, rtol=1e-12, atol=1e-12)
 
 
 def test_weights_at_the_first_sample_are_refused(suzaku):

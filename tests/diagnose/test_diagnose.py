@@ -65,7 +65,7 @@ def test_a_cause_is_named_on_windows_too(tmp_path):
     trials = load_trials(files(case, tmp_path)).trials.values()
     restart = (max(trial.duration for trial in trials) - 3.0) / 3.0  # a last window of four samples
     result = said_of(case, tmp_path, restart=restart, effects=("current", "rudder-offset", "antenna"))
-    assert [cause.tag for cause in result.causes] == ["current"]
+    assert [(cause.tag, cause.runs) for cause in result.causes] == [("current", None)]  # one for all
     assert len(result.gain.compared) > 10  # windows of the trials held out
 
 

@@ -39,7 +39,7 @@ def test_measured_in_any_trial_is_what_is_looked_for(trials, tag):
 
 def test_without_columns_the_constants_are(trials):
     assert variants(trials, "wind") == [("speed", "direction")]
-    assert variants(trials, "current") == [("north", "east")]
+    assert variants(trials, "current") == [("north", "east"), ("north", "east", "north_rate", "east_rate")]
     assert variants(trials, "shallow-water") == [("depth",)]
     assert variants(trials, "waves") == []
 

@@ -13,6 +13,8 @@ from mmgtune.model import Model
 from mmgtune.physics.quantities import UNKNOWN, State
 from mmgtune.physics.regressions.stawave1 import added_resistance, from_ahead, height_limit
 from mmgtune.profile import load_profile, parse_profile, with_effects
+from mmgtune.simulation import simulate
+from mmgtune.trial import load_trials, windows
 from tests.backends.test_agree import zigzag_like
 from tests.runs import measured, states
 from tests.trial.made import made
@@ -58,6 +60,24 @@ def test_waves_count_within_45_degrees_of_the_bow(degrees):
     off = math.radians(abs(degrees))
     taper = 1.0 if inside else 0.5 * (1.0 + math.cos(4.0 * (off - math.pi / 4.0))) if abs(degrees) < 90.0 else 0.0
     assert from_ahead(ahead, starboard, 1.0) == pytest.approx(taper, abs=1e-12)
+
+
+@pytest.mark.slow(10)
+def test_a_current_that_grows_is_one_measured_to_grow():
+    """Linear in time from the beginning of the run, which a window is a part of."""
+    trial = load_trials("suzaku").trials["turn_p35"]
+    north, east, gain = 0.2, -0.1, np.array([1e-4, 4e-4])
+    logged = np.array([[north], [east]]) + gain[:, None] * trial.t
+    noted = {"current_speed": np.hypot(*logged), "current_dir": np.arctan2(logged[1], logged[0])}
+    tide = {"north": north, "east": east, "north_rate": gain[0], "east_rate": gain[1]}
+    ship = load_profile("suzaku")
+    by_log = with_effects(ship, {"current": {"measured": 1.0}}, "test")
+    measured = replace(trial, extra=noted)
+    logs = {one.id: one.extra for one in (measured, *windows(measured, 100.0))}
+    for part in (trial, windows(trial, 100.0)[2]):
+        (expected,) = simulate(by_log, [replace(part, extra=logs[part.id])], integrator=Integrator("rk4"))
+        (found,) = simulate(with_effects(ship, {"current": tide}, "test"), [part], integrator=Integrator("rk4"))
+        np.testing.assert_allclose(found.states, expected.states, rtol=1e-6, atol=1e-6)
 
 
 def test_head_waves_hold_back_and_do_nothing_else(force):

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from .plant import WHITE, Noise, sail
+from .plant import NAMES, TUNING, WHITE, Noise, sail
 from .suzaku import HULL_TERMS, PROFILE, TARGETS
 from .unknown import UNKNOWN
 
@@ -36,6 +36,12 @@ class Case:
     effects: dict[str, dict[str, float]]
     seed: int
     noise: Noise
+    of_trial: dict[str, dict[str, dict[str, float]]] = field(default_factory=dict)
+
+    @property
+    def hidden(self) -> dict[str, dict[str, float]]:
+        """What there is to be found: effects of all trials, and of single ones without their numbers."""
+        return {**self.effects, **{tag: {} for own in self.of_trial.values() for tag in own}}
 
 
 def _motion(typical: float) -> Sizes:
@@ -103,6 +109,12 @@ def _side_force(k: int, rng: np.random.Generator) -> dict[str, float]:
     return {"force": factor, "moment": factor}
 
 
+def _sides(k: int, rng: np.random.Generator) -> dict[str, float]:
+    """A blade that moves more to one side than to the other: by as much less to the other, or right there."""
+    share = _sign(rng) * _motion(0.15)[k]
+    return {"starboard": 1.0 + share, "port": 1.0 - float(rng.integers(2)) * share}
+
+
 TERM_SIZES: dict[str, float] = {
     "N_rabsr": 0.015,
     "Y_vabsv": 0.15,
@@ -127,7 +139,10 @@ def hull_term(term: str) -> Draw:
 
 LADDER: dict[str, Draw] = {
     "rudder-offset": _degrees(_signed("angle", _motion(1.5))),
-    "rudder-gain": _factor("factor", _motion(0.12)),
+    "dead-time": _plain("seconds", (0.05, 0.2, 1.0, 3.0, 6.0)),
+    "backlash": _degrees(_plain("play", (0.05, 0.3, 1.0, 2.5, 5.0))),
+    "rudder-gain": _one_of(_factor("factor", _motion(0.12)), _sides),
+    "governor-lag": _plain("time_constant", (0.5, 3.0, 15.0, 40.0, 80.0)),
     "steering-lag": _one_of(
         _plain("time_constant", (0.1, 0.3, 1.2, 4.0, 8.0)),
         _degrees(_plain("rate_limit", (100.0, 30.0, 8.0, 3.5, 2.0))),
@@ -146,11 +161,28 @@ LADDER: dict[str, Draw] = {
     "wind": _from("speed", (0.2, 1.0, 4.0, 8.0, 12.0)),
     "wave-drift": _from("force", _motion(6000.0)),
     "propeller-side-force": _side_force,
-    "memory": _plain("time_constant", (0.1, 0.4, 2.0, 8.0, 16.0)),
+    "memory": _one_of(*(_plain(name, (0.1, 0.4, 2.0, 8.0, 16.0)) for name in ("time_constant", "sway", "yaw"))),
     "rudder-stall": _degrees(_plain("angle", (38.0, 35.0, 32.0, 28.0, 22.0))),
     "hull-term": _one_of(*(hull_term(term) for term in HULL_TERMS)),
     "antenna": _vector(("x", "y"), _sensor(12.0)),
-    "heading-bias": _degrees(_signed("angle", _sensor(1.5))),
+    "heading-bias": _degrees(_one_of(_signed("angle", _sensor(1.5)), _signed("alone", _sensor(1.5)))),
+    "compass-deviation": _degrees(
+        _one_of(
+            _vector(("sine", "cosine"), _sensor(3.0)),
+            _vector(("sine_alone", "cosine_alone"), _sensor(3.0)),
+        )
+    ),
+    "position-latency": _plain("seconds", _sensor(2.5)),
+    "velocity-filter": _one_of(
+        *(_plain(name, (0.1, 0.4, 1.5, 4.0, 8.0)) for name in ("over_ground", "along_axes", "yaw_rate"))
+    ),
+    "heading-filter": _one_of(*(_plain(name, (0.05, 0.2, 1.0, 3.0, 6.0)) for name in ("time_constant", "alone"))),
+    "gyro-drift": _degrees(
+        _one_of(
+            *(_signed(name, _sensor(0.015)) for name in ("heading", "heading_alone")),
+            _signed("yaw_rate", _sensor(2e-4)),
+        )
+    ),
     "gyro-scale": _factor("factor", _sensor(0.05)),
     "gyro-bias": _degrees(_signed("rate", _sensor(0.05))),
     "speed-scale": _factor("factor", _sensor(0.04)),
@@ -179,6 +211,40 @@ def pair(seed: int, noise: Noise = WHITE) -> Case:
     tags = [str(tag) for tag in rng.choice(list(LADDER), size=2, replace=False)]
     hidden = {tag: LADDER[tag](TYPICAL, rng) for tag in tags}
     return Case(f"pair-{'-and-'.join(tags)}-{seed}", _ship(seed), hidden, seed, noise)
+
+
+RUNS: dict[str, Draw] = {
+    "current": lambda k, rng: _vector(("north", "east"), (0.02, 0.06, 0.15, 0.35, 0.5))(k, rng),
+    "rudder-offset": lambda k, rng: {"angle": float(np.radians((0.05, 0.2, 0.5, 1.0, 2.0)[k]) * rng.standard_normal())},
+    "clock-offset": lambda k, rng: {"seconds": (0.1, 0.3, 0.8, 2.0, 4.0)[k] * float(rng.standard_normal())},
+    "wind": lambda k, rng: _from("speed", (0.5, 2.0, 4.0, 8.0, 12.0))(k, rng),
+    "loading": lambda k, rng: {"draught": 1.0 + (0.005, 0.02, 0.05, 0.1, 0.15)[k] * float(rng.uniform(-1.0, 1.0))},
+}
+"""What differs from trial to trial: an effect of one trial, at five levels."""
+
+
+def of_runs(tag: str, level: int, seed: int, noise: Noise = WHITE) -> Case:
+    """An effect with another value in each trial."""
+    rng = _rng(f"runs-{tag}", seed)
+    own = {name: {tag: RUNS[tag](level, rng)} for name in NAMES}
+    return Case(f"runs-{tag}-{level}-{seed}", _ship(seed), {}, seed, noise, own)
+
+
+def of_one_run(seed: int, noise: Noise = WHITE) -> Case:
+    """A current in one trial of those that are looked at, and in none else."""
+    rng = _rng("one-run", seed)
+    own = {str(rng.choice(TUNING)): {"current": RUNS["current"](TYPICAL, rng)}}
+    return Case(f"one-run-{seed}", _ship(seed), {}, seed, noise, own)
+
+
+def tide(seed: int, noise: Noise = WHITE) -> Case:
+    """A current that changes within runs as it does in time, another in each trial."""
+    rng = _rng("tide", seed)
+    own = {}
+    for name in NAMES:
+        first, gain = (_vector(("north", "east"), (0.2,) * 5)(0, rng) for _ in range(2))
+        own[name] = {"current": {**first, **{f"{way}_rate": value / 400.0 for way, value in gain.items()}}}
+    return Case(f"tide-{seed}", _ship(seed), {}, seed, noise, own)
 
 
 def unknown(k: int, seed: int, noise: Noise = WHITE) -> Case:

@@ -25,7 +25,7 @@ from typing import Any
 import mmgtune
 from mmgtune.effects import find_effect
 
-from .cases import LADDER, Case, null, pair, single, unknown
+from .cases import LADDER, RUNS, Case, null, of_one_run, of_runs, pair, single, tide, unknown
 from .plant import AUTOCORRELATED, simulate, write
 from .unknown import UNKNOWN
 
@@ -49,13 +49,18 @@ def cases() -> Iterator[tuple[str, Case]]:
             yield "null-autocorrelated", Case(f"{case.name}-autocorrelated", *_rest(case))
         for k in range(PAIRS // SEEDS):
             yield "pair", pair(3000 + k * SEEDS + seed)
+        for tag in RUNS:
+            for level in (2, 3):
+                yield "of-runs", of_runs(tag, level, seed)
+        yield "of-runs", of_one_run(seed)
+        yield "of-runs", tide(seed)
         if seed == 1:
             for k in range(len(UNKNOWN)):
                 yield "unknown", unknown(k, seed)
 
 
 def _rest(case: Case) -> tuple[Any, ...]:
-    return case.ship, case.effects, case.seed, case.noise
+    return case.ship, case.effects, case.seed, case.noise, case.of_trial
 
 
 def diagnosed(case: Case) -> dict[str, Any]:
@@ -65,7 +70,7 @@ def diagnosed(case: Case) -> dict[str, Any]:
     from mmgtune.trial import load_trials
 
     with tempfile.TemporaryDirectory() as folder:
-        write(simulate(case.ship, case.effects, case.seed, case.noise), Path(folder))
+        write(simulate(case.ship, case.effects, case.seed, case.noise, case.of_trial), Path(folder))
         began = time.perf_counter()
         document = diagnose(load_profile("suzaku"), load_trials(folder)).to_dict()
     return {**document, "seconds": time.perf_counter() - began}
@@ -85,6 +90,11 @@ def kept(hidden: dict[str, dict[str, float]], said: dict[str, Any]) -> dict[str,
         "verdict": said["verdict"],
         "causes": [{key: cause[key] for key in ("effect", "parameters", "p_value")} for cause in said["causes"]],
         "groups": said["groups"],
+        "traces": [trace["effect"] for trace in said["traces"]],
+        "contributions": [
+            (one["effect"], one["share_of_fall"], one["share_held_out"]) for one in said["contributions"]
+        ],
+        "unclear": said["unexplained"]["unclear"],
         "best": [
             {"effect": row["effect"], "parameters": row["parameters"], "gain": round(row["gain"], 1)}
             for row in said["candidates"][:3]
@@ -130,7 +140,8 @@ def outcome(hidden: dict[str, dict[str, float]], said: dict[str, Any]) -> str:
     if not hidden:
         return "clear" if said["verdict"] == "none" else "alarm"
     if any(tag.startswith("unknown") for tag in hidden):
-        fine = said["verdict"] == "unexplained" or (named and named <= {"hull-term"})
+        since = {UNKNOWN[tag].since for tag in hidden}
+        fine = said["verdict"] == "unexplained" or (named and (named <= {"hull-term"} or named == since))
         return "right" if fine else "missed" if said["verdict"] == "none" else "wrong"
     if said["verdict"] == "unexplained":
         return "unexplained"
@@ -162,17 +173,38 @@ def covered(hidden: dict[str, dict[str, float]], said: dict[str, Any]) -> list[b
     return found
 
 
+def covered_by_run(case: Case, said: dict[str, Any]) -> list[bool]:
+    """The same for what differs between runs, run by run."""
+    found = []
+    for cause in said["causes"]:
+        for row in (cause["by_run"] or {"values": []})["values"]:
+            truth = case.of_trial.get(row["group"], {}).get(cause["effect"], {})
+            for name, estimate in row["parameters"].items():
+                low, high = (math.inf if end is None else end for end in estimate["ci95"])
+                value = truth.get(name)
+                if value is not None and name != "direction":
+                    found.append(low <= value <= high)
+    return found
+
+
+def named_of_runs(case: Case, said: dict[str, Any]) -> bool:
+    """Whether what differs between runs is said to."""
+    return all(cause["by_run"] for cause in said["causes"] if cause["effect"] not in case.effects)
+
+
 def work(kind: str, case: Case) -> dict[str, Any]:
     """One case done and scored."""
     said = diagnosed(case)
+    of_runs_too = {"of_trial": case.of_trial, "of_runs": named_of_runs(case, said)} if case.of_trial else {}
     return {
         "set": kind,
         "case": case.name,
-        "hidden": case.effects,
-        "outcome": outcome(case.effects, said),
-        "covered": covered(case.effects, said),
-        "above_limit": above_limit(case.effects, said),
-        **kept(case.effects, said),
+        "hidden": case.hidden,
+        "outcome": outcome(case.hidden, said),
+        "covered": covered(case.effects, said) + covered_by_run(case, said),
+        "above_limit": above_limit(case.hidden, said),
+        **of_runs_too,
+        **kept(case.hidden, said),
     }
 
 

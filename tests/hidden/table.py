@@ -23,7 +23,7 @@ from .unknown import UNKNOWN
 COLOURS = {"right": "#1b7837", "grouped": "#a6dba0", "missed": "#d9d9d9", "unexplained": "#92c5de", "wrong": "#b2182b"}
 """Outcomes of a single hidden effect."""
 
-N_CASES = 1224
+N_CASES = 1344
 """Cases of the whole study, see ``study.cases``."""
 
 Row = dict[str, Any]
@@ -111,6 +111,10 @@ def _summary(sets: dict[str, list[Row]]) -> list[str]:
     done = sum(len(rows) for rows in sets.values())
     codes = Counter(row.get("code", "earlier") for rows in sets.values() for row in rows)
     told = ", ".join(f"{n} by {code}" for code, n in codes.most_common())
+    runs = sets.get("of-runs", [])
+    if runs:
+        of_runs = [row for row in runs if row["of_runs"]]
+        lines.insert(9, ("another value in each run: named as such", _share(of_runs, "right", "grouped"), "-"))
     head = f"{done} of the {N_CASES} cases of the study have been run so far; `make hidden` runs the rest.\n\n"
     table = ["| | result | aim |\n|---|---|---|\n", *(f"| {what} | {share} | {aim} |\n" for what, share, aim in lines)]
     by_code = f"\nCases by fingerprint of the source that diagnosed them: {told}.\n" if len(codes) > 1 else ""
@@ -140,7 +144,7 @@ def _limits(sets: dict[str, list[Row]]) -> list[str]:
 
 def _for_people(value: float, unit: str) -> tuple[float, str]:
     """Angles in degrees; pure numbers and the prime system without a unit."""
-    if unit in ("rad", "rad/s"):
+    if unit in ("rad", "rad/s", "rad/s^2"):
         return math.degrees(value), unit.replace("rad", "°")
     return value, "" if unit in ("-", "prime") else unit
 

@@ -12,6 +12,7 @@ import pytest
 
 from mmgtune.physics.quantities import HELD, UNKNOWN, Surroundings
 from mmgtune.predictor import cases_from
+from mmgtune.trial import windows
 from mmgtune.trial.current import layer_shares
 from mmgtune.trial.surroundings import SOURCES, measured_around, surroundings
 from tests.trial.made import made
@@ -65,10 +66,14 @@ if __name__ == "__main__":
 """
 
 
+def measured_of(found):
+    return np.delete(found, Surroundings._fields.index("elapsed"), axis=1)
+
+
 def test_each_field_has_one_source():
-    """In some order, none twice and none left out; nothing measured is 0 throughout."""
+    """In some order, none twice and none left out; nothing measured is 0 throughout, but for the time."""
     assert sorted(name for names in SOURCES for name in names) == sorted(Surroundings._fields)
-    assert (surroundings(made(), None) == 0.0).all()
+    assert (measured_of(surroundings(made(), None)) == 0.0).all()
     assert set(UNKNOWN) == {0.0}
     assert {name for name in Surroundings._fields if name.endswith(("known", "rate"))} == set(HELD)
 
@@ -127,13 +132,22 @@ def test_the_rate_of_a_current_is_its_slope_over_the_step_that_ends_there():
     assert (column(found, "current_east_rate") == 0.0).all()
 
 
+def test_time_of_a_window_is_that_of_its_run():
+    trial = made(samples=50)
+    first, second, *_ = windows(replace(trial, t=trial.t + 3.0), 20.0)
+    assert column(surroundings(first, None), "elapsed") == pytest.approx(3.0 + first.t)
+    assert column(surroundings(second, None), "elapsed") == pytest.approx(23.0 + second.t)
+    again = windows(second, 10.0)[1]
+    assert column(surroundings(again, None), "elapsed")[0] == pytest.approx(33.0)
+
+
 def test_gaps_are_bridged_and_half_a_current_is_none():
     trial = made(samples=50)
     speed = np.where((trial.t > 10.0) & (trial.t < 20.0), np.nan, 0.01 * trial.t)
     holey = replace(trial, extra={"current_speed": speed, "current_dir": np.zeros(50)})
     assert column(surroundings(holey, None), "current_north") == pytest.approx(0.01 * trial.t)
     half = replace(trial, extra={"current_speed": speed})
-    assert (surroundings(half, None) == 0.0).all()
+    assert (measured_of(surroundings(half, None)) == 0.0).all()
     never = replace(trial, extra={"depth": np.full(50, np.nan)})
     assert measured_around(never) == frozenset()
     echo = np.where(trial.t == 7.0, 0.0, 12.0)

@@ -197,7 +197,7 @@ def time_since_order(t: FloatArray, delta: FloatArray) -> FloatArray:
 def measured(model: Model, trial: Trial, motion: Smoothed) -> FloatArray:
     """(n_samples, n_surroundings) as ``surroundings`` has them, blunted as the motion is."""
     found = surroundings(trial, model.draught)
-    moving = [k for k, name in enumerate(Surroundings._fields) if name not in HELD and found[:, k].any()]
+    moving = [k for k, name in enumerate(Surroundings._fields) if name not in (*HELD, "elapsed") and found[:, k].any()]
     if moving:
         found[:, moving] = motion.alike(found[:, moving])
     return found

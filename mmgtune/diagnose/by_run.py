@@ -1,0 +1,182 @@
+"""What differed from run to run: a value of each run, or group of runs, with its interval."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ..effects import Effect
+from ..fitting.box import AT
+from ..trial import Trial
+from .intervals import NORMAL, Estimate
+from .runs import IN_WORDS, groups_of, name_of
+from .wording import quantity, range_in_words
+
+CERTAIN = 3.0
+"""Standard errors from which the value of a run is other than none at all."""
+
+Told = tuple[float, float | None]
+"""A value and its standard error."""
+
+
+@dataclass(frozen=True, eq=False)
+class ByRun:
+    """Values of an effect that groups of runs have of their own.
+
+    by      the grouping; see ``runs``
+    groups  labels of the groups
+    trials  ids of the trials of each
+    values  estimates by group and parameter, in profile units
+    """
+
+    effect: Effect
+    variant: tuple[str, ...]
+    by: str
+    groups: tuple[str, ...]
+    trials: tuple[tuple[str, ...], ...]
+    values: tuple[Mapping[str, Estimate], ...]
+
+    @classmethod
+    def of(
+        cls,
+        effect: Effect,
+        variant: tuple[str, ...],
+        by: str,
+        groups: Sequence[str],
+        trials: Sequence[Trial],
+        found: Mapping[str, Estimate],
+    ) -> ByRun:
+        """Out of estimates by the name of the target."""
+        order = sorted(groups)
+        of_group = [
+            tuple(dict.fromkeys(t.whole for t in trials if f"{by}:{groups_of(t)[by]}" == label)) for label in order
+        ]
+        values = [{name: found[f"{effect.kind}.{name}{AT}{label}"] for name in variant} for label in order]
+        return cls(effect, variant, by, tuple(order), tuple(of_group), tuple(values))
+
+    @property
+    def unit(self) -> str:
+        """Of the first size."""
+        return self.effect.parameters[self.variant[0]].unit
+
+    def size(self, k: int) -> Told:
+        """The value of a group that is spoken of first: the speed of a current, or the parameter itself."""
+        pair = next((pair for pair in self.effect.told_as if set(pair) <= set(self.variant)), None)
+        if pair is None:
+            first = self.values[k][self.variant[0]]
+            return first.value, first.stderr
+        north, east = (self.values[k][name] for name in pair)
+        length = math.hypot(north.value, east.value)
+        share = [one.value / max(length, 1e-12) * (one.stderr or 0.0) for one in (north, east)]
+        return length, math.hypot(*share)
+
+    def towards(self, k: int) -> Told | None:
+        """The direction of that [rad], where it has one."""
+        pair = next((pair for pair in self.effect.told_as if set(pair) <= set(self.variant)), None)
+        if pair is not None:
+            north, east = (self.values[k][name] for name in pair)
+            length = max(math.hypot(north.value, east.value), 1e-12)
+            error = math.hypot(east.value * (north.stderr or 0.0), north.value * (east.stderr or 0.0)) / length**2
+            return math.atan2(east.value, north.value) % (2.0 * math.pi), error
+        if self.effect.parameters[self.variant[0]].chart == "polar":
+            second = self.values[k][self.variant[1]]
+            return second.value % (2.0 * math.pi), second.stderr
+        return None
+
+    def shows(self, k: int) -> bool:
+        """Whether the values of a group are beyond doubt other than none at all."""
+        far = 0.0
+        for name in self._sizes:
+            one, parameter = self.values[k][name], self.effect.parameters[name]
+            if parameter.chart == "reciprocal":  # an end of its interval is infinite where there may be none
+                far += 0.0 if one.high is None else 2.0 * CERTAIN**2
+            elif one.stderr:
+                far += ((one.value - parameter.null) / one.stderr) ** 2
+        return far > CERTAIN**2 + len(self._sizes)
+
+    @property
+    def _sizes(self) -> tuple[str, ...]:
+        """Parameters that are sizes, no directions."""
+        polar = self.effect.parameters[self.variant[0]].chart == "polar"
+        return self.variant[:1] if polar else self.variant
+
+    @property
+    def sentence(self) -> str:
+        """In words."""
+        word = IN_WORDS[self.by]
+        subject = self.effect.subject or self.effect.title
+        shown = [k for k in range(len(self.groups)) if self.shows(k)]
+        sizes = [self.size(k)[0] for k in (shown or range(len(self.groups)))]
+        others = len(self.groups) - len(shown)
+        text = f"The {subject} differed from {word} to {word}: "
+        if len(shown) == 1 and others:
+            value, error = self.size(shown[0])
+            size = quantity(value, None if error is None else NORMAL * error, self.unit)
+            text += f"{size} in {name_of(self.groups[shown[0]])}, and none shows in the other {others}"
+        else:
+            text += range_in_words(min(sizes), max(sizes), self.unit)
+            text += f", and none shows in {others} of {len(self.groups)}" if shown and others else ""
+        return text + self._within()
+
+    def _within(self) -> str:
+        """What changed within runs, in words."""
+        pairs = [pair for pair in self.effect.told_as if set(pair) <= set(self.variant)][1:]
+        told = []
+        for pair in pairs:
+            most = max(math.hypot(*(one[name].value for name in pair)) for one in self.values)
+            told.append(quantity(most, None, self.effect.parameters[pair[0]].unit))
+        return f", and changed within a {IN_WORDS[self.by]} by up to {' and '.join(told)}" if told else ""
+
+    def table(self) -> list[tuple[str, str, str]]:
+        """Group, size and direction in words, the first row heads."""
+        rows = [(IN_WORDS[self.by], "size", "direction")]
+        for k, label in enumerate(self.groups):
+            value, error = self.size(k)
+            direction = self.towards(k)
+            where = "" if direction is None else _degrees(*direction)
+            size = quantity(value, None if error is None else NORMAL * error, self.unit)
+            rows.append((name_of(label), size, where))
+        return rows
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        sizes = [self.size(k)[0] for k in range(len(self.groups))]
+        return {
+            "by": self.by,
+            "unit": self.unit,
+            "least": _finite(min(sizes)),
+            "largest": _finite(max(sizes)),
+            "values": [self._row(k) for k in range(len(self.groups))],
+        }
+
+    def _row(self, k: int) -> dict[str, Any]:
+        value, error = self.size(k)
+        direction = self.towards(k)
+        return {
+            "group": name_of(self.groups[k]),
+            "trials": list(self.trials[k]),
+            "size": _finite(value),
+            "size_stderr": error,
+            "direction_deg": None if direction is None else math.degrees(direction[0]),
+            "direction_stderr_deg": None if direction is None or direction[1] is None else math.degrees(direction[1]),
+            "parameters": {
+                name: {
+                    "value": _finite(one.value),
+                    "stderr": one.stderr,
+                    "ci95": [one.low, one.high],
+                    "unit": self.effect.parameters[name].unit,
+                }
+                for name, one in self.values[k].items()
+            },
+        }
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def _degrees(angle: float, error: float | None) -> str:
+    half = "" if error is None or not math.isfinite(error) else f" ± {math.degrees(NORMAL * error):.0f}"
+    return f"{math.degrees(angle):03.0f}{half}°" if not half or NORMAL * (error or 0.0) < math.pi else "any"

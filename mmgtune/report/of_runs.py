@@ -1,0 +1,58 @@
+"""What differed from run to run, as a table in the report of a diagnosis."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from .blocks import Block, Prose, Table, cells
+from .wording import NONE, clean, number, shown
+
+NORMAL = 1.96
+"""Half width of a 95 % interval, in standard errors."""
+
+_READ = {"rad": (180.0 / math.pi, "°"), "N": (1e-3, "kN")}
+"""Factor and unit in which people read a quantity."""
+
+
+def of_runs(cause: Mapping[str, Any]) -> list[Block]:
+    """The table of a cause, as ``Cause.to_dict`` has it; nothing where it is the same in all runs."""
+    found = cause.get("by_run")
+    if not found:
+        return []
+    factor, unit = _READ.get(found["unit"], (1.0, clean(found["unit"])))
+    head = "size" if found["unit"] in ("-", "prime") else f"size [{unit}]"
+    rows = []
+    for row in found["values"]:
+        direction = number(row["direction_deg"])
+        rows.append(
+            cells(
+                clean(row["group"]),
+                shown(None if row["size"] is None else factor * row["size"], 3),
+                _half(row["size_stderr"], factor),
+                NONE if direction is None else f"{direction:.0f}°",
+                _half(row["direction_stderr_deg"], 1.0),
+            )
+        )
+    what = f"{clean(cause['effect']).capitalize()} of each {clean(found['by'])}, with its 95 % half width"
+    return [
+        Prose((clean(cause["sentence"]) + ".",)),
+        Table(
+            f"{clean(cause['effect'])}-of-runs",
+            what,
+            (clean(found["by"]), head, "±", "direction", "± [°]"),
+            tuple(rows),
+            (1, 2, 3, 4),
+        ),
+    ]
+
+
+def parameters_of(candidate: Mapping[str, Any]) -> list[str]:
+    """Parameters of a hypothesis, and that each run has its own where it does; records of older versions do not say."""
+    return [*candidate["parameters"], *(["of each run"] if candidate.get("by") else [])]
+
+
+def _half(stderr: Any, factor: float) -> str:
+    error = number(stderr)
+    return NONE if error is None else shown(NORMAL * factor * error, 2)

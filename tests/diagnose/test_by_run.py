@@ -1,0 +1,115 @@
+"""What differs from run to run is named as such, with the values of the runs; what does not is one for all."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from mmgtune.cli.diagnose import summary
+from mmgtune.diagnose import DiagnoseOptions, diagnose, write_diagnosis
+from mmgtune.profile import load_profile, parse_profile
+from mmgtune.report import render
+from mmgtune.trial import load_trials
+from tests.hidden.cases import Case, of_one_run, of_runs, tide
+from tests.hidden.plant import TUNING, simulate, write
+
+pytestmark = pytest.mark.slow(12)
+
+FEW = ("hull.R_0", "wake.w_P0", "rudder.eps", "rudder.gamma_Rp", "rudder.gamma_Rn")
+"""Targets: the ship is the profile's own but for what is hidden, and a test has to end."""
+
+
+def said_of(case: Case, folder, effects):
+    """The diagnosis of the profile's ship with what differs between the runs of a case, from her files."""
+    write(simulate({}, case.effects, case.seed, case.noise, case.of_trial), folder)
+    options = DiagnoseOptions(effects=effects, targets=FEW)
+    return diagnose(load_profile("suzaku"), load_trials(folder), options)
+
+
+def misses(found, case, tag):
+    """Differences to the truth in standard errors."""
+    return [
+        (one.value - case.of_trial.get(name, {}).get(tag, {}).get(parameter, 0.0)) / one.stderr
+        for label, values in zip(found.groups, found.values, strict=True)
+        for name in [label.removeprefix("trial:")]
+        for parameter, one in values.items()
+    ]
+
+
+@pytest.fixture(scope="module")
+def currents(tmp_path_factory):
+    """A current of 0.35 m/s, towards another direction in each trial."""
+    case = of_runs("current", 3, seed=1)
+    return case, said_of(case, tmp_path_factory.mktemp("trials"), ("current", "rudder-offset"))
+
+
+def test_another_current_in_each_run(currents):
+    case, result = currents
+    (cause,) = result.causes
+    assert (result.verdict, cause.tag, cause.runs.by) == ("found", "current", "trial")
+    assert cause.runs.groups == tuple(f"trial:{name}" for name in sorted(TUNING))
+    off = np.abs(misses(cause.runs, case, "current"))
+    assert np.sum(off < 1.96) >= 8
+    assert off.max() < 3.5
+    assert cause.runs.size(0)[0] == pytest.approx(0.35, abs=0.01)
+    assert "The current differed from run to run: 0.35 m/s." in result.sentence()
+
+
+def test_runs_held_out_are_judged_on_what_follows_their_first_part(currents):
+    _, result = currents
+    assert result.gain.first_part == 0.4
+    assert result.gain.share_removed[0] > 0.99
+    document = result.to_dict()
+    assert document["gain"]["of_single_runs"]["estimated_on_first_share_of_run"] == 0.4
+    assert "first 40 % of each run" in document["sentence"]
+    assert document["gain"]["J_test_after"] < 0.05 * document["gain"]["J_test_before"]
+
+
+def test_the_profile_keeps_nothing_of_a_run_and_the_record_all(currents, tmp_path):
+    case, result = currents
+    profile = parse_profile(result.extended_text())
+    assert "effects.current" not in profile.sections
+    document = json.loads(json.dumps(write_diagnosis(result, tmp_path / "run"), allow_nan=False))
+    (cause,) = document["causes"]
+    assert cause["parameters"] == {}
+    assert [row["trials"] for row in cause["by_run"]["values"]] == [[name] for name in sorted(TUNING)]
+    for row in cause["by_run"]["values"]:
+        truth = case.of_trial[row["group"]]["current"]
+        towards = math.degrees(math.atan2(truth["east"], truth["north"]))
+        assert abs(math.remainder(row["direction_deg"] - towards, 360.0)) < 4.0 * row["direction_stderr_deg"]
+    render(tmp_path / "run")
+    page = (tmp_path / "run" / "report.md").read_text().replace("\\", "")
+    assert "| turn_m20 |" in page
+    assert "differed from run to run" in page
+    told = summary(result, "run", report=True)
+    assert [line.split()[0] for line in told.splitlines() if " m/s   " in line] == sorted(TUNING)
+
+
+def test_a_current_in_one_run_only(tmp_path):
+    case = of_one_run(seed=1)
+    (name,) = case.of_trial
+    result = said_of(case, tmp_path, ("current", "rudder-offset"))
+    (cause,) = result.causes
+    assert [cause.runs.shows(k) for k in range(5)] == [label == f"trial:{name}" for label in cause.runs.groups]
+    assert f"in {name}, and none shows in the other 4" in result.sentence()
+
+
+def test_a_rudder_zero_that_differs(tmp_path):
+    case = of_runs("rudder-offset", 3, seed=2)
+    result = said_of(case, tmp_path, ("current", "rudder-offset"))
+    (cause,) = result.causes
+    assert (cause.tag, cause.runs.by) == ("rudder-offset", "trial")
+    assert np.abs(misses(cause.runs, case, "rudder-offset")).max() < 3.5
+    assert "The zero of the rudder differed from run to run" in result.sentence()
+
+
+def test_a_current_that_changes_within_the_runs(tmp_path):
+    case = tide(seed=1)
+    result = said_of(case, tmp_path, ("current",))
+    (cause,) = result.causes
+    assert cause.runs.variant == ("north", "east", "north_rate", "east_rate")
+    assert np.abs(misses(cause.runs, case, "current")).max() < 3.5
+    assert "changed within a run by up to" in result.sentence()
