@@ -61,6 +61,7 @@ docs: $(DEV) ## the site of the documents, into site/; a warning is an error
 hidden: $(RUNTIME) ## the full study of hidden effects, some hours; goes on where it was stopped
 	$(BIN)/python -m tests.hidden.study
 	$(BIN)/python -m tests.hidden.table
+	$(BIN)/python tools/write_answers.py
 
 signs: $(DEV) ## turn round every sign in the equations: do the tests notice? Takes long; goes on where it was stopped
 	$(BIN)/python tools/mutate_signs.py

@@ -7,7 +7,19 @@
 What there is stands in ``__init__.pyi``: what the commands call, imported when first used.
 """
 
+from .displayed import displayed_by
+
 _front = None
+
+
+def _notebook():  # type: ignore[no-untyped-def]
+    """What shows results in notebooks, imported when something is first looked at."""
+    from . import notebook
+
+    return notebook
+
+
+displayed_by(_notebook)
 
 
 def _attached():  # type: ignore[no-untyped-def]

@@ -34,6 +34,7 @@ from .heading_keeping import study_heading_keeping as study_heading_keeping
 from .heading_keeping import write_heading_study as write_heading_study
 from .importing import import_logs as import_logs
 from .importing import load_map as load_map
+from .importing import propose_map as propose_map
 from .learning import Learned as Learned
 from .learning import LearnedEnsemble as LearnedEnsemble
 from .learning import LearnedHybrid as LearnedHybrid
@@ -67,9 +68,11 @@ from .options import SimulateOptions as SimulateOptions
 from .options import SweepOptions as SweepOptions
 from .options import ValidateOptions as ValidateOptions
 from .options import VoyageOptions as VoyageOptions
+from .orders import Sailing as Sailing
 from .orders import TurningOrder as TurningOrder
 from .orders import ZigzagOrder as ZigzagOrder
 from .orders import run_manoeuvre as run_manoeuvre
+from .orders import run_manoeuvres as run_manoeuvres
 from .particles import Particles as Particles
 from .particles import load_particles as load_particles
 from .particles import save_particles as save_particles

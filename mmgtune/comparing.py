@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from .arrays import FloatArray
+from .displayed import Displayed
 from .errors import OptionError, Problem
 from .files import refuse_existing, write_text
 from .given import ShipGiven, ship_of
@@ -49,7 +50,7 @@ POINTS = 300
 
 
 @dataclass(frozen=True, eq=False)
-class Comparison:
+class Comparison(Displayed):
     """Two profiles side by side, as plain numbers; ``data`` is the record.
 
     profiles  what they were called

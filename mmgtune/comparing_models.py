@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 from .bands import Pooled, WindowScore, pooled
+from .displayed import Brief, Displayed
 from .errors import OptionError, Problem, closest
 from .files import write_text
 from .given import TrialsGiven, trials_of
@@ -105,8 +106,8 @@ class Cell:
         }
 
 
-@dataclass(frozen=True, eq=False)
-class Compared:
+@dataclass(frozen=True, eq=False, repr=False)
+class Compared(Brief):
     """One model: what it was called, and its scores by convention, of all members, and of its bands.
 
     particles  what the bands are of: drawn where the model can draw them, else its members
@@ -128,7 +129,7 @@ class Compared:
 
 
 @dataclass(frozen=True, eq=False)
-class ModelComparison:
+class ModelComparison(Displayed):
     """Models on the same trials.
 
     sigma   what L_MSE divides differences of each state by [SI]

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+from .displayed import Brief
 from .inputs import INPUTS, Input, Role
 from .physics.arrangements import single_propeller_single_rudder, single_propeller_twin_rudder
 from .physics.hull.cubic import CubicHull, cubic_hull
@@ -37,8 +38,8 @@ from .physics.wake.exponential import ExponentialWake, exponential_wake
 from .physics.wake.quadratic import QuadraticWake, quadratic_wake
 
 
-@dataclass(frozen=True)
-class Field:
+@dataclass(frozen=True, repr=False)
+class Field(Brief):
     """One coefficient of a component.
 
     label    what it is, in words
@@ -61,8 +62,8 @@ class Field:
     derived: bool = False
 
 
-@dataclass(frozen=True)
-class Component:
+@dataclass(frozen=True, repr=False)
+class Component(Brief):
     """A kind of force (or the ship itself), the tag profiles name it by, its function and its coefficients."""
 
     kind: str
@@ -84,8 +85,8 @@ class Component:
         return find, (self.kind, self.tag)
 
 
-@dataclass(frozen=True)
-class Arrangement:
+@dataclass(frozen=True, repr=False)
+class Arrangement(Brief):
     """How components are put together: which a ship has, what drives her, and the function that combines their forces.
 
     control       NamedTuple of the inputs, each field one of ``inputs.INPUTS``

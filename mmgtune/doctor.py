@@ -22,7 +22,7 @@ from .profile import load_profile
 from .resources import folder, profile_names, trial_set_names
 from .trial import load_trials
 
-PACKAGES = ("numpy", "scipy", "numba", "cma", "pandas", "pyarrow", "pyproj", "matplotlib", "plotly")
+PACKAGES = ("numpy", "scipy", "numba", "cma", "pandas", "pyarrow", "pyproj", "matplotlib", "jinja2")
 OPTIONAL = {"jax": "back end jax, derivatives and networks", "optax": "training of networks"}
 """What the extra ``learn`` brings, and what it is for."""
 

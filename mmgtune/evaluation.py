@@ -17,14 +17,16 @@ import numpy as np
 
 from .arrays import FloatArray
 from .backends import STATES, Integrator
+from .displayed import Plotted, inert
 from .errors import TrialError
+from .given import ShipGiven, TrialsGiven, list_of
 from .manoeuvres import Track, manoeuvre_kind, turning_indices, zigzag_indices
 from .manoeuvres.summary import indices_of
 from .measures import UNITS, Reference, distance_measures, reference_of
 from .model import Model
+from .networks import named_ship
 from .objective import Objective, make_objective, weights_of
 from .predictor import Predictor, as_predictor
-from .profile import ShipProfile
 from .simulation import Motion, motions, ordered_angles, track_if_whole, trial_indices
 from .trial import Trial
 
@@ -40,6 +42,10 @@ class Measured:
     trial: Trial
     L_pp: float
     weight: FloatArray
+
+    def __repr__(self) -> str:
+        """In a line."""
+        return f"Measured({self.trial!r}, L_pp {self.L_pp:g})"
 
     @cached_property
     def motion(self) -> FloatArray:
@@ -96,7 +102,7 @@ class Measured:
 
 
 @dataclass(frozen=True, eq=False)
-class TrialRecord:
+class TrialRecord(Plotted):
     """One member on one trial, or on one window of it.  What costs time is computed when it is first asked for.
 
     measured   the trial
@@ -107,6 +113,12 @@ class TrialRecord:
     measured: Measured
     motion: Motion
     method: str
+
+    def __repr__(self) -> str:
+        """In a line."""
+        member = f", member {self.member}" if self.member else ""
+        result = "diverged" if self.diverged else f"J {self.J:.4g}"
+        return f"TrialRecord({inert(self.trial.id)}{member}: {result})"
 
     @property
     def trial(self) -> Trial:
@@ -188,8 +200,8 @@ class TrialRecord:
 
 
 def evaluate(
-    ship: Predictor | ShipProfile | Model,
-    trials: Sequence[Trial],
+    ship: ShipGiven | Model | Predictor,
+    trials: TrialsGiven | Sequence[Trial],
     objective: Objective | None = None,
     *,
     theta: FloatArray | None = None,
@@ -199,6 +211,7 @@ def evaluate(
 ) -> tuple[TrialRecord, ...]:
     """Every member on every trial, with its measured inputs from its first measured state.
 
+    ship, trials  objects, paths or bundled names; ``ship`` may be any predictor, ``trials`` a list of trials
     objective  what J counts, the paper's where None
     theta      (n_rows, n_members) coefficients of a profile or model, its own where None
     offsets    (n_trials, 6) added to the first measured states, where these are estimated
@@ -207,8 +220,8 @@ def evaluate(
     Gaps: each sample of each channel after the first counts where it was measured.
     Raises OptionError where window or gaps leave a trial without a sample to compare; never for a run that diverges.
     """
-    predictor = as_predictor(ship, theta=theta, integrator=integrator, backend=backend)
-    return tuple(records(predictor, trials, objective, offsets=offsets))
+    predictor = as_predictor(named_ship(ship, integrator), theta=theta, integrator=integrator, backend=backend)
+    return tuple(records(predictor, list_of(trials), objective, offsets=offsets))
 
 
 def records(

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from .arrays import FloatArray
+from .displayed import Displayed
 from .errors import OptionError, Problem
 from .files import write_text
 from .given import ShipGiven, ship_of
@@ -77,7 +78,7 @@ class Judged:
 
 
 @dataclass(frozen=True, eq=False)
-class HeadingStudy:
+class HeadingStudy(Displayed):
     """Scores of a grid of gains in the true system and in simulators.
 
     gains  (n,) both gains [deg of rudder per rad, and per rad/s]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -12,9 +12,17 @@ import numpy.typing as npt
 from .arrays import FloatArray
 from .components import Component
 from .effects import ClockEffect, CoefficientsEffect, Effect
-from .profile import ShipProfile
+from .given import ShipGiven, ship_of
 
 E = TypeVar("E", bound=Effect)
+
+
+class Tie(NamedTuple):
+    """A coefficient that follows another of the same ship where that one is changed: ``ratio`` times its value."""
+
+    name: str
+    to: str
+    ratio: float
 
 
 class Model:
@@ -22,10 +30,14 @@ class Model:
 
     Simulators take a matrix with one row per number (a table has several) and one column per candidate, so that
     any coefficient can differ between lanes.
+
+    profile  object, path or bundled name
+    ties     coefficients that follow others
     """
 
-    def __init__(self, profile: ShipProfile):
-        self.profile = profile
+    def __init__(self, profile: ShipGiven, ties: Sequence[Tie] = ()):
+        self.profile = profile = ship_of(profile)
+        self.ties = tuple(ties)
         self.arrangement = profile.arrangement
         self.parts: tuple[Component, ...] = tuple(profile.sections[kind].component for kind in self.arrangement.kinds)
         self.components = self.arrangement.components(*(part.function for part in self.parts[1:]))
@@ -34,6 +46,10 @@ class Model:
         numbers = {name: value for section in profile.sections.values() for name, value in section.numbers.items()}
         self.rows: dict[str, int] = {name: row for row, name in enumerate(numbers)}
         self.base: FloatArray = np.array(list(numbers.values()))
+
+    def __repr__(self) -> str:
+        """In a line."""
+        return f"Model({self.profile.id}: {len(self.rows)} coefficients, {len(self.effects)} effects)"
 
     def acting(self, kind: type[E]) -> tuple[E, ...]:
         """The effects that act at one place of the data flow, in the order in which they act."""
@@ -81,6 +97,9 @@ class Model:
             changed = np.asarray(values, dtype=float)
             theta = np.repeat(self.base[:, None], changed.shape[1], axis=1)
             theta[[self.rows[name] for name in names]] = changed
+            for tie in self.ties:
+                if tie.to in names and tie.name not in names:
+                    theta[self.rows[tie.name]] = tie.ratio * theta[self.rows[tie.to]]
         for effect in self.acting(CoefficientsEffect):
             now = {name: theta[row] for name, row in self.rows.items()}
             for name, value in effect.function(now, self.parameters(effect, theta)).items():

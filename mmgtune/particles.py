@@ -17,7 +17,7 @@ import numpy as np
 from .arrays import FloatArray
 from .backends import Integrator
 from .components import split_name
-from .effects import FlowEffect, SensorEffect
+from .effects import FilterEffect, FlowEffect, SensorEffect
 from .errors import OptionError, Problem, ProfileError
 from .files import atomic
 from .model import Model
@@ -62,7 +62,7 @@ class Particles:
         found = []
         for name in self.names:
             effect = sections[split_name(name)[0]].component
-            around = isinstance(effect, (FlowEffect, SensorEffect)) or effect.tag in AIR_AND_WAVES
+            around = isinstance(effect, (FilterEffect, FlowEffect, SensorEffect)) or effect.tag in AIR_AND_WAVES
             found += [name] if around else []
         return tuple(found)
 

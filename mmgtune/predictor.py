@@ -14,6 +14,7 @@ import numpy as np
 
 from .arrays import BoolArray, FloatArray, IntArray
 from .backends import STATES, Cases, Integrator, LaneModel, get_backend, pad
+from .displayed import Brief
 from .errors import OptionError, Problem
 from .model import Model
 from .physics.quantities import State, Surroundings
@@ -187,7 +188,7 @@ class LaneFleet:
     def __init__(self, ship: LaneModel, states: FloatArray, controls: FloatArray):
         self._shape = states.shape[:2]
         self._ship = ship
-        self._run = ship.start(State(*_on_lanes(states)), ship.arrangement.control(*_on_lanes(controls)))
+        self._run = ship.under_way(State(*_on_lanes(states)), ship.arrangement.control(*_on_lanes(controls)))
 
     @property
     def states(self) -> FloatArray:
@@ -207,8 +208,8 @@ def _on_lanes(values: FloatArray) -> FloatArray:
     return np.ascontiguousarray(values.reshape(-1, values.shape[-1]).T)
 
 
-@dataclass(frozen=True, eq=False)
-class PhysicsPredictor:
+@dataclass(frozen=True, eq=False, repr=False)
+class PhysicsPredictor(Brief):
     """A model with one or many parameter vectors.
 
     theta  (n_rows, n_members) coefficients

@@ -14,7 +14,9 @@ from typing import Any
 import numpy as np
 
 from .arrays import FloatArray
+from .displayed import Brief
 from .errors import TrialError
+from .given import ShipGiven, TrialsGiven, list_of
 from .inputs import INPUTS
 from .manoeuvres import (
     Track,
@@ -25,9 +27,9 @@ from .manoeuvres import (
     zigzag_indices,
 )
 from .model import Model
-from .orders import LONGEST_STEP, Helmsman, TurningOrder, ZigzagOrder, run_manoeuvre
+from .networks import named_ship
+from .orders import LONGEST_STEP, Helmsman, Sailing, TurningOrder, ZigzagOrder, run_manoeuvres
 from .predictor import PhysicsPredictor, Predictor, as_predictor, stepper_of
-from .profile import ShipProfile
 from .simulation import Motion, ordered_angles, track_if_whole
 from .trial import Trial
 from .units import DEG
@@ -50,8 +52,8 @@ REST = 10.0
 """Samples before the order at least: the order is found by the rudder's rest before it."""
 
 
-@dataclass(frozen=True)
-class Repeated:
+@dataclass(frozen=True, repr=False)
+class Repeated(Brief):
     """A measured turning circle or zigzag beside the model's own.
 
     id          of the trial
@@ -77,10 +79,14 @@ class Repeated:
 
 
 def repeat(
-    ship: Predictor | ShipProfile | Model, trials: Sequence[Trial], *, theta: FloatArray | None = None
+    ship: ShipGiven | Model | Predictor,
+    trials: TrialsGiven | Sequence[Trial],
+    *,
+    theta: FloatArray | None = None,
 ) -> list[Repeated]:
     """Repeat each trial that is a turning circle or a zigzag without gaps; others are left out.
 
+    ship, trials  objects, paths or bundled names; ``ship`` may be any predictor, ``trials`` a list of trials
     theta  (n_rows, n_members) coefficients of a profile or model, its own where None
     -> trial by trial, and of each all members
 
@@ -90,17 +96,20 @@ def repeat(
     The rudder moves as the profile's steering gear does, at once where it has none.  There is no measured wind.
     Any predictor can be steered, see ``predictor.stepper_of``.
     """
-    predictor = as_predictor(ship, theta=theta)
-    repeats: dict[str, _Repeat] = {"turning": _turn, "zigzag": _zigzag}
-    found = []
-    for trial in trials:
+    predictor = as_predictor(named_ship(ship), theta=theta)
+    read: dict[str, _Read] = {"turning": _turn, "zigzag": _zigzag}
+    given = []
+    for trial in list_of(trials):
         track = track_if_whole(trial)
         kind = "other" if track is None else manoeuvre_kind(track)
-        if track is not None and kind in repeats:
-            for member in range(predictor.n_members):
-                order, measured, simulated = repeats[kind](predictor, member, trial, track)
-                found.append(Repeated(trial.id, kind, order, measured.to_dict(), simulated, member))
-    return found
+        if track is not None and kind in read:
+            given += [(trial.id, kind, read[kind](predictor.L_pp, trial, track))] * predictor.n_members
+    members = [k % predictor.n_members for k in range(len(given))]
+    motions = steered(predictor, members, [order.sailing() for _, _, order in given])
+    return [
+        Repeated(id, kind, order.words, order.measured.to_dict(), order.again(motion), member)
+        for (id, kind, order), motion, member in zip(given, motions, members, strict=True)
+    ]
 
 
 def document(repeated: Sequence[Repeated]) -> dict[str, Any]:
@@ -138,108 +147,111 @@ def summary(repeated: Sequence[Repeated]) -> dict[str, dict[str, float | int]]:
     }
 
 
-_Repeat = Callable[[Predictor, int, Trial, Track], tuple[str, TurningIndices | ZigzagIndices, dict[str, Any]]]
-"""Order in words, what was measured, and what a member makes of it."""
+@dataclass(frozen=True, eq=False)
+class _Order:
+    """A manoeuvre as it was ordered.
+
+    words     of the order
+    measured  indices of the trial
+    sailing   the same manoeuvre anew, with a helmsman of its own
+    read      indices of a track of it
+    """
+
+    words: str
+    measured: TurningIndices | ZigzagIndices
+    sailing: Callable[[], Sailing]
+    read: Callable[[Track], TurningIndices | ZigzagIndices]
+
+    def again(self, motion: Motion) -> dict[str, Any]:
+        """Indices of a motion; none where it diverged, spun, or did not turn to its rudder."""
+        try:
+            return {} if motion.diverged else self.read(motion.track()).to_dict()
+        except TrialError:
+            return {}
 
 
-def _turn(predictor: Predictor, member: int, trial: Trial, track: Track) -> tuple[str, TurningIndices, dict[str, Any]]:
-    L_pp = predictor.L_pp
+_Read = Callable[[float, Trial, Track], _Order]
+
+
+def _turn(L_pp: float, trial: Trial, track: Track) -> _Order:
     measured = turning_indices(track, L_pp)
     angle = _signed(measured.rudder_angle, measured.direction)
     until = float(np.max(np.abs(track.psi - track.psi[0]))) + 5.0 * DEG
-    order = f"{measured.rudder_angle / DEG:.3g} deg to {measured.direction}"
+    words = f"{measured.rudder_angle / DEG:.3g} deg to {measured.direction}"
     at = measured.execute_time, measured.approach_speed
-    again = _run(predictor, member, track, *at, lambda begin: TurningOrder(angle, begin, until))
-    return order, measured, _read(lambda: turning_indices(again.track(), L_pp)) if again else {}
+
+    def sailing() -> Sailing:
+        return _sailing(L_pp, track, *at, lambda begin: TurningOrder(angle, begin, until))
+
+    return _Order(words, measured, sailing, lambda again: turning_indices(again, L_pp))
 
 
-def _zigzag(predictor: Predictor, member: int, trial: Trial, track: Track) -> tuple[str, ZigzagIndices, dict[str, Any]]:
-    L_pp = predictor.L_pp
+def _zigzag(L_pp: float, trial: Trial, track: Track) -> _Order:
     measured = zigzag_indices(track, L_pp, ordered_angles(trial))
     angle = _signed(measured.rudder_held, measured.direction)
     heading = measured.heading_angle or measured.rudder_angle
     legs = len(measured.execute_time)
-    order = f"{measured.rudder_angle / DEG:.3g}/{heading / DEG:.3g} to {measured.direction} first"
+    words = f"{measured.rudder_angle / DEG:.3g}/{heading / DEG:.3g} to {measured.direction} first"
     at = measured.execute_time[0], measured.approach_speed
-    again = _run(predictor, member, track, *at, lambda begin: ZigzagOrder(angle, heading, begin, legs))
     nominal = measured.rudder_angle, heading
-    return order, measured, _read(lambda: zigzag_indices(again.track(), L_pp, nominal)) if again else {}
+
+    def sailing() -> Sailing:
+        return _sailing(L_pp, track, *at, lambda begin: ZigzagOrder(angle, heading, begin, legs))
+
+    return _Order(words, measured, sailing, lambda again: zigzag_indices(again, L_pp, nominal))
 
 
 def _signed(angle: float, direction: str) -> float:
     return angle if direction == "starboard" else -angle
 
 
-def _read(indices: Callable[[], TurningIndices | ZigzagIndices]) -> dict[str, Any]:
-    try:
-        return indices().to_dict()
-    except TrialError:  # the model did not turn to its rudder, or span
-        return {}
-
-
-def _run(
-    predictor: Predictor,
-    member: int,
-    track: Track,
-    execute: float,
-    speed: float,
-    helmsman: Callable[[float], Helmsman],
-) -> Motion | None:
-    """The manoeuvre with the order half a ship length after the start; None where it diverges."""
+def _sailing(L_pp: float, track: Track, execute: float, speed: float, helmsman: Callable[[float], Helmsman]) -> Sailing:
+    """The manoeuvre of a track with the order half a ship length after the start."""
     assert track.n is not None  # tracks of trials have it
     before = track.t <= execute
     sample = float(np.median(np.diff(track.t)))
-    motion = steered(
-        predictor,
-        member,
-        helmsman(max(0.5 * predictor.L_pp / speed, REST * sample)),
+    return Sailing(
+        helmsman(max(0.5 * L_pp / speed, REST * sample)),
         speed=speed,
         n=float(np.mean(track.n[before])),
         heading=float(track.psi[before][-1]),
-        longest=PATIENCE * float(track.t[-1] - track.t[0]) + predictor.L_pp / speed,
+        longest=PATIENCE * float(track.t[-1] - track.t[0]) + L_pp / speed,
         sample=sample,
     )
-    return None if motion.diverged else motion
 
 
-def steered(
-    predictor: Predictor,
-    member: int,
-    helmsman: Helmsman,
-    *,
-    speed: float,
-    n: float,
-    heading: float,
-    longest: float,
-    sample: float,
-) -> Motion:
-    """A member steered by a helmsman from straight ahead; arguments as for ``run_manoeuvre``.
+def steered(predictor: Predictor, members: Sequence[int], sailings: Sequence[Sailing]) -> list[Motion]:
+    """Manoeuvres, each by a member of a predictor, from straight ahead.
 
     A physics model has the steering gear of its profile.  With any other predictor the rudder moves at once, and steps
     are as long as a helmsman waits between two looks at the compass.
     """
     if isinstance(predictor, PhysicsPredictor):
-        own = predictor.theta[:, member : member + 1]
-        return run_manoeuvre(
-            predictor.model, helmsman, speed=speed, n=n, heading=heading, longest=longest, sample=sample, theta=own
-        )
-    state = np.array([0.0, 0.0, heading, speed, 0.0, 0.0])
-    driven = {"propeller": n, "rudder": 0.0, "thruster": 0.0}
+        return run_manoeuvres(predictor.model, sailings, theta=predictor.theta[:, list(members)])
+    return [_stepped(predictor, member, sailing) for member, sailing in zip(members, sailings, strict=True)]
+
+
+def _stepped(predictor: Predictor, member: int, sailing: Sailing) -> Motion:
+    assert sailing.speed is not None  # read from the trial
+    assert sailing.n is not None
+    state = np.array([0.0, 0.0, sailing.heading, sailing.speed, 0.0, 0.0])
+    driven = {"propeller": sailing.n, "rudder": 0.0, "thruster": 0.0}
     now = np.array([driven[INPUTS[name].role] for name in predictor.inputs])
     under_way = stepper_of(predictor, member, state, now)
+    sample = sailing.sample
     steps = max(1, math.ceil(sample / LONGEST_STEP - 1e-9))
     states, controls = [state], [now]
     diverged = False
-    for i in range(round(longest / sample)):
+    for i in range(round(sailing.longest / sample)):
         for k in range(steps):
             t = i * sample + k * sample / steps
-            driven["rudder"] = helmsman.order(t, float(state[2] - heading))
+            driven["rudder"] = sailing.helmsman.order(t, float(state[2] - sailing.heading))
             then = np.array([driven[INPUTS[name].role] for name in predictor.inputs])
             state, now = under_way.step(now, then, sample / steps), then
         states.append(state)
         controls.append(now)
         diverged = not bool(np.isfinite(state).all())
-        if diverged or helmsman.finished(float(state[2] - heading)):
+        if diverged or sailing.helmsman.finished(float(state[2] - sailing.heading)):
             break
     times: FloatArray = sample * np.arange(len(states), dtype=np.float64)
     return Motion("run", times, np.array(states), np.array(controls), diverged, tuple(predictor.inputs), member)

@@ -10,6 +10,7 @@ from typing import Any, overload
 
 from .backends import Integrator
 from .circumstances import notes_on
+from .displayed import Plotted, inert
 from .errors import OptionError, Problem
 from .evaluation import TrialRecord, evaluate
 from .files import refuse_existing
@@ -18,11 +19,11 @@ from .manoeuvres.summary import criteria_of, indices_of
 from .model import Model
 from .networks import named_ship
 from .options import SimulateOptions
-from .orders import Helmsman, TurningOrder, ZigzagOrder, run_manoeuvre
+from .orders import Helmsman, Sailing, TurningOrder, ZigzagOrder, run_manoeuvres
 from .predictor import PhysicsPredictor, Predictor, as_predictor, profile_of
 from .profile import ShipProfile
 from .simulation import Motion, as_trial
-from .trial import Trial, write_trial
+from .trial import Coverage, Trial, write_trial
 from .units import DEG, parse
 
 ORDERED = "rk4"
@@ -36,7 +37,7 @@ PER_SECOND = 20.0
 
 
 @dataclass(frozen=True, eq=False)
-class Simulated(Sequence[Motion]):
+class Simulated(Plotted, Sequence[Motion]):
     """Simulated runs, a sequence of ``Motion``, with what they are judged by: trial by trial, of each all members.
 
     records  each beside the trial it is of; empty for manoeuvres given as orders
@@ -63,7 +64,7 @@ class Simulated(Sequence[Motion]):
         """In a line."""
         ids = [motion.id for motion in self.motions]
         more = f" and {len(ids) - 4} more" if len(ids) > 4 else ""
-        return f"Simulated({self.predictor.name}: {', '.join(ids[:4])}{more})"
+        return inert(f"Simulated({self.predictor.name}: {', '.join(ids[:4])}{more})")
 
     @property
     def ship(self) -> ShipProfile | None:
@@ -115,8 +116,29 @@ class Simulated(Sequence[Motion]):
             "indices": record.indices if record else indices_of(track, L_pp) if track else {},
             "measured": record.measured.indices if record else None,
             "measures": record.measures if record and not motion.diverged else None,
+            "unvisited": unvisited(ship, [motion]) if ship else [],
             "criteria": [criterion.to_dict() for criterion in criteria_of(track, L_pp, V)] if track else [],
         }
+
+
+def unvisited(ship: ShipProfile, motions: Sequence[Motion]) -> list[str]:
+    """Where runs go that the trials a ship was tuned to did not, in words; nothing of a profile that does not say."""
+    known = Coverage.from_dict(ship.provenance.get("coverage") or {})
+    tracks = [motion.track() for motion in motions if not motion.diverged]
+    return known.unvisited_by(Coverage.of(tracks, ship.L_pp)) if known and tracks else []
+
+
+def _beyond(ship: ShipProfile | None, motions: Sequence[Motion]) -> list[str]:
+    """The same of each run, as notes."""
+    found: dict[str, list[str]] = {}
+    for motion in motions if ship else ():
+        assert ship is not None  # else there are none
+        for words in unvisited(ship, [motion]):
+            found.setdefault(words, []).append(motion.id)
+    return [
+        f"{', '.join(dict.fromkeys(ids))}: goes where the trials this ship was tuned to did not, {words}"
+        for words, ids in found.items()
+    ]
 
 
 def simulate(
@@ -141,7 +163,8 @@ def simulate(
         backend=backend or options.backend,
     )
     if trials is None:
-        return Simulated(predictor, tuple(_on_orders(predictor, options)), (), options)
+        ordered = tuple(_on_orders(predictor, options))
+        return Simulated(predictor, ordered, (), options, tuple(_beyond(profile_of(predictor), ordered)))
     if options.turn or options.zigzag or options.speed or options.rpm:
         raise OptionError(
             Problem("trials have their own inputs", "trials", fix="leave out turn, zigzag, speed and rpm")
@@ -149,7 +172,8 @@ def simulate(
     several = list_of(trials)
     records = evaluate(predictor, several)
     notes = notes_on(predictor.model, several) if isinstance(predictor, PhysicsPredictor) else ()
-    return Simulated(predictor, tuple(record.motion for record in records), records, options, tuple(notes))
+    simulated = tuple(record.motion for record in records)
+    return Simulated(predictor, simulated, records, options, (*notes, *_beyond(profile_of(predictor), simulated)))
 
 
 def files_of(folder: Path, trials: TrialsGiven | Sequence[Trial] | None, options: SimulateOptions) -> list[Path]:
@@ -173,10 +197,10 @@ def _on_orders(predictor: Predictor, options: SimulateOptions) -> list[Motion]:
     # Models are quicker than ships: sample ten times per ship length travelled, once a second at most.
     sample = min(1.0, round(L / V / 10.0, 1) or 0.1)
     longest = max(600.0, 150.0 * L / V)
-    return [
-        run_manoeuvre(model, helmsman, id=name, speed=speed, n=n, longest=longest, sample=sample, theta=predictor.theta)
-        for name, helmsman in _orders(options)
+    sailings = [
+        Sailing(helmsman, name, speed, n, longest=longest, sample=sample) for name, helmsman in _orders(options)
     ]
+    return run_manoeuvres(model, sailings, theta=predictor.theta.repeat(len(sailings), axis=1))
 
 
 def _orders(options: SimulateOptions) -> list[tuple[str, Helmsman]]:

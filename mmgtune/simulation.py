@@ -11,6 +11,7 @@ import numpy as np
 
 from .arrays import FloatArray
 from .backends import STATES, Integrator, LaneModel
+from .displayed import Plotted, inert
 from .errors import OptionError, Problem, TrialError
 from .given import ShipGiven, ship_of
 from .inputs import INPUTS, Role
@@ -29,7 +30,7 @@ ORDERED = re.compile(r"zig-?zag\D*(\d+(?:\.\d+)?)\s*/\s*(\d+(?:\.\d+)?)", re.IGN
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class Motion(Plotted):
     """A simulated run.
 
     t         (n_samples,) time [s]
@@ -54,7 +55,7 @@ class Motion:
     def __repr__(self) -> str:
         """In a line."""
         end = "diverged" if self.diverged else f"{self.t[-1]:g} s, {len(self.t)} samples"
-        return f"Motion({self.id}: {end})"
+        return f"Motion({inert(self.id)}: {end})"
 
     def channel(self, name: str) -> FloatArray:
         """One of x, y, psi, u, v_m, r: (n_samples,)."""

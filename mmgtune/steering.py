@@ -271,8 +271,9 @@ def _cases(h: FloatArray, length: IntArray, controls: FloatArray, speed: FloatAr
 
 
 def _on_time(model: Model, theta: FloatArray) -> FloatArray:
-    """The coefficients without what shifts a log: nothing is logged here."""
+    """The coefficients without what makes a log late: nothing is logged here.  Dead times of the ship stay."""
     theta = np.array(theta)
     for clock in model.clocks:
-        theta[model.fields(clock)[0]] = 0.0
+        if clock.late == "log":
+            theta[model.fields(clock)[0]] = 0.0
     return theta

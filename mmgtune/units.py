@@ -22,7 +22,7 @@ _FACTORS: dict[str, dict[str, float]] = {
     "1/s": {"1/s": 1.0, "rps": 1.0, "rpm": 1.0 / 60.0},
     "1/s^2": {"1/s^2": 1.0, "rpm/s": 1.0 / 60.0},
     "N": {"N": 1.0, "kN": 1e3},
-    "s": {"s": 1.0, "min": 60.0, "h": 3600.0, "ms": 1e-3, "us": 1e-6},
+    "s": {"s": 1.0, "min": 60.0, "h": 3600.0, "d": 86400.0, "ms": 1e-3, "us": 1e-6},
     "kg/m^3": {"kg/m^3": 1.0, "t/m^3": 1e3},
     "deg/s": {"deg/s": 1.0, "deg/min": 1.0 / 60.0, "rad/s": 1.0 / DEG},
     "%": {"%": 1.0},
@@ -42,6 +42,7 @@ _SYNONYMS = {
     "1/min": "rpm", "r/min": "rpm", "min-1": "rpm", "rev/min": "rpm", "hz": "1/s", "rev/s": "rps", "s-1": "1/s",
     "metre": "m", "metres": "m", "meter": "m", "meters": "m", "feet": "ft", "foot": "ft", "nmi": "NM", "nm": "NM",
     "sec": "s", "second": "s", "seconds": "s", "minutes": "min", "minute": "min", "hours": "h", "msec": "ms",
+    "day": "d", "days": "d",
 }  # fmt: skip
 """Names that people and loggers give to units, in small letters."""
 
@@ -125,3 +126,11 @@ def shown(value: float, unit: str) -> str:
             if text and parse(text, unit) == (value,):
                 return text
     return f"{value!r} {unit}"
+
+
+def in_time(seconds: float) -> str:
+    """A time as people say it, to about a tenth: "40 s", "12 min", "1.5 h"; a second at least."""
+    if seconds < 99.5:
+        return f"{max(1.0, seconds):.2g} s"
+    minutes = seconds / 60.0
+    return f"{minutes:.2g} min" if minutes < 99.5 else f"{minutes / 60.0:.2g} h"

@@ -10,6 +10,7 @@ from typing import Any
 
 from .bands import Pooled, pooled
 from .circumstances import notes_on
+from .displayed import Plotted, inert
 from .errors import OptionError, Problem
 from .given import ShipGiven, TrialsGiven, trials_of
 from .model import Model
@@ -44,7 +45,7 @@ class Scored:
 
     def __repr__(self) -> str:
         """In a line."""
-        return f"Scored({self.name}, {len(self.scores)} runs, L_MSE {L_MSE(self.scores):.4g})"
+        return f"Scored({inert(self.name)}, {len(self.scores)} runs, L_MSE {L_MSE(self.scores):.4g})"
 
     @property
     def doubts(self) -> tuple[Doubt, ...]:
@@ -73,11 +74,12 @@ class Scored:
 
 
 @dataclass(frozen=True, eq=False)
-class Validation:
+class Validation(Plotted):
     """Predictors scored on the same trials.
 
     trials, sigma_from  what the trials, and those whose spread is counted in, were called
     sigma   what L_MSE divides differences of each state by [SI]
+    pieces  the trials, or windows of them, that were scored
     """
 
     profiles: tuple[Scored, ...]
@@ -85,12 +87,13 @@ class Validation:
     sigma: Mapping[str, float]
     sigma_from: str
     options: ValidateOptions = field(default_factory=ValidateOptions)
+    pieces: tuple[Trial, ...] = ()
 
     def __repr__(self) -> str:
         """In a line."""
         named = ", ".join(f"{one.name} {L_MSE(one.scores):.4g}" for one in self.profiles[:4])
         more = f" and {len(self.profiles) - 4} more" if len(self.profiles) > 4 else ""
-        return f"Validation(on {self.trials[-60:]}, L_MSE of {named}{more})"
+        return inert(f"Validation(on {self.trials[-60:]}, L_MSE of {named}{more})")
 
     @property
     def method(self) -> str:
@@ -147,7 +150,7 @@ def validate(
         stated = _stated(predictor, data, options.backend)
         bands = _bands(predictor, pieces, sigma) if pieces else {}
         scored.append(Scored(name, predictor, scores, repeated, stated, tuple(notes), bands))
-    return Validation(tuple(scored), called, sigma, options.sigma_from or called, options)
+    return Validation(tuple(scored), called, sigma, options.sigma_from or called, options, tuple(pieces))
 
 
 def sigma_of(data: TrialSet, sigma_from: str | None, called: str) -> dict[str, float]:

@@ -11,18 +11,21 @@ import numpy as np
 from .arrays import FloatArray
 from .backends import STATES, Integrator
 from .bands import WindowScore, score_window
+from .displayed import Brief
 from .evaluation import TrialRecord, records
+from .given import ShipGiven, TrialsGiven, list_of
 from .model import Model
+from .networks import named_ship
+from .objective import spread
 from .predictor import Predictor, as_predictor, cases_from, draught_of, portions
-from .profile import ShipProfile
 from .trial import Trial
 
 DRAWS = 2000
 """Times runs are drawn anew for an interval."""
 
 
-@dataclass(frozen=True)
-class TrialScore:
+@dataclass(frozen=True, repr=False)
+class TrialScore(Brief):
     """One member on one trial, or on one window of it.
 
     trial      id of the whole trial
@@ -100,9 +103,9 @@ def by_member(scores: Sequence[TrialScore]) -> list[list[TrialScore]]:
 
 
 def score(
-    ship: Predictor | ShipProfile | Model,
-    trials: Sequence[Trial],
-    sigma: Mapping[str, float],
+    ship: ShipGiven | Model | Predictor,
+    trials: TrialsGiven | Sequence[Trial],
+    sigma: Mapping[str, float] | None = None,
     *,
     theta: FloatArray | None = None,
     integrator: Integrator = Integrator(),
@@ -110,13 +113,16 @@ def score(
 ) -> list[TrialScore]:
     """Scores of trials, each simulated from its first measured state with its measured inputs.
 
-    sigma  what differences of each state are divided by in L_MSE [SI], see ``objective.spread``
+    ship, trials  objects, paths or bundled names; ``ship`` may be any predictor, ``trials`` a list of trials
+    sigma  what differences of each state are divided by in L_MSE [SI]; their spread in the trials where None
     theta  (n_rows, n_members) coefficients of a profile or model, its own where None
     -> trial by trial, and of each all members
     Windows of long trials are trials like any other (``TrialSet.in_windows``).
     """
-    predictor = as_predictor(ship, theta=theta, integrator=integrator, backend=backend)
-    return [score_of(record, sigma) for record in records(predictor, trials)]
+    predictor = as_predictor(named_ship(ship, integrator), theta=theta, integrator=integrator, backend=backend)
+    several = list_of(trials)
+    sigma = spread(several) if sigma is None else sigma
+    return [score_of(record, sigma) for record in records(predictor, several)]
 
 
 def window_scores(predictor: Predictor, trials: Sequence[Trial]) -> list[WindowScore]:

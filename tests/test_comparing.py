@@ -8,6 +8,8 @@ from mmgtune import compare, load_profile
 from mmgtune.profile import tuned
 from mmgtune.report import render
 
+pytestmark = [pytest.mark.xdist_group("compared"), pytest.mark.slow(6)]
+
 known = functools.cache(compare)
 """Of bundled names, once for all tests."""
 

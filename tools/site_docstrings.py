@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from importlib import import_module
-from typing import Any
+from typing import Any, get_args, get_type_hints
 
 import griffe
 
@@ -23,6 +23,38 @@ class Aligned(griffe.Extension):
             say_what_option_means(obj)
         if not obj.is_alias and obj.docstring:
             obj.docstring.value = as_markdown(obj.docstring.value)
+        if not obj.is_alias and obj.is_class and obj.path.startswith("mmgtune.options.") and obj.docstring:
+            obj.docstring.value += table_of_options(obj)
+
+
+def table_of_options(of: Any) -> str:
+    """All fields of a dataclass of options, inherited ones too, with types and defaults; nothing for another class."""
+    found = getattr(import_module(of.module.path), of.name, None)
+    if not (isinstance(found, type) and issubclass(found, Options) and choices(found)):
+        return ""
+    hints = get_type_hints(found)
+    rows = [
+        f"| `{name}` | {coded(typed(hints[name]))} | {coded(repr(getattr(found, name)))} "
+        f"| {escaped(' '.join(meaning(known).split()))} |"
+        for name, known in choices(found).items()
+    ]
+    return "\n\n" + "\n".join(["| field | type | default | meaning |", "|---|---|---|---|", *rows])
+
+
+def coded(text: str) -> str:
+    """Code in a cell of a table, where a bar would end the cell."""
+    return f"<code>{plain(text)}</code>"
+
+
+def typed(hint: Any) -> str:
+    """A type as it is written in the source."""
+    return hint.__name__ if isinstance(hint, type) and not get_args(hint) else str(hint).replace("pathlib.", "")
+
+
+def meaning(known: Any) -> str:
+    """Help, words and flag of an option."""
+    words = f"{known.help} One of: {', '.join(known.values)}." if known.values else known.help
+    return f"{words} Flag: ``{known.flag}``."
 
 
 def say_what_option_means(attribute: Any) -> None:
@@ -31,8 +63,7 @@ def say_what_option_means(attribute: Any) -> None:
     of = getattr(module, attribute.parent.name, None)
     known = choices(of).get(attribute.name) if isinstance(of, type) and issubclass(of, Options) else None
     if known is not None:
-        words = f"{known.help} One of: {', '.join(known.values)}." if known.values else known.help
-        attribute.docstring = griffe.Docstring(f"{words} Flag: ``{known.flag}``.", parent=attribute)
+        attribute.docstring = griffe.Docstring(meaning(known), parent=attribute)
         attribute.value = repr(getattr(of, attribute.name))
 
 
@@ -72,4 +103,14 @@ def as_markdown(text: str) -> str:
 def escaped(line: str) -> str:
     """A line whose signs Markdown leaves as they are, but for code."""
     parts = re.split(r"(``.*?``|`.*?`)", line)
-    return "".join(part if k % 2 else re.sub(r"([*_<>\[\]|$])", r"\\\1", part) for k, part in enumerate(parts))
+    return "".join(part if k % 2 else plain(part) for k, part in enumerate(parts))
+
+
+ENTITIES = {"<": "&lt;", ">": "&gt;", "|": "&#124;", "$": "&#36;"}
+"""Signs that Markdown has no backslash for, or not everywhere."""
+
+
+def plain(text: str) -> str:
+    """Text in which Markdown sees no marks."""
+    text = re.sub(r"([\\`*_{}\[\]])", r"\\\1", text.replace("&", "&amp;"))
+    return re.sub(r"[<>|$]", lambda sign: ENTITIES[sign[0]], text)

@@ -5,10 +5,15 @@ mkdocs calls these functions; see ``hooks`` in mkdocs.yml.
 
 from __future__ import annotations
 
+import atexit
 import html
 import re
+import shutil
+import subprocess
+import sys
+import tempfile
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args, get_origin
 
 import click
 import typer.main
@@ -17,6 +22,12 @@ from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File, Files
 
 ROOT = Path(__file__).parent.parent
+if str(ROOT) not in sys.path:  # MkDocs loads hooks by their path
+    sys.path.insert(0, str(ROOT))
+
+from mmgtune.cli.options import help_of  # noqa: E402
+from tools import notebooks  # noqa: E402
+from tools.site_docstrings import plain  # noqa: E402
 
 EQUATION = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', flags=re.S)
 TYPED = re.compile(r'<div class="language-(?:text|sh) highlight">.*?</div>', flags=re.S)
@@ -24,42 +35,56 @@ TYPED = re.compile(r'<div class="language-(?:text|sh) highlight">.*?</div>', fla
 
 OPTION = re.compile(r"(?<![\w-])(--?[a-z][\w-]*)")
 
-COMMANDS = """# Commands
+COMMANDS = "<!-- commands -->"
+"""Where a page in docs/ has the commands."""
 
-Made from the commands themselves when this site was built; `mmgtune COMMAND --help` says the same.
+FROM_ROOT = {"changelog.md": "CHANGELOG.md", "contributing.md": "CONTRIBUTING.md", "security.md": "SECURITY.md"}
+"""Pages that are files of the repository's top folder; in docs/ stands a page that says where these are."""
 
-## Exit codes {#exit-codes}
+EXAMPLES = "gallery.md"
+"""The page whose commands make the pictures of the site."""
 
-| code | meaning |
-|---:|---|
-| 0 | good |
-| 1 | ran, and the answer is no (`check`, `--strict`, `--fail-on`) |
-| 2 | could not run: an option, a file or the output; the message says what, where, why and the fix |
-| 3 | a bug; a file with the traceback is named |
-| 130 | interrupted by Ctrl-C; what takes long has saved the best so far, `--resume --out FOLDER` continues it |
-| 143 | the same, by SIGTERM: what a scheduler or a container sends before it ends a job |
+PICTURE = re.compile(r"^<!-- picture: (\S+) \| (.*?) -->$", flags=re.M)
+"""A picture that is made at the build: its file, and what is seen in it."""
 
-## What all commands share
-
-A profile or a data set is a file, a folder, or the name of one that travels with the program. `--json` prints one JSON
-document on stdout and nothing else; [its keys](../formats.md) are documented. `--dry-run` of a command that takes long
-says what would be done, and about how long it takes. Ctrl-C or SIGTERM once finishes the step at hand and saves, twice
-stops at once; one line says what is saved. A run that is resumed comes to the numbers of one that was never stopped. An
-option of the same name means the same in every command.
-Results are never replaced without `--force`, and a folder belongs to one run at a time.
-"""
+NOTEBOOK = re.compile(r"^<!-- notebook: (\S+) -->$", flags=re.M)
+"""A notebook that is run at the build."""
 
 
 def on_files(files: Files, config: Any) -> Files:
-    """Add the pages that are made here."""
-    for uri, text in (
-        ("reference/commands.md", COMMANDS + commands()),
-        ("changelog.md", from_root("CHANGELOG.md")),
-        ("contributing.md", from_root("CONTRIBUTING.md")),
-        ("security.md", from_root("SECURITY.md")),
-    ):
-        files.append(File.generated(config, uri, content=text))
+    """Run the gallery, and add the pictures and reports that its commands make."""
+    made = Path(tempfile.mkdtemp(prefix="mmgtune-site-"))
+    atexit.register(shutil.rmtree, made, ignore_errors=True)
+    run = [sys.executable, "-m", "tools.site_examples", str(ROOT / "docs" / EXAMPLES), str(made)]
+    done = subprocess.run(run, cwd=ROOT, capture_output=True, text=True)
+    if done.returncode:
+        raise PluginError(f"the gallery could not be made:\n{done.stderr}")
+    for path in sorted([*made.rglob("*.svg"), *made.rglob("report.html")]):
+        uri = f"made/{path.relative_to(made).as_posix()}"
+        files.append(File.generated(config, uri, abs_src_path=str(path)))
     return files
+
+
+def on_page_markdown(text: str, page: Any, config: Any, files: Files) -> str:
+    """What is made here in the places where pages want it."""
+    uri = page.file.src_uri
+    if uri in FROM_ROOT:
+        text = from_root(FROM_ROOT[uri])
+    text = text.replace(COMMANDS, commands() if COMMANDS in text else "")
+    text = NOTEBOOK.sub(lambda found: notebooks.page(ROOT / "docs" / "notebooks" / found[1]), text)
+    return PICTURE.sub(lambda found: figure(found[1], found[2], uri, files), text)
+
+
+def figure(name: str, words: str, uri: str, files: Files) -> str:
+    """A picture with what is seen in it, and with the report it is from where there is one."""
+    up = "../" * uri.count("/")
+    if files.get_file_from_path(f"made/{name}") is None:
+        raise PluginError(f"{uri}: no command of {EXAMPLES} makes the picture {name}")
+    report = f"made/{name.partition('/')[0]}/report.html"
+    more = f' <a href="{up}{report}">The whole report</a>.' if files.get_file_from_path(report) else ""
+    seen = html.escape(words)
+    picture = f'<img src="{up}made/{name}" alt="{seen}">'
+    return f'<figure class="made">{picture}<figcaption>{seen}{more}</figcaption></figure>\n'
 
 
 def on_page_content(text: str, page: Any, **_: Any) -> str:
@@ -147,7 +172,7 @@ def described(text: str) -> str:
             else:
                 parts.append(f"```\n{code}\n```")
         else:
-            parts.append(escaped(" ".join(lines)))
+            parts.append(plain(" ".join(lines)))
     return "\n\n".join(parts)
 
 
@@ -160,7 +185,7 @@ def tables(command: Any, context: click.Context) -> list[str]:
         panel = getattr(parameter, "rich_help_panel", None)
         panel = panel or ("Arguments" if is_argument(parameter) else "Options")
         panels.setdefault(panel, []).append(row(parameter, context))
-    head = "| {} | meaning | default |\n|---|---|---|\n"
+    head = "| {} | type | default | meaning |\n|---|---|---|---|\n"
     return [f"\n{head.format(panel.lower())}{''.join(rows)}" for panel, rows in panels.items()]
 
 
@@ -184,9 +209,21 @@ def row(parameter: Any, context: click.Context) -> str:
     shown = "required" if parameter.required else ""
     if default not in (None, False, "", ()) and not callable(default):
         shown = f"`{', '.join(map(str, default)) if isinstance(default, (list, tuple)) else default}`"
-    return f"| `{names}` | {escaped(getattr(parameter, 'help', None) or '')} | {shown} |\n"
+    if isinstance(default, bool):
+        shown = "on" if default else "off"
+    return f"| `{names}` | {kind_of(parameter)} | {shown} | {plain(help_of(parameter))} |\n"
 
 
-def escaped(text: str) -> str:
-    """Text that Markdown leaves as it is."""
-    return re.sub(r"([\\`*_{}\[\]<>|$])", r"\\\1", text)
+KINDS = {int: "whole number", float: "number", bool: "on or off", str: "text", Path: "path"}
+"""Types in words."""
+
+
+def kind_of(parameter: Any) -> str:
+    """What may be given: words to choose from, a kind of path or list, else a type."""
+    written = None if is_argument(parameter) else parameter.metavar
+    if written:
+        return ", ".join(f"`{word}`" for word in written.split("|"))
+    kind = parameter.type_descriptor.annotation
+    listed = get_origin(kind) is list
+    word = KINDS.get(get_args(kind)[0] if listed else kind, "text")
+    return f"{word}, one or more" if listed else word

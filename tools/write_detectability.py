@@ -30,7 +30,13 @@ for, it says of each effect
 |---|---|---|---|
 """
 
-READ = {"rad": (180.0 / math.pi, "°"), "rad/s": (180.0 / math.pi, "°/s"), "N": (1e-3, "kN"), "-": (1.0, "")}
+READ = {
+    "rad": (180.0 / math.pi, "°"),
+    "rad/s": (180.0 / math.pi, "°/s"),
+    "rad/s^2": (180.0 / math.pi, "°/s²"),
+    "N": (1e-3, "kN"),
+    "-": (1.0, ""),
+}
 
 
 def page(result: Diagnosis) -> str:

@@ -172,7 +172,7 @@ class Marching:
             count = self.integrator.substeps
             shares = np.arange(1, count + 1, dtype=now.s[0].dtype) / count
             now, _ = jax_module().lax.scan(lambda at, f: self._substep(at, (samples, f)), now, shares)
-        return now, self.ship.sensed(State(*now.s[:N_STATES]))
+        return now, self.ship.shown(now)
 
     def _substep(self, now: Moment, given: tuple[tuple[Sample, Sample], Array]) -> tuple[Moment, None]:
         logged, around, step = self._given(*given)
@@ -183,23 +183,24 @@ class Marching:
         """Inputs and surroundings at the share f of a step, and the length of the whole step [s]."""
         before, after = samples
         log = self.log
-        if self.ship.shift is None:
-            logged = log.per_lane(between(before.controls, after.controls, f))
+        shift = self.ship.shift
+        if all(late is None for late in shift):
+            logged = log.per_lane(between(before.controls, after.controls, f)).T
         else:
-            time = log.per_lane(between(before.t, after.t, f)) + self.ship.shift
-            logged = jax_module().vmap(_logged_at)(
-                time, log.per_lane(log.t.T), log.per_lane(log.n_samples), log.per_lane(_swapped(log.controls))
-            )
+            time = log.per_lane(between(before.t, after.t, f))
+            t, n, values = log.per_lane(log.t.T), log.per_lane(log.n_samples), log.per_lane(_swapped(log.controls))
+            at = jax_module().vmap(_logged_at)
+            logged = [at(time if late is None else time + late, t, n, values[:, :, k]) for k, late in enumerate(shift)]
         around = UNKNOWN
         if self.ship.looks_around or self.by:
             held = np.array([name in HELD for name in Surroundings._fields])
             found = jax_module().numpy.where(held, after.around, between(before.around, after.around, f))
             around = Surroundings(*log.per_lane(found).T)
-        return self.ship.arrangement.control(*logged.T), around, log.per_lane(after.t - before.t)
+        return self.ship.arrangement.control(*logged), around, log.per_lane(after.t - before.t)
 
 
 def _logged_at(time: Array, t: Array, n: Array, values: Array) -> Array:
-    """Values (T, n_inputs) logged at t (T,), of which n count, at a time: linear between samples, held beyond the ends.
+    """Values (T,) logged at t (T,), of which n count, at a time: linear between samples, held beyond the ends.
 
     At a sample the derivative by the time is the mean of those before and after, as a central difference finds it.
     """

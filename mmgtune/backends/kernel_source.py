@@ -16,7 +16,15 @@ from functools import lru_cache
 from typing import Any
 
 from ..components import Component
-from ..effects import ActuatorEffect, FactorsEffect, FlowEffect, ForceEffect, LagEffect, SensorEffect
+from ..effects import (
+    ActuatorEffect,
+    FactorsEffect,
+    FilterEffect,
+    FlowEffect,
+    ForceEffect,
+    LagEffect,
+    SensorEffect,
+)
 from ..model import Model
 from ..physics.quantities import HELD, STATES, Surroundings
 
@@ -51,7 +59,7 @@ def kernel(
     seen = carray(stack(6 * {W}), (6 * {W},))
     now = carray(stack({n_control} * {W}), ({n_control} * {W},))
     then = carray(stack({n_control} * {W}), ({n_control} * {W},))
-{look_around}    h = carray(stack({W}), ({W},))
+{look_around}{remember}    h = carray(stack({W}), ({W},))
     J = carray(stack({W}), ({W},))
     fastest2 = carray(stack({W}), ({W},))
     n_stages = position.shape[0]
@@ -68,6 +76,7 @@ def kernel(
             state = State({from_initial})
 {unsense}
 {store_state}
+{settle}
             h[l] = 0.0
             J[l] = 0.0
             fastest2[l] = 0.0
@@ -111,11 +120,11 @@ def kernel(
                 for k in range({n_control} * {W}):
                     now[k] = then[k]
 {look_on}
+{filters}
             for l in range({W}):
                 speed2 = s[3 * {W} + l] * s[3 * {W} + l] + s[4 * {W} + l] * s[4 * {W} + l]
                 fastest2[l] = speed2 if speed2 > fastest2[l] else fastest2[l]
             for l in range({W}):
-                state = state_of(s, l)
 {sense}
 {store_seen}
             if mixed:
@@ -164,14 +173,85 @@ _LOOK_AROUND = """\
     there = carray(stack({n} * {W}), ({n} * {W},))
 """
 
+_REMEMBER = """\
+    logs = carray(stack({n} * {W}), ({n} * {W},))
+"""
+
 _LOOK_ON = """\
                 for k in range({n} * {W}):
                     here[k] = there[k]"""
 
-_ANY_SHIFTED = """\
-shifted = False
-for l in range({W}):
-    shifted = shifted or {shift} != 0.0"""
+
+def _shifts(model: Model) -> list[str]:
+    """For each input how much later in the log what acts stands, as text; "" where nothing shifts it."""
+    terms: list[list[str]] = [[] for _ in model.inputs]
+    for effect in model.clocks:
+        sign = "" if effect.late == "log" else "-"
+        for k in range(len(terms)) if effect.of is None else model.arrangement.of_role(effect.of):
+            terms[k].append(sign + _cell(model.fields(effect)[0][0]))
+    return [" + ".join(of) for of in terms]
+
+
+def _any_shifted(shifts: Sequence[str]) -> list[str]:
+    """Whether any lane of a block has a log that is shifted."""
+    if not any(shifts):
+        return []
+    lines = ["shifted = False", f"for l in range({WIDTH}):"]
+    return lines + [f"    shifted = shifted or {shift} != 0.0" for shift in dict.fromkeys(filter(None, shifts))]
+
+
+def _sense(model: Model) -> list[str]:
+    """What sensors show of lane l."""
+    lines = ["state = state_of(s, l)"]
+    return lines + [f"state = {_name(e)}(state, {_tuple(e)})" for e in model.acting(SensorEffect)]
+
+
+def _log_rows(model: Model) -> int:
+    """Numbers kept of a lane where there are filters: what sensors show, and of each what it logs and holds."""
+    filters = model.acting(FilterEffect)
+    return N_STATES * (1 + len(filters)) + sum(len(one.states) for one in filters)
+
+
+def _store(at: int, states: int) -> list[str]:
+    """What a filter, or the sensors, log and hold of lane l."""
+    lines = [f"{_slot('logs', at + k)} = state.{name}" for k, name in enumerate(STATES)]
+    return lines + [f"{_slot('logs', at + N_STATES + j)} = own[{j}]" for j in range(states)]
+
+
+def _settle(model: Model) -> list[str]:
+    """What sensors show of lane l, and what filters log and hold, of a motion that has lasted."""
+    filters = model.acting(FilterEffect)
+    if not filters:
+        return []
+    lines = [*_sense(model), *_store(0, 0)]
+    at = N_STATES
+    for one in filters:
+        lines += [f"state, own = {_name(one)}_settled(state, {_tuple(one)})", *_store(at, len(one.states))]
+        at += N_STATES + len(one.states)
+    return lines
+
+
+def _filter(model: Model) -> list[str]:
+    """The same a step later: what reached each filter before is what the one before it logged."""
+    filters = model.acting(FilterEffect)
+    if not filters:
+        return []
+    lines = [*_sense(model), "start = state_of(logs, l)", *_store(0, 0)]
+    at = N_STATES
+    for k, one in enumerate(filters):
+        held = "".join(f"{_slot('logs', at + N_STATES + j)}, " for j in range(len(one.states)))
+        lines += [f"state, own = {_name(one)}(start, state, ({held}), h[l], {_tuple(one)})"]
+        if k + 1 < len(filters):
+            lines += [f"start = State({', '.join(_slot('logs', at + j) for j in range(N_STATES))})"]
+        lines += _store(at, len(one.states))
+        at += N_STATES + len(one.states)
+    return lines
+
+
+def _logged_state(model: Model) -> list[str]:
+    """What the last filter logs of lane l."""
+    at = _log_rows(model) - N_STATES - len(model.acting(FilterEffect)[-1].states)
+    return [f"state = State({', '.join(_slot('logs', at + j) for j in range(N_STATES))})"]
 
 
 @lru_cache(maxsize=64)
@@ -184,7 +264,8 @@ def kernel_source(model: Model) -> str:
     levels = len(model.acting(ActuatorEffect))
     n_inputs = len(model.inputs)
     n_states = N_STATES + sum(len(lag.states) for lag in model.acting(LagEffect))
-    shift = " + ".join(_cell(model.fields(effect)[0][0]) for effect in model.clocks)
+    shifts = _shifts(model)
+    filters = model.acting(FilterEffect)
     control = ", ".join(
         f"between({_slot('now', levels * n_inputs + k)}, {_slot('then', levels * n_inputs + k)}, at)"
         for k in range(n_inputs)
@@ -198,17 +279,22 @@ def kernel_source(model: Model) -> str:
         look_around=_LOOK_AROUND.format(n=len(Surroundings._fields), W=WIDTH) if _looks_around(model) else "",
         look_on=_LOOK_ON.format(n=len(Surroundings._fields), W=WIDTH) if _looks_around(model) else "",
         W=WIDTH,
-        any_shifted=_lines(8, _ANY_SHIFTED.format(W=WIDTH, shift=shift).splitlines()) if shift else "",
+        remember=_REMEMBER.format(n=_log_rows(model), W=WIDTH) if filters else "",
+        any_shifted=_lines(8, _any_shifted(shifts)),
         from_initial=", ".join(f"initial[block, {k * WIDTH} + l]" for k in range(N_STATES)),
-        unsense=_lines(12, [f"state = {_name(e)}_inverse(state, {_tuple(e)})" for e in reversed(sensors)]),
+        unsense=_lines(
+            12,
+            [f"state = {_name(e)}_inverse(state, {_tuple(e)})" for e in (*reversed(filters), *reversed(sensors))],
+        ),
         store_state=_lines(
             12,
             [f"{_slot('s', k)} = state.{name}" for k, name in enumerate(STATES)]
             + [f"{_slot('s', k)} = initial[block, {k * WIDTH} + l]" for k in range(N_STATES, n_states)],
         ),
-        sample_now=_lines(8, _sample(model, "now", "here", shift)),
+        settle=_lines(12, _settle(model)),
+        sample_now=_lines(8, _sample(model, "now", "here", shifts)),
         start_actuators=_per_lane(8, _actuate(model, "now", first=True)),
-        sample_then=_lines(16, _sample(model, "then", "there", shift)),
+        sample_then=_lines(16, _sample(model, "then", "there", shifts)),
         actuators=_per_lane(16, _actuate(model, "then", first=False)),
         at_stage=control,
         n_own=N_STATES,
@@ -221,7 +307,8 @@ def kernel_source(model: Model) -> str:
         finish=_lines(
             20, [f"{_slot('s', k)} = after_step({_slot('s', k)}, h[l], {_slot('total', k)})" for k in range(n_states)]
         ),
-        sense=_lines(16, [f"state = {_name(e)}(state, {_tuple(e)})" for e in sensors]),
+        filters=_per_lane(16, _filter(model)),
+        sense=_lines(16, _logged_state(model) if filters else _sense(model)),
         store_seen=_lines(16, [f"{_slot('seen', k)} = state.{name}" for k, name in enumerate(STATES)]),
     )
 
@@ -256,7 +343,7 @@ def _looks_around(model: Model) -> bool:
 
 def _called(model: Model) -> list[Component]:
     """Components, and effects that have a place in the kernel."""
-    places = (ActuatorEffect, FlowEffect, FactorsEffect, ForceEffect, LagEffect, SensorEffect)
+    places = (ActuatorEffect, FlowEffect, FactorsEffect, ForceEffect, LagEffect, SensorEffect, FilterEffect)
     return [*model.parts, *(effect for effect in model.effects if isinstance(effect, places))]
 
 
@@ -274,8 +361,10 @@ def _imports(model: Model) -> list[str]:
         named.append((part.params, f"{_name(part)}_params"))
         if part.function is not None:
             named.append((part.function, _name(part)))
-        if isinstance(part, SensorEffect):
+        if isinstance(part, (SensorEffect, FilterEffect)):
             named.append((part.inverse, f"{_name(part)}_inverse"))
+        if isinstance(part, FilterEffect):
+            named.append((part.settled, f"{_name(part)}_settled"))
         if isinstance(part, FlowEffect) and part.rate is not None:
             named.append((part.rate, f"{_name(part)}_rate"))
     imports = []
@@ -289,7 +378,7 @@ def functions_of(model: Model) -> list[Callable[..., Any]]:
     """Functions outside the program's own physics and effects that the kernel of ``model`` calls."""
     found: list[Any] = [model.arrangement.forces]
     for part in (*model.parts, *model.effects):
-        found += [part.function, *(getattr(part, name, None) for name in ("inverse", "start", "rate"))]
+        found += [part.function, *(getattr(part, name, None) for name in ("inverse", "start", "rate", "settled"))]
     return [function for function in found if function is not None]
 
 
@@ -313,7 +402,7 @@ def _tuple(part: Component) -> str:
     return f"{_name(part)}_load(p, l)"
 
 
-def _sample(model: Model, inputs: str, around: str, shift: str) -> list[str]:
+def _sample(model: Model, inputs: str, around: str, shifts: Sequence[str]) -> list[str]:
     """Logged inputs and surroundings at the share f of the step that ends at sample i, into arrays of the stack."""
 
     def between(array: str, case: str, column: int) -> str:
@@ -327,7 +416,7 @@ def _sample(model: Model, inputs: str, around: str, shift: str) -> list[str]:
     seen = {
         _slot(around, k): measured("{case}", k, name) for k, name in enumerate(Surroundings._fields)
     } if _looks_around(model) else {}  # fmt: skip
-    own = {} if shift else logged
+    own = {slot: value for (slot, value), shift in zip(logged.items(), shifts, strict=True) if not shift}
     every = {**own, **seen}
     lines = ["if mixed:", f"    for l in range({WIDTH}):", "        c = case_of[block, l]"]
     lines += [f"        {slot} = {value.format(case='c')}" for slot, value in every.items()]
@@ -335,12 +424,13 @@ def _sample(model: Model, inputs: str, around: str, shift: str) -> list[str]:
     lines += [f"    value{k} = {value.format(case='case')}" for k, value in enumerate(every.values())]
     lines += [f"    for l in range({WIDTH}):"] if every else ["    pass"]
     lines += [f"        {slot} = value{k}" for k, slot in enumerate(every)]
-    if shift:
+    moved = [k for k in columns if shifts[k]]
+    if moved:
         lines += [f"for l in range({WIDTH}):", "    c = case_of[block, l]", "    if shifted:"]
-        late = f"logged_control(controls, t, n_samples, c, i, f, {shift}"
-        lines += [f"        {_slot(inputs, k)} = {late}, {k})" for k in columns]
+        late = "logged_control(controls, t, n_samples, c, i, f, {shift}, {k})"
+        lines += [f"        {_slot(inputs, k)} = {late.format(shift=shifts[k], k=k)}" for k in moved]
         lines += ["    else:"]
-        lines += [f"        {slot} = {value.format(case='c')}" for slot, value in logged.items()]
+        lines += [f"        {_slot(inputs, k)} = {logged[_slot(inputs, k)].format(case='c')}" for k in moved]
     return lines
 
 

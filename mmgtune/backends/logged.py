@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -16,10 +17,10 @@ from .cases import Cases
 class Logged:
     """Inputs and surroundings of n_cases * n_candidates lanes, candidates of a case side by side.
 
-    shift  (n_lanes,) how late the log of the inputs is [s], None where no lane's is
+    shift  for each input (n_lanes,) how late its log is [s], None where no lane's is
     """
 
-    def __init__(self, model: Model, cases: Cases, n_candidates: int, shift: FloatArray | None):
+    def __init__(self, model: Model, cases: Cases, n_candidates: int, shift: Sequence[FloatArray | None]):
         self.control = model.arrangement.control
         self.cases = cases
         self.n_candidates = n_candidates
@@ -42,7 +43,7 @@ class Logged:
         return Surroundings(*(self.per_lane(values) for values in found.T))
 
     def _input(self, k: int, f: float, column: int) -> FloatArray:
-        cases, shift = self.cases, self.shift
+        cases, shift = self.cases, self.shift[column]
         value = self.per_lane(between(cases.controls[:, k - 1, column], cases.controls[:, k, column], f))
         if shift is None:
             return value

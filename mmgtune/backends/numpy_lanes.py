@@ -2,14 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
 from ..arrays import FloatArray
-from ..effects import ActuatorEffect, Effect, FactorsEffect, FlowEffect, ForceEffect, LagEffect, SensorEffect
+from ..effects import (
+    ActuatorEffect,
+    ClockEffect,
+    Effect,
+    FactorsEffect,
+    FilterEffect,
+    FlowEffect,
+    ForceEffect,
+    LagEffect,
+    SensorEffect,
+)
 from ..model import Model
 from ..physics.integration import after_step, at_stage, between, with_stage
 from ..physics.mmg import carried, rates, through_water
@@ -18,6 +28,9 @@ from .cases import Cases, Integrator, LaneResult, finish, lanes_of
 from .logged import Logged
 
 E = TypeVar("E", bound=Effect)
+
+Filtered = tuple[State, tuple[Any, ...]]
+"""What leaves a filter, and what it remembers."""
 
 N_STATES = len(STATES)
 
@@ -127,8 +140,35 @@ class LaneModel:
         self.actuators, self.flows, self.forces = acting(ActuatorEffect), acting(FlowEffect), acting(ForceEffect)
         self.lags, self.sensors, self.factors = acting(LagEffect), acting(SensorEffect), acting(FactorsEffect)
         self.acts_on = [self.arrangement.of_role(one.effect.of) for one in self.actuators]
-        shifts = [model.parameters(effect, theta)[0] for effect in model.clocks]
-        self.shift: FloatArray | None = sum(shifts[1:], shifts[0]) if shifts else None
+        self.filters = acting(FilterEffect)
+        self._clocks = acting(ClockEffect)
+
+    @property
+    def shift(self) -> tuple[FloatArray | None, ...]:
+        """For each input (n_lanes,) how much later in the log what acts stands [s]; None where nothing shifts it."""
+        return self._shifts({"log": 1.0, "ship": -1.0})
+
+    @property
+    def late_log(self) -> tuple[FloatArray | None, ...]:
+        """For each input (n_lanes,) how late its log is [s]; None where nothing makes it so."""
+        return self._shifts({"log": 1.0})
+
+    @property
+    def dead_time(self) -> tuple[FloatArray | None, ...]:
+        """For each input (n_lanes,) how late the ship answers to it [s]; None where nothing makes her so."""
+        return self._shifts({"ship": 1.0})
+
+    def _shifts(self, signs: Mapping[str, float]) -> tuple[FloatArray | None, ...]:
+        found: list[FloatArray | None] = [None] * len(self.arrangement.inputs)
+        for one in self._clocks:
+            sign = signs.get(one.effect.late)
+            if sign is None:
+                continue
+            of = one.effect.of
+            for k in range(len(found)) if of is None else self.arrangement.of_role(of):
+                before = found[k]
+                found[k] = sign * one.e[0] if before is None else before + sign * one.e[0]
+        return tuple(found)
 
     @property
     def looks_around(self) -> bool:
@@ -138,6 +178,14 @@ class LaneModel:
     def start(self, shown: State, logged: Any, around: Surroundings = UNKNOWN) -> LaneRun:
         """A run from the state the sensors show, with the machinery at rest at the inputs logged there."""
         return LaneRun(self, self.unsensed(shown), logged, around)
+
+    def under_way(self, shown: State, logged: Any, around: Surroundings = UNKNOWN) -> LaneRun:
+        """The same where inputs become known as they come, and so reach the ship after her dead time."""
+        return (
+            LateRun(self, shown, logged, around)
+            if any(d is not None for d in self.dead_time)
+            else self.start(shown, logged, around)
+        )
 
     def moved(self, start: list[Any], end: Any, before: list[Any] | None, h: Any) -> list[Any]:
         """What reaches and leaves each actuator at the end of a step; ``before`` None where it has been at rest."""
@@ -212,21 +260,48 @@ class LaneModel:
         return self.on.states([*rate, *slopes])
 
     def sensed(self, state: State) -> State:
-        """The state as the sensors show it."""
-        for one in self.sensors:
-            state = self.of(one.effect.function)(state, one.e)
-        return state
+        """The state as it is logged, of a motion that has lasted."""
+        return self._settled(state)[-1][0]
 
     def unsensed(self, shown: State) -> State:
-        """The state behind what the sensors show."""
+        """The state behind what is logged of a motion that has lasted."""
+        for last in reversed(self.filters):
+            shown = self.of(last.effect.inverse)(shown, last.e)
         for one in reversed(self.sensors):
             shown = self.of(one.effect.inverse)(shown, one.e)
         return shown
 
+    def shown(self, now: Moment) -> State:
+        """The state as it is logged now."""
+        return now.logs[-1][0] if self.filters else self._through_sensors(State(*now.s[:N_STATES]))
+
+    def _through_sensors(self, state: State) -> State:
+        for one in self.sensors:
+            state = self.of(one.effect.function)(state, one.e)
+        return state
+
+    def _settled(self, state: State) -> list[Filtered]:
+        """What sensors show, then what each filter makes of that, of a motion that has lasted."""
+        found: list[Filtered] = [(self._through_sensors(state), ())]
+        for one in self.filters:
+            found.append(self.of(one.effect.settled)(found[-1][0], one.e))
+        return found
+
+    def _filtered(self, before: tuple[Filtered, ...], state: State, h: Any) -> tuple[Filtered, ...]:
+        """The same a step of h [s] after ``before``."""
+        if not self.filters:
+            return ()
+        found: list[Filtered] = [(self._through_sensors(state), ())]
+        for k, one in enumerate(self.filters):
+            (start, _), (_, held), (end, _) = before[k], before[k + 1], found[-1]
+            found.append(self.of(one.effect.function)(start, end, held, h, one.e))
+        return tuple(found)
+
     def begin(self, state: State, logged: Any, around: Surroundings) -> Moment:
         """The first moment, with the machinery at rest at the inputs logged there."""
         chain = self.moved([], logged, None, 0.0)
-        return Moment(self.on.states([*state, *self.behind(state, chain[-1], around)]), chain, around)
+        logs = tuple(self._settled(state)) if self.filters else ()
+        return Moment(self.on.states([*state, *self.behind(state, chain[-1], around)]), chain, around, logs)
 
     def step(
         self,
@@ -253,7 +328,8 @@ class LaneModel:
             total = each(with_stage, total, share[stage], rate)
             if stage + 1 < len(position):
                 z = each(at_stage, now.s, position[stage + 1], h, rate)
-        return Moment(each(after_step, now.s, h, total), chain, around)
+        s = each(after_step, now.s, h, total)
+        return Moment(s, chain, around, self._filtered(now.logs, State(*s[:N_STATES]), h))
 
 
 class Moment(NamedTuple):
@@ -262,11 +338,17 @@ class Moment(NamedTuple):
     s       (n_states, n_lanes), or (n_states,), the six states, then what lags remember
     chain   what has reached and left each actuator, one after the other
     around  the surroundings
+    logs    what sensors show, then what each filter makes of that and what it remembers; nothing without filters
     """
 
     s: FloatArray
     chain: list[Any]
     around: Surroundings
+    logs: tuple[Filtered, ...] = ()
+
+    def of(self, lanes: Any) -> Moment:
+        """Some of several lanes, or one of them by its number; the surroundings are those of all."""
+        return Moment(self.s[:, lanes], _of(self.chain, lanes), self.around, _of(self.logs, lanes))
 
 
 class LaneRun:
@@ -283,12 +365,57 @@ class LaneRun:
 
     @property
     def shown(self) -> State:
-        """The six states as the sensors show them."""
-        return self.ship.sensed(State(*self.s[:N_STATES]))
+        """The six states as they are logged."""
+        return self.ship.shown(self.now)
+
+    def keep(self, ship: LaneModel, lanes: Any) -> None:
+        """Go on with some of several lanes, whose coefficients ``ship`` has."""
+        self.ship, self.now = ship, self.now.of(lanes)
 
     def step(self, logged: Any, around: Surroundings, h: Any, integrator: Integrator) -> None:
         """March by h [s] to where these inputs are logged and these surroundings measured."""
         self.now = self.ship.step(self.now, logged, around, h, integrator)
+
+
+class LateRun(LaneRun):
+    """Lanes whose inputs become known as they come, and act after the ship's dead time; before the first, as there."""
+
+    def __init__(self, ship: LaneModel, shown: State, logged: Any, around: Surroundings):
+        super().__init__(ship, ship.unsensed(shown), logged, around)
+        self._dead = ship.dead_time
+        self._given = [logged]
+
+    def keep(self, ship: LaneModel, lanes: Any) -> None:
+        """See ``LaneRun``."""
+        super().keep(ship, lanes)
+        self._dead = ship.dead_time
+        self._given = _of(self._given, lanes)
+
+    def step(self, logged: Any, around: Surroundings, h: Any, integrator: Integrator) -> None:
+        """March by h [s], the same at every step of a lane."""
+        self._given.append(logged)
+        acts = (
+            one if dead is None else self._at(k, len(self._given) - 1 - np.asarray(dead) / h)
+            for k, (one, dead) in enumerate(zip(logged, self._dead, strict=True))
+        )
+        super().step(type(logged)(*acts), around, h, integrator)
+
+    def _at(self, k: int, steps: FloatArray) -> FloatArray:
+        """Input k after so many steps (n_lanes,), linear between what was given."""
+        j = np.clip(np.ceil(steps).astype(np.int64), 1, len(self._given) - 1)
+        share = np.clip(steps - (j - 1), 0.0, 1.0)
+        first = int(np.min(j)) - 1
+        near = np.array([np.broadcast_to(given[k], steps.shape) for given in self._given[first:]])
+        lane = np.indices(steps.shape)
+        return np.asarray(between(near[(j - 1 - first, *lane)], near[(j - first, *lane)], share))
+
+
+def _of(values: Any, lanes: Any) -> Any:
+    """Some of the lanes of arrays in tuples and lists; what is one number for all of them stays as it is."""
+    if isinstance(values, (list, tuple)):
+        parts = [_of(one, lanes) for one in values]
+        return type(values)(*parts) if hasattr(values, "_fields") else type(values)(parts)
+    return values[lanes] if np.ndim(values) else values
 
 
 def _between(before: Surroundings, after: Surroundings, f: float) -> Surroundings:

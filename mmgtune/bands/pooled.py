@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
+from ..displayed import Brief
 from .quantiles import widest
 from .scores import covered, crps, squared_error, squared_mahalanobis, standardised_error
 
@@ -25,8 +26,8 @@ FEWEST_WINDOWS = 3
 """Windows that a correlation needs."""
 
 
-@dataclass(frozen=True, eq=False)
-class WindowScore:
+@dataclass(frozen=True, eq=False, repr=False)
+class WindowScore(Brief):
     """Particles on one window.
 
     id, trial, run, manoeuvre  of the window, as in ``TrialScore``

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
 
+from ..displayed import Displayed
 from ..errors import Problem
 from ..metrics import METRICS
 from ..profile.doubts import Doubt
@@ -107,7 +108,7 @@ class Changed:
 
 
 @dataclass(frozen=True)
-class CheckReport:
+class CheckReport(Displayed):
     """The outcome of a check.
 
     profile, trials, baseline  as given: path or name; baseline None where only limits count

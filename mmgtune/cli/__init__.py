@@ -37,7 +37,7 @@ from . import (
     validate,
 )
 from .exitcodes import ExitCode
-from .options import problems_in_flags
+from .options import Command, problems_in_flags
 from .output import say, show
 from .pipes import Piped, ReaderGone, say_no_more
 
@@ -88,20 +88,20 @@ def _options(
     pass
 
 
-app.command("fit", epilog=EPILOG)(fit.command)
-app.command("sweep", epilog=EPILOG)(sweep.command)
-app.command("diagnose", epilog=EPILOG)(diagnose.command)
-app.command("leave-out", epilog=EPILOG)(leave_out.command)
-app.command("posterior", epilog=EPILOG)(posterior.command)
-app.command("check", epilog=EPILOG)(check.command)
-app.command("validate", epilog=EPILOG)(validate.command)
-app.command("compare", epilog=EPILOG)(compare.command)
-app.command("simulate", epilog=EPILOG)(simulate.command)
-app.command("predict", epilog=EPILOG)(predict.command)
-app.command("plan", epilog=EPILOG)(plan.command)
-app.command("report", epilog=EPILOG)(report.command)
-app.command("cite", epilog=EPILOG)(cite.command)
-app.command("doctor", epilog=EPILOG)(doctor.command)
+app.command("fit", cls=Command, epilog=EPILOG)(fit.command)
+app.command("sweep", cls=Command, epilog=EPILOG)(sweep.command)
+app.command("diagnose", cls=Command, epilog=EPILOG)(diagnose.command)
+app.command("leave-out", cls=Command, epilog=EPILOG)(leave_out.command)
+app.command("posterior", cls=Command, epilog=EPILOG)(posterior.command)
+app.command("check", cls=Command, epilog=EPILOG)(check.command)
+app.command("validate", cls=Command, epilog=EPILOG)(validate.command)
+app.command("compare", cls=Command, epilog=EPILOG)(compare.command)
+app.command("simulate", cls=Command, epilog=EPILOG)(simulate.command)
+app.command("predict", cls=Command, epilog=EPILOG)(predict.command)
+app.command("plan", cls=Command, epilog=EPILOG)(plan.command)
+app.command("report", cls=Command, epilog=EPILOG)(report.command)
+app.command("cite", cls=Command, epilog=EPILOG)(cite.command)
+app.command("doctor", cls=Command, epilog=EPILOG)(doctor.command)
 app.add_typer(learn.app, name="learn", epilog=EPILOG)
 app.add_typer(study.app, name="study", epilog=EPILOG)
 app.add_typer(trials.app, name="trials", epilog=EPILOG)

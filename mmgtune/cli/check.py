@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
+from json import dumps
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,6 +13,7 @@ import typer
 from ..errors import MmgtuneError, OptionError, Problem, closest
 from ..options import FORMATS, CheckOptions
 from . import common as c
+from . import completing
 from .exitcodes import ExitCode
 from .options import problems_in_flags, takes
 
@@ -24,8 +26,16 @@ CODES = {"pass": ExitCode.GOOD, "regressed": ExitCode.NO, "not comparable": Exit
 
 @takes(options=CheckOptions)
 def command(
-    profile: Annotated[str, typer.Argument(help="Profile, or model.safetensors: a file or a bundled name.")],
-    trials: Annotated[str, typer.Argument(help="Folder of trial files, one file, or a bundled name.")],
+    profile: Annotated[
+        str,
+        typer.Argument(
+            help="Profile, or model.safetensors: a file or a bundled name.", autocompletion=completing.models
+        ),
+    ],
+    trials: Annotated[
+        str,
+        typer.Argument(help="Folder of trial files, one file, or a bundled name.", autocompletion=completing.trials),
+    ],
     *,
     options: CheckOptions,
     baseline: Annotated[
@@ -45,7 +55,9 @@ def command(
         str | None,
         typer.Option(
             "--format",
-            help=f"{', '.join(FORMATS[:-1])} or {FORMATS[-1]}. Default: text; on GitHub Actions annotations follow it.",
+            help="How the result is told. Default: text; on GitHub Actions annotations follow it.",
+            metavar="|".join(FORMATS),
+            autocompletion=completing.words(FORMATS),
             rich_help_panel=c.OUTPUT,
         ),
     ] = None,
@@ -62,6 +74,12 @@ def command(
             "--summary",
             help='Also add Markdown to the end of this file, such as "$GITHUB_STEP_SUMMARY".',
             rich_help_panel=CI,
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out", "-o", help="Also write check.json and a report to this folder.", rich_help_panel=c.OUTPUT
         ),
     ] = None,
     sensitivity: Annotated[
@@ -100,7 +118,7 @@ def command(
     if sensitivity is not None:
         _sensitivity(profile, trials, baseline, options, sensitivity, json)
         return
-    give = Given(chosen, everything, junit, summary)
+    give = Given(chosen, everything, junit, summary, out)
     names = (profile, trials, None if baseline is None else str(baseline))
     try:
         recorded = None
@@ -144,6 +162,7 @@ class Given:
     everything: bool
     junit: Path | None
     summary: Path | None
+    out: Path | None = None
 
     def __call__(self, report: CheckReport) -> None:
         """Print the report, and write it to the files asked for."""
@@ -182,6 +201,13 @@ class Given:
         from ..checking.renderers import RENDERERS
         from ..files import cannot_write, write_text
 
+        if self.out is not None:
+            from ..provenance import made_by
+            from ..report import render
+
+            document = {**report.to_dict(), **made_by(c.command_line()), "out": str(self.out)}
+            write_text(self.out / "check.json", dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+            render(self.out)
         if self.junit is not None:
             write_text(self.junit, RENDERERS["junit"](report))
         if self.summary is not None:

@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from . import common as c
+from . import completing
 
 METHODS = {
     "calibration within a box around captive-test values, J (fit, sweep)": ("Suyama et al. 2023, arXiv:2312.04224",),
@@ -23,7 +24,7 @@ METHODS = {
 
 def command(
     profile: Annotated[
-        str, typer.Argument(help="A TOML file or a bundled name.", autocompletion=c.complete_profile)
+        str, typer.Argument(help="A TOML file or a bundled name.", autocompletion=completing.profiles)
     ] = "suzaku",
     json: c.Json = False,
 ) -> None:

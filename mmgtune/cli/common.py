@@ -12,15 +12,22 @@ from typing import TYPE_CHECKING, Annotated, Protocol
 import typer
 
 from ..options.choice import INPUT, OUTPUT
+from . import completing
 from .output import print_json as print_json
 from .output import say as say
 from .output import show as show
+from .output import table as table
+from .output import width as width
 
 if TYPE_CHECKING:
     from ..fitting import Plan
     from ..profile import ShipProfile
     from ..profile.doubts import Doubt
     from ..trial import TrialSet, VoyageSet
+
+
+PROFILE, TRIALS = "FILE|NAME", "DIR|FILE|NAME"
+"""Kinds of paths, in the help."""
 
 
 class HasId(Protocol):
@@ -31,18 +38,6 @@ class HasId(Protocol):
         """Of the ship."""
 
 
-def complete_profile(incomplete: str) -> list[str]:
-    from ..resources import profile_names
-
-    return [name for name in profile_names() if name.startswith(incomplete)]
-
-
-def complete_trials(incomplete: str) -> list[str]:
-    from ..resources import trial_set_names
-
-    return [name for name in trial_set_names() if name.startswith(incomplete)]
-
-
 Profile = Annotated[
     str,
     typer.Option(
@@ -50,7 +45,8 @@ Profile = Annotated[
         "-p",
         help="Ship profile: a TOML file or a bundled name.",
         rich_help_panel=INPUT,
-        autocompletion=complete_profile,
+        autocompletion=completing.profiles,
+        metavar=PROFILE,
     ),
 ]
 Trials = Annotated[
@@ -60,7 +56,8 @@ Trials = Annotated[
         "-t",
         help="Folder of trial files, one file, or a bundled name.",
         rich_help_panel=INPUT,
-        autocompletion=complete_trials,
+        autocompletion=completing.trials,
+        metavar=TRIALS,
     ),
 ]
 Json = Annotated[

@@ -12,6 +12,7 @@ import typer
 from ..errors import OptionError, Problem
 from ..options import CompareModelsOptions, Options, again
 from . import common as c
+from . import completing
 from .options import RunOptions, takes
 
 WIDTH = 25
@@ -38,6 +39,7 @@ def command(
         typer.Argument(
             metavar="MODEL... TRIALS",
             help="Profiles and model files, then the trials; ratios to the first.",
+            autocompletion=completing.models_and_trials,
         ),
     ],
     *,

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ..errors import OptionError, Problem, closest
 from ..options import DiagnoseOptions
+from ..units import in_time
 from . import common as c
+from . import completing
 from .exitcodes import ExitCode
 from .options import RunOptions, split, takes
 from .progress import Progress
@@ -17,6 +20,34 @@ if TYPE_CHECKING:
     from ..diagnose import Diagnosis
     from ..diagnose.by_run import ByRun
     from ..diagnose.legs import Difference
+
+
+class Left:
+    """About how long a diagnosis still takes.
+
+    seconds  what was reckoned before it began, from and to [s]
+    most     causes that may be looked for
+    """
+
+    def __init__(self, seconds: tuple[float, float], most: int):
+        self.seconds, self.most = seconds, most
+        self.began = time.monotonic()
+        self.looks: list[tuple[str, float]] = []
+
+    def words(self, phase: str) -> str:
+        """While it looks: before the first look is over what was reckoned, then what as many looks would take."""
+        now = time.monotonic()
+        if not phase.startswith("looking for"):
+            return ""
+        if not self.looks or self.looks[-1][0] != phase:
+            self.looks.append((phase, now))
+        done = len(self.looks) - 1
+        if not done:
+            low, high = (seconds - (now - self.began) for seconds in self.seconds)
+            return f"about {in_time(low)} to {in_time(high)} left" if low > 0.0 else f"up to {in_time(high)} left"
+        each = (self.looks[-1][1] - self.looks[0][1]) / done
+        rest = each * max(1, self.most - done) - (now - self.looks[-1][1])
+        return f"up to {in_time(rest)} left"
 
 
 @takes(options=DiagnoseOptions, run=RunOptions)
@@ -31,6 +62,7 @@ def command(
         typer.Option(
             "--fail-on",
             help="Exit 1 on these verdicts: none, found, not-separable, unexplained, interrupted.",
+            autocompletion=completing.words(("none", "found", "not-separable", "unexplained", "interrupted")),
             rich_help_panel=c.OUTPUT,
         ),
     ] = None,
@@ -69,7 +101,8 @@ def command(
     if run.dry_run:
         c.print_plan(plan, folder)
         return
-    with claimed(folder, force=run.force, resume=run.resume), Progress(run.quiet, folder) as progress:
+    left = Left(plan.seconds, options.most).words
+    with claimed(folder, force=run.force, resume=run.resume), Progress(run.quiet, folder, left=left) as progress:
         result = diagnose(
             ship, data, options, hooks=progress.hooks(), folder=folder, resume=run.resume, command=c.command_line()
         )
@@ -114,13 +147,18 @@ def summary(result: Diagnosis, folder: str, report: bool) -> str:
     """The result as a person wants to read it in a terminal."""
     from ..profile.doubts import in_words
 
-    lines = [f"{'hypothesis':<44}{'score':>12}{'gain':>12}{'by chance':>12}{'J test':>10}", ""]
+    rows = []
     for row in result.candidates[:12]:
-        label = row.label
         J = "" if row.J_test is None else f"{row.J_test:.4g}"
-        lines.append(f"{label:<44}{row.score:>12.4g}{row.gain:>12.4g}{row.p_value:>12.2g}{J:>10}")
+        rows.append((row.label, f"{row.score:.4g}", f"{row.gain:.4g}", f"{row.p_value:.2g}", J))
+    head, *rest = c.table(("hypothesis", "score", "gain", "by chance", "J test"), rows, spare=(1,))
+    lines = [head, "", *rest]
     before, after = result.gain.J
     lines += ["", f"verdict: {result.verdict}", result.sentence()]
+    if result.record:
+        lines.append(result.record.sentence)
+    for trace in result.traces:
+        lines.append(f"Trace, nothing that would be noticed, and in no profile: {trace.cause.sentence}.")
     if before is not None and after is not None and result.causes and not result.interrupted:
         low, high = result.gain.share_removed[1:]
         lines.append(
@@ -129,10 +167,14 @@ def summary(result: Diagnosis, folder: str, report: bool) -> str:
         )
     for cause in result.causes:
         lines += ["", *_of_runs(cause.runs)] if cause.runs and not result.interrupted else []
+    if result.whereabouts:
+        lines += ["", *result.whereabouts.sentences()]
     for one in result.differing:
         lines += ["", one.sentence, *_by_voyage(one)]
     if result.suggestion:
         lines.append(f"A trial that would tell: {result.suggestion.manoeuvre}.")
+    if result.coverage and result.coverage.to_dict():
+        lines += ["", result.coverage.sentence, *(f"Note: {words}" for words in result.warnings)]
     doubts = in_words(result.profile.doubts())
     lines += ["", *(f"Note: {words}." for words in doubts)] if doubts else []
     lines += ["", f"{'Stopped after' if result.interrupted else 'Finished in'} {result.wall_s:.1f} s."]

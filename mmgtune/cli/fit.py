@@ -90,11 +90,25 @@ def command(
         if "bands" in document:
             c.show(bands_text(document["bands"], folder))
         elif result.compared and not result.interrupted:
+            for line in next_steps(result, profile, trials):
+                c.show(line)
             tuned = quote(str(folder / "profile.toml"))
             c.show(f"Bands: mmgtune posterior -p {tuned} -t {quote(trials)} --out {quote(str(folder))}")
     progress.leave()
     if strict and not result.converged:
         raise typer.Exit(ExitCode.NO)
+
+
+def next_steps(result: FitResult, profile: str, trials: str) -> list[str]:
+    """What the outcome asks for, as commands."""
+    given = f"-p {quote(profile)} -t {quote(trials)}"
+    tested = any(one.role == "test" for one in result.compared)
+    runs = {one.trial.run for one in result.compared if one.role == "tune"}
+    if result.misses:
+        return [f"It misses trials it was not tuned to; what is wrong: mmgtune diagnose {given}"]
+    if not tested and len(runs) > 1:
+        return [f"How it does on trials it was not tuned to: mmgtune leave-out {given}"]
+    return []
 
 
 def bands_text(bands: Mapping[str, Any], folder: Path) -> str:
@@ -108,29 +122,43 @@ def bands_text(bands: Mapping[str, Any], folder: Path) -> str:
     return "\n".join([*lines, "", *said, f"Particles: {folder}/particles.parquet"])
 
 
-def summary(result: FitResult, folder: str, report: bool) -> str:
-    """The result as a person wants to read it in a terminal."""
-    lines = [f"{'coefficient':<24}{'before':>11}{'tuned':>11}{'std.err':>10}  place in box", ""]
+NOTES = {True: ("at {}er bound", "not determined"), False: ("{}er", "not det.")}
+"""What is to be known of a coefficient, in many words or in few."""
+
+
+def coefficient_table(result: FitResult) -> list[str]:
+    """Lines of a table: each coefficient before and after, its standard error and its place in the box."""
+    roomy = c.width() >= 90
+    bound, unknown = NOTES[roomy]
+    rows = []
     for row in result.coefficients():
-        error = "" if row["stderr"] is None else f"{row['stderr']:.2g}"
-        mark = (
-            f"at {row['at_bound']}er bound" if row["at_bound"] == "low" else "at upper bound" if row["at_bound"] else ""
-        )
-        note = ", ".join(word for word in (mark, "" if row["determined"] else "not determined") if word)
+        side = {"low": "low", "high": "upp"}.get(row["at_bound"], "")
+        notes = [bound.format(side)] if side else []
+        notes += [] if row["determined"] else [unknown]
         place = "".join("*" if round(row["position"] * 20) == k else "-" for k in range(21))
         before, tuned = ("inf" if row[key] is None else f"{row[key]:.4g}" for key in ("pre_determined", "value"))
-        lines.append(f"{row['name']:<24}{before:>11}{tuned:>11}{error:>10}  {place} {note}")
+        error = "" if row["stderr"] is None else f"{row['stderr']:.2g}"
+        rows.append((row["name"], before, tuned, error, place, ", ".join(notes)))
+    head = ("coefficient", "before", "tuned", "std.err", "place in box", "")
+    first, *rest = c.table(head, rows, words=(0, 4, 5), spare=(4, 1))
+    return [first, "", *rest]
+
+
+def summary(result: FitResult, folder: str, report: bool) -> str:
+    """The result as a person wants to read it in a terminal."""
+    lines = coefficient_table(result)
     if result.compared:
-        width = max([22, *(len(one.trial.id) for one in result.compared)]) + 2
-        lines += ["", f"{'trial':<{width}}{'role':<7}{'J before':>11}{'J after':>11}   {result.method}", ""]
-        for one in result.compared:
-            lines.append(f"{one.trial.id:<{width}}{one.role:<7}{one.J['before']:>11.4g}{one.J['after']:>11.4g}")
+        rows = [(one.trial.id, one.role, f"{one.J['before']:.4g}", f"{one.J['after']:.4g}") for one in result.compared]
+        head, *rest = c.table(("trial", "role", "J before", "J after"), rows, words=(0, 1))
+        lines += ["", f"{head}   {result.method}", "", *rest]
     if result.stated:
         lines += ["", *stated_table([one.to_dict(result.profile.L_pp) for one in result.stated])]
     if result.beside:
         lines += ["", *result.beside.words()]
     lines += ["", *result.certificate.sentences[:2], *map(in_flags, result.identifiability.sentences[:2])]
     lines += [f"Note: {in_flags(warning)}" for warning in result.warnings()]
+    if result.compared and result.coverage.to_dict():
+        lines += ["", result.coverage.sentence]
     lines += ["", result.verdict(), f"{result.evaluations} evaluations in {result.wall_s:.1f} s."]
     lines.append(f"Report: {folder}/report.html" if report else f"Results: {folder}")
     return "\n".join(lines)

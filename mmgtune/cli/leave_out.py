@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
+
+import typer
 
 from ..options import LeaveOutOptions, in_flags
 from . import common as c
@@ -21,6 +23,11 @@ def command(
     *,
     options: LeaveOutOptions,
     run: RunOptions,
+    bands: Annotated[
+        bool,
+        typer.Option("--bands", help="Also bands from the other runs, and what they hold.", rich_help_panel=c.OUTPUT),
+    ] = False,
+    no_report: c.NoReport = False,
 ) -> None:
     """Fit without each tune trial in turn and score the trials left out: what a tuning is worth on unseen runs.
 
@@ -31,8 +38,12 @@ def command(
       mmgtune leave-out --ar 0.5
 
       mmgtune leave-out -p my_ship.toml -t my_trials/ --restart 100 --objective standardised --folds 5
+
+      mmgtune leave-out --folds 5 --bands
     """
     from ..fitting import claimed, leave_out, plan_leave_out, refuse_taken, write_left_out
+    from ..posterior import leave_out_with_bands
+    from ..report import render
 
     ship, data = c.load(profile, trials)
     folder = run.out or c.default_out(ship)
@@ -43,44 +54,57 @@ def command(
         c.print_plan(plan, folder)
         return
     with claimed(folder, force=run.force, resume=run.resume), Progress(run.quiet, folder) as progress:
-        result = leave_out(
+        work = leave_out_with_bands if bands else leave_out
+        result = work(
             ship, data, options, hooks=progress.hooks(), folder=folder, resume=run.resume, command=c.command_line()
         )
         document = write_left_out(result, folder)
         progress.saved(result.interrupted)
+        if not no_report:
+            render(folder)
     if run.json:
         c.print_json(document)
     else:
-        c.show(summary(result, str(folder)))
+        c.show(summary(result, str(folder), report=not no_report))
     progress.leave()
 
 
-def summary(result: LeftOut, folder: str) -> str:
+def summary(result: LeftOut, folder: str, report: bool = False) -> str:
     """The result as a person wants to read it in a terminal."""
     from .repeated import table
 
-    head = f"{'left out':<20}{'runs':>6}{'L_MSE before':>14}{'after':>10}{'J before':>12}{'after':>10}"
-    lines = [f"{head}   removed of L_MSE"] if result.before else []
+    rows, drawn = [], False
     for row in result.rows():
         interval = row["share_removed_ci95"]
         removed = "-" if row["share_removed"] is None else f"{100 * row['share_removed']:.0f} %"
-        if interval:
-            removed += f" ({100 * interval[0]:.0f} to {100 * interval[1]:.0f} %, runs drawn anew)"
+        drawn = drawn or bool(interval)
+        spread = f"{100 * interval[0]:.0f} to {100 * interval[1]:.0f} %" if interval else ""
         numbers = [row[key] for key in ("L_MSE_before", "L_MSE_after", "J_before", "J_after")]
-        shown = [
-            f"{'diverged':>{w}}" if v is None else f"{v:>{w}.4g}"
-            for v, w in zip(numbers, (14, 10, 12, 10), strict=True)
-        ]
-        lines.append(f"{row['manoeuvre']:<20}{row['runs']:>6}{''.join(shown)}   {removed}")
+        shown = ["diverged" if value is None else f"{value:.4g}" for value in numbers]
+        rows.append((row["manoeuvre"], str(row["runs"]), *shown, removed, spread))
+    head = ("left out", "runs", "L_MSE before", "after", "J before", "after", "removed", "95 %")
+    lines = c.table(head, rows, spare=(4, 5)) if rows else []
+    if rows:
+        more = "; 95 %: with runs drawn anew" if drawn else ""
+        lines.append(f"removed: share of L_MSE{more}")
     if result.stated:
-        rows = [one.to_dict(result.L_pp) for one in result.stated]
+        told = [one.to_dict(result.L_pp) for one in result.stated]
         off = result.stated_rms()
-        lines += ["", *stated_table(rows, ("before", "left_out")), ""]
+        lines += ["", *stated_table(told, ("before", "left_out")), ""]
         lines.append(f"off by {off['before']:.2f} tolerances before, {off['left_out']:.2f} left out, root mean square")
     if result.options.manoeuvres and result.parts:
         lines.append(table({"before": result.repeated_before, "left out": result.repeated_after}))
+    if result.bands and result.bands.by_kind:
+        lines += ["", f"{'bands from the other runs':<26}{'windows':>8}{'90 % holds':>12}{'CRPS':>8}{'width':>8}"]
+        for kind, of in result.bands.by_kind.items():
+            share = of.covers(0.9)
+            held = "-" if share is None else f"{100.0 * share:.0f} %"
+            crps, width = ("-" if value is None else f"{value:.3g}" for value in (of.CRPS, of.sharpness))
+            lines.append(f"{kind or 'all':<26}{of.windows:>8}{held:>12}{crps:>8}{width:>8}")
+        lines.append("CRPS and width of the 90 % band: mean over the states, in their spread over the trials.")
     lines += [f"Note: {in_flags(warning)}" for warning in result.warnings]
     if result.interrupted:
         lines.append(f"Stopped after {len(result.parts)} of {result.n_parts} parts; scores are of those alone.")
-    lines.append(f"{len(result.parts)} fits in {result.wall_s:.1f} s, simulated by {result.method}. Results: {folder}")
+    lines.append(f"{len(result.parts)} fits in {result.wall_s:.1f} s, simulated by {result.method}.")
+    lines.append(f"Report: {folder}/report.html" if report else f"Results: {folder}")
     return "\n".join(lines)

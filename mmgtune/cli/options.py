@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import wraps
 from pathlib import Path
 from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 import typer
+from typer.core import TyperCommand
 from typer.models import OptionInfo
 
 from ..errors import MmgtuneError, OptionError, Problem
 from ..options import FLAGS, Options, again, choice, flags_of, in_flags
 from ..options.choice import OUTPUT
+from . import completing
 
 
 @dataclass(frozen=True)
@@ -56,6 +58,35 @@ def _of_resuming(out: Path | None, force: bool, resume: bool) -> list[Problem]:
         what = "resume=True goes on with what is there, force=True replaces it"
         found.append(Problem(what, "resume", fix="leave one out"))
     return found
+
+
+METAVARS: dict[tuple[Any, ...], str] = {
+    (str, ...): "A,B,...",
+    (float, ...): "N,N,...",
+    (float, float): "FIRST:LAST",
+}
+"""What stands for tuples in the help, by what they are of."""
+
+NAMES: dict[str, Callable[[], Sequence[str]]] = {}
+"""The words that options may be, by field, where they are only known when asked for."""
+
+
+class Command(TyperCommand):
+    """A command whose help says which words its options may be, which are looked up when it is shown."""
+
+    def format_help(self, ctx: Any, formatter: Any) -> None:
+        """Write the help."""
+        for parameter in self.params:
+            parameter.help = help_of(parameter)  # type: ignore[attr-defined]
+        super().format_help(ctx, formatter)
+
+
+def help_of(parameter: Any) -> str:
+    """The help of an option of the command line, with the words that it may be."""
+    words = str(getattr(parameter, "help", None) or "")
+    names = NAMES.get(parameter.name)
+    missing = names is not None and not all(name in words for name in names())
+    return f"{words} Known: {', '.join(names())}." if names is not None and missing else words
 
 
 def takes(**groups: type[Options]) -> Callable[[Callable[..., None]], Callable[..., None]]:
@@ -126,7 +157,15 @@ def parameters_of(of: type[Options]) -> list[inspect.Parameter]:
         kind, default = _typed(hints[name], defaults[name])
         off = f"/--no-{known.flag.lstrip('-')}" if defaults[name] is True else ""  # what is on can be turned off
         decls = [known.flag + off, *([known.short] if known.short else [])]
-        option = typer.Option(*decls, help=known.help, rich_help_panel=known.panel)
+        if known.names is not None:
+            NAMES[name] = known.names
+        option = typer.Option(
+            *decls,
+            help=known.help,
+            rich_help_panel=known.panel,
+            metavar="|".join(known.values) or METAVARS.get(_parts(hints[name]) or ()),
+            autocompletion=completing.of_choice(name, known),
+        )
         found.append(
             inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=Annotated[kind, option])
         )

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import sys
+from collections.abc import Sequence
 from typing import Any
 
-_STEERING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff\ud800-\udfff]")
-"""Control characters but for tab and line feed, marks that turn the direction of writing, half characters."""
+from .. import columns
+from ..displayed import inert
+
+WIDE = 1000
+"""Letters in a line where there is no terminal: as many as there are."""
 
 _AZURE = re.compile(r"##(?=(?:vso|teamcity)?\[)")
 _GITHUB = re.compile(r"(?m)^(\s*):(?=:)")
@@ -20,7 +25,7 @@ def harmless(text: str, commands: bool = False) -> str:
 
     commands  whether lines that GitHub takes for commands are meant as such
     """
-    text = _STEERING.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
+    text = inert(text)
     text = _AZURE.sub(r"#\\u0023", text)
     return text if commands else _GITHUB.sub(r"\1\\u003a", text)
 
@@ -33,6 +38,16 @@ def show(text: str = "", end: str = "\n", commands: bool = False) -> None:
 def say(text: str) -> None:
     """A line for people, on stderr: stdout is data."""
     print(harmless(text), file=sys.stderr, flush=True)
+
+
+def width() -> int:
+    """Letters in a line of the terminal; more where stdout goes elsewhere."""
+    return shutil.get_terminal_size((WIDE, 24)).columns
+
+
+def table(head: Sequence[str], rows: Sequence[Sequence[str]], *, less: int = 0, **how: Any) -> list[str]:
+    """Lines of a table that fits the terminal, less some letters; ``how`` as for ``columns.table``."""
+    return columns.table(head, rows, width=width() - less, **how)
 
 
 def print_json(document: dict[str, Any]) -> None:

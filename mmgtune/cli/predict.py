@@ -10,6 +10,7 @@ import typer
 from ..errors import OptionError, Problem
 from ..options import PredictOptions
 from . import common as c
+from . import completing
 from .compare import FolderOptions
 from .options import takes
 
@@ -19,7 +20,7 @@ def command(
     model: Annotated[
         str,
         typer.Argument(
-            help="Profile, network, hybrid or ensemble: a file or a bundled name.", autocompletion=c.complete_profile
+            help="Profile, network, hybrid or ensemble: a file or a bundled name.", autocompletion=completing.models
         ),
     ],
     orders: Annotated[
@@ -28,7 +29,12 @@ def command(
     trials: Annotated[
         str | None,
         typer.Option(
-            "--trials", "-t", help="Predict these trials with their own inputs instead.", rich_help_panel=c.INPUT
+            "--trials",
+            "-t",
+            help="Predict these trials with their own inputs instead.",
+            rich_help_panel=c.INPUT,
+            metavar=c.TRIALS,
+            autocompletion=completing.trials,
         ),
     ] = None,
     *,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,6 +12,7 @@ import typer
 from ..errors import OptionError, Problem
 from ..options import EstimateOptions
 from . import common as c
+from . import completing
 from .options import takes
 
 if TYPE_CHECKING:
@@ -19,7 +21,7 @@ if TYPE_CHECKING:
 
 app = typer.Typer(help="Look at ship profiles, make one from main dimensions, compare two.", no_args_is_help=True)
 
-Name = Annotated[str, typer.Argument(help="A TOML file or a bundled name.", autocompletion=c.complete_profile)]
+Name = Annotated[str, typer.Argument(help="A TOML file or a bundled name.", autocompletion=completing.profiles)]
 
 
 @app.command("list")
@@ -67,11 +69,19 @@ def show(profile: Name, json: c.Json = False) -> None:
         c.print_json({"schema": 1, **told, "coefficients": finite, "doubts": [one.to_dict() for one in ship.doubts()]})
         return
     c.show("\n".join((ship.name, ship.source, *c.terms(ship), "")))
+    numbers, texts = [], []
     for row in rows:
         value = row["value"]
-        text = ", ".join(f"{v:.4g}" for v in value) if isinstance(value, list) else f"{value:g}"
+        listed = ", ".join(f"{v:.4g}" for v in value) if isinstance(value, list) else ""
+        shown = f"{len(value)} numbers" if isinstance(value, list) else f"{value:g}"
+        numbers.append((str(row["name"]), shown, str(row["unit"])))
         mark = "  ASSUMPTION" + (f": {row['note']}" if row["note"] else "") if row["assumption"] else ""
-        c.show(f"{row['name']:<24}{text:>12} {row['unit']:<8} {row['label']}{mark}")
+        texts.append(f"{row['label']}{f': {listed}' if listed else ''}{mark}")
+    lines = c.table(("coefficient", "value", "unit"), numbers, words=(0, 2))
+    room = max(map(len, lines)) + 2
+    for line, text in zip(lines, ("what it is", *texts), strict=True):
+        wrapped = textwrap.wrap(text, max(20, c.width() - room)) or [""]
+        c.show(f"\n{'':<{room}}".join([f"{line:<{room}}{wrapped[0]}".rstrip(), *wrapped[1:]]))
     c.say_doubts(ship.doubts())
 
 
@@ -85,6 +95,30 @@ def validate(profile: Name) -> None:
     c.say_doubts(ship.doubts())
 
 
+@app.command("copy")
+def copy(
+    profile: Name,
+    file: Annotated[Path, typer.Argument(help="Where to write it: a TOML file, or a folder.")],
+    force: Annotated[bool, typer.Option("--force", help="Replace the file.", rich_help_panel=c.OUTPUT)] = False,
+) -> None:
+    """Copy a profile to a file of your own, to be changed there.
+
+    Example:
+
+      mmgtune profile copy suzaku my_ship.toml
+    """
+    from ..files import refuse_existing, write_text
+    from ..profile import find_profile, load_profile
+
+    source = find_profile(profile)
+    load_profile(source)  # what could not be read need not be copied
+    target = file / source.name if file.is_dir() else file
+    if not force:
+        refuse_existing([target])
+    write_text(target, source.read_text(encoding="utf-8"), overwrite=force)
+    c.show(f"wrote {target}")
+
+
 @app.command("new")
 @takes(options=EstimateOptions)
 def new(
@@ -93,7 +127,8 @@ def new(
         str,
         typer.Option(
             "--from",
-            metavar="FILE",
+            metavar=c.PROFILE,
+            autocompletion=completing.particulars,
             help="Particulars: a TOML file or a bundled name. Default: they are asked for.",
             rich_help_panel=c.INPUT,
         ),
@@ -229,17 +264,16 @@ def _asked() -> Particulars:
 
 def _side_by_side(found: Comparison) -> str:
     """Coefficients and indices of two profiles in columns."""
-    names = [name[-22:] for name in found.profiles]
-    lines = [f"{'':<40}{names[0]:>24}{names[1]:>24}"]
 
     def number(value: float | None) -> str:
-        return f"{'-':>24}" if value is None else f"{value:>24.4g}"
+        return "-" if value is None else f"{value:.4g}"
 
+    rows = []
     for row in found.data["coefficients"]:
         if row["a"] != row["b"]:
             unit = "" if row["unit"] in ("-", "prime") else f" [{row['unit']}]"
-            lines.append(f"{row['name'] + unit:<40}{number(row['a'])}{number(row['b'])}")
-    lines.append("")
+            rows.append((row["name"] + unit, number(row["a"]), number(row["b"])))
+    rows.append(("", "", ""))
     for row in found.data["manoeuvres"]["indices"]:
-        lines.append(f"{row['manoeuvre'] + ' ' + row['index']:<40}{number(row['a'])}{number(row['b'])}")
-    return "\n".join(lines)
+        rows.append((row["manoeuvre"] + " " + row["index"], number(row["a"]), number(row["b"])))
+    return "\n".join(c.table(("", *(name[-22:] for name in found.profiles)), rows))

@@ -6,6 +6,7 @@ import os
 import signal
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
@@ -28,9 +29,18 @@ class Progress:
 
     folder     where the results go, for messages
     kept       what is saved of a command that is stopped
+    left       how long the phase of that name and all after it may take, in words; asked again and again
     """
 
-    def __init__(self, quiet: bool, folder: Path, *, kept: str = "the best so far"):
+    def __init__(
+        self,
+        quiet: bool,
+        folder: Path,
+        *,
+        kept: str = "the best so far",
+        left: Callable[[str], str] = lambda phase: "",
+    ):
+        self._left = left
         self.quiet = quiet
         self.folder = folder
         self.kept = kept
@@ -50,7 +60,7 @@ class Progress:
         """What to hand to the fit."""
         from ..fitting import Hooks
 
-        return Hooks(on_phase=self._on_phase, on_generation=self._on_generation, stop=lambda: self.stopped)
+        return Hooks(on_phase=self._on_phase, on_generation=self._on_generation, stop=self._asked)
 
     def __enter__(self) -> Progress:
         interrupts.handle(self._interrupt)
@@ -96,10 +106,17 @@ class Progress:
         self._signal = number
         interrupts.tell(f"finishing this step, then saving {self.kept}; press Ctrl-C again to stop at once")
 
+    def _asked(self) -> bool:
+        """Whether to stop; who asks that is at work, so what is left of it is told anew now and then."""
+        if self._phase and (left := self._left(self._phase)):
+            self._show(f"{self._phase}, {left}")
+        return self.stopped
+
     def _on_phase(self, words: str) -> None:
         self._phase = words
         self._began = time.monotonic()
-        self._show(words, line=True)
+        left = self._left(words)
+        self._show(f"{words}, {left}" if left else words, line=True)
 
     def on_share(self, done: int, total: int, words: str) -> None:
         """A share of the work is done: tell it, with the time that is left."""

@@ -10,6 +10,7 @@ import typer
 from ..errors import OptionError, Problem
 from ..options import PredictOptions, SimulateOptions
 from . import common as c
+from . import completing
 from .banded import bands_on
 from .options import takes
 from .predict import banded
@@ -24,7 +25,12 @@ def command(
     trials: Annotated[
         str | None,
         typer.Option(
-            "--trials", "-t", help="Simulate these trials with their own inputs instead.", rich_help_panel=c.INPUT
+            "--trials",
+            "-t",
+            help="Simulate these trials with their own inputs instead.",
+            rich_help_panel=c.INPUT,
+            metavar=c.TRIALS,
+            autocompletion=completing.trials,
         ),
     ] = None,
     *,
@@ -32,7 +38,7 @@ def command(
     out: Annotated[
         Path | None,
         typer.Option(
-            "--out", "-o", help="Folder to write the simulated runs to, as trial files.", rich_help_panel=c.OUTPUT
+            "--out", "-o", help="Folder for the simulated runs, as trial files, and a report.", rich_help_panel=c.OUTPUT
         ),
     ] = None,
     forces: Annotated[
@@ -47,6 +53,7 @@ def command(
         bool, typer.Option("--force", help="Replace the files in --out.", rich_help_panel=c.OUTPUT)
     ] = False,
     json: c.Json = False,
+    no_report: c.NoReport = False,
 ) -> None:
     """Simulate turning circles, zigzags or whole trials; print their indices and the IMO criteria.
 
@@ -60,6 +67,8 @@ def command(
     """
     from ..files import refuse_existing
     from ..predictor import Uncertain
+    from ..recording import write_simulation
+    from ..report import render
     from ..simulating import files_of, simulate
 
     if forces and out is None:
@@ -72,6 +81,9 @@ def command(
     if trials is None and isinstance(result.predictor, Uncertain):
         notes += _add_bands(rows, result.predictor, options)
     files = result.write(out, with_forces=forces, overwrite=force) if out is not None else []
+    if out is not None and not no_report:
+        write_simulation(result, rows, out, c.command_line())
+        files.append(render(out)[0])
     if json:
         c.print_json({**result.to_dict(), "runs": rows, "notes": notes, "files": [str(f) for f in files]})
         return

@@ -9,6 +9,7 @@ import typer
 
 from ..options import HeadingOptions
 from . import common as c
+from . import completing
 from .compare import FolderOptions
 from .options import takes
 
@@ -24,9 +25,16 @@ def _several() -> None:
 @takes(options=HeadingOptions, run=FolderOptions)
 def heading_keeping(
     models: Annotated[
-        list[str], typer.Argument(metavar="MODEL...", help="Profiles and model.safetensors files: the simulators.")
+        list[str],
+        typer.Argument(
+            metavar="MODEL...",
+            help="Profiles and model.safetensors files: the simulators.",
+            autocompletion=completing.models,
+        ),
     ],
-    truth: Annotated[str, typer.Option("--truth", "-p", help="Profile of the true system.")],
+    truth: Annotated[
+        str, typer.Option("--truth", "-p", help="Profile of the true system.", autocompletion=completing.profiles)
+    ],
     *,
     options: HeadingOptions,
     run: FolderOptions,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ..options import SweepOptions, in_flags
@@ -58,23 +59,36 @@ def command(
 def summary(result: SweepResult, folder: str, report: bool) -> str:
     """The paper's Table 7 for this data, J on both sets, and the recommendation."""
     names = list(result.runs[0].theta)
-    lines = [f"{'a_r':<24}" + "".join(f"{a_r:>11g}" for a_r in result.widths), ""]
-    for name in names:
-        cells = []
-        for run in result.runs:
-            mark = "*" if name in run.at_bound else " "
-            cells.append(f"{run.theta[name]:>10.4g}{mark}")
-        lines.append(f"{name:<24}" + "".join(cells))
-    lines.append("")
+    digits = 4 if c.width() >= 30 + 11 * len(result.runs) else 3
+
+    def line(label: str, values: Sequence[float], marks: Sequence[str] = ()) -> tuple[str, ...]:
+        marked = marks or [""] * len(values)
+        return (label, *(f"{value:.{digits}g}{mark:1}" for value, mark in zip(values, marked, strict=True)))
+
+    rows = [
+        line(
+            name, [run.theta[name] for run in result.runs], ["*" if name in run.at_bound else "" for run in result.runs]
+        )
+        for name in names
+    ]
+    rows.append(("",) * (1 + len(result.runs)))
+    before = {}
     for label, role in (("J tune", "tune"), ("J test", "test")):
-        before = result.runs[0].J_of(role, "before")
-        if before is not None:
-            cells = [f"{run.J_of(role, 'after') or float('nan'):>11.4g}" for run in result.runs]
-            lines.append(f"{label:<24}" + "".join(cells) + f"   before {before:.4g}, {result.runs[0].method}")
+        first = result.runs[0].J_of(role, "before")
+        if first is not None:
+            before[label] = f"{label[2:]} {first:.4g}"
+            rows.append(line(label, [run.J_of(role, "after") or float("nan") for run in result.runs]))
     if result.leave_one_out is not None:
-        lines.append(f"{'J left out':<24}" + "".join(f"{J:>11.4g}" for J in result.leave_one_out))
+        rows.append(line("J left out", result.leave_one_out))
+    head, *rest = c.table(line("a_r", result.widths), rows)
+    lines = [head, "", *rest]
+    if before:
+        lines.append(f"J before, {result.runs[0].method}: {', '.join(before.values())}")
     lines += ["", "* on a bound", ""]
     lines += [f"Note: {in_flags(warning)}" for warning in result.warnings()]
     lines += [result.recommended()["sentence"], result.overfitting()["sentence"]]
-    lines.append(f"{result.wall_s:.1f} s. " + (f"Report: {folder}/report.html" if report else f"Results: {folder}"))
+    lines.append(
+        f"{'Interrupted after' if result.interrupted else 'Finished in'} {result.wall_s:.1f} s. "
+        + (f"Report: {folder}/report.html" if report else f"Results: {folder}")
+    )
     return "\n".join(lines)

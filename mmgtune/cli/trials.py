@@ -10,13 +10,14 @@ import typer
 from ..errors import OptionError, Problem
 from ..options import MakeOptions
 from . import common as c
+from . import completing
 from .exitcodes import ExitCode
 from .options import takes
 
 app = typer.Typer(help="Make trial files from logs or from a model, check and inspect them.", no_args_is_help=True)
 
 Name = Annotated[
-    str, typer.Argument(help="Folder of trial files, one file, or a bundled name.", autocompletion=c.complete_trials)
+    str, typer.Argument(help="Folder of trial files, one file, or a bundled name.", autocompletion=completing.trials)
 ]
 
 
@@ -67,7 +68,7 @@ def inspect(
             "--profile",
             "-p",
             help="Ship profile, for her length. Default: the bundled one the trials name.",
-            autocompletion=c.complete_profile,
+            autocompletion=completing.profiles,
         ),
     ] = None,
     json: c.Json = False,
@@ -121,22 +122,61 @@ def inspect(
             c.show(f"  {row['note']}")
 
 
-def _complete_map(incomplete: str) -> list[str]:
-    from ..resources import import_map_names
+@app.command("map")
+def map_(
+    logs: Annotated[
+        list[str],
+        typer.Argument(help="Logs of one kind: CSV or other text, .xlsx, .mat, Parquet, NMEA 0183.", metavar="LOG..."),
+    ],
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", "-o", help="File for the map. Default: print it.", rich_help_panel=c.OUTPUT),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace the map there.", rich_help_panel=c.OUTPUT)] = False,
+    json: c.Json = False,
+) -> None:
+    """Find out what the columns of logs are, and write the map that imports them.
 
-    return [name for name in import_map_names() if name.startswith(incomplete)]
+    Columns are told by how they behave and by their names. What does not show is a question in the map, marked with a
+    question mark, and the import asks for it.
+
+    Example:
+
+      mmgtune trials map logs/*.csv -o map.toml
+    """
+    from ..files import refuse_existing, write_text
+    from ..importing import propose_map
+
+    if out is not None and not force:
+        refuse_existing([out])
+    proposal = propose_map(logs)
+    if out is not None:
+        write_text(out, proposal.text, force)
+    if json:
+        c.print_json(proposal.to_dict())
+        return
+    # Without a file the map is what is printed, so that it can be sent into one.
+    tell = c.show if out is not None else c.say
+    for line in proposal.lines(str(out) if out is not None else ""):
+        tell(line)
+    if out is None:
+        c.show(proposal.text, end="")
 
 
 @app.command("import")
 def import_(
-    logs: Annotated[list[str], typer.Argument(help="Logs: CSV or other text, Parquet, NMEA 0183.", metavar="LOG...")],
+    logs: Annotated[
+        list[str], typer.Argument(help="Logs: CSV or other text, .xlsx, .mat, Parquet, NMEA 0183.", metavar="LOG...")
+    ],
     map_: Annotated[
         str | None,
         typer.Option("--map", help="TOML file saying what the columns are.", rich_help_panel=c.INPUT),
     ] = None,
     preset: Annotated[
         str | None,
-        typer.Option("--preset", help="A bundled map by name.", rich_help_panel=c.INPUT, autocompletion=_complete_map),
+        typer.Option(
+            "--preset", help="A bundled map by name.", rich_help_panel=c.INPUT, autocompletion=completing.maps
+        ),
     ] = None,
     step: Annotated[
         str | None,
@@ -165,7 +205,8 @@ def import_(
     from ..importing import import_logs, load_map
 
     if (map_ is None) == (preset is None):
-        raise OptionError(Problem("give either --map or --preset", "--map, --preset", fix="--map FILE.toml"))
+        fix = "--map FILE.toml; mmgtune trials map LOG... -o FILE.toml writes one for these logs"
+        raise OptionError(Problem("give either --map or --preset", "--map, --preset", fix=fix))
     if out is None and not dry_run:
         raise OptionError(Problem("no folder is given for the trials", "--out", fix="add -o FOLDER, or --dry-run"))
     seconds = None

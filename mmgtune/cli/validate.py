@@ -10,6 +10,7 @@ import typer
 from ..errors import OptionError, Problem
 from ..options import ValidateOptions, VoyageOptions
 from . import common as c
+from . import completing
 from .options import WrittenOptions, takes
 from .stated import stated_table
 
@@ -23,7 +24,11 @@ OF_VOYAGES = 'a log that says manoeuvre "voyage" or lasts more than an hour'
 def command(
     names: Annotated[
         list[str],
-        typer.Argument(metavar="PROFILE... TRIALS", help="Profiles, then the trials: files, folders or bundled names."),
+        typer.Argument(
+            metavar="PROFILE... TRIALS",
+            help="Profiles, then the trials: files, folders or bundled names.",
+            autocompletion=completing.models_and_trials,
+        ),
     ],
     *,
     options: VoyageOptions,
@@ -39,7 +44,7 @@ def command(
 
     Logs of hours and days are voyages: they say manoeuvre "voyage", or last more than an hour. They are cut into
     windows of 120 s, or --restart, and seven distance measures tell how far each model is off, and where its error
-    lives. That has a run folder and a report.
+    lives. That has a run folder and a report; of trials, --out names a folder for them.
 
     Examples:
 
@@ -47,11 +52,14 @@ def command(
 
       mmgtune validate before.toml after.toml my_trials/ --restart 100 --json
 
-      mmgtune validate suzaku suzaku --manoeuvres
+      mmgtune validate suzaku suzaku --manoeuvres --out runs/scores
 
       mmgtune validate before.toml after.toml voyages/ --out runs/voyages
     """
-    from ..trial import holds_voyages
+    from ..fitting import claimed, refuse_taken
+    from ..recording import write_validation
+    from ..report import render
+    from ..trial import holds_voyages, load_trials
     from ..validating import validate
 
     if formerly is not None:
@@ -69,7 +77,14 @@ def command(
         on_voyages(names[:-1], names[-1], options, run, json=json, no_report=no_report)
         return
     _refuse(options, run, no_report)
+    if run.out is not None:
+        refuse_taken(run.out, force=run.force)
     result = validate(names[:-1], names[-1], ValidateOptions(**options.shared_with(ValidateOptions)))
+    if run.out is not None:
+        with claimed(run.out, force=run.force):
+            write_validation(result, load_trials(names[-1]), run.out, c.command_line())
+            if not no_report:
+                render(run.out)
     if json:
         c.print_json(result.to_dict())
     else:
@@ -78,21 +93,24 @@ def command(
             c.say(f"note: {note}")
         for one in result.profiles:
             c.say_doubts(one.doubts, f"{one.name}: ")
+        if run.out is not None:
+            c.say(f"Results: {run.out}" if no_report else f"Report: {run.out}/report.html")
 
 
 def _refuse(options: VoyageOptions, run: WrittenOptions, no_report: bool) -> None:
     """Raises OptionError for what was asked of voyages where there are none."""
     own = {one.name for one in fields(VoyageOptions)} - {one.name for one in fields(ValidateOptions)}
     asked = [name for name in sorted(own) if getattr(options, name) != getattr(VoyageOptions, name)]
-    asked += [one.name for one in fields(run) if getattr(run, one.name) != one.default]
-    asked += ["no_report"] if no_report else []
+    asked += [name for name in ("resume", "quiet") if getattr(run, name)]
+    asked += [name for name in ("force",) if run.force and run.out is None]
+    asked += ["no_report"] if no_report and run.out is None else []
     if asked:
         raise OptionError(
             *(
                 Problem(
                     "these trials are no voyages",
                     name,
-                    "of trials the scores are printed, and nothing is written",
+                    "of trials the scores are printed, and written where --out names a folder",
                     f"leave it out, or give {OF_VOYAGES}",
                 )
                 for name in asked
@@ -116,26 +134,28 @@ def summary(result: Validation) -> str:
             ]
         if "J" not in one:
             continue
-        heads = f"{'90 % holds':>12}{'CRPS':>8}" if "bands" in one else ""
-        lines.append(f"  {'':<34}{'runs':>6}{'J':>12}{'L_MSE':>10}{heads}")
-        for kind, row in one["by_manoeuvre"].items():
-            name = kind or "manoeuvre not stated"
-            lines.append(f"  {name:<34}{row['runs']:>6}{_shown(row['J'])}{_shown(row['L_MSE'], 10)}{_held(row)}")
-        lines.append(f"  {'all':<34}{len(one['trials']):>6}{_shown(one['J'])}{_shown(one['L_MSE'], 10)}{_held(one)}")
-        for row in one["trials"]:
-            lines.append(f"    {row['id']:<38}{_shown(row['J'])}{_shown(row['L_MSE'], 10)}")
+        rows = [
+            (kind or "manoeuvre not stated", str(row["runs"]), _shown(row["J"]), _shown(row["L_MSE"]), *_held(row))
+            for kind, row in one["by_manoeuvre"].items()
+        ]
+        rows.append(("all", str(len(one["trials"])), _shown(one["J"]), _shown(one["L_MSE"]), *_held(one)))
+        bands = ("90 % holds", "CRPS") if "bands" in one else ()
+        rows += [
+            (f"  {row['id']}", "", _shown(row["J"]), _shown(row["L_MSE"]), *("" for _ in bands))
+            for row in one["trials"]
+        ]
+        lines += [f"  {line}" for line in c.table(("", "runs", "J", "L_MSE", *bands), rows, less=2)]
     if result.options.manoeuvres:
         lines.append(table({one.name: one.repeated for one in result.profiles}))
     return "\n".join(lines)
 
 
-def _held(row: dict[str, Any]) -> str:
+def _held(row: dict[str, Any]) -> tuple[str, ...]:
     """What the bands of a row hold, and their CRPS; nothing where there are none."""
     if "bands" not in row:
-        return ""
+        return ()
     share, crps = row["bands"]["coverage_90"], row["bands"]["CRPS"]
-    held = "-" if share is None else f"{100.0 * share:.0f} %"
-    return f"{held:>12}{'-' if crps is None else f'{crps:.3g}':>8}"
+    return ("-" if share is None else f"{100.0 * share:.0f} %", "-" if crps is None else f"{crps:.3g}")
 
 
 def _rms(rows: list[dict[str, Any]]) -> str:
@@ -146,5 +166,5 @@ def _rms(rows: list[dict[str, Any]]) -> str:
     return f"{(sum(one**2 for one in off) / len(off)) ** 0.5:.3g} tolerances, root mean square over {len(off)} indices"
 
 
-def _shown(value: float | None, width: int = 12) -> str:
-    return f"{'diverged':>{width}}" if value is None else f"{value:>{width}.4g}"
+def _shown(value: float | None) -> str:
+    return "diverged" if value is None else f"{value:.4g}"

@@ -6,10 +6,12 @@ workbench         trials, model with every effect, refits
 noise, inputs     what chance does to residuals
 linear, screening signatures beyond re-tuning, scores, critical values
 search            forward search, backward look, rivals
+contributions     what each cause brings beside the others; traces; record: how often such an answer was right
 intervals, gain, leftover, separate   sizes, held-out gain, what is left, the trial that would tell
 runs, hierarchy, by_run, elsewhere    what differs from run to run: groups, evidence, words, runs held out
 voyages, legs     windows of logs of hours; what differs from voyage to voyage
 evidence          residual forces and short horizons, before any cause
+whereabouts       where an error lives that nothing explains
 """
 
 import sys

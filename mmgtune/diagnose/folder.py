@@ -9,14 +9,25 @@ from typing import Any
 from ..files import write_text
 from ..fitting.folder import motions_table, write_table
 from ..fitting.journal import finished
+from .calm import calm_profile
 from .result import Diagnosis
 
 RESULT = "diagnosis.json"
+CALM = "calm.toml"
 
 
 def write_diagnosis(result: Diagnosis, folder: Path) -> dict[str, Any]:
-    """Write the extended profile, the held-out motions and, last, the result.  Returns its document."""
-    write_text(folder / "profile.toml", result.extended_text())
+    """Write the extended profile, the held-out motions and, last, the result.  Returns its document.
+
+    Where a cause is of the day, such as a current, ``calm.toml`` is the profile without it, for predictions.
+    """
+    extended = result.extended_profile()
+    write_text(folder / "profile.toml", extended.text)
+    calm = calm_profile(extended)
+    if calm is not None:
+        write_text(folder / CALM, calm.text)
+    else:
+        (folder / CALM).unlink(missing_ok=True)
     inputs = [one.name for one in result.profile.arrangement.inputs]
     write_table(folder / "motions.parquet", motions_table(result.gain.compared, inputs))
     document = {**result.to_dict(), "out": str(folder)}

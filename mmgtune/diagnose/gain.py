@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..backends import STATES
+from ..displayed import Brief
 from ..fitting.box import group_of
 from ..fitting.comparison import TrialComparison, compare, finite
 from ..fitting.least_squares import fit_offsets
@@ -42,8 +43,8 @@ INDICES = ("tactical_diameter_m", "advance_m", "overshoot_1_deg", "overshoot_2_d
 """Indices whose errors are reported."""
 
 
-@dataclass(frozen=True, eq=False)
-class Gain:
+@dataclass(frozen=True, eq=False, repr=False)
+class Gain(Brief):
     """Before and after the causes, on held-out trials with their initial states estimated.
 
     held_out    the test trials; each in turn where there are none; the only one where there is but one
@@ -161,24 +162,37 @@ def held_out(bench: Workbench, found: Found, test: Sequence[Trial]) -> Gain:
         return Gain("test", tuple(compared), excess, *_chance(bench, test, found.final), _share_used(found.final, test))
     every: list[TrialComparison] = []
     rows = []
+    for (before, after), trials in held_out_fits(bench, (found.base, found.final), ()):
+        compared, excess = _on(bench, before, after, trials)
+        every += compared
+        rows.append(excess)
+    if len({trial.run for trial in bench.trials}) < 2:
+        return Gain("only", tuple(every), np.concatenate(rows), *_chance(bench, bench.trials))
+    used = FIRST if any(group_of(name) for name in found.final.names) else 0.0
+    left = (1.0 - used) * sum(trial.n_samples for trial in bench.trials)
+    return Gain("each", tuple(every), np.concatenate(rows), *_by_noise(bench, left), used)
+
+
+def held_out_fits(
+    bench: Workbench, points: Sequence[Point], test: Sequence[Trial]
+) -> Iterator[tuple[list[Point], list[Trial]]]:
+    """Fitted points with trials they were not fitted to: the test trials, or each run in turn, all refitted without it.
+
+    Where there is but one run, that run.
+    """
     runs = list(dict.fromkeys(trial.run for trial in bench.trials))
-    for run in runs if len(runs) > 1 else []:
+    if test or len(runs) < 2:
+        yield list(points), list(test or bench.trials)
+        return
+    for run in runs:
         others = [trial for trial in bench.trials if trial.run != run]
         names = [name for name in bench.box.names if name not in bench.targets]
         rest = make_workbench(bench.model.profile, others, bench.options, names)
         rest.targets = bench.targets
         rest.know(replace(bench.noise, cases=rest.problem.cases))
         keep = [i for i, trial in enumerate(bench.trials) if trial.run != run]
-        before, after = (_refit_without(rest, p, keep) for p in (found.base, found.final))
-        compared, excess = _on(bench, before, after, [trial for trial in bench.trials if trial.run == run])
-        every += compared
-        rows.append(excess)
-    if not rows:
-        every, whole = _on(bench, found.base, found.final, bench.trials)
-        return Gain("only", tuple(every), whole, *_chance(bench, bench.trials))
-    used = FIRST if any(group_of(name) for name in found.final.names) else 0.0
-    left = (1.0 - used) * sum(trial.n_samples for trial in bench.trials)
-    return Gain("each", tuple(every), np.concatenate(rows), *_by_noise(bench, left), used)
+        refitted = [_refit_without(rest, point, keep) for point in points]
+        yield refitted, [trial for trial in bench.trials if trial.run == run]
 
 
 def _share_used(point: Point, trials: Sequence[Trial]) -> float:
@@ -216,12 +230,13 @@ def J_of(bench: Workbench, point: Point, test: Sequence[Trial]) -> float | None:
     if not test:
         return None
     point = estimated_there(bench, point, test)
-    problem = _problem(bench, point, test, make_objective(bench.model.L_pp))
+    problem = problem_on(bench, point, test, make_objective(bench.model.L_pp))
     offsets = fit_offsets(problem, point.unit)
     return finite(float(problem.costs(point.unit[:, None], offsets[:, None])[0]))
 
 
-def _problem(bench: Workbench, point: Point, trials: Sequence[Trial], objective: Objective) -> FitProblem:
+def problem_on(bench: Workbench, point: Point, trials: Sequence[Trial], objective: Objective) -> FitProblem:
+    """The problem of what is free in a point, on other trials."""
     own = bench.problem_of(point.names, point.integrator)
     sigma = np.repeat(bench.sigma[None], len(trials), axis=0)
     cases = cases_of(list(trials), objective, own.model.inputs, own.model.draught)
@@ -235,33 +250,44 @@ def _on(
     """Comparisons and chi-squared above noise (n_trials, 2) on trials; the latter on what follows the part of each that
     something is estimated on."""
     begins = first_part(after, trials)
-    after = estimated_there(bench, after, trials)
-    names = (*before.names, *(name for name in after.names if name not in before.names))
-    wide = Point(names, bench.null(names), after.offsets, after.chi2, after.integrator)
-    units = []
-    for point in (before, after):
-        unit = wide.unit.copy()
-        unit[[names.index(name) for name in point.names]] = point.unit
-        units.append(unit)
+    wide, units = together(bench, (before, estimated_there(bench, after, trials)))
     roles = dict.fromkeys((trial.id for trial in trials), "test")
     by_paper = make_objective(bench.model.L_pp)
     compared = [
         one
         for some in ([[trial] for trial in trials] if begins.any() else [trials])
-        for one in compare(_problem(bench, wide, some, by_paper), some, by_paper, roles, *units)
+        for one in compare(problem_on(bench, wide, some, by_paper), some, by_paper, roles, *units)
     ]
     objective = Objective(dict(zip(STATES, bench.sigma, strict=True)), dict.fromkeys(bench.channels, 1.0))
-    scaled = _problem(bench, wide, trials, objective)
-    weight = scaled.cases.weight.copy()
-    for case, begin in enumerate(begins):
-        weight[case, :begin] = 0.0
-    judged = scaled.with_cases(replace(scaled.cases, weight=weight))
+    scaled = problem_on(bench, wide, trials, objective)
+    judged = after_first(scaled, begins)
     floor = np.array([_floor(bench, judged, case) for case in range(len(trials))])
     excess = np.empty((len(trials), 2))
     for k, unit in enumerate(units):
         offsets = fit_offsets(scaled, unit)
         excess[:, k] = judged.costs_by_case(unit[:, None], offsets[:, None])[:, 0] - floor
     return compared, np.where(np.isfinite(excess), excess, 1e12)
+
+
+def after_first(problem: FitProblem, begins: IntArray) -> FitProblem:
+    """A problem in which the first samples of each case, (n_cases,), do not count."""
+    weight = problem.cases.weight.copy()
+    for case, begin in enumerate(begins):
+        weight[case, :begin] = 0.0
+    return problem.with_cases(replace(problem.cases, weight=weight))
+
+
+def together(bench: Workbench, points: Sequence[Point]) -> tuple[Point, list[FloatArray]]:
+    """A point whose names are those of all, what is not free in one at its null, and the positions of each in it."""
+    names = tuple(dict.fromkeys(name for point in points for name in point.names))
+    last = points[-1]
+    wide = Point(names, bench.null(names), last.offsets, last.chi2, last.integrator)
+    units = []
+    for point in points:
+        unit = wide.unit.copy()
+        unit[[names.index(name) for name in point.names]] = point.unit
+        units.append(unit)
+    return wide, units
 
 
 def _floor(bench: Workbench, problem: FitProblem, case: int) -> float:

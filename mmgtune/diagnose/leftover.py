@@ -15,6 +15,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..backends import STATES
+from ..displayed import Brief
 from ..physics.frame import to_earth
 from ..trial import Trial
 from .evidence import FEWEST_BLOCKS, share_explained
@@ -42,8 +43,8 @@ BLOCK = 20.0
 """Time [s] residuals are averaged over before asking what explains them."""
 
 
-@dataclass(frozen=True)
-class Leftover:
+@dataclass(frozen=True, repr=False)
+class Leftover(Brief):
     """What is left at a point.
 
     excess     variance of all residuals beyond the white noise of the sensors and what the logged inputs leave open, as
@@ -77,7 +78,7 @@ class Leftover:
 
 def leftover(bench: Workbench, point: Point) -> Leftover:
     """What is left at a point, on the trials of the workbench."""
-    residuals = _residuals(bench, point)
+    residuals = residuals_of(bench, point)
     level = _white(residuals)
     left_open = _left_open(bench, point)
     excess = {}
@@ -97,7 +98,7 @@ def leftover(bench: Workbench, point: Point) -> Leftover:
     )
 
 
-def _residuals(bench: Workbench, point: Point) -> list[FloatArray]:
+def residuals_of(bench: Workbench, point: Point) -> list[FloatArray]:
     """Simulated less measured by trial, (n_samples, 6), in SI units; NaN in gaps."""
     problem = bench.problem_of(point.names, point.integrator)
     states = problem.states(point.unit[:, None], point.offsets[:, None]).states

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.signal import lfilter
 
 from ..arrays import FloatArray, IntArray
 from ..backends import STATES, Cases
@@ -79,7 +78,7 @@ class NoiseModel:
                 out[rows] = values[rows] / sigma
                 continue
             with np.errstate(invalid="ignore", over="ignore"):
-                white = lfilter([1.0, -phi], [1.0, theta], values[rows], axis=0) / sigma
+                white = _filtered([1.0, -phi], [1.0, theta], values[rows]) / sigma
                 white[0] *= sigma / np.sqrt(noise.variance)
             out[rows] = white
         return out
@@ -93,9 +92,15 @@ class NoiseModel:
             part = values[rows] * sigma
             if noise.fading > 0.0:
                 part[0] *= np.sqrt(noise.variance) / sigma
-                part = lfilter([1.0, theta], [1.0, -phi], part, axis=0)
+                part = _filtered([1.0, theta], [1.0, -phi], part)
             out[rows] = part
         return out
+
+
+def _filtered(over: list[float], under: list[float], values: FloatArray) -> FloatArray:
+    from scipy.signal import lfilter  # half a second, which white noise does without
+
+    return np.asarray(lfilter(over, under, values, axis=0))
 
 
 def series_of(cases: Cases) -> list[tuple[str, IntArray]]:

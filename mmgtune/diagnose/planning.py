@@ -13,7 +13,7 @@ from .hypotheses import known_causes
 from .voyages import looked_at
 from .workbench import make_workbench
 
-EVALUATIONS = (100, 400)
+EVALUATIONS = (15, 200)
 """Evaluations a hypothesis costs per parameter fitted, over screening and refits, from few to many."""
 
 

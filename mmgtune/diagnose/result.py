@@ -7,18 +7,23 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from ..displayed import Brief, Plotted
 from ..effects import Effect
 from ..fitting.comparison import finite, finite_values
 from ..options import DiagnoseOptions
 from ..profile import ShipProfile, tuned, with_effects
+from ..trial import Coverage
 from .by_run import ByRun
+from .contributions import Contribution
 from .gain import Gain
 from .intervals import Estimate
 from .leftover import Leftover
 from .legs import Difference
+from .record import Record, kind_of, record_of
 from .runs import IN_WORDS
 from .separate import Suggestion
 from .voyages import Choice
+from .whereabouts import Whereabouts
 from .wording import parameters_in_words
 
 SCHEMA = 1
@@ -31,6 +36,13 @@ LARGE = 10.0
 MOSTLY = 0.95
 """Share of the error above noise on the trials it was found on that a cause must remove to be named alone, where
 something of a shape is left besides."""
+
+
+TOO_MANY = 4
+"""Terms of a sum of causes from which it is not believed."""
+
+NEEDED = 0.15
+"""Share of the fall of chi-squared that the terms of a sum must lose, one left out at a time, all added up."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,11 +86,24 @@ class Cause:
         }
 
 
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """A cause that is statistically there, and without which a user would notice nothing."""
+
+    cause: Cause
+    contribution: Contribution
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {**self.cause.to_dict(), "contribution": self.contribution.to_dict()}
+
+
 @dataclass(frozen=True)
 class Candidate:
     """A hypothesis that was looked at: score and refit at the first look; J on the test trials.
 
-    by  what has a value of its own: "" for one for all, else a grouping of runs
+    unvisited  what the trials would have to visit for it to be believed, "" where they do
+    by         what has a value of its own: "" for one for all, else a grouping of runs
     """
 
     effect: str
@@ -87,6 +112,7 @@ class Candidate:
     gain: float
     p_value: float
     J_test: float | None
+    unvisited: str = ""
     by: str = ""
 
     @property
@@ -105,11 +131,12 @@ class Candidate:
             "gain": self.gain,
             "p_value": self.p_value,
             "J_test": self.J_test,
+            "unvisited": self.unvisited,
         }
 
 
-@dataclass(frozen=True)
-class Detectability:
+@dataclass(frozen=True, repr=False)
+class Detectability(Brief):
     """What these trials could tell of a hypothesis, before looking at what they do tell.
 
     share    of its signature that re-tuning does not imitate
@@ -140,19 +167,25 @@ class Detectability:
 
 
 @dataclass(frozen=True, eq=False)
-class Diagnosis:
+class Diagnosis(Plotted):
     """A finished diagnosis.
 
     theta     tuned targets with all causes in place
+    traces    what is statistically there besides and changes nothing that a user would notice; in no profile
+    contributions  of the causes, by tag in their order, the others in place
     groups    causes that cannot be told apart, each a list of tags
     chi2      of the trials it looked at per residual: before, after
     evidence  residuals, residual forces and what explains them, for the report
+    coverage  what the trials it looked at visit; warnings: what of that a reader must know
+    whereabouts  where the error lives, where nothing explains it; None else
     choice    windows of voyages that were looked at, None for trials; differing: what differs between the voyages
     """
 
     profile: ShipProfile
     options: DiagnoseOptions
     causes: tuple[Cause, ...]
+    traces: tuple[Trace, ...]
+    contributions: tuple[tuple[str, Contribution], ...]
     groups: tuple[tuple[str, ...], ...]
     candidates: tuple[Candidate, ...]
     detectability: tuple[Detectability, ...]
@@ -166,7 +199,10 @@ class Diagnosis:
     evidence: Mapping[str, Any]
     provenance: Mapping[str, Any]
     wall_s: float
+    coverage: Coverage | None = None
+    warnings: tuple[str, ...] = ()
     interrupted: bool = False
+    whereabouts: Whereabouts | None = None
     choice: Choice | None = None
     differing: tuple[Difference, ...] = ()
 
@@ -182,6 +218,7 @@ class Diagnosis:
             return "interrupted"
         # Held-out error alone does not tell: with few trials the targets themselves are known too badly for that.
         fails = self.gain.remains and self.leftover.noticed
+        fails = fails or bool(self.unclear)
         if self.leftover.structured if not self.causes else fails or self._mostly_left:
             return "found" if any(one.explained >= MOSTLY for one in self.between) else "unexplained"
         if self.groups:
@@ -189,9 +226,41 @@ class Diagnosis:
         return "found" if self.causes or self.between else "none"
 
     @property
+    def kind(self) -> str:
+        """What kind of answer this is, as the study counts them; "" for one that was stopped."""
+        verdict = self.verdict
+        return kind_of(verdict, self.named, self.groups if verdict == "not-separable" else ())
+
+    @property
+    def record(self) -> Record | None:
+        """How often such an answer was right in the study; None of a search that was stopped, and of voyages."""
+        return record_of(self.kind) if self.kind and not self.between else None
+
+    @property
     def between(self) -> tuple[Difference, ...]:
         """What differs from voyage to voyage."""
         return tuple(one for one in self.differing if one.pattern in ("each", "trend"))
+
+    @property
+    def unclear(self) -> str:
+        """Why a sum of causes is not believed, in words; "" where it is, and for a single cause.
+
+        An effect that no registry holds looks like a sum of those that one does; the study says how such sums look.
+        """
+        brought = [one for _, one in self.contributions]
+        if len(brought) < 2:
+            return ""
+        if len(brought) >= TOO_MANY:
+            return f"it takes {len(brought)} terms"
+        if len(brought) > 2 and self.groups:
+            return "not all of them can be told from others"
+        if sum(one.seen for one in brought) < NEEDED:
+            return "each of them can be left out with little loss"
+        if self.leftover.structured:
+            return "what they leave is no noise"
+        if any(one.share <= 0.0 for one in brought):
+            return "one of them makes trials that were held out no better"
+        return ""
 
     @property
     def _mostly_left(self) -> bool:
@@ -236,6 +305,13 @@ class Diagnosis:
                 if self.causes
                 else ("no known cause accounts for it")
             )
+            if self.unclear:
+                tags = " + ".join(tag for tag, _ in self.contributions)
+                return (
+                    f"Something is wrong that this program cannot name. The best partial explanation, {tags}, removes "
+                    f"{_percent(self.explained_share)} of the error it was found on, but {self.unclear}: it stands for "
+                    "something else, or for more than these trials can tell apart."
+                )
             excess = self.leftover.excess
             left = (
                 f"{excess:.0%} beyond the noise of the measurements is left"
@@ -291,6 +367,7 @@ class Diagnosis:
             "trials": self.provenance["trials"]["sha256"],
             "verdict": self.verdict,
             "causes": [cause.tag for cause in self.causes],
+            **({"coverage": self.coverage.to_dict()} if self.coverage and self.coverage.to_dict() else {}),
         }
         left_out = [cause.tag for cause in self.causes if cause.runs]
         if left_out:
@@ -321,14 +398,20 @@ class Diagnosis:
             "interrupted": self.interrupted,
             "verdict": self.verdict,
             "sentence": self.sentence(),
+            "warnings": list(self.warnings),
+            "coverage": self.coverage.to_dict() if self.coverage else {},
+            "record": self.record.to_dict() if self.record else None,
             "doubts": [one.to_dict() for one in self.profile.doubts()],
             "causes": [cause.to_dict() for cause in self.named],
+            "traces": [trace.to_dict() for trace in self.traces],
+            "contributions": [{"effect": tag, **one.to_dict()} for tag, one in self.contributions],
             "groups": [list(group) for group in self.groups] if self.verdict == "not-separable" else [],
             "candidates": [candidate.to_dict() for candidate in self.candidates],
             "suggested_trial": self.suggestion.to_dict() if self.suggestion else None,
             "gain": self.gain.to_dict(),
             "unexplained": {
                 "structured": self.leftover.structured,
+                "unclear": self.unclear,
                 "share_of_noise_variance": self.leftover.excess,
                 "by_channel": self.leftover.channels,
                 "share_explained_by_causes": self.explained_share,
@@ -340,6 +423,7 @@ class Diagnosis:
                 if self.verdict in ("unexplained", "interrupted")
                 else [],
             },
+            "whereabouts": self.whereabouts.to_dict() if self.whereabouts else None,
             "detectability": [one.to_dict() for one in self.detectability],
             "noise": {name: dict(values) for name, values in self.noise.items()},
             "chi2_per_residual": {"before": self.chi2[0], "after": self.chi2[1]},

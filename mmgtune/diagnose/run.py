@@ -16,27 +16,30 @@ from ..backends import STATES
 from ..fitting.box import group_of, parameter_of
 from ..fitting.extending import with_width
 from ..fitting.journal import journalled
+from ..fitting.one_sided import coverage_notes, followers
 from ..fitting.run import Hooks, identity_of, in_pieces, make_provenance
 from ..given import ShipGiven, TrialsGiven, ship_of
 from ..model import Model
 from ..options import DiagnoseOptions
 from ..profile import ShipProfile, with_all_effects
 from ..threads import blas_on_one_thread
-from ..trial import Trial, TrialSet, VoyageSet
+from ..trial import Coverage, Trial, TrialSet, VoyageSet
 from ..trial.smoothing import FEWEST
 from .by_run import ByRun
-from .evidence import explain_forces, noise_share, residual_forces, short_horizon
+from .contributions import Aside, set_aside
+from .evidence import ResidualForces, explain_forces, noise_share, residual_forces, short_horizon
 from .gain import J_of, held_out
 from .hypotheses import INTEGRATION_STEP, Hypothesis, known_causes, of_runs
 from .intervals import Estimate, estimates
-from .leftover import Leftover, leftover
+from .leftover import Leftover, leftover, residuals_of
 from .legs import LEG_NAMES, differences
 from .linear import typical
-from .result import Candidate, Cause, Detectability, Diagnosis
+from .result import Candidate, Cause, Detectability, Diagnosis, Trace
 from .screening import angles
 from .search import ENOUGH, WORTH, Found, Refit, Step, search
 from .separate import Suggestion, suggest
 from .voyages import Choice, looked_at
+from .whereabouts import Whereabouts, whereabouts
 from .workbench import Point, Workbench, make_workbench
 
 TWINS = 3
@@ -95,6 +98,7 @@ def _diagnose(
     differing_by_run = of_runs(known, seen) if choice is None else []
     found = search(bench, [*known, *differing_by_run], hooks.on_phase, hooks.stop)
     hooks.on_phase("measuring the gain")
+    traces, brought = set_aside(bench, found, test)
     sizes = estimates(bench, found.final)
     gain = held_out(bench, found, test)
     before = leftover(bench, found.base)
@@ -111,10 +115,14 @@ def _diagnose(
     suggestion = _suggestion(bench, found)
     hooks.on_phase("gathering the evidence")
     values = bench.values(found.final)
-    return Diagnosis(
+    theta = {name: values[name] for name in bench.targets}
+    coverage = Coverage.of(bench.trials, profile.L_pp)
+    result = Diagnosis(
         profile=profile,
         options=options,
         causes=tuple(_causes(bench, found, sizes, test)),
+        traces=tuple(_trace(bench, one) for one in traces),
+        contributions=tuple((h.tag, one) for h, one in zip(found.causes, brought, strict=True)),
         groups=groups,
         candidates=tuple(_candidates(bench, found, test)),
         detectability=tuple(_detectability(bench, found.steps[0], known)) if found.steps else (),
@@ -122,7 +130,9 @@ def _diagnose(
         gain=gain,
         leftover=left,
         explained_share=_explained(found, before, left),
-        theta={name: values[name] for name in bench.targets},
+        theta=theta | followers(bench.model.ties, theta),
+        coverage=coverage,
+        warnings=tuple(coverage_notes(bench.model, bench.targets, coverage)),
         noise=_noise(bench),
         chi2=(
             found.base.chi2 / max(1, bench.problem.n_residuals),
@@ -135,6 +145,48 @@ def _diagnose(
         wall_s=time.perf_counter() - began,
         interrupted=hooks.stop(),
     )
+    if result.verdict != "unexplained":
+        return result
+    return replace(result, whereabouts=_whereabouts(bench, found))
+
+
+def _whereabouts(bench: Workbench, found: Found) -> Whereabouts:
+    """Where the error of the model without any cause lives."""
+    by_run = _excess_by_run(bench, found.base)
+    whole = sum(by_run.values())
+    removable: dict[str, float] = {}
+    for refit in found.steps[0].refits if found.steps and whole > 0.0 else ():
+        tag = refit.hypothesis.tag
+        left = sum(_excess_by_run(bench, refit.point).values())
+        removable[tag] = max(removable.get(tag, 0.0), min(1.0, 1.0 - left / whole))
+    ranked = dict(sorted(removable.items(), key=lambda one: -one[1]))
+    return whereabouts(_forces(bench, found.base), by_run, ranked)
+
+
+def _excess_by_run(bench: Workbench, point: Point) -> dict[str, float]:
+    """Squared error of the motion beyond white noise of the sensors, in variances of that noise, by run."""
+    at = [STATES.index(name) for name in bench.channels]
+    found: dict[str, float] = {}
+    for trial, off in zip(bench.trials, residuals_of(bench, point), strict=True):
+        square = (off[1:, at] / bench.sigma[at]) ** 2
+        found[trial.run] = found.get(trial.run, 0.0) + float(np.nansum(square - 1.0))
+    return found
+
+
+def _forces(bench: Workbench, point: Point) -> list[tuple[ResidualForces, Trial]]:
+    """Residual forces of the trials that are long and whole enough for inverse dynamics."""
+    found = []
+    trials = _long_enough(bench)
+    for trial, model in zip(trials, _models(bench, point, trials), strict=True):
+        try:
+            found.append((residual_forces(model, trial), trial))
+        except ValueError:  # too short or too full of gaps
+            continue
+    return found
+
+
+def _long_enough(bench: Workbench) -> list[Trial]:
+    return [trial for trial in bench.trials if np.isfinite(trial.motion[:, 3:]).all(axis=1).sum() >= FEWEST]
 
 
 def _legs(profile: ShipProfile, names: Sequence[str]) -> list[str]:
@@ -169,6 +221,13 @@ def _causes(bench: Workbench, found: Found, sizes: Mapping[str, Estimate], test:
     return causes
 
 
+def _trace(bench: Workbench, aside: Aside) -> Trace:
+    one = aside.hypothesis
+    runs = ByRun.of(one.effect, one.variant, one.by, one.groups, bench.trials, aside.estimates) if one.by else None
+    cause = Cause(one.tag, one.effect, {} if one.by else aside.estimates, aside.p_value, None, runs)
+    return Trace(cause, aside.contribution)
+
+
 def _candidates(bench: Workbench, found: Found, test: Sequence[Trial]) -> list[Candidate]:
     """Every hypothesis of the first look that was refitted, best first; then scores of the others."""
     if not found.steps:
@@ -182,14 +241,15 @@ def _candidates(bench: Workbench, found: Found, test: Sequence[Trial]) -> list[C
             r.gain,
             r.p_value,
             J_of(bench, r.point, test) if _promising(r, first) else None,
-            r.hypothesis.by,
+            r.unvisited if _promising(r, first) else "",
+            by=r.hypothesis.by,
         )
         for r in first.refits
     ]
     refitted = [r.hypothesis for r in first.refits]
     others = sorted((s for s in first.scores if s.hypothesis not in refitted), key=lambda s: -s.score)
     return listed + [
-        Candidate(s.hypothesis.tag, s.hypothesis.variant, s.score, 0.0, 1.0, None, s.hypothesis.by) for s in others
+        Candidate(s.hypothesis.tag, s.hypothesis.variant, s.score, 0.0, 1.0, None, by=s.hypothesis.by) for s in others
     ]
 
 
@@ -270,19 +330,14 @@ def _noise(bench: Workbench) -> dict[str, dict[str, float]]:
 def _evidence(bench: Workbench, found: Found, before: Leftover, left: Leftover) -> dict[str, Any]:
     """Residuals before and after by trial and channel, short horizons, and residual forces with what explains them."""
     shown: dict[str, Any] = {"excess_before": before.channels, "excess_after": left.channels}
-    long_enough = [trial for trial in bench.trials if np.isfinite(trial.motion[:, 3:]).all(axis=1).sum() >= FEWEST]
+    long_enough = _long_enough(bench)
     for which, point in (("before", found.base), ("after", found.final)):
         models = _models(bench, point, long_enough)
         shown[f"short_horizon_{which}"] = {}
         if long_enough:
             short = _short_horizon(models, long_enough, point)
             shown[f"short_horizon_{which}"] = dict(zip(STATES, map(float, short), strict=True))
-        forces = []
-        for trial, model in zip(long_enough, models, strict=True):
-            try:
-                forces.append(residual_forces(model, trial))
-            except ValueError:  # too short or too full of gaps for inverse dynamics
-                continue
+        forces = [forces for forces, _ in _forces(bench, point)]
         if forces:
             shown[f"forces_{which}"] = {
                 "explained": {axis: dict(shares) for axis, shares in explain_forces(forces).items()},

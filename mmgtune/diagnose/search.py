@@ -27,7 +27,7 @@ STARTS = 6
 """Starts of the base fit."""
 
 STRONG = 1.2
-"""Chi-squared per residual beyond which every named hypothesis is refitted."""
+"""Chi-squared per residual beyond which every named hypothesis makes a step before the best are refitted."""
 
 AGAIN = 8
 """Times the base fit may begin again where it ended."""
@@ -39,6 +39,8 @@ REFITTED = 9
 TERMS_REFITTED = 4
 """Hypotheses that are refitted each time, named ones and terms out of many: those of the best scores."""
 
+LIKELY = 9
+"""Hypotheses of the best first steps that are refitted where scores alone cannot choose."""
 HOPELESS = 10.0
 """Where much is left, values of runs that leave so many times what the best of them leave are not refitted further."""
 
@@ -57,8 +59,10 @@ ROUGH = 4
 SIZES = (1.0, 0.5, 2.0)
 """Sizes of effects with one side only at which refits start, in typical sizes."""
 
-WORTH_GOING_ON = 0.2
-"""Share of the best gain from which a refit is continued to its end."""
+WORTH_GOING_ON = 0.5
+"""Share of the best gain from which a refit is continued to its end, besides those of the best few."""
+
+FEW = 4
 
 ENOUGH = 10.0
 """A hypothesis must beat none by this much of chi-squared beyond its share by the information criterion (BIC), and
@@ -94,6 +98,7 @@ class Refit:
     evidence  the gain over its inflation, less the cost
     size      largest of its parameters' distances from their null, in typical sizes
     p_value   probability of such a fall anywhere in the search, were there nothing to find
+    unvisited what the trials would have to visit for it to be believed, "" where they do
     """
 
     hypothesis: Hypothesis
@@ -104,6 +109,7 @@ class Refit:
     evidence: float
     size: float
     p_value: float
+    unvisited: str = ""
 
     def beats(self, other: Refit) -> bool:
         """Whether this explains so much more that the other is out of the question.
@@ -262,7 +268,7 @@ def look(
         point = bench.refit(point.names, point.unit[:, None], point.offsets)
         linear = linearise(bench, point, names, varying=varying)
         ranked = scores(linear, hypotheses)
-    refits = _refit_best(bench, point, ranked, linear, quick=False, stop=stop)
+    refits = _believable_first(_refit_best(bench, point, ranked, linear, quick=False, stop=stop))
     finer_gain = None
     if first:
         other = bench.refit(point.names, point.unit[:, None], point.offsets, integrator=finer(point.integrator))
@@ -270,6 +276,16 @@ def look(
     rivals = _rivals(refits) if refits else []
     accepted, reason = _decide(bench, refits, rivals)
     return Step(point, linear, ranked, refits, rivals, accepted, reason, finer_gain)
+
+
+def _believable_first(refits: list[Refit]) -> list[Refit]:
+    """The best that is about what the trials visit in front, unless it is far from as good as the best of all."""
+    for k, refit in enumerate(refits):
+        if refits[0].beats(refit):
+            break
+        if not refit.unvisited:
+            return [refit, *refits[:k], *refits[k + 1 :]]
+    return refits
 
 
 def _go_on(stop: Stop) -> None:
@@ -302,7 +318,8 @@ def _refit_best(
     if quick:
         chosen = named[:3] + terms[:1]
     else:
-        chosen = named[: None if strong else REFITTED] + terms[: (2 if strong else 1) * TERMS_REFITTED]
+        chosen = _likely(bench, point, named, stop) if strong else named[:REFITTED]
+        chosen += terms[: (2 if strong else 1) * TERMS_REFITTED]
     chosen = [s for s in chosen if s.power > 0.0]
     fitted = _fitted(bench, linear, point, chosen, strong, stop)
     differing = _of_runs_worth(bench, point, order, [end for _, end in fitted], quick=quick)
@@ -321,7 +338,8 @@ def _fitted(
     for score in chosen:
         _go_on(stop)
         rough.append(_rough(bench, point, score, strong))
-    most = max((point.chi2 - end.chi2 for end in rough), default=0.0)
+    gains = sorted((point.chi2 - end.chi2 for end in rough), reverse=True)
+    enough = min([WORTH_GOING_ON * gains[0], *gains[FEW - 1 : FEW]]) if gains else 0.0
     left = min((end.chi2 for end in rough), default=point.chi2) - bench.problem.n_residuals
     found = []
     for score, end in zip(chosen, rough, strict=True):
@@ -330,7 +348,7 @@ def _fitted(
         if score.hypothesis.by and strong and end.chi2 - bench.problem.n_residuals > HOPELESS * max(left, 0.0):
             found.append((score, end))
             continue
-        if gain >= WORTH_GOING_ON * most and gain > 0.5 * ENOUGH * score.inflation:
+        if gain >= enough and gain > 0.5 * ENOUGH * score.inflation:
             spreads = _spreads(bench, point, score.hypothesis, _spread(bench, linear, point, score, end))
             end = bench.refit(end.names, end.unit[:, None], end.offsets, spreads=spreads)
         found.append((score, end))
@@ -375,6 +393,17 @@ def _ordered(bench: Workbench, point: Point, refits: Sequence[Refit], strong: bo
     if (better >= ENOUGH or none) and (not strong or left[0] <= FAR_LESS * left[1]):
         return found
     return [alike, *(refit for refit in found if refit is not alike)]
+
+
+def _likely(bench: Workbench, point: Point, named: Sequence[Score], stop: Stop) -> list[Score]:
+    """Of named hypotheses, best scores first, those whose first step from any start explains most, and a few of the
+    best scores."""
+    first = []
+    for score in named:
+        _go_on(stop)
+        first.append(_rough(bench, point, score, True, iterations=1).chi2 if score.power > 0.0 else np.inf)
+    kept = {*np.argsort(first)[:LIKELY].tolist(), *range(REFITTED // 2)}
+    return [score for k, score in enumerate(named) if k in kept]
 
 
 def _starts(bench: Workbench, point: Point, score: Score, strong: bool) -> FloatArray:
@@ -423,7 +452,7 @@ def _values(bench: Workbench, point: Point, hypothesis: Hypothesis, end: Point) 
     return np.asarray((end.unit[-len(names) :] - origin(bench, point, names)) / size)
 
 
-def _rough(bench: Workbench, point: Point, score: Score, strong: bool) -> Point:
+def _rough(bench: Workbench, point: Point, score: Score, strong: bool, iterations: int = ROUGH) -> Point:
     """A few steps towards the best fit with a hypothesis."""
     excess = max(point.chi2 - bench.problem.n_residuals, 0.0)
     hypothesis = score.hypothesis
@@ -431,7 +460,7 @@ def _rough(bench: Workbench, point: Point, score: Score, strong: bool) -> Point:
         (*(point.names[i] for i in _kept(point, hypothesis)), *hypothesis.names),
         _starts(bench, point, score, strong),
         point.offsets,
-        max_iterations=ROUGH,
+        max_iterations=iterations,
         tolerance=max(TOLERANCE, 1e-3 * excess),
         spreads=_spreads(bench, point, hypothesis, max(score.spread, 1.0 if strong else LEAST_SPREAD)),
     )
@@ -462,13 +491,25 @@ def _judged(
         gain / score.inflation - cost,
         float(np.max(np.abs(end.unit[-len(null) :] - null) / size)),
         chance.p_value(evidence(max(gain / score.inflation - volume, 0.0), k)) if chance else 1.0,
+        _unvisited(bench, end, hypothesis),
     )
+
+
+def _unvisited(bench: Workbench, end: Point, hypothesis: Hypothesis) -> str:
+    """What the trials would have to visit for a fitted hypothesis to be believed; "" where they do."""
+    if hypothesis.effect.unvisited is None:
+        return ""
+    values = bench.values(end)
+    found = {name.rpartition(".")[2]: values[name] for name in hypothesis.names}
+    return hypothesis.effect.unvisited(found, bench.visited)
 
 
 def _decide(bench: Workbench, refits: Sequence[Refit], rivals: Sequence[Refit]) -> tuple[bool, str]:
     if not refits:
         return False, "no effect applies"
     best = refits[0]
+    if best.unvisited:
+        return False, f"{best.hypothesis.tag} would be believed only where trials visit {best.unvisited}"
     if best.p_value > bench.options.level:
         return False, f"chance brings as much in {best.p_value:.2g} of all searches"
     if best.evidence < ENOUGH:
@@ -488,7 +529,7 @@ def _rivals(refits: Sequence[Refit]) -> list[Refit]:
     return list(found.values())
 
 
-def _without(bench: Workbench, point: Point, hypothesis: Hypothesis) -> Point:
+def without(bench: Workbench, point: Point, hypothesis: Hypothesis) -> Point:
     """The point refitted without one of its hypotheses."""
     kept = [i for i, name in enumerate(point.names) if name not in hypothesis.names]
     names = [point.names[i] for i in kept]
@@ -498,7 +539,7 @@ def _without(bench: Workbench, point: Point, hypothesis: Hypothesis) -> Point:
 def _drop_superfluous(bench: Workbench, found: Found, asked: Sequence[Hypothesis]) -> None:
     """Drop causes of those asked for that others explain."""
     for hypothesis in list(asked):
-        fewer = _without(bench, found.final, hypothesis)
+        fewer = without(bench, found.final, hypothesis)
         if fewer.chi2 - found.final.chi2 < _price(bench, found, hypothesis) + ENOUGH:
             found.causes.remove(hypothesis)
             found.final = fewer
@@ -519,20 +560,20 @@ def _rivals_of(bench: Workbench, found: Found, k: int) -> list[Refit]:
     near = [r for r in step.refits[1:] if r.hypothesis.tag != cause.tag and r.gain > 0.5 * step.refits[0].gain]
     if len(found.causes) == 1:
         return _rivals(step.refits)
-    without = _without(bench, found.final, cause)
-    best = replace(step.refits[0], point=found.final, gain=without.chi2 - found.final.chi2)
+    fewer = without(bench, found.final, cause)
+    best = replace(step.refits[0], point=found.final, gain=fewer.chi2 - found.final.chi2)
     rivals: dict[str, Refit] = {}
     for rival in near:
-        if set(rival.hypothesis.bases) & {base_of(name) for name in without.names}:
+        if set(rival.hypothesis.bases) & {base_of(name) for name in fewer.names}:
             continue
         start = rival.point.unit[-len(rival.hypothesis.names) :]
         other = bench.refit(
-            (*without.names, *rival.hypothesis.names),
-            np.concatenate([without.unit, start])[:, None],
-            without.offsets,
-            spreads={**without.spreads, **rival.point.spreads},
+            (*fewer.names, *rival.hypothesis.names),
+            np.concatenate([fewer.unit, start])[:, None],
+            fewer.offsets,
+            spreads={**fewer.spreads, **rival.point.spreads},
         )
-        rival = replace(rival, point=other, gain=without.chi2 - other.chi2)
+        rival = replace(rival, point=other, gain=fewer.chi2 - other.chi2)
         if not best.beats(rival):
             rivals.setdefault(rival.hypothesis.tag, rival)
     return list(rivals.values())

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -41,26 +41,48 @@ class Suggestion:
         }
 
 
-def menu(unit_time: float) -> list[tuple[str, Helmsman, float, float, float]]:
-    """Feasible trials: words, helmsman, heading [rad], share of the approach revolutions, length [s].
+class Feasible(NamedTuple):
+    """A trial that can be sailed."""
+
+    words: str
+    helmsman: Helmsman
+    heading: float  # at the approach [rad]
+    share: float  # of the approach revolutions
+    longest: float  # [s]
+    engine: Callable[[float], float] | None = None  # share of the revolutions from the share of the speed left
+
+
+SLOWER, HALF = 0.9, 0.5
+"""Share of the approach speed at which the engine is told to go slower, and share of the revolutions then."""
+
+
+def menu(unit_time: float) -> list[Feasible]:
+    """Feasible trials.
 
     unit_time  time the ship takes for her own length [s]
     """
-    found: list[tuple[str, Helmsman, float, float, float]] = []
+    found: list[Feasible] = []
+    long = 30.0 * unit_time
     for heading in (0.0, 90.0):
         for angle in (35.0, -35.0, 15.0):
             side = "starboard" if angle > 0.0 else "port"
             words = f"turning test, rudder {abs(angle):.0f} deg to {side}, approach heading {heading:.0f} deg"
-            found.append((words, TurningOrder(angle * DEG, until=4.0 * math.pi), heading * DEG, 1.0, 30.0 * unit_time))
+            found.append(Feasible(words, TurningOrder(angle * DEG, until=4.0 * math.pi), heading * DEG, 1.0, long))
     for angle in (10.0, 20.0):
         words = f"zigzag {angle:.0f}/{angle:.0f}"
-        found.append((words, ZigzagOrder(angle * DEG, angle * DEG, legs=6), 0.0, 1.0, 30.0 * unit_time))
+        found.append(Feasible(words, ZigzagOrder(angle * DEG, angle * DEG, legs=6), 0.0, 1.0, long))
     words = "turning test, rudder 35 deg to starboard, at 70 % of the revolutions"
-    found.append((words, TurningOrder(35.0 * DEG), 0.0, 0.7, 30.0 * unit_time))
+    found.append(Feasible(words, TurningOrder(35.0 * DEG), 0.0, 0.7, long))
+    words = (
+        "turning test, rudder 15 deg to starboard, the revolutions changed on the way: halved at once when a tenth"
+        " of the speed is lost"
+    )
+    found.append(Feasible(words, TurningOrder(15.0 * DEG), 0.0, 1.0, long, lambda left: 1.0 if left > SLOWER else HALF))
     for heading in (0.0, 180.0):
-        found.append((f"straight run on heading {heading:.0f} deg", Straight(), heading * DEG, 1.0, 12.0 * unit_time))
+        words = f"straight run on heading {heading:.0f} deg"
+        found.append(Feasible(words, Straight(), heading * DEG, 1.0, 12.0 * unit_time))
     words = "rudder orders of changing size every two ship lengths"
-    found.append((words, Weave(2.0 * unit_time), 0.0, 1.0, 30.0 * unit_time))
+    found.append(Feasible(words, Weave(2.0 * unit_time), 0.0, 1.0, long))
     return found
 
 
@@ -74,9 +96,16 @@ def suggest(bench: Workbench, rivals: Sequence[tuple[str, Point]]) -> Suggestion
         return None
     objective = Objective(dict(zip(STATES, bench.sigma, strict=True)), dict.fromkeys(STATES, 1.0))
     best: Suggestion | None = None
-    for words, helmsman, heading, share, longest in menu(profile.L_pp / profile.approach.speed):
-        n = share * profile.approach.n
-        motion = run_manoeuvre(profile, helmsman, heading=heading, n=n, longest=longest, step=1.0)
+    for one in menu(profile.L_pp / profile.approach.speed):
+        motion = run_manoeuvre(
+            profile,
+            one.helmsman,
+            heading=one.heading,
+            n=one.share * profile.approach.n,
+            longest=one.longest,
+            step=1.0,
+            engine=one.engine,
+        )
         if motion.diverged:
             continue
         runs = [_predicted(bench, point, motion, objective) for _, point in rivals]
@@ -87,7 +116,7 @@ def suggest(bench: Workbench, rivals: Sequence[tuple[str, Point]]) -> Suggestion
         ]
         distance, positions = min(apart)
         if np.isfinite(distance) and (best is None or distance > best.distance):
-            best = Suggestion(words, tuple(label for label, _ in rivals), distance, positions)
+            best = Suggestion(one.words, tuple(label for label, _ in rivals), distance, positions)
     return best
 
 

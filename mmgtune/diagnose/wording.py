@@ -12,6 +12,7 @@ from .intervals import Estimate
 _SHOWN = {
     "rad": (1.0 / DEG, "°"),
     "rad/s": (1.0 / DEG, "°/s"),
+    "rad/s^2": (1.0 / DEG, "°/s²"),
     "N": (1e-3, " kN"),
     "m/s^2": (600.0, " m/s in ten minutes"),
 }

@@ -11,15 +11,16 @@ import numpy as np
 from ..arrays import FloatArray
 from ..backends import STATES, Integrator, get_backend
 from ..components import split_name
-from ..effects import Effect
+from ..effects import Effect, Visited
 from ..fitting.box import Box, base_of, choose_targets, group_of, make_box
 from ..fitting.least_squares import LeastSquaresResult, solve
+from ..fitting.one_sided import followers, tied
 from ..fitting.problem import FitProblem
 from ..model import Model
 from ..objective import Objective, cases_of
 from ..options import DiagnoseOptions
 from ..profile import ShipProfile, with_all_effects
-from ..trial import Trial
+from ..trial import Coverage, Trial, visited_by
 from ..trial.kinematics import white_noise
 from .noise import NoiseModel, white
 from .runs import between, labels_of
@@ -76,6 +77,11 @@ class Workbench:
     spreads: dict[str, float] = field(default_factory=dict)
     refits: int = field(default=0)
 
+    @cached_property
+    def visited(self) -> Visited:
+        """What the trials visit."""
+        return visited_by(self.trials, self.model.L_pp)
+
     @property
     def channels(self) -> tuple[str, ...]:
         """Motion channels that count."""
@@ -97,7 +103,7 @@ class Workbench:
     def _quick_model(self) -> Model:
         left_out = {effect.kind for effect in self._on_demand}
         sections = {kind: s for kind, s in self.model.profile.sections.items() if kind not in left_out}
-        return Model(replace(self.model.profile, sections=sections))
+        return Model(replace(self.model.profile, sections=sections), self.model.ties)
 
     def sub_box(self, names: Sequence[str]) -> Box:
         """The box of some of its names, in their order."""
@@ -170,7 +176,8 @@ class Workbench:
         profile = self.model_of(point.names).profile
         sections = dict(profile.sections)
         own = labels_of(trial) if trial is not None else frozenset()
-        for name, value in self.values(point).items():
+        values = self.values(point)
+        for name, value in (values | followers(self.model.ties, values)).items():
             if group_of(name) and group_of(name) not in own:
                 continue
             kind, symbol = split_name(base_of(name))
@@ -199,9 +206,10 @@ def make_workbench(
     names  parameters of effects that will be fitted, besides the targets
     Raises OptionError for targets, box or channels that make no sense.
     """
-    model = Model(with_all_effects(profile))
     own = Model(profile)
     targets = choose_targets(own, options.targets, options.fixed)
+    targets, ties = tied(profile, targets, Coverage.of(trials, own.L_pp))
+    model = Model(with_all_effects(profile), ties)
     sigma = noise_levels(trials)
     channels = [c for c in STATES if not options.channels or c in {"v_m" if o == "v" else o for o in options.channels}]
     objective = Objective(dict(zip(STATES, sigma, strict=True)), dict.fromkeys(channels, 1.0))

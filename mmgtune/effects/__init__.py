@@ -11,16 +11,23 @@ from importlib.metadata import entry_points
 
 from . import (
     antenna,
+    backlash,
     clock_offset,
+    compass_deviation,
     current,
+    dead_time,
     discrepancy,
     flap,
+    governor_lag,
     gyro_bias,
+    gyro_drift,
     gyro_scale,
     heading_bias,
+    heading_filter,
     hull_term,
     loading,
     memory,
+    position_latency,
     propeller_side_force,
     resistance,
     rpm_scale,
@@ -30,6 +37,7 @@ from . import (
     shallow_water,
     speed_scale,
     steering_lag,
+    velocity_filter,
     wave_drift,
     waves,
     wind,
@@ -42,6 +50,7 @@ from .effect import (
     CoefficientsEffect,
     Effect,
     FactorsEffect,
+    FilterEffect,
     FlowEffect,
     ForceEffect,
     LagEffect,
@@ -49,6 +58,7 @@ from .effect import (
     Scale,
     SensorEffect,
 )
+from .visited import Visited
 
 __all__ = [
     "PLACES",
@@ -57,12 +67,14 @@ __all__ = [
     "CoefficientsEffect",
     "Effect",
     "FactorsEffect",
+    "FilterEffect",
     "FlowEffect",
     "ForceEffect",
     "LagEffect",
     "Parameter",
     "Scale",
     "SensorEffect",
+    "Visited",
     "effect_tags",
     "effects",
     "find_effect",
@@ -72,9 +84,12 @@ BUILT_IN: tuple[Effect, ...] = tuple(
     module.EFFECT
     for module in (
         clock_offset,
+        dead_time,
         steering_lag,
+        backlash,
         rudder_gain,
         rudder_offset,
+        governor_lag,
         rpm_scale,
         current,
         wind_drift,
@@ -92,9 +107,14 @@ BUILT_IN: tuple[Effect, ...] = tuple(
         memory,
         antenna,
         heading_bias,
+        compass_deviation,
         speed_scale,
         gyro_scale,
         gyro_bias,
+        position_latency,
+        velocity_filter,
+        heading_filter,
+        gyro_drift,
     )
 )
 """Every effect of this program, in the order of the data flow; those of one place act in this order."""

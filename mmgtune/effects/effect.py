@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, NamedTuple, Protocol
+from typing import Any, ClassVar, Literal, NamedTuple, Protocol
 
 from ..components import Component, Field
 from ..inputs import Role
 from ..physics.quantities import KNOWN, Force, Lanes, State, Surroundings
+from .visited import Visited
 
 
 class Scale(NamedTuple):
@@ -58,7 +59,7 @@ def factor_on_measured(what: str, most: float, typical: float, source: str) -> P
     )
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Effect(Component):
     """An effect: a component of kind "effects.<tag>".  Each place of the data flow has a class of its own below.
 
@@ -67,6 +68,9 @@ class Effect(Component):
     variants   sets of parameters that are searched for together; each set is one hypothesis
     sentence   the cause in words a captain understands, from {parameter: number with unit and interval, as text}
     told_as    pairs of parameters, north and east [SI], told as a size and a direction too: names of these two
+    pivots     parameters about which others are meant, {parameter: its value by ship where the effect is put into a
+               profile}; they are never searched for
+    besides    parameters that a search looks for, and a fit with the effect tunes only where they are named
     absorbed   coefficients of the profile that do the same as a parameter, {parameter: section.symbol}: where that one
                is tuned, the parameter is not searched for
     needs      coefficients the effect changes; it does not apply to a profile without them
@@ -81,6 +85,8 @@ class Effect(Component):
     beyond     what to say where surroundings are beyond what the effect holds for, from {section.symbol: number} and
                the surroundings of samples (n_samples,) each, of voyages those with the least and the largest of
                everything; "" where they are not, None where it holds in any
+    unvisited  what trials would have to visit for a diagnosis to believe in the effect, from {parameter: value fitted}
+               and what they do visit; "" where they visit it, None where any trials will do
     """
 
     place: ClassVar[str]
@@ -88,6 +94,8 @@ class Effect(Component):
     variants: tuple[tuple[str, ...], ...] = ()
     sentence: Callable[[Mapping[str, str]], str] = lambda _: ""
     told_as: Mapping[tuple[str, str], tuple[str, str]] = field(default_factory=dict)
+    pivots: Mapping[str, Callable[[Scale], float]] = field(default_factory=dict)
+    besides: tuple[str, ...] = ()
     absorbed: Mapping[str, str] = field(default_factory=dict)
     needs: tuple[str, ...] = ()
     of_parts: tuple[str, ...] = ()
@@ -98,6 +106,7 @@ class Effect(Component):
     subject: str = ""
     stand_in: tuple[str, ...] = ()
     beyond: Callable[[Mapping[str, float], Surroundings], str] | None = None
+    unvisited: Callable[[Mapping[str, float], Visited], str] | None = None
 
     def __post_init__(self) -> None:
         if (*self.fields, *self.borrowed) != self.params._fields:
@@ -123,13 +132,35 @@ class Effect(Component):
         """The parameters by name."""
         return {name: field for name, field in self.fields.items() if isinstance(field, Parameter)}
 
+    @property
+    def of_the_day(self) -> bool:
+        """Whether it is of the trials, not of the ship: current, wind, shallow water, errors of clocks and sensors."""
+        return self.place in ("clock", "filter", "flow", "sensor") or bool(self.of_measured)
 
-@dataclass(frozen=True, kw_only=True)
+    @property
+    def plain(self) -> dict[str, Parameter]:
+        """Those that stand for the effect where nothing more is said: all but pivots and those beside."""
+        return {name: one for name, one in self.parameters.items() if name not in {*self.pivots, *self.besides}}
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
 class ClockEffect(Effect):
-    """When the logged inputs acted: its first parameter is how late their log is [s]; simulators sample accordingly."""
+    """When logged inputs acted: its first parameter is a time [s], and simulators sample the log accordingly.
+
+    of    role of the inputs it is about; None for all of them
+    late  who is late by that time: "log", which is a matter of the record alone, or "ship", which then answers late to
+          every order, also where nothing is logged
+    """
 
     place = "clock"
     function: None = None
+    of: Role | None = None
+    late: Literal["log", "ship"] = "log"
+
+    @property
+    def of_the_day(self) -> bool:
+        """See ``Effect``; a ship that answers late does so on any day."""
+        return self.late == "log"
 
 
 class ActuatorFunction(Protocol):
@@ -141,7 +172,7 @@ class ActuatorFunction(Protocol):
     def __call__(self, start: Lanes, end: Lanes, before: Lanes, h: Lanes, e: Any, /) -> Lanes: ...
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class ActuatorEffect(Effect):
     """On the way from a logged input to the ship; acts on every input of one role, each by itself."""
 
@@ -156,7 +187,7 @@ class FlowFunction(Protocol):
     def __call__(self, state: State, around: Surroundings, e: Any, /) -> tuple[Lanes, Lanes]: ...
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class FlowEffect(Effect):
     """Water that moves.
 
@@ -174,7 +205,7 @@ class CoefficientsFunction(Protocol):
     def __call__(self, values: Mapping[str, Lanes], e: Any, /) -> Mapping[str, Lanes]: ...
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class CoefficientsEffect(Effect):
     """Other coefficients than the profile's; acts before any run."""
 
@@ -188,7 +219,7 @@ class FactorsFunction(Protocol):
     def __call__(self, around: Surroundings, e: Any, /) -> tuple[Lanes, ...]: ...
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class FactorsEffect(Effect):
     """Coefficients that change on the way, with what is measured around the ship.
 
@@ -211,7 +242,7 @@ class ForceFunction(Protocol):
     def __call__(self, state: State, around: Surroundings, found: Any, components: Any, p: Any, e: Any, /) -> Force: ...
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class ForceEffect(Effect):
     """A further force."""
 
@@ -231,7 +262,7 @@ class StartFunction(Protocol):
     def __call__(self, found: Any, e: Any, /) -> tuple[Lanes, ...]: ...
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class LagEffect(Effect):
     """A force with a memory: any part of the breakdown, remembered in states that the integrator carries along.
 
@@ -250,13 +281,44 @@ class SensorFunction(Protocol):
     def __call__(self, state: State, e: Any, /) -> State: ...
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class SensorEffect(Effect):
     """Between the motion and its log; ``inverse`` leads back."""
 
     place = "sensor"
     function: SensorFunction
     inverse: SensorFunction
+
+
+class FilterFunction(Protocol):
+    """What an instrument logs at the end of a step of h [s], and what it remembers then.
+
+    start and end are what reaches it at the ends of the step, held is what it remembered at the beginning.
+    """
+
+    def __call__(self, start: State, end: State, held: Any, h: Lanes, e: Any, /) -> tuple[State, tuple[Lanes, ...]]: ...
+
+
+class SettledFunction(Protocol):
+    """What an instrument logs of a motion that has lasted, and what it remembers then."""
+
+    def __call__(self, state: State, e: Any, /) -> tuple[State, tuple[Lanes, ...]]: ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class FilterEffect(Effect):
+    """Between what sensors show and the log, with a memory: what averages, is late or drifts.
+
+    settled  what it logs at the first sample, before which the motion has lasted (assumption)
+    inverse  leads back from there
+    states   names of what it remembers, in the order of ``held``
+    """
+
+    place = "filter"
+    function: FilterFunction
+    settled: SettledFunction
+    inverse: SensorFunction
+    states: tuple[str, ...] = ()
 
 
 EFFECTS_BY_PLACE: tuple[type[Effect], ...] = (
@@ -268,6 +330,7 @@ EFFECTS_BY_PLACE: tuple[type[Effect], ...] = (
     ForceEffect,
     LagEffect,
     SensorEffect,
+    FilterEffect,
 )
 """Kinds of effects in the order of the data flow."""
 

@@ -4,7 +4,12 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from ..physics.quantities import Lanes
+from ..units import DEG
 from .effect import CoefficientsEffect, Parameter
+from .visited import Visited
+
+LARGE = 15.0 * DEG
+"""Rudder angle [rad] from which a flap that turns in another way is more than another gain of the rudder."""
 
 
 class Flap(NamedTuple):
@@ -16,6 +21,14 @@ class Flap(NamedTuple):
 def flap(values: Mapping[str, Lanes], e: Flap) -> dict[str, Lanes]:
     """Flap angles of the profile's table, times factor [-]."""
     return {name: value * e.factor for name, value in values.items() if name.startswith("rudder.flap[")}
+
+
+def unvisited(found: Mapping[str, float], visited: Visited) -> str:
+    """Large rudder angles: at small ones lift is linear in both angles."""
+    if visited.largest_rudder > LARGE:
+        return ""
+    most = visited.largest_rudder / DEG
+    return f"rudder angles beyond {LARGE / DEG:.0f} deg (these go to {most:.0f} deg)"
 
 
 EFFECT = CoefficientsEffect(
@@ -37,6 +50,7 @@ EFFECT = CoefficientsEffect(
         )
     },
     variants=(("factor",),),
+    unvisited=unvisited,
     sentence=lambda v: f"The flap turned by {v['factor']} times the angle the profile gives it",
     needs=("rudder.flap[0]",),
 )

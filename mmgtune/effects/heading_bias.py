@@ -12,23 +12,39 @@ class HeadingBias(NamedTuple):
     """See the parameters below."""
 
     angle: Lanes
+    alone: Lanes
 
 
-def _turned(state: State, psi: Lanes, angle: Lanes) -> State:
-    """The same motion with another heading, its velocities in axes turned by ``angle`` [rad]."""
-    u, v_m = to_ship(angle, state.u, state.v_m)
-    return State(x=state.x, y=state.y, psi=psi, u=u, v_m=v_m, r=state.r)
+def heading_shown(state: State, turned: Lanes, alone: Lanes) -> State:
+    """The heading off by two angles [rad]; the velocity over ground is logged in axes turned by the first of them."""
+    u, v_m = to_ship(turned, state.u, state.v_m)
+    return State(x=state.x, y=state.y, psi=state.psi + turned + alone, u=u, v_m=v_m, r=state.r)
 
 
 def heading_bias(state: State, e: HeadingBias) -> State:
-    """Heading shown = heading + angle; the ground velocity is logged in the axes of the heading shown."""
-    return _turned(state, state.psi + e.angle, e.angle)
+    """Heading shown = heading + angle; the velocity over ground is logged in the axes of the heading shown, but for
+    the part of the angle that is of the heading alone."""
+    return heading_shown(state, e.angle, e.alone)
 
 
 def heading_bias_inverse(logged: State, e: HeadingBias) -> State:
     """Motion in the ship's own axes from what was logged."""
-    return _turned(logged, logged.psi - e.angle, -e.angle)
+    return heading_shown(logged, -e.angle, -e.alone)
 
+
+def _angle(words: str) -> Parameter:
+    return Parameter(
+        f"heading shown less true heading, {words}",
+        "rad",
+        low=-3.2,
+        high=3.2,
+        bounds=lambda _: (-15.0 * DEG, 15.0 * DEG),
+        typical=lambda _: 1.0 * DEG,
+        bounds_source="beyond 15 deg anyone would see it",
+    )
+
+
+_WORDS = {"angle": "{} too much (negative: too little)", "alone": "{} too much, velocities being logged in true axes"}
 
 EFFECT = SensorEffect(
     kind="effects.heading-bias",
@@ -39,16 +55,12 @@ EFFECT = SensorEffect(
     inverse=heading_bias_inverse,
     cites=(),
     fields={
-        "angle": Parameter(
-            "heading shown less true heading",
-            "rad",
-            low=-3.2,
-            high=3.2,
-            bounds=lambda _: (-15.0 * DEG, 15.0 * DEG),
-            typical=lambda _: 1.0 * DEG,
-            bounds_source="beyond 15 deg anyone would see it",
-        )
+        "angle": _angle("in whose axes velocities are logged"),
+        "alone": _angle("velocities being logged in the ship's own axes"),
     },
-    variants=(("angle",),),
-    sentence=lambda v: f"The compass showed {v['angle']} too much (negative: too little)",
+    variants=(("angle",), ("alone",)),
+    besides=("alone",),
+    sentence=lambda v: (
+        "The compass showed " + " and ".join(_WORDS[name].format(v[name]) for name in _WORDS if name in v)
+    ),
 )

@@ -1,5 +1,6 @@
 """The flow around the hull takes time to follow the motion."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -15,6 +16,8 @@ class Memory(NamedTuple):
     """See the parameters below."""
 
     time_constant: Lanes
+    sway: Lanes
+    yaw: Lanes
 
 
 def settled(found: Forces, e: Memory) -> tuple[Lanes, Lanes]:
@@ -25,16 +28,46 @@ def settled(found: Forces, e: Memory) -> tuple[Lanes, Lanes]:
 def memory(found: Forces, behind: tuple[Lanes, Lanes], h: Lanes, e: Memory) -> tuple[Force, tuple[Lanes, Lanes]]:
     """Hull side force and moment as first-order lags of the model's: dY/dt = (Y_H - Y) / T.
 
+    The time constant of each is the one of both and its own together (assumption: a lag of first order, as a wake that
+    is washed out).
     -> Force that is added to the model's; dY/dt [N/s], dN/dt [N m/s].
     """
     hull = found.hull
     Y, N = behind
     shortest = np.maximum(STIFF * h, 1e-9)
-    T = np.maximum(e.time_constant, shortest)
-    share = np.minimum(e.time_constant / shortest, 1.0)
-    behind_Y = Y - hull.Y
-    behind_N = N - hull.N
-    return Force(X=0.0 * hull.X, Y=share * behind_Y, N=share * behind_N), (-behind_Y / T, -behind_N / T)
+    T_Y, T_N = e.time_constant + e.sway, e.time_constant + e.yaw
+    behind_Y, behind_N = Y - hull.Y, N - hull.N
+    more = Force(
+        X=0.0 * hull.X,
+        Y=np.minimum(T_Y / shortest, 1.0) * behind_Y,
+        N=np.minimum(T_N / shortest, 1.0) * behind_N,
+    )
+    return more, (-behind_Y / np.maximum(T_Y, shortest), -behind_N / np.maximum(T_N, shortest))
+
+
+def _constant(words: str) -> Parameter:
+    return Parameter(
+        f"time constant of {words}",
+        "s",
+        low=-1e-12,
+        bounds=lambda ship: (0.0, 1.5 * ship.L / ship.U),
+        typical=lambda ship: 0.2 * ship.L / ship.U,
+        bounds_source="the time of one and a half ship lengths",
+    )
+
+
+_BOTH = "side force and yaw moment followed the motion with a time constant of {}"
+_OWN = {"sway": "side force", "yaw": "yaw moment"}
+
+
+def _said(v: Mapping[str, str]) -> str:
+    own = [(what, v[name]) for name, what in _OWN.items() if name in v]
+    if "time_constant" not in v:
+        return "The hull's " + " and its ".join(
+            f"{what} followed the motion with a time constant of {T}" for what, T in own
+        )
+    more = [f", its {what} with another {T}" for what, T in own]
+    return "The hull's " + _BOTH.format(v["time_constant"]) + "".join(more)
 
 
 EFFECT = LagEffect(
@@ -48,15 +81,11 @@ EFFECT = LagEffect(
     on_demand=True,
     cites=(),
     fields={
-        "time_constant": Parameter(
-            "time constant of the hull's side force and yaw moment",
-            "s",
-            low=-1e-12,
-            bounds=lambda ship: (0.0, 1.5 * ship.L / ship.U),
-            typical=lambda ship: 0.2 * ship.L / ship.U,
-            bounds_source="the time of one and a half ship lengths",
-        )
+        "time_constant": _constant("the hull's side force and yaw moment"),
+        "sway": _constant("the side force alone, beside that of both"),
+        "yaw": _constant("the yaw moment alone, beside that of both"),
     },
-    variants=(("time_constant",),),
-    sentence=lambda v: f"The hull's forces followed the motion with a time constant of {v['time_constant']}",
+    variants=(("time_constant",), ("sway",), ("yaw",)),
+    besides=("sway", "yaw"),
+    sentence=_said,
 )

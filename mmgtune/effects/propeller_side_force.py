@@ -5,6 +5,10 @@ from typing import NamedTuple
 
 from ..physics.quantities import Lanes
 from .effect import CoefficientsEffect, Parameter
+from .visited import Visited
+
+LOADS = 0.1
+"""Share by which u / n must vary: at one load of the propeller its side force is any steady force."""
 
 
 class PropellerSideForce(NamedTuple):
@@ -32,6 +36,13 @@ def _factor(what: str) -> Parameter:
     )
 
 
+def unvisited(found: Mapping[str, float], visited: Visited) -> str:
+    """More than one load of the propeller."""
+    if visited.varies(visited.advance) > LOADS:
+        return ""
+    return f"loads of the propeller (u/n) that differ by {100.0 * LOADS:.0f} %, as in a tight turn or at other speeds"
+
+
 EFFECT = CoefficientsEffect(
     kind="effects.propeller-side-force",
     tag="propeller-side-force",
@@ -41,6 +52,7 @@ EFFECT = CoefficientsEffect(
     cites=(),
     fields={"force": _factor("side force"), "moment": _factor("yaw moment")},
     variants=(("force", "moment"),),
+    unvisited=unvisited,
     sentence=lambda v: (
         f"The propeller pushed the stern sideways by {v['force']} times the profile's force"
         f" and {v['moment']} times its moment"

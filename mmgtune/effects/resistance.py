@@ -1,12 +1,18 @@
 """Resistance going straight differs from the model's, by a factor or in how it grows with speed."""
 
+import math
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..physics.constants import GRAVITY
 from ..physics.quantities import Flow, Force, Forces, Lanes, State, Surroundings
-from .effect import ForceEffect, Parameter
+from .effect import ForceEffect, Parameter, Scale
+from .visited import Visited
+
+SPEEDS = 0.1
+"""Share by which speed must vary to say how something grows with it."""
 
 
 class Resistance(NamedTuple):
@@ -14,18 +20,31 @@ class Resistance(NamedTuple):
 
     factor: Lanes
     slope: Lanes
+    pivot: Lanes
 
 
 def resistance(state: State, around: Surroundings, found: Forces, components: Any, p: Any, e: Resistance) -> Force:
-    """Surge force [N] that makes the model's resistance coefficient R_0' into R_0' (factor + slope Fn).
+    """Surge force [N] that makes the model's resistance coefficient R_0' into R_0' (factor + slope (Fn - Fn_pivot)).
 
-    The model's own resistance is asked of its hull at the same speed without drift and yaw, so that any hull will do.
+    The factor is that at the pivot, so that a slope leaves the level there alone.  The model's own resistance is asked
+    of its hull at the same speed without drift and yaw, so that any hull will do.
     """
-    Fn = found.flow.U / np.sqrt(GRAVITY * p.ship.L_pp)
+    Fn = (found.flow.U - e.pivot) / np.sqrt(GRAVITY * p.ship.L_pp)
     zero = 0.0 * Fn
     straight = Flow(u=found.flow.u, v_m=zero, r=zero, U=found.flow.U, beta=zero, v_=zero, r_=zero)
     X = (e.factor - 1.0 + e.slope * Fn) * components.hull(straight, p.ship, p.hull).X
     return Force(X=X, Y=zero, N=zero)
+
+
+def _froude(ship: Scale) -> float:
+    return ship.U / math.sqrt(GRAVITY * ship.L)
+
+
+def unvisited(found: Mapping[str, float], visited: Visited) -> str:
+    """More than one speed, for how the coefficient grows with it."""
+    if "slope" not in found or visited.varies(visited.speed) > SPEEDS:
+        return ""
+    return f"speeds that differ by {100.0 * SPEEDS:.0f} %"
 
 
 _WORDS = {"factor": "it was {} times as large", "slope": "its coefficient grew by {} per unit of Froude number"}
@@ -49,12 +68,15 @@ EFFECT = ForceEffect(
         ),
         "slope": Parameter(
             "change of that factor per unit of Froude number",
-            bounds=lambda _: (-10.0, 20.0),
-            typical=lambda _: 1.0,
-            bounds_source="resistance coefficient three times as large at Fn 0.1",
+            bounds=lambda ship: (-1.2 / _froude(ship), 1.2 / _froude(ship)),
+            typical=lambda ship: 0.1 / _froude(ship),
+            bounds_source="a coefficient that is gone at rest, or twice as large, and a fifth beyond",
         ),
+        "pivot": Parameter("speed at which the factor holds, whatever the slope", "m/s", low=-1e-12),
     },
+    pivots={"pivot": lambda ship: ship.U},
     variants=(("factor",), ("slope",)),
+    unvisited=unvisited,
     on_demand=True,
     absorbed={"factor": "hull.R_0"},
     sentence=lambda v: (

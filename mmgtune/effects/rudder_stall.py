@@ -1,5 +1,6 @@
 """The rudder stalls: beyond an inflow angle its force grows no more."""
 
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -8,6 +9,11 @@ from ..physics.elementary import sin, where
 from ..physics.quantities import Force, Lanes, State, Surroundings
 from ..units import DEG
 from .effect import ForceEffect, Parameter
+from .visited import Visited
+
+LEAST = 15.0 * DEG
+"""Least inflow angle [rad] at which a ship's rudder is taken to stall (assumption): of aspect ratios of 1 to 2 they
+hold on to about 20 deg in free flow, and longer behind a propeller."""
 
 
 class RudderStall(NamedTuple):
@@ -24,6 +30,14 @@ def rudder_stall(state: State, around: Surroundings, found: Any, components: Any
     lost = np.minimum(lost, 0.0)
     force = found.rudder.force
     return Force(X=lost * force.X, Y=lost * force.Y, N=lost * force.N)
+
+
+def unvisited(found: Mapping[str, float], visited: Visited) -> str:
+    """Rudder angles beyond that of the stall."""
+    needed = max(found["angle"], LEAST)
+    if visited.largest_rudder > needed:
+        return ""
+    return f"rudder angles beyond {needed / DEG:.0f} deg (these go to {visited.largest_rudder / DEG:.0f} deg)"
 
 
 EFFECT = ForceEffect(
@@ -47,5 +61,6 @@ EFFECT = ForceEffect(
     },
     of_parts=("rudder",),
     variants=(("angle",),),
+    unvisited=unvisited,
     sentence=lambda v: f"The rudder stalled at an inflow angle of {v['angle']}",
 )

@@ -9,6 +9,10 @@ from ..physics.elementary import where
 from ..physics.quantities import Lanes, Surroundings
 from ..physics.regressions.kijima1990 import LEAST, ShallowRatios, shallow_ratios
 from .effect import FactorsEffect, Parameter, factor_on_measured
+from .visited import Visited
+
+TURNING = 0.1
+"""Least r L / U [-] at which derivatives of the hull show."""
 
 AFLOAT = 1.05
 """Depth over draught [-] that measured depths count as where they are less: the formulas have no end there."""
@@ -47,6 +51,13 @@ def beyond(values: Mapping[str, float], around: Surroundings) -> str:
     return f"water is down to {over:.3g} draughts deep, and the formulas of shallow water hold down to {LEAST:g}"
 
 
+def unvisited(found: Mapping[str, float], visited: Visited) -> str:
+    """Turning: what changes are derivatives by drift and yaw."""
+    if visited.span(np.abs(visited.rate))[1] > TURNING:
+        return ""
+    return f"a ship that turns, with r L/U beyond {TURNING:g}"
+
+
 EFFECT = FactorsEffect(
     kind="effects.shallow-water",
     tag="shallow-water",
@@ -71,6 +82,7 @@ EFFECT = FactorsEffect(
     },
     borrowed={name: f"particulars.{name}" for name in ("L_pp", "B", "d", "C_b")},
     variants=(("depth",), ("measured",)),
+    unvisited=unvisited,
     sentence=lambda v: (
         f"The depth measured in the trials acts on the ship, her draught over it times {v['measured']}"
         if "measured" in v

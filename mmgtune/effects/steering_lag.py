@@ -4,12 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..physics.elementary import exp, where
+from ..physics.elementary import where
+from ..physics.following import INSTANT, followed
 from ..physics.quantities import Lanes
 from .effect import ActuatorEffect, Parameter
-
-INSTANT = 1e-3
-"""Time constant [s] up to which the blade counts as following at once."""
 
 
 class SteeringLag(NamedTuple):
@@ -22,16 +20,10 @@ class SteeringLag(NamedTuple):
 def steering_lag(start: Lanes, end: Lanes, before: Lanes, h: Lanes, e: SteeringLag) -> Lanes:
     """Blade angle after a step of h [s], for an order that changes linearly over the step.
 
-    Exact for a first-order lag of time constant T: once transients have gone, the blade trails an order of slope a
-    by a T.  The rate limit then cuts the change.
+    Exact for a first-order lag; the rate limit then cuts the change.
     """
-    slow = e.time_constant > INSTANT
-    T = np.maximum(e.time_constant, INSTANT)
-    step = np.maximum(h, INSTANT)
-    left = where(slow, exp(-h / T), 0.0)
-    trail = where(slow, (end - start) / step * T, 0.0)
-    goal = end - trail + (before - start + trail) * left
-    most = e.rate_limit * step
+    goal = followed(start, end, before, h, e.time_constant)
+    most = e.rate_limit * np.maximum(h, INSTANT)
     change = goal - before
     limited = before + np.minimum(np.maximum(change, -most), most)
     return where(np.abs(change) > most, limited, goal)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 from ..components import ABOVE_WATER, SHIP, Field, find
@@ -26,7 +27,7 @@ from ..physics.regressions.formula import Formula, ratios
 from ..profile import Approach, Coefficient, Section, ShipProfile, SteeringGear, with_effects
 from ..profile.reading import with_wind_coefficients
 from .defaults import Complete
-from .particulars import Particulars
+from .particulars import Particulars, read_particulars
 from .propulsion import Propulsion, propulsion
 from .scatter import HELD, SCATTER, scatter_of
 
@@ -64,15 +65,18 @@ _DERIVATIVES: dict[str, tuple[Formula, Formula]] = {
 """Formulas of the linear and of the nonlinear hull derivatives."""
 
 
-def estimate(ship: Particulars, options: EstimateOptions = EstimateOptions()) -> ShipProfile:
+def estimate(ship: Particulars | str | Path, options: EstimateOptions = EstimateOptions()) -> ShipProfile:
     """A profile of a ship by published formulas.
+
+    ship  particulars: an object, a path or a bundled name
 
     Each coefficient says its formula and the range of that, has the scatter of ships about it where one is known, and a
     warning with the numbers where this ship is outside the range.  Targets of a fit are the coefficients with a scatter
     but for the added masses.  The approach is at self-propulsion.  Raises ProfileError where a formula gives an
     impossible number, as it may far outside its range.
     """
-    return _Estimate(ship, options).profile()
+    found = read_particulars(ship) if isinstance(ship, (str, Path)) else ship
+    return _Estimate(found, options).profile()
 
 
 class _Estimate:

@@ -2,7 +2,7 @@
 
 from ..options import METHODS, FitOptions, LeaveOutOptions, SweepOptions
 from .folder import claimed, prepare, refuse_taken, write_document, write_run
-from .leaving_out import LeftOut, leave_out, write_left_out
+from .leaving_out import BandsLeftOut, LeftOut, leave_out, write_left_out
 from .planning import Plan, plan_fit, plan_leave_out, plan_sweep
 from .result import FitResult
 from .run import Hooks, fit, in_pieces, make_problem
@@ -10,6 +10,7 @@ from .sweeping import SweepResult, sweep
 
 __all__ = [
     "METHODS",
+    "BandsLeftOut",
     "FitOptions",
     "FitResult",
     "Hooks",

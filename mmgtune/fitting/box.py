@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from ..arrays import FloatArray, IntArray
 from ..components import split_name
+from ..displayed import Brief
 from ..effects import Parameter
 from ..errors import OptionError, Problem, closest
 from ..model import Model
@@ -48,8 +49,8 @@ def group_of(name: str) -> str:
     return name.partition(AT)[2]
 
 
-@dataclass(frozen=True, eq=False)
-class Box:
+@dataclass(frozen=True, eq=False, repr=False)
+class Box(Brief):
     """Targets by name with their pre-determined values, (n_targets,), in profile units, and bounds.
 
     Searches work in the unit cube: 0 at the lower bound, 1 at the upper.

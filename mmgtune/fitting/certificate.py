@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray
+from ..displayed import Brief
 from .cmaes import Restart
 from .least_squares import LeastSquaresResult
 from .problem import FitProblem
@@ -25,8 +26,8 @@ class ActiveBound:
     gain_per_percent: float
 
 
-@dataclass(frozen=True, eq=False)
-class Certificate:
+@dataclass(frozen=True, eq=False, repr=False)
+class Certificate(Brief):
     """Agreement of independent searches on J, and the conditions of a bounded minimum.
 
     projected_gradient  largest slope of J along a free target, over its box width, relative to J [-]

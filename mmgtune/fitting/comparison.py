@@ -10,6 +10,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..backends import STATES
+from ..displayed import inert
 from ..evaluation import TrialRecord, evaluate
 from ..objective import Objective
 from ..simulation import Motion
@@ -51,7 +52,9 @@ class TrialComparison:
 
     def __repr__(self) -> str:
         """In a line."""
-        return f"TrialComparison({self.trial.id}, {self.role}: J {self.J['before']:.4g} -> {self.J['after']:.4g})"
+        return (
+            f"TrialComparison({inert(self.trial.id)}, {self.role}: J {self.J['before']:.4g} -> {self.J['after']:.4g})"
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON; a J that is not finite becomes null."""

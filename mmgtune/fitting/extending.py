@@ -88,8 +88,8 @@ def with_effects(profile: ShipProfile, options: T) -> tuple[ShipProfile, T]:
                 )
             )
         if effect.kind not in profile.sections:
-            added[tag] = {name: parameter.null for name, parameter in effect.parameters.items()}
-        names += [f"{effect.kind}.{name}" for name, parameter in effect.parameters.items() if not parameter.choices]
+            added[tag] = {name: parameter.null for name, parameter in effect.plain.items()}
+        names += [f"{effect.kind}.{name}" for name, parameter in effect.plain.items() if not parameter.choices]
     targets = tuple(dict.fromkeys((*(options.targets or profile.targets), *names)))
     if targets != (options.targets or profile.targets):
         options = replace(options, targets=targets)

@@ -8,6 +8,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray
+from ..displayed import Brief
 from .combinations import COMBINATIONS
 from .problem import FitProblem
 from .whitening import estimate_whitening
@@ -29,8 +30,8 @@ class Undetermined(NamedTuple):
     words: str
 
 
-@dataclass(frozen=True)
-class NullDirection:
+@dataclass(frozen=True, repr=False)
+class NullDirection(Brief):
     """Coefficients that can be traded against each other without changing any simulated motion.
 
     weights  relative change of each member [%] for one step of 1 % of the first
@@ -60,8 +61,8 @@ class KnownCombination:
     stderr: float
 
 
-@dataclass(frozen=True, eq=False)
-class Identifiability:
+@dataclass(frozen=True, eq=False, repr=False)
+class Identifiability(Brief):
     """Result of the analysis at one point.
 
     names            targets, the order of everything below

@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..arrays import BoolArray, FloatArray
+from ..displayed import Brief
 from .initial import LARGEST
 from .journal import remembered
 from .problem import FitProblem
@@ -29,8 +30,8 @@ AHEAD = 0.1
 """Share of a step at which its second derivative is taken."""
 
 
-@dataclass(frozen=True, eq=False)
-class LeastSquaresResult:
+@dataclass(frozen=True, eq=False, repr=False)
+class LeastSquaresResult(Brief):
     """Where one start ended.
 
     unit        (n_targets,) position in the unit cube

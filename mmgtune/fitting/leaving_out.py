@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ..bands import Pooled
 from ..circumstances import notes_on
+from ..displayed import Displayed
 from ..files import write_text
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..model import Model
@@ -23,12 +25,13 @@ from ..profile.doubts import Doubt, in_words
 from ..repeating import Repeated, document, repeat
 from ..stated import IndexComparison, compare_stated
 from ..threads import blas_on_one_thread
-from ..trial import Trial, TrialSet
-from ..validation import L_MSE, TrialScore, by_manoeuvre, improvement, score
+from ..trial import Coverage, Trial, TrialSet
+from ..validation import L_MSE, L_MSE_by_state, TrialScore, by_manoeuvre, improvement, score
 from .comparison import finite, finite_values
 from .extending import held_words, settled, tune_trials
 from .journal import finished, journalled
 from .least_squares import solve
+from .one_sided import coverage_notes
 from .robust import weigh_down
 from .run import (
     Hooks,
@@ -63,7 +66,29 @@ def leaving_out(trials: TrialSet, folds: int = 0) -> Iterator[tuple[tuple[str, .
 
 
 @dataclass(frozen=True, eq=False)
-class LeftOut:
+class BandsLeftOut:
+    """Bands against runs that their particles have not seen.
+
+    by_kind  all together under "", and each kind of manoeuvre; empty where no part was finished
+    by_run   each run
+    parts    number of parts whose bands were drawn
+    """
+
+    by_kind: Mapping[str, Pooled]
+    by_run: Mapping[str, Pooled]
+    parts: int
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "parts": self.parts,
+            "by_manoeuvre": {kind or "all": of.to_dict() for kind, of in self.by_kind.items()},
+            "by_run": {run: of.to_dict() for run, of in self.by_run.items()},
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class LeftOut(Displayed):
     """Every tune trial scored by coefficients that were fitted without its run.
 
     thetas   for each part of the runs, values by name in profile units
@@ -75,6 +100,7 @@ class LeftOut:
     interrupted  stopped by the user; scores are of the parts finished by then
     weight   of what is known beforehand, found with all runs; None where J is all
     warnings what a reader must know first; doubts: which of the profile's numbers may be wrong
+    bands    of each part from the other runs, where asked for: ``posterior.leave_out_with_bands``
     """
 
     thetas: tuple[dict[str, float], ...]
@@ -94,6 +120,7 @@ class LeftOut:
     L_pp: float = 1.0
     warnings: tuple[str, ...] = ()
     doubts: tuple[Doubt, ...] = ()
+    bands: BandsLeftOut | None = None
 
     @property
     def method(self) -> str:
@@ -118,7 +145,7 @@ class LeftOut:
         groups = {"": (self.before, self.after)}
         after = by_manoeuvre(self.after)
         groups |= {kind: (tuple(of), tuple(after[kind])) for kind, of in by_manoeuvre(self.before).items() if kind}
-        return [_row(kind, old, new) for kind, (old, new) in groups.items()]
+        return [_row(kind, old, new, self.sigma) for kind, (old, new) in groups.items()]
 
     def stated_rms(self) -> dict[str, float]:
         """Root mean square of what stated indices are off by, in tolerances, before and left out."""
@@ -152,6 +179,8 @@ class LeftOut:
             found["stated_rms"] = {which: finite(value) for which, value in self.stated_rms().items()}
         if self.weight:
             found["weight"] = self.weight.to_dict()
+        if self.bands:
+            found["bands"] = self.bands.to_dict()
         if self.options.manoeuvres:
             found["manoeuvres"] = {
                 "before": document(self.repeated_before),
@@ -160,7 +189,9 @@ class LeftOut:
         return found
 
 
-def _row(kind: str, before: Sequence[TrialScore], after: Sequence[TrialScore]) -> dict[str, Any]:
+def _row(
+    kind: str, before: Sequence[TrialScore], after: Sequence[TrialScore], sigma: Mapping[str, float]
+) -> dict[str, Any]:
     share, interval = improvement(before, after)
     return {
         "manoeuvre": kind or "all",
@@ -169,8 +200,20 @@ def _row(kind: str, before: Sequence[TrialScore], after: Sequence[TrialScore]) -
         "L_MSE_after": finite(L_MSE(after)),
         "J_before": finite(sum(one.J for one in before)),
         "J_after": finite(sum(one.J for one in after)),
+        **_off(before, sigma, "before"),
+        **_off(after, sigma, "after"),
         "share_removed": finite(share),
         "share_removed_ci95": list(interval) if interval and np.isfinite(interval).all() else None,
+    }
+
+
+def _off(scores: Sequence[TrialScore], sigma: Mapping[str, float], which: str) -> dict[str, float | None]:
+    """Root mean square distance off track [m] and error of heading [deg]; None where it diverged."""
+    squares = {name: part * sigma[name] ** 2 for name, part in L_MSE_by_state(scores).items()}
+    place, heading = (squares.get("x", np.nan) + squares.get("y", np.nan)), squares.get("psi", np.nan)
+    return {
+        f"position_rms_m_{which}": finite(float(np.sqrt(place))),
+        f"heading_rms_deg_{which}": finite(float(np.degrees(np.sqrt(heading)))),
     }
 
 
@@ -290,10 +333,20 @@ def _leave_out(
 def _warnings(model: Model, targets: Sequence[str], trials: TrialSet, options: LeaveOutOptions) -> list[str]:
     """What a reader must know before trusting the numbers."""
     tuned = tune_trials(trials)
+    runs = {trial.run: [one for one in tuned if one.run == trial.run] for trial in tuned}
+    beyond = [
+        f"Left out, {run} goes where the others do not, {words}."
+        for run, own in (runs.items() if len(runs) > 1 else ())
+        for words in Coverage.of([one for one in tuned if one.run != run], model.L_pp).unvisited_by(
+            Coverage.of(own, model.L_pp)
+        )
+    ]
     around = notes_on(model, tuned, free=targets)
     return [
         *(f"{words}." for words in in_words(model.profile.doubts())),
         *(f"{note[0].upper()}{note[1:]}." for note in around),
+        *coverage_notes(model, targets, Coverage.of(tuned, model.L_pp)),
+        *beyond,
         *held_words(model.profile, options, tuned),
     ]
 

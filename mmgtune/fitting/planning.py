@@ -12,6 +12,7 @@ from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..options import FitOptions, LeaveOutOptions, SweepOptions
 from ..profile import ShipProfile
 from ..trial import TrialSet
+from ..units import in_time
 from .box import width_words
 from .cmaes import LAMBDAS
 from .extending import held_words, settled, tune_trials
@@ -38,8 +39,8 @@ class Plan:
 
     def __str__(self) -> str:
         """The lines, and the time."""
-        low, high = (f"{max(1.0, seconds):.2g}" for seconds in self.seconds)
-        return "\n".join([*self.lines, f"time      about {low} to {high} s on this machine"])
+        low, high = (in_time(seconds) for seconds in self.seconds)
+        return "\n".join([*self.lines, f"time      about {low} to {high} on this machine"])
 
 
 def plan_fit(profile: ShipGiven, trials: TrialsGiven, options: FitOptions) -> Plan:

@@ -116,6 +116,8 @@ class FitProblem:
         box = (self.box.names, self.box.low, self.box.high)
         method = (self.model.tags, self.backend.name, self.integrator)
         found: list[Any] = [*box, *method, self.model.base, self.cases.sha256, self.sigma, self.offsets, self.prior]
+        if self.model.ties:
+            found.append(self.model.ties)
         if self.groups:
             found += [sorted(groups) for groups in self.groups]
         if self.terms:

@@ -11,12 +11,14 @@ import numpy as np
 from ..arrays import FloatArray
 from ..circumstances import notes_on
 from ..components import split_name
-from ..model import Model
+from ..displayed import Plotted
+from ..model import Model, Tie
 from ..options import FitOptions
 from ..predictor import words_of
 from ..profile import ShipProfile, tuned
 from ..profile.doubts import in_words
 from ..stated import IndexComparison
+from ..trial import Coverage
 from .box import Box, width_words
 from .certificate import Certificate
 from .cmaes import Generation, Restart
@@ -24,9 +26,13 @@ from .comparison import TrialComparison, finite, finite_values, total
 from .extending import held_words
 from .identifiability import Identifiability
 from .least_squares import LeastSquaresResult
+from .one_sided import coverage_notes, followers
 from .weighing import Weight
 
 SCHEMA = 1
+
+MISSED = 3.0
+"""J of a sample on trials not used for tuning, over that on those that were, from which a fit misses them."""
 
 
 @dataclass(frozen=True)
@@ -63,13 +69,14 @@ class Beside:
 
 
 @dataclass(frozen=True, eq=False)
-class FitResult:
+class FitResult(Plotted):
     """A finished (or interrupted) fit, complete enough to write every output from it.
 
     unit         (n_targets,) position of the tuned values in the box
     provenance   what it was made from: profile, trials with their hashes, command, versions, time
     beside       what was made small beside J; None where J is all
     J_free_start  J of the tuned values if each tune trial started from an estimated state; None where it does
+    ties         coefficients that follow targets, see ``one_sided``
     stated       every stated index beside what the model makes of it
     interrupted  stopped by the user; the values are the best so far
     """
@@ -93,6 +100,7 @@ class FitResult:
     diverged: int
     wall_s: float
     held: tuple[str, ...]
+    ties: tuple[Tie, ...]
     scales: Mapping[str, float]
     channels: tuple[str, ...]
     provenance: Mapping[str, Any]
@@ -112,6 +120,25 @@ class FitResult:
     def theta(self) -> dict[str, float]:
         """Tuned values by name, in profile units."""
         return dict(zip(self.box.names, self.box.from_unit(self.unit).tolist(), strict=True))
+
+    @property
+    def tuned_values(self) -> dict[str, float]:
+        """The same with those of coefficients that are tied to targets."""
+        return self.theta | followers(self.ties, self.theta)
+
+    @property
+    def misses(self) -> bool:
+        """Whether it misses trials not used for tuning: one is worse than before, or J a sample far larger."""
+        tests, tunes = ([one for one in self.compared if one.role == role] for role in ("test", "tune"))
+        if not tests or not tunes:
+            return False
+        each = [sum(one.J["after"] for one in of) / sum(one.trial.n_samples for one in of) for of in (tests, tunes)]
+        return any(one.J["after"] > one.J["before"] for one in tests) or each[0] > MISSED * each[1]
+
+    @property
+    def coverage(self) -> Coverage:
+        """What the trials it was tuned to visit."""
+        return Coverage.of([one.trial for one in self.compared if one.role == "tune"], self.profile.L_pp)
 
     @property
     def at_bound(self) -> list[str]:
@@ -186,6 +213,7 @@ class FitResult:
         trials = [c.trial for c in self.compared]
         around = notes_on(Model(self.profile), trials, self.theta, self.box.names)
         found += [f"{note[0].upper()}{note[1:]}." for note in around]
+        found += coverage_notes(Model(self.profile, self.ties), self.box.names, self.coverage)
         found += held_words(self.profile, self.options, [c.trial for c in self.compared if c.role == "tune"])
         never = sorted({f"{one.name} of {one.trial}" for one in self.stated if one.simulated["after"] is None})
         if never:
@@ -243,7 +271,7 @@ class FitResult:
         told = self.provenance["trials"]
         return tuned(
             self.profile,
-            self.theta,
+            self.tuned_values,
             self.identifiability.stderr,
             {
                 "made_by": f"mmgtune {self.provenance['mmgtune']}",
@@ -252,6 +280,7 @@ class FitResult:
                 "profile": self.profile.id,
                 "profile_sha256": self.profile.sha256,
                 "trials": {whole.get(name, name): sha256 for name, sha256 in told["sha256"].items()},
+                **({"coverage": told["coverage"]} if told.get("coverage") else {}),
                 "tuned_on": list(dict.fromkeys(whole.get(name, name) for name in told["tune"])),
                 "source_of_trials": {whole.get(name, name): source for name, source in told["source"].items()},
                 **({"box": self.box_words()} if self.options.a_r is None else {"a_r": self.options.a_r}),
@@ -285,11 +314,14 @@ class FitResult:
             "J_test": self.J_of("test", "after"),
             "J_tune_before": self.J_of("tune", "before"),
             "J_test_before": self.J_of("test", "before"),
+            "misses": self.misses,
             "theta": finite_values(self.theta),
             "stderr": self.identifiability.stderr,
             "at_bound": self.at_bound,
             "undetermined": list(self.identifiability.undetermined),
             "held": list(self.held),
+            "tied": {tie.name: {"to": tie.to, "ratio": tie.ratio} for tie in self.ties},
+            "coverage": self.coverage.to_dict(),
             "options": {
                 **self.options.to_dict(),
                 "targets": list(self.box.names),

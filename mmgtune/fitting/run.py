@@ -21,7 +21,7 @@ from ..profile import ShipProfile
 from ..provenance import made_by as made_by
 from ..stated import IndexComparison, compare_stated, possible
 from ..threads import blas_on_one_thread
-from ..trial import TrialSet
+from ..trial import Coverage, TrialSet
 from .box import Box, choose_targets, make_box
 from .certificate import certify
 from .checkpoint import EVERY, Checkpoint
@@ -32,6 +32,7 @@ from .identifiability import analyse
 from .initial import deviations
 from .journal import journalled
 from .least_squares import LeastSquaresResult, fit_offsets, solve
+from .one_sided import tied
 from .problem import FitProblem
 from .result import Beside, FitResult
 from .robust import weigh_down
@@ -122,7 +123,10 @@ def make_setting(profile: ShipProfile, trials: TrialSet, options: FitOptions) ->
     Raises OptionError for targets, box or channels that make no sense, and for stated trials the ship cannot be asked
     for.
     """
-    model = Model(profile)
+    coverage = Coverage.of([trials.trials[name] for name in trials.tune], profile.L_pp)
+    names = choose_targets(Model(profile), options.targets, options.fixed)
+    names, ties = (names, ()) if trials.tune_stated else tied(profile, names, coverage)
+    model = Model(profile, ties)
     possible(profile, list(trials.stated.values()))
     if trials.tune_stated and options.method == "cma-es":
         why = "a few numbers leave many sets that fit alike, of which this search takes any"
@@ -133,7 +137,7 @@ def make_setting(profile: ShipProfile, trials: TrialSet, options: FitOptions) ->
     standardised = options.objective == "standardised" and trials.tune
     scales = spread([trials.trials[name] for name in trials.tune]) if standardised else None
     objective = make_objective(model.L_pp, options.channels, options.window, scales=scales, every=options.every)
-    box = make_box(model, choose_targets(model, options.targets, options.fixed), options.a_r)
+    box = make_box(model, names, options.a_r)
     return Setting(
         model,
         trials,
@@ -277,6 +281,7 @@ def _fit(
         diverged=found.diverged if found else 0,
         wall_s=time.perf_counter() - began,
         held=tuple(options.fixed),
+        ties=setting.model.ties,
         scales=setting.objective.scales,
         channels=setting.objective.channels,
         provenance=provenance,
@@ -403,6 +408,7 @@ def make_provenance(profile: ShipProfile, trials: TrialSet, command: str) -> dic
             "citation": trials.citation,
             "tune": [*trials.tune, *trials.tune_stated],
             "test": [*trials.test, *trials.test_stated],
+            "coverage": Coverage.of([trials.trials[name] for name in trials.tune], profile.L_pp).to_dict(),
             "sha256": trials.hashes(),
             "source": {name: trial.source for of in (trials.trials, trials.stated) for name, trial in of.items()},
         },

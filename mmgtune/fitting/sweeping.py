@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from ..displayed import Plotted
 from ..files import write_text
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..options import SweepOptions
@@ -30,7 +31,7 @@ RESULT = "sweep.json"
 
 
 @dataclass(frozen=True, eq=False)
-class SweepResult:
+class SweepResult(Plotted):
     """Fits by rising a_r; of one that was stopped those finished, and the best so far of the one it was at.
 
     leave_one_out  J over trials left out one at a time, per a_r; None where there are test trials to judge by

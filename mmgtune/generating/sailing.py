@@ -85,7 +85,7 @@ def sail(
     states = np.empty((round(seconds / sample) + 1, 6, n_lanes))
     controls, winds = np.empty((len(states), len(inputs), n_lanes)), np.empty((len(states), 2, n_lanes))
     at = np.clip(commander.orders(0.0, start), low, high)
-    run = lanes.start(State(*start), model.arrangement.control(*driven(at)), _around(wind))
+    run = lanes.under_way(State(*start), model.arrangement.control(*driven(at)), _around(wind))
     states[0], controls[0], winds[0] = start, driven(at), wind
     for i in range(1, len(states)):
         for k in range(steps):

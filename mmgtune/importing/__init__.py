@@ -2,7 +2,9 @@
 
 mapping         the map of a log; reading_map: from TOML; checking_map: its contradictions; quantities: what there is
 headers         names and units in logs
-table           columns of a log; text, parquet_log: reading them; clock: time put right
+forms           what kind of file a log is
+table           columns of a log; text, parquet_log, workbook, matlab: reading them; cells: of what is in memory
+clock           time put right; dates, degrees: as people write them
 record          quantities in the program's units, each with its own time; nmea: reading sentences
 digits          made up for where too few are printed; yaw: the heading from its rate; cleaning: spikes
 jumps           records cut where time jumps forward
@@ -12,10 +14,13 @@ conventions     signs and axes a map does not state
 cutting         what is kept of a record, and a pull-out as a trial of its own
 quality         what the result is worth
 importer        all of it
+doubts          what a trial shows of its sensors unasked
+proposing       what columns are, by behaviour and name; proposal: a map of it, tried by the import
 """
 
 from .importer import Imported, import_logs
 from .mapping import LogMap
+from .proposal import Proposal, propose_map
 from .reading_map import load_map, parse_map
 
-__all__ = ["Imported", "LogMap", "import_logs", "load_map", "parse_map"]
+__all__ = ["Imported", "LogMap", "Proposal", "import_logs", "load_map", "parse_map", "propose_map"]

@@ -41,8 +41,15 @@ def check(made: LogMap, reader: TomlReader) -> None:
         reader.problem("'log.fields' is 0", "log", "fields", fix="write how many fields a row has")
     if made.fields and made.header:
         reader.problem("'log.fields' is for logs without a header", "log", "fields", "columns have names there")
-    if made.format == "parquet":
-        _meaningless(reader, "log", ("delimiter", "encoding", "decimal", "skip", "header", "fields"), "Parquet")
+    text = ("delimiter", "encoding", "decimal")
+    meaningless = {
+        "csv": (("sheet", "variable"), "text"),
+        "parquet": ((*text, "skip", "header", "fields", "sheet", "variable"), "Parquet"),
+        "xlsx": ((*text, "variable"), "a workbook"),
+        "mat": ((*text, "skip", "header", "sheet"), "a MATLAB file"),
+    }
+    if made.format in meaningless:
+        _meaningless(reader, "log", *meaningless[made.format])
     if made.time.column is None:
         reader.problem("no column is named for time", "time", fix='write [time] with column = "..." and unit = "s"')
     for name, source in sources.items():

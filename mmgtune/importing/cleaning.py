@@ -31,4 +31,4 @@ def without_spikes(record: Record) -> Record:
             if len(rows):
                 counts[name] = counts.get(name, 0) + len(rows)
         series[name] = replace(one, values=values)
-    return Record(record.path, series, counts, record.notes)
+    return replace(record, series=series, spikes=counts)

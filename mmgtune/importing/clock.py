@@ -12,11 +12,15 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..errors import LogError, Problem
 from ..trial.schema import impossible
+from .dates import ORDERS, Dates, is_date, order_told
 from .mapping import TimeSource
 
 DAY = 86400.0
 OUTLIERS = 3
 """Rows in a row whose stamps may be off while the clock as a whole is right."""
+CLOCK = r"(\d{1,2}):(\d{2})(?::(\d{2}(?:[.,]\d*)?))?(?:\s*([AaPp])\.?[Mm]\.?)?"
+ISO = r"\d{4}-?\d{2}-?\d{2}[T ](?!.*[A-Ya-z]{2}$)"
+"""Beginning of a date that the library reads, which knows no zones by name."""
 
 
 class Stamps:
@@ -27,13 +31,16 @@ class Stamps:
         self.format = source.format
         self.notes: list[str] = []
         self.origin: Any = None
+        self.orders: tuple[str, ...] = ()
+        self.began: dict[str, float] = {}
+        self.ended: dict[str, float] = {}
         self.day = 0.0
         self.last = np.nan
 
     @property
     def clock(self) -> bool:
         """Whether stamps are dates or clocks, so that what is returned is in s."""
-        return self.format in ("iso", "clock")
+        return self.format in ("iso", "clock", "date", *ORDERS)
 
     def of(self, values: Any, rows: IntArray) -> FloatArray:
         """Time (n_rows,) of a pandas column: as printed, or in s from the first stamp; NaN where there is none.
@@ -55,6 +62,8 @@ class Stamps:
             return np.asarray(pd.to_numeric(text, errors="coerce").to_numpy(dtype=np.float64, na_value=np.nan))
         if self.format == "clock":
             return self._clock(text)
+        if self.format in ("date", *ORDERS):
+            return self._dated(text, rows)
         stamps = pd.to_datetime(text.str.replace(",", ".", regex=False), errors="coerce", utc=True, format="ISO8601")
         if stamps.isna().all():
             self._unreadable(text, rows, "as ISO 8601 dates, such as 2024-05-01T10:00:00.5")
@@ -63,11 +72,44 @@ class Stamps:
     def _seen(self, text: Any) -> str:
         known = text.dropna()
         first = known[known != ""]
-        if len(first) and first.str.fullmatch(r"\d{1,2}:\d{2}(:\d{2}([.,]\d*)?)?").mean() > 0.5:
+        if len(first) and first.str.fullmatch(CLOCK).mean() > 0.5:
             return "clock"
-        if len(first) and first.str.match(r"\d{4}-?\d{2}-?\d{2}[T ]").mean() > 0.5:
+        if len(first) and first.str.match(ISO).mean() > 0.5:
             return "iso"
+        if any(is_date(one) for one in first.iloc[:20]):
+            return "date"
         return "number"
+
+    def _dated(self, text: Any, rows: IntArray) -> FloatArray:
+        """Seconds since the first stamp of dates, in the order the map says or the dates show."""
+        dates = Dates(text)
+        if self.format in ORDERS:
+            self.orders = (str(self.format),)
+        else:
+            seen = dates.orders()
+            self.orders = tuple(one for one in (self.orders or ORDERS) if one in seen) if seen else self.orders
+        stamps = {order: dates.since(order) for order in self.orders}
+        if not self.began and not any(np.isfinite(t).any() for t in stamps.values()):
+            self._unreadable(text, rows, "as dates of day, month and year with a time of day")
+        for order, t in stamps.items():
+            known = t[np.isfinite(t)]
+            if len(known):
+                self.began.setdefault(order, float(known[0]))
+        if not self.orders:
+            return np.full(len(text), np.nan)
+        joined = {order: np.concatenate([[self.ended.get(order, np.nan)], t]) for order, t in stamps.items()}
+        order, why = order_told(joined)
+        if not order:
+            place = f"{self.path}, line {rows[0] if len(rows) else 0}"
+            asks = "is the day before the month in the dates, or behind it?"
+            fix = 'say format = "dmy" or format = "mdy" in [time]'
+            raise LogError(Problem(asks, place, f"the first is '{text.iloc[0]}'; {why}", fix))
+        same = "does not matter" in why
+        if len(self.orders) > 1 and not same:
+            self.notes.append(f"dates are read as {order}: {why}")
+            self.orders = (order,)
+        self.ended |= {one: float(t[np.isfinite(t)][-1]) for one, t in stamps.items() if np.isfinite(t).any()}
+        return np.asarray(stamps[order] - self.began[order])
 
     def _since(self, stamps: Any) -> FloatArray:
         if self.origin is None and stamps.notna().any():
@@ -77,9 +119,12 @@ class Stamps:
         return np.asarray((stamps - self.origin).dt.total_seconds().to_numpy(dtype=np.float64))
 
     def _clock(self, text: Any) -> FloatArray:
-        parts = text.str.extract(r"^(\d{1,2}):(\d{2})(?::(\d{2}(?:[.,]\d*)?))?$")
+        parts = text.str.extract(f"^{CLOCK}$")
+        half = parts.pop(3).str.lower()
         parts = parts.apply(lambda one: one.str.replace(",", ".", regex=False)).fillna({2: "0"})
         h, m, s = (parts[k].astype("Float64").to_numpy(dtype=np.float64, na_value=np.nan) for k in range(3))
+        h = np.where(half.notna().to_numpy(dtype=bool), np.mod(h, 12.0), h)
+        h = h + 12.0 * (half == "p").to_numpy(dtype=bool, na_value=False)
         return self.over_midnight(3600.0 * h + 60.0 * m + s)
 
     def over_midnight(self, seconds: FloatArray) -> FloatArray:
@@ -97,7 +142,7 @@ class Stamps:
 
     def _unreadable(self, text: Any, rows: IntArray, how: str) -> None:
         shown = text.iloc[0] if len(text) else ""
-        fix = 'say format = "number", "iso" or "clock" in [time]'
+        fix = 'say format = "number", "iso", "clock", "dmy", "mdy" or "ymd" in [time]'
         place = f"{self.path}, line {rows[0] if len(rows) else 0}"
         raise LogError(Problem(f"time cannot be read {how}", place, f"the first stamp is '{shown}'", fix))
 

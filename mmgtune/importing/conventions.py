@@ -20,6 +20,10 @@ CLEAR = 4.0
 """How many times worse every other reading must fit."""
 
 
+class NoYawRate(LogError):
+    """What a map calls the yaw rate does not follow the heading; that is the first of the problems."""
+
+
 @dataclass(frozen=True)
 class RudderEvidence:
     """How a ship answers her rudder.
@@ -97,7 +101,7 @@ def settle(t: FloatArray, columns: dict[str, FloatArray], log_map: LogMap, measu
     if {"u", "v"} <= measured:
         said += _axes(t, columns, log_map, where, problems)
     if problems:
-        raise LogError(*problems)
+        raise (NoYawRate if "yaw rate" in problems[0].what else LogError)(*problems)
     return said
 
 

@@ -33,7 +33,7 @@ def kept(t: FloatArray, columns: dict[str, FloatArray], log_map: LogMap, where: 
     first, last = 0.0, float(since[-1])
     said = []
     if cut.to:
-        ordered = np.flatnonzero(~_standing({name: columns[name] for name in log_map.inputs}))
+        ordered = np.flatnonzero(~standing({name: columns[name] for name in log_map.inputs}))
         if not len(ordered):
             what = "the record cannot be cut after the last order: propeller and rudder stand at zero throughout"
             fix = f"check the columns of {', '.join(log_map.inputs)}, or leave out [cut] to"
@@ -42,7 +42,16 @@ def kept(t: FloatArray, columns: dict[str, FloatArray], log_map: LogMap, where: 
             idle = last - float(since[ordered[-1]])
             said.append(f"the last {idle:.4g} s were dropped: propeller and rudder stand at zero there")
         last = float(since[ordered[-1]])
-    if cut.begin:
+    if cut.begin == "first-order":
+        ordered = np.flatnonzero(~standing({name: columns[name] for name in log_map.inputs}))
+        if not len(ordered):
+            what = "the record cannot be cut at the first order: propeller and rudder stand at zero throughout"
+            fix = f"check the columns of {', '.join(log_map.inputs)}, or leave out [cut] from"
+            raise LogError(Problem(what, where, fix=fix))
+        first = max(0.0, float(since[ordered[0]]) - cut.lead)
+        if first > 0.0:
+            said.append(f"the first {first:.4g} s were dropped: propeller and rudder stand at zero there")
+    elif cut.begin:
         try:
             execute = find_execute(_track(t, columns))
         except TrialError as error:
@@ -85,7 +94,7 @@ def pull_out(t: FloatArray, columns: dict[str, FloatArray]) -> int | None:
     return first if first >= FEWEST and len(size) - first >= FEWEST else None
 
 
-def _standing(inputs: dict[str, FloatArray]) -> np.ndarray:
+def standing(inputs: dict[str, FloatArray]) -> np.ndarray:
     """(n_samples,) whether nothing drives the ship: no shaft turns, and every rudder is midships."""
     size = {name: np.abs(values) for name, values in inputs.items()}
     limit = {name: MIDSHIPS if INPUTS[name].unit == "rad" else STANDING * size[name].max() for name in inputs}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..arrays import FloatArray
@@ -52,7 +54,7 @@ def with_local_positions(record: Record, log_map: LogMap) -> Record:
         f"origin {origin[0]:.7f}, {origin[1]:.7f} deg ({'from the map' if log_map.origin else 'the first fix'})"
     )
     series |= {"x": Series(latitude.t, x), "y": Series(latitude.t, y)}
-    return Record(record.path, series, record.spikes, [*record.notes, note])
+    return replace(record, series=series, notes=[*record.notes, note])
 
 
 def _near(record: Record, t: FloatArray, x: FloatArray, y: FloatArray) -> None:

@@ -7,7 +7,7 @@ import json
 import re
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -23,18 +23,23 @@ from . import conventions, motion
 from .cleaning import without_spikes
 from .clock import put_right
 from .cutting import kept, pull_out
+from .doubts import fix_in_map
+from .forms import form_of, refuse_binary
 from .geodesy import not_mirrored, with_local_positions
 from .gridding import FEWEST, Grid, on_grid, stretches
 from .jumps import cut_at_jumps
 from .mapping import LogMap
+from .matlab import read_matlab
 from .means import with_mean
 from .nmea import read_nmea
 from .parquet_log import read_parquet
+from .proposing.elsewhere import yaw_rate_elsewhere
 from .quality import quality_of, quality_text, same_units_throughout
 from .quantities import MEASURED
 from .record import Record, record_of, time_in_seconds
 from .table import Table
 from .text import binary, read_text, start_of
+from .workbook import read_workbook
 from .yaw import heading_recovered
 
 REPORT = "import-report.json"
@@ -190,26 +195,18 @@ def _trials(log: Path, log_map: LogMap, step: float | None) -> list[tuple[Trial,
 
 def _records(log: Path, log_map: LogMap) -> list[Record]:
     """A log in the program's units, in parts where its clock was set back."""
+    form = log_map.format or form_of(log)
     content = start_of(log)
-    form = log_map.format or (
-        "parquet"
-        if content.startswith(b"PAR1")
-        else "nmea"
-        if re.match(rb"\s*[$!][A-Z]{4,},", content.removeprefix(b"\xef\xbb\xbf"))
-        else "csv"
-    )
     if form == "nmea":
         if binary(content):
             raise LogError(
                 Problem("the log is binary, not NMEA 0183", str(log), fix="convert it with its logger's software")
             )
         return read_nmea(log, log_map)
-    wide = log_map.encoding.lower().replace("_", "-").startswith(("utf-16", "utf-32"))
-    if form == "csv" and binary(content) and not (wide and log_map.format in (None, "csv")):
-        kind = "a Parquet file" if content.startswith(b"PAR1") else "binary"
-        fix = "convert it to CSV, Parquet or NMEA 0183 with its logger's own software; or say the right encoding"
-        raise LogError(Problem(f"the log is {kind}, not text", str(log), "it has zero bytes in it", fix))
-    table = (read_parquet if form == "parquet" else read_text)(log, log_map)
+    if form == "csv":
+        refuse_binary(log, content, log_map)
+    readers = {"csv": read_text, "parquet": read_parquet, "xlsx": read_workbook, "mat": read_matlab}
+    table = readers[form](log, log_map)
     _drop_duplicates(table)
     line = put_right(time_in_seconds(table, log_map), log_map.time, table.place)
     table.columns = {name: values[line.keep] for name, values in table.columns.items()}
@@ -261,8 +258,13 @@ def _of_record(record: Record, log_map: LogMap, step: float | None) -> list[Piec
     if grid.bridged:
         notes.append(f"holes of up to {log_map.gap:g} steps in inputs were bridged linearly")
     notes += motion.at_midship(columns, log_map)
+    if log_map.antenna is None and log_map.point is None:
+        notes.append("positions are taken to be of midship, as the map has no [antenna]")
     notes += motion.with_yaw_rate(grid.t, columns)
-    notes += conventions.settle(grid.t, columns, log_map, measured, where)
+    try:
+        notes += conventions.settle(grid.t, columns, log_map, measured, where)
+    except conventions.NoYawRate as error:
+        raise _elsewhere(error, record.path, log_map) from error
     notes += motion.over_ground(columns, log_map)
     notes += motion.with_velocities(grid.t, columns)
     notes += with_mean(columns, "n", log_map)
@@ -299,6 +301,19 @@ def _of_record(record: Record, log_map: LogMap, step: float | None) -> list[Piec
     return found
 
 
+def _elsewhere(error: LogError, log: Path, log_map: LogMap) -> LogError:
+    """What is wrong with a record whose yaw rate is none: where it is instead, rather than a question for its sign."""
+    found = yaw_rate_elsewhere(log, log_map)
+    if found is None:
+        return error
+    said, fix = found
+    first, *others = error.problems
+    column = log_map.sources["r"].column
+    shown = f"'{column}'" if isinstance(column, str) else f"column {column}"
+    what = f"{shown} is not the yaw rate, which the map says it is"
+    return LogError(Problem(what, first.where, f"{first.why}; {said}", fix), *others)
+
+
 def _split(piece: Piece) -> list[Piece]:
     """A turning circle and its pull-out, where it has one."""
     first = pull_out(piece.columns["t"], piece.columns)
@@ -329,7 +344,7 @@ def _trial(id: str, piece: Piece, notes: list[str], log_map: LogMap, cut_from: s
     notes = [note.replace(str(record.path), record.path.name) for note in notes]
     problems = unusable(columns, str(record.path))
     if problems:
-        raise LogError(*problems)
+        raise LogError(*(replace(one, fix=fix_in_map(one.fix, one.where)) for one in problems))
     kept = {ATTRIBUTES.get(name, name): values for name, values in columns.items()}
     required: Any = {name: kept.pop(name) for name in ATTRIBUTES.values()}
     for name in directions(kept):

@@ -47,6 +47,7 @@ def cut_at_jumps(record: Record, log_map: LogMap, step: float | None) -> list[Re
         parts.append(Record(record.path, {name: one for name, one in series.items() if len(one.t)}, {}, [note]))
     for part in parts:
         part.notes[:0] = record.notes
+        part.coarse.update(record.coarse)
     parts[0].spikes.update(record.spikes)
     return parts
 

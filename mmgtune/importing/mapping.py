@@ -9,7 +9,10 @@ from pathlib import Path
 from ..inputs import INPUTS
 from ..trial.schema import MAIN_INPUTS
 
-FORMATS = ("csv", "parquet", "nmea")
+ASKS = "?"
+"""How a value begins that is a question to who uses the map."""
+FORMATS = ("csv", "parquet", "nmea", "xlsx", "mat")
+TIME_FORMATS = ("number", "iso", "clock", "date", "dmy", "mdy", "ymd")
 PROJECTIONS = ("transverse-mercator", "azimuthal-equidistant")
 TABLES = {
     "": (
@@ -25,7 +28,7 @@ TABLES = {
         "resample",
         "cut",
     ),
-    "log": ("format", "delimiter", "encoding", "decimal", "skip", "header", "fields", "missing"),
+    "log": ("format", "delimiter", "encoding", "decimal", "skip", "header", "fields", "missing", "sheet", "variable"),
     "trial": ("ship", "id", "manoeuvre", "source", "note", "noise"),
     "time": ("column", "format", "unit", "scale", "recover", "step"),
     "velocity": ("axes", "point", "shifted"),
@@ -71,7 +74,8 @@ class TimeSource:
     """Where time comes from.
 
     column   name or number, as of a Source
-    format   "number", "iso" or "clock"; None where the log's cells have to show it
+    format   one of TIME_FORMATS; "date" where the dates have to show the order of day and month; None where the cells
+             have to show it all
     unit     of numbers; None where the header has to say it
     scale    factor on the log's time
     recover  "auto" (where stamps are found to be printed with too few digits), "uniform" (always) or "never"
@@ -91,7 +95,8 @@ class Cut:
     """The part of the record to keep: seconds from its start, and what to begin with.
 
     start, end  [s], None for the record's own; an end below 0 counts back from the record's
-    begin       "first-rudder-order", or None
+    begin       "first-rudder-order", "first-order" (without the head in which propellers and rudders all stand at
+                zero), or None
     lead        seconds kept before that order
     to          "last-order": without the tail in which propellers and rudders all stand at zero; or None
     split       "pull-out": what follows a turn's rudder order becomes a trial of its own; or None
@@ -111,6 +116,8 @@ class LogMap:
 
     name        file or preset it was read from
     some        maps of logs that differ, by the pattern of their names
+    sheet       of a workbook, "" for its first that holds rows
+    variable    of a MATLAB file, a structure or a matrix that holds the columns; "" where they are variables themselves
     fields      how many a row of a log has, None where the map does not say
     axes        "ship" or "earth": of u and v; None where the map does not say
     point       "midship", "antenna" or "stated": what u and v, or sog and cog, are of; None where the map does not say
@@ -130,6 +137,8 @@ class LogMap:
     skip: int = 0
     header: bool = True
     fields: int | None = None
+    sheet: str = ""
+    variable: str = ""
     missing: tuple[str, ...] = ()
     time: TimeSource = field(default_factory=TimeSource)
     sources: dict[str, Source] = field(default_factory=dict)

@@ -37,11 +37,11 @@ def read_parquet(path: Path, log_map: LogMap) -> Table:
         row = 1
         _readable(file.schema_arrow, wanted, path)
         columns = sorted({names[k] for k in wanted.values()})
-        texts = [name for name in columns if _is_text(file.schema_arrow.field(name).type)]
+        texts = [name for name in columns if is_text(file.schema_arrow.field(name).type)]
         # A text stands in a file once, however many rows repeat it: it is cut before it is repeated.
         file = pq.ParquetFile(path, pre_buffer=False, page_checksum_verification=True, read_dictionary=texts)
         for batch in file.iter_batches(BATCH, columns=columns, use_threads=False):
-            block = pa.RecordBatch.from_arrays([_cut(one) for one in batch.columns], batch.schema.names)
+            block = pa.RecordBatch.from_arrays([shortened(one) for one in batch.columns], batch.schema.names)
             block = block.to_pandas(use_threads=False)
             rows = np.arange(row, row + len(block), dtype=np.int64)
             row += len(block)
@@ -68,7 +68,7 @@ def _readable(schema: Any, wanted: dict[str, int], path: Path) -> None:
     problems = []
     for name, k in wanted.items():
         kind, header = schema.field(k).type, schema.names[k]
-        if not _is_text(kind) and not any(one(kind) for one in can):
+        if not is_text(kind) and not any(one(kind) for one in can):
             what = f"column '{header}' holds {str(kind)[:80]}, not numbers"
             problems.append(Problem(what, str(path), f"the map says it is '{name}'", "name another column"))
         if schema.names.count(header) > 1:
@@ -77,19 +77,19 @@ def _readable(schema: Any, wanted: dict[str, int], path: Path) -> None:
         raise LogError(*dict.fromkeys(problems))
 
 
-def _is_text(kind: Any) -> bool:
+def is_text(kind: Any) -> bool:
     import pyarrow as pa
 
     value = kind.value_type if pa.types.is_dictionary(kind) else kind
     return bool(pa.types.is_string(value) or pa.types.is_large_string(value))
 
 
-def _cut(column: Any) -> Any:
+def shortened(column: Any) -> Any:
     """A column with the length of its texts bounded."""
     import pyarrow as pa
     import pyarrow.compute as pc
 
-    if not _is_text(column.type):
+    if not is_text(column.type):
         return column
     if not pa.types.is_dictionary(column.type):
         return pc.utf8_slice_codeunits(column, 0, LONGEST)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,11 +16,15 @@ from ..inputs import INPUTS
 from ..physics.frame import to_earth
 from ..trial import Trial, check_trial
 from ..trial.control_checks import fastest_change, looks_ordered
+from ..trial.finding import Finding
 from ..trial.kinematics import IN_EARTH_AXES, position_misfits, turning
+from ..trial.motion_checks import NO_YAW_RATE
 from ..units import DEG, KNOT, shown_in
 from .conventions import rudder_evidence
+from .doubts import doubts, in_map
 from .gridding import Grid
 from .mapping import LogMap
+from .proposing.elsewhere import yaw_rate_elsewhere
 from .quantities import MEASURED
 from .record import Record
 
@@ -37,7 +42,7 @@ def quality_of(
     columns = trial.columns
     turned = turning(columns)
     misfits = position_misfits(columns)
-    findings = check_trial(trial)
+    findings = [_named(in_map(one), record, log_map) for one in (*check_trial(trial), *doubts(trial, record, log_map))]
     evidence = rudder_evidence(trial.t, columns)
     return {
         "id": trial.id,
@@ -135,6 +140,14 @@ def quality_text(quality: dict[str, Any]) -> str:
         if f["severity"] != "note"
     ]
     return "\n".join(lines)
+
+
+def _named(finding: Finding, record: Record, log_map: LogMap) -> Finding:
+    """A warning of a yaw rate that is none, with the column that is one where the log has it."""
+    elsewhere = yaw_rate_elsewhere(record.path, log_map) if finding.what == NO_YAW_RATE else None
+    if elsewhere is None:
+        return finding
+    return replace(finding, why=f"{finding.why}; {elsewhere[0]}", fix=elsewhere[1])
 
 
 def same_units_throughout(t: FloatArray, columns: dict[str, FloatArray], where: str) -> None:

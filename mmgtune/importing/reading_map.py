@@ -12,10 +12,10 @@ import numpy as np
 from .. import limits, units
 from ..errors import LogError, Problem, brief, closest
 from ..resources import import_map_names, import_maps
-from ..toml_reading import TomlReader, finite, toml_of
+from ..toml_reading import TomlReader, finite, named, toml_of
 from ..trial.schema import COLUMNS, SOURCES, impossible, known_column
 from .checking_map import check
-from .mapping import FORMATS, PROJECTIONS, TABLES, Cut, LogMap, Source, TimeSource
+from .mapping import ASKS, FORMATS, PROJECTIONS, TABLES, TIME_FORMATS, Cut, LogMap, Source, TimeSource
 from .quantities import QUANTITIES, known_quantity, meaning, quantity_of
 
 SCHEMA = 1
@@ -47,6 +47,9 @@ def load_map(name: str | Path, preset: bool = False) -> LogMap:
 def parse_map(text: str, path: Path = Path("map")) -> LogMap:
     """The map written in ``text``; ``path`` is for messages.  Raises LogError with everything wrong in it."""
     data = toml_of(text, "the map", str(path), LogError)
+    asked = questions(data, text, path)
+    if asked:
+        raise LogError(*asked)
     some = data.pop("logs", [])
     reader = _Reader(data, text, path)
     made = reader.read()
@@ -62,6 +65,23 @@ def parse_map(text: str, path: Path = Path("map")) -> LogMap:
     if reader.problems:
         raise LogError(*reader.problems)
     return replace(made, some=tuple(parts))
+
+
+def questions(data: dict[str, Any], text: str, path: Path) -> list[Problem]:
+    """What a map asks for: values that begin with a question mark, as ``trials map`` writes them."""
+    reader = TomlReader(data, text, str(path))
+    inside: list[tuple[str, Any]] = [("", data)]
+    while inside:
+        table, value = inside.pop(0)
+        for key, one in value.items():
+            if isinstance(one, dict):
+                inside.append((named(table, key), one))
+            elif isinstance(one, str) and one.startswith(ASKS):
+                answers, mark, question = one.removeprefix(ASKS).strip().partition(": ")
+                what = f"the map asks for '{named(table, key)}': {question if mark else answers}"
+                fix = f"write {key} = {answers}" if mark else f"write {key} = ... in its place"
+                reader.problem(what[:500], table, key, "the log does not tell it", fix[:200])
+    return reader.problems
 
 
 def _part(
@@ -148,6 +168,8 @@ class _Reader(TomlReader):
             header=self.flag(log, "header"),
             fields=self.count(log, "fields") or None,
             missing=self.texts(log, "missing"),
+            sheet=self.text_of("log", log, "sheet"),
+            variable=self.text_of("log", log, "variable"),
             time=self.time(),
             sources=sources,
             axes=self.choice("velocity", self.table("velocity"), "axes", ("ship", "earth")),
@@ -269,7 +291,7 @@ class _Reader(TomlReader):
         recover = self.choice("time", table, "recover", ("auto", "uniform", "never")) or "auto"
         return TimeSource(
             column=self.column("time", table),
-            format=self.choice("time", table, "format", ("number", "iso", "clock")),
+            format=self.choice("time", table, "format", TIME_FORMATS),
             unit=unit,
             scale=self.number("time", table, "scale", 1.0),
             recover=recover,
@@ -375,7 +397,7 @@ class _Reader(TomlReader):
 
     def cut(self) -> Cut:
         table = self.table("cut")
-        begin = self.choice("cut", table, "from", ("first-rudder-order",))
+        begin = self.choice("cut", table, "from", ("first-rudder-order", "first-order"))
         start, end = self.quantity("cut", "start", "s"), self.quantity("cut", "end", "s")
         if end == 0.0:
             fix = 'write end = "600 s", or end = "-20 s" to drop the last 20 s'

@@ -17,6 +17,10 @@ from .mapping import LogMap, Source
 from .quantities import AGAINST, known_quantity, meaning
 from .table import TIME, Table
 
+FEW = 4
+"""Significant digits up to which a column is looked at as to whether they suffice."""
+FEWEST_PRINTED = 40
+
 
 @dataclass(frozen=True, eq=False)
 class Series:
@@ -40,6 +44,29 @@ class Series:
         return float(np.median(np.diff(t))) if len(t) > 1 else 0.0
 
 
+@dataclass(frozen=True)
+class Coarse:
+    """A column printed with few digits: how many, the largest step of the last in ``unit``, the share of repeats."""
+
+    digits: int
+    step: float
+    unit: str
+    repeats: float
+
+    @property
+    def words(self) -> str:
+        return f"printed with {self.digits} digits, in steps of up to {self.step:.3g} {self.unit}"
+
+    @property
+    def why(self) -> str:
+        return f"{100.0 * self.repeats:.0f} % of its values repeat the one before"
+
+    def fix(self, name: str) -> str:
+        """What the map can say."""
+        way = "yaw-rate" if name == "psi" else "print-resolution"
+        return f'say recover = "{way}" in [columns.{name}], or log it with more digits'
+
+
 @dataclass(eq=False)
 class Record:
     """What a log holds, or a part of one between two settings of its clock.
@@ -47,12 +74,19 @@ class Record:
     series   by quantity (``quantities.quantity_of``), angles unwrapped
     spikes   number of samples taken out, by quantity
     notes    what was done, in sentences
+    coarse   columns printed with few digits that the map does not recover, by quantity
     """
 
     path: Path
     series: dict[str, Series]
     spikes: dict[str, int] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
+    coarse: dict[str, Coarse] = field(default_factory=dict)
+
+    @property
+    def has_velocities(self) -> bool:
+        """Whether velocities were logged, and do not come from the positions."""
+        return {"u", "v"} <= set(self.series) or "sog" in self.series
 
 
 def time_in_seconds(table: Table, log_map: LogMap) -> FloatArray:
@@ -69,6 +103,8 @@ def unit_of(name: str, table: Table, stated: str | None, target: str, values: Fl
 
     Raises LogError where neither says it, with the question to answer, and where they contradict each other.
     """
+    if name in table.stated:
+        return table.stated[name]
     header = table.headers[name]
     known = units.factors(target)
     printed = unit_in(header)
@@ -86,6 +122,9 @@ def unit_of(name: str, table: Table, stated: str | None, target: str, values: Fl
         if unit in ("deg", "rad", "m/s", "kn", "s", "ms", "m", "ft", "rpm", "1/s", "deg/s", "rad/s", "deg/min")
     ]
     first = "deg" if "deg" in short else short[-1]
+    days = target == "s" and len(finite) > 1 and finite.min() > 1e4 and finite.max() < 1e6 and np.ptp(finite) < 100.0
+    if days:
+        span, first = f"{span}: days, as Excel and MATLAB count them?", "d"
     raise LogError(
         Problem(
             f"is '{header}' in {' or '.join(short)}?",
@@ -106,6 +145,7 @@ def record_of(table: Table, log_map: LogMap, t: FloatArray, rows: slice) -> Reco
     problems: list[Problem] = []
     series = {}
     notes: list[str] = []
+    coarse: dict[str, Coarse] = {}
     for name, values in table.columns.items():
         source = log_map.sources[name]
         if not np.isfinite(values).any():
@@ -121,6 +161,8 @@ def record_of(table: Table, log_map: LogMap, t: FloatArray, rows: slice) -> Reco
             problems += error.problems
             continue
         if not source.recover:
+            if name in ("x", "y", "psi") and (few := few_digits(printed, unit)) is not None:
+                coarse[name] = few
             series[name] = Series(t[rows], converted(name, printed, source, unit))
             continue
         # In the log's own unit: that is where the digits are.
@@ -142,7 +184,22 @@ def record_of(table: Table, log_map: LogMap, t: FloatArray, rows: slice) -> Reco
         )
     if problems:
         raise LogError(*problems)
-    return Record(table.path, series, notes=notes)
+    return Record(table.path, series, notes=notes, coarse=coarse)
+
+
+def few_digits(printed: FloatArray, unit: str) -> Coarse | None:
+    """A column (n_samples,) that moves by less than its print step from row to row; None where digits suffice."""
+    values = printed[np.isfinite(printed)]
+    if len(values) < FEWEST_PRINTED or np.ptp(values) == 0.0:
+        return None
+    steps, digits = print_step(values)
+    again = float(np.mean(np.diff(values) == 0.0))
+    if not digits or digits > FEW or again < 0.3:
+        return None
+    # What stands still repeats as well, however finely it is printed.
+    moving = np.abs(values - np.median(values)) > 0.05 * np.ptp(values)
+    again = float(np.mean((np.diff(values) == 0.0)[moving[1:]])) if moving[1:].any() else 0.0
+    return Coarse(digits, float(np.nanmax(steps)), unit, again) if again >= 0.3 else None
 
 
 def possible(name: str, values: FloatArray, source: Source, unit: str, table: Table, notes: list[str]) -> FloatArray:

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from ..arrays import FloatArray, IntArray
 from ..errors import LogError, Problem
+from .degrees import degrees
 from .mapping import LogMap
 
 MOST_ROWS = 1_000_000
@@ -28,6 +29,7 @@ class Table:
     rows     number of each row in the file, counted from 1: of lines in text
     headers  the log's name of each quantity's column
     clock    whether ``t`` was printed as a date or clock, so that it is in s already
+    stated   units that the cells of a quantity say themselves, such as 52°06.00001'N
     notes    what was done or dropped while reading, in sentences
     """
 
@@ -39,6 +41,7 @@ class Table:
     clock: bool = False
     unit: str = "line"
     notes: list[str] = field(default_factory=list)
+    stated: dict[str, str] = field(default_factory=dict)
 
     def place(self, row: int) -> str:
         """Where a row is in the file."""
@@ -99,6 +102,7 @@ class Cells:
         self.missing = {"", "-", "--", "nan", "na", "n/a", "null", "none", *(one.lower() for one in log_map.missing)}
         self.numbers = self._numbers(log_map.missing)
         self.bad: dict[str, BadCells] = {}
+        self.stated: dict[str, str] = {}
 
     @staticmethod
     def _numbers(texts: tuple[str, ...]) -> list[float]:
@@ -119,6 +123,11 @@ class Cells:
         else:
             text = values.astype("string").str.strip()
             numbers = pd.to_numeric(text, errors="coerce").to_numpy(dtype=np.float64, na_value=np.nan)
+            if name in ("latitude", "longitude") and np.isnan(numbers).any():
+                written = degrees(text)
+                # One way of writing in a column: a plain number among others is of no known unit.
+                if np.isfinite(written).any():
+                    numbers, self.stated[name] = written, "deg"
             wrong = np.isnan(numbers) & ~text.str.lower().isin(self.missing).to_numpy() & text.notna().to_numpy()
             if wrong.any():
                 k = int(np.flatnonzero(wrong)[0])
@@ -131,6 +140,7 @@ class Cells:
     def judge(self, table: Table, log_map: LogMap, n_rows: int) -> None:
         """Note cells that are no numbers.  Raises LogError where they say that the log is to be read differently."""
         problems = []
+        table.stated |= self.stated
         for name, bad in self.bad.items():
             place = f"{table.path}, {table.unit} {bad.row}, column '{table.headers[name]}'"
             cells = f"{bad.count} cells of {n_rows} are no numbers, the first is '{bad.text}'"

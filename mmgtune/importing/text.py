@@ -44,7 +44,7 @@ def read_text(path: Path, log_map: LogMap) -> Table:
     line = layout.first + 1
     dropped: list[str] = []
     try:
-        with warnings.catch_warnings(record=True) as said, io.BufferedReader(_Lines(path), 1 << 16) as file:
+        with warnings.catch_warnings(record=True) as said, io.BufferedReader(Lines(path), 1 << 16) as file:
             warnings.simplefilter("always", pd.errors.ParserWarning)
             reader = pd.read_csv(
                 file,
@@ -91,7 +91,7 @@ def read_text(path: Path, log_map: LogMap) -> Table:
     return table
 
 
-class _Lines(io.RawIOBase):
+class Lines(io.RawIOBase):
     """The bytes of a log, whose lines may be no longer than the limit: a line is held in memory as a whole."""
 
     def __init__(self, path: Path):

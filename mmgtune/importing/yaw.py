@@ -32,7 +32,7 @@ def heading_recovered(record: Record, log_map: LogMap) -> Record:
     inside = np.diff(logged.t[known])
     if known.sum() < 2 or inside.max() > log_map.gap * logged.step * (1.0 + 1e-6):
         note = "psi was not recovered from r, which has a hole: both are as printed"
-        return Record(record.path, record.series, record.spikes, [*record.notes, note])
+        return replace(record, notes=[*record.notes, note])
     rate = np.interp(t, logged.t[known], logged.values[known])
     turned = cumulative_trapezoid(rate, t, initial=0.0)
     # Just beside zero the print steps are finer than a gyro is true.
@@ -62,4 +62,4 @@ def heading_recovered(record: Record, log_map: LogMap) -> Record:
         "psi": replace(heading, values=np.where(np.isfinite(heading.values), found, np.nan)),
         "r": Series(logged.t, slope),
     }
-    return Record(record.path, series, record.spikes, notes)
+    return replace(record, series=series, notes=notes)

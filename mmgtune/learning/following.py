@@ -114,7 +114,7 @@ def accelerations_by(model: Model, theta: FloatArray, of: Followed) -> FloatArra
     """
     ship = LaneModel(model, theta)
     with np.errstate(all="ignore"):
-        control = driven(ship, of) if ship.actuators or ship.shift is not None else of.control
+        control = driven(ship, of) if ship.actuators or any(late is not None for late in ship.shift) else of.control
         if ship.lags:
             return _lagging(ship, control, of)
         rates = ship.rates(of.at(of.s)[:N_STATES], of.acts(of.at(control)), of.surroundings(), 0.0)
@@ -157,8 +157,8 @@ def _lagging(ship: LaneModel, control: FloatArray, of: Followed) -> FloatArray:
     return np.asarray(found[of.counts])
 
 
-def _shift(ship: LaneModel, cases: Cases) -> FloatArray | None:
-    return None if ship.shift is None else np.broadcast_to(ship.shift, (len(cases),))
+def _shift(ship: LaneModel, cases: Cases) -> list[FloatArray | None]:
+    return [None if late is None else np.broadcast_to(late, (len(cases),)) for late in ship.shift]
 
 
 def _stacked(control: Any) -> FloatArray:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..components import split_name
-from ..effects import Effect, Parameter, Scale, SensorEffect, effects
+from ..effects import Effect, FilterEffect, Parameter, Scale, SensorEffect, effects
 from ..effects.hull_term import symbol
 from ..fitting.box import parameter_of
 from ..model import Model
@@ -119,7 +119,7 @@ def _effects(followed: Followed, mass: FloatArray, base: FloatArray) -> Iterator
     profile = followed.model.profile
     here = {effect.tag for effect in followed.model.effects}
     for effect in effects():
-        if isinstance(effect, SensorEffect) or effect.tag in here or missing_for(effect, profile):
+        if isinstance(effect, (FilterEffect, SensorEffect)) or effect.tag in here or missing_for(effect, profile):
             continue
         yield from _effect(effect, profile, followed, mass, base)
 
@@ -154,7 +154,7 @@ def _effect(
 
 def _alone(effect: Effect) -> list[tuple[str, ...]]:
     """Parameters that are asked for: each by itself, a size together with its direction."""
-    names = list(effect.parameters)
+    names = [name for name in effect.parameters if name not in effect.pivots]
     found: list[tuple[str, ...]] = []
     skip = False
     for name, following in zip(names, [*names[1:], ""], strict=True):

@@ -13,6 +13,7 @@ from .. import limits
 from ..errors import NetworkError, Problem, brief
 from ..files import atomic
 from ..profile import parse_profile
+from ..resources import folder, taken
 from .ensemble import Ensemble, Part
 from .feedforward import Layers, Standards
 from .hybrid import Hybrid
@@ -71,14 +72,14 @@ def _described(model: Trained) -> tuple[dict[str, Any], dict[str, dict[str, Any]
 
 
 def load_network(path: str | Path) -> Trained:
-    """Read a network, a hybrid, an ensemble or a mixture.
+    """Read a network, a hybrid, an ensemble or a mixture: a path or a bundled name.
 
     Raises NetworkError for a file that is none, is damaged, or does not fit together; ProfileError for a hybrid whose
     profile this version cannot read.
     """
     from safetensors import SafetensorError, safe_open
 
-    path = Path(path)
+    path = taken(path, Path(path).exists(), folder("ship_profiles") / f"{path}{SUFFIX}") or Path(path)
     where = str(path)
     try:
         limits.NETWORK_BYTES.hold(path.stat().st_size, where, NetworkError)

@@ -84,7 +84,7 @@ class MixtureRun:
             now = lanes.begin(lanes.unsensed(State(*shown.T)), logged, here)
         else:
             chain = lanes.moved(self._now.chain, logged, self._now.chain, h)
-            now = Moment(self._now.s, chain, here)
+            now = self._now._replace(chain=chain, around=here)
         s = now.s + h * lanes.rates(now.s, now.chain[-1], here, h)
         self._networks.states = np.broadcast_to(shown, self._networks.states.shape)
         self._networks.step(controls, around, h)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import math
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from numbers import Integral, Real
 from pathlib import Path
@@ -30,6 +30,7 @@ class Choice:
     short   the flag of one letter, if any
     panel   of the help
     values  words it may be, empty for any
+    names   the words that it, or each part of it, may be, asked for when they are shown or completed; None for any
     called  what it is called where a word is wrong
     unit    of a number, for messages
     least, above, most, below  limits of a number: from, more than, up to, less than
@@ -40,6 +41,7 @@ class Choice:
     short: str = ""
     panel: str = SEARCH
     values: tuple[str, ...] = ()
+    names: Callable[[], Sequence[str]] | None = None
     called: str = ""
     unit: str = ""
     least: float | None = None
@@ -94,6 +96,13 @@ def choice(default: Any, help: str, **known: Any) -> Any:
     return field(default=default, metadata={_KEY: Choice(help, **known)})
 
 
+def effects() -> Sequence[str]:
+    """Names of the effects there are, those of installed packages among them."""
+    from ..effects import effect_tags
+
+    return effect_tags()
+
+
 def again(of: type[Options], name: str, default: Any = _UNSET, *, but: str = "") -> Any:
     """The field of another dataclass once more: same flag, same meaning, with a default of its own where one is given.
 
@@ -119,6 +128,15 @@ def choices(of: type[Options]) -> dict[str, Choice]:
 @dataclass(frozen=True)
 class Options:
     """Choices that belong together; they are looked at when they are made."""
+
+    def __init_subclass__(cls) -> None:
+        """Dataclasses keep a ``repr`` that their class has, not one that it inherits."""
+        cls.__repr__ = Options.__repr__  # type: ignore[method-assign]
+
+    def __repr__(self) -> str:
+        """What differs from the defaults."""
+        chosen = {one.name: getattr(self, one.name) for one in fields(self) if getattr(self, one.name) != one.default}
+        return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in chosen.items())})"
 
     def __post_init__(self) -> None:
         """Raises OptionError with everything that makes no sense; it names fields."""
@@ -175,14 +193,22 @@ def _of_another_kind(name: str, value: Any, hint: Any) -> list[Problem]:
     parts = get_args(kind)
     if parts:
         if isinstance(value, str) or not isinstance(value, Sequence):
-            return [Problem(f"{name} is {_short(value)}", name, fix=f"give a tuple, each part {_KINDS[parts[0]][1]}")]
+            such = f": {name}=({_part(value, parts[0])},)" if isinstance(value, (str, int, float)) else ""
+            fix = f"give a tuple, each part {_KINDS[parts[0]][1]}{such}"
+            return [Problem(f"{name} is {_short(value)}", name, fix=fix)]
         if ... not in parts and len(value) != len(parts):
             return [Problem(f"{name} is {_short(value)}", name, fix=f"give {len(parts)} numbers")]
         return [problem for part in value for problem in _of_another_kind(name, part, parts[0])][:1]
     known, words = _KINDS[kind]
     if isinstance(value, known) and (kind is bool or not isinstance(value, bool)):
         return []
-    return [Problem(f"{name} is {_short(value)}", name, fix=f"give {words}")]
+    such = f": {_part(value, kind)}" if kind is str and isinstance(value, (int, float)) else ""
+    return [Problem(f"{name} is {_short(value)}", name, fix=f"give {words}{such}")]
+
+
+def _part(value: Any, kind: type) -> str:
+    """A value as it might have been meant."""
+    return _short(str(value) if kind is str else value)
 
 
 def _short(value: Any) -> str:

@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..errors import Problem, closest
-from .choice import again, choice
+from .choice import again, choice, effects
 from .scoring import VOYAGES, WINDOW
 from .simulation import SimulationOptions
-from .tuning import FitOptions
-
-CHANNELS = ("x", "y", "psi", "u", "v", "r")
+from .tuning import CHANNELS, FitOptions
 
 
 @dataclass(frozen=True)
@@ -20,7 +18,9 @@ class DiagnoseOptions(SimulationOptions):
     a_r: float | None = again(FitOptions, "a_r")
     targets: tuple[str, ...] = again(FitOptions, "targets")
     fixed: tuple[str, ...] = again(FitOptions, "fixed")
-    effects: tuple[str, ...] = choice((), "Effects to look for, comma-separated. Default: all that apply.")
+    effects: tuple[str, ...] = choice(
+        (), "Effects to look for, comma-separated. Default: all that apply.", names=effects
+    )
     channels: tuple[str, ...] = again(FitOptions, "channels", but="All in a diagnosis.")
     restart: float | None = again(FitOptions, "restart")
     most: int = choice(4, "Largest number of causes looked for.", least=1, most=8)

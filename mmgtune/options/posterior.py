@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .choice import REPRODUCE, choice
+from .choice import REPRODUCE, choice, effects
 from .simulation import SimulationOptions
 
 
@@ -16,7 +16,7 @@ class PosteriorOptions(SimulationOptions):
     room: float = choice(
         1.0, "How far the form of the model may be wrong, over what generated ships called for.", above=0, most=10
     )
-    without: tuple[str, ...] = choice((), "Effects to leave no room for, such as current.")
+    without: tuple[str, ...] = choice((), "Effects to leave no room for, such as current.", names=effects)
     leave_out: bool = choice(
         True, "Leave kinds and sides out in turn, to find how much the trials are to be believed.", flag="--leave-out"
     )

@@ -21,6 +21,12 @@ FORMATS = ("text", "json", "junit", "github", "markdown")
 """Formats of a check's report, each a module of ``checking.renderers``."""
 
 
+def _metrics() -> tuple[str, ...]:
+    from ..metrics import METRICS
+
+    return tuple(METRICS)
+
+
 @dataclass(frozen=True)
 class ValidateOptions(SimulationOptions):
     """All choices of a validation."""
@@ -88,7 +94,7 @@ class CheckOptions(SimulationOptions):
     """All choices of a check; with a baseline its integrator is the one to use."""
 
     metrics: tuple[str, ...] = choice(
-        (), "Only these metrics (J, MED, cVDM, rms_psi, advance, ...); repeatable, or with commas.", panel=INPUT
+        (), "Only these metrics; repeatable, or with commas.", panel=INPUT, names=_metrics
     )
     integrator: str | None = again(SimulationOptions, "integrator", None, but="Default: the baseline's.")  # type: ignore[assignment]
     substeps: int | None = again(SimulationOptions, "substeps", None, but="Default: the baseline's.")  # type: ignore[assignment]

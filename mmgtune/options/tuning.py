@@ -6,12 +6,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..errors import Problem
-from .choice import OUTPUT, again, choice
+from .choice import OUTPUT, again, choice, effects
 from .posterior import PosteriorOptions
 from .simulation import SimulationOptions
 
 OBJECTIVES = ("paper", "standardised")
 LOSSES = ("squares", "huber")
+CHANNELS = ("x", "y", "psi", "u", "v", "r")
 METHODS = ("cma-es", "least-squares")
 INITIAL = ("measured", "estimated")
 SHORTEST = 0.01
@@ -27,11 +28,13 @@ class TuningOptions(SimulationOptions):
     )
     fixed: tuple[str, ...] = choice((), "Coefficients to leave out of the targets; names or patterns.", flag="--fix")
     with_effects: tuple[str, ...] = choice(
-        (), "Effects to put into the profile and tune besides, such as wind-drift; they begin at none."
+        (), "Effects to put into the profile and tune besides, such as wind-drift; they begin at none.", names=effects
     )
     identifiable: bool = choice(False, "Hold one coefficient of every direction that no trial can tell.")
     channels: tuple[str, ...] = choice(
-        (), "Motion channels that count: x, y, psi, u, v, r; in a fit with weights as u:2. Default: x,y,psi in a fit."
+        (),
+        "Motion channels that count: x, y, psi, u, v, r; in a fit with weights as u:2. Default: x,y,psi in a fit.",
+        names=lambda: CHANNELS,
     )
     window: tuple[float, float] | None = choice(None, "Only samples between FIRST:LAST seconds count.")
     objective: str = choice(

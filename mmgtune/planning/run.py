@@ -14,6 +14,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..backends import get_backend
 from ..bands import IndexBand, index_band
+from ..displayed import Displayed
 from ..errors import OptionError, Problem, ProfileError
 from ..networks import named_ship
 from ..options import PlanOptions, PredictOptions
@@ -63,7 +64,7 @@ class Expected:
 
 
 @dataclass(frozen=True, eq=False)
-class TrialPlan:
+class TrialPlan(Displayed):
     """Trials by what they tell of a question, best first.
 
     band    of the question now; half  of its width

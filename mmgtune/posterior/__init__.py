@@ -2,6 +2,13 @@
 
 from ..options import PosteriorOptions
 from .folder import write_posterior
+from .leaving_out import leave_out_with_bands
 from .run import Posterior, posterior
 
-__all__ = ["Posterior", "PosteriorOptions", "posterior", "write_posterior"]
+__all__ = [
+    "Posterior",
+    "PosteriorOptions",
+    "leave_out_with_bands",
+    "posterior",
+    "write_posterior",
+]

@@ -14,6 +14,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..components import split_name
+from ..displayed import Brief
 from ..effects import Effect, Parameter, discrepancy, find_effect
 from ..errors import Problem, ProfileError
 from ..model import Model
@@ -59,8 +60,8 @@ GEOMETRY = ("D_P", "A_R", "H_R", "x_R_", "flap_step", "phi_switch", "phi_min", "
 SOURCE = "room for what the profile leaves out"
 
 
-@dataclass(frozen=True, eq=False)
-class Room:
+@dataclass(frozen=True, eq=False, repr=False)
+class Room(Brief):
     """What may differ, and by how much, as independent normal distributions cut at bounds.
 
     profile    with every effect that there is room for
@@ -106,7 +107,7 @@ def make_room(profile: ShipProfile, *, size: float = 1.0, without: tuple[str, ..
     """
     tags = [tag for tag in IN_ROOM if tag not in without]
     applying = {tag: effect for tag in tags if (effect := find_effect(tag)) and not missing_for(effect, profile)}
-    put_in = {tag: {name: p.null for name, p in effect.parameters.items()} for tag, effect in applying.items()}
+    put_in = {tag: {name: p.null for name, p in effect.plain.items()} for tag, effect in applying.items()}
     present = {effect.tag for effect in Model(profile).effects}
     whole = with_effects(profile, {tag: null for tag, null in put_in.items() if tag not in present}, SOURCE)
     rows: list[tuple[str, float, float, float, float]] = [*_coefficients(whole)]
@@ -162,7 +163,7 @@ def _of_effect(
     scale = scale_of(profile)
     found: list[tuple[str, float, float, float, float]] = []
     pairs: list[tuple[int, int]] = []
-    parameters = list(effect.parameters.items())
+    parameters = list(effect.plain.items())
     for k, (symbol, parameter) in enumerate(parameters):
         name = f"{effect.kind}.{symbol}"
         deviation = _deviation(effect, symbol, parameter, profile)

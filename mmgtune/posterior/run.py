@@ -11,6 +11,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..backends import Integrator, get_backend
 from ..components import split_name
+from ..displayed import Plotted
 from ..errors import Problem, TrialError
 from ..fitting.run import make_provenance
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
@@ -28,7 +29,7 @@ EXPECTED = 4.0
 
 
 @dataclass(frozen=True, eq=False)
-class Posterior:
+class Posterior(Plotted):
     """What trials leave open of a ship.
 
     sized       how much the trials are believed

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray
+from ..displayed import Brief
 from ..manoeuvres import manoeuvre_kind
 from ..predictor import PhysicsPredictor, cases_from
 from ..simulation import track_if_whole
@@ -43,8 +44,8 @@ SMALL_RUDDER = 15.0 * DEG
 """Rudder below which a turn or zigzag counts as gentle."""
 
 
-@dataclass(frozen=True)
-class Sized:
+@dataclass(frozen=True, repr=False)
+class Sized(Brief):
     """How much the trials are believed.
 
     misfit     mean square of the residuals at the mode, 1 where the model is right

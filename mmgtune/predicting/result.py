@@ -12,6 +12,7 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray
 from ..backends import STATES
 from ..bands import IndexBand, Pooled, WindowScore, covariances, fan, index_band, pooled, widest
+from ..displayed import Plotted, inert
 from ..options import PredictOptions
 from ..predictor import Predictor
 from ..profile import ShipProfile
@@ -59,7 +60,7 @@ class Foretold:
 
     def __repr__(self) -> str:
         """In a line."""
-        return f"Foretold({self.id}: {len(self.states)} particles, {self.t[-1]:g} s)"
+        return f"Foretold({inert(self.id)}: {len(self.states)} particles, {self.t[-1]:g} s)"
 
     @cached_property
     def sound(self) -> FloatArray:
@@ -107,7 +108,7 @@ class Foretold:
 
 
 @dataclass(frozen=True, eq=False)
-class Predicted:
+class Predicted(Plotted):
     """What a model foretells.
 
     name       what the model was called
@@ -129,7 +130,7 @@ class Predicted:
     def __repr__(self) -> str:
         """In a line."""
         shown = ", ".join(one.id for one in self.runs[:4]) + (" ..." if len(self.runs) > 4 else "")
-        return f"Predicted({self.name[-60:]}, {self.predictor.n_members} particles: {shown})"
+        return inert(f"Predicted({self.name[-60:]}, {self.predictor.n_members} particles: {shown})")
 
     @property
     def level(self) -> float:

@@ -17,6 +17,7 @@ from ..objective import spread
 from ..options import PredictOptions
 from ..options.predicting import OF_TRIALS, ORDERS
 from ..predictor import PhysicsPredictor, Predictor, Sampling, Uncertain, as_predictor, particles_of
+from ..resources import trial_set_names
 from ..trial import Trial, TrialSet
 from ..validating import sigma_of
 from .asked import actuators_of, approach_of, asked
@@ -28,14 +29,14 @@ from .steering import sail
 
 def predict(
     model: ShipGiven | Model | Predictor,
-    orders: str | Path | None = None,
+    orders: str | Path | TrialSet | Sequence[Trial] | None = None,
     trials: TrialsGiven | Sequence[Trial] | None = None,
     options: PredictOptions = PredictOptions(),
 ) -> Predicted:
     """Predict manoeuvres, or trials with their own inputs, by as many particles as the model has or draws.
 
     model   a profile, network, hybrid or ensemble: an object, a path or a bundled name
-    orders  a CSV file with a row an order, see ``order_list``
+    orders  a CSV file with a row an order, see ``order_list``; trials are understood here too
     trials  objects, a path or a bundled name; their measured motion is what the bands are held against
     With neither the manoeuvres of the options are predicted, by default hard turns and zigzags to both sides.
 
@@ -44,6 +45,8 @@ def predict(
     Raises OptionError for orders that make no sense or contradict each other, and as ``as_predictor`` does.
     """
     began = time.perf_counter()
+    if trials is None and orders is not None and _are_trials(orders):
+        orders, trials = None, orders
     _agree(orders, trials, options)
     integrator = options.make_integrator()
     whole = as_predictor(named_ship(model, integrator), integrator=integrator, backend=options.backend)
@@ -58,7 +61,7 @@ def predict(
         if isinstance(whole, PhysicsPredictor):
             notes += notes_on(whole.model, given)
     elif orders is not None:
-        listed = read_orders(Path(orders), tuple(several.inputs))
+        listed = read_orders(Path(str(orders)), tuple(several.inputs))
         runs = (on_orders(several, listed, approach_of(several, options)),)
     else:
         approach = approach_of(several, options)
@@ -70,6 +73,14 @@ def predict(
     notes += _notes(several, options, runs, steered=trials is None)
     spent = time.perf_counter() - began
     return Predicted(name, several, runs, options, isinstance(whole, Uncertain), sigma, tuple(notes), spent)
+
+
+def _are_trials(given: str | Path | TrialSet | Sequence[Trial]) -> bool:
+    """Whether what stands in the place of orders is trials: objects, a folder, a trial file or a bundled name."""
+    if not isinstance(given, (str, Path)):
+        return True
+    path = Path(given)
+    return path.is_dir() or path.suffix == ".parquet" or (not path.exists() and str(given) in trial_set_names())
 
 
 def _agree(orders: object, trials: object, options: PredictOptions) -> None:

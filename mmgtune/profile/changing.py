@@ -73,7 +73,8 @@ def with_effects(
     source: str,
     stderr: Mapping[str, Mapping[str, float | None]] | None = None,
 ) -> ShipProfile:
-    """The profile with effects {tag: {parameter: value}} put in or changed; other parameters of new ones at their null.
+    """The profile with effects {tag: {parameter: value}} put in or changed; other parameters of new ones at their null,
+    or where they are pivots, at what suits the ship.
 
     stderr  standard errors in the same form, where known.  Raises KeyError for an unknown effect or parameter.
     """
@@ -92,6 +93,8 @@ def with_effects(
             assert isinstance(parameter, Parameter)  # an effect has nothing else
             if name in parameters:
                 coefficients[name] = Coefficient(float(parameters[name]), source=source, stderr=errors.get(name))
+            elif name in effect.pivots and name not in old.coefficients:
+                coefficients[name] = Coefficient(effect.pivots[name](scale_of(profile)), source=source)
             else:
                 coefficients[name] = old.coefficients.get(name) or Coefficient(parameter.null, source=ABSENT)
         given[tag] = replace(old, coefficients=coefficients)

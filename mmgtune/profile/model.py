@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ..components import ARRANGEMENTS, Arrangement, Component, split_name
+from ..displayed import Brief, Displayed
 from ..inputs import INPUTS
 from ..physics.actuation import moved
 from ..units import DIMENSIONLESS
@@ -18,8 +19,8 @@ ABSENT = "absent"
 """Source of a parameter of an effect that stands at its null and need not be written."""
 
 
-@dataclass(frozen=True)
-class Coefficient:
+@dataclass(frozen=True, repr=False)
+class Coefficient(Brief):
     """One number (or table) of a profile with what is known of it; value in the unit of its field.
 
     bounds          where a fit may look for it, whatever a_r is
@@ -40,8 +41,8 @@ class Coefficient:
     warning: str = ""
 
 
-@dataclass(frozen=True)
-class Section:
+@dataclass(frozen=True, repr=False)
+class Section(Brief):
     """One component of the ship with its coefficients, in the order of the component's fields."""
 
     component: Component
@@ -96,7 +97,7 @@ class Approach:
 
 
 @dataclass(frozen=True)
-class ShipProfile:
+class ShipProfile(Displayed):
     """A ship: its components and coefficients, and what standard manoeuvres need.
 
     Two profiles are equal that say the same, wherever and however it is written.

@@ -16,7 +16,7 @@ from ..errors import Problem, ProfileError, brief, closest
 from ..inputs import Input
 from ..metrics import METRICS
 from ..physics.regressions.fujiwara1998 import wind_harmonics
-from ..resources import folder, profile_names, taken
+from ..resources import folder, network_names, profile_names, taken
 from ..toml_reading import TomlReader, toml_of
 from .changing import missing_for
 from .model import ABSENT, Actuator, Approach, Coefficient, Section, ShipProfile, SteeringGear
@@ -38,12 +38,13 @@ def find_profile(name: str | Path) -> Path:
     path = Path(name)
     if found := taken(name, path.is_file(), folder("ship_profiles") / f"{name}.toml"):
         return found
-    what = "the profile is a folder, not a file" if path.is_dir() else "no such ship profile"
-    raise ProfileError(
-        Problem(
-            what, where=str(name), fix=f"give a path to a TOML file, or a bundled name: {', '.join(profile_names())}"
-        )
-    )
+    fix = f"give a path to a TOML file, or a bundled name: {', '.join(profile_names())}"
+    if path.is_dir():
+        raise ProfileError(Problem("the profile is a folder, not a file", str(name), fix=fix))
+    trained = network_names()
+    fix += f"; where trained models do: {', '.join(trained)}" if trained else ""
+    why = "it is a trained model, which only simulation, scoring and prediction take" if name in trained else ""
+    raise ProfileError(Problem("no such ship profile", str(name), why, fix))
 
 
 def load_profile(name: str | Path) -> ShipProfile:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import resources
+from ..effects import find_effect
 from .wording import clean, count, number, shown
 
 Advice = tuple[tuple[str, str], ...]
@@ -43,7 +44,10 @@ def after_fit(data: Mapping[str, Any]) -> Advice:
         items.append((reason, f"mmgtune leave-out {profile} {trials}"))
     elif data.get("J_test") is None:
         reason = "No test set: leave each trial out in turn, to see how the fit does on trials it was not tuned on"
-        items.append((reason, f"mmgtune sweep {profile} {trials}"))
+        items.append((reason, f"mmgtune leave-out {profile} {trials}{same}"))
+    if data.get("misses"):
+        reason = "It misses trials that it was not tuned to: what is wrong, and how much of it the cause explains"
+        items.append((reason, f"mmgtune diagnose {profile} {trials}"))
     loose = len(data.get("undetermined") or ())
     if loose:
         reason = (
@@ -87,3 +91,94 @@ def after_sweep(data: Mapping[str, Any]) -> Advice:
     if data.get("command"):
         items.append(("Repeat this sweep", clean(data["command"])))
     return tuple(items)
+
+
+def after_diagnosis(data: Mapping[str, Any]) -> Advice:
+    """(reason, command) pairs that follow from a diagnosis."""
+    profile, trials = _inputs(data)
+    where = clean(data.get("out") or "RUN").rstrip("/")
+    extended = shlex.quote(f"{where}/profile.toml")
+    items = []
+    if data["causes"]:
+        causes = ", ".join(clean(cause["effect"]) for cause in data["causes"])
+        day = [clean(cause["effect"]) for cause in data["causes"] if of_the_day(cause["effect"])]
+        items.append(
+            (f"See the model with {causes} on every trial", f"mmgtune simulate -p {extended} --trials {trials[3:]}")
+        )
+        if day:
+            calm = shlex.quote(f"{where}/calm.toml")
+            reason = (
+                f"Predict calm water: {' and '.join(day)} {'was' if len(day) == 1 else 'were'} of these trials, not of "
+                "the ship. Take that out first; calm.toml is the profile without it"
+            )
+            items.append((reason, f"mmgtune simulate -p {calm} --turn 35 --turn -35 --zigzag 10/10 --zigzag 20/20"))
+        reason = "Re-tune the coefficients with what was found in the model, within the same range of their values"
+        items.append((reason, f"mmgtune fit -p {extended} {trials} --initial estimated"))
+    if data["verdict"] in ("unexplained", "interrupted"):
+        items.append(("Look for faults of the measurement itself", f"mmgtune trials check {trials[3:]}"))
+    if data["verdict"] == "none":
+        reason = "Nothing is missing from the model that these trials show: fit its coefficients to them"
+        items.append((reason, f"mmgtune fit {profile} {trials}"))
+    elif data["causes"]:
+        items.append(
+            ("Look for more, from the profile with what was found", f"mmgtune diagnose -p {extended} {trials}")
+        )
+    if data.get("interrupted") and data.get("command"):
+        items.append(("Go on where the search was stopped", f"{clean(data['command'])} --out {where} --resume"))
+    return tuple(items)
+
+
+def of_the_day(tag: str) -> bool:
+    """Whether an effect is of the trials rather than of the ship: current, wind, errors of sensors."""
+    effect = find_effect(tag)
+    return effect is not None and effect.of_the_day
+
+
+def after_leave_out(data: Mapping[str, Any]) -> Advice:
+    """(reason, command) pairs that follow from leaving trials out."""
+    profile, trials = _inputs(data)
+    a_r = number((data.get("options") or {}).get("a_r"))
+    same = f" --ar {a_r:g}" if a_r is not None else ""
+    whole: Mapping[str, Any] = next((row for row in data["scores"] if row["manoeuvre"] == "all"), {})
+    items = []
+    if (number(whole.get("share_removed")) or 0.0) > 0.0:
+        items.append(("Tuning helps on unseen trials: tune to all of them", f"mmgtune fit {profile} {trials}{same}"))
+    else:
+        reason = "Tuning does not help on unseen trials: look for what the model lacks"
+        items.append((reason, f"mmgtune diagnose {profile} {trials}"))
+    items.append(("See whether a narrower or a wider range does better", f"mmgtune sweep {profile} {trials}"))
+    return tuple(items)
+
+
+def after_simulation(data: Mapping[str, Any], measured: bool) -> Advice:
+    """(reason, command) pairs that follow from a simulation."""
+    out = shlex.quote(clean(data.get("out") or "RUN"))
+    items = []
+    if not measured:
+        items.append(("The runs are trial files: their indices by the same code as of measured ones",
+                      f"mmgtune trials inspect {out}"))  # fmt: skip
+    if data.get("command"):
+        items.append(("Repeat this simulation", f"{clean(data['command'])} --force"))
+    return tuple(items)
+
+
+def after_validation(data: Mapping[str, Any]) -> Advice:
+    """(reason, command) pairs that follow from a validation."""
+    trials = shlex.quote(clean(data["trials"]))
+    first = shlex.quote(clean(data["profiles"][0]["profile"]))
+    items = []
+    if data["profiles"][0].get("sha256"):
+        reason = "See what the first model gets wrong on these trials, and why"
+        items.append((reason, f"mmgtune diagnose -p {first} -t {trials}"))
+    names = " ".join(shlex.quote(clean(one["profile"])) for one in data["profiles"])
+    if not data.get("window_s"):
+        reason = "Score short windows instead, in which errors do not add up along a run"
+        items.append((reason, f"mmgtune validate {names} {trials} --restart 60"))
+    return tuple(items)
+
+
+def after_check(data: Mapping[str, Any]) -> Advice:
+    """(reason, command) pairs that follow from a check."""
+    if data["verdict"] == "regressed":
+        return (("See what the profile now gets wrong, and why", clean(data["next"])),)
+    return (("Take what it does now as the baseline from here on", clean(data["next"])),)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from .page import Cell, Table, cells
+from .blocks import Cell, Table, cells
 from .wording import NONE, clean, fixed, number, shown
 
 

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..profile.doubts import in_words
+from . import findings
 from .advice import shortest
-from .drawing import Drawn
-from .page import Details, Picture, Prose, Section, Table, Tile
+from .blocks import Card, Fold, Picture, Prose, Section, Table
+from .plot import Figure
 from .tables import pairs, tone
-from .wording import NONE, change, clean, number, percent, sentence, shown
+from .wording import NONE, change, clean, count, number, percent, sentence, shown
 
 
 def generated_banner(trials: Mapping[str, Any]) -> tuple[str, ...]:
@@ -42,17 +44,59 @@ def doubts(record: Mapping[str, Any]) -> tuple[str, ...]:
     return tuple(f"{clean(words)}." for words in in_words(record.get("doubts") or ()))
 
 
-def misfit_tile(label: str, before: Any, after: Any, none: str) -> Tile:
+def misfit_card(label: str, before: Any, after: Any, none: str) -> Card:
     """J of a set before and after tuning, or why there is none."""
     if number(after) is None:
-        return Tile(label, NONE, note=none)
+        return Card(label, NONE, note=none)
     moved = change(before, after)
-    return Tile(label, f"{shown(before)} → {shown(after)}", percent(moved), "", tone(moved))
+    return Card(label, f"{shown(before)} → {shown(after)}", percent(moved), "", tone(moved))
 
 
-def picture(drawn: Drawn, title: str, caption: str, *data: Table) -> Picture:
-    """A drawn figure with its caption and data."""
-    return Picture(drawn.name, title, caption, drawn.inline, data)
+def cards_of_misfit(data: Mapping[str, Any], results: Sequence[Mapping[str, Any]], where: str = "") -> tuple[Card, ...]:
+    """How far off in metres and degrees, on trials not tuned on where there are any, and J after that.
+
+    where  what the trials are, where all are of one kind
+    """
+    held = [row for row in results if row.get("role") == "test"]
+    rows = held if held and not where else list(results)
+    where = where or ("test trials" if held else "trials tuned on")
+    note = f"root mean square, mean of {count(len(rows), 'trial')}"
+    cards = []
+    for label, mean, unit, digits in (
+        ("Off track", findings.mean_off_track, " m", 3),
+        ("Off heading", findings.mean_off_heading, "°", 2),
+    ):
+        before, after = mean(rows, "before"), mean(rows, "after")
+        if before is not None and after is not None:
+            moved = change(before, after)
+            value = f"{shown(before, digits)} → {shown(after, digits)}{unit}"
+            cards.append(Card(f"{label}, {where}", value, percent(moved), note, tone(moved)))
+    tuned = change(data.get("J_tune_before"), data.get("J_tune"))
+    if held and number(data.get("J_test")) is not None:
+        moved = change(data.get("J_test_before"), data["J_test"])
+        values = f"{shown(data.get('J_test_before'))} → {shown(data['J_test'])}"
+        said = f"trials tuned on: {percent(tuned)}" if tuned is not None else ""
+        cards.append(Card("Misfit J, test trials", values, percent(moved), said, tone(moved)))
+    elif number(data.get("J_tune")) is not None:
+        none = "no test set: nothing shows yet how this does on other trials"
+        values = f"{shown(data.get('J_tune_before'))} → {shown(data['J_tune'])}"
+        cards.append(Card("Misfit J, trials tuned on", values, percent(tuned), none, tone(tuned)))
+    return tuple(cards)
+
+
+def rms_errors(data: Mapping[str, Any], row: Mapping[str, Any]) -> tuple[float | None, float | None]:
+    """Root mean square error of position [m] and heading [deg]; None where it diverged."""
+    parts, sigma = row["L_MSE_by_state"], data["sigma"]
+    squares = {name: number(parts.get(name)) for name in ("x", "y", "psi")}
+    if any(value is None for value in squares.values()):
+        return None, None
+    x, y, psi = ((squares[name] or 0.0) * sigma[name] ** 2 for name in ("x", "y", "psi"))
+    return math.sqrt(x + y), math.degrees(math.sqrt(psi))
+
+
+def picture(figure: Figure, title: str, caption: str, *data: Table) -> Picture:
+    """A figure with its caption and data."""
+    return Picture(figure.name, title, caption, figure, data)
 
 
 def assumptions(data: Mapping[str, Any]) -> Section | None:
@@ -103,18 +147,27 @@ def provenance(data: Mapping[str, Any]) -> Section:
     versions = [(str(name), str(text)) for name, text in sorted((data.get("environment") or {}).items())]
     hashes = [(str(name), str(text)) for name, text in (trials.get("sha256") or {}).items()]
     options = [(str(name), _option(value)) for name, value in (data.get("options") or {}).items()]
-    folded: list[Details] = []
+    folded: list[Fold] = []
     for id, summary, titles, rows in (
         ("options", "Options", ("option", "value"), options),
         ("versions", "Versions", ("program", "version"), versions),
         ("hashes", "Hashes of the trials", ("trial", "SHA-256"), hashes),
     ):
         if rows:
-            folded.append(Details(summary, (pairs(f"{id}-table", summary, titles, rows),)))
+            folded.append(Fold(summary, (pairs(f"{id}-table", summary, titles, rows),)))
     cited = tuple(clean(text) for text in data.get("citations") or ())
     sources = (Prose(("To be cited with these results:",)), Prose(cited, listed=True)) if cited else ()
     table = pairs("provenance-table", "How this run was made", ("what", "value"), known)
     return Section("provenance", "Provenance", (table, *folded, *sources))
+
+
+def made_table(data: Mapping[str, Any], items: Sequence[tuple[str, str]]) -> Table:
+    """How a run was made, of records with little of it."""
+    known = [("command", data.get("command")), ("made", data.get("created")), ("mmgtune", data.get("mmgtune"))]
+    if number(data.get("wall_s")) is not None:
+        known.append(("time taken", f"{shown(data['wall_s'], 3)} s"))
+    rows = [(name, str(text)) for name, text in known if text not in (None, "")]
+    return pairs("provenance-table", "How this was made", ("what", "value"), [*rows, *items])
 
 
 def _option(value: Any) -> str:

@@ -5,22 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from .blocks import Card, Cell, Page, Prose, Section, Table, cells
 from .common import doubts, picture
-from .drawing import AFTER, BEFORE, Drawn, new_figure
 from .load import Kind
-from .page import Cell, Page, Prose, Section, Table, Tile, cells
+from .plot import Axis, Figure, Line, Look, Mark, Panel
 from .wording import NONE, clean, coefficient_text, number, percent, shown
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-_STYLES: dict[str, dict[str, Any]] = {
-    "a": {"color": BEFORE, "linestyle": "-", "linewidth": 1.5},
-    "b": {"color": AFTER, "linestyle": (0, (6, 2.2)), "linewidth": 1.5},
-}
+_LOOKS = {"a": Look("before", 1.6), "b": Look("after", 1.6, "dash")}
 _FORCES = (
     ("over_drift", "beta_deg", "drift angle [°]", "hull, not turning", ("X", "Y", "N")),
     ("over_yaw_rate", "r_prime", "yaw rate r′ [–]", "hull, no drift", ("X", "Y", "N")),
@@ -64,24 +57,15 @@ def build(record: ComparisonRecord) -> Page:
     """Everything the report of a comparison says."""
     data, names = record.data, record.names
     manoeuvres = data["manoeuvres"]
-    drawings = [
-        Drawn(
-            "forces",
-            "Hull and rudder forces of both profiles",
-            lambda: _draw_forces(names, data["forces"]),
-        )
-    ]
     sections: list[Section] = []
     if manoeuvres["indices"]:
-        tracks = Drawn("turns", "Turning circles of both profiles", lambda: _draw_turns(names, manoeuvres["tracks"]))
-        drawings.insert(0, tracks)
         blocks = (
-            picture(tracks, "Turning circles", _circles(names, manoeuvres["indices"])),
+            picture(_turns(names, manoeuvres["tracks"]), "Turning circles", _circles(names, manoeuvres["indices"])),
             _indices(names, manoeuvres),
         )
         sections.append(Section("manoeuvres", "Standard manoeuvres", blocks))
     caption = f"Prime system, at {shown(data['speed_mps'], 3)} m/s. X forward, Y and N to starboard."
-    sections.append(Section("forces", "Forces", (picture(drawings[-1], "Forces", caption),)))
+    sections.append(Section("forces", "Forces", (picture(_forces(names, data["forces"]), "Forces", caption),)))
     sections.append(Section("coefficients", "Coefficients", (_coefficients(names, data["coefficients"]),)))
     sections.append(_made(data["profiles"]))
     titles = [clean(one["title"]) for one in data["profiles"]]
@@ -90,9 +74,8 @@ def build(record: ComparisonRecord) -> Page:
         eyebrow=" · ".join(dict.fromkeys(titles)),
         verdict=_verdict(names, manoeuvres["indices"]),
         warnings=tuple(f"{clean(one['name'])}: {words}" for one in data["profiles"] for words in doubts(one)),
-        tiles=_tiles(names, manoeuvres["indices"]),
+        cards=_cards(names, manoeuvres["indices"]),
         sections=tuple(sections),
-        figures={drawn.name: drawn for drawn in drawings},
     )
 
 
@@ -116,21 +99,21 @@ def _verdict(names: tuple[str, str], rows: Sequence[Mapping[str, Any]]) -> str:
     )
 
 
-def _tiles(names: tuple[str, str], rows: Sequence[Mapping[str, Any]]) -> tuple[Tile, ...]:
+def _cards(names: tuple[str, str], rows: Sequence[Mapping[str, Any]]) -> tuple[Card, ...]:
     wanted = (
         ("Advance, 35° to starboard", "turn_p35", "advance_over_L", "L_pp"),
         ("Tactical diameter, 35° to starboard", "turn_p35", "tactical_diameter_over_L", "L_pp"),
         ("Tactical diameter, 35° to port", "turn_m35", "tactical_diameter_over_L", "L_pp"),
         ("First overshoot, zigzag 10/10", "zigzag_p10_10", "overshoot_1_deg", "°"),
     )
-    tiles = []
+    shown_cards = []
     for label, manoeuvre, index, unit in wanted:
         found = _find(rows, manoeuvre, index)
         if found is not None:
             a, b = found
             change = percent(100.0 * (b - a) / a) if a else ""
-            tiles.append(Tile(label, f"{shown(a, 3)} → {shown(b, 3)} {unit}", change, f"{names[0]} → {names[1]}"))
-    return tuple(tiles)
+            shown_cards.append(Card(label, f"{shown(a, 3)} → {shown(b, 3)} {unit}", change, f"{names[0]} → {names[1]}"))
+    return tuple(shown_cards)
 
 
 def _circles(names: tuple[str, str], rows: Sequence[Mapping[str, Any]]) -> str:
@@ -147,47 +130,31 @@ def _circles(names: tuple[str, str], rows: Sequence[Mapping[str, Any]]) -> str:
     return "; ".join(parts) + "." if parts else "Tracks in lengths of each ship."
 
 
-def _draw_turns(names: tuple[str, str], tracks: Mapping[str, Any]) -> Figure:
-    ids = list(tracks)
-    figure = new_figure(7.6, 4.2)
-    axes = figure.subplots(1, 2)
-    for ax, angle in zip(axes, ("35", "10"), strict=True):
+def _turns(names: tuple[str, str], tracks: Mapping[str, Any]) -> Figure:
+    panels = []
+    for angle in ("35", "10"):
+        marks: list[Mark] = []
         for key in "ab":
-            for id in (one for one in ids if one.endswith(angle)):
+            for id in (one for one in tracks if one.endswith(angle)):
                 if key in tracks[id]:
-                    ax.plot(tracks[id][key]["east"], tracks[id][key]["north"], **_STYLES[key])
-        ax.set_aspect("equal", adjustable="datalim")
-        ax.set_title(f"rudder ±{angle}°")
-        ax.set_xlabel("east [L_pp]")
-        ax.set_ylabel("north [L_pp]")
-    _legend(figure, names)
-    return figure
+                    marks.append(Line(tracks[id][key]["east"], tracks[id][key]["north"], _LOOKS[key]))
+        x, y = Axis("east [L_pp]"), Axis("north [L_pp]")
+        panels.append(Panel(tuple(marks), x, y, f"rudder ±{angle}°", 0.9, equal=True))
+    return Figure("turns", "Turning circles of both profiles", tuple(panels), _legend(names))
 
 
-def _draw_forces(names: tuple[str, str], forces: Mapping[str, Any]) -> Figure:
-    shown_ones = [one for one in _FORCES if forces[one[0]]["a"] is not None]
-    figure = new_figure(7.6, 2.3 * len(shown_ones) + 0.4)
-    grid = figure.subplots(len(shown_ones), 3, squeeze=False)
-    for line, (name, key, words, of, parts) in zip(grid, shown_ones, strict=True):
-        for ax, part in zip(line, parts, strict=True):
-            _force(ax, forces[name], key, part)
-            ax.set_xlabel(words)
-            ax.set_ylabel(f"{part}′ [–]")
-        line[0].set_title(of)
-    _legend(figure, names)
-    return figure
+def _forces(names: tuple[str, str], forces: Mapping[str, Any]) -> Figure:
+    panels = []
+    for name, key, words, of, parts in _FORCES:
+        found = forces[name]
+        for part in parts if found["a"] is not None else ():
+            marks = tuple(Line(found[key], found[which][part], _LOOKS[which]) for which in "ab")
+            panels.append(Panel(marks, Axis(words), Axis(), f"{part}′ [–], {of}"))
+    return Figure("forces", "Hull and rudder forces of both profiles", tuple(panels), _legend(names), 3)
 
 
-def _force(ax: Axes, found: Mapping[str, Any], key: str, part: str) -> None:
-    for which in "ab":
-        ax.plot(found[key], found[which][part], **_STYLES[which])
-
-
-def _legend(figure: Figure, names: tuple[str, str]) -> None:
-    from matplotlib.lines import Line2D
-
-    handles = [Line2D([], [], label=name, **_STYLES[key]) for key, name in zip("ab", names, strict=True)]
-    figure.legend(handles=handles, loc="outside upper left", ncols=2, handlelength=3.6)
+def _legend(names: tuple[str, str]) -> tuple[tuple[str, Look], ...]:
+    return tuple((name, _LOOKS[key]) for key, name in zip("ab", names, strict=True))
 
 
 def _indices(names: tuple[str, str], manoeuvres: Mapping[str, Any]) -> Table:

@@ -6,16 +6,15 @@ from typing import TYPE_CHECKING, Any
 
 from ..arrays import FloatArray
 from . import figures, findings, tables
+from .blocks import Block, Fold, Prose, Section, Table
 from .common import picture
-from .drawing import Drawn
-from .page import Block, Details, Prose, Section, Table
 from .wording import count, number, sentence, short, shown
 
 if TYPE_CHECKING:
     from .load import RunRecord
 
 
-def best_fit(record: RunRecord, drawings: dict[str, Drawn]) -> Section:
+def best_fit(record: RunRecord) -> Section:
     """Convergence, agreement of methods, and what the bounds cost."""
     data, blocks = record.data, list[Block]()
     certificate = data.get("certificate") or {}
@@ -35,19 +34,15 @@ def best_fit(record: RunRecord, drawings: dict[str, Drawn]) -> Section:
             ),
             numeric=True,
         )
-        blocks.append(Details("What each touched bound costs", (bounds,)))
+        blocks.append(Fold("What each touched bound costs", (bounds,)))
     history = record.history
     if history and len(history.get("J_best", ())):
         evaluations = running(history)
         least = number((data.get("agreement") or {}).get("J_least_squares"))
-        drawings["convergence"] = Drawn(
-            "convergence",
-            "J against the number of evaluations",
-            lambda: figures.draw_convergence(evaluations, history, least),
-        )
+        figure = figures.convergence(evaluations, history, least)
         entries = data.get("restarts") or []
         more = (tables.restarts(entries),) if entries else ()
-        blocks.append(picture(drawings["convergence"], "Convergence", findings.convergence(data), *more))
+        blocks.append(picture(figure, "Convergence", findings.convergence(data), *more))
     else:
         blocks.append(Prose(("No evolution strategy ran, so there is no history of its generations.",)))
     return Section("trust", "Is this the best fit in the box?", tuple(blocks))
@@ -63,7 +58,7 @@ def running(history: Any) -> FloatArray:
     return total
 
 
-def identifiability(record: RunRecord, drawings: dict[str, Drawn]) -> Section | None:
+def identifiability(record: RunRecord) -> Section | None:
     found = record.data.get("identifiability") or {}
     blocks = list[Block]()
     said = [sentence(text) for text in found.get("sentences") or ()]
@@ -87,14 +82,9 @@ def identifiability(record: RunRecord, drawings: dict[str, Drawn]) -> Section | 
     correlation = found.get("correlation") or {}
     names, matrix = correlation.get("names") or [], correlation.get("matrix") or []
     if len(names) > 1 and len(matrix) == len(names):
-        drawings["correlation"] = Drawn(
-            "correlation",
-            "Correlation matrix of the coefficients' errors",
-            lambda: figures.draw_correlation(names, matrix),
-        )
         blocks.append(
             picture(
-                drawings["correlation"],
+                figures.correlation(names, matrix),
                 "Correlations",
                 findings.correlation(names, matrix),
                 tables.correlation(names, matrix),
@@ -102,7 +92,7 @@ def identifiability(record: RunRecord, drawings: dict[str, Drawn]) -> Section | 
         )
     numbers = _numbers(found)
     if numbers:
-        blocks.append(Details("Singular values and autocorrelation", (numbers,)))
+        blocks.append(Fold("Singular values and autocorrelation", (numbers,)))
     if not blocks:
         return None
     return Section("identifiability", "What the trials can and cannot tell", tuple(blocks))

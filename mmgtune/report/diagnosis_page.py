@@ -5,21 +5,30 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from . import findings, tracks
-from .advice import shortest
-from .common import assumptions, doubts, generated_banner, picture, provenance
-from .differences import draw_differences
-from .drawing import AFTER, MUTED, Drawn, log_ticks, new_figure
+from . import advice, findings, measures, motion_block, unexplained
+from .blocks import Block, Card, Cell, Commands, Fold, Nothing, Page, Prose, Section, Table, cells
+from .common import assumptions, cards_of_misfit, doubts, generated_banner, picture, provenance
+from .differences import differences
+from .forces import ship_of
 from .load import DiagnosisRecord, Kind, inputs_of, motions_in
 from .of_runs import of_runs, parameters_of
-from .page import Block, Cell, Commands, Details, Page, Prose, Section, Table, Tile, cells
+from .plot import Axis, Bar, Figure, Panel
 from .tables import tone
-from .wording import CHANNELS, NONE, change, clean, number, percent, shown
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from .wording import (
+    CHANNELS,
+    NONE,
+    beyond_noise,
+    change,
+    clean,
+    index_words,
+    number,
+    percent,
+    share,
+    shown,
+    span,
+)
 
 _WORDS = {
     "none": "nothing found",
@@ -33,8 +42,20 @@ _RUNS = {"measured": "measured", "before": "without a cause", "after": "with the
 _BARS = 12
 """Hypotheses drawn."""
 
-_READ = {"rad": (180.0 / math.pi, "°"), "rad/s": (180.0 / math.pi, "°/s"), "N": (1e-3, "kN")}
+_READ = {
+    "rad": (180.0 / math.pi, "°"),
+    "rad/s": (180.0 / math.pi, "°/s"),
+    "rad/s^2": (180.0 / math.pi, "°/s²"),
+    "N": (1e-3, "kN"),
+}
 """Factor and unit in which people read a quantity."""
+
+_BEYOND = "variance of the error less that of the sensor's noise, as a share of it; where large, multiples of the noise"
+_FORCE_WORDS = {
+    "dX": "surge [kN]", "dY": "sway [kN]", "dN": "yaw [kN m]",
+    "dX'": "surge′ [–]", "dY'": "sway′ [–]", "dN'": "yaw′ [–]",
+}  # fmt: skip
+"""What is missing of the forces; with a prime, over the square of speed."""
 
 _VARIABLES = {
     "heading": "heading",
@@ -50,16 +71,17 @@ _VARIABLES = {
 def build(record: DiagnosisRecord) -> Page:
     """Everything the report of a diagnosis says."""
     data = record.data
-    drawings: dict[str, Drawn] = {}
+    unknown = data["verdict"] == "unexplained"
     sections = [
+        _motions(record),
+        _where(data) if unknown else None,
         _causes(data),
-        _voyages(data, drawings),
-        _why(data, drawings),
-        _gain(record, drawings),
-        _evidence(data),
-        _left(data),
+        _voyages(data),
+        Section("next", "What to do next", (Commands(advice.after_diagnosis(data)),)),
+        _why(data),
+        _gain(data),
+        None if unknown else _where(data),
         _could_tell(data),
-        Section("next", "What to do next", (Commands(_advice(data)),)),
         assumptions(data),
         provenance(data),
     ]
@@ -72,10 +94,10 @@ def build(record: DiagnosisRecord) -> Page:
         warnings=(
             *(("The search was interrupted; this is what was known by then.",) if data.get("interrupted") else ()),
             *doubts(data),
+            *(clean(text) for text in data.get("warnings") or ()),
         ),
-        tiles=_tiles(data),
+        cards=_cards(record),
         sections=tuple(section for section in sections if section is not None),
-        figures=drawings,
     )
 
 
@@ -84,31 +106,58 @@ def _held_out(gain: Mapping[str, Any]) -> str:
     return ", ".join(clean(word) for word in (gain["held_out"], gain.get("method")) if word)
 
 
-def _tiles(data: Mapping[str, Any]) -> tuple[Tile, ...]:
-    gain = data["gain"]
-    moved = change(gain.get("J_test_before"), gain.get("J_test_after"))
-    tiles = [Tile("Verdict", _WORDS.get(data["verdict"], data["verdict"]))]
+def _cards(record: DiagnosisRecord) -> tuple[Card, ...]:
+    data, gain = record.data, record.data["gain"]
     if data["causes"]:
-        tiles.append(Tile("Causes", ", ".join(clean(cause["effect"]) for cause in data["causes"])))
-    before, after = shown(gain.get("J_test_before")), shown(gain.get("J_test_after"))
-    if data["causes"]:
-        tiles.append(Tile("Misfit J, held out", f"{before} → {after}", percent(moved), _held_out(gain), tone(moved)))
-        low, high = gain["share_ci95"]
-        tiles.append(
-            Tile(
-                "Error above noise removed",
-                f"{min(100.0 * gain['share_above_noise_removed'], 99.9):.1f} %",
-                note=f"95 % interval over trials {min(100.0 * low, 99.9):.1f} to {min(100.0 * high, 99.9):.1f} %",
-            )
+        removed = share(gain["share_above_noise_removed"])
+        causes = ", ".join(clean(cause["effect"]) for cause in data["causes"])
+        note = f"95\u00a0% of draws of trials: {span(*gain['share_ci95'])}; by {causes}"
+        return (
+            *cards_of_misfit({}, record.results, where="held out")[:2],
+            Card("Error beyond noise removed", removed, note=note, tone="good"),
+            _misfit(gain),
         )
+    cards = []
+    for label, mean, written in (
+        ("Off track, held out", findings.mean_off_track, lambda value: f"{shown(value, 3)} m"),
+        ("Off heading, held out", findings.mean_off_heading, findings.degrees),
+    ):
+        size = mean(record.results, "before")
+        if size is not None:
+            cards.append(Card(label, written(size), note="re-tuned model, root mean square"))
+    left = beyond_noise(data["unexplained"]["share_of_noise_variance"])
+    structured = data["unexplained"]["structured"]
+    note = "looks like something that happened" if structured else "what is left looks like noise"
+    cards.append(Card("Left beyond the sensors' noise", left, note=note, tone="bad" if structured else ""))
+    return (*cards, Card("Misfit J, held out", shown(gain.get("J_test_before")), note=f"re-tuned, {_held_out(gain)}"))
+
+
+def _misfit(gain: Mapping[str, Any]) -> Card:
+    """J before and after; the share of it that is noise no cause removes."""
+    before, after = gain.get("J_test_before"), gain.get("J_test_after")
+    moved = change(before, after)
+    return Card("Misfit J, held out", f"{shown(before)} → {shown(after)}", percent(moved), _held_out(gain), tone(moved))
+
+
+def _motions(record: DiagnosisRecord) -> Section | None:
+    """Held-out tracks: without and with the causes, or of the re-tuned model alone where there is none."""
+    data, rows = record.data, record.results
+    words = dict(_RUNS) if data["causes"] else {"measured": "measured", "before": "re-tuned model"}
+    if data["causes"]:
+        before, after = (shown(findings.mean_off_track(rows, when), 3) for when in ("before", "after"))
+        caption = f"Mean distance off track: {before} m re-tuned without a cause, {after} m with it."
     else:
-        tiles.append(Tile("Misfit J, held out", before, note=f"re-tuned model, {_held_out(gain)}"))
-        left = data["unexplained"]["share_of_noise_variance"]
-        tiles.append(Tile("Left beyond sensor noise", f"{100.0 * left:.1f} %", note="of the noise's variance"))
-    return tuple(tiles)
+        before = shown(findings.mean_off_track(rows, "before"), 3)
+        caption = f"The re-tuned model is {before} m off track in the mean."
+    data_tables = motion_block.numbers(rows, record.motions, words)
+    block = motion_block.of_trials(
+        rows, record.motions, record.inputs, caption, words=words, ship=record.ship, data=data_tables
+    )
+    title = "Held-out trials" if data["gain"].get("held_out_code") == "test" else "Trials"
+    return None if block is None else Section("motions", title, (block,))
 
 
-def _voyages(data: Mapping[str, Any], drawings: dict[str, Drawn]) -> Section | None:
+def _voyages(data: Mapping[str, Any]) -> Section | None:
     """What differs from voyage to voyage; records of trials, and of older versions, have nothing of it."""
     told = data.get("voyages")
     if not told:
@@ -116,8 +165,7 @@ def _voyages(data: Mapping[str, Any], drawings: dict[str, Drawn]) -> Section | N
     blocks: list[Block] = [Prose((clean(told["sentence"]),))]
     if told["differences"]:
         title = "What differs from voyage to voyage"
-        drawn = Drawn("differences", title, lambda: draw_differences(told["differences"]))
-        drawings["differences"] = drawn
+        drawn = differences(told["differences"])
         caption = "Voyages in their order; of those without a point the windows do not tell. The numbers are below."
         blocks.append(picture(drawn, title, caption))
     for one in told["differences"]:
@@ -152,9 +200,18 @@ def _with_error(value: Mapping[str, Any]) -> tuple[str, str]:
 
 def _causes(data: Mapping[str, Any]) -> Section | None:
     listed = data["causes"] or data["unexplained"]["best_known"]
+    said: list[Block] = [Prose((clean(data["record"]["sentence"]),))] if data.get("record") else []
+    if not listed and data["verdict"] == "none":
+        looked = len(
+            {row["effect"] for row in data["candidates"]} | {row["effect"] for row in data.get("detectability") or ()}
+        )
+        more = f"{looked} effects were looked at; which of them these trials would have shown stands below."
+        nothing = Nothing("No cause was found.", more if looked else "")
+        return Section("causes", "Causes", (nothing, *said, *unexplained.traces(data)))
+    blocks: list[Block] = [*said]
     if not listed:
-        return None
-    blocks: list[Block] = []
+        blocks += unexplained.traces(data)
+        return Section("causes", "Causes", tuple(blocks)) if blocks else None
     if not data["causes"]:
         blocks.append(
             Prose(("None of these can be relied on while something unknown is at work besides.",), tone="warning")
@@ -173,10 +230,12 @@ def _causes(data: Mapping[str, Any]) -> Section | None:
         blocks.append(
             Table(
                 "causes-table",
-                "Each parameter with its 95 % interval, and the probability that chance brings as much in any search",
+                "What was found, with its size",
                 ("effect", "parameter", "value", "95 % interval", "unit", "by chance"),
                 tuple(rows),
-                (2, 3),
+                (2, 3, 5),
+                (("by chance", "probability that chance alone brings as much in a search like this one"),),
+                cards=True,
             )
         )
     for cause in listed:
@@ -191,15 +250,18 @@ def _causes(data: Mapping[str, Any]) -> Section | None:
         sentence = f"The trial that would: {clean(suggestion['manoeuvre'])}."
         sentence += f" There the explanations differ by up to {apart} m, in all {in_all} deviations of the noise."
         blocks.append(Prose((sentence,)))
+    blocks += unexplained.traces(data)
     return Section("causes", "Causes", tuple(blocks))
 
 
-def _why(data: Mapping[str, Any], drawings: dict[str, Drawn]) -> Section:
+def _why(data: Mapping[str, Any]) -> Section | None:
     fitted = [row for row in data["candidates"] if row["gain"] >= 1.0]
+    if not data["candidates"]:
+        return None
     table = Table(
         "candidates-table",
-        "Hypotheses at the first look: what the linear score promised, what the refit gained, and J on the test trials",
-        ("effect", "parameters", "score", "gain of chi-squared", "by chance", "J test"),
+        f"All {len(data['candidates'])} hypotheses at the first look",
+        ("effect", "parameters", "score [–]", "fall of chi-squared [–]", "by chance", "J, held out"),
         tuple(
             cells(
                 clean(row["effect"]),
@@ -212,165 +274,203 @@ def _why(data: Mapping[str, Any], drawings: dict[str, Drawn]) -> Section:
             for row in data["candidates"]
         ),
         (2, 3, 4, 5),
+        (
+            ("score", "fall of chi-squared that the first derivatives promise"),
+            ("chi-squared", "squared differences over the variance of the sensors' noise, added up"),
+            ("by chance", "probability that chance alone brings as much in a search like this one"),
+            ("J", measures.J),
+        ),
+        raw=True,
     )
-    blocks: list[Block] = []
-    if fitted:
-        drawings["candidates"] = Drawn(
-            "candidates", "What each hypothesis alone would explain", lambda: _draw_candidates(fitted)
+    every = Fold(f"All {len(data['candidates'])} hypotheses", (table,))
+    if not data["causes"]:
+        sentence = (
+            "No hypothesis explains more than chance would."
+            if data["verdict"] == "none"
+            else ("No single hypothesis is enough.")
         )
-        best = fitted[0]
-        blocks.append(
-            picture(
-                drawings["candidates"],
-                "What each hypothesis alone would explain",
-                f"{clean(best['effect'])} explains most: chi-squared falls by {shown(best['gain'], 3)}.",
-            )
-        )
-    blocks.append(Details(f"All {len(data['candidates'])} hypotheses", (table,)) if fitted else table)
-    return Section("why", "Why this and not another", tuple(blocks))
+        drawn = (Fold("What each alone would explain", (_candidates(fitted, data),)),) if fitted else ()
+        return Section("why", "What was looked at", (Prose((sentence,)), *drawn, every))
+    return Section("why", "Why this and not another", (_candidates(fitted, data), every) if fitted else (every,))
 
 
-def _draw_candidates(rows: Sequence[Mapping[str, Any]]) -> Figure:
+def _candidates(fitted: Sequence[Mapping[str, Any]], data: Mapping[str, Any]) -> Block:
+    found = bool(data["causes"])
+    best = fitted[0]
+    likely = number(best["p_value"])
+    if found:
+        caption = f"{clean(best['effect'])} alone explains most: chi-squared falls by {shown(best['gain'], 3)}."
+    elif likely is not None and likely > 0.01:
+        caption = f"The largest, {clean(best['effect'])}, is no more than chance brings in {share(likely)} of searches."
+    else:
+        caption = f"The largest is {clean(best['effect'])}, chi-squared falls by {shown(best['gain'], 3)}."
+    return picture(_candidates_figure(fitted, found), "What each hypothesis alone would explain", caption)
+
+
+def _candidates_figure(rows: Sequence[Mapping[str, Any]], found: bool) -> Figure:
+    """The fall of chi-squared of each hypothesis; the best stands out where a cause was found."""
     rows = rows[:_BARS]
-    figure = new_figure(7.6, 0.3 * len(rows) + 0.8)
-    ax = figure.subplots()
     gains = [max(float(row["gain"]), 0.1) for row in rows]
-    ax.barh(range(len(rows)), gains, height=0.62, color=[AFTER, *[MUTED] * (len(rows) - 1)])
-    ax.set_yticks(range(len(rows)), [f"{clean(row['effect'])} ({', '.join(parameters_of(row))})"[:44] for row in rows])
-    ax.set_ylim(len(rows) - 0.4, -0.6)
-    if max(gains) > 30.0 * min(gains):
-        ax.set_xscale("log")
-        log_ticks(ax.xaxis)
-    ax.set_xlabel("fall of chi-squared when refitted")
-    ax.grid(axis="y", visible=False)
-    return figure
+    log = max(gains) > 30.0 * min(gains)
+    least = 0.5 * min(gains) if log else 0.0
+    marks = tuple(
+        Bar((least, gain), (k - 0.31, k + 0.31), "after" if k == 0 and found else "muted", 1.0 if k == 0 else 0.7)
+        for k, gain in enumerate(gains)
+    )
+    ticks = tuple(
+        (float(k), f"{clean(row['effect'])} ({', '.join(parameters_of(row))})"[:44]) for k, row in enumerate(rows)
+    )
+    y = Axis(low=len(rows) - 0.4, high=-0.6, ticks=ticks, grid=False)
+    x = Axis("fall of chi-squared when refitted [–]", low=least, log=log)
+    panel = Panel(marks, x, y, shape=-(25.0 * len(rows) + 48.0))
+    return Figure("candidates", "What each hypothesis alone would explain", (panel,))
 
 
-def _gain(record: DiagnosisRecord, drawings: dict[str, Drawn]) -> Section:
-    data, gain = record.data, record.data["gain"]
-    rows = [row for row in record.results if str(row["id"]) in record.motions]
-    blocks: list[Block] = []
-    if rows and data["causes"]:
-        chosen = tracks.chosen(rows)
-        drawings["tracks"] = Drawn(
-            "tracks",
-            "Measured and simulated tracks of each held-out trial, north up",
-            lambda: tracks.draw_tracks(chosen, record.motions, _RUNS),
-        )
-        drawings["distances"] = Drawn(
-            "distances",
-            "Distance of the simulated from the measured position over time",
-            lambda: tracks.draw_distances(chosen, record.motions, _RUNS),
-        )
-        before, after = (shown(findings.mean_off_track(chosen, when), 3) for when in ("before", "after"))
-        gap = f"Mean distance off track: {before} m re-tuned without a cause, {after} m with the causes."
-        blocks += [
-            picture(drawings["tracks"], "Held-out tracks", gap),
-            picture(drawings["distances"], "Distance off track", "The same over time."),
-        ]
-    listed = [
-        (words + name, gain[f"{kind}_before"].get(name), gain[f"{kind}_after"].get(name))
-        for kind, words in (("measures", ""), ("index_errors", "error of "))
-        for name in gain[f"{kind}_before"]
+def _gain(data: Mapping[str, Any]) -> Section:
+    """Scores of the trials that were not used, before and after."""
+    gain, found = data["gain"], bool(data["causes"])
+    rows = [
+        cells(measures.with_unit(name), shown(a, 3), *_after(a, gain["measures_after"].get(name), found))
+        for name, a in gain["measures_before"].items()
     ]
-    blocks.append(
-        Table(
-            "gain-table",
-            f"Held out: {gain['held_out']}. Means over trials of the seven distance measures, and mean absolute errors "
-            "of manoeuvring indices",
-            ("measure", "before", "after", "change"),
-            tuple(
-                cells(clean(name), shown(a), shown(b), Cell(percent(change(a, b)), tone(change(a, b))))
-                for name, a, b in listed
-            ),
-            (1, 2, 3),
-        )
+    for name, a in gain["index_errors_before"].items():
+        words, unit = index_words(name)
+        b = gain["index_errors_after"].get(name)
+        rows.append(cells(f"error of {words} [{unit or NONE}]", shown(a, 3), *_after(a, b, found)))
+    heads = ("before", "after", "change") if found else ("re-tuned model",)
+    scores = Table(
+        "gain-table",
+        f"Means over trials, {clean(gain['held_out'])}",
+        ("measure", *heads),
+        tuple(rows),
+        range(1, 1 + len(heads)),
+        (*measures.about(list(gain["measures_before"])), ("error of …", "mean size of the error of an index")),
     )
-    blocks.append(
-        Table(
-            "gain-by-trial",
-            "J by trial",
-            ("trial", "before", "after"),
-            tuple(
-                cells(clean(row["trial"]), shown(row["J_before"]), shown(row["J_after"])) for row in gain["by_trial"]
-            ),
-            (1, 2),
-        )
+    trials = Table(
+        "gain-by-trial",
+        "J by trial",
+        ("trial", *heads[:-1]) if found else ("trial", "re-tuned model"),
+        tuple(
+            cells(clean(row["trial"]), shown(row["J_before"]), *([shown(row["J_after"])] if found else []))
+            for row in gain["by_trial"]
+        ),
+        range(1, 3),
+        (("J", measures.J),),
     )
-    return Section("gain", "The gain on trials not used", tuple(blocks))
+    title = "The gain on trials not used" if found else "How well the re-tuned model does"
+    if found:
+        return Section("gain", title, (scores, Fold("J by trial", (trials,))))
+    return Section("gain", title, (Fold("Measures and J by trial", (scores, trials)),))
 
 
-def _evidence(data: Mapping[str, Any]) -> Section | None:
+def _after(before: Any, after: Any, found: bool) -> list[str | Cell]:
+    """Value and change with the causes, nothing where there are none."""
+    moved = change(before, after)
+    return [shown(after, 3), Cell(percent(moved), tone(moved))] if found else []
+
+
+def _where(data: Mapping[str, Any]) -> Section | None:
+    """Where the error lives: by channel and by force, and what is left."""
     evidence = data.get("evidence") or {}
-    if "excess_before" not in evidence:
-        return None
+    unknown = data["verdict"] == "unexplained"
+    blocks: list[Block] = [*(unexplained.blocks(data) if unknown else ()), _left(data)]
+    if "excess_before" in evidence:
+        blocks.append(_residuals(evidence, bool(data["causes"])))
+    forces = [
+        _forces(evidence[f"forces_{which}"], which, words)
+        for which, words in (("before", "without a cause"), ("after", "with the causes"))
+        if evidence.get(f"forces_{which}") and (which == "before" or data["causes"])
+    ]
+    if forces and unknown:
+        blocks += forces
+    elif forces:
+        blocks.append(Fold("Residual forces: what each quantity alone predicts of them", tuple(forces)))
+    return Section("evidence", "Where the error lives" if unknown else "What is left", tuple(blocks))
+
+
+def _residuals(evidence: Mapping[str, Any], found: bool) -> Table:
     rows = []
     for name in evidence["excess_before"]:
         words = CHANNELS[name].words if name in CHANNELS else name
+        after = (
+            [beyond_noise(evidence["excess_after"].get(name)), shown(evidence["short_horizon_after"].get(name), 2)]
+            if found
+            else []
+        )
         rows.append(
             cells(
                 clean(words),
-                _share(evidence["excess_before"].get(name)),
-                _share(evidence["excess_after"].get(name)),
-                shown(evidence["short_horizon_before"].get(name), 3),
-                shown(evidence["short_horizon_after"].get(name), 3),
+                beyond_noise(evidence["excess_before"].get(name)),
+                *after[:1],
+                shown(evidence["short_horizon_before"].get(name), 2),
+                *after[1:],
             )
         )
-    blocks: list[Block] = [
-        Table(
-            "residuals-table",
-            "Variance of the residuals beyond white noise as a share of it, and root mean square of simulations "
-            "restarted every minute in deviations of the noise",
-            ("channel", "beyond noise, before", "after", "restarted, before", "after"),
-            tuple(rows),
-            (1, 2, 3, 4),
-        )
-    ]
-    for which, words in (("before", "without a cause"), ("after", "with the causes")):
-        forces = evidence.get(f"forces_{which}")
-        if forces:
-            blocks.append(_forces(forces, which, words))
-    return Section("evidence", "What does not match", tuple(blocks))
+    heads = (
+        ("beyond noise, before", "after", "restarted, before", "after") if found else ("beyond noise", "restarted [–]")
+    )
+    return Table(
+        "residuals-table",
+        "Error of each channel",
+        ("channel", *heads),
+        tuple(rows),
+        range(1, 1 + len(heads)),
+        (
+            ("beyond noise", _BEYOND),
+            ("restarted", "root mean square error of simulations begun anew every minute, over the noise: 1 is noise"),
+        ),
+    )
 
 
 def _forces(forces: Mapping[str, Any], which: str, words: str) -> Table:
     variables = list(dict.fromkeys(name for shares in forces["explained"].values() for name in shares))
     return Table(
         f"forces-{which}",
-        f"Residual forces by inverse dynamics {words}: share of their variance each quantity alone predicts",
+        f"Residual forces by inverse dynamics {words}",
         ("force", *(_VARIABLES.get(name, name) for name in variables), "noise"),
         tuple(
             cells(
-                clean(axis),
+                _FORCE_WORDS.get(axis, clean(axis)),
                 *(_bold(shares.get(name), shares.values()) for name in variables),
-                _share(forces["noise"].get(axis)),
+                share(forces["noise"].get(axis)),
             )
             for axis, shares in forces["explained"].items()
         ),
         tuple(range(1, len(variables) + 2)),
+        (
+            ("column", "share of the force's variance that this quantity alone predicts, on samples not used for it"),
+            ("noise", "share of it that is noise of the sensors"),
+            ("′", "over 0.5 ρ L d U²: what grows with the square of speed is constant in it"),
+        ),
     )
 
 
 def _bold(value: Any, others: Iterable[Any]) -> Cell:
     """The largest share of a row stands out."""
     best = max((number(other) or 0.0 for other in others), default=0.0)
-    share = number(value)
-    return Cell(_share(value), "note" if share is not None and share == best and share > 0.2 else "")
+    size = number(value)
+    return Cell(share(size), "note" if size is not None and size == best and size > 0.2 else "")
 
 
-def _left(data: Mapping[str, Any]) -> Section:
+def _left(data: Mapping[str, Any]) -> Block:
     left = data["unexplained"]
-    words = "looks like something that happened" if left["structured"] else "looks like noise"
-    share = 100.0 * left["share_of_noise_variance"]
-    sentences = [f"What is left is {share:.1f} % of the sensors' noise variance beyond that noise, and {words}."]
+    size = beyond_noise(left["share_of_noise_variance"])
+    if not left["structured"]:
+        more = f"Its variance beyond theirs: {size}." if size != "none" else ""
+        return Nothing("What is left looks like the noise of the sensors.", more)
+    known = number(left["share_of_noise_variance"]) or 0.0
+    said = (
+        f"The error is {size}" if known >= 10.0 else f"What is left is {size} of the noise's variance beyond that noise"
+    )
+    sentences = [f"{said}, and looks like something that happened."]
     for pair, value in left["correlation"].items():
-        sentences.append(f"Correlation of what {pair} say of it: {value:.2f}.")
-    for channel, best in left["largest_share_by_one_quantity"].items():
-        words = CHANNELS[channel].words if channel in CHANNELS else channel
         sentences.append(
-            f"Of the residual of {words}, {clean(best['quantity'])} predicts {100.0 * max(best['share'], 0.0):.0f} %."
+            f"Correlation of what {clean(pair)} say of it: {shown(value, 2)} (1: the same thing seen twice)."
         )
-    return Section("left", "What is left", (Prose(tuple(sentences), listed=True),))
+    for channel, best in left["largest_share_by_one_quantity"].items():
+        words = CHANNELS[channel].words if channel in CHANNELS else clean(channel)
+        sentences.append(f"Of the error of {words}, {clean(best['quantity'])} predicts {share(best['share'])}.")
+    return Prose(tuple(sentences), listed=True)
 
 
 def _could_tell(data: Mapping[str, Any]) -> Section | None:
@@ -383,35 +483,26 @@ def _could_tell(data: Mapping[str, Any]) -> Section | None:
         (
             Table(
                 "detectability-table",
-                "Share of each effect's signature that re-tuning cannot imitate, the size from which it would be "
-                "found, and the effects it is closest to with the angle between their signatures",
+                "Effects by how clearly these trials would show them",
                 ("effect", "share", "found from", "closest"),
                 tuple(
                     cells(
                         clean(f"{row['effect']} ({', '.join(row['parameters'])})"),
-                        _share(row["share_surviving"]),
+                        share(row["share_surviving"]),
                         clean(_limits(row)),
                         clean(", ".join(f"{twin['effect']} {twin['angle_deg']:.0f}°" for twin in row["twins"])),
                     )
                     for row in sorted(rows, key=lambda row: -row["share_surviving"])
                 ),
                 (1,),
+                (
+                    ("share", "of the effect's signature that re-tuning the coefficients cannot imitate"),
+                    ("found from", "the size from which it would be found"),
+                    ("closest", "effects whose signatures are alike; the smaller the angle, the harder to tell apart"),
+                ),
             ),
         ),
     )
-
-
-def _advice(data: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
-    trials = shortest(data["trials"].get("path") or "", "trials")
-    extended = f"{data.get('out', 'RUN')}/profile.toml"
-    items = []
-    if data["causes"]:
-        items.append(("See the extended model on every trial", f"mmgtune simulate -p {extended} --trials {trials}"))
-        items.append(("Re-tune the extended model", f"mmgtune fit -p {extended} -t {trials} --initial estimated"))
-    if data["verdict"] == "unexplained":
-        items.append(("Look for faults of the measurement itself", f"mmgtune trials check {trials}"))
-    items.append(("Look again from the extended profile", f"mmgtune diagnose -p {extended} -t {trials}"))
-    return tuple(items)
 
 
 def _end(value: Any, factor: float) -> str:
@@ -434,13 +525,9 @@ def _p(value: Any) -> str:
     return NONE if found is None else "< 0.0001" if found < 1e-4 else shown(found, 2)
 
 
-def _share(value: Any) -> str:
-    found = number(value)
-    return NONE if found is None else f"{100.0 * found:.1f} %" if abs(found) < 10.0 else f"{100.0 * found:.0f} %"
-
-
 def _read(folder: Path, data: Mapping[str, Any]) -> DiagnosisRecord:
-    return DiagnosisRecord(folder, data, motions_in(folder, inputs_of(folder, data)))
+    inputs = inputs_of(folder, data)
+    return DiagnosisRecord(folder, data, motions_in(folder, inputs), inputs, ship_of(folder))
 
 
 KIND = Kind(

@@ -4,23 +4,21 @@ from __future__ import annotations
 
 from typing import Any
 
-from .common import picture
-from .drawing import Drawn
+from .blocks import Card, Page, Prose, Section, Table, cells
+from .common import picture, rms_errors
 from .learning_page import (
     MEANING,
     ROLES,
     LearningRecord,
-    draw_curves,
-    draw_tracks,
+    curves_figure,
     events_said,
     made_section,
     next_steps,
-    rms_errors,
     scores_table,
+    tracks_figure,
     tracks_words,
 )
 from .load import Kind
-from .page import Page, Prose, Section, Table, Tile, cells
 from .wording import clean, count, listing, number, shown
 
 _LOSS = (
@@ -33,8 +31,7 @@ def build(record: LearningRecord) -> Page:
     """Everything the report of an ensemble says."""
     data = record.data
     watched = "runs kept back" if data["watched_by"] else "all windows learned from"
-    tracks = Drawn("tracks", "Tracks as measured and as predicted", lambda: draw_tracks(data["drawn"]))
-    curves = Drawn("curves", "Learning curves", lambda: draw_curves(record.members, f"loss on {watched} [–]"))
+    tracks, curves = tracks_figure(data["drawn"]), curves_figure(record.members, f"loss on {watched} [–]")
     curves_words = (
         "Loss of each network on the windows of an update, and, of the running mean of its weights, on "
         f"{watched}. Each is trained to the end: none is chosen."
@@ -47,7 +44,7 @@ def build(record: LearningRecord) -> Page:
         verdict=_verdict(record),
         banners=(banner,) if generated else (),
         warnings=("The training was stopped early; --resume continues it.",) if data["interrupted"] else (),
-        tiles=_tiles(record),
+        cards=_cards(record),
         sections=(
             Section("tracks", "What its members predict", (picture(tracks, "Tracks", tracks_words(record)),)),
             Section("scores", "Errors by kind of manoeuvre", (scores_table(record), Prose((MEANING,)))),
@@ -60,7 +57,6 @@ def build(record: LearningRecord) -> Page:
             Section("next", "What to do next", (next_steps(record),)),
             made_section(data, _more(data)),
         ),
-        figures={"tracks": tracks, "curves": curves},
     )
 
 
@@ -75,17 +71,17 @@ def _verdict(record: LearningRecord) -> str:
     )
 
 
-def _tiles(record: LearningRecord) -> tuple[Tile, ...]:
+def _cards(record: LearningRecord) -> tuple[Card, ...]:
     data = record.data
     position, heading = rms_errors(data, record.scores)
     where = ROLES[record.role]
     losses = [one["score"] for one in record.members if number(one["score"]) is not None]
     mean = sum(losses) / len(losses) if losses else None
     return (
-        Tile(f"Position error, {where}", f"{shown(position, 2)} m", note="root mean square, mean over members"),
-        Tile(f"Heading error, {where}", f"{shown(heading, 2)}°", note="root mean square, mean over members"),
-        Tile("Loss", shown(mean, 3), note="3 is as near as the noise lets it be"),
-        Tile("Learned from", count(len(data["learned_from"]), "trial"), note=count(len(record.members), "member")),
+        Card(f"Position error, {where}", f"{shown(position, 2)} m", note="root mean square, mean over members"),
+        Card(f"Heading error, {where}", f"{shown(heading, 2)}°", note="root mean square, mean over members"),
+        Card("Loss", shown(mean, 3), note="3 is as near as the noise lets it be"),
+        Card("Learned from", count(len(data["learned_from"]), "trial"), note=count(len(record.members), "member")),
     )
 
 

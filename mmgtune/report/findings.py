@@ -32,14 +32,39 @@ def off_track(row: Mapping[str, Any], when: str) -> float | None:
     return None if x is None or y is None else math.hypot(x, y)
 
 
+def off_heading(row: Mapping[str, Any], when: str) -> float | None:
+    """Root-mean-square error of a trial's heading [deg]."""
+    size = number(((row.get("rms") or {}).get("psi") or {}).get(when))
+    return None if size is None else math.degrees(size)
+
+
+def off_track_words(row: Mapping[str, Any], when: str) -> str:
+    """How far off a trial is, in metres and degrees; empty where it is not known."""
+    distance, heading = off_track(row, when), off_heading(row, when)
+    parts = [f"{shown(distance, 3)} m" if distance is not None else "", degrees(heading) if heading is not None else ""]
+    said = " and ".join(part for part in parts if part)
+    return f"{said} off (root mean square)" if said else ""
+
+
+def degrees(value: float) -> str:
+    """An angle as it is written in sentences: two digits, none after ten degrees."""
+    return f"{shown(value, 2)}°"
+
+
+def mean_off_heading(results: Sequence[Mapping[str, Any]], when: str) -> float | None:
+    """The mean error of heading over trials [deg]."""
+    values = [value for row in results if (value := off_heading(row, when)) is not None]
+    return sum(values) / len(values) if values else None
+
+
 def mean_off_track(results: Sequence[Mapping[str, Any]], when: str) -> float | None:
     """The mean of that over trials."""
     values = [value for row in results if (value := off_track(row, when)) is not None]
     return sum(values) / len(values) if values else None
 
 
-def tracks(results: Sequence[Mapping[str, Any]]) -> str:
-    """What tuning did to the tracks."""
+def tracks(results: Sequence[Mapping[str, Any]], after_words: str = "after tuning") -> str:
+    """What tuning, or what else a run did, made of the tracks."""
     before, after = mean_off_track(results, "before"), mean_off_track(results, "after")
     if before is None or after is None:
         return "Tracks of the trials; no distances were recorded."
@@ -48,7 +73,7 @@ def tracks(results: Sequence[Mapping[str, Any]]) -> str:
     text += f", mean of {count(len(results), 'trial')})." if len(results) > 1 else ")."
     worst = max(results, key=lambda row: off_track(row, "after") or 0.0)
     if len(results) > 1:
-        text += f" The worst after tuning is {clean(worst['id'])}, {shown(off_track(worst, 'after'), 3)} m."
+        text += f" The worst {after_words} is {clean(worst['id'])}, {shown(off_track(worst, 'after'), 3)} m."
     return text
 
 
@@ -58,10 +83,9 @@ def distances(results: Sequence[Mapping[str, Any]]) -> str:
     known = [(first, last) for first, last in pairs if first is not None and last is not None]
     closer = sum(last < first for first, last in known)
     if known and closer == len(known):
-        return f"Tuning brings the ship closer to its measured place in {'all ' if closer > 1 else ''}" + (
-            f"{count(closer, 'trial')}." if closer > 1 else "this trial."
-        )
-    return f"Tuning brings the ship closer to its measured place in {closer} of {count(len(known), 'trial')}."
+        where = f"all {count(closer, 'trial')}" if closer > 1 else "this trial"
+        return f"The simulated ship comes closer to the measured one in {where}."
+    return f"The simulated ship comes closer to the measured one in {closer} of {count(len(known), 'trial')}."
 
 
 def histories(results: Sequence[Mapping[str, Any]]) -> str:

@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from . import advice, charts, confidence, figures, findings, tables, tables_of_motion, tracks
+from . import advice, confidence, figures, findings, motion_block, tables, tables_of_motion
 from .band_indices import indices_table
-from .common import assumptions, generated_banner, misfit_tile, picture, provenance, warnings
-from .drawing import Drawn
+from .blocks import Card, Commands, Fold, Page, Prose, Section
+from .common import assumptions, cards_of_misfit, generated_banner, picture, provenance, warnings
+from .forces import ship_of
 from .load import Kind, RunRecord, history_in, inputs_of, motions_in
-from .page import Commands, Details, Histories, Page, Prose, Section, Tile
-from .wording import change, clean, count, number, percent, sentence, shown
+from .wording import change, clean, number, percent, sentence, shown
 
 BANDS = "How sure predictions are"
 """Heading of the section."""
@@ -21,18 +21,16 @@ BANDS = "How sure predictions are"
 def build(record: RunRecord) -> Page:
     """Everything the report of a fit says."""
     data = record.data
-    drawings: dict[str, Drawn] = {}
     sections = [
+        _motions(record),
         _trials(record),
-        _tracks(record, drawings),
-        _histories(record, drawings),
         _indices(record),
         _stated(record),
-        _coefficients(record, drawings),
-        confidence.best_fit(record, drawings),
-        confidence.identifiability(record, drawings),
-        _bands(record),
+        _coefficients(record),
         Section("next", "What to do next", (Commands(advice.after_fit(data)),)),
+        _bands(record),
+        confidence.best_fit(record),
+        confidence.identifiability(record),
         assumptions(data),
         provenance(data),
     ]
@@ -45,9 +43,8 @@ def build(record: RunRecord) -> Page:
         verdict=clean(data.get("verdict") or _verdict(record)),
         banners=generated_banner(data["trials"]),
         warnings=warnings(data),
-        tiles=_tiles(record),
+        cards=_cards(record),
         sections=tuple(section for section in sections if section is not None),
-        figures=drawings,
     )
 
 
@@ -68,114 +65,21 @@ def _verdict(record: RunRecord) -> str:
     return f"Tuning changed the misfit J on the trials tuned on by {moved}."
 
 
-def _tiles(record: RunRecord) -> tuple[Tile, ...]:
-    data, rows = record.data, record.coefficients
-    before, after = (findings.mean_off_track(record.results, when) for when in ("before", "after"))
+def _cards(record: RunRecord) -> tuple[Card, ...]:
+    rows = record.coefficients
     bound = sum(bool(row.get("at_bound")) for row in rows)
     loose = sum(row.get("determined") is False for row in rows)
-    tiles = [
-        misfit_tile("Misfit J, trials tuned on", data.get("J_tune_before"), data["J_tune"], "not computed"),
-        misfit_tile(
-            "Misfit J, test trials",
-            data.get("J_test_before"),
-            data.get("J_test"),
-            "no test set: nothing shows yet how this does on other trials",
-        ),
-    ]
-    if before is not None and after is not None:
-        moved = change(before, after)
-        tiles.append(
-            Tile(
-                "Distance off track",
-                f"{shown(before, 3)} → {shown(after, 3)} m",
-                percent(moved),
-                f"root mean square, mean of {count(len(record.results), 'trial')}",
-                tables.tone(moved),
-            )
-        )
     note = f"{loose} not determined by these trials" if loose else "all determined by these trials"
-    tiles.append(Tile("Coefficients at a bound", f"{bound} of {len(rows)}", note=note, tone="note" if bound else ""))
-    return tuple(tiles)
+    held = Card("Coefficients at a bound", f"{bound} of {len(rows)}", note=note, tone="note" if bound else "")
+    return (*cards_of_misfit(record.data, record.results), held)
 
 
-def _tracks(record: RunRecord, drawings: dict[str, Drawn]) -> Section | None:
-    rows = tracks.chosen(record.results)
-    if not rows:
-        return None
-    left = len(record.results) - len(rows)
-    spacing = tracks.tick_spacing(rows, record.motions)
-    note = f" Marks every {spacing:.0f} s; + is the start; every panel has its own scale."
-    if left:
-        note += f" Shown are the {len(rows)} trials with the greatest J after tuning; {left} more are in the tables."
-    drawings["tracks"] = Drawn(
-        "tracks",
-        "Measured and simulated tracks of each trial, north up",
-        lambda: tracks.draw_tracks(rows, record.motions),
-    )
-    drawings["distances"] = Drawn(
-        "distances",
-        "Distance of the simulated from the measured position over time",
-        lambda: tracks.draw_distances(rows, record.motions),
-    )
-    return Section(
-        "tracks",
-        "Tracks",
-        (
-            picture(
-                drawings["tracks"],
-                "Tracks",
-                findings.tracks(record.results) + note,
-                tables_of_motion.positions(rows, record.motions, spacing),
-            ),
-            picture(
-                drawings["distances"],
-                "Distance off track",
-                findings.distances(record.results),
-                tables_of_motion.distances(rows, record.motions),
-            ),
-        ),
-    )
-
-
-def _histories(record: RunRecord, drawings: dict[str, Drawn]) -> Section | None:
-    names = [str(row["id"]) for row in record.results if str(row["id"]) in record.motions]
-    if not names:
-        return None
-    payload, thinned = charts.histories(names, record.motions, record.inputs)
-    for trial in payload["trials"]:
-        trial["name"] = clean(trial["name"])
-    notes = ["All motions, at full resolution, are in motions.parquet in the run folder."]
-    if thinned:
-        notes.insert(
-            0,
-            "Long histories are drawn from the least and the greatest sample of every stretch, so that no "
-            "peak is lost.",
-        )
-    worst = max((row for row in record.results if str(row["id"]) in record.motions), key=_misfit_of)
-    drawings["histories"] = Drawn(
-        "histories",
-        "Measured and simulated time histories of the trial that fits worst",
-        lambda: tracks.draw_histories(record.motions[str(worst["id"])], record.inputs),
-    )
-    caption = f"The trial that fits worst after tuning: {clean(worst['id'])}."
-    static = picture(drawings["histories"], "Time histories", caption)
-    block = Histories(
-        "histories-chart",
-        findings.histories(record.results),
-        payload,
-        tuple(clean(name) for name in names),
-        static,
-        names.index(str(worst["id"])),
-        tuple(notes),
-        (tables.errors(record),),
-    )
-    return Section("histories", "Time histories", (block,))
-
-
-def _misfit_of(row: Any) -> float:
-    """J after tuning, greatest where the simulation diverged."""
-    size = number(row.get("J_after"))
-    return float("inf") if size is None else size
+def _motions(record: RunRecord) -> Section | None:
+    results = record.results
+    said = f"{findings.tracks(results)} {findings.histories(results)}" if results else ""
+    data = (*motion_block.numbers(results, record.motions), tables.errors(record))
+    block = motion_block.of_trials(results, record.motions, record.inputs, said, ship=record.ship, data=data)
+    return None if block is None else Section("motions", "Tracks and time histories", (block,))
 
 
 def _indices(record: RunRecord) -> Section | None:
@@ -185,25 +89,16 @@ def _indices(record: RunRecord) -> Section | None:
     mean = tables_of_motion.index_errors(record.results)
     if mean is None or len(record.results) < 2:
         return Section("indices", "Manoeuvring indices", (table,))
-    every = Details("Every trial: measured, before and after", (table,)) if len(table.rows) > 16 else table
+    every = Fold("Every trial: measured, before and after", (table,))
     return Section("indices", "Manoeuvring indices", (mean, every))
 
 
-def _coefficients(record: RunRecord, drawings: dict[str, Drawn]) -> Section | None:
+def _coefficients(record: RunRecord) -> Section | None:
     rows = record.coefficients
     if not rows:
         return None
-    drawings["coefficients"] = Drawn(
-        "coefficients", "Each tuned coefficient's place between its bounds", lambda: figures.draw_forest(rows)
-    )
-    return Section(
-        "coefficients",
-        "Coefficients",
-        (
-            picture(drawings["coefficients"], "Coefficients in their box", findings.forest(rows)),
-            tables.coefficients(rows),
-        ),
-    )
+    drawn = picture(figures.forest(rows), "Coefficients in their box", findings.forest(rows))
+    return Section("coefficients", "Coefficients", (drawn, tables.coefficients(rows)))
 
 
 def _bands(record: RunRecord) -> Section | None:
@@ -222,7 +117,7 @@ def _bands(record: RunRecord) -> Section | None:
 
 def _read(folder: Path, data: Mapping[str, Any]) -> RunRecord:
     inputs = inputs_of(folder, data)
-    return RunRecord(folder, data, history_in(folder), motions_in(folder, inputs), inputs)
+    return RunRecord(folder, data, history_in(folder), motions_in(folder, inputs), inputs, ship_of(folder))
 
 
 KIND = Kind("fit", ("profile", "trials", "options", "J_tune", "coefficients", "trial_results"), _read, build)

@@ -7,15 +7,27 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .page import Page
+    from .blocks import Page
 
 _TEMPLATES = Path(__file__).resolve().parent / "templates"
 
 
 def render(page: Page) -> str:
     """The HTML of a report."""
+    payloads = [embedded({**block.payload, "names": list(block.names)}) for block in page.motions()]
+    return _rendered("report.html.j2", page, payloads)
+
+
+def fragment(page: Page) -> str:
+    """The same blocks as a piece of another page, such as a notebook: without script, styles of its own alone."""
+    return _rendered("fragment.html.j2", page, [])
+
+
+def _rendered(template: str, page: Page, payloads: list[str]) -> str:
     import jinja2
     from markupsafe import Markup
+
+    from . import svg
 
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(_TEMPLATES),
@@ -24,14 +36,8 @@ def render(page: Page) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    charts = page.histories()
-    library, payload = "", ""
-    if charts:
-        from plotly.offline import get_plotlyjs
-
-        library, payload = get_plotlyjs(), embedded(charts[0].payload)
-    return environment.get_template("report.html.j2").render(
-        page=page, drawn=Markup, library=Markup(library), payload=Markup(payload)
+    return environment.get_template(template).render(
+        page=page, drawn=lambda figure: Markup(svg.inline(figure)), payloads=[Markup(text) for text in payloads]
     )
 
 

@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from .advice import shortest
-from .common import picture
-from .drawing import AFTER, BEFORE, Drawn, grid_of, new_figure
-from .learning_page import draw_line, made_section, rms_errors
+from .blocks import Block, Card, Commands, Page, Prose, Section, Table, cells
+from .common import picture, rms_errors
+from .learning_page import made_section, track_line
 from .load import Kind
-from .page import Commands, Page, Prose, Section, Table, Tile, cells
+from .plot import Axis, Figure, Line, Look, Mark, Panel, Rule, model_look
 from .tables import tone
 from .wording import NONE, clean, count, number, percent, shown
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -31,8 +28,7 @@ class HybridRecord:
 def build(record: HybridRecord) -> Page:
     """Everything the report of a hybrid says."""
     data = record.data
-    tracks = Drawn("tracks", "Tracks as measured, of the model and of the hybrid", lambda: _draw_tracks(data["drawn"]))
-    curves = Drawn("curves", "Error on unseen runs by updates", lambda: _draw_curves(data["tried"]))
+    tracks, curves = _tracks_figure(data["drawn"]), _curves_figure(data["tried"])
     gained = bool(data["gained"])
     words = (
         "Of each kind of manoeuvre the window of median error, from its first measured state: measured, the model of "
@@ -42,7 +38,7 @@ def build(record: HybridRecord) -> Page:
         Section("gains", "Gain on unseen runs", (_gains(data),)) if gained else None,
         _reading(data["reading"]) if gained else None,
         Section("tracks", "What it predicts", (picture(tracks, "Tracks", words),)),
-        Section("learning", "How it was chosen", (picture(curves, "Error on unseen runs", _curves_words(data)),)),
+        Section("learning", "How it was chosen", _curves(curves, data)),
         Section("next", "What to do next", (_next(record),)),
         made_section(data, [("memory of velocities", f"{shown(data['lag_s'], 3)} s")]),
     ]
@@ -54,9 +50,8 @@ def build(record: HybridRecord) -> Page:
         verdict=_verdict(data),
         banners=(banner,) if sources == ["generated"] else (),
         warnings=("The training was stopped early; --resume continues it.",) if data["interrupted"] else (),
-        tiles=_tiles(data),
+        cards=_cards(data),
         sections=tuple(one for one in sections if one is not None),
-        figures={"tracks": tracks, "curves": curves},
     )
 
 
@@ -72,15 +67,15 @@ def _verdict(data: Mapping[str, Any]) -> str:
     return f"On runs it has not seen the network removes of the model's error {', '.join(parts)}."
 
 
-def _tiles(data: Mapping[str, Any]) -> tuple[Tile, ...]:
-    tiles = []
+def _cards(data: Mapping[str, Any]) -> tuple[Card, ...]:
+    shown_cards = []
     scores = data["scores"]
     if scores:
         for k, label, unit in ((0, "Position error, held out", " m"), (1, "Heading error, held out", "°")):
             before, after = (rms_errors(data, scores[which])[k] for which in ("before", "after"))
             moved = 100.0 * (after - before) / before if before and after is not None else None
-            tiles.append(
-                Tile(
+            shown_cards.append(
+                Card(
                     label,
                     f"{shown(before, 2)} → {shown(after, 2)}{unit}",
                     percent(moved),
@@ -88,11 +83,11 @@ def _tiles(data: Mapping[str, Any]) -> tuple[Tile, ...]:
                     tone(moved),
                 )
             )
-    for row in data["gains"][: 4 - len(tiles)]:
+    for row in data["gains"][: 4 - len(shown_cards)]:
         moved = -100.0 * row["share_removed"]
         value = f"{shown(row['L_MSE_before'], 3)} → {shown(row['L_MSE_after'], 3)}"
-        tiles.append(Tile(f"L_MSE, {clean(row['manoeuvre'])}", value, percent(moved), "unseen runs", tone(moved)))
-    return tuple(tiles)
+        shown_cards.append(Card(f"L_MSE, {clean(row['manoeuvre'])}", value, percent(moved), "unseen runs", tone(moved)))
+    return tuple(shown_cards)
 
 
 def _gains(data: Mapping[str, Any]) -> Table:
@@ -146,6 +141,11 @@ def _reading(found: Mapping[str, Any]) -> Section:
     return Section("reading", "What it says", (words, table))
 
 
+def _curves(curves: Figure | None, data: Mapping[str, Any]) -> tuple[Block, ...]:
+    words = _curves_words(data)
+    return (Prose((words,)),) if curves is None else (picture(curves, "Error on unseen runs", words),)
+
+
 def _curves_words(data: Mapping[str, Any]) -> str:
     kept = (
         f"Kept: {data['updates']} updates, penalty {shown(data['penalty'], 3)}." if data["gained"] else "None was kept."
@@ -156,45 +156,33 @@ def _curves_words(data: Mapping[str, Any]) -> str:
     )
 
 
-def _draw_curves(tried: Sequence[Mapping[str, Any]]) -> Figure:
+def _curves_figure(tried: Sequence[Mapping[str, Any]]) -> Figure | None:
     several = [one for one in tried if one["curve"]]
-    if not several:
-        return new_figure(4.0, 1.0)
-    figure, axes = grid_of(len(several), (3.6, 2.8))
-    for ax, one in zip(axes, several, strict=True):
+    panels = []
+    kinds: list[str] = []
+    for one in several:
         kinds = [key for key in one["curve"][0] if key not in ("step", "loss", "score")]
-        for kind in kinds:
+        marks: list[Mark] = [Rule(1.0, Look("ink", 0.9), upright=False)]
+        for k, kind in enumerate(kinds):
             rows = [row for row in one["curve"] if number(row[kind]) is not None]
-            ax.plot(
-                [row["step"] for row in rows], [row[kind] for row in rows], linewidth=1.3, label=clean(kind) or "all"
-            )
-        ax.axhline(1.0, color="black", linewidth=0.8)
-        ax.set_title(f"penalty {shown(one['penalty'], 3)}", fontsize="small")
-        ax.set_xlabel("updates of the weights")
-        ax.set_ylabel("error over the model's [–]")
-    axes[0].legend(fontsize="small")
-    return figure
+            look = replace(model_look(k), size=4.0)
+            marks.append(Line([row["step"] for row in rows], [row[kind] for row in rows], look))
+        title = f"penalty {shown(one['penalty'], 3)}: error over the model's [–]"
+        panels.append(Panel(tuple(marks), Axis("updates of the weights"), Axis(), title))
+    legend = tuple((clean(kind) or "all", replace(model_look(k), size=4.0)) for k, kind in enumerate(kinds))
+    return Figure("curves", "Error on unseen runs by updates", tuple(panels), legend) if panels else None
 
 
-def _draw_tracks(drawn: Sequence[Mapping[str, Any]]) -> Figure:
-    from matplotlib.lines import Line2D
-
-    styles: tuple[dict[str, Any], ...] = (
-        {"color": BEFORE, "linewidth": 1.2, "linestyle": "-"},
-        {"color": AFTER, "linewidth": 1.4, "linestyle": (0, (6, 2.2))},
-    )
-    figure, axes = grid_of(max(len(drawn), 1), (2.9, 3.0))
-    for ax, one in zip(axes, drawn, strict=False):
-        draw_line(ax, one["measured"], color="black", linewidth=1.8)
-        for track, style in zip(one["members"], styles, strict=False):
-            draw_line(ax, track, **style)
-        ax.set_title(f"{clean(one['manoeuvre']) or clean(one['id'])}", fontsize="small")
-    handles = [Line2D([], [], color="black", label="measured")]
-    handles += [
-        Line2D([], [], label=label, **style) for label, style in zip(("forces alone", "hybrid"), styles, strict=True)
-    ]
-    figure.legend(handles=handles, loc="outside upper left", ncols=3, handlelength=3.6)
-    return figure
+def _tracks_figure(drawn: Sequence[Mapping[str, Any]]) -> Figure:
+    measured, looks = Look("ink", 1.9), (Look("before", 1.3, "dot"), Look("after", 1.5, "dash"))
+    panels = []
+    for one in drawn:
+        marks = [track_line(one["measured"], measured)]
+        marks += [track_line(track, look) for track, look in zip(one["members"], looks, strict=False)]
+        title = clean(one["manoeuvre"]) or clean(one["id"])
+        panels.append(Panel(tuple(marks), Axis("east [m]"), Axis("north [m]"), title, 0.95, equal=True))
+    legend = (("measured", measured), ("forces alone", looks[0]), ("hybrid", looks[1]))
+    return Figure("tracks", "Tracks as measured, of the model and of the hybrid", tuple(panels), legend)
 
 
 def _next(record: HybridRecord) -> Commands:

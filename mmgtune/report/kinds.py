@@ -6,6 +6,7 @@ The list is explicit.  A further kind is one file with its page, and one line he
 from __future__ import annotations
 
 from . import (
+    check_page,
     comparison_page,
     diagnosis_page,
     ensemble_page,
@@ -13,9 +14,12 @@ from . import (
     heading_page,
     hybrid_page,
     learning_page,
+    leave_out_page,
     models_page,
     predict_page,
+    simulate_page,
     sweep_page,
+    validate_page,
     voyages_page,
 )
 from .load import Kind
@@ -34,6 +38,10 @@ KINDS: tuple[Kind, ...] = tuple(
         models_page,
         heading_page,
         predict_page,
+        leave_out_page,
+        validate_page,
+        check_page,
+        simulate_page,
     )
 )
 """Every kind, in the order in which their files are looked for."""

@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from .advice import shortest
-from .common import picture
-from .drawing import AFTER, BEFORE, Drawn, grid_of, log_ticks, new_figure
+from .blocks import Card, Commands, Fold, Page, Prose, Section, Table, cells
+from .common import picture, rms_errors
 from .load import Kind
-from .page import Commands, Details, Page, Prose, Section, Table, Tile, cells
+from .plot import Axis, Dots, Figure, Line, Look, Mark, Panel
 from .tables import pairs
 from .wording import NONE, clean, count, listing, number, shown
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 ROLES = {"test": "held out", "validation": "validation", "learned": "learned from"}
 MEANING = (
@@ -54,8 +49,7 @@ class LearningRecord:
 def build(record: LearningRecord) -> Page:
     """Everything the report of a training says."""
     data = record.data
-    tracks = Drawn("tracks", "Tracks as measured and as predicted", lambda: draw_tracks(data["drawn"]))
-    curves = Drawn("curves", "Learning curves", lambda: draw_curves(record.members, "L_MSE of validation [–]"))
+    tracks, curves = tracks_figure(data["drawn"]), curves_figure(record.members, "L_MSE of validation [–]")
     sections = [
         Section("tracks", "What it predicts", (picture(tracks, "Tracks", tracks_words(record)),)),
         Section("scores", "Errors by kind of manoeuvre", (scores_table(record), Prose((MEANING,)))),
@@ -71,9 +65,8 @@ def build(record: LearningRecord) -> Page:
         verdict=_verdict(record),
         banners=(banner,) if generated else (),
         warnings=("The training was stopped early; --resume continues it.",) if data["interrupted"] else (),
-        tiles=_tiles(record),
+        cards=_cards(record),
         sections=tuple(sections),
-        figures={"tracks": tracks, "curves": curves},
     )
 
 
@@ -88,26 +81,16 @@ def _verdict(record: LearningRecord) -> str:
     )
 
 
-def rms_errors(data: Mapping[str, Any], row: Mapping[str, Any]) -> tuple[float | None, float | None]:
-    """Root mean square error of position [m] and heading [deg]; None where it diverged."""
-    parts, sigma = row["L_MSE_by_state"], data["sigma"]
-    squares = {name: number(parts.get(name)) for name in ("x", "y", "psi")}
-    if any(value is None for value in squares.values()):
-        return None, None
-    x, y, psi = ((squares[name] or 0.0) * sigma[name] ** 2 for name in ("x", "y", "psi"))
-    return math.sqrt(x + y), math.degrees(math.sqrt(psi))
-
-
-def _tiles(record: LearningRecord) -> tuple[Tile, ...]:
+def _cards(record: LearningRecord) -> tuple[Card, ...]:
     data = record.data
     position, heading = rms_errors(data, record.scores)
     where = ROLES[record.role]
     best = [one["score"] for one in record.members if number(one["score"]) is not None]
     return (
-        Tile(f"Position error, {where}", f"{shown(position, 2)} m", note="root mean square"),
-        Tile(f"Heading error, {where}", f"{shown(heading, 2)}°", note="root mean square"),
-        Tile(f"L_MSE, {where}", shown(record.scores["L_MSE"], 3), note=f"mean over {count(len(best), 'seed')}"),
-        Tile("Learned from", count(len(data["learned_from"]), "trial"), note=f"chosen by {len(data['chosen_by'])}"),
+        Card(f"Position error, {where}", f"{shown(position, 2)} m", note="root mean square"),
+        Card(f"Heading error, {where}", f"{shown(heading, 2)}°", note="root mean square"),
+        Card(f"L_MSE, {where}", shown(record.scores["L_MSE"], 3), note=f"mean over {count(len(best), 'seed')}"),
+        Card("Learned from", count(len(data["learned_from"]), "trial"), note=f"chosen by {len(data['chosen_by'])}"),
     )
 
 
@@ -120,31 +103,22 @@ def tracks_words(record: LearningRecord) -> str:
     )
 
 
-def draw_tracks(drawn: Sequence[Mapping[str, Any]]) -> Figure:
-    """Tracks as measured and as the members predict them, a kind of manoeuvre to each axes."""
-    from matplotlib.lines import Line2D
-
-    figure, axes = grid_of(max(len(drawn), 1), (2.9, 3.0))
-    for ax, one in zip(axes, drawn, strict=False):
-        for member in one["members"]:
-            draw_line(ax, member, color=AFTER, linewidth=1.0, linestyle=(0, (6, 2.2)))
-        draw_line(ax, one["measured"], color="black", linewidth=1.5)
-        ax.set_title(f"{clean(one['manoeuvre']) or clean(one['id'])}: L_MSE {shown(one['L_MSE'], 2)}", fontsize="small")
-    handles = [
-        Line2D([], [], color="black", label="measured"),
-        Line2D([], [], color=AFTER, linestyle=(0, (6, 2.2)), label="predicted"),
-    ]
-    figure.legend(handles=handles, loc="outside upper left", ncols=2, handlelength=3.6)
-    return figure
+def tracks_figure(drawn: Sequence[Mapping[str, Any]]) -> Figure:
+    """Tracks as measured and as the members predict them, a kind of manoeuvre to each panel."""
+    measured, predicted = Look("ink", 1.6), Look("after", 1.1, "dash")
+    panels = []
+    for one in drawn:
+        marks = [track_line(member, predicted) for member in one["members"]]
+        marks.append(track_line(one["measured"], measured))
+        title = f"{clean(one['manoeuvre']) or clean(one['id'])}: L_MSE {shown(one['L_MSE'], 2)}"
+        panels.append(Panel(tuple(marks), Axis("east [m]"), Axis("north [m]"), title, 0.95, equal=True))
+    legend = (("measured", measured), ("predicted", predicted))
+    return Figure("tracks", "Tracks as measured and as predicted", tuple(panels), legend)
 
 
-def draw_line(ax: Axes, track: Mapping[str, Any], **style: Any) -> None:
+def track_line(track: Mapping[str, Any], look: Look) -> Line:
     """A track over the ground, north up; gaps stay open."""
-    east, north = ([math.nan if v is None else v for v in track[name]] for name in ("east_m", "north_m"))
-    ax.plot(east, north, **style)
-    ax.set_aspect("equal", adjustable="datalim")
-    ax.set_xlabel("east [m]")
-    ax.set_ylabel("north [m]")
+    return Line(track["east_m"], track["north_m"], look)
 
 
 _CURVES = (
@@ -153,30 +127,20 @@ _CURVES = (
 )
 
 
-def draw_curves(members: Sequence[Mapping[str, Any]], label: str) -> Figure:
+def curves_figure(members: Sequence[Mapping[str, Any]], label: str) -> Figure:
     """Loss of each network by updates, and what it is watched by, named ``label``; a dot where one was kept."""
-    figure = new_figure(7.6, 3.0)
-    left, right = figure.subplots(1, 2)
-    for one in members:
-        for ax, key, color in ((left, "loss", BEFORE), (right, "score", AFTER)):
+    panels = []
+    for key, color, words in (("loss", "before", "loss on short windows [–]"), ("score", "after", label)):
+        marks: list[Mark] = []
+        for one in members:
             rows = [row for row in one["curve"] if number(row[key]) is not None]
-            marker = "." if len(rows) == 1 else None  # a line of one point is none
-            ax.plot(
-                [row["step"] for row in rows], [row[key] for row in rows], color=color, linewidth=1.0, marker=marker
-            )
-        if number(one["score"]) is not None and "best_step" in one:
-            right.plot([one["best_step"]], [one["score"]], color=AFTER, marker="o", markersize=4)
-    _scaled(left, "loss on short windows [–]")
-    _scaled(right, label)
-    return figure
-
-
-def _scaled(ax: Axes, label: str) -> None:
-    ax.set_xlabel("updates of the weights")
-    ax.set_ylabel(label)
-    if ax.lines:
-        ax.set_yscale("log")
-        log_ticks(ax.yaxis)
+            look = Look(color, 1.1, marker="o" if len(rows) == 1 else "", size=4.0)  # type: ignore[arg-type]
+            marks.append(Line([row["step"] for row in rows], [row[key] for row in rows], look))
+            if key == "score" and number(one["score"]) is not None and "best_step" in one:
+                marks.append(Dots([one["best_step"]], [one["score"]], Look("after", marker="o", size=6.0)))
+        y = Axis(log=any(len(mark.x) for mark in marks if isinstance(mark, Line)))
+        panels.append(Panel(tuple(marks), Axis("updates of the weights"), y, words))
+    return Figure("curves", "Learning curves", tuple(panels))
 
 
 def scores_table(record: LearningRecord) -> Table:
@@ -245,7 +209,7 @@ def made_section(data: Mapping[str, Any], more: Sequence[tuple[str, str]]) -> Se
     chosen = [(clean(name), clean(value)) for name, value in made["options"].items()]
     options = pairs("options-table", "Options", ("option", "value"), chosen)
     about = pairs("made-table", "What it was made from", ("", ""), items)
-    return Section("made", "How it was made", (about, Details("All options", (options,))))
+    return Section("made", "How it was made", (about, Fold("All options", (options,))))
 
 
 def _more(data: Mapping[str, Any]) -> list[tuple[str, str]]:

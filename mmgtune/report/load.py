@@ -15,10 +15,11 @@ from ..arrays import FloatArray
 from ..errors import OptionError, Problem
 from ..inputs import INPUTS, Role
 from ..physics.quantities import STATES
+from .forces import NO_SHIP, Ship
 from .wording import Channel, clean, input_channel
 
 if TYPE_CHECKING:
-    from .page import Page
+    from .blocks import Page
 
     Motion = Mapping[str, FloatArray]
 
@@ -60,6 +61,7 @@ class RunRecord:
     history   columns of history.parquet by name; empty where no evolution strategy ran
     motions   trial -> "measured", "before" or "after" -> column -> values in SI
     inputs    what drove the ship, columns of ``motions`` too: rudders, propellers, thrusters
+    ship      her length and her model with the tuned coefficients
     """
 
     folder: Path
@@ -67,6 +69,7 @@ class RunRecord:
     history: Mapping[str, FloatArray]
     motions: Mapping[str, Mapping[str, Motion]]
     inputs: tuple[Channel, ...]
+    ship: Ship = NO_SHIP
 
     @property
     def results(self) -> list[dict[str, Any]]:
@@ -99,6 +102,8 @@ class DiagnosisRecord:
     folder: Path
     data: Mapping[str, Any]
     motions: Mapping[str, Mapping[str, Motion]]
+    inputs: tuple[Channel, ...] = ()
+    ship: Ship = NO_SHIP
 
     @property
     def results(self) -> list[dict[str, Any]]:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from .page import Block, Commands, Details, Histories, Picture, Prose, Table
+from .blocks import Block, Commands, Fold, Motions, Nothing, Picture, Prose, Table
 
 if TYPE_CHECKING:
-    from .page import Page
+    from .blocks import Page
 
 _SPECIAL = re.compile(r"([\\`*_{}\[\]<>#|!&~$@])")
 
@@ -26,10 +26,10 @@ def render(page: Page) -> str:
     """The Markdown of a report; figures are the SVG files beside it."""
     parts = [f"# {escaped(page.verdict)}", escaped(page.eyebrow)]
     parts += [f"> **{escaped(text)}**" for text in page.banners]
-    if page.tiles:
+    if page.cards:
         rows = "\n".join(
-            f"| {escaped(tile.label)} | {escaped(tile.value)} | {escaped(tile.change)} | {escaped(tile.note)} |"
-            for tile in page.tiles
+            f"| {escaped(card.label)} | {escaped(card.value)} | {escaped(card.change)} | {escaped(card.note)} |"
+            for card in page.cards
         )
         parts.append(f"| | | change | |\n|---|---|---|---|\n{rows}")
     if page.warnings:
@@ -43,22 +43,24 @@ def render(page: Page) -> str:
 def _block(block: Block) -> list[str]:
     match block:
         case Table():
-            return [f"**{escaped(block.caption)}**", _table(block)]
+            about = [f"- *{escaped(name)}*: {escaped(text)}" for name, text in block.about]
+            return [f"**{escaped(block.caption)}**", _table(block), *(["\n".join(about)] if about else [])]
         case Prose():
             mark = "- " if block.listed else "> " if block.tone else ""
             return ["\n".join(mark + escaped(text) for text in block.sentences)] if block.sentences else []
         case Picture():
             tables = [text for table in block.data for text in _block(table)]
             return [f"![{escaped(block.title)}](figures/{block.id}.svg)", f"*{escaped(block.caption)}*", *tables]
-        case Histories():
-            return [
-                *_block(block.static),
-                escaped(block.caption),
-                "Zoomable histories are in [report.html](report.html).",
-            ]
+        case Motions():
+            pictures = [text for picture in block.static for text in _block(picture)]
+            tables = [text for table in block.data for text in _block(table)]
+            moving = "They can be zoomed and moved along in [report.html](report.html)."
+            return [*pictures, f"{escaped(block.caption)} {moving}", *tables]
+        case Nothing():
+            return [f"> **{escaped(block.sentence)}** {escaped(block.more)}".strip()]
         case Commands():
             return ["\n".join(f"- {escaped(reason)}:\n\n{_code(command)}\n" for reason, command in block.items)]
-        case Details():
+        case Fold():
             return [text for inner in block.blocks for text in _block(inner)]
 
 

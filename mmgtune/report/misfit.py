@@ -8,14 +8,11 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
-from .drawing import AFTER, BEFORE, FLAG, INK, MUTED, log_ticks, new_figure
-from .page import Cell, Table, cells
+from .blocks import Cell, Table, cells
+from .plot import Axis, Figure, Line, Look, Mark, Panel, Rule, Words
 from .wording import NONE, change, number, percent, shown
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
     from .load import SweepRecord
 
 
@@ -27,7 +24,7 @@ class Series:
     phrase: str
     values: tuple[float | None, ...]
     before: float | None
-    style: Mapping[str, Any]
+    look: Look
 
     def known(self, ranges: Sequence[float]) -> list[tuple[float, float]]:
         """(a_r, J) where J is known."""
@@ -44,21 +41,21 @@ def series_of(record: SweepRecord) -> list[Series]:
             "the trials tuned on",
             tuple(number(run.get("J_tune")) for run in runs),
             number(data.get("J_tune_before")),
-            {"color": AFTER, "marker": "o", "linestyle": "-"},
+            Look("after", 1.7, "", "o", 7),
         ),
         Series(
             "test trials",
             "the test trials",
             tuple(number(run.get("J_test")) for run in runs),
             number(data.get("J_test_before")),
-            {"color": FLAG, "marker": "s", "linestyle": (0, (6, 2.2))},
+            Look("flag", 1.7, "dash", "s", 6),
         ),
         Series(
             "each trial left out",
             "trials left out in turn",
             tuple(left.get(float(run["a_r"])) for run in runs),
             None,
-            {"color": INK, "marker": "^", "linestyle": (0, (1.2, 1.6))},
+            Look("ink", 1.7, "dot", "^", 7),
         ),
     ]
     return [series for series in found if any(value is not None for value in series.values)]
@@ -72,46 +69,30 @@ def run_folder(run: Mapping[str, Any]) -> str | None:
     return str(path)
 
 
-def draw(record: SweepRecord, best: float | None) -> Figure:
+def figure(record: SweepRecord, best: float | None) -> Figure:
     """J of the tuning set, the test set and the trials left out, against a_r."""
-    figure = new_figure(7.6, 3.8)
-    ax = figure.subplots()
     ranges = [float(run["a_r"]) for run in record.runs]
     found = series_of(record)
+    marks: list[Mark] = []
     for series in found:
         points = [point for point in series.known(ranges) if point[1] > 0.0]
         if points:
-            ax.plot(*zip(*points, strict=True), linewidth=1.7, label=series.label, **series.style)
-    ax.set_yscale("log")
+            marks.append(Line([a_r for a_r, _ in points], [J for _, J in points], series.look))
     starts = [(series.before, series) for series in found if series.before is not None and series.before > 0.0]
     for start, series in starts:
-        _draw_before(ax, ranges, start, series, above=start >= max(other for other, _ in starts))
+        above = start >= max(other for other, _ in starts)
+        look = Look(series.look.color, 1.0, series.look.dash, alpha=0.6)
+        marks.append(Rule(start, look, upright=False))
+        words = f"{series.label}, before tuning"
+        marks.append(Words(ranges[0], start, words, "muted", "start", (0.0, 8.0 if above else -8.0), 10.5))
     if best is not None:
-        ax.axvline(best, color=BEFORE, linewidth=1.0, linestyle=(0, (1.2, 1.6)))
-        ax.annotate("recommended", (best, 0.5), xycoords=("data", "axes fraction"), xytext=(4, 5), color=BEFORE,
-                    textcoords="offset points", fontsize=8.5)  # fmt: skip
-    log_ticks(ax.yaxis)
-    ax.set_xticks(ranges, [f"{a_r:g}" for a_r in ranges])
-    ax.margins(x=0.08, y=0.1)
-    ax.set_xlabel("range a_r: coefficients within ± a_r of their pre-determined values")
-    ax.set_ylabel("J [–]")
-    if found:
-        figure.legend(loc="outside upper left", ncols=3, handlelength=3.6)
-    return figure
-
-
-def _draw_before(ax: Axes, ranges: Sequence[float], start: float, series: Series, above: bool) -> None:
-    """A line at J before tuning, its words above the higher and below the lower of two."""
-    ax.axhline(start, color=series.style["color"], linewidth=0.9, linestyle=series.style["linestyle"], alpha=0.6)
-    ax.annotate(
-        f"{series.label}, before tuning",
-        (ranges[0], start),
-        fontsize=7.5,
-        color=MUTED,
-        xytext=(0, 3 if above else -3),
-        textcoords="offset points",
-        va="bottom" if above else "top",
-    )
+        marks.append(Rule(best, Look("before", 1.2, "dot")))
+    ticks = tuple((a_r, f"{a_r:g}" + ("\nrecommended" if a_r == best else "")) for a_r in ranges)
+    room = 0.1 * ((ranges[-1] - ranges[0]) if len(ranges) > 1 else 1.0)
+    x = Axis("range a_r: coefficients within ± a_r of their start", ranges[0] - room, ranges[-1] + room, ticks=ticks)
+    panel = Panel(tuple(marks), x, Axis("J [–]", log=True, room=0.12), shape=0.5)
+    legend = tuple((series.label, series.look) for series in found)
+    return Figure("misfit", "J on tuning and test trials against the range a_r", (panel,), legend)
 
 
 def finding(record: SweepRecord) -> str:

@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from . import fans
 from .band_scores import MEANING, SCORE_HEADS, score_cells
+from .blocks import Block, Card, Cell, Fold, Page, Prose, Section, Table, cells
 from .common import picture
-from .drawing import AFTER, BEFORE, FLAG, INK, MUTED, Drawn, log_ticks, new_figure
 from .load import Kind
-from .page import Block, Cell, Details, Page, Prose, Section, Table, Tile, cells
+from .plot import Axis, Dots, Figure, Line, Look, Mark, Panel, model_look
 from .tables import pairs
 from .wording import NONE, clean, count, listing, number, shown
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-_COLOURS = (BEFORE, AFTER, INK, FLAG, MUTED)
-_MARKS = "osD^v"
 _MEANING = (
     "L_MSE is the mean over time of the sum over all six states of squared differences over their variance (Wakita et "
     "al. 2022, eq. 26): 0 is perfect. Mean and standard deviation over the networks of a model, each begun from a seed "
@@ -57,16 +52,14 @@ class ModelsRecord:
 def build(record: ModelsRecord) -> Page:
     """Everything the report of a comparison of models says."""
     data = record.data
-    drawn = Drawn("errors", "L_MSE of the models by kind of manoeuvre", lambda: _draw(record))
     sections = [
         Section(f"{key}-scores", f"Models {words}", tuple(_tables(record, key)))
         for key, words in record.conventions.items()
     ]
     caption = "L_MSE by kind of manoeuvre: mean and standard deviation over the networks; the number of runs below."
-    sections.insert(0, Section("errors", "Errors", (picture(drawn, "Errors", caption), Prose((_MEANING,)))))
-    figures = {"errors": drawn}
+    sections.insert(0, Section("errors", "Errors", (picture(_figure(record), "Errors", caption), Prose((_MEANING,)))))
     if "bands" in data["models"][0]["windows"][0]:  # records of older versions have none
-        sections.append(_bands(record, figures))
+        sections.append(_bands(record))
     lost = _lost(record)
     if lost:
         sections.insert(1, Section("diverged", "What diverged", (Prose(tuple(lost), listed=True, tone="warning"),)))
@@ -76,9 +69,8 @@ def build(record: ModelsRecord) -> Page:
         eyebrow=f"{clean(data['trials']['ship']) or 'ship not stated'} · {clean(data['trials']['name'])}",
         verdict=_verdict(record),
         banners=(banner,) if data["trials"]["sources"] == ["generated"] else (),
-        tiles=_tiles(record),
+        cards=_cards(record),
         sections=(*sections, _made(record)),
-        figures=figures,
     )
 
 
@@ -99,12 +91,14 @@ def _verdict(record: ModelsRecord) -> str:
     return text[:1].upper() + text[1:]
 
 
-def _tiles(record: ModelsRecord) -> tuple[Tile, ...]:
-    tiles = []
+def _cards(record: ModelsRecord) -> tuple[Card, ...]:
+    shown_cards = []
     for model in record.data["models"][:6]:
         note = f"all runs, anew every {shown(record.data['window_s'], 3)} s"
-        tiles.append(Tile(f"L_MSE, {clean(model['name'])}", _mean(model["windows"][0], model["members"]), note=note))
-    return tuple(tiles)
+        shown_cards.append(
+            Card(f"L_MSE, {clean(model['name'])}", _mean(model["windows"][0], model["members"]), note=note)
+        )
+    return tuple(shown_cards)
 
 
 def _tables(record: ModelsRecord, convention: str) -> list[Table]:
@@ -133,20 +127,15 @@ def _tables(record: ModelsRecord, convention: str) -> list[Table]:
     return found
 
 
-def _bands(record: ModelsRecord, figures: dict[str, Drawn]) -> Section:
+def _bands(record: ModelsRecord) -> Section:
     """Whether the bands of the models held what was measured."""
     blocks: list[Block] = []
     several = [one for one in record.data["models"] if one["particles"] > 1]
     if several:
         nominal = several[0]["windows"][0]["bands"]["calibration"]["nominal"]
         covered = {one["name"]: one["windows"][0]["bands"]["calibration"]["covered"] for one in several}
-        figures["calibration"] = Drawn(
-            "calibration",
-            "Share of the measured samples in bands against what the bands say, by model",
-            lambda: fans.draw_calibration(nominal, covered),
-        )
         caption = f"All runs, {record.conventions['windows']}: below the diagonal bands are too narrow."
-        blocks.append(picture(figures["calibration"], "Calibration", caption))
+        blocks.append(picture(fans.calibration(nominal, covered), "Calibration", caption))
     for key, words in record.conventions.items():
         rows = []
         for k, column in record.columns(False):
@@ -186,37 +175,33 @@ def _lost(record: ModelsRecord) -> list[str]:
     return found
 
 
-def _draw(record: ModelsRecord) -> Figure:
+def _figure(record: ModelsRecord) -> Figure:
     columns = record.columns(False)
-    figure = new_figure(7.6, 3.4)
-    axes = figure.subplots(1, 2, sharey=True)
     width = 0.7 / max(len(record.names), 1)
-    for ax, (key, words) in zip(axes, record.conventions.items(), strict=True):
-        for j, model in enumerate(record.data["models"]):
-            found = [
-                (i, model[key][k]) for i, (k, _) in enumerate(columns) if number(model[key][k]["mean"]) is not None
-            ]
-            ax.errorbar(
-                [i + (j - 0.5 * (len(record.names) - 1)) * width for i, _ in found],
-                [cell["mean"] for _, cell in found],
-                yerr=[_below(cell) for _, cell in found],
-                linestyle="",
-                marker=_MARKS[j % len(_MARKS)],
-                markersize=4,
-                color=_COLOURS[j % len(_COLOURS)],
-                label=clean(model["name"])[-40:],
-            )
-        ax.set_title(words)
-        ax.set_xticks(range(len(columns)), [f"{clean(one['name'])[:12]}\n{one['runs']}" for _, one in columns])
-    axes[0].set_ylabel("L_MSE [–]")
-    if any(
+    panels = []
+    several = any(
         number(cell["mean"]) for model in record.data["models"] for key in record.conventions for cell in model[key]
-    ):
-        axes[0].set_yscale("log")
-        log_ticks(axes[0].yaxis)
-    handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper left", ncols=3)
-    return figure
+    )
+    for key, words in record.conventions.items():
+        marks: list[Mark] = []
+        for j, model in enumerate(record.data["models"]):
+            for i, (k, _) in enumerate(columns):
+                cell = model[key][k]
+                if number(cell["mean"]) is None:
+                    continue
+                x, half = i + (j - 0.5 * (len(record.names) - 1)) * width, _below(cell)
+                marks.append(Line((x, x), (cell["mean"] - half, cell["mean"] + half), Look(_looks(j).color, 1.4)))
+                marks.append(Dots((x,), (cell["mean"],), _looks(j)))
+        ticks = tuple((float(i), f"{clean(one['name'])[:12]}\n{one['runs']}") for i, (_, one) in enumerate(columns))
+        x_axis = Axis(low=-0.5, high=len(columns) - 0.5, ticks=ticks, grid=False)
+        panels.append(Panel(tuple(marks), x_axis, Axis("L_MSE [–]", log=several), words, 0.75))
+    legend = tuple((clean(model["name"])[-40:], _looks(j)) for j, model in enumerate(record.data["models"]))
+    return Figure("errors", "L_MSE of the models by kind of manoeuvre", tuple(panels), legend)
+
+
+def _looks(place: int) -> Look:
+    """Points of the model at that place."""
+    return replace(model_look(place), width=0.0, size=6.0)
 
 
 def _below(cell: Mapping[str, Any]) -> float:
@@ -253,7 +238,7 @@ def _made(record: ModelsRecord) -> Section:
         (
             models,
             pairs("made-table", "What it was made from", ("", ""), items),
-            Details("Hashes of the trials", (pairs("hashes-table", "Hashes", ("trial", "SHA-256"), hashes),)),
+            Fold("Hashes of the trials", (pairs("hashes-table", "Hashes", ("trial", "SHA-256"), hashes),)),
         ),
     )
 

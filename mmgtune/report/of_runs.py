@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from .page import Block, Prose, Table, cells
+from .blocks import Block, Prose, Table, cells
 from .wording import NONE, clean, number, shown
 
 NORMAL = 1.96

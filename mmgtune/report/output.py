@@ -7,9 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..files import atomic, write_text
+from . import svg
 
 if TYPE_CHECKING:
-    from .page import Page
+    from .blocks import Page
 
 
 def write(folder: Path, page: Page, html: str, markdown: str, pdf: bool) -> list[Path]:
@@ -19,14 +20,17 @@ def write(folder: Path, page: Page, html: str, markdown: str, pdf: bool) -> list
     """
     drawn_before = _figures(folder / "report.md")
     written = [write_text(folder / "report.html", html), write_text(folder / "report.md", markdown)]
-    for name, drawn in page.figures.items():
-        written.append(write_text(folder / "figures" / f"{name}.svg", drawn.svg))
+    figures = page.figures()
+    for name, figure in figures.items():
+        written.append(write_text(folder / "figures" / f"{name}.svg", svg.file(figure)))
         path = folder / "figures" / f"{name}.pdf"
         if pdf or path.exists():
+            from .pdf import render
+
             with atomic(path) as part:
-                part.write_bytes(drawn.pdf())
+                part.write_bytes(render(figure))
             written.append(path)
-    for name in drawn_before - set(page.figures):
+    for name in drawn_before - set(figures):
         for suffix in (".svg", ".pdf"):
             (folder / "figures" / f"{name}{suffix}").unlink(missing_ok=True)
     return written

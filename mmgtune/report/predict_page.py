@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import fans
+from . import fans, motion_block, motions
 from .band_indices import banded, indices_table
 from .band_scores import MEANING, SCORE_HEADS, score_cells
+from .blocks import Block, Card, Fold, Page, Prose, Section, Table, cells
 from .common import doubts, picture
-from .drawing import Drawn
 from .load import Kind, columns_in
-from .page import Block, Details, Page, Prose, Section, Table, Tile, cells
+from .plot import LOOKS, Look
 from .tables import pairs
 from .wording import NONE, PRINCIPAL, clean, count, number, shown
 
@@ -92,28 +91,23 @@ def _grouped(columns: Mapping[str, Any], by: tuple[str, str]) -> list[tuple[tupl
 def build(record: PredictRecord) -> Page:
     """Everything the report of a prediction says."""
     data = record.data
-    figures: dict[str, Drawn] = {}
-    sections = []
+    sections = [_motions(record)] if record.drawn() else []
     whiskers = _whisker_rows(record)
     if whiskers:
-        figures["indices"] = Drawn(
-            "indices",
-            "Indices of the manoeuvres with their bands",
-            partial(fans.draw_indices, whiskers, record.level, record.several),
-        )
         caption = f"Mean and band of {shown(record.level, 3)} % of each index." if record.several else "Each index."
         if any(row["measured"] is not None for of in whiskers.values() for row in of):
             caption += " Diamonds: as measured."
-        sections.append(Section("indices", "Indices", (picture(figures["indices"], "Indices", caption),)))
+        drawn = picture(fans.indices(whiskers, record.level, record.several), "Indices", caption)
+        sections.append(Section("indices", "Indices", (drawn,)))
     if data["scores"]:
-        sections.append(_scores(record, figures))
+        sections.append(_scores(record))
     for k, run in enumerate(record.drawn(), 1):
-        sections.append(_run(record, run, k, figures))
+        sections.append(_run(record, run, k))
     rest = [run for run in record.runs if run not in record.drawn()]
     if rest:
         blocks = tuple(table for run in rest if (table := indices_table(run, record.level, record.several)))
         said = Prose((f"{count(len(rest), 'run')} are not drawn: those whose bands hold more, or that diverged.",))
-        sections.append(Section("rest", "Other runs", (said, *(blocks and (Details("Indices", blocks),)))))
+        sections.append(Section("rest", "Other runs", (said, *(blocks and (Fold("Indices", blocks),)))))
     sources = {run["trial"]["source"] for run in record.runs if run["trial"]}
     banner = "The trials are generated, not measured: this says how the method works, not how a real ship moves."
     return Page(
@@ -122,9 +116,8 @@ def build(record: PredictRecord) -> Page:
         verdict=_verdict(record),
         banners=(banner,) if sources == {"generated"} else (),
         warnings=(*(f"{clean(note)}." for note in data["notes"]), *doubts(data)),
-        tiles=_tiles(record),
+        cards=_cards(record),
         sections=(*sections, _made(record)),
-        figures=figures,
     )
 
 
@@ -154,25 +147,27 @@ def _verdict(record: PredictRecord) -> str:
     return text[:1].upper() + text[1:]
 
 
-def _tiles(record: PredictRecord) -> tuple[Tile, ...]:
+def _cards(record: PredictRecord) -> tuple[Card, ...]:
     data = record.data
     drawn = "drawn" if data["drawn"] else "the members the model has"
-    tiles = [Tile("particles", str(data["particles"]), note=drawn if record.several else "one model: no band")]
+    shown_cards = [Card("particles", str(data["particles"]), note=drawn if record.several else "one model: no band")]
     scores = data["scores"]
     if scores:
         for level in (50, 90):
             if number(scores[f"coverage_{level}"]) is not None:
-                tiles.append(Tile(f"held by bands of {level} %", f"{100.0 * scores[f'coverage_{level}']:.0f} %"))
-        tiles += [
-            Tile(name, shown(scores[name], 3)) for name in ("L_Eucl", "L_Maha") if number(scores[name]) is not None
+                shown_cards.append(Card(f"held by bands of {level} %", f"{100.0 * scores[f'coverage_{level}']:.0f} %"))
+        shown_cards += [
+            Card(name, shown(scores[name], 3)) for name in ("L_Eucl", "L_Maha") if number(scores[name]) is not None
         ]
-        return tuple(tiles)
+        return tuple(shown_cards)
     for run in record.runs:
         for row in run["indices"]:
             if row["index"] in ("advance_m", "tactical_diameter_m", "overshoot_1_deg", "track_reach_m"):
                 unit = "L" if row["over_L"] else row["unit"]
-                tiles.append(Tile(f"{row['words']}, {clean(run['id'])}", f"{banded(row['over_L'] or row)} {unit}"))
-    return tuple(tiles[:7])
+                shown_cards.append(
+                    Card(f"{row['words']}, {clean(run['id'])}", f"{banded(row['over_L'] or row)} {unit}")
+                )
+    return tuple(shown_cards[:7])
 
 
 def _whisker_rows(record: PredictRecord) -> dict[str, list[dict[str, Any]]]:
@@ -194,22 +189,40 @@ def _whisker_rows(record: PredictRecord) -> dict[str, list[dict[str, Any]]]:
     return found
 
 
-def _run(record: PredictRecord, run: Mapping[str, Any], k: int, figures: dict[str, Drawn]) -> Section:
+def _motions(record: PredictRecord) -> Section:
+    """Tracks and histories of the runs that are drawn, with their bands."""
+    words = "mean" if record.several else "foretold"
+    runs = [motions.Run("mean", words, Look("after", 1.9))]
+    if any(run["trial"] is not None for run in record.drawn()):
+        runs.insert(0, motions.Run("measured", "measured", LOOKS["measured"], True))
+    manoeuvres = []
+    for run in record.drawn():
+        bands = record.bands[str(run["id"])]
+        columns = ("mean", "measured") if run["trial"] is not None else ("mean",)
+        own = {which: {"t": bands["x"]["t"], **{name: of[which] for name, of in bands.items()}} for which in columns}
+        ends = {name: (of["low"], of["high"]) for name, of in bands.items()} if record.several else {}
+        regions = run["marks"] if record.several else ()
+        note = f"{clean(run['order'])}, {shown(run['duration_s'], 3)} s"
+        manoeuvres.append(motions.Manoeuvre(clean(run["id"]), own, {"mean": ends}, regions, note))
+    caption = "What is foretold."
+    if record.several:
+        caption = f"Bands and, along tracks, regions hold {shown(record.level, 3)} % of the particles."
+    block = motion_block.of_manoeuvres(
+        manoeuvres, runs, (), caption, L_pp=float(record.data["model"]["L_pp"]), title="Tracks and time histories"
+    )
+    return Section("motions", "Tracks and time histories", (block,))
+
+
+def _run(record: PredictRecord, run: Mapping[str, Any], k: int) -> Section:
     bands, name = record.bands[str(run["id"])], clean(run["id"])
     trial = run["trial"] is not None
     mean = {axis: bands[axis]["mean"] for axis in ("x", "y")}
     measured = {axis: bands[axis]["measured"] for axis in ("x", "y")} if trial else None
     threads = record.tracks.get(str(run["id"]), ())
     L_pp = float(record.data["model"]["L_pp"])
-    figures[f"track_{k}"] = Drawn(
-        f"track_{k}",
-        f"Track of {name}",
-        partial(fans.draw_track, run["marks"], threads, mean, measured, L_pp, record.level),
-    )
-    figures[f"motions_{k}"] = Drawn(
-        f"motions_{k}",
-        f"Heading and velocities of {name} over time",
-        partial(fans.draw_motions, bands, record.level, record.several),
+    track = fans.track(f"track_{k}", f"Track of {name}", run["marks"], threads, mean, measured, L_pp, record.level)
+    over_time = fans.motions(
+        f"motions_{k}", f"Heading and velocities of {name} over time", bands, record.level, record.several
     )
     lost = f" {run['diverged']} of {record.data['particles']} particles diverged." if run["diverged"] else ""
     first = f"{clean(run['order'])}, {shown(run['duration_s'], 3)} s.{lost}"
@@ -219,8 +232,8 @@ def _run(record: PredictRecord, run: Mapping[str, Any], k: int, figures: dict[st
             "as mean and covariance of the particles have it."
         )
     blocks: list[Block] = [
-        picture(figures[f"track_{k}"], "Track", first),
-        picture(figures[f"motions_{k}"], "Motions", "Heading, velocities and yaw rate over time."),
+        picture(track, "Track", first),
+        picture(over_time, "Motions", "Heading, velocities and yaw rate over time."),
     ]
     table = indices_table(run, record.level, record.several)
     if table:
@@ -228,22 +241,16 @@ def _run(record: PredictRecord, run: Mapping[str, Any], k: int, figures: dict[st
     return Section(f"run-{k}", name, tuple(blocks))
 
 
-def _scores(record: PredictRecord, figures: dict[str, Drawn]) -> Section:
+def _scores(record: PredictRecord) -> Section:
     scores = record.data["scores"]
     blocks: list[Block] = []
     if record.several:
         calibration = scores["calibration"]
-        figures["calibration"] = Drawn(
-            "calibration",
-            "Share of the measured samples in bands against what the bands say",
-            partial(
-                fans.draw_calibration, calibration["nominal"], {record.data["model"]["name"]: calibration["covered"]}
-            ),
-        )
+        drawn = fans.calibration(calibration["nominal"], {record.data["model"]["name"]: calibration["covered"]})
         caption = (
             "Below the diagonal bands are too narrow, above it wider than needed; all states and samples together."
         )
-        blocks.append(picture(figures["calibration"], "Calibration", caption))
+        blocks.append(picture(drawn, "Calibration", caption))
     blocks.append(_scores_table(record.data["runs"], scores))
     blocks.append(Prose((MEANING,)))
     return Section("scores", "Scores", tuple(blocks))
@@ -274,7 +281,7 @@ def _made(record: PredictRecord) -> Section:
         ("time", f"{shown(data['wall_s'], 3)} s"),
     ]
     hashes = [(clean(run["id"]), clean(run["trial"]["sha256"])) for run in record.runs if run["trial"]]
-    folded = (Details("Hashes of the trials", (pairs("hashes-table", "Hashes", ("trial", "SHA-256"), hashes),)),)
+    folded = (Fold("Hashes of the trials", (pairs("hashes-table", "Hashes", ("trial", "SHA-256"), hashes),)),)
     return Section(
         "made", "How it was made", (pairs("made-table", "What it was made from", ("", ""), items), *(hashes and folded))
     )

@@ -7,10 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from . import advice, figures, misfit
-from .common import assumptions, generated_banner, misfit_tile, picture, provenance, warnings
-from .drawing import Drawn
+from .blocks import Card, Cell, Commands, Page, Prose, Section, Table, cells
+from .common import assumptions, generated_banner, misfit_card, picture, provenance, warnings
 from .load import Kind, SweepRecord
-from .page import Cell, Commands, Page, Prose, Section, Table, Tile, cells
 from .tables import described
 from .wording import NONE, clean, coefficient_text, listing, number, short
 
@@ -22,15 +21,17 @@ def build(record: SweepRecord) -> Page:
     data, runs = record.data, record.runs
     recommended = data.get("recommended") or {}
     best = number(recommended.get("a_r"))
-    drawn = Drawn("misfit", "J on tuning and test trials against the range a_r", lambda: misfit.draw(record, best))
-    drawings = [drawn]
     sections = [
         Section(
             "ranges",
             "Which range?",
-            (picture(drawn, "Misfit", misfit.finding(record)), *_overfitting(data), misfit.table(record)),
+            (
+                picture(misfit.figure(record, best), "Misfit", misfit.finding(record)),
+                *_overfitting(data),
+                misfit.table(record),
+            ),
         ),
-        _coefficients(runs, best, drawings),
+        _coefficients(runs, best),
         Section("next", "What to do next", (Commands(advice.after_sweep(data)),)),
         assumptions(data),
         provenance(data),
@@ -45,43 +46,37 @@ def build(record: SweepRecord) -> Page:
         ),
         banners=generated_banner(data["trials"]),
         warnings=warnings(data),
-        tiles=_tiles(data, runs, best),
+        cards=_cards(data, runs, best),
         sections=tuple(section for section in sections if section is not None),
-        figures={drawn.name: drawn for drawn in drawings},
     )
 
 
-def _coefficients(runs: Sequence[Mapping[str, Any]], best: float | None, drawings: list[Drawn]) -> Section | None:
+def _coefficients(runs: Sequence[Mapping[str, Any]], best: float | None) -> Section | None:
     """Tuned values and places in the box, for every range."""
     names = list(dict.fromkeys(str(row["name"]) for run in runs for row in run["coefficients"]))
     if not names:
         return None
-    places = Drawn(
-        "positions",
-        "Place of each coefficient in its box for every range",
-        lambda: figures.draw_box_positions(
-            [short(name) for name in names],
-            [f"{run['a_r']:g}" for run in runs],
-            [[_place(run, name) for run in runs] for name in names],
-        ),
+    places = figures.box_positions(
+        [short(name) for name in names],
+        [f"{run['a_r']:g}" for run in runs],
+        [[_place(run, name) for run in runs] for name in names],
     )
-    drawings.append(places)
     caption = _place_finding(names, runs)
     caption += " −1 is the low bound (▼), 0 the pre-determined value, +1 the high bound (▲)."
-    blocks = (_values(names, runs, best), picture(places, "Place in the box", caption))
+    blocks = (picture(places, "Place in the box", caption), _values(names, runs, best))
     return Section("coefficients", "Tuned coefficients", blocks)
 
 
-def _tiles(data: Mapping[str, Any], runs: Sequence[Mapping[str, Any]], best: float | None) -> tuple[Tile, ...]:
+def _cards(data: Mapping[str, Any], runs: Sequence[Mapping[str, Any]], best: float | None) -> tuple[Card, ...]:
     by = clean((data.get("recommended") or {}).get("by") or "")
     notes = [f"±{100.0 * best:g}\u00a0%"] if best is not None else []
     notes += [f"chosen by {_JUDGES.get(by, by)}"] if by else []
-    tiles = [Tile("Recommended range", f"a_r = {best:g}" if best is not None else NONE, note=", ".join(notes))]
+    shown_cards = [Card("Recommended range", f"a_r = {best:g}" if best is not None else NONE, note=", ".join(notes))]
     run = next((run for run in runs if best is not None and number(run["a_r"]) == best), None)
     if run is not None:
-        tiles.append(misfit_tile("Misfit J, trials tuned on", data.get("J_tune_before"), run.get("J_tune"), ""))
-        tiles.append(
-            misfit_tile(
+        shown_cards.append(misfit_card("Misfit J, trials tuned on", data.get("J_tune_before"), run.get("J_tune"), ""))
+        shown_cards.append(
+            misfit_card(
                 "Misfit J, test trials",
                 data.get("J_test_before"),
                 run.get("J_test"),
@@ -90,15 +85,15 @@ def _tiles(data: Mapping[str, Any], runs: Sequence[Mapping[str, Any]], best: flo
         )
     found = (data.get("overfitting") or {}).get("found")
     if found is not None:
-        tiles.append(
-            Tile(
+        shown_cards.append(
+            Card(
                 "Over-fitting",
                 "found" if found else "not found",
                 tone="bad" if found else "good",
                 note="wider ranges do worse on trials not tuned on" if found else "in these ranges",
             )
         )
-    return tuple(tiles)
+    return tuple(shown_cards)
 
 
 def _overfitting(data: Mapping[str, Any]) -> tuple[Prose, ...]:

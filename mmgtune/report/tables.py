@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from .blocks import Cell, Table, cells
 from .findings import off_track
-from .page import Cell, Table, cells
 from .tracks import ROLES
 from .wording import (
     CHANNELS,
@@ -128,30 +128,42 @@ def indices(record: RunRecord) -> Table | None:
 
 def stated(record: RunRecord) -> Table | None:
     """Stated indices with their tolerance, before and after; None where there are none."""
-    rows = []
-    for row in record.data.get("stated") or ():
+    return stated_rows(record.data.get("stated") or (), ("before", "after"), ("before", "after"))
+
+
+def stated_rows(
+    rows: Sequence[Mapping[str, Any]], which: Sequence[str], words: Sequence[str], id: str = "stated"
+) -> Table | None:
+    """Stated indices with their tolerance and what models make of them; None where there are none.
+
+    which, words  the models, keys of the rows, and what they are called; the last is judged
+    """
+    lines = []
+    for row in rows:
         unit = clean(row.get("unit") or "")
-        off = [number((row.get("off") or {}).get(which)) for which in ("before", "after")]
+        off = [number((row.get("off") or {}).get(one)) for one in which]
         mark = " (assumed)" if row.get("assumed_tolerance") else ""
-        rows.append(
+        last = Cell(shown(row.get(which[-1])), _nearer(off[0], off[-1]) if len(which) > 1 else "")
+        lines.append(
             cells(
                 clean(row["trial"]),
                 ROLES.get(str(row.get("role")), "not used"),
                 clean(row.get("words") or row["index"]) + (f" [{unit}]" if unit else ""),
                 f"{shown(row.get('stated'))} ± {shown(row.get('tolerance'), 2)}{mark}",
-                shown(row.get("before")),
-                Cell(shown(row.get("after")), _nearer(*off)),
-                fixed(off[1], 2),
+                *(shown(row.get(one)) for one in which[:-1]),
+                last,
+                fixed(off[-1], 2),
             )
         )
-    if not rows:
+    if not lines:
         return None
     return Table(
-        "stated-table",
-        "Stated indices and what the model's own helmsman makes of them; off: simulated less stated, in tolerances",
-        ("trial", "role", "index", "stated", "before", "after", "off"),
-        tuple(rows),
-        numeric=range(3, 7),
+        f"{id}-table",
+        "Stated indices and what the model's own helmsman makes of them",
+        ("trial", "role", "index", "stated", *words, "off"),
+        tuple(lines),
+        range(3, 5 + len(which)),
+        (("off", "simulated less stated, in tolerances"),),
     )
 
 
@@ -204,6 +216,8 @@ def coefficients(rows: Iterable[Mapping[str, Any]]) -> Table:
         ("symbol", "meaning", "pre-determined", "box", "tuned", "change", "std. error", "state"),
         tuple(lines),
         numeric=range(2, 7),
+        cards=True,
+        about=(("box", "what the search was allowed"), ("std. error", "standard deviation that the noise gives it")),
     )
 
 

@@ -3,71 +3,39 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from .page import Cell, Table, cells
+from .blocks import Cell, Table, cells
 from .tables import tone
-from .tracks import distance_from, onto
-from .wording import NONE, PRINCIPAL, change, clean, fixed, index_words, is_index, number, percent, shown
+from .tracks import distance_from
+from .wording import NONE, PRINCIPAL, change, clean, fixed, index_words, is_index, number, percent
 
 if TYPE_CHECKING:
     from .tracks import Motion
 
-_MOST = 400
 
-
-def positions(
-    results: Sequence[Mapping[str, Any]], motions: Mapping[str, Mapping[str, Motion]], spacing: float
+def distances(
+    results: Sequence[Mapping[str, Any]], motions: Mapping[str, Mapping[str, Motion]], words: Mapping[str, str]
 ) -> Table:
-    """North and east of every trial at the marks of its track."""
+    """Greatest and final distance off track of every trial, of each of the runs that are named."""
     import numpy as np
 
-    rows = []
-    for row in results:
-        found = motions.get(str(row["id"]), {})
-        t = found["measured"]["t"] if "measured" in found else np.empty(0)
-        t = t[np.isfinite(t)]
-        times = np.arange(t[0], t[-1] + 1e-9, spacing) if len(t) else t
-        columns = [
-            onto(found[which], name, times) if which in found else np.full_like(times, np.nan)
-            for which in ("measured", "before", "after")
-            for name in ("x", "y")
-        ]
-        for place, time in enumerate(times):
-            rows.append(cells(clean(row["id"]), shown(time), *(fixed(float(column[place]), 1) for column in columns)))
-    caption = f"North and east [m] every {spacing:.0f} s"
-    if len(rows) > _MOST:
-        rows, caption = rows[:_MOST], caption + f" (the first {_MOST} rows; all are in motions.parquet)"
-    titles = (
-        "trial",
-        "time [s]",
-        *(f"{when} {axis}" for when in ("measured", "before", "after") for axis in ("north", "east")),
-    )
-    return Table("positions-table", caption, titles, tuple(rows), numeric=range(1, 8))
-
-
-def distances(results: Sequence[Mapping[str, Any]], motions: Mapping[str, Mapping[str, Motion]]) -> Table:
-    """Greatest and final distance off track of every trial, before and after."""
-    import numpy as np
-
+    runs = [which for which in words if which != "measured"]
     rows = []
     for row in results:
         found = motions.get(str(row["id"]), {})
         line: list[str | Cell] = [clean(row["id"])]
-        for which in ("before", "after"):
+        for which in runs:
             gap = np.empty(0)
             if which in found and "measured" in found:
                 _, gap = distance_from(found[which], found["measured"])
             gap = gap[np.isfinite(gap)]
             line += [fixed(float(gap.max()), 1), fixed(float(gap[-1]), 1)] if len(gap) else [NONE, NONE]
         rows.append(cells(*line))
-    return Table(
-        "distances-table",
-        "Distance off track [m]",
-        ("trial", "greatest before", "last before", "greatest after", "last after"),
-        tuple(rows),
-        numeric=range(1, 5),
-    )
+    heads = tuple(f"{end}, {words[which]} [m]" for which in runs for end in ("greatest", "last"))
+    table_of = Table("distances-table", "Distance off track", ("trial", *heads), tuple(rows), range(1, 1 + len(heads)))
+    return replace(table_of, raw=True)
 
 
 def index_errors(results: Sequence[Mapping[str, Any]]) -> Table | None:

@@ -1,26 +1,33 @@
-"""Static figures of the motions: the tracks on the water, and how far off them the simulation is."""
+"""Static figures of the motions: the tracks on the water, how far apart they are, and motions over time."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ..arrays import FloatArray
-from .drawing import LINES, MUTED, grid_of, legend_above, thinned
-from .wording import CHANNELS, Channel, clean
+from .motions import Manoeuvre, Run
+from .plot import LOOKS, Axis, Dots, Figure, Line, Look, Mark, Panel
+from .wording import CHANNELS, Channel
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
     Motion = Mapping[str, FloatArray]
 
 WORDS = {"measured": "measured", "before": "before tuning", "after": "after tuning"}
 ROLES = {"tune": "tuned on", "test": "test", "other": "not used"}
-PANELS = 16
+PANELS = 12
+LONGEST = 38
+"""Letters of a title of a panel."""
+
 SHOWN = ("psi", "u", "v_m", "r")
 """Motions shown over time; positions are seen in the tracks."""
+
+
+def runs_of(words: Mapping[str, str]) -> list[Run]:
+    """The three motions of a trial with what they are called."""
+    return [Run(which, text, LOOKS[which], which == "measured") for which, text in words.items()]
 
 
 def chosen(results: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
@@ -31,74 +38,62 @@ def chosen(results: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
     return [row for row in results if row in worst]
 
 
-def tick_spacing(results: Sequence[Mapping[str, Any]], motions: Mapping[str, Mapping[str, Motion]]) -> float:
+def tick_spacing(manoeuvres: Sequence[Manoeuvre]) -> float:
     """Seconds between the time marks on the tracks: a minute, or more for long trials."""
-    longest = max((_duration(motions.get(str(row["id"]), {}).get("measured")) for row in results), default=0.0)
-    return next((step for step in (60.0, 120.0, 300.0, 600.0, 1800.0) if longest / step <= 25.0), 3600.0)
+    longest = max((_duration(motion) for one in manoeuvres for motion in one.runs.values()), default=0.0)
+    return next((step for step in (10.0, 60.0, 120.0, 300.0, 600.0, 1800.0) if longest / step <= 25.0), 3600.0)
 
 
-def draw_tracks(
-    results: Sequence[Mapping[str, Any]],
-    motions: Mapping[str, Mapping[str, Motion]],
-    words: Mapping[str, str] = WORDS,
-) -> Figure:
-    """Tracks of every trial, north up and east to the right, with marks at equal times."""
-    figure, axes = grid_of(len(results), (3.0, 3.1))
-    spacing = tick_spacing(results, motions)
-    for ax, row in zip(axes, results, strict=True):
-        _track(ax, motions.get(str(row["id"]), {}), spacing)
-        ax.set_title(_title(row), wrap=True)
-    figure.supxlabel("east [m]", fontsize=9)
-    figure.supylabel("north [m]", fontsize=9)
-    legend_above(figure, dict(words))
-    return figure
+def tracks(manoeuvres: Sequence[Manoeuvre], runs: Sequence[Run], alt: str) -> Figure:
+    """Tracks of every manoeuvre, north up and east to the right, with marks at equal times."""
+    spacing = tick_spacing(manoeuvres)
+    titles = distinct([one.name for one in manoeuvres])
+    panels = tuple(_track(one, runs, spacing, title) for one, title in zip(manoeuvres, titles, strict=True))
+    return Figure("tracks", alt, panels, tuple((run.words, run.look) for run in runs), 3)
 
 
-def draw_distances(
-    results: Sequence[Mapping[str, Any]],
-    motions: Mapping[str, Mapping[str, Motion]],
-    words: Mapping[str, str] = WORDS,
-) -> Figure:
-    """Distance between the simulated and the measured position over time, for every trial."""
-    import numpy as np
-
-    figure, axes = grid_of(len(results), (3.0, 1.85))
-    for ax, row in zip(axes, results, strict=True):
-        found = motions.get(str(row["id"]), {})
-        measured = found.get("measured")
-        for which in ("before", "after"):
-            if measured is None or which not in found:
-                continue
-            t, distance = distance_from(found[which], measured)
-            part = thinned(t)
-            style = {**LINES[which], "marker": "." if len(t) < 3 else None}
-            ax.plot(t[part], distance[part], **style)
-        ax.set_ylim(bottom=0.0)
-        ax.set_title(_title(row), wrap=True)
-        if measured is not None and len(measured["t"]) and np.isfinite(measured["t"]).any():
-            ax.margins(x=0.02)
-    figure.supxlabel("time [s]", fontsize=9)
-    figure.supylabel("distance off [m]", fontsize=9)
-    legend_above(figure, {"before": words["before"], "after": words["after"]})
-    return figure
+def distances(manoeuvres: Sequence[Manoeuvre], runs: Sequence[Run]) -> Figure:
+    """Distance between the simulated and the measured position over time, for every manoeuvre."""
+    panels = []
+    truth = next(run for run in runs if run.truth)
+    others = [run for run in runs if not run.truth]
+    for one, title in zip(manoeuvres, distinct([one.name for one in manoeuvres]), strict=True):
+        marks: list[Mark] = []
+        for run in others:
+            if truth.key in one.runs and run.key in one.runs:
+                t, distance = distance_from(one.runs[run.key], one.runs[truth.key])
+                marks.append(Line(t, distance, dense(run.look, len(t))))
+        panels.append(Panel(tuple(marks), Axis("time [s]"), Axis("off track [m]", low=0.0), title=title, shape=0.5))
+    legend = tuple((run.words, dense(run.look)) for run in others)
+    alt = "Distance of the simulated from the measured position over time"
+    return Figure("distances", alt, tuple(panels), legend, 3)
 
 
-def draw_histories(found: Mapping[str, Motion], inputs: Sequence[Channel]) -> Figure:
-    """Motions and inputs of one trial over time."""
-    panels = [*(CHANNELS[name] for name in SHOWN), *inputs]
-    figure, axes = grid_of(len(panels), (3.6, 1.9))
-    for ax, channel in zip(axes, panels, strict=True):
-        for which in ("measured",) if channel in inputs else ("measured", "before", "after"):
-            if which in found:
-                t, values = found[which]["t"], found[which][channel.name] * channel.factor
-                part = thinned(t, 1200)
-                ax.plot(
-                    t[part], values[part], **{**LINES[which], "marker": "o" if len(t) < 3 else None, "linewidth": 1.1}
-                )
-        ax.set_title(channel.title)
-    figure.supxlabel("time [s]", fontsize=9)
-    legend_above(figure, WORDS)
-    return figure
+def histories(one: Manoeuvre, runs: Sequence[Run], inputs: Sequence[Channel]) -> Figure:
+    """Motions and inputs of one manoeuvre over time."""
+    panels = []
+    for channel in [*(CHANNELS[name] for name in SHOWN), *inputs]:
+        marks: list[Mark] = []
+        known = [run for run in runs if channel.name in one.runs.get(run.key, {})]
+        for run in known[:1] if channel in inputs else known:
+            t, values = one.runs[run.key]["t"], one.runs[run.key][channel.name] * channel.factor
+            marks.append(Line(t, values, dense(run.look, len(t))))
+        panels.append(Panel(tuple(marks), Axis("time [s]"), Axis(), title=channel.title, shape=0.5))
+    legend = tuple((run.words, dense(run.look)) for run in runs)
+    return Figure("histories", f"Time histories of {one.name}", tuple(panels), legend, 3)
+
+
+def distinct(names: Sequence[str]) -> list[str]:
+    """Names short enough for titles that still differ: their ends where the beginnings agree."""
+    cut = [name if len(name) <= LONGEST else name[: LONGEST - 1] + "…" for name in names]
+    if len(set(cut)) == len(set(names)):
+        return cut
+    return [name if len(name) <= LONGEST else "…" + name[1 - LONGEST :] for name in names]
+
+
+def dense(look: Look, points: int = 2) -> Look:
+    """The look of a curve of many samples; a single one is a point."""
+    return replace(look, marker="o" if points < 2 else "", size=4.0)
 
 
 def distance_from(one: Motion, measured: Motion) -> tuple[FloatArray, FloatArray]:
@@ -123,25 +118,22 @@ def onto(motion: Motion, name: str, t: FloatArray) -> FloatArray:
     return np.interp(t, own[good], values[good], left=math.nan, right=math.nan)
 
 
-def _track(ax: Axes, found: Mapping[str, Motion], spacing: float) -> None:
-    """One trial's tracks."""
+def _track(one: Manoeuvre, runs: Sequence[Run], spacing: float, title: str) -> Panel:
+    """One manoeuvre's tracks."""
     import numpy as np
 
-    for which, style in LINES.items():
-        if which not in found:
+    marks: list[Mark] = []
+    for run in runs:
+        if run.key not in one.runs:
             continue
-        motion = found[which]
-        x, y, t = motion["x"], motion["y"], motion["t"]
-        part = thinned(x)
-        line = {key: value for key, value in style.items() if key != "marker"}
-        ax.plot(y[part], x[part], **line)
-        marks = np.unique([int(np.nanargmin(np.abs(t - at))) for at in _times(t, spacing)]).astype(int)
-        ax.plot(y[marks], x[marks], linestyle="none", marker=style["marker"], markersize=2.8, color=style["color"])
-    measured = found.get("measured")
-    if measured is not None and len(measured["x"]):
-        ax.plot(measured["y"][:1], measured["x"][:1], marker="+", markersize=9, color=MUTED, linestyle="none")
-    ax.set_aspect("equal", adjustable="datalim")
-    ax.locator_params(nbins=5)
+        x, y, t = (one.runs[run.key][name] for name in ("x", "y", "t"))
+        marks.append(Line(y, x, dense(run.look)))
+        places = np.unique([int(np.nanargmin(np.abs(t - at))) for at in _times(t, spacing)]).astype(int)
+        marks.append(Dots(y[places], x[places], replace(run.look, size=4.0)))
+    first = next((one.runs[run.key] for run in runs if len(one.runs.get(run.key, {}).get("x", ()))), None)
+    if first is not None:
+        marks.append(Dots(first["y"][:1], first["x"][:1], Look("muted", marker="+", size=9.0)))
+    return Panel(tuple(marks), Axis("east [m]"), Axis("north [m]"), title, 1.0, equal=True)
 
 
 def _times(t: FloatArray, spacing: float) -> FloatArray:
@@ -151,13 +143,8 @@ def _times(t: FloatArray, spacing: float) -> FloatArray:
     return np.arange(good[0], good[-1] + 1e-9, spacing) if len(good) else np.empty(0)
 
 
-def _duration(motion: Motion | None) -> float:
-    if motion is None or not len(motion["t"]):
-        return 0.0
-    return float(motion["t"][-1] - motion["t"][0])
+def _duration(motion: Motion) -> float:
+    import numpy as np
 
-
-def _title(row: Mapping[str, Any]) -> str:
-    name = clean(row["id"])
-    name = name if len(name) <= 24 else name[:23] + "…"
-    return f"{name} ({ROLES.get(str(row.get('role')), 'not used')})"
+    t = motion["t"][np.isfinite(motion["t"])]
+    return float(t[-1] - t[0]) if len(t) else 0.0

@@ -9,13 +9,14 @@ from typing import Any
 
 from ..arrays import FloatArray
 from ..units import shown_in
+from . import motion_block, motions
 from . import voyages_figures as figures
+from .blocks import Card, Cell, Fold, Page, Prose, Section, Table, cells
 from .common import doubts, generated_banner, picture
-from .drawing import Drawn
 from .load import Kind, columns_in
-from .page import Cell, Details, Page, Prose, Section, Table, Tile, cells
+from .plot import LOOKS, model_look
 from .tables import pairs
-from .wording import NONE, clean, count, number, percent, shown
+from .wording import NONE, clean, count, input_channel, number, percent, shown
 
 PANELS = 8
 """Features drawn at most; all are in the tables."""
@@ -54,14 +55,13 @@ class VoyagesRecord:
 def build(record: VoyagesRecord) -> Page:
     """Everything the report of a validation on voyages says."""
     data = record.data
-    drawings: dict[str, Drawn] = {}
     scored = bool(data["n_windows"])
     sections = [
-        _classes(record, drawings) if scored else None,
-        _measures(record, drawings) if scored else None,
+        _classes(record) if scored else None,
+        _measures(record) if scored else None,
         _compared(data) if data.get("comparisons") else None,
-        _where(record, drawings) if scored else None,
-        _windows(record, drawings) if scored else None,
+        _where(record) if scored else None,
+        _windows(record) if scored else None,
         _logs(data),
         _how(data),
         _provenance(data),
@@ -74,9 +74,8 @@ def build(record: VoyagesRecord) -> Page:
         verdict=clean(data["verdict"]),
         banners=generated_banner(data["trials"]),
         warnings=_warnings(data),
-        tiles=_tiles(record) if scored else (),
+        cards=_cards(record) if scored else (),
         sections=tuple(section for section in sections if section is not None),
-        figures=drawings,
     )
 
 
@@ -95,12 +94,12 @@ def _warnings(data: Mapping[str, Any]) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _tiles(record: VoyagesRecord) -> tuple[Tile, ...]:
-    tiles = []
+def _cards(record: VoyagesRecord) -> tuple[Card, ...]:
+    shown_cards = []
     for one in record.models[:3]:
         row = one["measures"]["cVDM"]
-        tiles.append(
-            Tile(
+        shown_cards.append(
+            Card(
                 f"Median cVDM, {figures.cut(one['profile'], 28)}",
                 f"{_percent(row['median'])}",
                 note=f"half of the windows between {_percent(row['q25'])} and {_percent(row['q75'])}",
@@ -110,8 +109,8 @@ def _tiles(record: VoyagesRecord) -> tuple[Tile, ...]:
     names = record.data["classes"]["names"]
     good = sum(first["classes"][name] for name in names[:2])
     share = 100.0 * good / max(1, sum(first["classes"].values()))
-    tiles.append(
-        Tile(
+    shown_cards.append(
+        Card(
             "Optimal or satisfactory",
             f"{share:.0f}\u00a0%",
             note=f"of the windows, {figures.cut(first['profile'], 28)}",
@@ -119,25 +118,21 @@ def _tiles(record: VoyagesRecord) -> tuple[Tile, ...]:
     )
     most = first["where"][0] if first.get("where") else None
     if most is not None:
-        tiles.append(
-            Tile(
+        shown_cards.append(
+            Card(
                 "Tells most of the error",
                 clean(most["words"]),
                 note=f"{100.0 * (number(most['explained']) or 0.0):.0f}\u00a0% of the variance of log cVDM",
             )
         )
-    return tuple(tiles)
+    return tuple(shown_cards)
 
 
-def _classes(record: VoyagesRecord, drawings: dict[str, Drawn]) -> Section:
+def _classes(record: VoyagesRecord) -> Section:
     data = record.data
     classes, limits = data["classes"]["names"], data["classes"]["cVDM_limits"]
     counts = [[int(one["classes"][name]) for name in classes] for one in record.models]
-    drawings["classes"] = Drawn(
-        "classes",
-        "Share of windows in each class, a bar per model",
-        lambda: figures.draw_classes(record.names, counts, classes),
-    )
+    drawn = figures.classes_figure(record.names, counts, classes)
     rows = [
         cells(clean(one["profile"]), *(shown(one["classes"][name], 7) for name in classes), shown(one["diverged"], 7))
         for one in record.models
@@ -153,7 +148,7 @@ def _classes(record: VoyagesRecord, drawings: dict[str, Drawn]) -> Section:
         f"Optimal is a cVDM of up to {shown(limits[0], 3)} %, satisfactory of up to {shown(limits[1], 3)} %; a window "
         "that diverged is sub-optimal."
     )
-    return Section("classes", "Classes", (picture(drawings["classes"], "Classes", caption, table), *_limits(limits)))
+    return Section("classes", "Classes", (picture(drawn, "Classes", caption, table), *_limits(limits)))
 
 
 def _limits(limits: Sequence[float]) -> tuple[Prose, ...]:
@@ -167,14 +162,10 @@ def _limits(limits: Sequence[float]) -> tuple[Prose, ...]:
     return (Prose((said,)),)
 
 
-def _measures(record: VoyagesRecord, drawings: dict[str, Drawn]) -> Section:
+def _measures(record: VoyagesRecord) -> Section:
     data = record.data
     classes, limits = data["classes"]["names"], data["classes"]["cVDM_limits"]
-    drawings["distributions"] = Drawn(
-        "distributions",
-        "Share of windows below each cVDM, a curve per model",
-        lambda: figures.draw_distributions(record.cVDM, limits, classes),
-    )
+    drawn = figures.distributions(record.cVDM, limits, classes)
     rows = []
     for one in record.models:
         for name, row in one["measures"].items():
@@ -203,8 +194,8 @@ def _measures(record: VoyagesRecord, drawings: dict[str, Drawn]) -> Section:
         "measures",
         "How far off",
         (
-            picture(drawings["distributions"], "Distribution of cVDM", caption),
-            Details("Seven measures: the numbers", (table,)),
+            picture(drawn, "Distribution of cVDM", caption),
+            Fold("Seven measures: the numbers", (table,)),
             scores,
         ),
     )
@@ -240,12 +231,11 @@ def _compared(data: Mapping[str, Any]) -> Section:
     return Section("comparison", "Model against model", (table, Prose((said,))))
 
 
-def _where(record: VoyagesRecord, drawings: dict[str, Drawn]) -> Section | None:
+def _where(record: VoyagesRecord) -> Section | None:
     first = record.models[0]
     if not first["where"]:
         return Section("where", "Where the error lives", (Prose(("Too few windows to say.",)),))
     panels = [_panel(record, row) for row in first["where"][:PANELS]]
-    drawings["where"] = Drawn("where", "Mean cVDM by what the ship did", lambda: figures.draw_where(panels))
     explained = Table(
         "explained-table",
         "Share of the variance of log cVDM between the bins of each feature, less what chance gives that many bins",
@@ -258,21 +248,17 @@ def _where(record: VoyagesRecord, drawings: dict[str, Drawn]) -> Section | None:
     )
     rudder = next((row for row in first["where"] if row["feature"] == "rudder"), None)
     blocks: list[Any] = [
-        picture(drawings["where"], "Where the error lives", _where_caption(record.data), explained),
+        picture(figures.where(panels), "Where the error lives", _where_caption(record.data), explained),
     ]
     if rudder is not None:
         unit, factor = shown_in(rudder["unit"])
         labels = [figures.bin_label(one, factor) for one in rudder["bins"]]
         parts = {name: [number(one["parts"].get(name)) or 0.0 for one in rudder["bins"]] for name in figures.PARTS}
-        drawings["parts"] = Drawn(
-            "parts",
-            "What cVDM is the sum of, by rudder angle",
-            lambda: figures.draw_parts(labels, parts, f"{rudder['words']} [{unit}]"),
-        )
+        drawn = figures.parts_figure(labels, parts, f"{rudder['words']} [{unit}]")
         caption = f"Parts of cVDM of {figures.cut(first['profile'], 40)}. {_paper(first)}"
-        blocks.append(picture(drawings["parts"], "Parts of the error by rudder angle", caption))
+        blocks.append(picture(drawn, "Parts of the error by rudder angle", caption))
     tables = tuple(_bins(one) for one in record.models)
-    blocks.append(Details("Every bin: the numbers", tables))
+    blocks.append(Fold("Every bin: the numbers", tables))
     return Section("where", "Where the error lives", tuple(blocks))
 
 
@@ -377,21 +363,18 @@ def hash_of(text: Any) -> int:
     return zlib.crc32(str(text).encode("utf-8", "replace"))
 
 
-def _windows(record: VoyagesRecord, drawings: dict[str, Drawn]) -> Section | None:
+def _windows(record: VoyagesRecord) -> Section | None:
     rows = [row for row in record.data["drawn"] if "" in record.drawn.get(str(row["window"]), {})]
     if not rows:
         return None
     first = record.names[0]
-    titles = [f"{row['role']}: {_percent(row['cVDM'].get(first))}" for row in rows]
-    windows = [
-        (record.drawn[str(row["window"])][""], {k: v for k, v in record.drawn[str(row["window"])].items() if k})
-        for row in rows
-    ]
-    drawings["windows"] = Drawn(
-        "windows",
-        "Best, median and worst windows: tracks, heading and speed",
-        lambda: figures.draw_windows(titles, windows, record.names),
-    )
+    runs = [motions.Run("", "measured", LOOKS["measured"], True)]
+    runs += [motions.Run(name, figures.cut(name, 30), model_look(k)) for k, name in enumerate(record.names)]
+    manoeuvres = []
+    for row in rows:
+        note = ", ".join(f"{figures.cut(name, 30)} {_percent(row['cVDM'].get(name))}" for name in record.names)
+        title = f"{clean(row['role'])}: {clean(row['window'])}"
+        manoeuvres.append(motions.Manoeuvre(title, record.drawn[str(row["window"])], note=f"cVDM: {note}"))
     table = Table(
         "drawn-table",
         "The windows drawn: id (voyage and second it begins at) and cVDM",
@@ -402,11 +385,10 @@ def _windows(record: VoyagesRecord, drawings: dict[str, Drawn]) -> Section | Non
         ),
         numeric=range(2, 2 + len(record.names)),
     )
-    caption = (
-        f"Windows with the smallest, the median and the largest cVDM of {figures.cut(first, 40)}. + is the start, a "
-        "dot the end; every panel has its own scale."
-    )
-    return Section("windows", "Windows", (picture(drawings["windows"], "Windows", caption, table),))
+    caption = f"Windows with the smallest, the median and the largest cVDM of {figures.cut(first, 40)}."
+    inputs = (input_channel("delta", "rudder angle", "rad"),)
+    block = motion_block.of_manoeuvres(manoeuvres, runs, inputs, caption, data=(table,), title="Windows")
+    return Section("windows", "Windows", (block,))
 
 
 def _logs(data: Mapping[str, Any]) -> Section:
@@ -481,7 +463,7 @@ def _provenance(data: Mapping[str, Any]) -> Section:
     versions = [(str(name), str(text)) for name, text in sorted((data.get("environment") or {}).items())]
     hashes = [(str(name), str(text)) for name, text in (trials.get("sha256") or {}).items()]
     folded = [
-        Details(summary, (pairs(f"{id}-table", summary, titles, rows),))
+        Fold(summary, (pairs(f"{id}-table", summary, titles, rows),))
         for id, summary, titles, rows in (
             ("versions", "Versions", ("program", "version"), versions),
             ("hashes", "Hashes of the voyages", ("voyage", "SHA-256"), hashes),

@@ -13,6 +13,9 @@ from ..units import DEG, shown_in
 
 MINUS = "\u2212"
 NONE = "\u2013"
+UNIT_PERCENT = "\u00a0%"
+LARGE = 10.0
+"""Variance over that of the noise from which people think in multiples of the noise."""
 _MARKUP = re.compile(r"[<>&]")
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ud800-\udfff\ufffe\uffff]")
 
@@ -129,20 +132,53 @@ def change(before: Any, after: Any) -> float | None:
 
 
 def percent(value: float | None) -> str:
-    """A signed percentage, or a dash."""
+    """A signed change in percent, or a dash; of what grew more than tenfold, how many times it is what it was.
+
+    What falls by nearly all says 99.9 and never 100, as sentences do: nothing measured falls by all.
+    """
     if value is None:
         return NONE
     magnitude = abs(value)
-    text = (
-        f"{magnitude:.2f}"
-        if 99.0 < magnitude < 100.0
-        else f"{magnitude:.1f}"
-        if magnitude < 100
-        else f"{magnitude:.0f}"
-    )
+    if value >= 1000.0:
+        return f"{shown(value / 100.0 + 1.0, 2)} times"
+    if -100.0 < value < -99.9:
+        magnitude = 99.9
+    text = f"{magnitude:.1f}" if magnitude < 100.0 else f"{magnitude:.0f}"
     if float(text) == 0.0:
         return "0\u00a0%"
     return f"{'+' if value > 0 else MINUS}{text}\u00a0%"
+
+
+def share(value: Any) -> str:
+    """A share of a whole as percent: never below 0 nor, of what is measured, quite all; a dash where there is none.
+
+    Whole numbers, and tenths from 99.5 %, where they tell something: the one way in which sentences, cards and tables
+    write the same result.
+    """
+    size = number(value)
+    if size is None:
+        return NONE
+    part = min(max(size, 0.0), 0.999)
+    text = f"{100.0 * part:.{0 if part < 0.995 else 1}f}"
+    return f"{text}\u00a0%"
+
+
+def span(low: Any, high: Any) -> str:
+    """An interval of shares, said once where both ends are written alike."""
+    first, last = share(low), share(high)
+    return first if first == last else f"{first.removesuffix(UNIT_PERCENT)} to {last}"
+
+
+def beyond_noise(value: Any) -> str:
+    """Variance beyond that of the noise, as a share of it; where large, how many times the noise the error is."""
+    size = number(value)
+    if size is None:
+        return NONE
+    if size < 0.02:
+        return "none"
+    if size < LARGE:
+        return f"{100.0 * size:.0f}\u00a0%"
+    return f"{shown(math.sqrt(1.0 + size), 2)} times the noise"
 
 
 def clean(text: Any) -> str:

@@ -13,10 +13,11 @@ voyage          logs of days, read block by block; voyage_windows: cut as they a
 wind            the wind it was measured in; current, waves, depth: the others; gaps: what bridges theirs
 surroundings    all that was measured around the ship; surroundings_checks: what is odd about it
 smoothing       channels without their noise
-describe        what a trial holds, in numbers
+describe        what a trial holds, in numbers; coverage: what trials visit and what they do not
 """
 
 from .checks import check_trial
+from .coverage import BY_SIDE, Coverage, visited_by
 from .dataset import TrialSet, load_trials
 from .finding import Finding
 from .index_trial import IndexTrial
@@ -31,6 +32,8 @@ from .voyage_windows import Cutting, voyage_windows, window_at
 from .wind import measured_wind
 
 __all__ = [
+    "BY_SIDE",
+    "Coverage",
     "Cutting",
     "Finding",
     "IndexTrial",
@@ -48,6 +51,7 @@ __all__ = [
     "open_voyage",
     "read_trial",
     "surroundings",
+    "visited_by",
     "voyage_windows",
     "window_at",
     "windows",

@@ -3,23 +3,25 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Self
 
+from ..displayed import Plotted, inert
 from ..errors import Problem, TrialError, closest
 from ..resources import folder, taken, trial_set_names
 from .index_trial import IndexTrial, has_index_trials, read_index_trials
 from .model import Trial
 from .parquet import id_in, read_trial
 from .pieces import windows
+from .raw_logs import logs_instead
 from .split import SPLIT, Split, read_split
 from .voyage import Voyage
 
 
 @dataclass(frozen=True, eq=False)
-class TrialSet:
+class TrialSet(Plotted):
     """Trials by id, in the order of their file names.
 
     tune, test  ids of ``trials``, in the order of the split; without a split all trials tune
@@ -45,7 +47,25 @@ class TrialSet:
         """In a line."""
         tune, test = len(self.tune) + len(self.tune_stated), len(self.test) + len(self.test_stated)
         roles = f"{len(self.trials) + len(self.stated)} trials, {tune} tune, {test} test"
-        return f"TrialSet({self.ship or 'ship not stated'}: {roles})"
+        return f"TrialSet({inert(self.ship) or 'ship not stated'}: {roles})"
+
+    def __len__(self) -> int:
+        return len(self.trials) + len(self.stated)
+
+    def __iter__(self) -> Iterator[Trial | IndexTrial]:
+        """The trials: time series, then those of which indices are stated."""
+        return iter((*self.trials.values(), *self.stated.values()))
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.trials or name in self.stated
+
+    def __getitem__(self, name: str) -> Trial | IndexTrial:
+        """The trial of that id.  Raises TrialError where there is none."""
+        found = self.trials.get(name) or self.stated.get(name)
+        if found is None:
+            known = [*self.trials, *self.stated]
+            raise TrialError(Problem(f"no trial '{name}'", str(self.path or ""), fix=closest(str(name), known)))
+        return found
 
     @property
     def others(self) -> tuple[str, ...]:
@@ -96,9 +116,13 @@ def load_trials(name: str | Path) -> TrialSet:
     Without ``split.toml`` every trial tunes.  Raises TrialError with everything wrong in any of the files.
     """
     path = find_trials(name)
+    if path.is_file() and (log := logs_instead(path)):
+        raise TrialError(log)
     files = files_of(path)
     stated, wrong_there = _stated(path)
     if not files and not stated and not wrong_there:
+        if logs := logs_instead(path):
+            raise TrialError(logs)
         fix = "put *.parquet files there, one a trial, or a *.toml file of stated indices"
         raise TrialError(Problem("the folder has no trial files", str(path), fix=fix))
     trials: dict[str, Trial] = {}

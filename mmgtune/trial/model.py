@@ -9,13 +9,14 @@ from pathlib import Path
 import numpy as np
 
 from ..arrays import FloatArray
+from ..displayed import Plotted, inert
 from ..errors import Problem, TrialError
 from ..inputs import INPUTS
 from .schema import ATTRIBUTES, CHANNELS
 
 
 @dataclass(frozen=True, eq=False)
-class Trial:
+class Trial(Plotted):
     """One manoeuvre: time, motion, inputs, and what is known about them.  All arrays (n_samples,), read-only.
 
     id         unique within a data set
@@ -83,7 +84,7 @@ class Trial:
     def __repr__(self) -> str:
         """In a line."""
         words = ", ".join(word for word in (self.ship, self.manoeuvre, self.source) if word)
-        return f"Trial({self.id}: {words}, {self.n_samples} samples)"
+        return f"Trial({inert(self.id)}: {inert(words)}, {self.n_samples} samples)"
 
     @property
     def n_samples(self) -> int:

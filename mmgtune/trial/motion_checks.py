@@ -13,6 +13,7 @@ from .kinematics import FITS, IN_DEGREES, IN_EARTH_AXES, position_misfits, turni
 from .model import Trial
 from .schema import LARGEST_YAW_RATE, MOTION
 
+NO_YAW_RATE = "the yaw rate does not integrate to the heading"
 CONTRADICTED = "u, v and heading do not integrate to the positions"
 
 
@@ -117,7 +118,7 @@ def _yaw(trial: Trial, where: str) -> list[Finding]:
         return [
             Finding(
                 "warning",
-                "the yaw rate does not integrate to the heading",
+                NO_YAW_RATE,
                 place,
                 f"they come apart by {turned.miss / DEG:.3g} deg; the heading turns {turned.ratio:.3g} times as far, "
                 f"correlation {turned.correlation:.2f}",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import shlex
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -20,6 +21,7 @@ from .digest import DIGEST_KEY, digest
 from .footer import rows_of
 from .metadata import facts_of
 from .model import Trial
+from .raw_logs import import_commands
 from .schema import ATTRIBUTES, METADATA_KEY, REQUIRED, SCHEMA, known_column
 from .unusable import unusable
 
@@ -226,7 +228,7 @@ def unreadable(begins: bytes, where: str, error: Exception) -> TrialError:
     elif begins.startswith(b"PAR1"):
         what, fix = "the Parquet file is damaged", "copy it again from where it was made: it may be cut off"
     else:
-        what, fix = "the file is not Parquet", "trials are Parquet files; convert it, for example with pandas"
+        what, fix = "the file is not Parquet", import_commands(shlex.quote(where))
     return TrialError(Problem(what, where, (str(error).splitlines() or [""])[0], fix))
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from ..errors import Problem, TrialError
 from .dataset import files_of, find_trials, of_another_ship
+from .raw_logs import logs_instead
 from .split import SPLIT, Split, read_split
 from .voyage import Voyage, open_voyage
 
@@ -85,6 +86,8 @@ def load_voyages(name: str | Path) -> VoyageSet:
         said, wrong = read_split(path / SPLIT, None if problems else [one.id for one in voyages])
         problems += wrong
     problems += of_another_ship(voyages, said.ship, path / SPLIT)
+    if not voyages and (logs := logs_instead(path)):
+        raise TrialError(logs)
     if not voyages and not problems:
         problems.append(Problem("the folder has no voyages", str(path), fix="put *.parquet files there, one a voyage"))
     if problems:

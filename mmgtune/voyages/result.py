@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray
+from ..displayed import Displayed
 from ..measures import UNITS
 from ..options import VoyageOptions
 from ..predictor import Predictor, profile_of
@@ -116,7 +117,7 @@ class Comparison:
 
 
 @dataclass(frozen=True, eq=False)
-class VoyageValidation:
+class VoyageValidation(Displayed):
     """Models scored on the windows of voyages.
 
     predictors  by what they were called

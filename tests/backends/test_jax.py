@@ -22,6 +22,8 @@ from tests.runs import driven, measured, turn
 
 jax = pytest.importorskip("jax")
 
+pytestmark = pytest.mark.slow(2)  # each compiles something
+
 
 EULER, RK4 = Integrator("euler"), Integrator("rk4")
 
@@ -239,12 +241,12 @@ def with_effects_of(strong, places=PLACES):
     return Model(with_effects(load_profile("suzaku"), chosen, "test"))
 
 
-@pytest.mark.slow(10)
-@pytest.mark.parametrize("strong", [False, True], ids=["null", "strong"])
-def test_rates_have_derivatives_with_every_effect(strong):
-    """Backwards, from everywhere a ship can be, with all measured and with nothing."""
-    model = with_effects_of(strong, ("flow", "coefficients", "factors", "force"))
-    rates, matrix = rates_of(model), matrix_of(model, tuple(model.rows))
+@pytest.mark.slow(20)
+def test_rates_have_derivatives_with_every_effect():
+    """Backwards, from everywhere a ship can be, at the nulls and off them, with all measured and with nothing."""
+    null, strong = (with_effects_of(off, ("flow", "coefficients", "factors", "force")) for off in (False, True))
+    assert tuple(null.rows) == tuple(strong.rows)  # one compilation for both
+    rates, matrix = rates_of(null), matrix_of(null, tuple(null.rows))
 
     def of_one(values, state, control, around):
         return rates(matrix(values), state, control, Surroundings(*around), 1.0)
@@ -252,17 +254,9 @@ def test_rates_have_derivatives_with_every_effect(strong):
     by_lane = jax.jit(
         jax.vmap(jax.jacrev(of_one, argnums=(0, 1, 2)), in_axes=(None, 0, 0, None)), compiler_options=QUICK
     )
-    for around in (surrounded(1)[1, 0], 0.0 * surrounded(1)[1, 0]):
-        assert finite(by_lane(model.base, *special(model), around))
-
-
-@pytest.mark.slow(18)
-def test_runs_have_derivatives_with_every_effect():
-    """Forwards, clocks and actuators before and lags and sensors behind, from everywhere a ship can be."""
-    model = with_effects_of(True)
-    run = few_steps(model, EULER, surrounded(2), 2)
-    by_lane = jax.vmap(jax.jacfwd(run, argnums=(0, 1, 2)), in_axes=(None, 0, 0))
-    assert finite(jax.jit(by_lane, compiler_options=QUICK)(model.base, *special(model)))
+    for values in (null.base, strong.base):
+        for around in (surrounded(1)[1, 0], 0.0 * surrounded(1)[1, 0]):
+            assert finite(by_lane(values, *special(null), around))
 
 
 @pytest.mark.slow(10)
@@ -281,16 +275,22 @@ def test_runs_have_derivatives_backwards_where_a_limit_is_infinite():
 
 
 @pytest.mark.slow(40)
-def test_runs_have_the_derivatives_of_central_differences():
-    """Of all that all effects have, on the way from parameters to what sensors show."""
+def test_runs_have_derivatives_with_every_effect():
+    """Forwards, by all that all effects have, on the way from parameters to what sensors show: finite from everywhere
+    a ship can be, and off the special places those of central differences.
+    """
     model = Model(with_effects(load_profile("suzaku"), STRONG, "test"))
     approach, around, steps = model.profile.approach, surrounded(3), 3
     base = model.base.copy()
     base[[row for name, row in model.rows.items() if name.endswith(".measured")]] = 0.9  # at 0 they jump
     initial = np.array([0.0, 0.0, 0.4, 0.9 * approach.speed, 0.2, 0.01])
     control = np.array([1.1 * approach.n, 0.21])
+    states, controls = special(model)
     run = few_steps(model, EULER, around, steps)
-    found = jax.jit(jax.jacfwd(run, argnums=(0, 1, 2)), compiler_options=QUICK)(base, initial, control)
+    by_lane = jax.jit(jax.vmap(jax.jacfwd(run, argnums=(0, 1, 2)), in_axes=(None, 0, 0)), compiler_options=QUICK)
+    everywhere = by_lane(base, np.vstack([states, initial]), np.vstack([controls, control]))
+    assert finite(everywhere)
+    found = [one[-1] for one in everywhere]
     t = 0.7 * np.arange(steps + 1.0)
 
     def on_numpy(values):

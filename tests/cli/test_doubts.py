@@ -98,6 +98,7 @@ def test_validate_on_voyages(folder):
         assert "such a ship was never seen" in text
 
 
+@pytest.mark.slow(6)
 def test_compare_and_simulate(folder):
     ended = run("profile", "compare", "suzaku", "ship.toml", "--out", "compared", cwd=folder)
     assert said(ended) == 1

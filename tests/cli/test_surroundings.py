@@ -89,6 +89,7 @@ def voyages(folder):
     return folder / "voyages"
 
 
+@pytest.mark.slow(6)
 def test_validate_on_voyages_says_it_once_for_each_model(folder, voyages):
     arguments = ("validate", "ship.toml", "suzaku", voyages, "--backend", "numpy", "--restart", "300", "--out", "on")
     ended = run(*arguments, cwd=folder)

@@ -104,6 +104,44 @@ def test_every_command_has_its_section(site, tmp_path):
     assert [name for name in names if f"mmgtune {name}<" not in text] == []
 
 
+def test_commands_say_types_choices_and_defaults(site):
+    from mmgtune.effects import effect_tags
+
+    text = (site / "reference" / "commands.html").read_text(encoding="utf-8")
+    assert "\\" not in re.sub(r"<(script|pre)\b.*?</\1>", "", text, flags=re.S)
+    row = re.search(r"<tr>\s*<td><code>--method</code>.*?</tr>", text, flags=re.S)
+    cells = re.findall(r"<td>(.*?)</td>", row[0], flags=re.S)
+    assert cells[1:3] == ["<code>cma-es</code>, <code>least-squares</code>", "<code>cma-es</code>"]
+    assert re.search(r"<code>--starts</code></td>\s*<td>whole number</td>\s*<td><code>20</code>", text)
+    assert all(tag in text for tag in effect_tags())
+    options = (site / "reference" / "api" / "options.html").read_text(encoding="utf-8")
+    assert "<td><code>restart</code></td>" in options.partition('id="mmgtune.options.SweepOptions"')[0]
+    assert "<code>float | None</code>" in html.unescape(options)
+
+
+def test_the_gallery_has_ten_tasks_with_their_pictures(site):
+    text = (site / "gallery.html").read_text(encoding="utf-8")
+    assert len(re.findall(r"<h2\b", text)) == 10
+    pictures = re.findall(r'<figure class="made"><img src="(.*?)" alt="(.*?)"', text)
+    assert len(pictures) == 10
+    for name, words in pictures:
+        assert (site / name).read_text(encoding="utf-8").count("<path") > 5
+        assert words
+    assert (site / "made" / "fit" / "report.html").is_file()
+    assert "made/fit/figures/tracks.svg" in (site / "index.html").read_text(encoding="utf-8")
+
+
+def test_notebooks_were_run(site):
+    found = html.unescape((site / "notebooks" / "diagnose.html").read_text(encoding="utf-8"))
+    (north,) = re.findall(r"'effects.current.north': '([\d.]+) m/s'", found)
+    (east,) = re.findall(r"'effects.current.east': '(-[\d.]+) m/s'", found)
+    # What the notebook hides: noise of 0.4 m over ten minutes leaves a thousandth of a metre a second open.
+    assert (float(north), float(east)) == pytest.approx((0.3, -0.2), abs=0.004)
+    calibrate = (site / "notebooks" / "calibrate.html").read_text(encoding="utf-8")
+    assert calibrate.count("data:image/png;base64,") == 3
+    assert "4 of 4 of these trials improve" in calibrate
+
+
 def test_every_option_says_what_it_means(site):
     from mmgtune import options
 
@@ -179,3 +217,17 @@ def test_search(visit):
     page.click(".md-search-result__item a >> nth=0")
     page.wait_for_selector("h1")
     assert "index.html" not in page.url.rsplit("/", 1)[-1].split("?")[0]
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize("name", ["networks.html", "theory/bands.html", "esso-osaka.html", "reference/commands.html"])
+def test_no_table_is_cut_at_1400_pixels(browser, site, name):
+    page = browser.new_page(viewport={"width": 1400, "height": 900})
+    page.goto((site / name).as_uri())
+    cut = """[...document.querySelectorAll('.md-content table')].filter(one => {
+      const holder = one.closest('.md-typeset__scrollwrap');
+      return holder && one.scrollWidth > holder.clientWidth + 1;
+    }).length"""
+    assert page.locator(".md-typeset__scrollwrap table").count()
+    assert page.evaluate(cut) == 0
+    page.close()

@@ -18,9 +18,12 @@ from tests.runs import measured, states, turn
 
 STRONG = {
     "clock-offset": {"seconds": 1.3},
+    "dead-time": {"seconds": 2.2},
     "steering-lag": {"time_constant": 2.5, "rate_limit": 0.05},
-    "rudder-gain": {"factor": 0.9},
+    "backlash": {"play": 0.05},
+    "rudder-gain": {"factor": 0.9, "starboard": 1.1, "port": 0.95},
     "rudder-offset": {"angle": 0.02},
+    "governor-lag": {"time_constant": 40.0},
     "rpm-scale": {"factor": 1.03},
     "current": {"north": 0.2, "east": -0.1},
     "wind-drift": {"along": 0.02, "across": -0.005},
@@ -35,12 +38,17 @@ STRONG = {
     "rudder-stall": {"angle": 0.3},
     "hull-term": {"N_rabsr": -0.01, "Y_vvv": 0.1, "X_absr": 0.01},
     "discrepancy": {"Y_odd0": 0.01, "N_odd3": -0.002, "X_even5": 0.002, "N_even1": 0.001},
-    "memory": {"time_constant": 6.0},
+    "memory": {"time_constant": 6.0, "sway": 2.0, "yaw": 3.0},
     "antenna": {"x": 10.0, "y": 3.0},
-    "heading-bias": {"angle": 0.03},
+    "heading-bias": {"angle": 0.03, "alone": -0.02},
+    "compass-deviation": {"sine": 0.05, "cosine": -0.03, "sine_alone": 0.02, "cosine_alone": 0.02},
     "speed-scale": {"factor": 1.02},
     "gyro-scale": {"factor": 1.03},
     "gyro-bias": {"rate": 0.001},
+    "position-latency": {"seconds": 2.5},
+    "velocity-filter": {"over_ground": 4.0, "along_axes": 2.0, "yaw_rate": 3.0},
+    "heading-filter": {"time_constant": 2.0, "alone": 1.0},
+    "gyro-drift": {"heading": 3e-4, "heading_alone": -2e-4, "yaw_rate": 1e-6},
 }
 TAGS = [effect.tag for effect in effects()]
 
@@ -80,6 +88,7 @@ def test_null_is_the_base_run_bit_for_bit_on_numpy(ship, tag):
     assert np.array_equal(base, null)
 
 
+@pytest.mark.slow(6)
 @pytest.mark.parametrize("integrator", [Integrator("euler"), Integrator("rk4"), Integrator("rk4", 3)])
 def test_null_is_the_base_run_bit_for_bit_compiled(ship, integrator):
     cases = blown(Model(ship))
@@ -162,7 +171,9 @@ def test_sensors_undo_what_they_do(ship):
     from mmgtune.backends import LaneModel
     from mmgtune.physics.quantities import State
 
-    model = Model(with_effects(ship, {tag: STRONG[tag] for tag in TAGS if find_effect(tag).place == "sensor"}, "test"))
+    model = Model(
+        with_effects(ship, {tag: STRONG[tag] for tag in TAGS if find_effect(tag).place in ("sensor", "filter")}, "test")
+    )
     lanes = LaneModel(model, np.repeat(model.matrix(), 50, axis=1))
     true = State(*rng.normal(size=(6, 50)))
     assert np.allclose(lanes.unsensed(lanes.sensed(true)), true, atol=1e-12)
@@ -177,6 +188,7 @@ def test_the_first_sample_is_what_the_sensors_showed(ship):
         assert np.allclose(states(model, cases, backend=backend)[0, 0, 1], cases.initial[0], atol=4.0)
 
 
+@pytest.mark.slow(3)
 def test_measured_wind_counts_where_there_is_some(ship):
     steady = Model(with_effects(ship, {"wind": {"speed": 9.0, "direction": 0.7}}, "test"))
     by_log = Model(with_effects(ship, {"wind": {"measured": 1.0}}, "test"))

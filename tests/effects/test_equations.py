@@ -119,9 +119,9 @@ def test_waves_push_where_they_go(added):
 
 
 def test_resistance(added, suzaku):
-    force, found = added("resistance", {"factor": 1.2, "slope": 2.0})
+    force, found = added("resistance", {"factor": 1.2, "slope": 2.0, "pivot": 1.5})
     U = found.flow.U[0]
-    Fn = U / math.sqrt(9.81 * L)
+    Fn = (U - 1.5) / math.sqrt(9.81 * L)
     R = suzaku.profile.value("hull.R_0") * 0.5 * RHO * L * D * U**2
     np.testing.assert_allclose(force, [-(0.2 + 2.0 * Fn) * R, 0.0, 0.0], rtol=2e-3, atol=1e-9)
 
@@ -138,14 +138,14 @@ def test_a_stalled_rudder_keeps_the_force_of_the_angle_it_stalled_at(added, delt
 
 
 def test_memory_is_a_lag_of_first_order():
-    e = find_effect("memory").params(6.0)
+    e = find_effect("memory").params(6.0, 0.0, 0.0)
     found = SimpleNamespace(hull=Force(1.0, 10.0, 100.0))
     assert find_effect("memory").start(found, e) == (10.0, 100.0)
     force, (Y_dot, N_dot) = find_effect("memory").function(found, (4.0, 130.0), 0.1, e)
     assert force == pytest.approx((0.0, -6.0, 30.0))
     assert (Y_dot, N_dot) == pytest.approx((1.0, -5.0))
     # A lag shorter than the step can follow acts in part.
-    short = find_effect("memory").params(0.25 * STIFF * 0.1)
+    short = find_effect("memory").params(0.25 * STIFF * 0.1, 0.0, 0.0)
     force, _ = find_effect("memory").function(found, (4.0, 130.0), 0.1, short)
     assert force == pytest.approx((0.0, -1.5, 7.5))
 
@@ -182,11 +182,13 @@ def test_an_antenna_sees_its_own_way():
 
 def test_a_biased_compass_turns_the_axes_and_not_the_track():
     effect = find_effect("heading-bias")
-    e = effect.params(0.05)
+    e = effect.params(0.05, 0.0)
     seen = effect.function(MOVING, e)
     assert seen.psi == pytest.approx(MOVING.psi + 0.05)
     assert earth(seen) == pytest.approx(earth(MOVING))
     assert effect.inverse(seen, e) == pytest.approx(MOVING)
+    alone = effect.function(MOVING, effect.params(0.0, 0.05))
+    assert alone == pytest.approx(MOVING._replace(psi=MOVING.psi + 0.05))
 
 
 @pytest.mark.parametrize(
@@ -208,7 +210,9 @@ def test_sensors_with_one_number(tag, value, seen):
     ("tag", "value", "left"),
     [
         ("rudder-offset", 0.02, Control(1.7, 0.32)),
-        ("rudder-gain", 0.9, Control(1.7, 0.27)),
+        ("rudder-gain", 0.9, Control(1.7, 0.3 * 0.9 * 0.9)),  # of both sides, and of starboard
+        ("backlash", 0.1, Control(1.7, 0.3)),  # in the middle of its play
+        ("governor-lag", 5.0, Control(1.7, 0.3)),  # settled
         ("rpm-scale", 1.1, Control(1.87, 0.3)),
     ],
 )

@@ -109,6 +109,12 @@ def _side_force(k: int, rng: np.random.Generator) -> dict[str, float]:
     return {"force": factor, "moment": factor}
 
 
+def _sides(k: int, rng: np.random.Generator) -> dict[str, float]:
+    """A blade that moves more to one side than to the other: by as much less to the other, or right there."""
+    share = _sign(rng) * _motion(0.15)[k]
+    return {"starboard": 1.0 + share, "port": 1.0 - float(rng.integers(2)) * share}
+
+
 TERM_SIZES: dict[str, float] = {
     "N_rabsr": 0.015,
     "Y_vabsv": 0.15,
@@ -133,7 +139,10 @@ def hull_term(term: str) -> Draw:
 
 LADDER: dict[str, Draw] = {
     "rudder-offset": _degrees(_signed("angle", _motion(1.5))),
-    "rudder-gain": _factor("factor", _motion(0.12)),
+    "dead-time": _plain("seconds", (0.05, 0.2, 1.0, 3.0, 6.0)),
+    "backlash": _degrees(_plain("play", (0.05, 0.3, 1.0, 2.5, 5.0))),
+    "rudder-gain": _one_of(_factor("factor", _motion(0.12)), _sides),
+    "governor-lag": _plain("time_constant", (0.5, 3.0, 15.0, 40.0, 80.0)),
     "steering-lag": _one_of(
         _plain("time_constant", (0.1, 0.3, 1.2, 4.0, 8.0)),
         _degrees(_plain("rate_limit", (100.0, 30.0, 8.0, 3.5, 2.0))),
@@ -152,11 +161,28 @@ LADDER: dict[str, Draw] = {
     "wind": _from("speed", (0.2, 1.0, 4.0, 8.0, 12.0)),
     "wave-drift": _from("force", _motion(6000.0)),
     "propeller-side-force": _side_force,
-    "memory": _plain("time_constant", (0.1, 0.4, 2.0, 8.0, 16.0)),
+    "memory": _one_of(*(_plain(name, (0.1, 0.4, 2.0, 8.0, 16.0)) for name in ("time_constant", "sway", "yaw"))),
     "rudder-stall": _degrees(_plain("angle", (38.0, 35.0, 32.0, 28.0, 22.0))),
     "hull-term": _one_of(*(hull_term(term) for term in HULL_TERMS)),
     "antenna": _vector(("x", "y"), _sensor(12.0)),
-    "heading-bias": _degrees(_signed("angle", _sensor(1.5))),
+    "heading-bias": _degrees(_one_of(_signed("angle", _sensor(1.5)), _signed("alone", _sensor(1.5)))),
+    "compass-deviation": _degrees(
+        _one_of(
+            _vector(("sine", "cosine"), _sensor(3.0)),
+            _vector(("sine_alone", "cosine_alone"), _sensor(3.0)),
+        )
+    ),
+    "position-latency": _plain("seconds", _sensor(2.5)),
+    "velocity-filter": _one_of(
+        *(_plain(name, (0.1, 0.4, 1.5, 4.0, 8.0)) for name in ("over_ground", "along_axes", "yaw_rate"))
+    ),
+    "heading-filter": _one_of(*(_plain(name, (0.05, 0.2, 1.0, 3.0, 6.0)) for name in ("time_constant", "alone"))),
+    "gyro-drift": _degrees(
+        _one_of(
+            *(_signed(name, _sensor(0.015)) for name in ("heading", "heading_alone")),
+            _signed("yaw_rate", _sensor(2e-4)),
+        )
+    ),
     "gyro-scale": _factor("factor", _sensor(0.05)),
     "gyro-bias": _degrees(_signed("rate", _sensor(0.05))),
     "speed-scale": _factor("factor", _sensor(0.04)),

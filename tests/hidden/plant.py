@@ -115,14 +115,15 @@ def flap_angle(delta, scale):
 @njit(cache=True)
 def hull(s, t, U, v_, r_):
     """X [N], Y [N], N [N m] of the hull (14-15), with the terms of a hidden hull-term."""
-    growth = s.resistance_factor + s.resistance_slope * U / np.sqrt(G * s.L_pp)
+    growth = s.resistance_factor + s.resistance_slope * (U - SPEED) / np.sqrt(G * s.L_pp)
     R_0 = s.R_0 * growth * (1.0 + s.unknown_fouling_growing * t / 600.0)
     X = -R_0 + s.X_vv * v_**2 + s.X_vr * v_ * r_ + s.X_rr * r_**2 + s.X_vvvr * v_**3 * r_ + s.X_vvvv * v_**4
     Y = s.Y_v * v_ + s.Y_r * r_ + s.Y_vvv * v_**3 + s.Y_vvr * v_**2 * r_ + s.Y_vrr * v_ * r_**2 + s.Y_rrr * r_**3
     N = s.N_v * v_ + s.N_r * r_ + s.N_vvv * v_**3 + s.N_vvr * v_**2 * r_ + s.N_vrr * v_ * r_**2 + s.N_rrr * r_**3
     Y += s.Y_vabsv * v_ * abs(v_) + s.Y_rabsr * r_ * abs(r_)
     N += s.N_vabsv * v_ * abs(v_) + s.N_rabsr * r_ * abs(r_) + s.N_rrabsr * r_**2 * abs(r_)
-    return s.force * U**2 * X, s.force * U**2 * Y, s.moment * U**2 * N
+    held = 1.0 - s.unknown_hull_stall * np.tanh(max(0.0, abs(v_) - 0.15) / 0.1)
+    return s.force * U**2 * X, s.force * U**2 * Y * held, s.moment * U**2 * N * held
 
 
 @njit(cache=True)
@@ -191,7 +192,7 @@ def current(s, t, x):
 
 @njit(cache=True)
 def outside(s, t, y, psi, u_g, v_g):
-    """X [N], Y [N], N [N m] of wind, waves, a gust and a bank; still air is no force, R_0' has it in."""
+    """X [N], Y [N], N [N m] of wind, waves, a gust, a tug and a bank; still air is no force, R_0' has it in."""
     X = Y = N = 0.0
     if s.wind_speed != 0.0:
         X, Y, N = wind_force(s, s.wind_speed, s.wind_direction, psi, u_g, v_g)
@@ -203,6 +204,9 @@ def outside(s, t, y, psi, u_g, v_g):
     X -= s.wave_force * np.cos(s.wave_direction - psi)
     Y -= s.wave_force * np.sin(s.wave_direction - psi)
     suction = s.unknown_bank * (u_g / SPEED) ** 2 / (1.0 + np.exp(-(y - 150.0) / 80.0))
+    if 60.0 <= t < 180.0:
+        Y += s.unknown_tug
+        N += 0.4 * s.L_pp * s.unknown_tug
     X += suction * np.sin(psi)
     Y += suction * np.cos(psi)
     N -= 0.1 * s.L_pp * suction * np.cos(psi)
@@ -240,9 +244,9 @@ def logged_revolutions(n_0, u, v):
 @njit(cache=True)
 def blade_angle(s, followed, play):
     """Blade angle [rad] from that of the gear, after its lag: play, gain, zero."""
-    half = s.unknown_backlash
-    angle = min(max(play, followed - half), followed + half)
-    side = 1.0 + s.unknown_gain_sides if angle > 0.0 else 1.0 - s.unknown_gain_sides
+    angle = min(max(play, followed - s.half_play), followed + s.half_play)
+    side = s.gain_stbd if angle > 0.0 else s.gain_port
+    side *= 1.0 - s.unknown_indicator_cubic * (angle / np.radians(35.0)) ** 2
     return s.rudder_gain * side * angle + s.rudder_offset
 
 
@@ -260,27 +264,39 @@ def rates(s, t, z, gear, play, n_0, out):
     v_g = v - north * np.sin(psi) + east * np.cos(psi)
     followed = z[8] if s.steering_lag > INSTANT else gear
     logged = logged_revolutions(n_0, u, v)
-    n = s.rpm_scale * (z[9] if s.unknown_governor_lag > INSTANT else logged)
+    n = s.rpm_scale * (z[9] if s.governor_lag > INSTANT else logged)
     n *= 1.0 + s.unknown_rpm_hunting * np.sin(2.0 * np.pi * t / 60.0)
     X_H, Y_H, N_H = hull(s, t, U, v / U, r * s.L_pp / U)
-    X_R, Y_R, N_R = propeller_and_rudder(s, u, v, r, n, blade_angle(s, followed, play))
+    blade = blade_angle(s, followed, play) * (1.0 - s.unknown_rudder_torsion * (U / SPEED) ** 2)
+    blade += s.unknown_steering_hunting * np.sin(2.0 * np.pi * t / 15.0)
+    X_R, Y_R, N_R = propeller_and_rudder(s, u, v, r, n, blade)
     X_O, Y_O, N_O = outside(s, t, z[1], psi, u_g, v_g)
     Y_O += s.unknown_delayed_sway * s.mass * z[12]
     N_O += s.unknown_roll_yaw * z[10] * s.moment * U**2
-    remembers = s.memory > INSTANT
-    Y_M, N_M = (z[6], z[7]) if remembers else (Y_H, N_H)
+    Y_M = z[6] if s.memory_Y > INSTANT else Y_H
+    N_M = z[7] if s.memory_N > INSTANT else N_H
     out[0] = u_g * np.cos(psi) - v_g * np.sin(psi)
     out[1] = u_g * np.sin(psi) + v_g * np.cos(psi)
     out[2] = r
     out[3], out[4], out[5] = solved(s, u, v, r, X_H + X_R + X_O, Y_M + Y_R + Y_O, N_M + N_R + N_O)
-    out[6] = (Y_H - z[6]) / s.memory if remembers else 0.0
-    out[7] = (N_H - z[7]) / s.memory if remembers else 0.0
+    out[6] = (Y_H - z[6]) / s.memory_Y if s.memory_Y > INSTANT else 0.0
+    out[7] = (N_H - z[7]) / s.memory_N if s.memory_N > INSTANT else 0.0
     out[8] = (gear - z[8]) / s.steering_lag if s.steering_lag > INSTANT else 0.0
-    out[9] = (logged - z[9]) / s.unknown_governor_lag if s.unknown_governor_lag > INSTANT else 0.0
+    out[9] = (logged - z[9]) / s.governor_lag if s.governor_lag > INSTANT else 0.0
     # Heel: natural frequency 0.6 rad/s, damping 0.15, lever over metacentric height 4, outwards in a turn.
     out[10] = z[11]
     out[11] = 0.36 * (4.0 * u * r / G - z[10]) - 0.18 * z[11]
     out[12] = (u * r - z[12]) / 20.0
+
+
+@njit(cache=True)
+def late_by(values, step, seconds):
+    """What stood at a step, counted from 0, that many seconds earlier; values at whole steps, 0 before the first."""
+    place = step - seconds / STEP
+    if place <= 0.0:
+        return 0.0
+    k = int(place)
+    return values[k] + (place - k) * (values[k + 1] - values[k])
 
 
 @njit(cache=True)
@@ -294,8 +310,9 @@ def voyage(s, n_0, psi_0, angle, zigzag, steps, more):
     z, trying, rate = np.zeros(13), np.zeros(13), np.zeros((4, 13))
     z[2], z[3] = psi_0, SPEED
     _, z[6], z[7] = hull(s, 0.0, SPEED, 0.0, 0.0)
-    z[9] = 0.9 * n_0
+    z[9] = n_0
     gear = order = play = 0.0
+    moved = np.zeros(steps + more + 2)  # the gear at every step
     orders = 0
     end = steps
     k = 0
@@ -319,9 +336,15 @@ def voyage(s, n_0, psi_0, angle, zigzag, steps, more):
         rows[k, 7] = order if s.logs_order > 0.0 else gear
         if k >= end + more:
             return rows[: k + 1], end + 1
-        half = toward(gear, order, 0.5 * STEP * s.gear_rate)
-        whole = toward(gear, order, STEP * s.gear_rate)
-        rates(s, t, z, gear, play, n_0, rate[0])
+        middle = toward(gear, order, 0.5 * STEP * s.gear_rate)
+        gear = toward(gear, order, STEP * s.gear_rate)
+        moved[k + 1] = gear
+        if s.dead_time > 0.0:
+            first, half, whole = late_by(moved, k, s.dead_time), late_by(moved, k + 0.5, s.dead_time), 0.0
+            whole = late_by(moved, k + 1.0, s.dead_time)
+        else:
+            first, half, whole = moved[k], middle, gear
+        rates(s, t, z, first, play, n_0, rate[0])
         trying[:] = z + 0.5 * STEP * rate[0]
         rates(s, t + 0.5 * STEP, trying, half, play, n_0, rate[1])
         trying[:] = z + 0.5 * STEP * rate[1]
@@ -329,9 +352,8 @@ def voyage(s, n_0, psi_0, angle, zigzag, steps, more):
         trying[:] = z + STEP * rate[2]
         rates(s, t + STEP, trying, whole, play, n_0, rate[3])
         z += STEP / 6.0 * (rate[0] + 2.0 * rate[1] + 2.0 * rate[2] + rate[3])
-        gear = whole
-        followed = z[8] if s.steering_lag > INSTANT else gear
-        play = min(max(play, followed - s.unknown_backlash), followed + s.unknown_backlash)
+        followed = z[8] if s.steering_lag > INSTANT else whole
+        play = min(max(play, followed - s.half_play), followed + s.half_play)
         k += 1
 
 
@@ -383,19 +405,32 @@ def sensed(rows: np.ndarray, count: int, e: Mapping[str, Mapping[str, float]]) -
         y + lever_x * np.sin(psi) + lever_y * np.cos(psi),
     )
     u, v = u - r * lever_y, v + r * lever_x
-    latency = e["unknown-position-latency"]["magnitude"]
+    latency = e["position-latency"]["seconds"]
     x, y = _late(t, x, latency), _late(t, y, latency)
     north, east = u * np.cos(psi) - v * np.sin(psi), u * np.sin(psi) + v * np.cos(psi)
-    filtering = e["unknown-velocity-filter"]["magnitude"]
-    north, east = _low_pass(north, filtering), _low_pass(east, filtering)
-    heading = _low_pass(psi, e["unknown-heading-lag"]["magnitude"])
-    heading = heading + e["heading-bias"]["angle"] + e["unknown-compass-deviation"]["magnitude"] * np.sin(psi)
+    step = e["unknown-position-step"]["magnitude"] * np.sqrt(0.5) * (t >= 150.0)
+    x, y = x + step, (1.0 + e["unknown-easting-scale"]["magnitude"]) * y + step
+    smooth, compass = e["velocity-filter"], e["compass-deviation"]
+    north, east = _low_pass(north, smooth["over_ground"]), _low_pass(east, smooth["over_ground"])
+    heading = _low_pass(psi, e["heading-filter"]["time_constant"]) + e["heading-bias"]["angle"]
+    heading = heading + compass["sine"] * np.sin(psi) + compass["cosine"] * np.cos(psi) + e["gyro-drift"]["heading"] * t
+    heading = heading + e["unknown-deviation-quadrantal"]["magnitude"] * np.sin(2.0 * psi)
     u, v = north * np.cos(heading) + east * np.sin(heading), east * np.cos(heading) - north * np.sin(heading)
+    u, v = _low_pass(u, smooth["along_axes"]), _low_pass(v, smooth["along_axes"])
+    heading = heading + _low_pass(psi, e["heading-filter"]["alone"]) - psi + e["heading-bias"]["alone"]
+    heading = heading + compass["sine_alone"] * np.sin(psi) + compass["cosine_alone"] * np.cos(psi)
+    heading = heading + e["gyro-drift"]["heading_alone"] * t
     u = e["speed-scale"]["factor"] * u
     u = u * (1.0 + e["unknown-log-quadratic"]["magnitude"] * (1.0 - u / SPEED))
-    r = e["gyro-scale"]["factor"] * r + e["gyro-bias"]["rate"] + e["unknown-gyro-drift"]["magnitude"] * t / 600.0
-    late = e["clock-offset"]["seconds"]
+    v = v + e["unknown-sway-bias"]["magnitude"]
+    r = _low_pass(r, smooth["yaw_rate"])
+    r = e["gyro-scale"]["factor"] * r + e["gyro-bias"]["rate"] + e["gyro-drift"]["yaw_rate"] * t
+    late = e["clock-offset"]["seconds"] + e["unknown-clock-drift"]["magnitude"] * t / 600.0
     n, delta = np.interp(t - late, t, n), np.interp(t - late, t, delta)
+    held = round(e["unknown-controls-held"]["magnitude"] / STEP)
+    if held:
+        last = np.arange(len(t)) // held * held
+        n, delta = n[last], delta[last]
     return np.column_stack([t, x, y, heading, u, v, r, n, delta])[: count : round(1.0 / STEP)]
 
 
@@ -410,7 +445,8 @@ def _low_pass(values: np.ndarray, time_constant: float) -> np.ndarray:
     if time_constant <= 0.0:
         return values
     share = np.exp(-STEP / time_constant)
-    return _recursion(values, share, (1.0 - share), values[0])
+    over_step = np.concatenate([values[:1], 0.5 * (values[1:] + values[:-1])])  # so that a ramp is trailed by it
+    return _recursion(over_step, share, 1.0 - share, values[0])
 
 
 @njit(cache=True)

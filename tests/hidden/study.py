@@ -90,6 +90,11 @@ def kept(hidden: dict[str, dict[str, float]], said: dict[str, Any]) -> dict[str,
         "verdict": said["verdict"],
         "causes": [{key: cause[key] for key in ("effect", "parameters", "p_value")} for cause in said["causes"]],
         "groups": said["groups"],
+        "traces": [trace["effect"] for trace in said["traces"]],
+        "contributions": [
+            (one["effect"], one["share_of_fall"], one["share_held_out"]) for one in said["contributions"]
+        ],
+        "unclear": said["unexplained"]["unclear"],
         "best": [
             {"effect": row["effect"], "parameters": row["parameters"], "gain": round(row["gain"], 1)}
             for row in said["candidates"][:3]

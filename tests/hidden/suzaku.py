@@ -106,8 +106,11 @@ HULL_TERMS = (
 
 NULL: dict[str, dict[str, float]] = {
     "rudder-offset": {"angle": 0.0},
-    "rudder-gain": {"factor": 1.0},
+    "dead-time": {"seconds": 0.0},
+    "backlash": {"play": 0.0},
+    "rudder-gain": {"factor": 1.0, "starboard": 1.0, "port": 1.0},
     "steering-lag": {"time_constant": 0.0, "rate_limit": np.inf},
+    "governor-lag": {"time_constant": 0.0},
     "rpm-scale": {"factor": 1.0},
     "flap": {"factor": 1.0},
     "clock-offset": {"seconds": 0.0},
@@ -118,11 +121,16 @@ NULL: dict[str, dict[str, float]] = {
     "wind": {"speed": 0.0, "direction": 0.0},
     "wave-drift": {"force": 0.0, "direction": 0.0},
     "propeller-side-force": {"force": 1.0, "moment": 1.0},
-    "memory": {"time_constant": 0.0},
+    "memory": {"time_constant": 0.0, "sway": 0.0, "yaw": 0.0},
     "rudder-stall": {"angle": np.inf},
     "hull-term": dict.fromkeys(HULL_TERMS, 0.0),
     "antenna": {"x": 0.0, "y": 0.0},
-    "heading-bias": {"angle": 0.0},
+    "heading-bias": {"angle": 0.0, "alone": 0.0},
+    "compass-deviation": {"sine": 0.0, "cosine": 0.0, "sine_alone": 0.0, "cosine_alone": 0.0},
+    "position-latency": {"seconds": 0.0},
+    "velocity-filter": {"over_ground": 0.0, "along_axes": 0.0, "yaw_rate": 0.0},
+    "heading-filter": {"time_constant": 0.0, "alone": 0.0},
+    "gyro-drift": {"heading": 0.0, "heading_alone": 0.0, "yaw_rate": 0.0},
     "gyro-scale": {"factor": 1.0},
     "gyro-bias": {"rate": 0.0},
     "speed-scale": {"factor": 1.0},
@@ -161,18 +169,24 @@ def coefficients(ship: Mapping[str, float], effects: Parameters) -> np.void:
     p["logs_order"] = float(ordered)
     p["gear_rate"] = e["steering-lag"]["rate_limit"] if ordered else GEAR_RATE
     p["steering_lag"] = e["steering-lag"]["time_constant"]
+    p["dead_time"], p["half_play"] = e["dead-time"]["seconds"], 0.5 * e["backlash"]["play"]
+    p["gain_stbd"], p["gain_port"] = e["rudder-gain"]["starboard"], e["rudder-gain"]["port"]
+    p["governor_lag"] = e["governor-lag"]["time_constant"]
     p["rpm_scale"], p["flap_scale"] = e["rpm-scale"]["factor"], e["flap"]["factor"]
     p.update({f"current_{name}": value for name, value in e["current"].items()})
     p["wind_speed"], p["wind_direction"] = e["wind"]["speed"], e["wind"]["direction"]
     p["wave_force"], p["wave_direction"] = e["wave-drift"]["force"], e["wave-drift"]["direction"]
     p["side_force"], p["side_moment"] = e["propeller-side-force"]["force"], e["propeller-side-force"]["moment"]
-    p["memory"], p["stall_angle"] = e["memory"]["time_constant"], e["rudder-stall"]["angle"]
+    p["memory_Y"] = e["memory"]["time_constant"] + e["memory"]["sway"]
+    p["memory_N"] = e["memory"]["time_constant"] + e["memory"]["yaw"]
+    p["stall_angle"] = e["rudder-stall"]["angle"]
     p.update({name.replace("-", "_"): e[name]["magnitude"] for name in UNKNOWN})
     half = 0.5 * p["rho"] * p["L_pp"] * p["d"]
     p["force"], p["moment"] = half, half * p["L_pp"]
     p["mass"] = p["rho"] * p["L_pp"] * p["B"] * p["d"] * p["C_b"]
     p["m_x"], p["m_y"] = half * p["L_pp"] * p["m_x_"], half * p["L_pp"] * p["m_y_"]
     p["I_zz"] = p["mass"] * ((p["k_zz_"] * p["L_pp"]) ** 2 + p["x_G"] ** 2) + half * p["L_pp"] ** 3 * p["J_zz_"]
+    p["I_zz"] *= 1.0 + e["unknown-inertia-yaw"]["magnitude"]
     record = np.zeros(1, dtype=[(name, np.float64) for name in p])
     for name, value in p.items():
         record[name] = value

@@ -144,7 +144,7 @@ def _limits(sets: dict[str, list[Row]]) -> list[str]:
 
 def _for_people(value: float, unit: str) -> tuple[float, str]:
     """Angles in degrees; pure numbers and the prime system without a unit."""
-    if unit in ("rad", "rad/s"):
+    if unit in ("rad", "rad/s", "rad/s^2"):
         return math.degrees(value), unit.replace("rad", "°")
     return value, "" if unit in ("-", "prime") else unit
 

@@ -28,8 +28,6 @@ def _degrees(*angles: float) -> tuple[float, ...]:
 
 
 UNKNOWN: dict[str, Unknown] = {
-    "unknown-backlash": Unknown("blade within a play of +-magnitude behind the gear", "rad", _degrees(1.5, 2.5, 3.5)),
-    "unknown-gain-sides": Unknown("blade angle times 1 + magnitude to starboard, 1 - to port", "-", (0.12, 0.18, 0.25)),
     "unknown-wake-speed": Unknown("wake fraction times 1 + magnitude (1 - U/U0)", "-", (-0.5, -0.35, 0.35)),
     "unknown-wake-side": Unknown("wake fraction times 1 + magnitude tanh(beta_P / 0.1)", "-", (-0.25, 0.15, 0.25)),
     "unknown-tide-turning": Unknown(
@@ -38,10 +36,6 @@ UNKNOWN: dict[str, Unknown] = {
     "unknown-current-rotating": Unknown("current turning clockwise once in 900 s", "m/s", (0.2, 0.3, 0.45)),
     "unknown-current-south": Unknown("current to the east, only south of the start", "m/s", (0.2, 0.3, 0.4)),
     "unknown-gust": Unknown("wind from 230 deg, magnitude sin^2(pi t / 300 s)", "m/s", (9.0, 12.0, 15.0)),
-    "unknown-velocity-filter": Unknown("ground velocity logged through a low-pass", "s", (4.0, 7.0, 10.0)),
-    "unknown-compass-deviation": Unknown("heading logged + magnitude sin(psi)", "rad", _degrees(2.0, 3.5, 5.0)),
-    "unknown-gyro-drift": Unknown("yaw rate logged + magnitude t / 600 s", "rad/s", _degrees(0.1, 0.2, 0.3)),
-    "unknown-position-latency": Unknown("positions logged late", "s", (2.0, 3.5, 5.0)),
     "unknown-log-quadratic": Unknown("u logged + magnitude u (1 - u/U0)", "-", (-0.15, 0.12, 0.2)),
     "unknown-bank": Unknown("suction to a bank in the east, growing with y", "N", (6e3, 1.2e4, 2.0e4)),
     "unknown-thrust-yaw": Unknown("thrust times 1 - magnitude tanh|r'|", "-", (0.1, 0.16, 0.24)),
@@ -54,6 +48,20 @@ UNKNOWN: dict[str, Unknown] = {
     "unknown-straightening-yaw": Unknown("gamma_R times 1 + magnitude tanh|r'|", "-", (-0.3, 0.25, 0.4)),
     "unknown-delayed-sway": Unknown("side force magnitude m u r, lagging by 20 s", "-", (0.1, -0.1, 0.18)),
     "unknown-fouling-growing": Unknown("R_0' times 1 + magnitude t / 600 s", "-", (0.4, 0.6, 0.9)),
-    "unknown-governor-lag": Unknown("shaft lags behind the log, from 10 % less on", "s", (30.0, 60.0)),
-    "unknown-heading-lag": Unknown("heading logged through a low-pass", "s", (2.0, 3.0, 4.5)),
+    "unknown-steering-hunting": Unknown("blade + magnitude sin(2 pi t / 15 s), not logged", "rad", _degrees(2, 3, 4)),
+    "unknown-rudder-torsion": Unknown("blade angle times 1 - magnitude (U/U0)^2", "-", (0.12, 0.18, 0.25)),
+    "unknown-indicator-cubic": Unknown("blade angle times 1 - magnitude (delta / 35 deg)^2", "-", (-0.15, 0.15, 0.25)),
+    "unknown-inertia-yaw": Unknown("moment of inertia in yaw times 1 + magnitude", "-", (-0.35, 0.35, 0.5)),
+    "unknown-hull-stall": Unknown(
+        "hull Y and N less by magnitude tanh((|v'| - 0.15)/0.1) beyond", "-", (-0.2, 0.15, 0.25)
+    ),
+    "unknown-tug": Unknown("a tug at the bow pushes to starboard from 60 s to 180 s", "N", (6e3, -1e4, 1.5e4)),
+    "unknown-deviation-quadrantal": Unknown("heading logged + magnitude sin(2 psi)", "rad", _degrees(1.5, 2.5, 4.0)),
+    "unknown-easting-scale": Unknown("y logged times 1 + magnitude", "-", (-0.04, 0.03, 0.05)),
+    "unknown-position-step": Unknown(
+        "positions logged + magnitude to the north-east from 150 s on", "m", (5.0, 8.0, 12.0)
+    ),
+    "unknown-sway-bias": Unknown("v logged + magnitude", "m/s", (-0.12, 0.08, 0.15)),
+    "unknown-clock-drift": Unknown("control log late by magnitude t / 600 s", "s", (-8.0, 6.0, 10.0)),
+    "unknown-controls-held": Unknown("controls logged every magnitude seconds and held between", "s", (6.0, 8.0, 12.0)),
 }

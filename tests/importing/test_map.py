@@ -38,7 +38,7 @@ def test_everything_wrong_at_once():
         ("[columns]", '[antenna]\nx = "3 m"\n[columns]', "'antenna.y' is missing"),
         ("[columns]", "[position]\norigin = [100.0, 3.0]\n[columns]", "[latitude, longitude]"),
         ("[columns]", '[log]\nencoding = "utf-9"\n[columns]', "unknown encoding"),
-        ("[columns]", '[log]\nformat = "xlsx"\n[columns]', "'csv', 'parquet', 'nmea'"),
+        ("[columns]", '[log]\nformat = "docx"\n[columns]', "'csv', 'parquet', 'nmea'"),
         ("[columns]", '[cut]\nstart = "9 s"\nend = "3 s"\n[columns]', "not before"),
         ("[columns]", '[trial]\nnoise = { w = "1 m" }\n[columns]', "noise of unknown column 'w'"),
         ("[columns]", "[resample]\ngap = 0.5\n[columns]", "at least 1"),

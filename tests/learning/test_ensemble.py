@@ -31,7 +31,7 @@ from mmgtune.validation import window_scores
 
 from .sailed import NOISE, SHIP, noisy, sailed
 
-pytestmark = pytest.mark.xdist_group("ensembles")
+pytestmark = [pytest.mark.xdist_group("ensembles"), pytest.mark.slow(3)]
 
 TRAINED = EnsembleOptions(
     members=8, width=32, layers=2, steps=1000, validate_every=500, rate=3e-3, horizon=40, initial=10, restart=50.0

@@ -23,7 +23,7 @@ from mmgtune.profile import load_profile
 from mmgtune.trial import load_trials
 from mmgtune.validation import L_MSE
 
-pytestmark = pytest.mark.xdist_group("hybrids")
+pytestmark = [pytest.mark.xdist_group("hybrids"), pytest.mark.slow(3)]
 
 SMALL = HybridOptions(steps=24, validate_every=8, batch=24, width=6, restart=80.0, step=2.0)
 

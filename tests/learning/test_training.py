@@ -20,7 +20,7 @@ from mmgtune.options.learning import LearnOptions
 from mmgtune.trial import load_trials
 from mmgtune.validating import validate
 
-pytestmark = pytest.mark.xdist_group("networks")
+pytestmark = [pytest.mark.xdist_group("networks"), pytest.mark.slow(3)]
 
 SMALL = LearnOptions(seeds=1, steps=6, validate_every=2, batch=16, width=6, memory=3, horizon=8, restart=60.0)
 

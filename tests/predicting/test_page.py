@@ -42,7 +42,7 @@ def test_it_opens_clean_on_every_screen(browser: Any, page: Path, scheme: str, w
         assert visit.complaints == []
         assert visit.requests == [visit.url]
         assert visit.page.evaluate(OVERFLOW) == 0
-        assert visit.page.locator("svg.drawn").count() == 6  # indices, calibration, and two of each run
+        assert visit.page.locator("figure").count() == 7  # to move about in, indices, calibration, two of each run
         heading = visit.page.locator("h1").inner_text()
         assert "too narrow" in heading or "about right" in heading
 

@@ -38,12 +38,10 @@ def voyages_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def page(fit_folder: Path) -> str:
-    """The HTML of the fit's report without the chart library, which would drown every search."""
+    """The HTML of the fit's report."""
     return read(fit_folder)
 
 
 def read(folder: Path) -> str:
-    """The page's own part of a report."""
-    from plotly.offline import get_plotlyjs
-
-    return (folder / "report.html").read_text(encoding="utf-8").replace(get_plotlyjs(), "")
+    """The page of a report."""
+    return (folder / "report.html").read_text(encoding="utf-8")

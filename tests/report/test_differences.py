@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from mmgtune.diagnose.legs import QUANTITIES, Difference
-from mmgtune.report.differences import axis_words, draw_differences
+from mmgtune.report.differences import axis_words, differences
+from mmgtune.report.plot import Bar, Dots, Line
 
 CURRENT, RESISTANCE = QUANTITIES
 VOYAGES = tuple(f"voyage_{k:02d}" for k in range(1, 10))
@@ -35,26 +36,23 @@ def test_a_panel_for_each_parameter_with_its_unit():
     rows = found()
     assert axis_words(rows[0], "north") == "current north [m/s]"
     assert axis_words(rows[1], "factor") == "resistance factor over mean [–]"
-    figure = draw_differences(rows)
-    north, east, factor = figure.axes
-    assert [ax.get_title(loc="left") or ax.get_title() for ax in figure.axes] == [
+    north, east, factor = differences(rows).panels
+    assert [panel.title for panel in (north, east, factor)] == [
         "current north [m/s]", "current east [m/s]", "resistance factor over mean [–]",
     ]  # fmt: skip
-    for ax, values in ((north, NORTH_EAST[:, 0]), (east, NORTH_EAST[:, 1])):
-        (points,) = ax.containers
+    for panel, values in ((north, NORTH_EAST[:, 0]), (east, NORTH_EAST[:, 1])):
+        (points,) = (mark for mark in panel.marks if isinstance(mark, Dots))
         told = [k for k in range(9) if k != 2]
-        np.testing.assert_array_equal(points[0].get_xdata(), told)
-        np.testing.assert_allclose(points[0].get_ydata(), values[told])
-        (bars,) = points[2]
-        ends = np.array([segment[:, 1] for segment in bars.get_segments()])
-        np.testing.assert_allclose(np.diff(ends, axis=1)[:, 0], 2 * 1.96 * 0.02)
-    trend = max(factor.lines, key=lambda line: np.ptp(line.get_ydata()) if line.get_linestyle() == "--" else -1.0)
-    np.testing.assert_allclose(trend.get_ydata(), 1.0 + 0.03 * (np.arange(9) - 4.0))
+        np.testing.assert_array_equal(points.x, told)
+        np.testing.assert_allclose(points.y, values[told])
+        bars = np.array([mark.y for mark in panel.marks if isinstance(mark, Line)])
+        np.testing.assert_allclose(np.diff(bars, axis=1)[:, 0], 2 * 1.96 * 0.02)
+    (trend,) = (mark for mark in factor.marks if isinstance(mark, Line) and mark.look.dash)
+    np.testing.assert_allclose(trend.y, 1.0 + 0.03 * (np.arange(9) - 4.0))
 
 
 def test_one_value_for_all_is_a_line_with_its_interval():
-    (north, *_), (plain, *_) = (draw_differences(found(current=pattern)[:1]).axes for pattern in ("one", "each"))
-    assert len(north.lines) == len(plain.lines) + 1
-    (band,) = set(north.patches) - set(plain.patches)
-    low, high = np.sort(band.get_extents().transformed(north.transData.inverted()).get_points()[:, 1])
-    assert (low, high) == pytest.approx((0.05 - 1.96 * 0.01, 0.05 + 1.96 * 0.01))
+    (north, *_), (plain, *_) = (differences(found(current=pattern)[:1]).panels for pattern in ("one", "each"))
+    assert len(north.marks) == len(plain.marks) + 2
+    (band,) = (mark for mark in north.marks if isinstance(mark, Bar))
+    assert band.y == pytest.approx((0.05 - 1.96 * 0.01, 0.05 + 1.96 * 0.01))

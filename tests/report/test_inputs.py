@@ -13,7 +13,7 @@ import pytest
 
 from mmgtune.errors import OptionError
 from mmgtune.fitting import FitOptions, fit, write_run
-from mmgtune.report import charts, render
+from mmgtune.report import motions, render
 from mmgtune.report.kinds import KINDS
 from mmgtune.report.load import find
 from mmgtune.trial import load_trials
@@ -58,45 +58,27 @@ def test_the_record_names_the_inputs(run: Path) -> None:
         "name": "delta_port", "unit": "rad", "words": "port rudder angle", "role": "rudder",
     }  # fmt: skip
     columns = pq.read_table(run / "motions.parquet").to_pydict()
-    assert [name for name in columns if name not in ("trial", "which", "t", *charts.RESIDUALS)] == INPUTS
+    assert [name for name in columns if name not in ("trial", "which", "t", "x", "y", "psi", "u", "v_m", "r")] == INPUTS
     trials, ports = np.array(columns["trial"]), np.array(columns["delta_port"])
     assert set(columns["which"]) == {"measured", "before", "after"}
     assert set(ports[trials == "one"]) == {0.3}
     assert set(ports[trials == "two"]) == {-0.3}
 
 
-def test_charts_have_every_input(run: Path) -> None:
+def test_the_page_has_every_input(run: Path) -> None:
     payload = payload_of(run)
-    for layout in (payload["wide"], payload["narrow"]):
-        titles = {key: layout[key]["title"]["text"] for key in layout if key.startswith("yaxis")}
-        assert list(titles.values()) == [
-            "heading<br>[deg]", "surge velocity<br>[m/s]", "sway velocity<br>[m/s]", "yaw rate<br>[deg/s]",
-            "port rudder angle<br>[deg]", "starboard rudder angle<br>[deg]", "propeller revolutions<br>[rpm]",
-            "bow thruster revolutions<br>[rpm]",
-            "heading error<br>[deg]", "surge velocity error<br>[m/s]", "sway velocity error<br>[m/s]",
-            "yaw rate error<br>[deg/s]", "position north error<br>[m]", "position east error<br>[m]",
-        ]  # fmt: skip
-    drawn = {trace["trace"]["yaxis"]: k for k, trace in enumerate(payload["traces"])}
-    one = payload["trials"][0]["data"]
-    for axis, value in (("y5", 0.3 / DEG), ("y6", 0.2 / DEG), ("y8", 120.0)):
-        assert one[drawn[axis]]["y"] == pytest.approx([value] * len(one[drawn[axis]]["y"]), abs=0.01)
-    # Both sides end with their own axis of time.
-    wide = payload["wide"]
-    assert [axis for axis in wide if axis.startswith("xaxis") and wide[axis]["showticklabels"]] == ["xaxis8", "xaxis14"]
+    titles = {one["name"]: f"{one['words']} [{one['unit']}]" for one in payload["channels"]}
+    assert [title for name, title in titles.items() if name not in ("X", "Y", "N")] == [
+        "heading [deg]", "surge velocity [m/s]", "sway velocity [m/s]", "yaw rate [deg/s]",
+        "port rudder angle [deg]", "starboard rudder angle [deg]", "propeller revolutions [rpm]",
+        "bow thruster revolutions [rpm]",
+    ]  # fmt: skip
+    one = payload["manoeuvres"][0]["runs"]["measured"]
+    for name, value in (("delta_port", 0.3 / DEG), ("delta_stbd", 0.2 / DEG), ("n_bow", 120.0)):
+        assert motions.unpacked(one[name]) == pytest.approx(value, abs=0.01)
     svg = (run / "figures" / "histories.svg").read_text(encoding="utf-8")
     for words in ("port rudder angle [deg]", "starboard rudder angle [deg]", "bow thruster revolutions [rpm]"):
         assert words in svg
-
-
-def test_panels_do_not_overlap(run: Path) -> None:
-    for layout in (payload_of(run)["wide"], payload_of(run)["narrow"]):
-        spans = [
-            (tuple(layout[f"xaxis{k}"]["domain"]), tuple(layout[f"yaxis{k}"]["domain"])) for k in ["", *range(2, 15)]
-        ]
-        for k, (across, up) in enumerate(spans):
-            assert up[0] < up[1]
-            for other_across, other_up in spans[:k]:
-                assert across != other_across or up[1] <= other_up[0]
 
 
 def test_a_record_that_names_no_inputs_has_one_rudder_and_one_propeller(tmp_path: Path) -> None:
@@ -105,7 +87,7 @@ def test_a_record_that_names_no_inputs_has_one_rudder_and_one_propeller(tmp_path
     _, record = find(folder, KINDS)
     assert [channel.title for channel in record.inputs] == ["rudder angle [deg]", "propeller revolutions [rpm]"]  # type: ignore[union-attr]
     render(folder)
-    assert len(payload_of(folder)["traces"]) == 4 * 3 + 2 + 6 * 2
+    assert [one["name"] for one in payload_of(folder)["channels"]] == ["psi", "u", "v_m", "r", "delta", "n"]
 
 
 @pytest.mark.parametrize("inputs", ["n", [{"name": "n"}], [3]])
@@ -123,4 +105,4 @@ def test_an_input_that_the_motions_lack_is_named(tmp_path: Path) -> None:
         find(folder, KINDS)
     motions["delta_port"] = np.zeros(len(motions))
     render(fake_run.write_fit(tmp_path / "run", data, history, motions))
-    assert "port brudder/b<br>[deg]" in payload_of(folder)["wide"]["yaxis5"]["title"]["text"]
+    assert [one["words"] for one in payload_of(folder)["channels"]][4] == "port brudder/b"

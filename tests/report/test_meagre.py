@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from mmgtune.errors import OptionError, OutputError
+from mmgtune.report import motions as motions_of_page
 from mmgtune.report import render
 
 from . import fake_run
@@ -101,7 +102,7 @@ def test_diverged_trial(tmp_path: Path) -> None:
     render(folder)
     page = read(folder)
     assert ">diverged</td>" in page
-    assert f"fits worst after tuning: {first}" in page
+    assert f"Time histories of {first}, which fits worst." in page
 
 
 def test_one_sample_gaps_and_nothing_measured(tmp_path: Path) -> None:
@@ -114,9 +115,9 @@ def test_one_sample_gaps_and_nothing_measured(tmp_path: Path) -> None:
     motions = motions[motions["trial"] != names[3]]
     folder = fake_run.write_fit(tmp_path / "run", data, history, motions)
     render(folder)
-    payload = json.loads(re.search(r'id="payload">(.*?)</script>', read(folder), re.S)[1])
-    assert len(payload["trials"]) == 7
-    assert payload["trials"][0]["data"][0]["mode"] == "markers"
+    payload = json.loads(re.search(r'class="payload">(.*?)</script>', read(folder), re.S)[1])
+    assert len(payload["manoeuvres"]) == 7
+    assert len(motions_of_page.unpacked(payload["manoeuvres"][0]["runs"]["measured"]["x"])) == 1
 
 
 def test_no_trials_and_no_coefficients(tmp_path: Path) -> None:
@@ -131,8 +132,10 @@ def test_many_long_trials_are_thinned(tmp_path: Path) -> None:
 
     data, history, _ = fake_run.edited()
     row = data["trial_results"][0]
-    data["trial_results"] = [{**row, "id": f"trial {place:02d}", "J_after": float(place)} for place in range(50)]
-    motion = fake_run.motion(35.0, 4000, 130.0, 3.1, 20.0)
+    data["trial_results"] = [
+        {**row, "id": f"window {place:03d} of a voyage", "J_after": float(place)} for place in range(150)
+    ]
+    motion = fake_run.motion(35.0, 1200, 130.0, 3.1, 20.0)
     parts = [
         pd.DataFrame({"trial": trial["id"], "which": which, **motion})
         for trial in data["trial_results"]
@@ -141,9 +144,10 @@ def test_many_long_trials_are_thinned(tmp_path: Path) -> None:
     folder = fake_run.write_fit(tmp_path / "run", data, history, pd.concat(parts))
     render(folder)
     page = read(folder)
-    assert len(page) < 20e6
-    assert "least and the greatest sample of every stretch" in page
-    assert "Shown are the 16 trials with the greatest J" in page
+    assert len(page) < 5e6
+    assert "the least and the greatest of every stretch" in page
+    assert "Shown are 12 of 150, those that fit worst" in page
+    assert "Filter rows" in page
 
 
 def test_errors_name_place_and_remedy(tmp_path: Path) -> None:

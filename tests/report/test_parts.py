@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from mmgtune.report import advice, charts, confidence, fit_page, tables, tracks, wording
+from mmgtune.report import advice, confidence, motion_block, motions, tables, tracks, wording
 from mmgtune.report.html import embedded
 from mmgtune.report.markdown import escaped
 
@@ -26,11 +26,33 @@ def test_shown(value: object, text: str) -> None:
 
 
 def test_percent() -> None:
-    assert wording.percent(wording.change(200.0, 1.0)) == "−99.50\u00a0%"
+    assert wording.percent(wording.change(200.0, 1.0)) == "−99.5\u00a0%"
+    assert wording.percent(wording.change(200.0, 1e-9)) == "−99.9\u00a0%"
+    assert wording.percent(wording.change(1.0, 18966341.25)) == "19\u202f000\u202f000 times"
+    assert wording.percent(-0.01) == "0\u00a0%"
     assert wording.percent(wording.change(100.0, 112.34)) == "+12.3\u00a0%"
     assert wording.percent(wording.change(-2.0, -3.0)) == "−50.0\u00a0%"
     assert wording.percent(wording.change(1.0, 1.0)) == "0\u00a0%"
     assert wording.percent(wording.change(0.0, 1.0)) == "–"
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(0.99995, "99.9"), (0.9, "90"), (-0.3, "0"), (0.0049, "0"), (0.996, "99.6"), (1.0, "99.9"), (None, None)],
+)
+def test_shares_are_written_in_one_way(value: float | None, text: str | None) -> None:
+    assert wording.share(value) == ("–" if text is None else f"{text}\u00a0%")
+
+
+def test_an_interval_of_one_number_is_said_once() -> None:
+    assert wording.span(0.9999, 1.0) == "99.9\u00a0%"
+    assert wording.span(0.4, 0.6) == "40 to 60\u00a0%"
+
+
+def test_variance_beyond_noise_is_read_as_people_think() -> None:
+    assert wording.beyond_noise(-0.017) == "none"
+    assert wording.beyond_noise(0.3) == "30\u00a0%"
+    assert wording.beyond_noise(18966340.25) == "4400 times the noise"
 
 
 def test_fixed_has_no_negative_zero() -> None:
@@ -60,20 +82,43 @@ def test_thinning_keeps_peaks() -> None:
     values = np.sin(np.arange(100_000) / 3000.0)
     values[54_321] = 7.0
     values[60_000:70_000] = np.nan
-    keep = charts.spread(values, 1000)
-    assert len(keep) <= 1002
+    other = np.zeros(100_000)
+    other[12_345] = -1.0
+    keep = motions.spread([values, other], 100_000, 1000)
+    assert len(keep) <= 1005
     assert np.nanmax(values[keep]) == 7.0
     assert np.isnan(values[keep]).any()
-    assert charts.spread(values[:1000], 1000).tolist() == list(range(1000))
+    assert other[keep].min() == -1.0
+    assert {0, 99_999} <= set(keep.tolist())
+    assert motions.spread([values[:1000]], 1000, 1000).tolist() == list(range(1000))
 
 
-def test_heading_residual_ignores_whole_turns() -> None:
+def test_headings_begin_in_the_turn_of_the_measured_one() -> None:
     t = np.arange(50.0)
-    measured = {"t": t, "psi": np.mod(0.3 * t, 2 * np.pi)}
-    simulated = {"t": t, "psi": 0.3 * t + 2 * np.pi + 0.1}
-    assert charts.residual(simulated, measured, "psi") == pytest.approx(0.1)
-    gappy = {"t": t, "psi": np.where((t > 20) & (t < 30), np.nan, measured["psi"])}
-    assert np.nanmax(np.abs(charts.residual(simulated, gappy, "psi") - 0.1)) < 1e-9
+    zero = np.zeros(50)
+    rest = {"t": t, "x": t, "y": t, "u": zero, "v_m": zero, "r": zero}
+    measured = rest | {"psi": np.mod(0.3 * t, 2 * np.pi)}
+    simulated = rest | {"psi": 0.3 * t + 2 * np.pi + 0.1}
+    one = motions.Manoeuvre("one", {"measured": measured, "after": simulated})
+    payload, _ = motions.payload([one], tracks.runs_of(tracks.WORDS), ())
+    found = payload["manoeuvres"][0]["runs"]
+    gap = motions.unpacked(found["after"]["psi"]) - motions.unpacked(found["measured"]["psi"])
+    assert gap == pytest.approx(np.degrees(0.1), abs=0.03)
+
+
+@pytest.mark.parametrize("size", [1e-9, 1.0, 1e9])
+def test_packed_numbers_come_back(size: float) -> None:
+    values = size * np.random.default_rng(1).normal(3.0, 1.0, 500)
+    values[7] = np.nan
+    found = motions.unpacked(json.loads(json.dumps(motions.packed(values))))
+    assert np.isnan(found[7])
+    span = np.nanmax(values) - np.nanmin(values)
+    assert np.nanmax(np.abs(found - values)) <= span / 130_000 + 1e-7 * np.nanmax(np.abs(values))
+    assert motions.unpacked(motions.packed(np.full(3, 0.25 * size))) == pytest.approx(0.25 * size)
+    assert np.isnan(motions.unpacked(motions.packed(np.full(3, np.nan)))).all()
+    steady = motions.packed(np.arange(0.0, 600.0, 0.5), steady=True)
+    assert steady == {"n": 1200, "o": 0.0, "s": 0.5}
+    assert motions.unpacked(steady)[-1] == 599.5
 
 
 def test_simulation_on_other_times_is_compared_where_both_are() -> None:
@@ -85,15 +130,11 @@ def test_simulation_on_other_times_is_compared_where_both_are() -> None:
     assert np.isnan(gap[5:]).all()
 
 
-def test_numbers_are_no_finer_than_a_sensor() -> None:
-    t = np.arange(3.0)
-    motion = {name: t + 0.123456789 for name in ("x", "y", "psi", "u", "v_m", "r", "n", "delta")} | {"t": t}
-    inputs = [wording.input_channel("delta", "rudder", "rad"), wording.input_channel("n", "shaft", "1/s")]
-    payload, thinned = charts.histories(["a"], {"a": {"measured": motion}}, inputs)
-    assert not thinned
-    data = payload["trials"][0]["data"]
-    assert data[0] == {"y": [7.07, 64.37, 121.67], "x0": 0.0, "dx": 1.0}
-    assert len(data) == len(payload["traces"])
+def test_names_that_begin_alike_differ_in_their_titles() -> None:
+    names = [f"a voyage from one port to another port, window {k}" for k in range(3)]
+    assert len(set(tracks.distinct(names))) == 3
+    assert max(map(len, tracks.distinct(names))) <= tracks.LONGEST
+    assert tracks.distinct(["turn", "zigzag"]) == ["turn", "zigzag"]
 
 
 def test_evaluations_count_on_through_restarts() -> None:
@@ -136,4 +177,4 @@ def test_deviation() -> None:
 
 
 def test_worst_trial_is_the_diverged_one() -> None:
-    assert fit_page._misfit_of({"J_after": None}) == math.inf
+    assert motion_block.misfit_of({"J_after": None}) == math.inf

@@ -16,8 +16,8 @@ import pytest
 
 from mmgtune.errors import OptionError
 from mmgtune.report import kinds, render
+from mmgtune.report.blocks import Page, Prose, Section
 from mmgtune.report.load import Kind
-from mmgtune.report.page import Page, Prose, Section
 
 from . import fake_run
 from .conftest import read
@@ -60,10 +60,10 @@ def test_files_of_a_fit(fit_folder: Path) -> None:
 
 def test_order_of_content(page: str) -> None:
     sections = re.findall(r'<section id="([a-z]+)"', page)
-    assert sections == ["trials", "tracks", "histories", "indices", "coefficients", "trust", "identifiability", "bands",
-                        "next", "assumptions", "provenance"]  # fmt: skip
+    assert sections == ["motions", "trials", "indices", "coefficients", "next", "bands", "trust", "identifiability",
+                        "assumptions", "provenance"]  # fmt: skip
     verdict = page.index("<h1>Within ±50")
-    assert verdict < page.index("generated, not measured") < page.index('class="tile') < page.index("<section")
+    assert verdict < page.index("generated, not measured") < page.index('class="card') < page.index("<section")
 
 
 def test_page_is_one_file_with_a_strict_policy(page: str) -> None:
@@ -80,14 +80,13 @@ def test_ids_are_unique_and_references_resolve(page: str) -> None:
     outline = Outline(page)
     assert len(outline.ids) == len(set(outline.ids))
     targets = {source[1:] for source in outline.sources if source.startswith("#")}
-    targets |= set(re.findall(r"url\(#([^)]+)\)", page))
     targets |= set(re.findall(r'aria-labelledby="([^"]+)"', page))
     assert targets <= set(outline.ids)
 
 
 def test_every_figure_has_a_caption_and_every_table_a_caption(page: str) -> None:
     tags = Outline(page).tags
-    assert tags.count("figure") == tags.count("figcaption") >= 6
+    assert tags.count("figure") == tags.count("figcaption") >= 4
     assert tags.count("table") == tags.count("caption") >= 10
 
 
@@ -152,7 +151,7 @@ def test_hostile_names_stay_text(tmp_path: Path) -> None:
     outline = Outline(text)
     assert outline.events == []
     assert "img" not in outline.tags
-    assert outline.tags.count("script") == 3
+    assert outline.tags.count("script") == 2
     assert "{{ 7*7 }}" in text
     assert "alert(1)>" not in text
     markdown = (folder / "report.md").read_text(encoding="utf-8")
@@ -171,7 +170,7 @@ def test_hostile_folder_of_a_run_is_no_link(tmp_path: Path) -> None:
     shutil.copy(fake_run.make_fit(tmp_path / "fit") / "fit.json", folder / "a b")
     with pytest.raises(OptionError, match="not whole"):
         render(folder)
-    links = re.findall(r'<td class=""><a href="([^"]+)"', read(folder))
+    links = re.findall(r'<td><a href="([^"]+)"', read(folder))
     assert links == ["./a%20b/report.html"]
 
 

@@ -107,7 +107,7 @@ def test_report(folder):
         assert words in html
         assert words in markdown
     assert {one.stem for one in (folder / "figures").iterdir()} == {
-        "classes", "distributions", "where", "parts", "windows",
+        "classes", "distributions", "where", "parts", "tracks", "histories",
     }  # fmt: skip
     before = {one.name: one.read_bytes() for one in (*folder.glob("figures/*"), folder / "report.html")}
     ended = run("report", folder, cwd=folder.parent)

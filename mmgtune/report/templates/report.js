@@ -1,91 +1,92 @@
-"use strict";
 (() => {
+  "use strict";
   const root = document.documentElement;
   root.classList.add("js");
-  addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((part) => { part.open = true; }));
-  const holder = document.getElementById("payload");
-  if (!holder) { root.dataset.ready = "1"; return; }
-  const payload = JSON.parse(holder.textContent);
-  const byId = (id) => document.getElementById(id);
-  const chart = byId("chart"), trial = byId("trial"), from = byId("from"), to = byId("to");
-  const dark = matchMedia("(prefers-color-scheme: dark)"), narrow = matchMedia("(max-width: 760px)");
-  const config = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d"] };
-  let range = null;
 
-  const color = (name) => getComputedStyle(root).getPropertyValue("--" + name).trim();
+  const make = (tag, properties = {}, ...children) => {
+    const element = Object.assign(document.createElement(tag), properties);
+    element.append(...children);
+    return element;
+  };
 
-  function traces() {
-    const data = payload.trials[Number(trial.value)].data;
-    return payload.traces.map(({ role, trace }, place) => ({
-      ...trace, ...data[place], line: { ...trace.line, color: color(role === "measured" ? "ink" : role) },
-    }));
+  /* Numbers as people write them: a true minus, thin spaces, a unit behind, the first of a pair. */
+  function numberIn(text) {
+    const found = text.replaceAll("−", "-").replaceAll("\u202f", "").replaceAll("\u00a0", " ").match(/^[^\d∞-]*(-?(?:\d+(?:\.\d+)?(?:e-?\d+)?|∞))/);
+    return found ? (found[1].includes("∞") ? Infinity : Number(found[1])) : NaN;
   }
 
-  function layout() {
-    const plan = structuredClone(narrow.matches ? payload.narrow : payload.wide);
-    plan.font = { ...plan.font, color: color("ink") };
-    plan.hoverlabel = { bgcolor: color("raised"), font: { color: color("ink") } };
-    plan.modebar = { bgcolor: "rgba(0,0,0,0)", color: color("muted"), activecolor: color("after") };
-    for (const [key, axis] of Object.entries(plan)) {
-      if (!/^[xy]axis/.test(key)) continue;
-      Object.assign(axis, { gridcolor: color("grid"), linecolor: color("muted"), zerolinecolor: color("muted") });
-      if (range && key.startsWith("x")) axis.range = range.slice();
-    }
-    return plan;
-  }
-
-  function show() {
-    return Plotly.react(chart, traces(), layout(), config).then(() => { root.dataset.ready = "1"; });
-  }
-
-  function zoom() {
-    const ends = [Number(from.value), Number(to.value)];
-    if (from.value === "" || to.value === "" || !(ends[0] < ends[1])) return;
-    Plotly.relayout(chart, { "xaxis.range": ends });
-  }
-
-  function whole() {
-    range = null;
-    from.value = to.value = "";
-    show();
-  }
-
-  function saved() {
-    const chosen = payload.trials[Number(trial.value)];
-    const lines = ["panel,motion,t_s,value"];
-    payload.traces.forEach(({ role, trace }, place) => {
-      const piece = chosen.data[place], axis = "yaxis" + trace.yaxis.slice(1);
-      const title = payload.wide[axis].title.text.replace("<br>", " ");
-      piece.y.forEach((value, step) => {
-        const t = piece.x ? piece.x[step] : piece.x0 + step * piece.dx;
-        lines.push([title, role, t === null ? "" : +t.toFixed(3), value === null ? "" : value].join(","));
+  function sortable(table) {
+    const body = table.tBodies[0], heads = [...table.tHead.rows[0].cells];
+    if (body.rows.length < 3) return;
+    heads.forEach((head, column) => {
+      const button = make("button", { type: "button", textContent: head.textContent || "sort" });
+      head.replaceChildren(button);
+      button.addEventListener("click", () => {
+        const down = head.getAttribute("aria-sort") === "ascending";
+        heads.forEach((other) => other.removeAttribute("aria-sort"));
+        head.setAttribute("aria-sort", down ? "descending" : "ascending");
+        const rows = [...body.rows], numeric = head.classList.contains("number");
+        const keys = new Map(rows.map((row) => [row, numeric ? numberIn(row.cells[column].textContent) : row.cells[column].textContent]));
+        rows.sort((one, other) => {
+          const [a, b] = [keys.get(one), keys.get(other)];
+          if (numeric) {
+            if (Number.isNaN(a) || Number.isNaN(b)) return Number.isNaN(a) - Number.isNaN(b);
+            return down ? b - a : a - b;
+          }
+          return (down ? -1 : 1) * a.localeCompare(b, "en", { numeric: true });
+        });
+        body.append(...rows);
       });
     });
-    const link = document.createElement("a");
-    link.href = URL.createObjectURL(new Blob([lines.join("\n") + "\n"], { type: "text/csv" }));
-    link.download = "trial-" + (Number(trial.value) + 1) + ".csv";
-    link.click();
-    URL.revokeObjectURL(link.href);
   }
 
-  document.querySelector(".controls").hidden = false;
-  document.querySelector(".controls").addEventListener("submit", (event) => event.preventDefault());
-  show().then(() => {
-    chart.on("plotly_relayout", (change) => {
-      for (const [key, value] of Object.entries(change)) {
-        if (/^xaxis\d*\.autorange$/.test(key)) range = value ? null : range;
-        else if (/^xaxis\d*\.range$/.test(key)) range = value.slice();
-        else if (/^xaxis\d*\.range\[0\]$/.test(key)) range = [value, change[key.replace("[0]", "[1]")]];
-      }
-      from.value = range ? +range[0].toFixed(1) : "";
-      to.value = range ? +range[1].toFixed(1) : "";
+  function filtered(table) {
+    const rows = [...table.tBodies[0].rows];
+    if (rows.length <= 12) return;
+    const field = make("input", { type: "search" }), count = make("output", { textContent: `${rows.length} rows` });
+    field.addEventListener("input", () => {
+      const wanted = field.value.trim().toLowerCase();
+      rows.forEach((row) => { row.hidden = !row.textContent.toLowerCase().includes(wanted); });
+      const left = rows.filter((row) => !row.hidden).length;
+      count.textContent = left === rows.length ? `${rows.length} rows` : `${left} of ${rows.length} rows`;
     });
-  });
-  trial.addEventListener("change", whole);
-  from.addEventListener("change", zoom);
-  to.addEventListener("change", zoom);
-  byId("whole").addEventListener("click", whole);
-  byId("save").addEventListener("click", saved);
-  dark.addEventListener("change", show);
-  narrow.addEventListener("change", show);
+    table.closest(".table").prepend(make("div", { className: "filter" }, make("label", {}, "Filter rows ", field), count));
+  }
+
+  function scrolled(region) {
+    const hint = make("p", { className: "swipe", textContent: "Scroll sideways for more columns →" });
+    region.before(hint);
+    new ResizeObserver(() => {
+      const more = region.scrollWidth > region.clientWidth + 2;
+      hint.classList.toggle("shown", more);
+      region.classList.toggle("more", more);
+      if (more) region.tabIndex = 0; else region.removeAttribute("tabindex");
+    }).observe(region);
+  }
+
+  function copied(text, holder) {
+    if (navigator.clipboard && isSecureContext) return navigator.clipboard.writeText(text);
+    const area = make("textarea", { value: text, readOnly: true });
+    area.style.position = "fixed";
+    area.style.opacity = "0";
+    holder.append(area);
+    area.select();
+    const done = document.execCommand("copy");
+    area.remove();
+    return done ? Promise.resolve() : Promise.reject(new Error("no clipboard"));
+  }
+
+  for (const table of document.querySelectorAll(".table table")) { filtered(table); sortable(table); }
+  document.querySelectorAll(".scroll").forEach(scrolled);
+  for (const holder of document.querySelectorAll(".command")) {
+    const text = holder.textContent.trim(), button = make("button", { type: "button", className: "copy", textContent: "Copy" });
+    button.setAttribute("aria-label", `Copy the command ${text}`);
+    button.addEventListener("click", () => copied(text, holder).then(() => { button.textContent = "Copied"; }, () => { button.textContent = "Select and copy"; }));
+    holder.append(button);
+  }
+  addEventListener("beforeprint", () => document.querySelectorAll("details.printed").forEach((part) => { part.open = true; }));
+
+  const payloads = [...document.querySelectorAll(".payload")];
+  [...document.querySelectorAll(".viewer")].forEach((holder, k) => new Motions.Viewer(holder, JSON.parse(payloads[k].textContent)));
+  root.dataset.ready = "1";
 })();

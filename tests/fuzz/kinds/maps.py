@@ -21,7 +21,7 @@ WORDS = (
     '"utf-7"', '"1e-9 s"', '"1e300 s"', '"1e-300 s"', '"100 s"', '"-1 s"', '"nmea"', '"parquet"', '"csv"', '"ship"',
     '"earth"', '"antenna"', '"first-rudder-order"', '"last-order"', '"pull-out"', '"print-resolution"', '"yaw-rate"',
     '"uniform"', '"clock"', '"iso"', '"number"', '"port"', '"{stem}"', '"../x"', '"1 m"', '"east"', "false", "0", "1",
-    "2",
+    "2", '"xlsx"', '"mat"', '"dmy"', '"date"', '"first-order"', '"?"', '"? a or b: which?"', '"d"',
 )  # fmt: skip
 
 
@@ -32,10 +32,10 @@ FITTING = (
     ("time", "step", STEPS),
     ("time", "scale", ("1e9", "1e-9", "1e300", "1e-300", "-1.0", "60")),
     ("time", "recover", ('"uniform"', '"never"', '"auto"')),
-    ("time", "format", ('"iso"', '"clock"', '"number"')),
+    ("time", "format", ('"iso"', '"clock"', '"number"', '"date"', '"mdy"', '"ymd"')),
     ("cut", "start", ('"10 s"', '"1e9 s"', '"-5 s"')),
     ("cut", "end", ('"100 s"', '"-20 s"', '"-1e9 s"', '"1e300 s"')),
-    ("cut", "from", ('"first-rudder-order"',)),
+    ("cut", "from", ('"first-rudder-order"', '"first-order"')),
     ("cut", "to", ('"last-order"',)),
     ("cut", "split", ('"pull-out"',)),
     ("velocity", "shifted", ('"earth-axes"',)),

@@ -1,0 +1,165 @@
+"""What each cause contributes with all others in place, and which are no more than traces.
+
+A test of significance asks whether something is there, not whether it matters: with thousands of samples and one large
+cause in place, the smallest mismatch of the model's form passes it under some name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..backends import STATES
+from ..fitting.comparison import compare
+from ..fitting.least_squares import fit_offsets
+from ..objective import Objective, cases_of, make_objective
+from ..trial import Trial
+from .elsewhere import estimated_there, first_part
+from .gain import INDICES, after_first, held_out_fits, problem_on, together
+from .hypotheses import Hypothesis
+from .intervals import Estimate, estimates
+from .search import Found, without
+from .workbench import Point, Workbench
+
+SHARE = 0.01
+"""Share of the error that all causes remove on held-out trials, below which one of them is not noticed."""
+
+OF_NOISE = 0.05
+"""Error on held-out trials, in any channel, over the variance of its noise: a smaller one is not noticed."""
+
+OF_LENGTH = 0.01
+"""Change of advance and tactical diameter, as a share of them, that is not noticed."""
+
+OF_ANGLE = 0.5
+"""Change of overshoots [deg] that is not noticed."""
+
+WORTH_ASKING = 0.05
+"""Share of the fall of chi-squared on the trials looked at from which a cause is no trace without asking further."""
+
+
+@dataclass(frozen=True)
+class Contribution:
+    """What a cause brings, the others in place: everything is refitted without it.
+
+    seen     share of the fall of chi-squared by all causes, on the trials looked at, that is lost without it
+    share    the same of the error on held-out trials
+    channels by channel, the error on held-out trials that it removes over the variance of the noise
+    indices  by manoeuvring index, the largest change on held-out trials: of lengths as a share, of angles [deg]
+
+    Where ``seen`` is enough to tell that it is no trace, the others are not asked for: NaN and empty.
+    """
+
+    seen: float
+    share: float = float("nan")
+    channels: Mapping[str, float] | None = None
+    indices: Mapping[str, float] | None = None
+
+    @property
+    def unnoticed(self) -> bool:
+        """Whether a user would notice nothing without it."""
+        if self.channels is None or self.indices is None:
+            return False
+        moved = all(
+            change < (OF_ANGLE if name.endswith("_deg") else OF_LENGTH) for name, change in self.indices.items()
+        )
+        return self.share < SHARE and max(self.channels.values()) < OF_NOISE and moved
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        asked = self.channels is not None
+        return {
+            "share_of_fall": self.seen,
+            "share_held_out": self.share if asked else None,
+            "error_over_noise": dict(self.channels or {}),
+            "index_changes": dict(self.indices or {}),
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class Aside:
+    """A cause that was set aside as a trace, with what was known of it."""
+
+    hypothesis: Hypothesis
+    estimates: Mapping[str, Estimate]
+    p_value: float
+    contribution: Contribution
+
+
+def contributions(bench: Workbench, found: Found, test: Sequence[Trial]) -> list[Contribution]:
+    """That of each cause; a cause that is alone, or stands beside none but a finer integration step, brings all."""
+    if len(found.causes) < 2:
+        return [Contribution(1.0) for _ in found.causes]
+    return [_of(bench, found, cause, test) for cause in found.causes]
+
+
+def set_aside(bench: Workbench, found: Found, test: Sequence[Trial]) -> tuple[list[Aside], list[Contribution]]:
+    """Take traces out of what was found, the least first, and refit the rest.
+
+    -> the traces, and what each cause that stays brings
+    """
+    traces: list[Aside] = []
+    brought = contributions(bench, found, test)
+    while any(one.unnoticed for one in brought):
+        k = min((i for i, one in enumerate(brought) if one.unnoticed), key=lambda i: brought[i].seen)
+        cause = found.causes[k]
+        sizes = estimates(bench, found.final)
+        steps = [s for s in found.steps if s.refits and s.refits[0].hypothesis == cause]
+        p_value = steps[0].refits[0].p_value if steps else 0.0
+        traces.append(Aside(cause, {name: sizes[name] for name in cause.names}, p_value, brought[k]))
+        found.final = without(bench, found.final, cause)
+        del found.causes[k], found.rivals[k]
+        brought = contributions(bench, found, test)
+    return traces, brought
+
+
+def _of(bench: Workbench, found: Found, cause: Hypothesis, test: Sequence[Trial]) -> Contribution:
+    fewer = without(bench, found.final, cause)
+    whole = found.base.chi2 - found.final.chi2
+    seen = (fewer.chi2 - found.final.chi2) / whole if whole > 0.0 else 1.0
+    if seen >= WORTH_ASKING:
+        return Contribution(seen)
+    errors, counts, changes = np.zeros((3, len(STATES))), np.zeros(len(STATES)), dict[str, float]()
+    for points, trials in held_out_fits(bench, (found.base, fewer, found.final), test):
+        held, n, indices = _errors(bench, points, trials)
+        errors, counts = errors + held, counts + n
+        for name in INDICES:
+            for one in indices[name]:
+                changes[name] = max(changes.get(name, 0.0), one)
+    removed = errors[:2].sum(axis=1) - errors[2].sum()
+    channels = {
+        name: float((errors[1, k] - errors[2, k]) / (counts[k] * noise.variance))
+        for k, name in enumerate(STATES)
+        if counts[k] and (noise := bench.noise.channels.get(name))
+    }
+    return Contribution(seen, float(removed[1] / removed[0]) if removed[0] > 0.0 else 1.0, channels, changes)
+
+
+def _errors(
+    bench: Workbench, points: Sequence[Point], trials: Sequence[Trial]
+) -> tuple[FloatArray, FloatArray, dict[str, list[float]]]:
+    """Squared errors by point and channel (n_points, 6) in variances of white noise, samples by channel (6,), and
+    changes of indices from the last point but one to the last."""
+    begins = first_part(points[-1], trials)
+    wide, units = together(bench, [estimated_there(bench, point, trials) for point in points])
+    objective = Objective(dict(zip(STATES, bench.sigma, strict=True)), dict.fromkeys(bench.channels, 1.0))
+    scaled = problem_on(bench, wide, trials, objective)
+    cases = cases_of(list(trials), objective, scaled.model.inputs, scaled.model.draught)
+    counted = after_first(scaled, begins).cases.weight > 0.0
+    errors = np.zeros((len(units), len(STATES)))
+    for k, unit in enumerate(units):
+        states = scaled.states(unit[:, None], fit_offsets(scaled, unit)[:, None]).states[:, 0]
+        off = np.where(counted, states - cases.target, 0.0)
+        errors[k] = np.minimum(np.sum((off / bench.sigma) ** 2, axis=(0, 1)), 1e12)
+    by_paper = make_objective(bench.model.L_pp)
+    roles = dict.fromkeys((trial.id for trial in trials), "test")
+    changes: dict[str, list[float]] = {name: [] for name in INDICES}
+    for one in compare(problem_on(bench, wide, trials, by_paper), trials, by_paper, roles, *units[-2:]):
+        for name in INDICES:
+            old, new = one.indices["before"].get(name), one.indices["after"].get(name)
+            if old is not None and new is not None:
+                changes[name].append(abs(new - old) / (1.0 if name.endswith("_deg") else max(abs(new), 1e-9)))
+    return errors, counted.sum(axis=(0, 1)), changes

@@ -1,0 +1,48 @@
+"""Play in the linkage between the indicator and the blade."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..physics.quantities import Lanes
+from ..units import DEG
+from .effect import ActuatorEffect, Parameter
+
+
+class Backlash(NamedTuple):
+    """See the parameters below."""
+
+    play: Lanes
+
+
+def backlash(start: Lanes, end: Lanes, before: Lanes, h: Lanes, e: Backlash) -> Lanes:
+    """Blade angle [rad]: it stays where it is until the linkage has taken up its play, and is then taken along.
+
+    The blade is held by friction and moves with the linkage half the play behind it; at the first sample it stands in
+    the middle (assumptions: the load of the flow does not move it within the play).
+    """
+    half = 0.5 * e.play
+    return np.minimum(np.maximum(before, end - half), end + half)
+
+
+EFFECT = ActuatorEffect(
+    kind="effects.backlash",
+    tag="backlash",
+    title="play in the rudder linkage",
+    of="rudder",
+    params=Backlash,
+    function=backlash,
+    cites=(),
+    fields={
+        "play": Parameter(
+            "angle the linkage moves before the blade follows, from one end of its play to the other",
+            "rad",
+            low=-1e-12,
+            bounds=lambda _: (0.0, 12.0 * DEG),
+            typical=lambda _: 2.0 * DEG,
+            bounds_source="beyond 12 deg anyone would see it",
+        )
+    },
+    variants=(("play",),),
+    sentence=lambda v: f"The linkage of the rudder had a play of {v['play']}",
+)

@@ -1,0 +1,85 @@
+"""A gyro that drifts: what it shows is off by ever more, linearly in time."""
+
+from typing import NamedTuple
+
+from ..physics.quantities import Lanes, State
+from .effect import FilterEffect, Parameter
+from .heading_bias import heading_shown
+
+
+class GyroDrift(NamedTuple):
+    """See the parameters below."""
+
+    heading: Lanes
+    heading_alone: Lanes
+    yaw_rate: Lanes
+
+
+def gyro_drift(start: State, end: State, held: tuple[Lanes], h: Lanes, e: GyroDrift) -> tuple[State, tuple[Lanes]]:
+    """Heading and yaw rate off by their drift [rad/s, rad/s^2] times the time since the first sample, at which they
+    are right (assumption: set before each run; a bias is another effect).
+
+    The velocity over ground is logged in the axes of the heading shown, but for that part that is of it alone.
+    """
+    t = held[0] + h
+    seen = heading_shown(end, e.heading * t, e.heading_alone * t)
+    return State(x=seen.x, y=seen.y, psi=seen.psi, u=seen.u, v_m=seen.v_m, r=seen.r + e.yaw_rate * t), (t,)
+
+
+def gyro_set(state: State, e: GyroDrift) -> tuple[State, tuple[Lanes]]:
+    """What it shows at the first sample."""
+    return state, (0.0 * state.psi,)
+
+
+def gyro_drift_inverse(logged: State, e: GyroDrift) -> State:
+    """The motion there."""
+    return logged
+
+
+def _heading(words: str) -> Parameter:
+    return Parameter(
+        f"drift of the heading shown, {words}",
+        "rad/s",
+        low=-0.1,
+        high=0.1,
+        bounds=lambda ship: (-0.03 * ship.U / ship.L, 0.03 * ship.U / ship.L),
+        typical=lambda ship: 0.001 * ship.U / ship.L,
+        bounds_source="two degrees in the time of a ship length",
+    )
+
+
+_WORDS = {
+    "heading": "its heading by {}, in whose axes velocities are logged",
+    "heading_alone": "its heading by {}, velocities being logged in the ship's own axes",
+    "yaw_rate": "its yaw rate by {}",
+}
+
+EFFECT = FilterEffect(
+    kind="effects.gyro-drift",
+    tag="gyro-drift",
+    title="drift of the gyro",
+    params=GyroDrift,
+    function=gyro_drift,
+    settled=gyro_set,
+    inverse=gyro_drift_inverse,
+    states=("time",),
+    cites=(),
+    fields={
+        "heading": _heading("in whose axes velocities are logged"),
+        "heading_alone": _heading("velocities being logged in the ship's own axes"),
+        "yaw_rate": Parameter(
+            "drift of the yaw rate shown",
+            "rad/s^2",
+            low=-0.01,
+            high=0.01,
+            bounds=lambda ship: (-0.01 * (ship.U / ship.L) ** 2, 0.01 * (ship.U / ship.L) ** 2),
+            typical=lambda ship: 3e-4 * (ship.U / ship.L) ** 2,
+            bounds_source="a third of the speed over the length within thirty ship lengths",
+        ),
+    },
+    variants=(("heading",), ("heading_alone",), ("yaw_rate",)),
+    on_demand=True,
+    sentence=lambda v: (
+        "The gyro drifted: " + " and ".join(_WORDS[name].format(v[name]) for name in _WORDS if name in v)
+    ),
+)

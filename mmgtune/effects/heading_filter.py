@@ -1,0 +1,77 @@
+"""The heading is logged through a low-pass: by a damped or slowly read compass."""
+
+from typing import NamedTuple
+
+from ..physics.following import followed
+from ..physics.quantities import Lanes, State
+from .effect import FilterEffect, Parameter
+from .heading_bias import heading_shown
+
+
+class HeadingFilter(NamedTuple):
+    """See the parameters below."""
+
+    time_constant: Lanes
+    alone: Lanes
+
+
+def heading_filter(
+    start: State, end: State, held: tuple[Lanes, Lanes], h: Lanes, e: HeadingFilter
+) -> tuple[State, tuple[Lanes, Lanes]]:
+    """Heading behind a first-order low-pass (assumption); the velocity over ground is logged in the axes of the heading
+    shown, but for that part of the lag that is of the heading alone."""
+    turned = followed(start.psi, end.psi, held[0], h, e.time_constant)
+    alone = followed(start.psi, end.psi, held[1], h, e.alone)
+    return heading_shown(end, turned - end.psi, alone - end.psi), (turned, alone)
+
+
+def heading_settled(state: State, e: HeadingFilter) -> tuple[State, tuple[Lanes, Lanes]]:
+    """The same in a steady turn: T r behind."""
+    turned, alone = -e.time_constant * state.r, -e.alone * state.r
+    return heading_shown(state, turned, alone), (state.psi + turned, state.psi + alone)
+
+
+def heading_filter_inverse(logged: State, e: HeadingFilter) -> State:
+    """The motion of a steady turn from what was logged."""
+    return heading_shown(logged, e.time_constant * logged.r, e.alone * logged.r)
+
+
+def _constant(what: str) -> Parameter:
+    return Parameter(
+        f"time constant of the heading shown, {what}",
+        "s",
+        low=-1e-12,
+        bounds=lambda ship: (0.0, 0.5 * ship.L / ship.U),
+        typical=lambda ship: 0.03 * ship.L / ship.U,
+        bounds_source="half the time of a ship length",
+    )
+
+
+EFFECT = FilterEffect(
+    kind="effects.heading-filter",
+    tag="heading-filter",
+    title="low-pass of the heading",
+    params=HeadingFilter,
+    function=heading_filter,
+    settled=heading_settled,
+    inverse=heading_filter_inverse,
+    states=("turned", "alone"),
+    cites=(),
+    fields={
+        "time_constant": _constant("in whose axes velocities are logged"),
+        "alone": _constant("velocities being logged in the ship's own axes"),
+    },
+    variants=(("time_constant",), ("alone",)),
+    on_demand=True,
+    sentence=lambda v: (
+        "The compass followed the heading with a time constant of "
+        + " and ".join(
+            words.format(v[name])
+            for name, words in {
+                "time_constant": "{} (velocities are logged in the axes it shows)",
+                "alone": "{} (velocities are logged in the ship's own axes)",
+            }.items()
+            if name in v
+        )
+    ),
+)

@@ -1,0 +1,63 @@
+"""What trials visit, sample by sample: an effect is believed only where they visit what it is about."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import FloatArray
+
+MOMENT = 5.0
+"""Time [s] that trials must stay beyond a value for it to count as visited."""
+
+
+@dataclass(frozen=True, eq=False)
+class Visited:
+    """Samples of all trials, one after the other; NaN where a channel has a gap.
+
+    seconds   (n,) each stands for
+    rudder    (n,) logged rudder angle [rad], the mean where there are several rudders, positive to starboard
+    speed     (n,) over ground, sqrt(u^2 + v_m^2) [m/s]
+    ahead     (n,) u [m/s]
+    rate      (n,) r L / U [-], positive to starboard; NaN near rest
+    drift     (n,) beta = atan2(-v_m, u) [rad]; NaN near rest
+    shaft     (n,) revolutions of the propellers, their mean [1/s]
+    """
+
+    seconds: FloatArray
+    rudder: FloatArray
+    speed: FloatArray
+    ahead: FloatArray
+    rate: FloatArray
+    drift: FloatArray
+    shaft: FloatArray
+
+    def span(self, values: FloatArray) -> tuple[float, float]:
+        """Lowest and highest of some values (n,) beyond which no more than ``MOMENT`` is spent; NaN without any."""
+        known = np.isfinite(values)
+        if not known.any():
+            return float("nan"), float("nan")
+        order = np.argsort(values[known])
+        ranked, seconds = values[known][order], np.cumsum(self.seconds[known][order])
+        short = min(MOMENT, 0.25 * float(seconds[-1]))  # of short records, what a quarter of them is beyond
+        last = len(ranked) - 1
+        low = int(np.searchsorted(seconds, short))
+        high = int(np.searchsorted(seconds, seconds[-1] - short))
+        return float(ranked[min(low, last)]), float(ranked[min(high, last)])
+
+    @property
+    def largest_rudder(self) -> float:
+        """Rudder angle [rad] to either side that trials go up to."""
+        return self.span(np.abs(self.rudder))[1]
+
+    def varies(self, values: FloatArray) -> float:
+        """How far positive values (n,) vary, as a share of the highest; 0 without any."""
+        low, high = self.span(values)
+        return (high - low) / high if high > 0.0 else 0.0
+
+    @property
+    def advance(self) -> FloatArray:
+        """(n,) u / n [m], the advance ratio but for the diameter; NaN where the shaft stands."""
+        turning = np.abs(self.shaft) > 1e-3 * float(np.nanmax(np.abs(self.shaft), initial=1e-12))
+        return np.where(turning, self.ahead / np.where(turning, self.shaft, 1.0), np.nan)

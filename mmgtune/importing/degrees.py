@@ -1,0 +1,50 @@
+"""Latitudes and longitudes as people write them, to degrees."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..arrays import FloatArray
+
+_SIGN, _SIDE = r"([-+]?)", r"([NSEWnsew]?)"
+ANGLE = (
+    rf"^{_SIDE}\s*{_SIGN}(\d{{1,3}}(?:[.,]\d*)?)\s*[°ºd:\s]?\s*(?:(\d{{1,2}}(?:[.,]\d*)?)\s*['′’m:\s]?\s*"
+    rf"(?:(\d{{1,2}}(?:[.,]\d*)?)\s*(?:\"|″|”|''|s)?)?)?\s*['′’]?\s*{_SIDE}$"
+)
+"""Degrees, minutes and seconds, of which the last may have decimals, and a side before or behind them."""
+
+_COMPACT = rf"^{_SIDE}\s*(\d{{2,3}})(\d{{2}}[.,]\d+)\s*{_SIDE}$"
+"""Degrees and minutes in one, as NMEA 0183 writes them: 5206.0001N."""
+
+
+def degrees(texts: Any) -> FloatArray:
+    """Degrees (n_rows,) of a pandas column of texts such as ``52°06.00001'N``; NaN where one is not.
+
+    A plain number is not: what it counts is for the map to say.  South and west are
+    negative.  "O", which is east to some and west to others, is no side.
+    """
+    short = texts.str.slice(0, 40)
+    parts = short.str.extract(ANGLE)
+    plain = short.str.fullmatch(r"[-+]?[\d.,]*").fillna(True).to_numpy(dtype=bool)
+    side = (parts[0].fillna("") + parts[5].fillna("")).str.upper()
+    whole, minutes, seconds = (_number(parts[k]) for k in (2, 3, 4))
+    compact = short.str.extract(_COMPACT)
+    both = (compact[0].fillna("") + compact[3].fillna("")).str.upper()
+    in_one = (both.str.len() == 1).to_numpy(dtype=bool, na_value=False) & compact[1].notna().to_numpy(dtype=bool)
+    side = side.where(~in_one, both)
+    whole, minutes = np.where(in_one, _number(compact[1]), whole), np.where(in_one, _number(compact[2]), minutes)
+    seconds = np.where(in_one, 0.0, seconds)
+    right = np.isfinite(whole) & ~(minutes >= 60.0) & ~(seconds >= 60.0) & ~plain
+    right &= (side.str.len() <= 1).to_numpy(dtype=bool, na_value=False)
+    size = whole + np.nan_to_num(minutes) / 60.0 + np.nan_to_num(seconds) / 3600.0
+    negative = side.isin(["S", "W"]).to_numpy(dtype=bool) | (parts[1] == "-").to_numpy(dtype=bool, na_value=False)
+    return np.where(right, np.where(negative, -size, size), np.nan)
+
+
+def _number(texts: Any) -> FloatArray:
+    import pandas as pd
+
+    numbers = pd.to_numeric(texts.str.replace(",", ".", regex=False), errors="coerce")
+    return np.asarray(numbers.to_numpy(dtype=np.float64, na_value=np.nan))

@@ -1,0 +1,269 @@
+"""What an imported trial shows of its sensors and of how it was logged, though nobody asked: each with its evidence.
+
+Every fix names a key of the map.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.integrate import cumulative_trapezoid
+
+from ..arrays import FloatArray
+from ..physics.frame import to_earth
+from ..trial import Trial
+from ..trial.finding import Finding
+from ..trial.kinematics import turning, white_noise
+from ..units import DEG
+from .cutting import standing
+from .gridding import FEWEST
+from .mapping import LogMap
+from .record import Record
+
+DRIFTS = 2.0 * DEG
+"""Difference of heading and integrated yaw rate [rad] over a run up to which nothing is said of a steady drift."""
+STEADY = 0.9
+"""Share of a difference that a straight line in time must explain to be a drift."""
+TELLS = 0.8
+"""Share of what is left of the positions that a lever must explain to be named."""
+APART = 4.0
+"""How many times as much must be left along one axis as along the other to be said."""
+HANDLED = 0.1
+"""Share of her speed and yaw rate under orders, and angle [rad], by which a ship moves that is handled without any."""
+
+
+@dataclass(frozen=True)
+class Lever:
+    """A point of the ship that velocities are of, forward and to starboard of that of the positions [m].
+
+    shifted  whether they were moved from there along earth axes already
+    left     share of what the positions are missed by that is left with it
+    """
+
+    ahead: float
+    abeam: float
+    shifted: bool
+    left: float
+
+    @property
+    def across(self) -> float:
+        """To starboard, 0 where that is lost beside the other."""
+        return self.abeam if abs(self.abeam) > 0.1 * abs(self.ahead) else 0.0
+
+
+def doubts(trial: Trial, record: Record, log_map: LogMap) -> list[Finding]:
+    """Warnings on one trial."""
+    where = record.path.name
+    found: list[Finding] = []
+    if "r" in record.series and "psi" in record.series:
+        found += gyro_drift(trial, where)
+    if not log_map.antenna and not log_map.shifted and record.has_velocities:
+        found += one_axis(trial, where, log_map)
+    found += by_hand(trial, where, log_map)
+    found += [
+        Finding("warning", f"'{name}' is {coarse.words}", where, coarse.why, coarse.fix(name))
+        for name, coarse in record.coarse.items()
+    ]
+    return found
+
+
+def gyro_drift(trial: Trial, where: str) -> list[Finding]:
+    """A heading that leaves the integral of the yaw rate steadily, in time or as she turns."""
+    turned = turning(trial.columns)
+    off = turned.heading - turned.yaw
+    if len(off) < FEWEST:
+        return []
+    t = np.linspace(0.0, trial.duration, len(off))
+    (slope, in_time), (factor, by_turning) = (_line(one, off) for one in (t, turned.yaw))
+    drift = slope * trial.duration
+    if max(in_time, by_turning) < STEADY or max(abs(drift), float(np.ptp(off))) < DRIFTS:
+        return []
+    what = f"heading and integrated yaw rate drift apart by {float(np.ptp(off)) / DEG:.3g} deg over the run"
+    scale = f"a factor of {1.0 + factor:.4g} on the yaw rate explains {100.0 * by_turning:.0f} % of it"
+    if by_turning > in_time + 0.05:
+        return [Finding("warning", what, where, scale, f"say scale = {1.0 + factor:.4g} in [columns.r]")]
+    rate = f"{slope / DEG:.2g} deg/s"
+    why = f"steadily, by {rate}, which explains {100.0 * in_time:.0f} % of it"
+    offset = f'say offset = "{rate}" in [columns.r]'
+    # The way she goes over the ground knows neither gyro.
+    course = _course_drift(trial)
+    if course is not None and abs(course + drift) < 0.35 * abs(drift):
+        why += f"; the course turns {abs(course) / DEG:.2g} deg away from the heading meanwhile: the heading drifts"
+        fix = "name another compass in [columns.psi], or leave it: mmgtune diagnose looks for such"
+    elif by_turning > in_time - 0.05:
+        why += f"; {scale} as well, as she turns steadily"
+        fix = f"{offset}, or scale = {1.0 + factor:.4g}"
+    elif course is not None and abs(course) < 0.35 * abs(drift):
+        why += "; course and heading stay together: it is a bias of the yaw rate"
+        fix = offset
+    else:
+        why += "; the course over the ground does not tell which of them drifts"
+        fix = f"where the yaw rate has a bias, {offset}"
+    return [Finding("warning", what, where, why, fix)]
+
+
+def _line(by: FloatArray, off: FloatArray) -> tuple[float, float]:
+    """Slope of the best line through a difference (n,), and the share of its variance that it explains."""
+    spread, size = float(np.var(off)), float(np.var(by))
+    if spread == 0.0 or size == 0.0:
+        return 0.0, 0.0
+    slope = float(np.mean((by - by.mean()) * (off - off.mean()))) / size
+    return slope, slope**2 * size / spread
+
+
+def _course_drift(trial: Trial) -> float | None:
+    """Angle [rad] by which the course made good leaves that of heading and velocities over the run; None if unclear."""
+    dt = np.diff(trial.t)
+    stride = max(1, len(dt) // 60)
+    rows = np.arange(0, len(trial.t), stride)
+    north, east = np.diff(trial.x[rows]), np.diff(trial.y[rows])
+    ways = [cumulative_trapezoid(np.nan_to_num(one), trial.t, initial=0.0)[rows] for one in
+            to_earth(trial.psi, trial.u, trial.v_m)]  # fmt: skip
+    off = np.angle((north + 1j * east) * np.conj(np.diff(ways[0]) + 1j * np.diff(ways[1])))
+    size = np.hypot(north, east)
+    used = np.isfinite(off) & (size > 0.3 * np.nanmedian(size))
+    if used.sum() < 12:
+        return None
+    t = trial.t[rows][:-1][used]
+    slope, constant = np.polyfit(t, off[used], 1)
+    error = float(np.std(off[used] - slope * t - constant)) / np.sqrt(used.sum()) / max(float(np.std(t)), 1e-9)
+    if abs(slope) < 3.0 * error and 3.0 * error * trial.duration > 0.5 * DRIFTS:
+        return None
+    return float(slope) * trial.duration
+
+
+def one_axis(trial: Trial, where: str, log_map: LogMap) -> list[Finding]:
+    """Positions that velocities miss along one axis, or by a lever: of another point, or moved the wrong way."""
+    left = position_residual(trial)
+    if left is None:
+        return []
+    sizes = [float(np.std(one)) for one in left]
+    noise = max(white_noise(trial.x), white_noise(trial.y))
+    way = float(np.nansum(np.hypot(np.diff(trial.x), np.diff(trial.y))))
+    if max(sizes) < 5.0 * noise or max(sizes) < 2e-4 * way:
+        return []
+    levers = [lever_of(trial, left, shifted) for shifted in (False, True)]
+    best = min(levers, key=lambda one: one.left)
+    other = max(levers, key=lambda one: one.left)
+    names = ("x", "y")
+    large, small = (names[int(np.argmax(sizes))], names[int(np.argmin(sizes))])
+    said = f"integrated velocities leave {large} by {max(sizes):.3g} m, {small} by {min(sizes):.3g} m"
+    if best.left < 1.0 - TELLS and (best.left < 0.5 * other.left or not best.shifted):
+        point = f'point = {{ x = "{best.ahead:.3g} m", y = "{best.across:.3g} m" }}'
+        if best.shifted:
+            what = "velocities seem to have been moved to midship along earth axes instead of the ship's"
+            fix = f'say shifted = "earth-axes" and {point} in [velocity]'
+        elif log_map.point == "midship":
+            return []
+        else:
+            what = f"velocities seem to be of a point {best.ahead:.3g} m forward of that of the positions"
+            fix = f"say {point} in [velocity], or where the antenna is in [antenna]"
+        return [
+            Finding(
+                "warning", what, where, f"{said}; such a lever explains {100.0 * (1.0 - best.left):.0f} % of it", fix
+            )
+        ]
+    if max(sizes) > APART * min(sizes) and max(sizes) > 2e-3 * way:
+        why = f"{said}; no lever arm explains it, nor does rounding"
+        fix = f"check the column of '{large}' and of the velocity along it, and [velocity] axes and point"
+        return [Finding("warning", f"velocities miss the positions along {large} alone", where, why, fix)]
+    return []
+
+
+def position_residual(trial: Trial) -> tuple[FloatArray, FloatArray] | None:
+    """Positions less integrated velocities (n_samples,) [m], without their means; None where there are holes."""
+    known = (
+        np.isfinite(trial.psi)
+        & np.isfinite(trial.u)
+        & np.isfinite(trial.v_m)
+        & np.isfinite(trial.x)
+        & np.isfinite(trial.y)
+    )
+    if known.mean() < 0.98:
+        return None
+    filled = [
+        np.interp(trial.t, trial.t[known], one[known]) for one in (trial.psi, trial.u, trial.v_m, trial.x, trial.y)
+    ]
+    ways = to_earth(*filled[:3])
+    off = [own - cumulative_trapezoid(way, trial.t, initial=0.0) for own, way in zip(filled[3:], ways, strict=True)]
+    return off[0] - off[0].mean(), off[1] - off[1].mean()
+
+
+def lever_of(trial: Trial, left: tuple[FloatArray, FloatArray], shifted: bool) -> Lever:
+    """The lever that explains best what is left of positions, by least squares.
+
+    Velocities of a point ahead and abeam of midship leave the way of that point about midship.  Moved along earth axes,
+    with r taken for the velocity along them, they leave besides what that way is on a ship that heads north.
+    """
+    known = np.isfinite(trial.psi)
+    psi = np.unwrap(np.interp(trial.t, trial.t[known], trial.psi[known]))
+    c, s = np.cos(psi), np.sin(psi)
+    # Of a lever ahead, and of one abeam: along x and along y.
+    bases = [(-c, -s), (s, -c)]
+    if shifted:
+        bases = [(-c, psi - s), (s - psi, -c)]
+    stacked = np.column_stack([np.concatenate([a - a.mean(), b - b.mean()]) for a, b in bases])
+    target = np.concatenate(left)
+    fit, *_ = np.linalg.lstsq(stacked, target, rcond=None)
+    rest = target - stacked @ fit
+    return Lever(float(fit[0]), float(fit[1]), shifted, float(rest @ rest) / max(float(target @ target), 1e-300))
+
+
+def shifted_lever(trial: Trial) -> Lever | None:
+    """The lever that velocities were moved by along earth axes; None where what is left does not show one."""
+    left = position_residual(trial)
+    if left is None:
+        return None
+    with_it, without = lever_of(trial, left, True), lever_of(trial, left, False)
+    return with_it if with_it.left < min(1.0 - TELLS, 0.5 * without.left) else None
+
+
+def by_hand(trial: Trial, where: str, log_map: LogMap) -> list[Finding]:
+    """A ship that moves while every order still, or again, stands at zero: she is handled."""
+    at_rest = standing({name: trial.columns[name] for name in log_map.inputs})
+    ordered = np.flatnonzero(~at_rest)
+    if not len(ordered):
+        return []
+    usual = float(np.sqrt(np.nanmean(trial.u[ordered] ** 2 + trial.v_m[ordered] ** 2)))
+    usual_rate = float(np.nanpercentile(np.abs(trial.r[ordered]), 95.0))
+    found = []
+    for words, key, rows in (
+        ("before the first order", 'from = "first-order"', slice(0, int(ordered[0]))),
+        ("after the last order", 'to = "last-order"', slice(int(ordered[-1]) + 1, None)),
+    ):
+        speed, rate, psi = (one[rows] for one in (np.hypot(trial.u, trial.v_m), np.abs(trial.r), trial.psi))
+        if np.isfinite(speed).sum() < FEWEST:
+            continue
+        # A ship whose engine is stopped loses way and turn; one that gains either is pushed.
+        gained, turned = _rise(speed), _rise(rate)
+        swung = float(np.nanmax(psi) - np.nanmin(psi)) if key.startswith("from") and np.isfinite(psi).any() else 0.0
+        if gained < HANDLED * usual and turned < HANDLED * usual_rate and swung < HANDLED:
+            continue
+        span = float(np.ptp(trial.t[rows]))
+        said = f"propeller and rudder stand at zero for {span:.3g} s {words}, and the ship is moved"
+        why = f"she gains {gained:.2g} m/s and {turned / DEG:.2g} deg/s of turn meanwhile: people handle her"
+        found.append(Finding("warning", said, where, why, f"say {key} in [cut]"))
+    return found
+
+
+def _rise(values: FloatArray) -> float:
+    """Largest rise of a channel (n,) above what it was before, over means long enough to see through noise."""
+    known = values[np.isfinite(values)]
+    width = max(1, len(known) // 20)
+    means = known[: len(known) // width * width].reshape(-1, width).mean(axis=1)
+    return float(np.max(means - np.minimum.accumulate(means), initial=0.0))
+
+
+def in_map(finding: Finding) -> Finding:
+    """A finding whose fix names the key of the map to change in place of an arithmetic."""
+    named = re.search(r"column '(\w+)'", finding.where)
+    if not re.match(r"(multiply|divide) ", finding.fix) or named is None:
+        return finding
+    return replace(finding, fix=f"correct unit or scale in [columns.{named[1]}] of the map")
+
+
+def fix_in_map(fix: str, where: str) -> str:
+    """The same of a problem's fix."""
+    return in_map(Finding("error", "", where, "", fix)).fix

@@ -1,0 +1,224 @@
+"""A map proposed for logs, tried on them."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import LogError, Problem
+from .doubts import shifted_lever
+from .forms import form_of
+from .importer import Imported, import_logs
+from .mapping import ASKS, LogMap
+from .proposing.finder import MOST_LOGS, Finder
+from .proposing.finding import found_in
+from .proposing.guess import Guess
+from .proposing.sampling import Sample, sample_of
+from .proposing.writing import guess_dict, table_of_guesses, toml_of_map
+from .reading_map import parse_map
+
+
+@dataclass(frozen=True, eq=False)
+class Proposal:
+    """A map and what speaks for it.
+
+    text       of the map, TOML
+    logs       it was made from
+    guesses    by quantity, time under "t"
+    asks       keys of the map that are questions, such as "columns.delta.positive"
+    notes      what else is to be said
+    problems   what the import of these logs by this map would be refused with, () where it asks, or where none is
+    imported   number of trials that the logs would make, None where the map asks
+    """
+
+    text: str
+    logs: tuple[Path, ...]
+    guesses: dict[str, Guess]
+    asks: tuple[str, ...]
+    notes: tuple[str, ...]
+    left: tuple[str, ...]
+    problems: tuple[Problem, ...]
+    imported: int | None
+    sample: Sample | None
+
+    def to_dict(self) -> dict[str, Any]:
+        """As JSON."""
+        return {
+            "schema": 1,
+            "kind": "map",
+            "logs": [str(one) for one in self.logs],
+            "columns": [guess_dict(one, self.sample) for one in self.guesses.values()] if self.sample else [],
+            "asks": list(self.asks),
+            "left": list(self.left),
+            "notes": list(self.notes),
+            "problems": [one.to_dict() for one in self.problems],
+            "trials": self.imported,
+            "map": self.text,
+        }
+
+    def table(self) -> list[tuple[str, str, str, str, str]]:
+        """Rows for people: quantity, column, how it counts, confidence, evidence."""
+        return table_of_guesses(self.guesses, self.sample) if self.sample else []
+
+    def lines(self, path: str = "") -> list[str]:
+        """What was found, for people: a table, what is asked, and what to do next with the map at ``path``."""
+        rows = self.table()
+        widths = [max((len(row[k]) for row in rows), default=0) for k in range(4)]
+        lines = []
+        for row in rows:
+            start = "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=False))
+            indent = " " * (len(start) + 2)
+            lines += textwrap.wrap(f"{start}  {row[4]}", max(100, len(indent) + 40), subsequent_indent=indent) or [
+                start
+            ]
+        if self.left:
+            lines.append(f"not used: {', '.join(self.left)}")
+        lines += [f"note: {note}" for note in self.notes]
+        for key in self.asks:
+            name, _, last = key.rpartition(".")
+            guess = self.guesses.get(name.removeprefix("columns.")) or self.guesses.get("t" if name == "time" else "")
+            question = str(guess.keys.get(last, "")).removeprefix(ASKS).strip() if guess is not None else ""
+            lines.append(f"asked: {key}{f': {question}' if question else ''}")
+        lines += [f"the import would be refused: {one}" for one in self.problems]
+        name = path or "MAP.toml"
+        if self.asks:
+            lines.append(f"answer {'it' if len(self.asks) == 1 else f'these {len(self.asks)}'} in {name}, then import")
+        elif not self.problems:
+            lines.append(f"the map imports all {len(self.logs)} logs, as {self.imported} trials")
+        shown = self.logs[0].name if len(self.logs) == 1 else "LOG..."
+        lines.append(f"next: mmgtune trials import {shown} --map {name} -o FOLDER --dry-run")
+        return lines
+
+    def map(self, path: Path = Path("map")) -> LogMap:
+        """The map, read.  Raises LogError where it asks."""
+        return parse_map(self.text, path)
+
+
+def propose_map(logs: Sequence[Path | str]) -> Proposal:
+    """Find out what the columns of logs are and write a map that imports them.
+
+    Raises LogError where a log cannot be read, is no table, or where the logs are of different kinds.
+    """
+    paths = tuple(dict.fromkeys(Path(one) for one in logs))
+    forms = {path: form_of(path) for path in paths}
+    if set(forms.values()) == {"nmea"}:
+        return _of_sentences(paths)
+    looked = paths[:: max(1, -(-len(paths) // MOST_LOGS))]
+    # Damaged numbers overflow on their way to where they are found out.
+    with np.errstate(all="ignore"):
+        finder = found_in([sample_of(path) for path in looked])
+    left = [
+        finder.shown(k)
+        for k in range(len(finder.first.names))
+        if k not in finder.used and finder.first.names[k].strip()
+    ]
+    proposal = _made(finder, paths, tuple(left[:40]))
+    if proposal.asks:
+        return proposal
+    with np.errstate(all="ignore"):
+        return _tried(proposal, finder)
+
+
+def _made(finder: Finder, paths: tuple[Path, ...], left: tuple[str, ...]) -> Proposal:
+    guesses = finder.guesses
+    tables = {name: dict(keys) for name, keys in finder.tables.items()}
+    if finder.axes and "u" in guesses and "v" in guesses:
+        tables["velocity"] = {"axes": finder.axes, **tables.get("velocity", {})}
+    text = toml_of_map(guesses, finder.first, len(paths), tables, finder.comments, left, finder.notes)
+    asks = tuple(
+        f"columns.{name}.{key}" if name != "t" else f"time.{key}"
+        for name, guess in guesses.items()
+        for key, value in guess.keys.items()
+        if isinstance(value, str) and value.startswith(ASKS)
+    )
+    return Proposal(text, paths, dict(guesses), asks, tuple(finder.notes), left, (), None, finder.first)
+
+
+def _tried(proposal: Proposal, finder: Finder) -> Proposal:
+    """The proposal with what the import says of it; digits that cannot be recovered are left as they are."""
+    found, problems = _imported(proposal)
+    recovering = [name for name, guess in finder.guesses.items() if "recover" in guess.keys]
+    if problems and recovering and any("recovered" in one.what for one in problems):
+        for name in recovering:
+            keys = {key: value for key, value in finder.guesses[name].keys.items() if key != "recover"}
+            finder.guesses[name] = replace(finder.guesses[name], keys=keys)
+        proposal = _made(finder, proposal.logs, proposal.left)
+        found, problems = _imported(proposal)
+    if found is not None:
+        proposal, found = _with_findings(proposal, finder, found)
+    return replace(proposal, problems=problems, imported=None if found is None else len(found.trials))
+
+
+def _with_findings(proposal: Proposal, finder: Finder, found: Imported) -> tuple[Proposal, Imported]:
+    """The proposal with what only the trials show: a lever undone the wrong way, and a ship handled by people."""
+    warnings = [one for quality in found.quality for one in quality["findings"] if one["severity"] == "warning"]
+    fixes = [str(one["fix"]) for one in warnings]
+    before = found
+    for key, value in (("from", "first-order"), ("to", "last-order")):
+        if (many := sum(f'{key} = "{value}" in [cut]' in one for one in fixes)) > 0:
+            finder.tables.setdefault("cut", {})[key] = value
+            finder.comments["cut"] = f"likely: in {many} of {len(found.trials)} trials people handle the ship meanwhile"
+    levers = [one for one in map(shifted_lever, found.trials) if one is not None]
+    if levers and len(levers) > 0.2 * len(found.trials) and any('shifted = "earth-axes"' in one for one in fixes):
+        best = min(levers, key=lambda one: one.left)
+        point = {"x": f"{best.ahead:.3g} m", "y": f"{best.across:.3g} m"}
+        finder.tables.setdefault("velocity", {}).update({"point": point, "shifted": "earth-axes"})
+        finder.comments["velocity"] = (
+            f"likely: velocities were moved to midship from there along earth axes, not the ship's, which explains "
+            f"{100.0 * (1.0 - best.left):.0f} % of what they miss the positions by"
+        )
+    if not finder.tables:
+        return proposal, found
+    other = _made(finder, proposal.logs, proposal.left)
+    after, problems = _imported(other)
+    return (proposal, before) if after is None or problems else (other, after)
+
+
+def _imported(proposal: Proposal) -> tuple[Imported | None, tuple[Problem, ...]]:
+    try:
+        return import_logs(proposal.logs, proposal.map(), ".", dry_run=True), ()
+    except LogError as error:
+        return None, error.problems
+
+
+_NMEA = """# Proposed by mmgtune trials map: sentences of NMEA 0183 say themselves what they hold.
+{said}
+schema = 1
+
+[log]
+format = "nmea"
+
+[trial]
+# ship = "her profile's id"
+{columns}"""
+
+
+def _of_sentences(paths: tuple[Path, ...]) -> Proposal:
+    """The map of NMEA 0183 logs: what no sentence holds is asked for."""
+    kinds: Counter[str] = Counter()
+    for path in paths[:MOST_LOGS]:
+        with path.open("rb") as file:
+            start = file.read(1 << 20)
+        kinds.update(one.decode() for one in re.findall(rb"[$!][A-Z]{2}([A-Z]{3}),", start))
+    said = ", ".join(f"{count} {kind}" for kind, count in kinds.most_common(20))
+    asked, asks = [], []
+    for name, wanted, example in (("n", "RPM", "1.5 rps"), ("delta", "RSA", "0 deg")):
+        if wanted not in kinds:
+            asks.append(f"columns.{name}.value")
+            asked.append(
+                f'{name} = {{ value = "{ASKS} \\"{example}\\": no {wanted} sentence says it; which constant?" }}'
+            )
+    columns = "\n[columns]\n" + "\n".join(asked) + "\n" if asked else ""
+    text = _NMEA.format(said=f"# Seen in their beginnings: {said}.", columns=columns)
+    proposal = Proposal(text, paths, {}, tuple(asks), (f"sentences seen: {said}",), (), (), None, None)
+    if asks:
+        return proposal
+    found, problems = _imported(proposal)
+    return replace(proposal, problems=problems, imported=None if found is None else len(found.trials))

@@ -1,0 +1,10 @@
+"""Maps proposed from what logs hold.
+
+sampling    the beginning of a log without a map; words: what names say; clocks: which column is time
+windows     columns on average and by their change
+bearings    position and heading; look: the motion that follows from them
+motions     yaw rate and velocities; orders: rudder and propeller; winds: true and apparent
+finding     every quantity, of several logs at once; guess: one of them
+writing     the map and a table
+elsewhere   which column is what another one is said to be
+"""

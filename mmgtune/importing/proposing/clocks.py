@@ -1,0 +1,89 @@
+"""Which column is time, and in which unit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ... import units
+from ...arrays import FloatArray
+from .sampling import Sample, seconds
+from .words import TIME
+
+
+@dataclass(frozen=True)
+class Clock:
+    """A column that may be time.
+
+    format  of dates and clocks, "" for numbers; unit of numbers, "" where it is not known
+    score   how much speaks for it; words: what does
+    """
+
+    column: int
+    format: str
+    unit: str
+    score: float
+    words: str
+
+
+def clocks(sample: Sample, said: Sequence[str], units_said: Sequence[str]) -> list[Clock]:
+    """Columns that may be time, the likeliest first."""
+    found = []
+    for k, numbers in enumerate(sample.numbers):
+        named = 1.0 if said[k] == TIME else 0.0 if said[k] in ("", "date") else -0.6
+        if np.isfinite(numbers).mean() < 0.5:
+            stamps = seconds(sample, k)
+            if stamps is not None:
+                shown = str(next((one for one in sample.texts[k] if isinstance(one, str) and one), ""))[:40]
+                what = "clock times" if stamps[1] == "clock" else "dates"
+                found.append(Clock(k, stamps[1], "", 0.9 + named, f"its cells are {what}, such as {shown}"))
+            continue
+        known = numbers[np.isfinite(numbers)]
+        steps = np.diff(known)
+        if len(steps) < 5 or known[-1] <= known[0] or np.mean(steps < 0.0) > 0.01:
+            continue
+        usual = float(np.median(steps[steps > 0.0]))
+        # Where stamps repeat for want of digits, steps are uneven; over more of them they are even.
+        wide = np.diff(known[:: max(1, len(known) // 50)])
+        uneven = float(np.std(wide) / max(float(np.mean(wide)), 1e-300))
+        unit, words = _unit(known, usual, units_said[k])
+        score = 0.6 + named + 0.1 * (k == 0) - min(1.0, 3.0 * uneven)
+        # Numbers of rows count by one.
+        score -= 0.2 * bool(np.all(steps == 1.0) and k > 0 and not named)
+        found.append(Clock(k, "", unit, score, f"it grows steadily, by {usual:.4g} a row{words}"))
+    return sorted(found, key=lambda one: -one.score)
+
+
+def _unit(values: FloatArray, step: float, said: str) -> tuple[str, str]:
+    """The unit of numbers that are time, "" where only the motion can tell, and why."""
+    if said in units.factors("s"):
+        return said, f"; its name or header says {said}"
+    low, high = float(values.min()), float(values.max())
+    if low > 2e4 and high < 8e5 and high - low < 100.0 and step < 0.5:
+        return "d", f"; {low:.6g} is a day as {'Excel' if high < 1e5 else 'MATLAB'} counts them"
+    if 9e8 < low < 4e9:
+        return "s", "; seconds since 1970"
+    if 9e11 < low < 4e12:
+        return "ms", "; milliseconds since 1970"
+    return "", ""
+
+
+def in_seconds(sample: Sample, clock: Clock, unit: str) -> FloatArray:
+    """Stamps (n_rows,) [s]."""
+    if clock.format:
+        stamps = seconds(sample, clock.column)
+        return stamps[0] if stamps is not None else np.full(len(sample.numbers[0]), np.nan)
+    numbers = sample.numbers[clock.column]
+    known = numbers[np.isfinite(numbers)]
+    return (numbers - (known[0] if len(known) else 0.0)) * units.factors("s")[unit]
+
+
+def likely_units(sample: Sample, clock: Clock) -> tuple[str, ...]:
+    """Units in which a log would have a usual rate, the usual one first."""
+    if clock.format or clock.unit:
+        return (clock.unit or "s",)
+    steps = np.diff(sample.numbers[clock.column])
+    step = float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else 1.0
+    return tuple(one for one in ("s", "ms", "min", "h") if 0.004 < step * units.factors("s")[one] < 130.0) or ("s",)

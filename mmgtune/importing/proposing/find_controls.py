@@ -1,0 +1,156 @@
+"""Rudder and propeller, voted on by all logs."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Mapping
+
+import numpy as np
+
+from ...inputs import INPUTS
+from ...units import DEG
+from .finder import Finder
+from .guess import ASKED, LIKELY, MARK, SURE, Guess
+from .look import Look
+from .orders import rudders, shafts
+from .words import LOG_SPEED, ORDER, OTHER, ROLL
+
+
+def rudder(find: Finder) -> None:
+    weights: dict[tuple[int, bool], float] = defaultdict(float)
+    sides: dict[int, list[int]] = defaultdict(list)
+    strongest: dict[int, tuple[float, str]] = {}
+    not_rudders = (
+        ORDER,
+        OTHER,
+        ROLL,
+        "n",
+        "depth",
+        "u",
+        "v",
+        "r",
+        "x",
+        "y",
+        "wind_speed",
+        "wind_dir",
+        "wind_speed_app",
+        "wind_dir_app",
+    )
+    for look in find.looks:
+        for one in rudders(look, find.pool(*not_rudders), find.units_said):
+            weights[one.column, one.degrees] += one.weight
+            if one.evidence.side:
+                sides[one.column].append(one.evidence.side)
+            if one.weight > strongest.get(one.column, (0.0, ""))[0]:
+                strongest[one.column] = one.weight, str(one.evidence)
+    names = [name for name, item in INPUTS.items() if item.role == "rudder"]
+    named = {k for k, _ in weights if find.said[k] in names}
+    pairs = {find.said[k]: k for k in named if find.said[k] != "delta"}
+    if len(pairs) == 2:
+        for name, k in pairs.items():
+            _rudder(find, name, k, weights, sides, strongest, len(named) > 2)
+        return
+    ranked = sorted(weights, key=lambda key: -(weights[key] * (6.0 if key[0] in named else 1.0)))
+    if not ranked:
+        return
+    best = ranked[0][0]
+    rival = next((weights[key] for key in ranked if key[0] != best), 0.0)
+    clear = best in named or (weights[ranked[0]] > 1.5 * rival and bool(sides[best]))
+    _rudder(find, "delta", best, weights, sides, strongest, clear)
+
+
+def _rudder(
+    find: Finder,
+    name: str,
+    column: int,
+    weights: Mapping[tuple[int, bool], float],
+    sides: Mapping[int, list[int]],
+    strongest: Mapping[int, tuple[float, str]],
+    clear: bool,
+) -> None:
+    degrees = weights.get((column, True), 0.0) >= weights.get((column, False), 0.0)
+    own, more = find.unit_of(column, "rad", "deg" if degrees else "rad")
+    seen = sides.get(column, [])
+    starboard, port = seen.count(1), seen.count(-1)
+    words = [f"the ship turns after it: {strongest.get(column, (0.0, 'no evidence'))[1]}"]
+    if find.units_said[column] in ("deg", "rad"):
+        words.append(f"in {own['unit']}{more}")
+    else:
+        words.append(f"in {own['unit']} by its size")
+    if max(starboard, port) > 4 * min(starboard, port):
+        own["positive"] = "starboard" if starboard > port else "port"
+        words.append(f"positive to {own['positive']} in {max(starboard, port)} of {len(find.looks)} logs")
+        confidence = SURE if clear else LIKELY
+    else:
+        own["positive"] = f'{MARK} "starboard" or "port": to which side does a positive angle turn the ship?'
+        confidence = ASKED
+    find.add(Guess(name, column, own, tuple(words), confidence))
+
+
+def propeller(find: Finder) -> None:
+    winds = ("wind_speed", "wind_dir", "wind_speed_app", "wind_dir_app")
+    motion = ("x", "y", "psi", "u", "v", "r", "sog", "cog", LOG_SPEED)
+    not_shafts = (ORDER, OTHER, ROLL, "delta", "depth", "wave_height", *motion, *winds)
+    ranks: dict[int, float] = defaultdict(float)
+    per_column: dict[tuple[int, str], list[float]] = defaultdict(list)
+    delta = find.guesses.get("delta") or find.guesses.get("delta_port")
+    for look in find.looks:
+        found = shafts(look, find.pool(*not_shafts), find.units_said, _rudder_angle(find, look, delta))
+        for place, one in enumerate(found):
+            ranks[one.column] += 1.0 / (1.0 + place) + (2.0 if find.said[one.column].startswith("n") else 0.0)
+            for unit, way in one.advance.items():
+                if np.isfinite(way):
+                    per_column[one.column, unit].append(way)
+    named = {find.said[k]: k for k in ranks if find.said[k] in ("n_port", "n_stbd")}
+    chosen = list(named.items()) if len(named) == 2 else []
+    if not chosen and ranks:
+        chosen = [("n", max(ranks, key=lambda k: ranks[k]))]
+    for name, column in chosen:
+        _shaft(find, name, column, ranks, per_column)
+
+
+def _rudder_angle(find: Finder, look: Look, delta: Guess | None) -> float:
+    """Largest usual rudder angle [rad] of a log; that of a turning circle where none is known."""
+    if delta is None or delta.column is None:
+        return 35.0 * DEG
+    values = np.abs(look.windows.columns[delta.column]) * (DEG if delta.keys.get("unit") == "deg" else 1.0)
+    return (
+        float(np.clip(np.nanpercentile(values, 95.0), 1.0 * DEG, 35.0 * DEG))
+        if np.isfinite(values).any()
+        else 35.0 * DEG
+    )
+
+
+def _shaft(
+    find: Finder, name: str, column: int, ranks: Mapping[int, float], ways: Mapping[tuple[int, str], list[float]]
+) -> None:
+    said = find.units_said[column].replace("1/s", "rps")
+    fits = {unit: float(np.median(ways[column, unit])) for unit in ("rpm", "rps") if ways.get((column, unit))}
+    sizes = {unit: abs(np.log(way / 0.02)) for unit, way in fits.items() if way > 0.0}
+    seen = min(sizes, key=lambda one: sizes[one], default="")
+    words = (
+        ["its name says so"]
+        if find.said[column].startswith("n")
+        else ["it stays the same over long times, as revolutions do"]
+    )
+    confidence = SURE if find.said[column].startswith("n") else LIKELY
+    if said in ("rpm", "rps"):
+        unit = said
+        words.append(f"in {said}, as its name says")
+    elif seen and sizes[seen] < np.log(12.0):
+        unit = seen
+        words.append(
+            f"in {seen}: she makes some {fits[seen]:.2g} of her length with each turn then, ships 0.01 to 0.04"
+        )
+    else:
+        unit = f'{MARK} "rpm" or "rps": which is {find.shown(column)} in?'
+        confidence = ASKED
+    values = np.concatenate([look.windows.columns[column] for look in find.looks])
+    own = {"unit": unit}
+    if np.nanmedian(values) < 0.0:
+        own["positive"] = "astern"
+        words.append("negative while she goes ahead")
+    rivals = [k for k, rank in ranks.items() if k != column and rank > 0.6 * ranks[column]]
+    if rivals and confidence == LIKELY:
+        words.append(f"{', '.join(find.shown(k) for k in rivals[:3])} might be it too")
+    find.add(Guess(name, column, own, tuple(words), confidence))

@@ -1,0 +1,227 @@
+"""Yaw rate and velocities, voted on by all logs."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ... import units
+from ...trial.kinematics import FITS
+from ...units import DEG
+from .finder import ROUGH, Finder
+from .guess import LIKELY, SURE, Guess
+from .look import Look
+from .motions import Match, courses, speeds, through_water, velocities, yaw_rates
+from .words import LOG_SPEED, ORDER, OTHER, ROLL
+
+
+def yaw_rate(find: Finder) -> None:
+    votes: dict[tuple[int, str, bool], list[tuple[float, float]]] = defaultdict(list)
+    for look in find.looks:
+        for match, correlation, factor in yaw_rates(
+            look, find.pool("psi", "cog", "x", "y", "delta"), find.units_said
+        ).values():
+            off = abs(np.log(factor / units.factors("rad/s")[match.unit]))
+            votes[match.column, match.unit, match.minus].append((abs(correlation) ** 4 - 2.0 * off, correlation))
+    if not votes:
+        return
+    named = {
+        key: sum(one for one, _ in many) + 0.5 * len(many) * (find.said[key[0]] == "r") for key, many in votes.items()
+    }
+    best = max(named, key=lambda one: named[one])
+    column, unit, minus = best
+    own, words = find.unit_of(column, "rad/s", unit)
+    own["positive"] = "port" if minus else "starboard"
+    correlation = float(np.median([one for _, one in votes[best]]))
+    said = f"the heading changes by it, correlation {correlation:+.3f} in {len(votes[best])} of {len(find.looks)} logs"
+    others = sorted({key[0] for key in votes if key[0] != column})
+    evidence = [f"{said}, in {unit}{words}"]
+    if others:
+        evidence.append(f"it fits better than {', '.join(find.shown(k) for k in others[:3])}")
+    find.add(Guess("r", column, own, tuple(evidence), SURE if abs(correlation) > 0.95 else LIKELY))
+
+
+def velocity(find: Finder) -> None:
+    skip = (
+        "delta",
+        "n",
+        "depth",
+        "psi",
+        "wind_speed",
+        "wind_speed_app",
+        "wind_dir",
+        "wind_dir_app",
+        ROLL,
+        OTHER,
+        ORDER,
+    )
+    among = find.pool(*skip)
+    votes: dict[tuple[Any, ...], list[float]] = defaultdict(list)
+    for look in find.looks:
+        found = velocities(look, [k for k in among if k not in find.used], find.units_said)
+        for one in found[:30]:
+            key = (one.axes, one.first.column, one.second.column, one.first.unit, one.first.minus, one.second.minus)
+            votes[key].append(one.miss)
+    scores = {
+        key: float(np.median(many)) * (1.0 + 0.5 * (len(find.looks) - len(many)) / len(find.looks))
+        * _named(find, key[1], key[2]) for key, many in votes.items()
+    }  # fmt: skip
+    best = min(scores, key=lambda one: scores[one], default=None)
+    if best is not None and np.median(votes[best]) < ROUGH:
+        _both(find, best, scores, float(np.median(votes[best])), among)
+    if "u" not in find.guesses:
+        ground_speed(find, [k for k in among if k not in find.used])
+    if "u" not in find.guesses and "sog" not in find.guesses:
+        _one_speed(find, among)
+
+
+def _named(find: Finder, first: int, second: int) -> float:
+    """Less than 1 where names agree that two columns are velocities, more where they contradict."""
+    agrees = sum(find.said[k] == name for k, name in ((first, "u"), (second, "v")))
+    against = sum(find.said[k] not in ("", "u", "v", "sog", LOG_SPEED, "x", "y") for k in (first, second))
+    return float(0.6**agrees * 2.0**against)
+
+
+def _both(
+    find: Finder, key: tuple[Any, ...], scores: Mapping[tuple[Any, ...], float], miss: float, among: list[int]
+) -> None:
+    axes, first, second, unit, minus, second_minus = key
+    # Of other readings those that count: other axes, another sign of the second, of the same columns.
+    rivals = [score for one, score in scores.items() if {one[1], one[2]} == {first, second} and one[:2] != key[:2]]
+    signs = [score for one, score in scores.items() if one[:5] == key[:5] and one[5] != second_minus]
+    clear = all(score > 2.0 * scores[key] for score in rivals)
+    side = all(score > 1.25 * scores[key] for score in signs)
+    if not _second_needed(find, axes, second, unit, second_minus):
+        return
+    words = f"{axes} axes: they miss the positions by {100.0 * miss:.2g} % of the speed"
+    if rivals:
+        words += f", read otherwise by {100.0 * min(rivals):.2g} %"
+    own, more = find.unit_of(first, "m/s", unit)
+    other, _ = find.unit_of(second, "m/s", unit)
+    ways = {"ship": (("forward", "aft"), ("starboard", "port")), "earth": (("north", "south"), ("east", "west"))}[axes]
+    own["positive"], other["positive"] = ways[0][minus], ways[1][second_minus]
+    confidence = SURE if clear and side and miss < FITS else LIKELY
+    find.axes = axes
+    find.add(Guess("u", first, own, (words + more,), confidence))
+    find.add(Guess("v", second, other, (words,), confidence))
+
+
+def _second_needed(find: Finder, axes: str, column: int, unit: str, minus: bool) -> bool:
+    """Whether a column explains the sway, or the way east, better than the yaw rate does."""
+    told, direct = [], []
+    for look in find.looks:
+        target = look.abeam if axes == "ship" else look.east
+        logged = look.mean(column) * units.factors("m/s")[unit]
+        both = np.isfinite(target) & np.isfinite(logged) & np.isfinite(look.rate)
+        if both.sum() > 8:
+            # A lever of the yaw rate is what velocities of another point differ by.
+            rate = look.rate[both]
+            lever = float(rate @ target[both]) / max(float(rate @ rate), 1e-300)
+            without = target[both] - lever * rate
+            sign = -1.0 if minus else 1.0
+            off = target[both] - sign * logged[both]
+            size = max(float(np.sqrt(np.mean(target[both] ** 2))), 1e-300)
+            direct.append(float(np.sqrt(np.mean(off**2))) / size)
+            off = off - float(rate @ off) / max(float(rate @ rate), 1e-300) * rate
+            told.append(float(np.sqrt(np.mean(off**2)) / max(float(np.sqrt(np.mean(without**2))), 1e-300)))
+    named = find.said[column] == "v"
+    return bool(told) and (float(np.median(told)) < (1.0 if named else 0.8) or float(np.median(direct)) < 0.35)
+
+
+def ground_speed(find: Finder, among: Sequence[int]) -> None:
+    """Speed and course over the ground."""
+    votes: dict[tuple[int, str], list[float]] = defaultdict(list)
+    for look in find.looks:
+        for match in courses(look, among, find.units_said)[:6]:
+            votes[match.column, match.unit].append(match.miss)
+    psi = find.guesses["psi"].column
+    heading = [
+        float(np.nanstd(np.angle(np.exp(1j * (look.psi - np.arctan2(look.east, look.north)))))) for look in find.looks
+    ]
+    drift = float(np.median(heading)) if heading else 0.0
+    scores = {key: float(np.median(many)) for key, many in votes.items() if len(many) >= 0.5 * len(find.looks)}
+    scores = {key: miss * (0.5 if find.said[key[0]] == "cog" else 1.0) for key, miss in scores.items()}
+    # Behaviour alone must show a course where no name does: closer than the heading is, and turning as far.
+    best = min(scores, key=lambda one: scores[one], default=None)
+    if best is None or best[0] == psi:
+        return
+    named = find.said[best[0]] == "cog"
+    wide = [_turns_as_far(find, look, best) for look in find.looks]
+    if not (named or (scores[best] < 0.7 * max(drift, 2.0 * DEG) and np.median(wide) > 0.7)) or scores[best] > 0.6:
+        return
+    speeds_found: dict[tuple[int, str], list[float]] = defaultdict(list)
+    for look in find.looks:
+        for match in speeds(look, look.speed, [k for k in among if k != best[0]], find.units_said, False)[:6]:
+            speeds_found[match.column, match.unit].append(match.miss)
+    merit = {"sog": 0.4, LOG_SPEED: 2.5, "v": 2.5}
+    sizes = {
+        key: float(np.median(many)) * merit.get(find.said[key[0]], 1.0)
+        for key, many in speeds_found.items()
+        if len(many) >= 0.5 * len(find.looks)
+    }
+    speed = min(sizes, key=lambda one: sizes[one], default=None)
+    if speed is None or sizes[speed] > ROUGH:
+        return
+    own, words = find.unit_of(best[0], "rad", best[1])
+    size, more = find.unit_of(speed[0], "m/s", speed[1])
+    miss = float(np.median(speeds_found[speed]))
+    find.add(
+        Guess(
+            "sog",
+            speed[0],
+            size,
+            (f"it is the speed along the track within {100.0 * miss:.2g} %, in {speed[1]}{more}",),
+        )
+    )
+    off = float(np.median(votes[best]))
+    said = (
+        f"it is the direction of the track within {off / DEG:.2g} deg; the heading differs by {drift / DEG:.2g}{words}"
+    )
+    find.add(Guess("cog", best[0], {**own, "positive": "clockwise"}, (said,)))
+
+
+def _turns_as_far(find: Finder, look: Look, key: tuple[int, str]) -> float:
+    angle = look.mean(key[0]) * units.factors("rad")[key[1]]
+    course = np.unwrap(np.nan_to_num(np.arctan2(look.east, look.north)))
+    return float(np.nanstd(angle) / max(float(np.nanstd(course)), 1e-9))
+
+
+def _one_speed(find: Finder, among: Sequence[int]) -> None:
+    """A single speed: over the ground ahead, or through the water."""
+    votes: dict[tuple[int, str, bool], list[float]] = defaultdict(list)
+    for look in find.looks:
+        for match in speeds(look, look.ahead, [k for k in among if k not in find.used], find.units_said, True)[:8]:
+            votes[match.column, match.unit, match.minus].append(match.miss)
+    scores = {
+        key: float(np.median(many)) * (0.5 if find.said[key[0]] in ("u", "sog", LOG_SPEED) else 1.0) + 0.2 * key[2]
+        for key, many in votes.items()
+        if len(many) >= 0.5 * len(find.looks)
+    }
+    best = min(scores, key=lambda one: scores[one], default=None)
+    if best is None or np.median(votes[best]) > (0.35 if find.said[best[0]] == LOG_SPEED else ROUGH):
+        return
+    column, unit, minus = best
+    water = [through_water(look, Match(column, unit, minus, 0.0)) for look in find.looks]
+    told = [one for one in water if one is not None]
+    current = float(np.median([one[0] for one in told])) if told else 0.0
+    flows = (
+        bool(told) and float(np.median([one[1] for one in told])) > 0.6 and current > 0.02 * find.looks[0].usual_speed
+    )
+    if find.said[column] == LOG_SPEED or flows:
+        why = (
+            f"it differs from the speed over the ground by a steady flow of {current:.2g} m/s"
+            if flows
+            else "its name says so"
+        )
+        find.notes.append(f"{find.shown(column)} is the speed through the water ({why}), which a trial does not hold")
+        find.used.add(column)
+        return
+    own, words = find.unit_of(column, "m/s", unit)
+    own["positive"] = "aft" if minus else "forward"
+    find.axes = "ship"
+    miss = float(np.median(votes[best]))
+    find.add(Guess("u", column, own, (f"it is the speed ahead within {100.0 * miss:.2g} %, in {unit}{words}",),
+                   SURE if miss < FITS else LIKELY))  # fmt: skip

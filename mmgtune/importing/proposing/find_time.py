@@ -1,0 +1,79 @@
+"""Time: which column, and its unit or the order of its dates."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import replace
+from typing import Any
+
+from ...errors import LogError, Problem
+from ..dates import ORDERS, Dates, order_told
+from .clocks import Clock, clocks
+from .finder import MOST_COLUMNS, Finder, moves
+from .guess import ASKED, MARK, SURE, Guess
+from .words import DATE
+
+
+def time(find: Finder) -> None:
+    usable = [k for k, one in enumerate(find.first.numbers) if any(moves(s.numbers[k]) for s in find.samples)]
+    votes: dict[tuple[int, str], list[Clock]] = defaultdict(list)
+    for sample in find.samples:
+        for clock in clocks(sample, find.said, find.units_said):
+            votes[clock.column, clock.format].append(clock)
+    if not votes:
+        why = "none grows steadily, and none holds dates"
+        fix = "write the rows in the order of time, with a column of seconds or dates"
+        raise LogError(Problem("no column of the log is time", str(find.first.path), why, fix))
+    best = max(votes.values(), key=lambda many: sum(one.score for one in many))
+    find.clock = best[0]
+    keys: dict[str, Any] = {}
+    if find.clock.format in ("date", "?"):
+        date_order(find, keys, best)
+    column, words = find.clock.column, [best[0].words]
+    find.used.add(column)
+    dates = [k for k, name in enumerate(find.said) if name == DATE and k != column]
+    if dates:
+        words.append(f"the date in {find.shown(dates[0])} is not needed: midnight is seen by the clock")
+        find.used.update(dates)
+    find.numeric = [k for k in usable if k not in find.used]
+    if len(find.numeric) > MOST_COLUMNS:
+        named = [k for k in find.numeric if find.said[k]]
+        rest = [k for k in find.numeric if not find.said[k]]
+        find.numeric = sorted([*named, *rest][:MOST_COLUMNS])
+        find.notes.append(f"of {len(usable)} columns the {MOST_COLUMNS} that names speak of were looked at")
+    asked = any(isinstance(one, str) and one.startswith(MARK) for one in keys.values())
+    find.guess_t = Guess("t", column, keys, tuple(words), ASKED if asked else SURE)
+
+
+def date_order(find: Finder, keys: dict[str, Any], found: list[Clock]) -> None:
+    """Which of day and month stands first, over all logs."""
+    possible = set(ORDERS)
+    told = set()
+    for sample in find.samples:
+        dates = Dates(sample.texts[find.clock.column].astype("string").str.strip())
+        orders = dates.orders()
+        possible &= set(orders) or possible
+        if len(orders) > 1:
+            order, why = order_told({one: dates.since(one) for one in orders})
+            if order and "does not matter" not in why:
+                told.add(order)
+            elif not order:
+                told.add(MARK)
+    if len(possible) == 1:
+        keys["format"] = possible.pop()
+    elif len(told - {MARK}) == 1:
+        keys["format"] = (told - {MARK}).pop()
+    elif MARK in told:
+        keys["format"] = f'{MARK} "dmy" or "mdy": which of day and month stands first?'
+
+
+def time_unit(find: Finder) -> None:
+    """What the map says of time, once its unit is known."""
+    guess = find.guess_t
+    keys = dict(guess.keys)
+    if not find.clock.format:
+        keys["unit"] = find.clock.unit or find.unit
+        if not find.clock.unit:
+            how = "the usual one at this rate" if find.unit == "s" else "the one in which the motion agrees with itself"
+            guess = replace(guess, evidence=(*guess.evidence, f"{find.unit} is {how}"))
+    find.add(replace(guess, keys=keys))

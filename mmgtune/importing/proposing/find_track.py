@@ -1,0 +1,129 @@
+"""Position and heading, voted on by all logs."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from ... import units
+from ...trial.kinematics import FITS
+from .bearings import Track, keys_of, tracks
+from .clocks import in_seconds, likely_units
+from .find_time import time_unit
+from .finder import Finder
+from .guess import LIKELY, SURE, Guess
+from .look import Look
+from .motions import courses, speeds, velocities, yaw_rates
+from .windows import Windows
+from .words import ORDER, OTHER, ROLL, TIME
+
+
+def position_and_heading(find: Finder) -> None:
+    best: tuple[float, str, dict[Track, float], dict[Track, str], list[Windows]] | None = None
+    scale = [units.factors("m").get(find.units_said[k], 1.0) for k in range(len(find.first.names))]
+    candidates_ = [k for k in find.numeric if find.said[k] not in (ORDER, OTHER, ROLL, TIME)]
+    for unit in likely_units(find.first, find.clock):
+        windows = [
+            Windows(in_seconds(one, find.clock, unit), [n * f for n, f in zip(one.numbers, scale, strict=True)])
+            for one in find.samples
+        ]
+        scores: dict[Track, float] = defaultdict(float)
+        words: dict[Track, str] = {}
+        for sample, w in zip(find.samples, windows, strict=True):
+            if not w.enough:
+                continue
+            for track, (score, word) in tracks(w, sample, find.said, candidates_).items():
+                if find.units_said[track.psi] in ("deg", "rad") and (
+                    (find.units_said[track.psi] == "deg") != track.degrees
+                ):
+                    continue
+                scores[track] += score
+                words.setdefault(track, word)
+        total = max(scores.values(), default=0.0) + 2.0 * fits(find, scores, windows)
+        # The usual unit, which comes first, unless another one explains far more.
+        if scores and (best is None or total > best[0] + 0.5):
+            best = total, unit, dict(scores), words, windows
+    if best is None:
+        find.unit = likely_units(find.first, find.clock)[0]
+        time_unit(find)
+        find.notes.append("the motion shows neither position nor heading: what follows is by names alone")
+        return
+    _, find.unit, scores, words, windows = best
+    time_unit(find)
+    track = _better_heading(find, scores, windows)
+    find.looks = [Look(s, w, track) for s, w in zip(find.samples, windows, strict=True) if w.enough]
+    others = [one for one in scores if (one.x, one.y, one.psi) != (track.x, track.y, track.psi)]
+    rival = max((scores[one] for one in others), default=0.0)
+    mirrored = max((v for one, v in scores.items() if one.left != track.left and one.psi == track.psi), default=0.0)
+    clear = scores[track] > 1.1 * rival
+    confidence = SURE if clear and scores[track] > 0.45 * len(find.looks) else LIKELY
+    unit = next((find.units_said[k] for k in (track.x, track.y) if find.units_said[k] in units.factors("m")), "")
+    keys = keys_of(track, find.first, unit or "m")
+    speed = np.median([one.usual_speed for one in find.looks])
+    for (quantity, own), column in zip(keys.items(), (track.x, track.y, track.psi), strict=True):
+        partner = track.y if column == track.x else track.x
+        said = [f"with {find.shown(partner)} it makes a course that follows the heading, at {speed:.3g} m/s"]
+        if quantity == "psi":
+            said = [words.get(track, "the course follows it")]
+            if find.units_said[column] == own["unit"]:
+                said.append(f"its name says {own['unit']}")
+        elif find.said[column] == quantity:
+            said.append("its name says so")
+        if column in find.first.written:
+            said.append("its cells are in degrees and minutes")
+        find.add(Guess(quantity, column, own, tuple(said), confidence))
+    if (
+        not track.geographic
+        and not {find.said[track.x], find.said[track.y]} & {"x", "y"}
+        and scores[track] < 1.05 * mirrored
+    ):
+        find.notes.append("no motion shows its mirror image: y is taken to the east and the heading clockwise")
+
+
+def fits(find: Finder, scores: Mapping[Track, float], windows: Sequence[Windows]) -> float:
+    """1 where rates and velocities are what they must be with the likeliest track, else 0."""
+    if not scores:
+        return 0.0
+    track = max(scores, key=lambda one: scores[one])
+    for sample, w in zip(find.samples, windows, strict=True):
+        if not w.enough:
+            continue
+        look = Look(sample, w, track)
+        among = [k for k in find.numeric if k not in (track.x, track.y, track.psi)]
+        if yaw_rates(look, among, find.units_said):
+            return 1.0
+        found = velocities(look, among, find.units_said)
+        ahead = speeds(look, look.ahead, among, find.units_said, False)
+        if (found and found[0].miss < FITS) or (ahead and ahead[0].miss < 0.5 * FITS):
+            return 1.0
+    return 0.0
+
+
+def _better_heading(find: Finder, scores: Mapping[Track, float], windows: Sequence[Windows]) -> Track:
+    """The likeliest track; of two columns that both follow the course, that which is not the course itfind."""
+    best = max(scores, key=lambda one: scores[one])
+    same = [
+        one
+        for one, score in scores.items()
+        if (one.x, one.y, one.geographic, one.south, one.west)
+        == (best.x, best.y, best.geographic, best.south, best.west)
+        and (one.left, one.east) == (best.left, best.east)
+        and score > (0.3 if find.said[one.psi] == "psi" and find.said[best.psi] == "cog" else 0.75) * scores[best]
+    ]
+    if len(same) < 2 or find.said[best.psi] == "psi":
+        return best
+    merits = {}
+    for track in same:
+        misses, rates = [], 0
+        for sample, w in zip(find.samples, windows, strict=True):
+            if w.enough:
+                look = Look(sample, w, track)
+                found = courses(look, [track.psi], find.units_said)
+                misses.append(min((one.miss for one in found), default=np.pi))
+                among = [k for k in find.numeric if k not in (track.x, track.y, track.psi)]
+                rates += any(abs(c) > 0.95 for _, c, _ in yaw_rates(look, among, find.units_said).values())
+        named = (find.said[track.psi] == "psi") - (find.said[track.psi] == "cog")
+        merits[track] = (named, rates, float(np.median(misses)))
+    return max(merits, key=lambda one: merits[one])

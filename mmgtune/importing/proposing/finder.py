@@ -1,0 +1,95 @@
+"""What is known of logs while their columns are found out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ... import units
+from ...errors import LogError, Problem
+from .clocks import Clock
+from .guess import Guess
+from .look import Look
+from .sampling import Sample
+from .words import plain, quantity_named, unit_named
+
+MOST_LOGS = 8
+"""Logs whose motion is looked at."""
+MOST_COLUMNS = 48
+"""Columns whose behaviour is looked at; of more, those whose names say something."""
+ROUGH = 0.15
+"""Share of the speed by which velocities may miss the positions and still be what they are taken for."""
+FEW_DIGITS = 4
+
+
+class Finder:
+    """One pass over logs of one kind.
+
+    said, units_said  (n_columns,) what names say: a quantity, a unit
+    guesses           by quantity, in the order they were found; guess_t: time, before its unit is known
+    used, numeric     columns that are something already, and those whose behaviour can be looked at
+    looks             logs whose motion is known; unit: of time; axes: of the velocities
+    tables, comments  further tables of the map, and what is said above them
+    notes             what else is to be said
+    """
+
+    axes: str | None = None
+
+    def __init__(self, samples: Sequence[Sample]):
+        self.samples = list(samples)
+        self.first = samples[0]
+        for other in samples[1:]:
+            if other.names != self.first.names:
+                what = "the logs are of different kinds: their columns differ"
+                why = f"{self.first.path} has {len(self.first.names)} columns, {other.path} {len(other.names)}"
+                if len(other.names) == len(self.first.names):
+                    k = next(k for k, name in enumerate(other.names) if name != self.first.names[k])
+                    why = f"column {k + 1} is '{self.first.names[k][:60]}' in one, '{other.names[k][:60]}' in the other"
+                raise LogError(Problem(what, str(other.path), why, "make a map for each kind"))
+        below = [row if any(one.units[k] == row for one in samples) else "" for k, row in enumerate(self.first.units)]
+        self.said = [quantity_named(name) for name in self.first.names]
+        # North and east by a letter each; alone, n is what propellers turn with.
+        letters = {plain(name): k for k, name in enumerate(self.first.names)}
+        if {"n", "e"} <= set(letters):
+            self.said[letters["n"]], self.said[letters["e"]] = "x", "y"
+        self.units_said = [unit_named(name, row) for name, row in zip(self.first.names, below, strict=True)]
+        self.guesses: dict[str, Guess] = {}
+        self.used: set[int] = set()
+        self.notes: list[str] = []
+        self.tables: dict[str, dict[str, Any]] = {}
+        self.comments: dict[str, str] = {}
+        self.numeric: list[int] = []
+        self.unit = "s"
+        self.clock: Clock
+        self.guess_t: Guess
+        self.looks: list[Look] = []
+
+    def shown(self, k: int) -> str:
+        """A column for people."""
+        return self.first.shown(k)
+
+    def add(self, guess: Guess) -> None:
+        """Take a guess, whose column is then nothing else."""
+        self.guesses[guess.quantity] = guess
+        if guess.column is not None:
+            self.used.add(guess.column)
+
+    def pool(self, *not_said: str) -> list[int]:
+        """Columns that are nothing yet, whose behaviour can be looked at, and whose names say none of some words."""
+        left = [k for k in self.numeric if k not in self.used and self.said[k] not in not_said]
+        return left
+
+    def unit_of(self, k: int, kind: str, seen: str) -> tuple[dict[str, str], str]:
+        """Keys for the unit of a column that behaviour shows to be ``seen``, and what its name says of it."""
+        said = self.units_said[k]
+        known = units.factors(kind)
+        if said and units.factors(kind).get(said) == known[seen]:
+            return {"unit": said}, "; its name says so too"
+        return {"unit": seen}, ""
+
+
+def moves(values: Any) -> bool:
+    """Whether a column has numbers enough to look at."""
+    return int(np.isfinite(values).sum()) > 10

@@ -1,0 +1,31 @@
+"""Every quantity of logs found in their columns: by behaviour first, by name where behaviour does not tell."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from .find_controls import propeller, rudder
+from .find_motion import velocity, yaw_rate
+from .find_rest import by_name, few_digits, missing
+from .find_time import time
+from .find_track import position_and_heading
+from .find_wind import wind
+from .finder import Finder
+from .sampling import Sample
+
+
+def found_in(samples: Sequence[Sample]) -> Finder:
+    """What the columns of logs of one kind are.  Raises LogError where they differ, or none is time."""
+    find = Finder(samples)
+    time(find)
+    position_and_heading(find)
+    if find.looks:
+        yaw_rate(find)
+        velocity(find)
+        wind(find)
+        rudder(find)
+        propeller(find)
+    by_name(find)
+    few_digits(find)
+    missing(find)
+    return find

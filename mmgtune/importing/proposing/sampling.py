@@ -1,0 +1,359 @@
+"""The beginning of a log without a map: how it is written, and its columns as numbers."""
+
+from __future__ import annotations
+
+import io
+import re
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...arrays import FloatArray
+from ...errors import LogError, Problem
+from ...limits import LOG_BYTES, LOG_COLUMNS, LOG_LINE
+from ..clock import CLOCK
+from ..degrees import degrees
+from ..forms import form_of, refuse_binary
+from ..mapping import LogMap, TimeSource
+from ..parquet_log import is_text, shortened
+from ..text import PEEK, Lines, start_of
+from .words import known_unit
+
+ROWS = 60_000
+"""Rows of a log that are looked at."""
+MARKS = ("\t", ";", ",", "|", " ")
+SHOWN = {"\t": "tab", " ": "space"}
+_JAPANESE = re.compile("[\u3040-\u30ff\u4e00-\u9fff]")
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?|nan|NaN|NA|n/a|-?inf", re.ASCII)
+_COMMA = re.compile(r"[-+]?\d+,\d+([eE][-+]?\d+)?", re.ASCII)
+_DATED = re.compile(r"\d{1,4}[-./:]\d{1,2}[-./:]\d{1,4}|\d{1,2}:\d{2}|[-+]?\d{1,3}°")
+
+
+@dataclass(frozen=True, eq=False)
+class Sample:
+    """What a log holds.
+
+    layout   keys of [log] in the map, as TOML has them
+    names    of the columns; "" where one has none, all "" where the log has no header
+    units    as a second line of the header says them, "" where it does not
+    texts    columns as pandas has them, (n_rows,)
+    numbers  (n_rows,) of every column, NaN where a cell is no number
+    written  columns whose cells are positions in degrees and minutes
+    """
+
+    path: Path
+    layout: dict[str, Any]
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    texts: list[Any]
+    numbers: list[FloatArray]
+    written: frozenset[int] = frozenset()
+    notes: list[str] = field(default_factory=list)
+
+    def reference(self, k: int) -> str | int:
+        """How a map names a column: by its name where that is its own, else by its number."""
+        name = self.names[k].strip()
+        if not name or len(name) > 200 or not name.isprintable() or self.layout.get("header") is False:
+            return k + 1
+        from ..headers import find_column
+
+        return name if find_column(name, self.names) == k else k + 1
+
+    def shown(self, k: int) -> str:
+        """A column for people."""
+        return f"'{self.names[k].strip()[:60]}'" if self.names[k].strip() else f"column {k + 1}"
+
+
+def sample_of(path: Path) -> Sample:
+    """The beginning of a log of any kind but NMEA 0183.  Raises LogError where it cannot be read."""
+    form = form_of(path)
+    reader = {"csv": _of_text, "parquet": _of_parquet, "xlsx": _of_workbook, "mat": _of_matlab}.get(form)
+    if reader is None:
+        raise LogError(Problem("the log is NMEA 0183, whose sentences say what they hold", str(path)))
+    sample = reader(path)
+    if len(sample.names) < 2 or not any(np.isfinite(one).sum() > 1 for one in sample.numbers):
+        why = f"{len(sample.names)} columns were seen, none with numbers" if sample.names else ""
+        fix = "give a table with a row for each time and a column for each quantity"
+        raise LogError(Problem("the log is no table of numbers", str(path), why, fix))
+    return sample
+
+
+def _made(path: Path, layout: dict[str, Any], names: Sequence[str], units: Sequence[str], texts: list[Any]) -> Sample:
+    """A sample of columns as they are printed."""
+    import pandas as pd
+
+    LOG_COLUMNS.hold(len(names), str(path), LogError)
+    comma = layout.get("decimal") == ","
+    numbers, written = [], set()
+    for k, text in enumerate(texts):
+        if pd.api.types.is_numeric_dtype(text.dtype) and not pd.api.types.is_bool_dtype(text.dtype):
+            found = text.to_numpy(dtype=np.float64, na_value=np.nan)
+        elif pd.api.types.is_datetime64_any_dtype(text.dtype):
+            found = np.full(len(text), np.nan)
+        else:
+            text = text.astype("string").str.strip()
+            bare = text.str.replace(",", ".", regex=False) if comma else text
+            found = pd.to_numeric(bare, errors="coerce").to_numpy(dtype=np.float64, na_value=np.nan)
+            clock = bool(len(text)) and text.str.fullmatch(CLOCK).fillna(False).mean() > 0.5
+            if len(text) and np.isfinite(found).mean() < 0.5 and not clock:
+                angles = degrees(text)
+                if np.isfinite(angles).mean() > 0.5:
+                    found = angles
+                    written.add(k)
+        with np.errstate(over="ignore"):
+            numbers.append(np.where(np.abs(found) < 1e14, found, np.nan))
+    return Sample(path, layout, tuple(names), tuple(units), texts, numbers, frozenset(written))
+
+
+def _of_text(path: Path) -> Sample:
+    import pandas as pd
+
+    LOG_BYTES.hold(path.stat().st_size, str(path), LogError)
+    content = start_of(path)
+    encoding = _encoding(content)
+    refuse_binary(path, content, LogMap("", Path(), encoding=encoding))
+    text = content.decode(encoding, "replace").lstrip("\ufeff")
+    lines = re.split(r"\r\n|\n|\r", text)
+    if len(content) == PEEK:
+        lines.pop()
+    LOG_LINE.hold(max((len(line) for line in lines), default=0) + 1, str(path), LogError)
+    whole = lines[:400]
+    mark, decimal = _separator(whole)
+    rows = [_fields(line, mark) for line in whole]
+    first, header, unit_row, width = heading(rows)
+    layout: dict[str, Any] = {"format": "csv", "delimiter": SHOWN.get(mark, mark)}
+    if encoding != "utf-8":
+        layout["encoding"] = encoding
+    if decimal != ".":
+        layout["decimal"] = decimal
+    names, units = _named(layout, rows, first, header, unit_row, width)
+    with warnings.catch_warnings(), io.BufferedReader(Lines(path), 1 << 16) as file:
+        warnings.simplefilter("ignore")
+        try:
+            frame = pd.read_csv(
+                io.BytesIO(text.encode("utf-8", "replace")) if len(content) < PEEK else file,
+                header=None,
+                names=range(max(width, len(names))),
+                index_col=False,
+                skiprows=first,
+                sep=r"\s+" if mark == " " else mark,
+                encoding="utf-8" if len(content) < PEEK else encoding,
+                encoding_errors="replace",
+                dtype="string",
+                keep_default_na=False,
+                na_values=[""],
+                skip_blank_lines=True,
+                skipinitialspace=True,
+                on_bad_lines="skip",
+                nrows=ROWS,
+            )
+        except (ValueError, pd.errors.ParserError, UnicodeError, OverflowError) as error:
+            fix = "write the map by hand, with delimiter, skip and header in [log]"
+            raise LogError(Problem("the log cannot be read as a table", str(path), str(error)[:200], fix)) from error
+    return _made(path, layout, names, units, [frame[k] for k in range(len(names))])
+
+
+def _of_parquet(path: Path) -> Sample:
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    from ...trial.footer import rows_of
+
+    try:
+        file = pq.ParquetFile(path, pre_buffer=False, page_checksum_verification=True)
+        names = list(file.schema_arrow.names)
+        LOG_COLUMNS.hold(len(names), str(path), LogError)
+        rows_of(file.metadata, path.stat().st_size, str(path), LogError)
+        kinds = pa.types
+        flat = [
+            k
+            for k, one in enumerate(file.schema_arrow)
+            if not kinds.is_nested(one.type) and not kinds.is_binary(one.type) and names.count(one.name) == 1
+        ]
+        columns = [names[k] for k in flat]
+        # A text stands in a file once, however many rows repeat it: it is cut before it is repeated.
+        repeated = [name for name in columns if is_text(file.schema_arrow.field(name).type)]
+        file = pq.ParquetFile(path, pre_buffer=False, page_checksum_verification=True, read_dictionary=repeated)
+        batch = next(file.iter_batches(ROWS, columns=columns, use_threads=False), None)
+        texts = [] if batch is None else [_plain(shortened(batch.column(k)).to_pandas()) for k in range(len(flat))]
+    except (OSError, ValueError, pa.ArrowException) as error:
+        why = (str(error).splitlines() or [""])[0]
+        raise LogError(Problem("the Parquet log cannot be read", str(path), why, "copy it again")) from error
+    return _made(path, {"format": "parquet"}, [names[k] for k in flat], [""] * len(flat), texts)
+
+
+def _plain(column: Any) -> Any:
+    """A pandas column that is no category of texts."""
+    return column.astype("string") if str(column.dtype) == "category" else column
+
+
+def _of_workbook(path: Path) -> Sample:
+    import pandas as pd
+
+    from ..workbook import as_text, sheet_of
+
+    sheet = sheet_of(path, "")
+    start = [[as_text(cell) or "" for cell in row] for row in sheet.rows[:400]]
+    first, header, unit_row, width = heading(start)
+    layout: dict[str, Any] = {"format": "xlsx"}
+    if len(sheet.names) > 1:
+        layout["sheet"] = sheet.name
+    names, units = _named(layout, start, first, header, unit_row, width)
+    body = sheet.rows[first : first + ROWS]
+    texts = [
+        pd.Series([as_text(row[k]) if k < len(row) else None for row in body], dtype="string")
+        for k in range(len(names))
+    ]
+    return _made(path, layout, names, units, texts)
+
+
+def _of_matlab(path: Path) -> Sample:
+    import pandas as pd
+
+    from ..matlab import columns_of, variables
+
+    held = variables(path)
+    found = columns_of(path)
+    # One structure among other things is named, so that a vector beside it cannot come in its way.
+    inside = [name for name, value in held.items() if isinstance(value, dict)]
+    layout: dict[str, Any] = {"format": "mat"}
+    if len(inside) == 1 and len(held) > 1:
+        try:
+            within = columns_of(path, inside[0])
+        except LogError:
+            within = found
+        if len(within.names) >= 4:
+            found, layout["variable"] = within, inside[0]
+    texts = [pd.Series(one[:ROWS], dtype="string" if isinstance(one, list) else "float64") for one in found.columns]
+    return _made(path, layout, found.names, [""] * len(found.names), texts)
+
+
+def _named(
+    layout: dict[str, Any], rows: list[list[str]], first: int, header: int | None, unit_row: int | None, width: int
+) -> tuple[list[str], list[str]]:
+    """Names and units of the columns, and what [log] has to say of them, put into ``layout``."""
+    if header is None:
+        layout["skip"], layout["header"], layout["fields"] = first, False, width
+        return [""] * width, [""] * width
+    names = [*rows[header], *[""] * (width - len(rows[header]))]
+    units = rows[unit_row] if unit_row is not None else []
+    if header:
+        layout["skip"] = header
+    return names, [*units, *[""] * (len(names) - len(units))][: len(names)]
+
+
+def heading(rows: Sequence[Sequence[str]]) -> tuple[int, int | None, int | None, int]:
+    """First row of numbers, rows with names and with units (None where there are none), and how many fields rows have.
+
+    rows  (n_rows,) of cells as they are printed
+    """
+    filled = [k for k, row in enumerate(rows) if any(cell.strip() for cell in row)]
+    if not filled:
+        return 0, None, None, 0
+    tail = [len(rows[k]) for k in filled[len(filled) // 4 :]]
+    width = max(set(tail), key=lambda size: (tail.count(size), size))
+    shares = {k: _numeric_share(rows[k]) for k in filled if len(rows[k]) >= max(2, width - 1)}
+    usual = float(np.median(list(shares.values()))) if shares else 0.0
+    first = next((k for k in filled if k in shares and shares[k] >= max(0.34, 0.6 * usual)), filled[0])
+    above = [k for k in filled if k < first][-2:]
+    named = [k for k in above if _names(rows[k], width)]
+    if not named or named[-1] != above[-1]:
+        return first, None, None, width
+    if len(named) == 2 and _are_units(rows[named[1]]):
+        return first, named[0], named[1], width
+    return first, named[-1], None, width
+
+
+def _names(row: Sequence[str], width: int) -> bool:
+    cells = [cell for cell in row if cell.strip()]
+    # A row with every field filled but the last, which lines that end with a mark do not have.
+    return width - 1 <= len(row) <= width and len(cells) >= 0.6 * width and _numeric_share(row) < 0.34
+
+
+def _are_units(row: Sequence[str]) -> bool:
+    """Whether most cells of a row are units, or stand for none."""
+    cells = [cell.strip().strip("[]()") for cell in row]
+    known = [bool(known_unit(cell)) or cell in ("", "-", "--", "UTC", "%", "N", "kN", "Nm") for cell in cells]
+    return sum(bool(known_unit(cell)) for cell in cells) >= 2 and sum(known) >= 0.6 * len(cells)
+
+
+def _numeric_share(row: Sequence[str]) -> float:
+    cells = [cell.strip() for cell in row if cell.strip()]
+    told = [bool(_NUMBER.fullmatch(one) or _COMMA.fullmatch(one) or _DATED.match(one)) for one in cells]
+    return sum(told) / len(told) if told else 0.0
+
+
+def _fields(line: str, mark: str) -> list[str]:
+    if mark == " ":
+        return line.split()
+    import csv
+
+    try:
+        return [one.strip() for one in next(csv.reader([line], delimiter=mark), [])]
+    except csv.Error:
+        return line.split(mark)
+
+
+def _separator(lines: Sequence[str]) -> tuple[str, str]:
+    """The mark between fields, and the decimal sign."""
+    body = [line for line in lines if line.strip()]
+    body = body[len(body) // 4 :][:120]
+    best: tuple[float, str, str] = (-1.0, ",", ".")
+    for mark in MARKS:
+        rows = [_fields(line, mark) for line in body]
+        counts = [len(row) for row in rows]
+        usual = max(set(counts), key=counts.count, default=0)
+        if usual < 2:
+            continue
+        cells = [cell for row in rows for cell in row if cell]
+        plain = sum(_NUMBER.fullmatch(cell) is not None for cell in cells)
+        comma = sum(_COMMA.fullmatch(cell) is not None for cell in cells)
+        dated = sum(_DATED.match(cell) is not None for cell in cells)
+        score = counts.count(usual) / len(counts) * (plain + comma + dated) / max(1, len(cells))
+        if score > best[0] + 0.02:
+            best = score, mark, "," if comma > 0.2 * (plain + comma) and mark != "," else "."
+    return best[1], best[2]
+
+
+def _encoding(content: bytes) -> str:
+    """The encoding of the beginning of a log."""
+    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return "utf-16"
+    nulls = content[:2000].count(b"\0")
+    if nulls > 0.3 * len(content[:2000]):
+        return "utf-16-le" if content[1:2] == b"\0" else "utf-16-be"
+    try:
+        # The last character may be cut in two.
+        content[: max(1, len(content) - 4) if len(content) == PEEK else len(content)].decode("utf-8")
+        return "utf-8"
+    except UnicodeDecodeError as error:
+        if len(content) == PEEK and error.start > len(content) - 8:
+            return "utf-8"
+    try:
+        text = content.decode("cp932")
+        if len(_JAPANESE.findall(text)) > 3:
+            return "cp932"
+    except UnicodeDecodeError:
+        pass
+    return "cp1252"
+
+
+def seconds(sample: Sample, k: int) -> tuple[FloatArray, str] | None:
+    """Stamps (n_rows,) of a column that holds dates or clocks in s, and their format; None where it holds none."""
+    from ..clock import Stamps
+
+    stamps = Stamps(TimeSource(), sample.path)
+    try:
+        t = stamps.of(sample.texts[k], np.arange(len(sample.texts[k]), dtype=np.int64))
+    except LogError:
+        # Dates whose order nothing shows: any will do to look at the motion.
+        stamps = Stamps(TimeSource(format="dmy"), sample.path)
+        try:
+            return stamps.of(sample.texts[k], np.arange(len(sample.texts[k]), dtype=np.int64)), "?"
+        except LogError:
+            return None
+    return (t, str(stamps.format)) if stamps.clock and np.isfinite(t).sum() > 1 else None

@@ -1,0 +1,198 @@
+"""What names of columns say, in the languages of those who log: a quantity, a unit."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from functools import lru_cache
+
+from ... import units
+from ..headers import bare, unit_in
+
+DATE, TIME, ROLL, ORDER, LOG_SPEED, OTHER = "date", "time", "roll", "order", "log speed", "other"
+"""What names may say besides quantities: OTHER is anything that no trial holds."""
+
+_PORT = r"\b(port|ps|p|bb|babord|backbord|bakboord|babor|left|links|gauche)\b|左"
+_STARBOARD = r"\b(st(a?r?)b(oar)?d|sb|stb|tribord|steuerbord|stuurboord|estribor|right|rechts|droite)\b|右"
+
+_STEERED = r"(rudder|rud|ruder|helm|roer|gouvern|timon|barre|rpm|speed|course|heading|kurs)"
+_ORDERED = r"(ord|cmd|comm?and|set|soll|gewenst|consigne|demand|desired|ref)"
+
+_WORDS: tuple[tuple[str, tuple[str, ...]], ...] = (
+    ("wind_speed_app", (
+        r"(?<!gesch)wind.*(rel|app|scheinbar|schijnbaar)", r"(rel|app|scheinbar|schijnbaar)\w*[ .]*wind", r"vent app",
+        r"viento (rel|ap)", r"awa", r"aws", r"相対風", r"视风", r"相对风",
+    )),
+    ("wind_speed", (
+        r"(?<!gesch)wind", r"\bvent", r"viento", r"vento", r"\btwd\b", r"\btws\b", r"風", r"风", r"풍",
+    )),
+    (OTHER, (
+        r"thrust\b(?!er)", r"torque", r"power", r"\bkw\b", r"fuel", r"temp", r"pressure", r"druck", r"draft",
+        r"draught", r"trim\b", r"heave", r"schub", r"drehmoment", r"leistung", r"poussee", r"couple", r"puissance",
+        r"empuje", r"推力", r"トルク",
+    )),
+    (ROLL, (
+        r"roll", r"heel", r"kranken", r"krangung", r"rollen", r"gite", r"roulis", r"escora", r"balanceo", r"slinger",
+        r"pitch", r"stampf", r"tangage", r"横揺", r"横摇", r"縦揺",
+    )),
+    ("wave_height", (
+        r"wave.*(h|height)", r"\bhs\b", r"wellenhohe", r"hauteur.*vague", r"波高",
+    )),
+    ("wave_dir", (
+        r"wave.*dir", r"wellenricht", r"波向",
+    )),
+    ("current_dir", (
+        r"current.*(dir|set)", r"stromricht", r"流向",
+    )),
+    ("current_speed", (
+        r"current.*(sp|vel|drift)", r"stromgeschw", r"流速",
+    )),
+    ("depth", (
+        r"depth", r"wassertiefe", r"\btiefe", r"profond", r"diepte", r"水深",
+    )),
+    (ORDER, (
+        rf"{_STEERED}.*{_ORDERED}", rf"{_ORDERED}\w*[ .]*{_STEERED}", r"指令",
+    )),
+    ("n_bow", (
+        r"bow.*thr", r"bugstrahl", r"boegschroef", r"etrave", r"バウスラスタ",
+    )),
+    ("n_stern", (
+        r"stern.*thr", r"heckstrahl", r"スターンスラスタ",
+    )),
+    ("latitude", (
+        r"\blat", r"breite", r"latitud", r"緯度", r"纬度", r"위도",
+    )),
+    ("longitude", (
+        r"\blon", r"\blng\b", r"lange\b", r"longitud", r"lengte", r"経度", r"经度", r"경도",
+    )),
+    ("cog", (
+        r"\bcog\b", r"course.*ground", r"kurs uber grund", r"\bkug\b", r"\bkueg\b", r"grondkoers", r"route.*fond",
+        r"rumbo.*fondo", r"track angle", r"\bcourse\b", r"\btrack\b", r"rotta", r"对地航向", r"対地針路", r"針路",
+        r"침로",
+    )),
+    ("sog", (
+        r"\bsog\b", r"speed.*(ground|og\b)", r"\bfug\b", r"fahrt uber grund", r"grondsnelheid", r"vitesse.*fond",
+        r"velocidad.*fondo", r"对地航速", r"対地速力", r"gps.*(speed|vel)",
+    )),
+    (LOG_SPEED, (
+        r"\bstw\b", r"\bspeed.*(water|log)", r"\bfdw\b", r"fahrt durch", r"vitesse surface", r"对水", r"対水",
+        r"\blog speed",
+    )),
+    ("r", (
+        r"\brot\b", r"yaw ?(rate|vel|ang)", r"yawrate", r"rate of turn", r"turn ?rate", r"angvel", r"ang vel",
+        r"gyro rate", r"gier(rate|geschw)", r"drehrate", r"dreh ?geschw", r"wende",
+        r"vitesse.*(giration|lacet|rotation)", r"lacet rate", r"velocidad.*(guin|giro)", r"draaisnelheid",
+        r"gier ?snelheid", r"bochtsnelheid", r"角速度", r"回頭", r"转向率", r"转艏", r"旋回", r"\br\b", r"선회",
+    )),
+    ("psi", (
+        r"\bhead", r"\bhdg\b", r"\bhdt\b", r"gyro", r"compass", r"\bpsi\b", r"kompass", r"\byaw\b", r"kurswinkel",
+        r"steuerkurs", r"\bkurs\b", r"\bcap\b", r"\brumbo\b", r"proa", r"koers", r"voorligg", r"giroscop", r"azim",
+        r"\bprora", r"stefning", r"kurssi", r"方位", r"艏向", r"航向", r"선수",
+    )),
+    ("delta", (
+        r"rudder", r"\brud\b", r"\bdelta\b", r"ruder", r"helm", r"roer", r"gouvern", r"timon", r"timone", r"leme",
+        r"\bror\b", r"rorvinkel", r"barre", r"舵", r"타각",
+    )),
+    ("n", (
+        r"\brpm\b", r"\brps\b", r"\brev", r"\bn\b", r"\bn prop", r"prop", r"shaft", r"drehzahl", r"welle",
+        r"schraube", r"toeren", r"schroef", r"\bas\b", r"\btours?\b", r"helice", r"\barbre\b", r"revol", r"giri",
+        r"elica", r"varvtal", r"omdr", r"转速", r"回転", r"회전",
+    )),
+    ("v", (
+        r"sway", r"\bvm?\b", r"\bvm vel", r"lateral", r"abeam", r"transvers", r"quer", r"dwars", r"travers",
+        r"\bv[ _]?y\b", r"vely\b", r"vel y", r"v east", r"east.*vel", r"vel.*east", r"左右速", r"横速", r"横向速",
+    )),
+    ("u", (
+        r"surge", r"\bu\b", r"\bu vel", r"ahead", r"longitudinal", r"langs", r"voraus", r"forward", r"vooruit",
+        r"\bv[ _]?x\b", r"velx\b", r"vel x", r"v north", r"north.*vel", r"vel.*north", r"speed", r"velocity",
+        r"fahrt", r"geschw", r"snelheid", r"vitesse", r"velocidad", r"velocita", r"前後速", r"纵向速", r"速力",
+        r"航速", r"속력",
+    )),
+    ("x", (
+        r"north", r"nord", r"noord", r"norte", r"\bx\b", r"\bx ?pos", r"pos ?x", r"\bx ?0\b", r"北",
+    )),
+    ("y", (
+        r"east", r"\best\b", r"\bost", r"oost", r"\beste\b", r"\by\b", r"\by ?pos", r"pos ?y", r"\by ?0\b", r"東",
+        r"东",
+    )),
+    (DATE, (
+        r"\bdate\b", r"datum", r"fecha", r"\bdata\b", r"日付", r"日期", r"\bday\b",
+    )),
+    (TIME, (
+        r"\btime", r"\bt\b", r"zeit", r"\buhr", r"temps", r"tijd", r"tiempo", r"\bhora", r"heure", r"tempo\b",
+        r"\butc\b", r"\bgmt\b", r"stamp", r"sec(ond)?s?\b", r"sekunde", r"klok", r"時", r"时", r"시간", r"datetime",
+        r"aika", r"\btid",
+    )),
+)  # fmt: skip
+"""Quantities by what their names have in them; what stands first is looked for first."""
+
+_PATTERNS = tuple((quantity, re.compile("|".join(words))) for quantity, words in _WORDS)
+_DIRECTION = re.compile(r"dir|angle|richtung|winkel|hoek|richt|rumbo|awa|twd|\bdd?\b|向|from|풍향|cap|angulo")
+_SIDES = (re.compile(_PORT), re.compile(_STARBOARD))
+
+_UNITS = {
+    "knoten": "kn", "kt": "kn", "kts": "kn", "kn": "kn", "knots": "kn", "noeuds": "kn", "nudos": "kn", "nodi": "kn",
+    "knopen": "kn", "knop": "kn", "节": "kn", "ノット": "kn", "노트": "kn",
+    "kmh": "km/h", "mps": "m/s", "m/sec": "m/s", "ms-1": "m/s",
+    "deg": "deg", "degs": "deg", "grad": "deg", "degres": "deg", "degre": "deg", "grados": "deg", "gradi": "deg",
+    "graden": "deg", "gr": "deg", "º": "deg", "°": "deg", "度": "deg", "도": "deg", "rad": "rad", "radians": "rad",
+    "degps": "deg/s", "deg/sec": "deg/s", "dps": "deg/s", "grad/s": "deg/s", "°/sec": "deg/s", "º/s": "deg/s",
+    "grad/min": "deg/min", "deg/min": "deg/min", "°/min": "deg/min", "deg/minute": "deg/min", "degpmin": "deg/min",
+    "graden/min": "deg/min", "grados/min": "deg/min", "rads": "rad/s", "rad/sec": "rad/s", "radps": "rad/s",
+    "rpm": "rpm", "u/min": "rpm", "upm": "rpm", "tr/min": "rpm", "omw/min": "rpm", "giri/min": "rpm", "t/min": "rpm",
+    "min-1": "rpm", "min^-1": "rpm", "rps": "rps", "rev/s": "rps", "u/s": "rps", "tr/s": "rps", "hz": "1/s",
+    "sek": "s", "sec": "s", "msec": "ms", "metres": "m", "meter": "m", "metros": "m", "米": "m", "秒": "s",
+}  # fmt: skip
+"""Names of units beyond those that maps know, as other languages and names without brackets write them."""
+
+
+@lru_cache(maxsize=4096)
+def plain(name: str) -> str:
+    """A name in small letters, without accents, marks and unit."""
+    name = bare(name[:200])
+    name = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
+    name = "".join(one for one in unicodedata.normalize("NFKD", name) if not unicodedata.combining(one))
+    return " ".join(re.sub(r"[\W_]+", " ", name.lower()).split())
+
+
+@lru_cache(maxsize=4096)
+def quantity_named(name: str) -> str:
+    """The quantity that a name speaks of, or one of the words above; "" where it says nothing."""
+    text = plain(name)
+    if not text or len(text) > 120:
+        return ""
+    found = next((quantity for quantity, pattern in _PATTERNS if pattern.search(text)), "")
+    if found in ("wind_speed", "wind_speed_app") and _DIRECTION.search(text):
+        return found.replace("speed", "dir")
+    if found in ("delta", "n"):
+        port, starboard = (bool(side.search(text)) for side in _SIDES)
+        if port != starboard:
+            return f"{found}_{'port' if port else 'stbd'}"
+    return found
+
+
+@lru_cache(maxsize=4096)
+def unit_named(name: str, row: str = "") -> str:
+    """The unit that a name has in it, or that stands below it; "" where none is said."""
+    for text in (row.strip().strip("[]()"), unit_in(name) or ""):
+        if text and (known := known_unit(text)):
+            return known
+    words = re.split(r"[\s_]+", name.strip().lower())
+    # A name that is one word alone is no unit: "s", "m" and "deg" are what people call columns.
+    for size in (2, 1):
+        if len(words) > size and (known := known_unit("/".join(words[-size:]))):
+            return known
+    return ""
+
+
+def known_unit(text: str) -> str:
+    """A unit by the program's name for it; "" where it is none."""
+    folded = "".join(
+        one for one in unicodedata.normalize("NFKD", text.strip().lower()) if not unicodedata.combining(one)
+    )
+    found = _UNITS.get(text.strip().lower()) or _UNITS.get(folded) or units.canonical(text)
+    return found if any(found in units.factors(unit) for unit in KINDS) else ""
+
+
+KINDS = ("m", "m/s", "rad", "rad/s", "1/s", "s")
+"""Units of quantities, by which names of units are looked up."""

@@ -1,0 +1,179 @@
+"""Reading spreadsheets: one sheet of a workbook (.xlsx), by openpyxl."""
+
+from __future__ import annotations
+
+import datetime
+import itertools
+import re
+import warnings
+import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ..errors import LogError, Problem, brief, closest
+from ..limits import LOG_COLUMNS, SHEET_BYTES, SHEET_CELLS
+from .cells import table_of
+from .mapping import LogMap
+from .table import Table
+
+ENTRIES = 2000
+"""Parts that a workbook may have."""
+LONGEST = 200
+"""Characters of a cell that are looked at."""
+OLD = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
+"""How a workbook of the older kind begins (.xls), and one with a password."""
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """One sheet: its rows as they stand, empty cells None, ragged; ``names`` of all sheets of the workbook."""
+
+    name: str
+    rows: list[tuple[Any, ...]]
+    names: tuple[str, ...]
+
+
+def read_workbook(path: Path, log_map: LogMap) -> Table:
+    """The columns of a sheet that a map names.
+
+    Raises LogError where it cannot be read, is empty, has formulas without results, or lacks a column.
+    """
+    import pandas as pd
+
+    sheet = sheet_of(path, log_map.sheet)
+    rows = sheet.rows[log_map.skip :]
+    where = f"{path}, sheet '{sheet.name}', row {log_map.skip + 1}"
+    if not any(rows):
+        why = f"the sheet has {len(sheet.rows)} rows, of which {log_map.skip} are to be skipped"
+        raise LogError(Problem("the log has no rows", where, why, "check 'sheet' and 'skip' in [log], and the file"))
+    names = names_of(rows, log_map.header)
+    if log_map.header and names and all(_numeric(one) for one in names if one):
+        fix = "say header = false in [log] and give columns by number, or correct 'skip'"
+        raise LogError(Problem("numbers where names of columns should be", where, f"the row is {brief(names)}", fix))
+    if not log_map.header and log_map.fields not in (None, len(names)):
+        why = f"its rows have {len(names)} cells, and the map is for rows of {log_map.fields}"
+        fix = "use the map made for this log, or correct sheet, skip and fields in [log]"
+        raise LogError(Problem("the log is of another kind than the map is for", where, why, fix))
+    body = rows[1:] if log_map.header else rows
+    columns = [
+        pd.Series([as_text(row[k]) if k < len(row) else None for row in body], dtype="string")
+        for k in range(len(names))
+    ]
+    first = log_map.skip + (2 if log_map.header else 1)
+    table = table_of(path, log_map, names, columns, first, "row", where)
+    empty = [table.headers[name] for name, values in table.columns.items() if not (values == values).any()]
+    if empty and (formula := _formula(path, sheet.name, names, empty)):
+        why = f"a cell says {formula}, and the file does not hold what comes of it"
+        fix = "open it in a spreadsheet program and save it again, or save the values alone"
+        raise LogError(Problem(f"column '{empty[0]}' holds formulas without results", where, why, fix))
+    return table
+
+
+def sheet_of(path: Path, wanted: str) -> Sheet:
+    """A sheet by name, or the first that holds rows of numbers where ``wanted`` is "".  Raises LogError."""
+    with _opened(path) as book:
+        names = tuple(one.title for one in book.worksheets)
+        if wanted and wanted not in names:
+            place, fix = f"{path}, [log] sheet of the map", closest(wanted, names)
+            raise LogError(Problem(f"the workbook has no sheet '{wanted[:80]}'", place, fix=fix))
+        found = None
+        for one in book.worksheets:
+            if wanted in ("", one.title):
+                found = Sheet(one.title, _rows(one, path), names)
+                if wanted or sum(any(isinstance(cell, float | int) for cell in row) for row in found.rows) > 1:
+                    return found
+        if found is None:
+            raise LogError(Problem("the workbook has no sheet with cells", str(path), fix="give another file"))
+        return found
+
+
+def names_of(rows: list[tuple[Any, ...]], header: bool) -> list[str]:
+    """Names of the columns: of the first row, or by number."""
+    width = max(len(row) for row in rows[:50])
+    if not header:
+        return [f"column {k}" for k in range(1, width + 1)]
+    return [as_text(one) or "" for one in rows[0]] + [""] * (width - len(rows[0]))
+
+
+def as_text(cell: Any) -> str | None:
+    """A cell as logs print it: numbers with all their digits, dates and times in ISO 8601; None where it is empty."""
+    if cell is None:
+        return None
+    if isinstance(cell, datetime.timedelta):
+        seconds = cell.total_seconds()
+        return f"{int(seconds // 3600):02d}:{int(seconds % 3600 // 60):02d}:{seconds % 60:09.6f}"
+    if isinstance(cell, datetime.datetime | datetime.date | datetime.time):
+        return cell.isoformat()
+    return repr(cell) if isinstance(cell, float) else str(cell)[:LONGEST].strip()
+
+
+@contextmanager
+def _opened(path: Path, formulas: bool = False) -> Iterator[Any]:
+    """A workbook whose parts are within limits.  Raises LogError where it is damaged."""
+    import openpyxl
+
+    try:
+        with zipfile.ZipFile(path) as parts:
+            listed = parts.infolist()
+            # What is read of a part never exceeds the size that its entry says.
+            SHEET_BYTES.hold(sum(one.file_size for one in listed), str(path), LogError)
+            if len(listed) > ENTRIES:
+                raise LogError(Problem(f"the workbook has {len(listed)} parts", str(path), f"the limit is {ENTRIES}"))
+            for one in listed:
+                with parts.open(one) as file:
+                    start = file.read(2048)
+                if b"<!DOCTYPE" in start or b"<!ENTITY" in start:
+                    what = f"part '{one.filename[:80]}' of the workbook declares a document type"
+                    raise LogError(Problem(what, str(path), "no spreadsheet program writes that", "save it again"))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            book = openpyxl.load_workbook(path, read_only=True, data_only=not formulas, keep_links=False)
+            try:
+                yield book
+            finally:
+                book.close()
+    except (LogError, MemoryError):
+        raise
+    except Exception as error:  # the library raises what it comes across where a file is damaged
+        why = f"{type(error).__name__}: {str(error)[:200]}"
+        fix = "save it again as .xlsx with a spreadsheet program, or save the sheet as CSV"
+        raise LogError(Problem("the workbook cannot be read", str(path), why, fix)) from error
+
+
+def _rows(sheet: Any, path: Path) -> list[tuple[Any, ...]]:
+    """All rows of a sheet, the empty ones at its end left out."""
+    # The sheet's own word on its size is not to be relied on, and every row would be filled up to it.
+    sheet.reset_dimensions()
+    rows: list[tuple[Any, ...]] = []
+    cells = 0
+    for row in sheet.iter_rows(values_only=True):
+        cells += len(row) + 1
+        LOG_COLUMNS.hold(len(row), f"{path}, row {len(rows) + 1}", LogError)
+        SHEET_CELLS.hold(cells, str(path), LogError)
+        rows.append(row)
+    while rows and all(cell is None for cell in rows[-1]):
+        rows.pop()
+    return rows
+
+
+def _formula(path: Path, sheet: str, names: list[str], empty: list[str]) -> str:
+    """The first formula in columns that have no numbers, "" where there is none."""
+    with _opened(path, formulas=True) as book:
+        found = next(one for one in book.worksheets if one.title == sheet)
+        found.reset_dimensions()
+        for row in itertools.islice(found.iter_rows(values_only=True), 200):
+            for name, cell in zip(names, row, strict=False):
+                if name in empty and isinstance(cell, str) and re.match(r"=\S", cell):
+                    return f"'{cell[:60]}'"
+    return ""
+
+
+def _numeric(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

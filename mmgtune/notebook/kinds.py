@@ -1,0 +1,55 @@
+"""Which results there are, by the names of their classes: so nothing is imported that did not make one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from . import fits, judgements, ships
+from .view import View
+
+
+def _prediction(result: Any) -> View:
+    from . import predictions  # imports all that predicts
+
+    return predictions.prediction(result)
+
+
+def _plan(result: Any) -> View:
+    from . import predictions
+
+    return predictions.plan(result)
+
+
+def _headings(result: Any) -> View:
+    from . import predictions
+
+    return predictions.headings(result)
+
+
+KINDS: Mapping[str, Callable[[Any], View]] = {
+    "ShipProfile": ships.profile,
+    "Trial": ships.trial,
+    "TrialSet": ships.trials,
+    "Motion": ships.motion,
+    "Simulated": ships.simulation,
+    "TrialRecord": ships.record,
+    "FitResult": fits.fit,
+    "SweepResult": fits.sweep,
+    "LeftOut": fits.left_out,
+    "Posterior": fits.posterior,
+    "Diagnosis": judgements.diagnosis,
+    "Validation": judgements.validation,
+    "ModelComparison": judgements.models,
+    "Comparison": judgements.profiles,
+    "CheckReport": judgements.check,
+    "VoyageValidation": judgements.voyages,
+    "Predicted": _prediction,
+    "TrialPlan": _plan,
+    "HeadingStudy": _headings,
+}
+
+
+def view_of(of: object) -> View:
+    """What there is to see of a result."""
+    return KINDS[type(of).__name__](of)

@@ -1,0 +1,79 @@
+"""What is foretold: predictions with bands, trials to sail next, gains of a helmsman."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..predicting.reading import BY_KEY
+from .ships import measured
+from .view import Line, Row, View
+
+if TYPE_CHECKING:
+    from ..heading_keeping import HeadingStudy
+    from ..planning import TrialPlan
+    from ..predicting import Predicted
+
+PARTICLES = 40
+"""Particles of a prediction that are drawn."""
+
+
+def prediction(result: Predicted) -> View:
+    """A row a manoeuvre and index: the middle of the particles and the band that holds the share asked for."""
+    rows: list[Row] = []
+    for run in result.runs:
+        for key in run.indices:
+            band = run.index(key, result.level)
+            ends = {"low": band.low, "high": band.high} if result.has_band else {}
+            rows.append(
+                {
+                    "manoeuvre": run.id,
+                    "index": BY_KEY[key].words,
+                    "median" if result.has_band else "predicted": band.median,
+                    **ends,
+                    "unit": BY_KEY[key].unit,
+                    "measured": run.measured.get(key),
+                    **({"reached": f"{band.reached} of {band.particles}"} if result.has_band else {}),
+                }
+            )
+    says = [f"Between low and high lie {result.options.level:g} % of the particles."] if result.has_band else []
+    return View(repr(result), says, rows, result.notes, spare=("reached",), motions=lambda: _foretold(result))
+
+
+def _foretold(result: Predicted) -> Mapping[str, list[Line]]:
+    """Each manoeuvre: measured where there is a trial, and the first particles that did not diverge."""
+    found = {}
+    for run in result.runs:
+        lines = [measured(run.trial)] if run.trial else []
+        for k, states in enumerate(run.sound[:PARTICLES]):
+            columns = dict(zip(("x", "y", "psi", "u", "v_m", "r"), states.T, strict=True))
+            words = f"{PARTICLES} of {len(run.sound)} particles" if len(run.sound) > PARTICLES else result.name
+            lines.append(Line(words if k == 0 else "", "member" if len(run.sound) > 1 else "model", run.t, columns))
+        found[run.id] = lines
+    return found
+
+
+def headings(result: HeadingStudy) -> View:
+    """A row a pair of gains: scores of the true system, and of each simulator the mean of its members."""
+    rows: list[Row] = []
+    for i, first in enumerate(result.gains):
+        for j, second in enumerate(result.gains):
+            row: dict[str, Any] = {
+                "K_P [deg/rad]": float(first),
+                "K_D [deg s/rad]": float(second),
+                f"{result.true_ship} [rad s]": float(result.truth[i, j]),
+            }
+            row |= {f"{one.name} [rad s]": float(np.mean(one.scores[:, i, j])) for one in result.models}
+            rows.append(row)
+    return View(repr(result), [], rows)
+
+
+def plan(result: TrialPlan) -> View:
+    """A row a trial that could be sailed, the one that tells most first."""
+    rows: list[Row] = [
+        {"trial": one.words, "duration [s]": one.duration, "half width after": one.half, "share that goes": one.shrinks}
+        for one in result.trials
+    ]
+    return View(repr(result), [], rows, result.notes)

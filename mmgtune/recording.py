@@ -1,0 +1,117 @@
+"""Run folders of what is computed in one go, a simulation or a validation, so that it has a report."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .files import write_text
+from .fitting.folder import write_table
+from .inputs import INPUTS
+from .physics.quantities import STATES
+from .predictor import profile_of
+from .provenance import made_by
+from .simulating import Simulated
+from .simulation import Motion, simulate
+from .trial import TrialSet
+from .validating import Validation
+
+DRAWN = "drawn"
+"""Folder inside that of a simulation, which holds trial files, with what only its report needs."""
+
+MOST = 400
+"""Trials or windows whose motions are kept for the report of a validation."""
+
+
+def write_simulation(result: Simulated, rows: Sequence[Mapping[str, Any]], folder: Path, command: str) -> None:
+    """Write simulate.json beside the trial files, and the motions its report draws.
+
+    rows  of the runs, as ``Simulated.rows`` has them and with what was added since
+    """
+    measured = [record.measured.trial if record else None for record in result.records or [None] * len(result.motions)]
+    columns = _columns(result.predictor.inputs)
+    seen: set[str] = set()
+    for motion, trial in zip(result.motions, measured, strict=True):
+        if trial is not None and trial.id not in seen:
+            _add(columns, motion.id, "measured", trial.t, trial.motion, trial.inputs(result.predictor.inputs))
+            seen.add(trial.id)
+        if motion.member == 0:
+            _add(columns, motion.id, "simulated", motion.t, motion.states, motion.controls)
+    (folder / DRAWN).mkdir(parents=True, exist_ok=True)
+    write_table(folder / DRAWN / "motions.parquet", _joined(columns))
+    if result.ship is not None:
+        write_text(folder / DRAWN / "profile.toml", result.ship.text)
+    _write(
+        folder / "simulate.json",
+        {
+            **result.to_dict(),
+            "kind": "simulate",
+            **made_by(command),
+            "runs": list(rows),
+            "ship": result.ship.name if result.ship else result.predictor.name,
+            "L_pp": result.predictor.L_pp,
+            "inputs": [INPUTS[name].to_dict() for name in result.predictor.inputs],
+            "out": str(folder),
+        },
+    )
+
+
+def write_validation(result: Validation, data: TrialSet, folder: Path, command: str) -> dict[str, Any]:
+    """Write validate.json, and the motions of the first member of each predictor.  Returns the document.
+
+    data  the trials the predictors were scored on
+    """
+    restart = result.options.restart
+    pieces = list((data.in_windows(restart) if restart else data).trials.values())[:MOST]
+    names = list(dict.fromkeys(name for one in result.profiles for name in one.predictor.inputs))
+    columns = _columns(names)
+    for trial in pieces:
+        _add(columns, trial.id, "measured", trial.t, trial.motion, trial.inputs(names))
+    for one in result.profiles:
+        for motion in _first_members(simulate(one.predictor, pieces)):
+            given = dict(zip(one.predictor.inputs, motion.controls.T, strict=True))
+            driven = np.column_stack([given.get(name, np.full(len(motion.t), np.nan)) for name in names])
+            _add(columns, motion.id, one.name, motion.t, motion.states, driven)
+    write_table(folder / "motions.parquet", _joined(columns))
+    ships = [profile for one in result.profiles if (profile := profile_of(one.predictor)) is not None]
+    document = {
+        **result.to_dict(),
+        **made_by(command),
+        "ship": ships[0].name if ships else result.profiles[0].predictor.name,
+        "L_pp": result.profiles[0].predictor.L_pp,
+        "sources": {trial.id: trial.source for trial in pieces},
+        "inputs": [INPUTS[name].to_dict() for name in names],
+        "out": str(folder),
+    }
+    _write(folder / "validate.json", document)
+    return document
+
+
+def _first_members(motions: Sequence[Motion]) -> list[Motion]:
+    return [motion for motion in motions if motion.member == 0]
+
+
+def _columns(inputs: Sequence[str]) -> dict[str, list[Any]]:
+    return {name: [] for name in ("trial", "which", "t", *STATES, *inputs)}
+
+
+def _add(columns: dict[str, list[Any]], id: str, which: str, t: Any, states: Any, controls: Any) -> None:
+    """A motion: t (n,), states (n, 6), controls (n, n_inputs)."""
+    values = [np.full(len(t), id, dtype=object), np.full(len(t), which, dtype=object), t, *states.T, *controls.T]
+    for column, value in zip(columns.values(), values, strict=True):
+        column.append(value)
+
+
+def _joined(columns: Mapping[str, list[Any]]) -> dict[str, Any]:
+    empty = {"trial": np.zeros(0, dtype=str), "which": np.zeros(0, dtype=str)}
+    return {
+        name: np.concatenate(values) if values else empty.get(name, np.zeros(0)) for name, values in columns.items()
+    }
+
+
+def _write(path: Path, document: Mapping[str, Any]) -> None:
+    write_text(path, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")

@@ -1,0 +1,151 @@
+"""The report of a check: whether a profile still reproduces its trials."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from . import advice
+from .blocks import Block, Card, Cell, Commands, Fold, Nothing, Page, Prose, Section, Table, cells
+from .common import doubts, made_table, picture
+from .load import Kind
+from .plot import Axis, Bar, Figure, Look, Mark, Panel, Rule
+from .wording import NONE, clean, coefficient_text, count, number, sentence, share, shown
+
+_WORDS = {
+    "regressed": "worse", "ok": "as good", "improved": "better", "not comparable": "not comparable",
+    "skipped": "not measured",
+}  # fmt: skip
+_TONES = {"regressed": "bad", "improved": "good", "not comparable": "note"}
+_BARS = 14
+_FAR = 4.0
+"""Allowances at which a bar ends."""
+
+
+def build(data: Mapping[str, Any]) -> Page:
+    """Everything the report of a check says."""
+    sections = [
+        _worst(data),
+        _changed(data),
+        _all(data),
+        Section("next", "What to do next", (Commands(advice.after_check(data)),)) if data["next"] else None,
+        _made(data),
+    ]
+    compared = "its own limits" if data["baseline"] is None else clean(data["baseline"])
+    problems = tuple(clean(one["what"]) for one in data["problems"])
+    return Page(
+        title=f"Check of {clean(data['profile'])}",
+        eyebrow=f"{clean(data['profile'])} on {clean(data['trials'])} against {compared}",
+        verdict=_verdict(data),
+        warnings=(*problems, *(sentence(note) for note in data["notes"]), *doubts(data)),
+        cards=_cards(data),
+        sections=tuple(section for section in sections if section is not None),
+    )
+
+
+def _verdict(data: Mapping[str, Any]) -> str:
+    return " ".join(clean(data["sentence"]).split())
+
+
+def _cards(data: Mapping[str, Any]) -> tuple[Card, ...]:
+    worst = next((row for row in _ordered(data) if row["status"] == "regressed"), None)
+    cards = []
+    if worst is not None:
+        unit = f" {clean(worst['unit'])}" if worst["unit"] else ""
+        value = f"{shown(worst['baseline'], 3)} → {shown(worst['now'], 3)}{unit}"
+        note = f"{clean(worst['metric'])} of {clean(worst['trial'])}, allowed {shown(worst['allowed'], 2)}{unit}"
+        cards.append(Card("Worst", value, note=note, tone="bad"))
+    counts = data["counts"]
+    for status in ("regressed", "improved", "ok"):
+        n = int(counts.get(status, 0))
+        tone = _TONES.get(status, "") if n else ""
+        cards.append(Card(_WORDS[status].capitalize(), count(n, "metric"), tone=tone))
+    return tuple(cards[:4])
+
+
+def _severity(row: Mapping[str, Any]) -> float:
+    """Change over what is allowed: above 1 is a regression."""
+    allowed, moved = number(row["allowed"]), number(row["change"])
+    if moved is None and row["baseline"] is None:
+        moved = number(row["now"])
+    return moved / allowed if allowed and moved is not None else float("inf") if row["status"] == "regressed" else 0.0
+
+
+def _ordered(data: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    rank = {"regressed": 0, "not comparable": 1, "improved": 2, "ok": 3}
+    return sorted(data["items"], key=lambda row: (rank.get(row["status"], 4), -abs(_severity(row))))
+
+
+def _worst(data: Mapping[str, Any]) -> Section | None:
+    rows = [row for row in _ordered(data) if row["status"] in ("regressed", "improved", "ok")]
+    rows = sorted(rows, key=_severity, reverse=True)[:_BARS]
+    if not rows:
+        return Section("worst", "Metrics", (Nothing("Nothing could be compared."),))
+    marks: list[Mark] = [Rule(1.0, Look("flag", 1.4, "dash"))]
+    for k, row in enumerate(rows):
+        size = max(min(_severity(row), _FAR), -_FAR)
+        marks.append(Bar((0.0, size), (k - 0.3, k + 0.3), "flag" if row["status"] == "regressed" else "muted", 0.85))
+    ticks = tuple((float(k), f"{clean(row['trial'])}: {clean(row['metric'])}"[-44:]) for k, row in enumerate(rows))
+    low = min(0.0, *(max(min(_severity(row), _FAR), -_FAR) for row in rows))
+    x = Axis(
+        "change over what is allowed [–]", low - 0.05, max(1.2, *(min(_severity(row), _FAR) for row in rows)) + 0.05
+    )
+    y = Axis(low=len(rows) - 0.4, high=-0.6, ticks=ticks, grid=False)
+    figure = Figure("metrics", "Change of each metric over what is allowed", (Panel(tuple(marks), x, y,
+                    shape=-(25.0 * len(rows) + 50.0)),), (("allowed", Look("flag", 1.4, "dash")),))  # fmt: skip
+    caption = f"The {count(len(rows), 'metric')} that changed most for the worse; right of the line is a regression."
+    if any(_severity(row) > _FAR for row in rows):
+        caption += f" Bars end at {_FAR:g} times what is allowed."
+    return Section("worst", "What changed", (picture(figure, "Metrics", caption),))
+
+
+def _changed(data: Mapping[str, Any]) -> Section | None:
+    rows: Sequence[Mapping[str, Any]] = data["changed"]
+    if not rows:
+        return None
+    lines = tuple(
+        cells(
+            clean(row["name"]),
+            coefficient_text(row["baseline"]),
+            coefficient_text(row["now"]),
+            str(row["line"]) if row["line"] is not None else NONE,
+            share(row["share"]),
+        )
+        for row in rows
+    )
+    heads = ("coefficient", "baseline", "now", "line of the profile", "undoes")
+    about = (("undoes", "share of what J got worse by that this coefficient's old value alone takes back"),)
+    table = Table("changed-table", "Coefficients that are not what they were", heads, lines, (1, 2, 3, 4), about)
+    return Section("changed", "Changed coefficients", (table,))
+
+
+def _all(data: Mapping[str, Any]) -> Section:
+    lines = []
+    for row in _ordered(data):
+        unit = f" [{clean(row['unit'])}]" if row["unit"] else ""
+        lines.append(
+            cells(
+                clean(row["trial"]),
+                f"{clean(row['metric'])}{unit}",
+                shown(row["baseline"]),
+                shown(row["now"]),
+                shown(row["change"], 2),
+                shown(row["allowed"], 2),
+                Cell(_WORDS.get(row["status"], clean(row["status"])), _TONES.get(row["status"], "")),
+                clean(row["reason"]),
+            )
+        )
+    heads = ("trial", "metric", "baseline", "now", "change", "allowed", "", "why")
+    table = Table("items-table", "All metrics, the worst first", heads, tuple(lines), range(2, 6))
+    block: Block = table if len(lines) <= 24 else Fold(f"All {len(lines)} metrics", (table,))
+    return Section("items", "All metrics", (block,) if lines else (Prose(("There are none.",)),))
+
+
+def _made(data: Mapping[str, Any]) -> Section:
+    items = [("profile", clean(data["profile"])), ("profile's hash (SHA-256)", clean(data["profile_sha256"])),
+             ("baseline", clean(data["baseline"] or "none: limits of the trials alone")),
+             ("simulated by", f"{clean(data['integrator'])}, {clean(data['backend'])}")]  # fmt: skip
+    return Section("provenance", "Provenance", (made_table(data, items),))
+
+
+KIND = Kind("check", ("verdict", "sentence", "items", "changed", "counts", "next"), lambda _, data: data, build)

@@ -1,0 +1,205 @@
+"""What trials visit and what they do not: sides, rudder angles, speeds, astern.
+
+What a fit, a diagnosis or a simulation says of the ship holds where measurements were; this says where that is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..effects import Visited
+from ..units import DEG
+
+SLOW = 0.2
+"""Speed below which drift and r L / U are not asked for, as a share of the largest: near rest they may be anything."""
+
+AT_REST = 0.02
+"""Speed that is hardly any, as a share of the largest."""
+
+ONE_SIDE = 0.25
+"""A side is visited where rudder or turning go to it by more than this share of what they go to the other."""
+
+LEAST_RUDDER = 2.0 * DEG
+"""Rudder angle [rad] to a side that is no more than keeping a course."""
+
+BEYOND = 0.15
+"""What is asked for may exceed what was visited by this share of it."""
+
+SLACK = 1.0 * DEG
+"""The same of rudder angles [rad], for gears that miss their angle."""
+
+
+class Sailed(Protocol):
+    """A trial, or the track of a simulated run: columns (n_samples,) in SI units."""
+
+    @property
+    def t(self) -> FloatArray: ...
+    @property
+    def u(self) -> FloatArray: ...
+    @property
+    def v_m(self) -> FloatArray: ...
+    @property
+    def r(self) -> FloatArray | None: ...
+    @property
+    def n(self) -> FloatArray | None: ...
+    @property
+    def delta(self) -> FloatArray: ...
+
+
+def visited_by(trials: Iterable[Sailed], L_pp: float) -> Visited:
+    """What trials visit, sample by sample.  L_pp [m]."""
+    rows = [_samples(trial, L_pp) for trial in trials]
+    columns: FloatArray = np.concatenate(rows) if rows else np.zeros((0, 7))
+    return Visited(*columns.T)
+
+
+def _samples(trial: Sailed, L_pp: float) -> FloatArray:
+    """(n_samples, 7) the fields of ``Visited``."""
+    unknown = np.full(len(trial.t), np.nan)
+    r, n = (unknown if column is None else column for column in (trial.r, trial.n))
+    step = np.diff(trial.t)
+    seconds = np.concatenate([step[:1], step]) if len(step) else np.zeros(len(trial.t))
+    seconds = np.minimum(seconds, 2.0 * float(np.median(seconds)))  # a pause of the log is no time spent anywhere
+    speed = np.hypot(trial.u, trial.v_m)
+    fastest = float(np.max(speed[np.isfinite(speed)], initial=0.0))
+    under_way = speed > max(SLOW * fastest, 1e-9)
+    rate = np.where(under_way, r * L_pp / np.where(under_way, speed, 1.0), np.nan)
+    drift = np.where(under_way, np.arctan2(-trial.v_m, trial.u), np.nan)
+    return np.column_stack([seconds, trial.delta, speed, trial.u, rate, drift, n])
+
+
+@dataclass(frozen=True)
+class Coverage:
+    """The range of what trials visit, each beyond which no more than a few seconds are spent.
+
+    rudder    (to port, to starboard) [rad]: least and largest angle
+    rate      least and largest r L / U [-], positive to starboard
+    drift     least and largest drift angle [rad]
+    speed     least and largest speed over ground [m/s]
+    ahead     least and largest u [m/s]
+    """
+
+    rudder: tuple[float, float]
+    rate: tuple[float, float]
+    drift: tuple[float, float]
+    speed: tuple[float, float]
+    ahead: tuple[float, float]
+
+    @classmethod
+    def of(cls, trials: Iterable[Sailed], L_pp: float) -> Coverage:
+        """That of trials; NaN where a channel was never measured, and without trials.  L_pp [m]."""
+        seen = visited_by(trials, L_pp)
+        return cls(*(seen.span(getattr(seen, name)) for name in ("rudder", "rate", "drift", "speed", "ahead")))
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> Coverage | None:
+        """From ``to_dict``; None where it is not one."""
+        try:
+            rudder, drift = (
+                (float(low) * DEG, float(high) * DEG) for low, high in (data["rudder_deg"], data["drift_deg"])
+            )
+            rate, speed, ahead = (
+                (float(low), float(high)) for low, high in (data["yaw_rate"], data["speed_m_per_s"], data["u_m_per_s"])
+            )
+        except (KeyError, TypeError, ValueError):
+            return None
+        return cls(rudder, rate, drift, speed, ahead)
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON and profiles, rounded to what can be told: angles in degrees; empty where nothing is known."""
+        if not np.isfinite([*self.rudder, *self.rate, *self.drift, *self.speed, *self.ahead]).all():
+            return {}
+
+        def rounded(pair: tuple[float, float], digits: int, factor: float = 1.0) -> list[float]:
+            return [round(factor * value, digits) + 0.0 for value in pair]
+
+        return {
+            "rudder_deg": rounded(self.rudder, 1, 1.0 / DEG),
+            "yaw_rate": rounded(self.rate, 3),
+            "drift_deg": rounded(self.drift, 1, 1.0 / DEG),
+            "speed_m_per_s": rounded(self.speed, 3),
+            "u_m_per_s": rounded(self.ahead, 3),
+            "sides": list(self.sides),
+            "astern": self.astern,
+        }
+
+    @property
+    def sides(self) -> tuple[str, ...]:
+        """Sides she turned to under rudder: "port", "starboard", both, or none."""
+        found = []
+        for side, sign in (("port", -1), ("starboard", 1)):
+            rudder, rate = (max(0.0, max(sign * end for end in pair)) for pair in (self.rudder, self.rate))
+            other = [max(0.0, max(-sign * end for end in pair)) for pair in (self.rudder, self.rate)]
+            if rudder > max(LEAST_RUDDER, ONE_SIDE * other[0]) and rate > ONE_SIDE * other[1]:
+                found.append(side)
+        return tuple(found)
+
+    @property
+    def unseen_side(self) -> str:
+        """The side she never turned to while she did to the other; "" where there is none."""
+        if len(self.sides) != 1:
+            return ""
+        return "starboard" if self.sides[0] == "port" else "port"
+
+    @property
+    def astern(self) -> bool:
+        """Whether she went astern."""
+        return self.ahead[0] < -AT_REST * max(abs(self.ahead[1]), abs(self.ahead[0]))
+
+    @property
+    def sentence(self) -> str:
+        """What was visited, in words."""
+        if not self.to_dict():
+            return "What the trials visit cannot be told: a channel was never measured."
+        low, high = (value / DEG for value in self.rudder)
+        rudder = f"rudder from {_side(low)} to {_side(high)}"
+        sides = ("no turn", f"turns to {self.sides[0]} only" if self.sides else "", "turns to both sides")[
+            len(self.sides)
+        ]
+        astern = "also astern" if self.astern else "never astern"
+        return (
+            f"The trials visit: {rudder}, {sides}, speeds of {self.speed[0]:.3g} to {self.speed[1]:.3g} m/s, {astern}."
+        )
+
+    def unvisited_by(self, other: Coverage) -> list[str]:
+        """What another run goes to and these trials do not, in words; empty where they visit all of it."""
+        if not (self.to_dict() and other.to_dict()):
+            return []
+        found = []
+        for side, sign in (("port", -1), ("starboard", 1)):
+            asked = max(0.0, max(sign * end for end in other.rudder))
+            known = max(0.0, max(sign * end for end in self.rudder))
+            if asked > LEAST_RUDDER and asked > (1.0 + BEYOND) * known + SLACK:
+                turns = (
+                    f"no turn to {side}"
+                    if side == self.unseen_side
+                    else f"rudder to {side} up to {known / DEG:.0f} deg"
+                )
+                found.append(f"rudder of {asked / DEG:.0f} deg to {side}: they hold {turns}")
+        slow, fast = self.speed
+        if other.speed[1] > (1.0 + BEYOND) * fast:
+            found.append(f"a speed of {other.speed[1]:.3g} m/s: theirs goes up to {fast:.3g} m/s")
+        if other.speed[1] < (1.0 - BEYOND) * slow:
+            found.append(f"speeds up to {other.speed[1]:.3g} m/s alone: theirs begins at {slow:.3g} m/s")
+        if other.astern and not self.astern:
+            found.append("going astern: they never do")
+        return found
+
+
+def _side(degrees: float) -> str:
+    """A rudder angle with its side."""
+    if abs(degrees) < 0.5:
+        return "0 deg"
+    return f"{abs(degrees):.0f} deg to {'starboard' if degrees > 0.0 else 'port'}"
+
+
+BY_SIDE: Sequence[tuple[str, str]] = (
+    ("rudder.gamma_Rp", "rudder.gamma_Rn"),
+    ("wake.C_2p", "wake.C_2n"),
+)
+"""Coefficients that act on one side of the flow each: where it comes from port (starboard turns), from starboard."""

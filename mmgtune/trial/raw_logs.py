@@ -1,0 +1,53 @@
+"""Logs where trials are expected: what to do with them, as commands that can be pasted."""
+
+from __future__ import annotations
+
+import shlex
+from collections import Counter
+from pathlib import Path
+
+from ..errors import Problem
+
+KINDS = (".csv", ".txt", ".dat", ".tsv", ".asc", ".log", ".nmea", ".xlsx", ".mat")
+"""Endings of files that logs have."""
+
+NOTES = ("readme", "licence", "license", "citation", "changelog")
+"""Beginnings of names that text files beside data have."""
+
+WHY = "trials are Parquet files with columns of known names and units; a map says what the columns of a log are"
+
+
+def raw_logs(path: Path) -> list[Path]:
+    """What looks like a log in a folder, or the file itself where it looks like one."""
+    if path.is_dir():
+        files = sorted(one for one in path.iterdir() if one.is_file() and not one.name.startswith("."))
+    else:
+        files = [path]
+    return [one for one in files if one.suffix.lower() in KINDS and not one.stem.lower().startswith(NOTES)]
+
+
+def logs_instead(path: Path) -> Problem | None:
+    """The problem of logs where trials are expected, with commands that make trials of them; None of others."""
+    found = raw_logs(path)
+    if not found:
+        return None
+    what = f"'{path.name}' is a log, not a trial" if path.is_file() else "the folder holds logs, not trials"
+    return Problem(what, str(path), WHY, import_commands(_as_argument(path, found)))
+
+
+def import_commands(argument: str) -> str:
+    """What makes trials of logs: find out what the columns are, then import.  ``argument`` names them for a shell."""
+    return (
+        f"mmgtune trials map {argument} -o map.toml, look at what it asks, then "
+        f"mmgtune trials import {argument} --map map.toml -o imported, and give the folder imported"
+    )
+
+
+def _as_argument(path: Path, found: list[Path]) -> str:
+    """Logs as an argument of a shell command: one file, or all of the commonest kind of a folder."""
+    if path.is_file() or len(found) == 1:
+        return shlex.quote(str(found[0]))
+    kind, n = Counter(one.suffix for one in found).most_common(1)[0]
+    if n == 1:
+        return shlex.quote(str(found[0]))
+    return f"{shlex.quote(str(path))}/*{kind}"

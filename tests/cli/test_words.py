@@ -1,0 +1,127 @@
+"""What the command line completes, shows of choices, and fits into narrow terminals."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+
+import pytest
+
+from mmgtune import columns
+from mmgtune.effects import effect_tags
+from mmgtune.units import in_time
+from tests.command import run
+
+
+def completed(typed, cwd):
+    """What bash would be told for a line that is typed so far."""
+    words = f"mmgtune {typed}"
+    env = {"_MMGTUNE_COMPLETE": "complete_bash", "COMP_WORDS": words, "COMP_CWORD": str(len(words.split(" ")) - 1)}
+    code = "import sys; sys.argv = ['mmgtune']; from mmgtune.cli import app; app(prog_name='mmgtune')"
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=cwd, env={**os.environ, **env}, capture_output=True, text=True
+    )
+    return done.stdout.split()
+
+
+@pytest.mark.slow(5)
+def test_the_shell_completes_words_names_and_files(tmp_path):
+    (tmp_path / "my_ship.toml").write_text("")
+    (tmp_path / "my_notes.txt").write_text("")
+    (tmp_path / "my_trials").mkdir()
+    assert completed("fit --method ", tmp_path) == ["cma-es", "least-squares"]
+    assert completed("diagnose --effects current,wa", tmp_path) == ["current,waves", "current,wave-drift"]
+    assert completed("fit --profile suz", tmp_path) == ["suzaku", "suzaku_fam"]
+    assert completed("fit --profile my_", tmp_path) == ["my_ship.toml", "my_trials/"]
+    assert completed("fit --profile esso_osaka_3m --targets rudder.e", tmp_path) == ["rudder.eps"]
+    assert completed("predict esso_osaka_3m_h", tmp_path) == ["esso_osaka_3m_hybrid"]
+    assert completed("check suzaku suzaku --format j", tmp_path) == ["json", "junit"]
+
+
+def test_help_shows_the_choices(tmp_path):
+    help_text = run("fit", "--help", cwd=tmp_path, env={"COLUMNS": "160"}).out
+    assert "cma-es|least-squares" in help_text
+    assert "DIR|FILE|NAME" in help_text
+    diagnose = " ".join(run("diagnose", "--help", cwd=tmp_path, env={"COLUMNS": "160"}).out.replace("│", " ").split())
+    assert all(tag in diagnose for tag in effect_tags())
+
+
+@pytest.mark.slow(8)
+def test_tables_fit_sixty_columns(tmp_path):
+    env = {"COLUMNS": "60"}
+    quick = ("--method", "least-squares", "--starts", "1", "--quiet", "--no-report", "--out")
+    for command in (
+        ("fit", *quick, "f"),
+        ("sweep", "--ar", "0.3,0.4,0.5", *quick, "s"),
+        ("validate", "suzaku", "suzaku"),
+    ):
+        said = run(*command, cwd=tmp_path, env=env)
+        assert said.code == 0, said.err
+        table = [line for line in said.out.splitlines() if "  " in line.strip()]
+        assert len(table) > 10
+        assert max(map(len, table)) <= 60
+
+
+def test_a_table_cuts_words_and_leaves_out_what_is_spare():
+    rows = [("a_name_that_is_rather_long", "1.5", "note")]
+    assert columns.table(("name", "x", "more"), rows, words=(0, 2)) == [
+        "name                          x  more",
+        "a_name_that_is_rather_long  1.5  note",
+    ]
+    assert columns.table(("name", "x", "more"), rows, width=32, words=(0, 2), spare=(2,)) == [
+        "name                          x",
+        "a_name_that_is_rather_long  1.5",
+    ]
+    assert columns.table(("name", "x"), [("a_name_that_is_rather_long", "1.5")], width=20)[1] == "a_name_…er_long  1.5"
+
+
+@pytest.mark.slow(3)
+def test_a_profile_is_copied_to_be_changed(tmp_path):
+    from mmgtune.profile import load_profile
+
+    assert run("profile", "copy", "suzaku", "mine.toml", cwd=tmp_path).out == "wrote mine.toml\n"
+    assert load_profile(tmp_path / "mine.toml").sha256 == load_profile("suzaku").sha256
+    again = run("profile", "copy", "suzaku", "mine.toml", cwd=tmp_path)
+    assert again.code == 2
+    assert "--force" in again.err
+    assert run("profile", "copy", "suzaku", "mine.toml", "--force", cwd=tmp_path).code == 0
+    assert run("profile", "copy", "suzaku", ".", cwd=tmp_path).out == "wrote suzaku.toml\n"
+
+
+def test_what_is_no_profile_lists_trained_models_too(tmp_path):
+    said = run("fit", "-p", "esso_osaka_3m_type1", cwd=tmp_path)
+    assert said.code == 2
+    assert "it is a trained model" in said.err
+    assert "esso_osaka_3m_hybrid" in run("validate", "nope", "suzaku", cwd=tmp_path).err
+
+
+@pytest.mark.slow(3)
+def test_a_dry_run_that_nobody_reads_is_no_failure(tmp_path):
+    line = f"{sys.executable} -m mmgtune fit --method least-squares --dry-run"
+    done = subprocess.run(
+        ["bash", "-o", "pipefail", "-c", f"{line} | true"], cwd=tmp_path, capture_output=True, text=True
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_how_long_a_diagnosis_may_still_take(monkeypatch):
+    from mmgtune.cli.diagnose import Left
+
+    now = [100.0]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    left = Left((30.0, 120.0), most=4)
+    assert left.words("re-tuning the model without any cause") == ""
+    now[0] = 110.0
+    assert left.words("looking for a cause") == "about 20 s to 1.8 min left"
+    now[0] = 150.0
+    assert left.words("looking for a cause") == "up to 70 s left"
+    now[0] = 170.0  # the first look took a minute; three more may follow
+    assert left.words("looking for cause 2") == "up to 3 min left"
+    assert left.words("comparing the causes with their rivals") == ""
+
+
+@pytest.mark.parametrize(("seconds", "words"), [(0.2, "1 s"), (42.0, "42 s"), (330.0, "5.5 min"), (7200.0, "2 h")])
+def test_times_in_words(seconds, words):
+    assert in_time(seconds) == words

@@ -1,0 +1,189 @@
+"""Traces and what trials must visit: what is there by the statistics and what a user may be told."""
+
+import json
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from mmgtune.diagnose import DiagnoseOptions, Diagnosis, diagnose
+from mmgtune.diagnose.contributions import Contribution
+from mmgtune.diagnose.record import ANSWERS, kind_of, record_of
+from mmgtune.effects import Visited, effects, find_effect
+from mmgtune.profile import load_profile
+from mmgtune.trial import load_trials, visited_by
+from mmgtune.units import DEG
+from tests.hidden import plant
+from tests.hidden.cases import Case, single
+from tests.hidden.plant import simulate, write
+from tools.write_answers import answers, right
+
+ROOT = Path(__file__).parent.parent.parent
+
+SMALL = {"x": 0.01, "psi": 0.02}
+
+
+@pytest.mark.parametrize(
+    ("share", "channels", "indices", "trace"),
+    [
+        (0.0001, SMALL, {"advance_m": 0.001, "overshoot_1_deg": 0.1}, True),
+        (0.0001, SMALL, {}, True),
+        (0.02, SMALL, {}, False),
+        (0.0001, {"x": 0.01, "r": 0.08}, {}, False),
+        (0.0001, SMALL, {"advance_m": 0.02}, False),
+        (0.0001, SMALL, {"overshoot_1_deg": 0.6}, False),
+        (0.0001, SMALL, {"overshoot_1_deg": 0.4, "tactical_diameter_m": 0.009}, True),
+    ],
+    ids=["all small", "no index", "of the error", "of the noise", "advance", "overshoot", "degrees are no shares"],
+)
+def test_a_trace_is_small_in_every_respect(share, channels, indices, trace):
+    assert Contribution(0.001, share, channels, indices).unnoticed == trace
+
+
+def test_what_was_not_asked_for_is_no_trace():
+    assert not Contribution(0.4).unnoticed
+
+
+def zigzags(most):
+    """What trials of rudder angles up to ``most`` [deg] to either side visit."""
+    n = 400
+    t = np.arange(n, dtype=float)
+    side = np.sign(np.sin(t / 20.0))
+    return Visited(
+        np.ones(n), most * DEG * side, 3.0 + 0.4 * side, 3.0 + 0.4 * side, 0.3 * side, 0.1 * side, np.full(n, 1.7)
+    )
+
+
+@pytest.mark.parametrize(
+    ("tag", "found", "most", "believed"),
+    [
+        ("rudder-stall", {"angle": 33.0 * DEG}, 10.0, False),
+        ("rudder-stall", {"angle": 8.5 * DEG}, 10.0, False),
+        ("rudder-stall", {"angle": 33.0 * DEG}, 30.0, False),
+        ("rudder-stall", {"angle": 33.0 * DEG}, 35.0, True),
+        ("flap", {"factor": 1.3}, 10.0, False),
+        ("flap", {"factor": 1.3}, 20.0, True),
+    ],
+)
+def test_effects_of_large_angles_need_large_angles(tag, found, most, believed):
+    missing = find_effect(tag).unvisited(found, zigzags(most))
+    assert (missing == "") == believed
+    assert believed or f"go to {most:.0f} deg" in missing
+
+
+def test_effects_of_speed_and_load_need_several():
+    one = replace(zigzags(20.0), speed=np.full(400, 3.0), ahead=np.full(400, 3.0))
+    assert find_effect("resistance").unvisited({"slope": 1.0}, one)
+    assert not find_effect("resistance").unvisited({"factor": 1.2}, one)
+    assert not find_effect("resistance").unvisited({"slope": 1.0}, zigzags(20.0))
+    assert find_effect("propeller-side-force").unvisited({"force": 1.5, "moment": 1.5}, one)
+    assert not find_effect("propeller-side-force").unvisited({"force": 1.5, "moment": 1.5}, zigzags(20.0))
+    straight = replace(one, rate=np.zeros(400))
+    assert find_effect("shallow-water").unvisited({"depth": 8.0}, straight)
+    assert not find_effect("shallow-water").unvisited({"depth": 8.0}, one)
+
+
+def test_effects_of_changes_and_of_sides_need_them():
+    both = zigzags(20.0)
+    missing = find_effect("governor-lag").unvisited({"time_constant": 20.0}, both)
+    assert missing == "revolutions that change by 2 %"
+    slowed = replace(both, shaft=np.linspace(1.7, 1.5, 400))
+    assert not find_effect("governor-lag").unvisited({"time_constant": 20.0}, slowed)
+    gain = find_effect("rudder-gain")
+    assert not gain.unvisited({"starboard": 1.1, "port": 0.9}, both)
+    one = replace(both, rudder=np.abs(both.rudder))
+    assert gain.unvisited({"starboard": 1.1, "port": 0.9}, one) == "2° of rudder to either side"
+    assert not gain.unvisited({"factor": 1.1}, one)
+
+
+def test_the_bundled_trials_visit_what_every_effect_is_about():
+    seen = visited_by(load_trials("suzaku").trials.values(), 83.0)
+    for effect in effects():
+        if effect.unvisited is not None:
+            typical = {"angle": 25.0 * DEG, "depth": 9.0, "slope": 1.0}
+            found = {name: typical.get(name, 1.2) for name in effect.parameters}
+            assert effect.unvisited(found, seen) == "", effect.tag
+
+
+@pytest.mark.slow(15)
+def test_ten_degree_zigzags_name_no_stall(tmp_path, monkeypatch):
+    """Hidden is a force that grows no more beyond 6 deg: a stall fits that perfectly, and no rudder stalls there."""
+    monkeypatch.setattr(plant, "TRIALS", tuple((f"zigzag_{k}", 10.0, 500.0) for k in range(3)))
+    monkeypatch.setattr(plant, "SPLIT", 'ship = "suzaku"\ntune = ["zigzag_0", "zigzag_1", "zigzag_2"]\ntest = []\n')
+    case = Case("early", single("rudder-stall", 3, seed=1).ship, {"rudder-stall": {"angle": 6.0 * DEG}}, 1, plant.WHITE)
+    monkeypatch.setattr(plant, "sail", partial(plant.sail, names=[name for name, *_ in plant.TRIALS]))
+    write(simulate(case.ship, case.effects, case.seed, case.noise), tmp_path)
+    result = diagnose(load_profile("suzaku"), load_trials(tmp_path), DiagnoseOptions(effects=("rudder-stall", "flap")))
+    assert result.causes == ()
+    assert all("rudder angles beyond" in one.unvisited for one in result.candidates if one.gain > 10.0)
+    assert result.candidates[0].p_value < 1e-6  # but for that it would have been
+    assert result.verdict in ("unexplained", "none")
+
+
+def sum_of(*brought, groups=(), structured=False):
+    """What ``Diagnosis.unclear`` sees of a sum of causes."""
+    return SimpleNamespace(
+        contributions=[("tag", one) for one in brought],
+        groups=groups,
+        leftover=SimpleNamespace(structured=structured),
+    )
+
+
+CLEAR = Contribution(0.8)
+SMALL_BUT_CLEAR = Contribution(0.01, 0.004, {"r": 0.5}, {})
+HARMFUL = Contribution(0.01, -0.02, {"r": 0.5}, {})
+GROUP = (("a", "b"),)
+
+
+@pytest.mark.parametrize(
+    ("one", "said"),
+    [
+        (sum_of(CLEAR), ""),
+        (sum_of(CLEAR, SMALL_BUT_CLEAR), ""),
+        (sum_of(CLEAR, SMALL_BUT_CLEAR, SMALL_BUT_CLEAR), ""),
+        (sum_of(CLEAR, SMALL_BUT_CLEAR, groups=GROUP), ""),
+        (sum_of(CLEAR, CLEAR, CLEAR, CLEAR), "4 terms"),
+        (sum_of(CLEAR, CLEAR, CLEAR, groups=GROUP), "told from others"),
+        (sum_of(SMALL_BUT_CLEAR, SMALL_BUT_CLEAR), "left out"),
+        (sum_of(CLEAR, SMALL_BUT_CLEAR, structured=True), "no noise"),
+        (sum_of(CLEAR, HARMFUL), "no better"),
+        (sum_of(CLEAR, structured=True), ""),
+    ],
+)
+def test_a_sum_is_believed_where_each_of_it_is_clear(one, said):
+    found = Diagnosis.unclear.fget(one)
+    assert (found == "") == (said == "")
+    assert said in found
+
+
+def test_how_often_answers_were_right_is_what_the_study_says():
+    """The file that travels with the program is what the tool makes of the study's results."""
+    rows = [json.loads(line) for line in (ROOT / "docs" / "hidden.jsonl").read_text(encoding="utf-8").splitlines()]
+    assert json.loads(ANSWERS.read_text(encoding="utf-8")) == answers(rows)
+    assert sum(one["of"] for one in answers(rows)["answers"].values()) == len(rows)
+
+
+@pytest.mark.parametrize(
+    ("row", "is_right"),
+    [
+        ({"verdict": "none", "outcome": "clear", "hidden": {}, "above_limit": None}, True),
+        ({"verdict": "none", "outcome": "missed", "hidden": {"wind": {}}, "above_limit": False}, True),
+        ({"verdict": "none", "outcome": "missed", "hidden": {"wind": {}}, "above_limit": True}, False),
+        ({"verdict": "unexplained", "outcome": "right", "hidden": {"unknown-bank": {}}, "above_limit": None}, True),
+        ({"verdict": "unexplained", "outcome": "unexplained", "hidden": {"wind": {}}, "above_limit": True}, False),
+        ({"verdict": "found", "outcome": "partly", "hidden": {"wind": {}, "flap": {}}, "above_limit": True}, False),
+        ({"verdict": "not-separable", "outcome": "grouped", "hidden": {"wind": {}}, "above_limit": True}, True),
+    ],
+)
+def test_which_answers_count_as_right(row, is_right):
+    assert right(row) == is_right
+
+
+def test_a_kind_the_study_never_gave_says_so():
+    assert "No answer of this kind" in record_of("a new kind").sentence
+    assert kind_of("found", [1, 2], []) == "two causes"
+    assert kind_of("not-separable", [1], [("a", "b")]) == "a group"
+    assert record_of("two causes").of >= record_of("two causes").right > 0

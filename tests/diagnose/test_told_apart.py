@@ -1,0 +1,49 @@
+"""What data cannot tell apart is a group with the trial that would; what parameters must reach is reached."""
+
+import numpy as np
+import pytest
+
+from mmgtune.diagnose import DiagnoseOptions, diagnose
+from mmgtune.diagnose.separate import menu
+from mmgtune.orders import run_manoeuvre
+from mmgtune.profile import load_profile
+from mmgtune.trial import load_trials
+from tests.hidden.cases import Case, null
+from tests.hidden.plant import WHITE, simulate, write
+
+pytestmark = pytest.mark.slow(15)
+
+
+def said_of(effects, folder, *asked):
+    """The diagnosis of a ship with something hidden in her, which looks for a few effects."""
+    case = Case("told-apart", null(4).ship, effects, 4, WHITE)
+    write(simulate(case.ship, case.effects, case.seed, case.noise), folder)
+    return diagnose(load_profile("suzaku"), load_trials(folder), DiagnoseOptions(effects=asked))
+
+
+def test_a_dead_time_and_a_late_clock_are_a_group_and_a_change_of_revolutions_would_tell(tmp_path):
+    result = said_of({"dead-time": {"seconds": 3.0}}, tmp_path, "clock-offset", "dead-time", "steering-lag")
+    assert result.verdict == "not-separable"
+    assert [set(group) for group in result.groups] == [{"clock-offset", "dead-time"}]
+    assert result.suggestion is not None
+    assert "the revolutions changed on the way" in result.suggestion.manoeuvre
+    assert result.suggestion.distance > 10.0
+
+
+def test_a_slope_of_resistance_of_a_quarter_per_metre_per_second_is_within_reach(tmp_path):
+    slope = 0.25 * np.sqrt(9.81 * 83.0)
+    result = said_of({"resistance": {"slope": slope}}, tmp_path, "resistance", "hull-term")
+    assert [cause.tag for cause in result.causes] == ["resistance"]
+    found = result.to_dict()["causes"][0]["parameters"]["slope"]
+    assert found["ci95"][0] < slope < found["ci95"][1]
+    assert result.gain.share_removed[0] > 0.95
+
+
+def test_one_trial_of_the_menu_changes_its_revolutions():
+    ship = load_profile("suzaku")
+    (one,) = [one for one in menu(ship.L_pp / ship.approach.speed) if one.engine]
+    motion = run_manoeuvre(ship, one.helmsman, n=ship.approach.n, longest=one.longest, step=1.0, engine=one.engine)
+    n = motion.controls[:, motion.inputs.index("n")]
+    assert n[0] == ship.approach.n
+    assert n[-1] == 0.5 * ship.approach.n
+    assert np.count_nonzero(np.diff(n)) == 1

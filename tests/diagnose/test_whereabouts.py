@@ -1,0 +1,139 @@
+"""Where an error lives: residual forces made by hand, which follow what they are told to."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mmgtune.diagnose.evidence import ResidualForces
+from mmgtune.diagnose.evidence.forces import time_since_order
+from mmgtune.diagnose.whereabouts import PHASES, REPEAT, TELLS, Whereabouts, phases_of, whereabouts
+from mmgtune.trial import load_trials
+from mmgtune.units import DEG
+
+L, U = 83.0, 3.0
+
+
+def run(name, follow=None, k=1, size=0.0, seed=0, heading=0.0):
+    """A trial of 900 s with rudder to and fro, and residual forces: noise of 1 N, and ``follow`` in axis k."""
+    t = np.arange(900.0)
+    delta = np.where(t < 100.0, 0.0, 20.0 * DEG * np.sign(np.sin((t - 100.0) / 60.0) + 1e-9))
+    r = 0.3 * DEG * np.concatenate([np.zeros(100), np.sin((t[100:] - 120.0) / 60.0)])
+    trial = load_trials("suzaku").trials["turn_p35"]
+    own = dict.fromkeys(("x", "y", "psi", "u", "v_m"), np.zeros(900))
+    trial = replace(trial, id=name, t=t, r=r, delta=delta, n=np.full(900, 1.7), extra={}, **own)
+    psi = heading + np.cumsum(r)
+    rng = np.random.default_rng(seed)
+    force = rng.standard_normal((900, 3))
+    values = {"heading": np.cos(psi), "speed": np.sin(t / 300.0), "rudder": delta / (20.0 * DEG)}
+    if follow:
+        force[:, k] += size * values[follow]
+    found = ResidualForces(
+        id=name,
+        sample=np.arange(900),
+        force=force,
+        noise=np.ones((900, 3)),
+        unit=np.full((900, 3), 1e4),
+        time=t,
+        heading=psi,
+        drift=0.02 * rng.standard_normal(900),
+        yaw_rate=r * L / U,
+        rudder=delta,
+        ordered=time_since_order(t, delta),
+        speed=U + 0.3 * np.sin(t / 300.0),
+        tau=3.0,
+        L_pp=L,
+    )
+    return found, trial
+
+
+def test_a_force_that_follows_the_heading_is_found_with_its_axis():
+    headings = np.linspace(0.0, 5.0, 6)
+    forces = [run(f"run_{i}", "heading", 1, 3.0, i, heading) for i, heading in enumerate(headings)]
+    found = whereabouts(forces, {"run_0": 30.0, "run_1": 10.0, "run_2": -3.0}, {"current": 0.3})
+    axis, quantity, share = found.strongest
+    assert (axis, quantity) == ("Y", "heading")
+    assert share > 0.8
+    assert found.suggestion == TELLS["heading"]
+    assert list(found.runs) == ["run_0", "run_1", "run_2"]
+    assert found.runs["run_0"] == pytest.approx(0.75)
+    assert found.axes["Y"] == pytest.approx(
+        np.mean(np.concatenate([9.0 * np.cos(f.heading) ** 2 for f, _ in forces])), rel=0.1
+    )
+    assert abs(found.axes["X"]) < 0.1
+    curve = found.curves["Y"]
+    assert curve["quantity"] == "heading"
+    assert 1e4 * np.array(curve["mean"]) == pytest.approx(3.0 * np.cos(curve["at"]), abs=0.7)
+    said = " ".join(found.sentences())
+    assert "75 % of the error is in 1 of 3 runs: run_0" in said
+    assert "sway force follows the heading" in said
+    assert "more than 30 % of the error (current)" in said
+    json.dumps(found.to_dict(), allow_nan=False)
+
+
+def test_noise_follows_nothing_and_is_to_be_repeated():
+    found = whereabouts([run(f"run_{i}", seed=i) for i in range(4)], {"run_0": -1.0}, {})
+    assert found.strongest is None
+    assert found.runs == {}
+    assert found.suggestion == REPEAT
+    assert all(abs(value) < 0.1 for value in found.axes.values())
+
+
+def test_parts_of_a_run_are_told():
+    found, trial = run("run")
+    names = np.array(list(PHASES))[phases_of(found, trial)]
+    assert set(names[:100]) == {"before"}
+    entry = names == "entry"
+    assert entry.any()
+    assert np.all(found.ordered[entry] * found.speed[entry] / L <= 3.0)
+    checking = names == "checking"
+    assert np.all(found.rudder[checking] * trial.r[checking] < 0.0)
+    assert checking.any()
+    long_after = (found.ordered * found.speed / L > 3.0) & ~checking
+    assert set(names[long_after]) == {"steady"}
+
+
+def test_without_a_trial_long_enough_for_forces_the_runs_are_told():
+    found = whereabouts([], {"a": 4.0, "b": 1.0}, {"wind": 0.1})
+    assert found.runs == {"a": 0.8, "b": 0.2}
+    assert found.strongest is None
+    assert "80 % of the error is in 1 of 2 runs: a." in found.sentences()
+    json.dumps(found.to_dict(), allow_nan=False)
+
+
+def test_a_measured_wind_is_among_what_forces_may_follow():
+    forces = []
+    for i in range(6):
+        found, trial = run(f"run_{i}", seed=i, heading=float(i))
+        towards = 0.9 * i + trial.t / 200.0
+        wind = {"wind_speed": np.full(900, 8.0), "wind_dir": np.mod(towards, 2.0 * np.pi)}
+        found.force[:, 2] += 3.0 * np.sin(towards - found.heading)
+        forces.append((found, replace(trial, extra=wind)))
+    axis, quantity, share = whereabouts(forces, {}, {}).strongest
+    assert (axis, quantity) == ("N", "wind_angle")
+    assert share > 0.8
+
+
+@pytest.mark.parametrize(
+    ("shares", "followed"),
+    [
+        ({"drift": 0.34, "east": 0.36}, "drift"),
+        ({"drift": 0.2, "east": 0.36}, "east"),
+        ({"drift": 0.01, "time": 0.05}, "time"),
+        ({"drift": 0.5, "yaw_rate": 0.6}, "yaw_rate"),
+        ({"heading": 0.02, "east": 0.11}, "east"),
+    ],
+)
+def test_the_place_is_blamed_last(shares, followed):
+    found = Whereabouts({}, {}, {}, {"Y": 10.0}, {"Y": shares}, {}, (), {})
+    best = found.strongest
+    assert (best[1] if best else "time") == followed
+
+
+def test_what_does_nearly_as_well_is_named_beside():
+    phases = {"entry": {"N": 10.0}}
+    found = Whereabouts({}, phases, {}, {"N": 10.0}, {"N": {"drift": 0.34, "east": 0.36, "speed": 0.1}}, {}, (), {})
+    assert (
+        "drift angle, which alone predicts 34 % of it; nearly as well do: position east 36 %." in found.sentences()[1]
+    )

@@ -1,0 +1,223 @@
+"""What filters the log, and what makes a ship answer late, put against what they say written out another way."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from mmgtune.backends import Integrator, pad
+from mmgtune.effects import FilterEffect, effects, find_effect
+from mmgtune.model import Model
+from mmgtune.orders import TurningOrder, run_manoeuvre
+from mmgtune.physics.quantities import State
+from mmgtune.profile import load_profile, parse_profile, with_effects
+from tests.runs import states, turn
+
+STEP = 0.02
+"""Step of what is integrated here [s]."""
+
+
+def way(seconds=60.0):
+    """A turn that tightens while the ship slows down: samples a second apart, and as finely as it was integrated."""
+    t = np.arange(0.0, seconds + 0.5 * STEP, STEP)
+    u, v, r = 3.0 - 0.02 * t, -0.01 * t, 4e-4 * t
+    psi = 0.7 + 2e-4 * t**2
+    north, east = u * np.cos(psi) - v * np.sin(psi), u * np.sin(psi) + v * np.cos(psi)
+
+    def summed(rate):
+        return np.concatenate([[0.0], np.cumsum(0.5 * STEP * (rate[1:] + rate[:-1]))])
+
+    fine = State(summed(north), summed(east), psi, u, v, r)
+    return t, fine, [State(*(column[k] for column in fine)) for k in range(0, len(t), round(1.0 / STEP))]
+
+
+def logged(tag, samples, **values):
+    """What an instrument logs, begun as settled."""
+    effect = find_effect(tag)
+    e = effect.params(*(values.get(name, parameter.null) for name, parameter in effect.fields.items()))
+    state, held = effect.settled(samples[0], e)
+    found = [state]
+    for start, end in pairwise(samples):
+        state, held = effect.function(start, end, held, 1.0, e)
+        found.append(state)
+    return State(*np.array(found).T)
+
+
+def lagged(t, signal, T):
+    """A first-order lag by small steps, settled at the first."""
+    out = np.empty_like(signal)
+    out[0] = signal[0]
+    for k in range(1, len(t)):
+        out[k] = out[k - 1] + STEP / T * (0.5 * (signal[k - 1] + signal[k]) - out[k - 1])
+    return out
+
+
+EVERY = slice(None, None, round(1.0 / STEP))
+
+
+def test_positions_of_some_seconds_ago():
+    t, fine, samples = way()
+    found = logged("position-latency", samples, seconds=3.0)
+    seen = t[EVERY] >= 5.0
+    for shown, true in ((found.x, fine.x), (found.y, fine.y)):
+        np.testing.assert_allclose(shown[seen], np.interp(t[EVERY] - 3.0, t, true)[seen], atol=0.01)
+    np.testing.assert_array_equal(found.psi, fine.psi[EVERY])
+
+
+def test_velocities_are_smoothed_over_ground_or_along_the_axes():
+    t, fine, samples = way()
+    T = 4.0
+    over_ground = fine.u * np.exp(1j * fine.psi) + 1j * fine.v_m * np.exp(1j * fine.psi)
+    smooth = (lagged(t, over_ground.real, T) + 1j * lagged(t, over_ground.imag, T)) * np.exp(-1j * fine.psi)
+    found = logged("velocity-filter", samples, over_ground=T)
+    np.testing.assert_allclose(found.u, smooth.real[EVERY], atol=2e-3)
+    np.testing.assert_allclose(found.v_m, smooth.imag[EVERY], atol=2e-3)
+    found = logged("velocity-filter", samples, along_axes=T, yaw_rate=2.0)
+    np.testing.assert_allclose(found.u, lagged(t, fine.u, T)[EVERY], atol=5e-4)
+    np.testing.assert_allclose(found.v_m, lagged(t, fine.v_m, T)[EVERY], atol=5e-4)
+    np.testing.assert_allclose(found.r, lagged(t, fine.r, 2.0)[EVERY], atol=1e-5)
+
+
+@pytest.mark.parametrize("name", ["time_constant", "alone"])
+def test_a_slow_compass_is_behind_and_may_turn_the_axes(name):
+    t, fine, samples = way()
+    found = logged("heading-filter", samples, **{name: 3.0})
+    np.testing.assert_allclose(found.psi, lagged(t, fine.psi, 3.0)[EVERY], atol=2e-4)
+    turned = found.psi - fine.psi[EVERY] if name == "time_constant" else 0.0
+    expected = (fine.u + 1j * fine.v_m)[EVERY] * np.exp(-1j * turned)
+    np.testing.assert_allclose(found.u + 1j * found.v_m, expected, atol=1e-9)
+
+
+def test_a_gyro_drifts_from_the_first_sample_on():
+    t, fine, samples = way()
+    for name in ("heading", "heading_alone"):
+        found = logged("gyro-drift", samples, **{name: 0.002})
+        np.testing.assert_allclose(found.psi, (fine.psi + 0.002 * t)[EVERY], atol=1e-12)
+        turned = 0.002 * t[EVERY] if name == "heading" else 0.0
+        expected = (fine.u + 1j * fine.v_m)[EVERY] * np.exp(-1j * turned)
+        np.testing.assert_allclose(found.u + 1j * found.v_m, expected, atol=1e-12)
+    found = logged("gyro-drift", samples, yaw_rate=1e-5)
+    np.testing.assert_allclose(found.r, (fine.r + 1e-5 * t)[EVERY], atol=1e-12)
+
+
+@pytest.mark.parametrize("effect", [e for e in effects() if isinstance(e, FilterEffect)], ids=lambda e: e.tag)
+def test_what_is_logged_of_a_steady_motion_leads_back(effect):
+    """And goes on as it began: a steady turn by small steps leaves the instrument where ``settled`` puts it."""
+    from tests.effects.test_effects import STRONG
+
+    e = effect.params(**{name: STRONG[effect.tag].get(name, 0.0) for name in effect.fields})
+    state = State(3.0, -2.0, 0.4, 2.5, -0.3, 0.02)
+    assert effect.inverse(effect.settled(state, e)[0], e) == pytest.approx(state, abs=1e-12)
+    if effect.tag == "gyro-drift":  # which is never settled
+        return
+    h, velocity = 0.01, complex(state.u, state.v_m)
+    now = state
+    shown, held = effect.settled(state, e)
+    for k in range(2000):
+        psi = state.psi + state.r * h * (k + 1)
+        moved = velocity * (np.exp(1j * psi) - np.exp(1j * state.psi)) / (1j * state.r)
+        before, now = now, state._replace(x=state.x + moved.real, y=state.y + moved.imag, psi=psi)
+        shown, held = effect.function(before, now, held, h, e)
+    settled, _ = effect.settled(now, e)
+    assert shown == pytest.approx(settled, abs=2e-3)
+
+
+def test_deviation_of_a_compass():
+    effect = find_effect("compass-deviation")
+    state = State(0.0, 0.0, np.linspace(-7.0, 7.0, 50), 2.5, -0.3, 0.01)
+    e = effect.params(0.2, -0.1, 0.05, 0.02)
+    seen = effect.function(state, e)
+    B, C = 0.25, -0.08
+    size, phase = math.hypot(B, C), math.atan2(C, B)
+    np.testing.assert_allclose(seen.psi - state.psi, size * np.sin(state.psi + phase), atol=1e-12)
+    turned = math.hypot(0.2, 0.1) * np.sin(state.psi + math.atan2(-0.1, 0.2))
+    np.testing.assert_allclose(seen.u + 1j * seen.v_m, (2.5 - 0.3j) * np.exp(-1j * turned), atol=1e-12)
+    np.testing.assert_allclose(effect.inverse(seen, e).psi, state.psi, atol=1e-12)
+
+
+def test_play_is_taken_up_before_the_blade_follows():
+    effect = find_effect("backlash")
+    e = effect.params(4.0)
+    blade, found = 0.0, {}
+    way = [*range(11), *range(9, -11, -1), *range(-9, 1)]
+    for before, now in pairwise(way):
+        blade = effect.function(before, now, blade, 1.0, e)
+        found.setdefault(now, []).append(blade)
+    assert found[10] == [8.0]
+    assert found[6] == [4.0, 8.0]
+    assert found[5] == [3.0, 7.0]
+    assert found[-10] == [-8.0]
+    assert found[0] == [2.0, -2.0]
+
+
+def test_the_rudder_may_move_more_to_one_side():
+    effect = find_effect("rudder-gain")
+    e = effect.params(1.1, 1.2, 0.9)
+    for angle, factor in ((0.3, 1.32), (-0.3, 0.99), (0.0, 1.0)):
+        assert effect.function(0.0, angle, 0.0, 1.0, e) == pytest.approx(factor * angle)
+
+
+def test_a_shaft_follows_the_telegraph():
+    effect = find_effect("governor-lag")
+    e = effect.params(20.0)
+    n = 1.0
+    for _ in range(30):
+        n = effect.function(2.0, 2.0, n, 1.0, e)
+    assert n == pytest.approx(2.0 - math.exp(-1.5))
+
+
+@pytest.fixture(scope="module")
+def ship():
+    return load_profile("suzaku")
+
+
+def test_a_dead_time_is_of_the_rudder_alone(ship):
+    late = Model(with_effects(ship, {"dead-time": {"seconds": 3.0}}, "test"))
+    cases = turn(late, 20.0, 60.0)
+    controls = cases.controls[0].copy()
+    delta = late.inputs.index("delta")
+    controls[:, 1 - delta] *= np.linspace(1.0, 0.8, len(controls))
+    given = pad([cases.t[0]], [controls], [cases.initial[0]])
+    acted = controls.copy()
+    acted[3:, delta], acted[:3, delta] = controls[:-3, delta], controls[0, delta]
+    shifted = pad([cases.t[0]], [acted], [cases.initial[0]])
+    for backend in ("compiled", "numpy"):
+        found = states(late, given, backend=backend)
+        np.testing.assert_allclose(found, states(Model(ship), shifted, backend=backend), atol=1e-9)
+
+
+def test_a_ship_with_dead_time_is_steered_as_her_log_says(ship):
+    """What a helmsman's run logs gives the run back; and an order acts when the dead time is over."""
+    slow = with_effects(ship, {"dead-time": {"seconds": 4.0}}, "test")
+    run = run_manoeuvre(slow, TurningOrder(0.5), longest=120.0)
+    prompt = run_manoeuvre(ship, TurningOrder(0.5), longest=120.0)
+    np.testing.assert_array_equal(run.controls, prompt.controls[: len(run.controls)])
+    delta = run.controls[:, 1 - run.inputs.index("n")]
+    ordered = int(np.argmax(delta > 0.0)) - 1  # the last sample with the rudder amidships
+    np.testing.assert_allclose(run.states[: ordered + 4, 5], 0.0, atol=5e-4)
+    assert prompt.states[ordered + 4, 5] > run.states[ordered + 4, 5] + 1e-3
+    cases = pad([run.t], [run.controls], [run.states[0]])
+    again = states(Model(slow), cases, integrator=Integrator("rk4", 2))[0, 0]
+    np.testing.assert_allclose(again[:, :2], run.states[:, :2], atol=0.3)
+    np.testing.assert_allclose(again[:, 2], run.states[:, 2], atol=5e-3)
+
+
+def test_a_slope_of_resistance_leaves_the_level_at_its_pivot(ship):
+    put_in = with_effects(ship, {"resistance": {"slope": 5.0}}, "test")
+    assert put_in.value("effects.resistance.pivot") == pytest.approx(ship.approach.speed)
+    assert parse_profile(put_in.text).value("effects.resistance.pivot") == pytest.approx(ship.approach.speed)
+    assert ship.value("particulars.L_pp") == 83.0
+    low, high = find_effect("resistance").parameters["slope"].bounds(scale())
+    per_speed = 0.25 * math.sqrt(9.81 * 83.0)  # 25 % per m/s at 3.1 m/s
+    assert low < -per_speed
+    assert high > per_speed
+    # Written before there were pivots, a slope grows from rest.
+    old = parse_profile(ship.text + "\n[effects.resistance]\nslope = 2.0\n")
+    assert old.value("effects.resistance.pivot") == 0.0
+
+
+def scale():
+    from mmgtune.profile import scale_of
+
+    return scale_of(load_profile("suzaku"))

@@ -1,0 +1,309 @@
+"""Dates and positions as people write them, workbooks, and MATLAB files."""
+
+import datetime
+import io
+import struct
+import zipfile
+import zlib
+from dataclasses import replace
+
+import numpy as np
+import openpyxl
+import pandas as pd
+import pytest
+import scipy.io
+
+from mmgtune.importing import matlab, workbook
+from mmgtune.importing.dates import Dates
+from mmgtune.importing.degrees import degrees
+from mmgtune.limits import MATLAB_BYTES, SHEET_BYTES
+
+from .made import MAP, close, imported, logged, refusal, said, turn, write_csv
+
+UNITLESS = MAP.replace('column = "time"\nunit = "s"', 'column = "time"')
+START = "2024-05-01 23:57:00"
+
+
+@pytest.fixture(scope="module")
+def columns():
+    return logged(turn())
+
+
+@pytest.fixture(scope="module")
+def plain(columns, tmp_path_factory):
+    """The trial that the columns make."""
+    return imported(write_csv(tmp_path_factory.mktemp("plain") / "log.csv", columns))
+
+
+def stamped(columns, form, start=START):
+    """The same with dates for seconds."""
+    stamps = [pd.Timestamp(start) + pd.Timedelta(seconds=float(t)) for t in columns["time"]]
+    return {**columns, "time": [one.strftime(form) for one in stamps]}
+
+
+# dates
+
+
+@pytest.mark.parametrize("order", ["dmy", "mdy", "ymd"])
+def test_days_are_those_of_the_calendar(order):
+    rng = np.random.default_rng(1)
+    days = [datetime.date.fromordinal(int(one)) for one in rng.integers(693596, 802685, 500)]  # 1900 to 2199
+    form = {"dmy": "%d/%m/%Y", "mdy": "%m/%d/%Y", "ymd": "%Y/%m/%d"}[order]
+    texts = pd.Series([f"{one.strftime(form)} 12:30:15.5" for one in days], dtype="string")
+    expected = [86400.0 * (one - datetime.date(1970, 1, 1)).days + 45015.5 for one in days]
+    assert Dates(texts).since(order).tolist() == expected
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "31/02/2024 10:00",
+        "29/02/2023 10:00",
+        "00/05/2024 10:00",
+        "01/13/2024 10:00",
+        "1/5/2024 25:00",
+        "1/5/2024 10:61",
+    ],
+)
+def test_days_that_are_not(text):
+    assert np.isnan(Dates(pd.Series([text], dtype="string")).since("dmy")).all()
+
+
+@pytest.mark.parametrize(
+    "form",
+    [
+        "%d/%m/%Y %H:%M:%S", "%m/%d/%Y %H:%M:%S", "%m/%d/%Y %I:%M:%S %p", "%d.%m.%y %H:%M:%S", "%d-%b-%Y %H:%M:%S",
+        "%Y/%m/%d %H:%M:%S", "%H:%M:%S", "%I:%M:%S %p", "%Y-%m-%d %H:%M:%S CET", "%d/%m/%Y %H:%M:%S +0200",
+        "%d/%m/%YT%H:%M:%SZ", "%d-%m-%Y %H.%M.%S", "%Y-%m-%dT%H:%M:%S+09:00",
+    ],
+)  # fmt: skip
+def test_stamps_over_midnight(tmp_path, columns, plain, form):
+    close(imported(write_csv(tmp_path / "log.csv", stamped(columns, form)), UNITLESS), plain)
+
+
+def test_stamps_without_seconds(tmp_path, columns, plain):
+    minutes = {**columns, "time": 60.0 * columns["time"]}
+    trial = imported(write_csv(tmp_path / "log.csv", stamped(minutes, "%d/%m/%Y %H:%M")), slow(UNITLESS))
+    assert trial.t == pytest.approx(60.0 * (plain.t - plain.t[0]))
+
+
+def slow(text):
+    """The map of a log without its velocities and its yaw rate."""
+    return "\n".join(line for line in text.splitlines() if not line.startswith(("u =", "v =", "r =")))
+
+
+def test_one_day_leaves_its_order_open(tmp_path, columns, plain):
+    log = write_csv(tmp_path / "log.csv", stamped(columns, "%d/%m/%Y %H:%M:%S", "2024-05-01 10:00:00"))
+    trial = imported(log, UNITLESS)
+    close(trial, plain)
+    assert "dates are read" not in trial.note
+
+
+def test_order_is_asked_where_nothing_shows_it(tmp_path, columns):
+    # From 1 February to 5 July, or from 2 January to 7 May.
+    stamps = [f"{'01/02' if k < 200 else '05/07'}/2024 10:{k // 60:02d}:{k % 60:02d}" for k in range(400)]
+    log = write_csv(tmp_path / "log.csv", {**columns, "time": stamps})
+    assert 'say format = "dmy" or format = "mdy" in [time]' in refusal(lambda: imported(log, UNITLESS))
+
+
+def test_what_the_map_says_counts(tmp_path, columns, plain):
+    log = write_csv(tmp_path / "log.csv", stamped(columns, "%d/%m/%Y %H:%M:%S"))
+    close(imported(log, UNITLESS.replace('"time"', '"time"\nformat = "dmy"')), plain)
+    assert "time" in refusal(lambda: imported(log, UNITLESS.replace('"time"', '"time"\nformat = "ymd"')))
+
+
+def test_serial_days(tmp_path, columns, plain):
+    log = write_csv(tmp_path / "log.csv", {**columns, "time": 45413.9 + columns["time"] / 86400.0})
+    assert 'unit = "d"' in refusal(lambda: imported(log, UNITLESS))
+    close(imported(log, MAP.replace('unit = "s"', 'unit = "d"')), plain, 1e-5)
+
+
+# positions
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("52°06.00001'N", 52.1 + 1e-5 / 60.0), ("52 06.6 N", 52.11), ("52°06'36\"N", 52.11), ("N52°06.6'", 52.11),
+        ("5206.6N", 52.11), ("52.11 N", 52.11), ("00406.6W", -4.11), ("4°06,6'W", -4.11), ("-4°06.6'", -4.11),
+        ("52:06:36 S", -52.11), ("52°61'N", np.nan), ("N 4 W", np.nan), ("52.11", np.nan), ("4°O", np.nan),
+        ("", np.nan), ("💥", np.nan), ("1" * 5000, np.nan),
+    ],
+)  # fmt: skip
+def test_degrees(text, value):
+    found = degrees(pd.Series([text], dtype="string"))
+    assert found == pytest.approx([value], abs=1e-12, nan_ok=True)
+
+
+def test_positions_in_degrees_and_minutes(tmp_path, columns):
+    import pyproj
+
+    project = pyproj.Transformer.from_crs(
+        "+proj=tmerc +lat_0=52 +lon_0=4 +k_0=1 +ellps=WGS84", "EPSG:4326", always_xy=True
+    )
+    lon, lat = project.transform(columns["east"], columns["north"])
+    text = MAP.replace('x = { column = "north", unit = "m" }', 'latitude = { column = "north" }')
+    text = text.replace('y = { column = "east", unit = "m" }', 'longitude = { column = "east" }')
+    text += "[position]\norigin = [52.0, 4.0]\n"
+    written = {
+        **columns,
+        "north": [f"{int(one)}°{60.0 * (one - int(one)):.7f}'N" for one in lat],
+        "east": [f"{int(one)}°{60.0 * (one - int(one)):.7f}'E" for one in lon],
+    }
+    trial = imported(write_csv(tmp_path / "log.csv", written), text)
+    assert trial.x == pytest.approx(columns["north"], abs=1e-3)
+    assert trial.y == pytest.approx(columns["east"], abs=1e-3)
+
+
+# workbooks
+
+
+def book(rows, title="log", others=()):
+    made = openpyxl.Workbook()
+    made.active.title = title
+    for row in rows:
+        made.active.append(row)
+    for name in others:
+        made.create_sheet(name, 0)
+    file = io.BytesIO()
+    made.save(file)
+    return file.getvalue()
+
+
+def as_rows(columns):
+    return [list(columns), *zip(*(np.asarray(one).tolist() for one in columns.values()), strict=True)]
+
+
+def test_workbook(tmp_path, columns, plain):
+    path = tmp_path / "log.xlsx"
+    path.write_bytes(book([["measured by X"], [], *as_rows(columns)], others=("cover",)))
+    skipping = MAP.replace("[time]", "[log]\nskip = 2\n[time]")
+    close(imported(path, skipping), plain)
+    close(imported(path, skipping.replace("skip = 2", 'skip = 2\nsheet = "log"')), plain)
+    assert "no sheet 'Log'" in refusal(lambda: imported(path, skipping.replace("skip = 2", 'skip = 2\nsheet = "Log"')))
+    assert "column 'time' is missing" in refusal(lambda: imported(path))
+    path.write_bytes(book(as_rows(columns)[1:]))
+    numbered = MAP.replace("[time]", "[log]\nheader = false\nfields = 9\n[time]")
+    for k, name in enumerate(columns, 1):
+        numbered = numbered.replace(f'column = "{name}"', f"column = {k}")
+    close(imported(path, numbered), plain)
+    assert "rows of 8" in refusal(lambda: imported(path, numbered.replace("= 9\n[", "= 8\n[")))
+
+
+def test_workbook_with_dates(tmp_path, columns, plain):
+    stamps = [datetime.datetime(2024, 5, 1, 23, 57) + datetime.timedelta(seconds=t) for t in columns["time"].tolist()]
+    path = tmp_path / "log.xlsx"
+    path.write_bytes(book(as_rows({**columns, "time": stamps})))
+    close(imported(path, UNITLESS), plain)
+    path.write_bytes(book(as_rows({**columns, "time": [one.time() for one in stamps]})))
+    close(imported(path, UNITLESS), plain)
+
+
+def test_workbook_with_formulas(tmp_path, columns):
+    rows = as_rows(columns)
+    rows = [rows[0], *([*row[:3], f"=B{k}*2", *row[4:]] for k, row in enumerate(rows[1:], 2))]
+    path = tmp_path / "log.xlsx"
+    path.write_bytes(book(rows))
+    assert "holds formulas without results" in refusal(lambda: imported(path))
+
+
+def test_hostile_workbooks(tmp_path, columns, monkeypatch):
+    monkeypatch.setattr(workbook, "SHEET_BYTES", replace(SHEET_BYTES, most=1 << 20))
+    path = tmp_path / "log.xlsx"
+    whole = book(as_rows(columns))
+
+    def with_part(name, content):
+        out = io.BytesIO()
+        with zipfile.ZipFile(io.BytesIO(whole)) as old, zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as new:
+            for one in old.namelist():
+                new.writestr(one, content if one == name else old.read(one))
+        return out.getvalue()
+
+    sheet = "xl/worksheets/sheet1.xml"
+    cases = {
+        b"PK\x03\x04" + bytes(100): "cannot be read",
+        with_part(sheet, b"<!DOCTYPE a [<!ENTITY b 'c'>]><a/>"): "declares a document type",
+        with_part(sheet, b"<worksheet" + b" " * (2 << 20)): "the limit is",
+        with_part("xl/workbook.xml", b"<a/>"): "no sheet with cells",
+        with_part("[Content_Types].xml", b""): "cannot be read",
+        whole[:2000]: "cannot be read",
+        b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(600): "older kind",
+        book([]): "no sheet with cells",
+    }
+    for content, words in cases.items():
+        path.write_bytes(content)
+        said = refusal(lambda: imported(path))
+        assert words in said or "no rows" in said, (words, said)
+
+
+def test_a_sheet_that_says_it_is_huge(tmp_path, columns, plain):
+    whole = book(as_rows(columns))
+    out = io.BytesIO()
+    with zipfile.ZipFile(io.BytesIO(whole)) as old, zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as new:
+        for one in old.namelist():
+            new.writestr(one, old.read(one).replace(b'ref="A1:I401"', b'ref="A1:XFD1048576"'))
+    (tmp_path / "log.xlsx").write_bytes(out.getvalue())
+    close(imported(tmp_path / "log.xlsx"), plain)
+
+
+# MATLAB files
+
+
+def saved(path, held, **how):
+    scipy.io.savemat(path, held, **how)
+    return path
+
+
+@pytest.mark.parametrize("compressed", [False, True])
+def test_matlab(tmp_path, columns, plain, compressed):
+    path = tmp_path / "log.mat"
+    close(imported(saved(path, columns, do_compression=compressed)), plain)
+    more = {"log": columns, "L": 320.0, "name": "a ship", "cells": np.array([[1, "a"]], dtype=object)}
+    close(imported(saved(path, more, do_compression=compressed)), plain)
+    named = MAP.replace("[time]", '[log]\nvariable = "log"\n[time]')
+    close(imported(path, named), plain)
+    assert "no variable 'lag'" in refusal(lambda: imported(path, named.replace('"log"', '"lag"')))
+    numbered = MAP
+    for k, name in enumerate(columns, 1):
+        numbered = numbered.replace(f'column = "{name}"', f'column = "data {k}"')
+    matrix = {"data": np.column_stack(list(columns.values())).astype(np.float64)}
+    close(imported(saved(path, matrix, do_compression=compressed), numbered), plain)
+
+
+def test_matlab_numbers_of_all_types(tmp_path, columns):
+    held = {
+        kind: np.arange(30, dtype=kind).reshape(5, 6) for kind in ("i1", "u1", "i2", "u2", "i4", "u4", "i8", "f4", "f8")
+    }
+    found = matlab.variables(saved(tmp_path / "log.mat", held))
+    assert {name: one.tolist() for name, one in found.items()} == {name: one.tolist() for name, one in held.items()}
+
+
+def test_hostile_matlab_files(tmp_path, columns, monkeypatch):
+    monkeypatch.setattr(matlab, "MATLAB_BYTES", replace(MATLAB_BYTES, most=1 << 20))
+    path = saved(tmp_path / "log.mat", columns)
+    whole = path.read_bytes()
+    bomb = zlib.compress(bytes(2 << 20), 9)
+    deep = b""
+    for _ in range(300):
+        body = struct.pack("<IIII", 6, 8, 1, 0) + struct.pack("<IIii", 5, 8, 1, 1) + struct.pack("<II", 1, 0) + deep
+        deep = struct.pack("<II", 14, len(body)) + body
+    cases = {
+        whole[:5000]: "are left",
+        whole[:128] + struct.pack("<II", 15, len(bomb)) + bomb: "the limit",
+        whole[:128] + deep: "no columns of numbers",
+        b"MATLAB 7.3 MAT-file" + bytes(600): "version 7.3",
+        b"\x89HDF\r\n\x1a\n" + bytes(600): "version 7.3",
+        b"MATLAB 5.0" + bytes(600): "no MATLAB file of version 5",
+        whole[:128] + struct.pack("<II", 14, 2**31): "are left",
+        whole[:128]: "no columns of numbers",
+    }
+    for content, words in cases.items():
+        path.write_bytes(content)
+        assert words in refusal(lambda: imported(path)), words
+
+
+def test_report_of_a_workbook_counts_rows(tmp_path, columns):
+    rows = as_rows({**columns, "time": columns["time"]})
+    rows[10] = [None, *rows[10][1:]]
+    (tmp_path / "log.xlsx").write_bytes(book(rows))
+    assert "row 11" in said(tmp_path / "log.xlsx")

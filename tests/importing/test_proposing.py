@@ -1,0 +1,291 @@
+"""``mmgtune trials map``: what columns are, from how they behave and what they are called."""
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from mmgtune.errors import LogError
+from mmgtune.importing import import_logs, load_map, parse_map, propose_map
+from mmgtune.importing.proposing.sampling import heading, sample_of
+from mmgtune.importing.proposing.words import quantity_named, unit_named
+from mmgtune.units import KNOT
+from tests.command import run
+from tools.map_disguises import SETS, bundled_logs, disguised, equal, judged, plain_logs
+
+from .made import MAP, close, imported, logged, nmea, refusal, turn, write_csv
+
+DATA = Path(os.environ.get("MMGTUNE_DATA", Path(__file__).parents[2].parent / "shared" / "data"))
+
+
+def needs(name):
+    """Skip where measured data are not at hand, and say so."""
+    reason = f"no measured data at {DATA / name}; MMGTUNE_DATA names the folder they are in"
+    return pytest.mark.skipif(not (DATA / name).is_dir(), reason=reason)
+
+
+# disguises
+
+
+@pytest.mark.slow(15)
+def test_disguises_of_bundled_trials(tmp_path):
+    logs = bundled_logs()
+    right = total = 0
+    for number in range(14):
+        rng = np.random.default_rng([5, number])
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        out = disguised(rng, [logs[k] for k in rng.permutation(len(logs))[:2]], folder)
+        score, same = judged(out)
+        right += score.ends["right"]
+        total += score.ends.total()
+        assert not score.ends["wrong"], (number, out.shown, score.wrong)
+        assert same is not False, (number, out.shown, score.wrong)
+    assert right > 0.97 * total
+
+
+@pytest.mark.slow(8)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=needs(name)) for name in SETS])
+def test_disguises_of_measured_trials(tmp_path, name):
+    preset, pattern, _ = SETS[name]
+    logs = plain_logs(DATA / name, preset, pattern)
+    for number in range(2):
+        rng = np.random.default_rng([7, number])
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        score, same = judged(disguised(rng, [logs[k] for k in rng.permutation(len(logs))[:3]], folder))
+        assert same is not False, score.wrong
+        assert score.ends["right"] >= 0.9 * score.ends.total(), score.wrong
+
+
+def test_a_wrong_map_makes_other_trials(tmp_path):
+    rng = np.random.default_rng(3)
+    out = disguised(rng, bundled_logs()[:1], tmp_path)
+    trial = import_logs(out.paths, parse_map(out.text), ".", dry_run=True).trials[0]
+    assert equal(trial, trial)
+    other = "port" if 'positive = "starboard" }' in out.text.split("delta")[1].splitlines()[0] else "starboard"
+    line = next(line for line in out.text.splitlines() if line.startswith("delta"))
+    turned = line.replace("port" if other == "starboard" else "starboard", other)
+    against = import_logs(out.paths, parse_map(out.text.replace(line, turned)), ".", dry_run=True).trials[0]
+    assert not equal(trial, against)
+
+
+# measured sets as they are
+
+
+@pytest.mark.slow(6)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=needs(name)) for name in ("esso-osaka-frt", "kvlcc2-hsva")])
+def test_the_map_of_a_measured_set_is_the_preset(name):
+    preset, pattern, _ = SETS[name]
+    logs = sorted((DATA / name).glob(pattern))[::3]
+    proposal = propose_map(logs)
+    assert proposal.asks == ()
+    assert proposal.problems == ()
+    ours = import_logs(logs, proposal.map(), ".", dry_run=True).trials
+    theirs = import_logs(logs, load_map(preset, preset=True), ".", dry_run=True).trials
+    for one, other in zip(ours, theirs, strict=True):
+        both = min(one.n_samples, other.n_samples)
+        for channel in ("t", "x", "y", "psi", "u", "v_m", "r", "n", "delta"):
+            assert getattr(one, channel)[:both] == pytest.approx(getattr(other, channel)[:both], abs=1e-12, nan_ok=True)
+        assert set(one.extra) == set(other.extra)
+
+
+@needs("kvlcc2-marin")
+@pytest.mark.slow(6)
+def test_columns_of_marin_in_another_language(tmp_path):
+    """Columns renamed, speeds in knots, dates with the day first: one command, and nothing asked."""
+    from mmgtune.importing.importer import _records
+
+    log = sorted((DATA / "kvlcc2-marin").glob("*zz_20*.dat"))[0]
+    log_map = load_map("simman-marin", preset=True)
+    series = _records(log, log_map.of(log))[0].series
+    t = series["x"].t
+    stamps = [pd.Timestamp("2008-04-14 23:58:00") + pd.Timedelta(seconds=float(one)) for one in t]
+    columns = {
+        "Datum/Zeit": [one.strftime("%d/%m/%Y %H:%M:%S.%f") for one in stamps],
+        "Roerhoek": -np.rad2deg(series["delta"].values),
+        "Koers": np.rad2deg(series["psi"].printed) % 360.0,
+        "Noord": series["x"].printed,
+        "Oost": series["y"].printed,
+        "V noord": series["u"].values / KNOT,
+        "V oost": series["v"].values / KNOT,
+        "Draaisnelheid": np.rad2deg(series["r"].values) * 60.0,
+        "Toeren": series["n"].values * 60.0,
+    }
+    write_csv(tmp_path / "log.csv", columns, sep=";", decimal=",")
+    ended = run("trials", "map", "log.csv", "-o", "map.toml", cwd=tmp_path)
+    assert ended.code == 0, ended.err
+    assert "the map imports all 1 logs" in ended.out
+    found = parse_map((tmp_path / "map.toml").read_text(encoding="utf-8"))
+    units = {name: (one.column, one.unit, one.positive) for name, one in found.sources.items()}
+    assert units == {
+        "x": ("Noord", "m", "north"), "y": ("Oost", "m", "east"), "psi": ("Koers", "deg", "clockwise"),
+        "u": ("V noord", "kn", "north"), "v": ("V oost", "kn", "east"), "r": ("Draaisnelheid", "deg/min", "starboard"),
+        "n": ("Toeren", "rpm", None), "delta": ("Roerhoek", "deg", "port"),
+    }  # fmt: skip
+    assert (found.axes, found.time.column, found.time.format) == ("earth", "Datum/Zeit", "dmy")
+
+
+# what is asked
+
+
+def still(columns):
+    """The same of a ship that lies still, with a rudder that nobody moves."""
+    n = len(columns["time"])
+    held = {name: np.full(n, 1.0) for name in columns}
+    return {**held, "time": columns["time"], "heading": np.full(n, 45.0), "rudder": np.zeros(n)}
+
+
+def test_what_does_not_show_is_asked(tmp_path):
+    columns = {**logged(turn()), "rudder": np.full(400, 3.0)}
+    log = write_csv(tmp_path / "log.csv", columns)
+    proposal = propose_map([log])
+    assert "columns.delta.positive" in proposal.asks
+    said = refusal(lambda: imported(log, proposal.text))
+    assert "the map asks for 'columns.delta.positive'" in said
+    assert 'fix: write positive = "starboard" or "port"' in said
+    line = proposal.text[: proposal.text.index("delta = {")].count("\n") + 1
+    assert f"line {line}" in said
+
+
+def test_answers_make_the_map_whole(tmp_path):
+    columns = logged(turn())
+    del columns["shaft"]
+    log = write_csv(tmp_path / "log.csv", columns)
+    proposal = propose_map([log])
+    assert proposal.asks == ("columns.n.column",)
+    start = proposal.text.index("n = { column = ")
+    line = proposal.text[start : proposal.text.index("\n", start)]
+    trial = imported(log, proposal.text.replace(line, 'n = { value = "100 rpm" }'))
+    assert trial.n == pytest.approx(100.0 / 60.0)
+
+
+def test_a_log_that_tells_nothing_is_asked_by_names(tmp_path):
+    proposal = propose_map([write_csv(tmp_path / "log.csv", still(logged(turn())))])
+    assert "columns.delta.positive" in proposal.asks
+    assert any("names alone" in note for note in proposal.notes)
+
+
+# what logs are like
+
+
+@pytest.mark.parametrize(
+    ("change", "keys"),
+    [
+        ({"sep": ";", "decimal": ","}, {"delimiter": ";", "decimal": ","}),
+        ({"sep": "\t"}, {"delimiter": "tab"}),
+        ({"sep": " ", "header": False}, {"delimiter": "space", "header": False, "fields": 9, "skip": 0}),
+        ({"encoding": "utf-16"}, {"encoding": "utf-16"}),
+    ],
+)
+def test_layouts(tmp_path, change, keys):
+    columns = logged(turn())
+    log = write_csv(tmp_path / "log.csv", columns, **change)
+    layout = sample_of(log).layout
+    assert {name: layout[name] for name in keys} == keys
+    close(imported(log, propose_map([log]).text), imported(write_csv(tmp_path / "plain.csv", columns)), 1e-8)
+
+
+def test_lines_above_and_a_line_of_units(tmp_path):
+    columns = logged(turn())
+    path = tmp_path / "log.csv"
+    units = "s;m;m;°;kn;kn;°/min;U/min;°"
+    frame = pd.DataFrame(columns).to_csv(index=False, sep=";")
+    head, _, body = frame.partition("\n")
+    path.write_text(f"Ship X\n\nrun 3; 2024\n{head}\n{units}\n{body}", encoding="utf-8")
+    sample = sample_of(path)
+    assert sample.layout["skip"] == 3
+    assert sample.units == tuple(units.split(";"))
+    close(imported(path, propose_map([path]).text), imported(write_csv(tmp_path / "plain.csv", columns)), 1e-8)
+
+
+@pytest.mark.parametrize(
+    ("rows", "expected"),
+    [
+        ([["a", "b"], ["1", "2"], ["3", "4"]], (1, 0, None, 2)),
+        ([["1", "2"], ["3", "4"]], (0, None, None, 2)),
+        ([["title"], [], ["t", "x"], ["s", "m"], ["1", "2"], ["3", "4"]], (4, 2, 3, 2)),
+        ([[]], (0, None, None, 0)),
+    ],
+)
+def test_headings(rows, expected):
+    assert heading(rows) == expected
+
+
+def test_logs_of_two_kinds(tmp_path):
+    first = write_csv(tmp_path / "a.csv", logged(turn()))
+    second = write_csv(tmp_path / "b.csv", {name.upper(): one for name, one in logged(turn()).items()})
+    with pytest.raises(LogError, match="of different kinds"):
+        propose_map([first, second])
+
+
+def test_sentences(tmp_path):
+    log = tmp_path / "log.nmea"
+    log.write_text("\n".join(nmea(turn())), encoding="ascii")
+    proposal = propose_map([log])
+    assert proposal.imported == 1
+    assert "RSA" in proposal.notes[0]
+    log.write_text("\n".join(line for line in nmea(turn()) if "RSA" not in line), encoding="ascii")
+    proposal = propose_map([log])
+    assert proposal.asks == ("columns.delta.value",)
+    assert "the map asks for 'columns.delta.value'" in refusal(lambda: parse_map(proposal.text))
+
+
+def test_json_and_console(tmp_path):
+    write_csv(tmp_path / "log.csv", logged(turn()))
+    ended = run("trials", "map", "log.csv", "--json", cwd=tmp_path)
+    found = ended.json()
+    assert found["kind"] == "map"
+    assert {one["quantity"] for one in found["columns"]} == {"t", "x", "y", "psi", "u", "v", "r", "n", "delta"}
+    assert all(one["confidence"] == "sure" for one in found["columns"])
+    # Without a file the map alone is on stdout.
+    ended = run("trials", "map", "log.csv", cwd=tmp_path)
+    assert parse_map(ended.out).sources["r"].unit == "deg/min"
+    assert "the heading changes by it" in ended.err
+    (tmp_path / "map.toml").write_text("mine")
+    assert run("trials", "map", "log.csv", "-o", "map.toml", cwd=tmp_path).code == 2
+    assert (tmp_path / "map.toml").read_text() == "mine"
+
+
+# names
+
+
+@pytest.mark.parametrize(
+    ("name", "quantity", "unit"),
+    [
+        ("Kurs über Grund [°]", "cog", "deg"), ("Ruderlage BB", "delta_port", ""), ("s", "", ""), ("CH01", "", ""),
+        ("Vitesse de giration (°/min)", "r", "deg/min"), ("対地速力 [ノット]", "sog", "kn"), ("船首方位", "psi", ""),
+        ("Geschwindigkeit quer", "v", ""), ("Heading_deg", "psi", "deg"), ("Rudder Order", "order", ""),
+        ("Wind dir app", "wind_dir_app", ""), ("shaft_rpm", "n", "rpm"),
+    ],
+)  # fmt: skip
+def test_names(name, quantity, unit):
+    assert (quantity_named(name), unit_named(name)) == (quantity, unit)
+
+
+def test_speed_through_water_is_told(tmp_path):
+    trial = turn()
+    columns = logged(trial)
+    circle = np.linspace(0.0, 4.0 * np.pi, 400)
+    north, east = np.cumsum(8.0 * np.cos(circle)), np.cumsum(8.0 * np.sin(circle))
+    drift = 0.8 * np.arange(400.0)
+    log = write_csv(
+        tmp_path / "log.csv",
+        {"time": columns["time"], "N": north + drift, "E": east, "gyro": np.rad2deg(circle) % 360.0,
+         "log": np.full(400, 8.0) / KNOT + 0.01 * np.sin(circle * 7), "rudder": columns["rudder"],
+         "rpm": np.full(400, 100.0)},
+    )  # fmt: skip
+    proposal = propose_map([log])
+    assert "u" not in proposal.guesses
+    assert any("speed through the water" in note for note in proposal.notes)
+
+
+def test_the_map_of_the_tests_is_found_again(tmp_path):
+    log = write_csv(tmp_path / "log.csv", logged(turn()))
+    found, ours = propose_map([log]).map(), parse_map(MAP)
+    for name, source in ours.sources.items():
+        other = found.sources[name]
+        assert (other.column, other.unit) == (source.column, source.unit)
+        assert source.positive in (None, other.positive)

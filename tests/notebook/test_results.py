@@ -1,0 +1,225 @@
+"""Results at a prompt and in a notebook."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from dataclasses import replace
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+
+import mmgtune
+from mmgtune.errors import OptionError, TrialError
+from mmgtune.notebook.kinds import KINDS
+
+HOSTILE = "<img src=x onerror=alert(1)>\"'&amp;\u202e\x9b31m$x_1$"
+"""A name as a log may have it: marks of HTML and of mathematics, a turned direction, a control code."""
+
+
+@pytest.fixture(scope="module")
+def trials():
+    return mmgtune.load_trials("suzaku")
+
+
+@pytest.fixture(scope="module")
+def fitted():
+    return mmgtune.fit("suzaku", "suzaku", mmgtune.FitOptions(a_r=0.5, method="least-squares", starts=2))
+
+
+@pytest.fixture(scope="module")
+def hostile(trials):
+    """Two trials, one of them with such a name."""
+    evil = replace(trials["turn_p35"], id=HOSTILE, ship=HOSTILE, manoeuvre=HOSTILE)
+    ids = (HOSTILE, "turn_m35")
+    return replace(trials, trials={HOSTILE: evil, "turn_m35": trials["turn_m35"]}, tune=ids, test=())
+
+
+@pytest.fixture
+def plt():
+    import matplotlib as mpl
+
+    mpl.use("agg")
+    import matplotlib.pyplot as plt
+
+    yield plt
+    plt.close("all")
+
+
+class Tags(HTMLParser):
+    """The tags of a text, and the words between them; a tag left open raises."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.tags, self.words = [], set(), []
+        self.feed(text)
+        assert self.open == []
+
+    def handle_starttag(self, tag, attrs):
+        self.open.append(tag)
+        self.tags.add(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.words.append(data)
+
+
+def results(fitted, trials):
+    """A result of each kind that is quick to make."""
+    from mmgtune import validate
+
+    sailed = mmgtune.simulate("suzaku", "suzaku")
+    return [
+        fitted.profile,
+        trials,
+        trials["turn_p35"],
+        fitted,
+        sailed,
+        sailed[0],
+        sailed.records[0],
+        validate(["suzaku", fitted.tuned_profile()], trials),
+        mmgtune.predict("suzaku", "suzaku"),
+    ]
+
+
+@pytest.mark.slow(10)
+def test_every_result_is_a_line_a_table_and_a_text(fitted, trials):
+    for one in results(fitted, trials):
+        assert "\n" not in repr(one)
+        assert len(repr(one)) < 200
+        html = Tags(one._repr_html_())
+        assert {"table", "th", "td"} <= html.tags
+        assert html.tags.isdisjoint({"script", "img", "iframe", "link", "a"})
+        frame = one.to_frame()
+        assert len(frame)
+        lines = repr(one.summary()).splitlines()
+        assert repr(one) in " ".join(lines)
+        assert max(map(len, lines)) <= 80, type(one)
+
+
+def test_nothing_in_a_result_fills_the_screen(fitted, trials):
+    parts = [fitted.certificate, fitted.identifiability, fitted.box, fitted.compared[0].records["after"]]
+    parts += [fitted.profile.sections["hull"], fitted.profile.arrangement, mmgtune.Model("suzaku"), fitted.options]
+    parts += [mmgtune.repeat("suzaku", [trials["turn_p35"]])[0], mmgtune.score("suzaku", trials)[0]]
+    assert [len(repr(one)) for one in parts if len(repr(one)) > 200 or "\n" in repr(one)] == []
+
+
+def test_options_say_what_was_chosen():
+    assert repr(mmgtune.FitOptions()) == "FitOptions()"
+    assert repr(mmgtune.FitOptions(a_r=0.3, seed=2)) == "FitOptions(seed=2, a_r=0.3)"
+
+
+@pytest.mark.slow(6)
+def test_a_fit_as_lmfit_prints_it(fitted):
+    frame = fitted.to_frame().set_index("coefficient")
+    for row in fitted.coefficients():
+        shown = frame.loc[row["name"]]
+        assert shown["value"] == row["value"]
+        assert shown["low"] <= shown["value"] <= shown["high"]
+        assert shown["bound"] == {None: "", "": "", "low": "lower", "high": "upper"}[row["at_bound"]]
+    assert frame["std.err"].isna().sum() == sum(row["stderr"] is None for row in fitted.coefficients())
+    text = fitted.summary().splitlines()
+    (head,) = [line.split() for line in text if line.startswith("coefficient")]
+    assert [name for name in head if name != "before"] == [
+        "coefficient", "value", "std.err", "low", "high", "bound", "determined"
+    ]  # fmt: skip
+    (line,) = [line.split() for line in text if line.startswith("wake.w_P0")]
+    assert "upper" in line
+    assert float(line[1]) == pytest.approx(frame.loc["wake.w_P0", "value"], rel=1e-3)
+
+
+def test_a_set_of_trials_is_a_collection(trials):
+    assert len(trials) == 10
+    assert "turn_p35" in trials
+    assert "turn" not in trials
+    assert trials["turn_p35"] is trials.trials["turn_p35"]
+    assert [one.id for one in trials] == list(trials.trials)
+    with pytest.raises(TrialError, match="did you mean 'turn_p35'"):
+        trials["turn_p3"]
+    samples = trials["turn_p35"].to_frame()
+    assert list(samples)[:3] == ["x [m]", "y [m]", "psi [rad]"]
+    assert samples.index.name == "t [s]"
+    assert np.array_equal(samples["v [m/s]"], trials["turn_p35"].v_m)
+
+
+def test_names_where_objects_are_taken(trials):
+    one = [trials["turn_p35"]]
+    assert mmgtune.evaluate("suzaku", one)[0].J == mmgtune.evaluate(mmgtune.load_profile("suzaku"), one)[0].J
+    assert len(mmgtune.evaluate("suzaku", "suzaku")) == len(trials)
+    assert [s.J for s in mmgtune.score("suzaku", "suzaku")] == [r.J for r in mmgtune.evaluate("suzaku", trials)]
+    assert mmgtune.repeat("suzaku", one) == mmgtune.repeat(mmgtune.load_profile("suzaku"), one)
+    assert mmgtune.estimate("suzaku").name == mmgtune.estimate(mmgtune.read_particulars("suzaku")).name
+    assert mmgtune.load_network("esso_osaka_3m_type1").ship
+
+
+@pytest.mark.slow(5)
+def test_trials_stand_where_orders_do(trials):
+    by_name, by_place = mmgtune.predict("suzaku", "suzaku"), mmgtune.predict("suzaku", trials=trials)
+    assert [run.id for run in by_name.runs] == [run.id for run in by_place.runs] == list(trials.trials)
+
+
+@pytest.mark.slow(6)
+def test_hostile_names_stay_words(hostile, plt):
+    options = mmgtune.FitOptions(method="least-squares", starts=1, targets=("hull.R_0",))
+    results = [hostile, hostile[HOSTILE], mmgtune.simulate("suzaku", hostile), mmgtune.validate("suzaku", hostile)]
+    results += [mmgtune.fit("suzaku", hostile, options)]
+    for one in results:
+        html = Tags(one._repr_html_())
+        assert "img" not in html.tags
+        if not isinstance(one, mmgtune.FitResult):  # which lists coefficients
+            assert any("<img src=x onerror=alert(1)>" in word for word in html.words)
+        for text in (one._repr_html_(), repr(one), one.summary(), repr(one.plot)):
+            assert "\x9b" not in text
+            assert "\u202e" not in text
+        for ax in np.ravel(one.plot.tracks()):
+            ax.figure.draw_without_rendering()  # what looks like mathematics would raise
+        one.plot.histories(HOSTILE, channels=("psi",))[0].figure.draw_without_rendering()
+
+
+@pytest.mark.slow(4)
+def test_pictures_hold_what_they_are_of(fitted, trials, plt):
+    axes = fitted.plot.tracks()
+    assert len(axes) == len(fitted.compared)
+    measured, before, after = (line for line in axes[0].lines if len(line.get_xdata()) > 1)
+    trial = fitted.compared[0]
+    assert np.array_equal(measured.get_ydata(), trial.trial.x)
+    assert np.array_equal(after.get_xdata(), trial.motions["after"].channel("y"))
+    assert not np.array_equal(before.get_xdata(), after.get_xdata())
+    (ax,) = plt.figure().subplots(1, 1, squeeze=False).ravel()
+    assert fitted.plot.tracks("turn_p35", ax=ax) is ax
+    psi, delta = fitted.plot.histories("turn_p35", channels=("psi", "delta"))
+    assert np.allclose(psi.lines[0].get_ydata(), np.rad2deg(trials["turn_p35"].psi))
+    assert len(delta.lines) == 1  # what drove the ship is the same for all
+    rooms = fitted.plot.coefficients()
+    assert [label.get_text() for label in rooms.get_yticklabels()] == list(fitted.theta)
+    assert dir(fitted.plot) == ["coefficients", "histories", "tracks"]
+
+
+def test_what_there_is_no_picture_of(trials, plt):
+    with pytest.raises(OptionError, match="no trial 'turn_p3'"):
+        trials.plot.tracks("turn_p3")
+    with pytest.raises(OptionError, match="no channel 'roll'"):
+        trials.plot.histories("turn_p35", channels=("roll",))
+    with pytest.raises(OptionError, match="no picture of coefficients"):
+        trials.plot.coefficients()
+    with pytest.raises(OptionError, match="1 channels on 2 axes"):
+        trials.plot.histories(channels=("psi",), ax=plt.figure().subplots(1, 2))
+
+
+def test_tables_need_no_matplotlib():
+    words = "import mmgtune, sys; mmgtune.load_trials('suzaku')._repr_html_(); mmgtune.load_profile('suzaku').summary()"
+    words += "; print([m for m in ('matplotlib', 'mmgtune.fitting', 'mmgtune.diagnose') if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", words], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_each_kind_is_a_class_that_can_be_shown():
+    from mmgtune.displayed import Displayed
+
+    public = {name: getattr(mmgtune, name) for name in mmgtune.__all__}
+    shown = {name for name, of in public.items() if isinstance(of, type) and issubclass(of, Displayed)}
+    assert shown <= set(KINDS)
+    assert set(KINDS) - shown <= {"SweepResult", "LeftOut", "Motion"} | set(public)

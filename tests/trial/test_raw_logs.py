@@ -1,0 +1,66 @@
+"""Logs where trials are expected: the answer is the commands that make trials of them, and these can be pasted."""
+
+import shlex
+
+import pytest
+
+from mmgtune.errors import TrialError
+from mmgtune.trial import load_trials, load_voyages
+from tests.command import run
+
+LOG = "time,x,y\n0,0,0\n1,2,0\n"
+
+
+def commands(fix):
+    """The commands in a fix, as a shell splits them."""
+    return [shlex.split(part.partition(", ")[0]) for part in fix.split("mmgtune ")[1:]]
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A folder whose name needs quoting, with two logs and a text that is none."""
+    where = tmp_path / "my logs"
+    where.mkdir()
+    for name in ("a.csv", "b.csv"):
+        (where / name).write_text(LOG)
+    (where / "README.txt").write_text("about them\n")
+    return where
+
+
+def test_a_folder_of_logs_is_answered_with_commands(folder):
+    with pytest.raises(TrialError) as caught:
+        load_trials(folder)
+    (problem,) = caught.value.problems
+    assert problem.what == "the folder holds logs, not trials"
+    mapping, importing = commands(problem.fix)
+    assert mapping == ["trials", "map", f"{folder}/*.csv", "-o", "map.toml"]
+    assert importing == ["trials", "import", f"{folder}/*.csv", "--map", "map.toml", "-o", "imported"]
+    assert "'/*.csv" in problem.fix  # the star is for the shell, outside of the quotes
+
+
+@pytest.mark.parametrize("load", [load_trials, load_voyages])
+def test_so_is_a_single_log(folder, load):
+    with pytest.raises(TrialError, match=r"mmgtune trials map '.*a\.csv' -o map\.toml"):
+        load(folder / "a.csv")
+
+
+def test_a_file_that_only_is_called_parquet_too(tmp_path):
+    (tmp_path / "log.parquet").write_text(LOG)
+    with pytest.raises(TrialError, match="not Parquet") as caught:
+        load_trials(tmp_path)
+    assert "mmgtune trials map" in caught.value.problems[0].fix
+
+
+def test_an_empty_folder_and_one_of_texts_are_not_taken_for_logs(tmp_path):
+    (tmp_path / "README.txt").write_text("nothing here\n")
+    with pytest.raises(TrialError, match="no trial files"):
+        load_trials(tmp_path)
+
+
+@pytest.mark.slow(4)
+@pytest.mark.parametrize("command", ["fit", "validate", "leave-out", "diagnose"])
+def test_commands_say_it(command, folder, tmp_path):
+    given = ("suzaku", str(folder)) if command == "validate" else ("-p", "suzaku", "-t", str(folder))
+    said = run(command, *given, cwd=tmp_path)
+    assert said.code == 2
+    assert "mmgtune trials map" in " ".join(said.err.split())
