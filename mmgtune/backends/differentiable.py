@@ -281,9 +281,10 @@ class JaxLanes:
                 lanes = filled(of)
                 case_of, candidate_of = case[lanes], candidate[lanes]
                 own, log_of = np.unique(case_of, return_inverse=True)
-                of_lane = theta[:, case_of if paired else candidate_of]
                 if theta.ndim == 3:
                     of_lane = theta[:, case_of, candidate_of]
+                else:
+                    of_lane = theta[:, case_of if paired else candidate_of]
                 found = march(of_lane, initial[case_of, candidate_of], _given(cases, own, log_of, steps))
                 J, v2, end, shown = (np.asarray(values) for values in found)
                 cost[case, candidate], fastest2[case, candidate], last[case, candidate] = J[:of], v2[:of], end.T[:of]
