@@ -78,7 +78,7 @@ trials: $(RUNTIME) ## write the bundled trials and voyages and the logs of the t
 	$(BIN)/python tools/generate_suzaku_voyages.py
 	$(BIN)/python -m tools.generate_tutorial_logs
 
-browser: ## install Debian's chromium for the tests of the page, where that is possible
+browser: ## install Debian's chromium and axe-core for the tests of the pages, where that is possible
 	@if command -v chromium >/dev/null; then \
 		echo "chromium is installed"; \
 	elif [ "$$(id -u)" -ne 0 ] || ! command -v apt-get >/dev/null; then \
@@ -88,6 +88,12 @@ browser: ## install Debian's chromium for the tests of the page, where that is p
 		apt-get update -q || true; \
 		apt-get install -q -y --no-install-recommends chromium \
 			|| echo "chromium could not be installed: the browser tests are skipped"; \
+	fi
+	@if command -v npm >/dev/null; then \
+		npm install --silent --no-save --no-package-lock --no-audit --no-fund axe-core@4 \
+			|| echo "axe-core could not be installed: its rules are not held against the pages"; \
+	else \
+		echo "npm is missing: the rules of axe-core are not held against the pages"; \
 	fi
 
 constraints: ## write constraints.txt anew: the newest releases that pyproject.toml allows

@@ -26,7 +26,7 @@ from .predictor import Predictor, Sampling, Uncertain, particles_of, profile_of
 from .provenance import made_by
 from .trial import Trial, TrialSet
 from .validating import Scorable, predictors_of, sigma_of
-from .validation import L_MSE, TrialScore, by_manoeuvre, by_member, by_run, score, window_scores
+from .validation import L_MSE, TrialScore, by_manoeuvre, by_member, by_run, off_by, score, window_scores
 
 RESULT = "model_comparison.json"
 
@@ -211,6 +211,7 @@ class ModelComparison(Displayed):
                         convention: [
                             {
                                 **one.cell(convention, column).to_dict(first.cell(convention, column)),
+                                **_off(column.of(one.scores[convention]), self.sigma),
                                 "bands": self.bands[one.name][convention][k].to_dict(),
                             }
                             for k, column in enumerate(self.columns)
@@ -236,6 +237,11 @@ class ModelComparison(Displayed):
             "best": {convention: self.best(convention, column) for convention in CONVENTIONS},
             "best_CRPS": {convention: self.surest(convention, k) for convention in CONVENTIONS},
         }
+
+
+def _off(scores: Sequence[TrialScore], sigma: Mapping[str, float]) -> dict[str, float | None]:
+    """How far off in metres and degrees, over all members; None where one diverged."""
+    return {name: value if math.isfinite(value) else None for name, value in off_by(scores, sigma).items()}
 
 
 def compare_models(

@@ -72,6 +72,19 @@ def L_MSE(scores: Sequence[TrialScore]) -> float:
     return float(sum(parts.values())) if parts else float("nan")
 
 
+def off_by(scores: Sequence[TrialScore], sigma: Mapping[str, float]) -> dict[str, float]:
+    """Root mean square distance off track [m] and error of heading [deg] over all samples; not finite where diverged.
+
+    sigma  what the scores were divided by
+    """
+    squares = {name: part * sigma[name] ** 2 for name, part in L_MSE_by_state(scores).items()}
+    place, heading = squares.get("x", np.nan) + squares.get("y", np.nan), squares.get("psi", np.nan)
+    return {
+        "position_rms_m": float(np.sqrt(place)),
+        "heading_rms_deg": float(np.degrees(np.sqrt(heading))),
+    }
+
+
 def by_manoeuvre(scores: Sequence[TrialScore]) -> dict[str, list[TrialScore]]:
     """Scores by kind of manoeuvre, "" where trials do not say."""
     return _grouped(scores, lambda score: score.manoeuvre)

@@ -77,7 +77,9 @@ EFFECT = FlowEffect(
     params=Current,
     function=current,
     rate=rate_of_current,
-    cites=("Mathioudakis et al., FAM, eq. 9",),
+    cites=(
+        "Mathioudakis et al., Towards real-world validation of a physics-based ship motion prediction model, eq. 9",
+    ),
     fields={
         "north": _component("north"),
         "east": _component("east"),

@@ -57,7 +57,10 @@ EFFECT = ForceEffect(
     title="added resistance in waves",
     params=Waves,
     function=waves,
-    cites=("ITTC 2014, Recommended Procedure 7.5-04-01-01.1, STAWAVE-1", "Mathioudakis et al., FAM, eq. 8"),
+    cites=(
+        "ITTC 2014, Recommended Procedure 7.5-04-01-01.1, STAWAVE-1",
+        "Mathioudakis et al., Towards real-world validation of a physics-based ship motion prediction model, eq. 8",
+    ),
     fields={
         "height": Parameter(
             "significant wave height where the trial has no measured waves",

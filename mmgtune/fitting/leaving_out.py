@@ -26,7 +26,7 @@ from ..repeating import Repeated, document, repeat
 from ..stated import IndexComparison, compare_stated
 from ..threads import blas_on_one_thread
 from ..trial import Coverage, Trial, TrialSet
-from ..validation import L_MSE, L_MSE_by_state, TrialScore, by_manoeuvre, improvement, score
+from ..validation import L_MSE, TrialScore, by_manoeuvre, improvement, off_by, score
 from .comparison import finite, finite_values
 from .extending import held_words, settled, tune_trials
 from .journal import finished, journalled
@@ -200,20 +200,10 @@ def _row(
         "L_MSE_after": finite(L_MSE(after)),
         "J_before": finite(sum(one.J for one in before)),
         "J_after": finite(sum(one.J for one in after)),
-        **_off(before, sigma, "before"),
-        **_off(after, sigma, "after"),
+        **{f"{name}_before": finite(value) for name, value in off_by(before, sigma).items()},
+        **{f"{name}_after": finite(value) for name, value in off_by(after, sigma).items()},
         "share_removed": finite(share),
         "share_removed_ci95": list(interval) if interval and np.isfinite(interval).all() else None,
-    }
-
-
-def _off(scores: Sequence[TrialScore], sigma: Mapping[str, float], which: str) -> dict[str, float | None]:
-    """Root mean square distance off track [m] and error of heading [deg]; None where it diverged."""
-    squares = {name: part * sigma[name] ** 2 for name, part in L_MSE_by_state(scores).items()}
-    place, heading = (squares.get("x", np.nan) + squares.get("y", np.nan)), squares.get("psi", np.nan)
-    return {
-        f"position_rms_m_{which}": finite(float(np.sqrt(place))),
-        f"heading_rms_deg_{which}": finite(float(np.degrees(np.sqrt(heading)))),
     }
 
 

@@ -108,8 +108,8 @@ def after_diagnosis(data: Mapping[str, Any]) -> Advice:
         if day:
             calm = shlex.quote(f"{where}/calm.toml")
             reason = (
-                f"Predict calm water: {' and '.join(day)} {'was' if len(day) == 1 else 'were'} of these trials, not of "
-                "the ship. Take that out first; calm.toml is the profile without it"
+                f"Before predicting calm water take the {' and the '.join(day)} out, which belongs to these trials and "
+                "not to the ship: calm.toml is the profile without"
             )
             items.append((reason, f"mmgtune simulate -p {calm} --turn 35 --turn -35 --zigzag 10/10 --zigzag 20/20"))
         reason = "Re-tune the coefficients with what was found in the model, within the same range of their values"

@@ -10,12 +10,14 @@ from .blocks import Block, Card, Cell, Commands, Fold, Nothing, Page, Prose, Sec
 from .common import doubts, made_table, picture
 from .load import Kind
 from .plot import Axis, Bar, Figure, Look, Mark, Panel, Rule
-from .wording import NONE, clean, coefficient_text, count, number, sentence, share, shown
+from .tables import tone
+from .wording import NONE, change, clean, coefficient_text, count, number, percent, sentence, share, shown
 
 _WORDS = {
     "regressed": "worse", "ok": "as good", "improved": "better", "not comparable": "not comparable",
     "skipped": "not measured",
 }  # fmt: skip
+_SAID = {"pass": "Passed", "FAIL": "Failed", "NOT COMPARABLE": "Not comparable", "COULD NOT RUN": "Could not run"}
 _TONES = {"regressed": "bad", "improved": "good", "not comparable": "note"}
 _BARS = 14
 _FAR = 4.0
@@ -44,7 +46,11 @@ def build(data: Mapping[str, Any]) -> Page:
 
 
 def _verdict(data: Mapping[str, Any]) -> str:
-    return " ".join(clean(data["sentence"]).split())
+    text = " ".join(clean(data["sentence"]).split())
+    for said, words in _SAID.items():
+        if text.startswith(said):
+            return f"{words}: {text.removeprefix(said).strip()}"
+    return text
 
 
 def _cards(data: Mapping[str, Any]) -> tuple[Card, ...]:
@@ -55,12 +61,28 @@ def _cards(data: Mapping[str, Any]) -> tuple[Card, ...]:
         value = f"{shown(worst['baseline'], 3)} → {shown(worst['now'], 3)}{unit}"
         note = f"{clean(worst['metric'])} of {clean(worst['trial'])}, allowed {shown(worst['allowed'], 2)}{unit}"
         cards.append(Card("Worst", value, note=note, tone="bad"))
+    else:
+        cards += _means(data)
     counts = data["counts"]
     for status in ("regressed", "improved", "ok"):
         n = int(counts.get(status, 0))
-        tone = _TONES.get(status, "") if n else ""
-        cards.append(Card(_WORDS[status].capitalize(), count(n, "metric"), tone=tone))
+        cards.append(Card(_WORDS[status].capitalize(), count(n, "metric"), tone=_TONES.get(status, "") if n else ""))
     return tuple(cards[:4])
+
+
+def _means(data: Mapping[str, Any]) -> list[Card]:
+    """Means over trials of the distance off track and the error of heading, where they are checked."""
+    cards = []
+    for metric, label, unit, digits in (("MED", "Off track", " m", 3), ("rms_psi", "Off heading", "°", 2)):
+        pairs = [(number(row["baseline"]), number(row["now"])) for row in data["items"] if row["metric"] == metric]
+        known = [(a, b) for a, b in pairs if a is not None and b is not None]
+        if known:
+            before, after = (sum(pair[k] for pair in known) / len(known) for k in (0, 1))
+            moved = change(before, after)
+            value = f"{shown(before, digits)} → {shown(after, digits)}{unit}"
+            note = f"mean of {count(len(known), 'trial')}, {'mean distance' if metric == 'MED' else 'root mean square'}"
+            cards.append(Card(label, value, percent(moved), note, tone(moved, 1.0)))
+    return cards
 
 
 def _severity(row: Mapping[str, Any]) -> float:
@@ -78,7 +100,8 @@ def _ordered(data: Mapping[str, Any]) -> list[Mapping[str, Any]]:
 
 def _worst(data: Mapping[str, Any]) -> Section | None:
     rows = [row for row in _ordered(data) if row["status"] in ("regressed", "improved", "ok")]
-    rows = sorted(rows, key=_severity, reverse=True)[:_BARS]
+    worse = any(row["status"] == "regressed" for row in rows)
+    rows = sorted(rows, key=_severity if worse else lambda row: abs(_severity(row)), reverse=True)[:_BARS]
     if not rows:
         return Section("worst", "Metrics", (Nothing("Nothing could be compared."),))
     marks: list[Mark] = [Rule(1.0, Look("flag", 1.4, "dash"))]
@@ -93,8 +116,9 @@ def _worst(data: Mapping[str, Any]) -> Section | None:
     y = Axis(low=len(rows) - 0.4, high=-0.6, ticks=ticks, grid=False)
     figure = Figure("metrics", "Change of each metric over what is allowed", (Panel(tuple(marks), x, y,
                     shape=-(25.0 * len(rows) + 50.0)),), (("allowed", Look("flag", 1.4, "dash")),))  # fmt: skip
-    caption = f"The {count(len(rows), 'metric')} that changed most for the worse; right of the line is a regression."
-    if any(_severity(row) > _FAR for row in rows):
+    direction = " for the worse" if worse else ""
+    caption = f"The {count(len(rows), 'metric')} that changed most{direction}; right of the line is a regression."
+    if any(abs(_severity(row)) > _FAR for row in rows):
         caption += f" Bars end at {_FAR:g} times what is allowed."
     return Section("worst", "What changed", (picture(figure, "Metrics", caption),))
 

@@ -119,6 +119,7 @@ def assumptions(data: Mapping[str, Any]) -> Section | None:
                     )
                     for row in items
                 ),
+                raw=True,
             ),
         ),
     )

@@ -11,7 +11,7 @@ from .blocks import Card, Cell, Page, Prose, Section, Table, cells
 from .common import doubts, picture
 from .load import Kind
 from .plot import Axis, Figure, Line, Look, Mark, Panel
-from .wording import NONE, clean, coefficient_text, number, percent, shown
+from .wording import NONE, clean, coefficient_text, number, percent, run_words, shown
 
 _LOOKS = {"a": Look("before", 1.6), "b": Look("after", 1.6, "dash")}
 _FORCES = (
@@ -101,9 +101,9 @@ def _verdict(names: tuple[str, str], rows: Sequence[Mapping[str, Any]]) -> str:
 
 def _cards(names: tuple[str, str], rows: Sequence[Mapping[str, Any]]) -> tuple[Card, ...]:
     wanted = (
-        ("Advance, 35° to starboard", "turn_p35", "advance_over_L", "L_pp"),
-        ("Tactical diameter, 35° to starboard", "turn_p35", "tactical_diameter_over_L", "L_pp"),
-        ("Tactical diameter, 35° to port", "turn_m35", "tactical_diameter_over_L", "L_pp"),
+        ("Advance, 35° to starboard", "turn_p35", "advance_over_L", " L_pp"),
+        ("Tactical diameter, 35° to starboard", "turn_p35", "tactical_diameter_over_L", " L_pp"),
+        ("Tactical diameter, 35° to port", "turn_m35", "tactical_diameter_over_L", " L_pp"),
         ("First overshoot, zigzag 10/10", "zigzag_p10_10", "overshoot_1_deg", "°"),
     )
     shown_cards = []
@@ -112,7 +112,7 @@ def _cards(names: tuple[str, str], rows: Sequence[Mapping[str, Any]]) -> tuple[C
         if found is not None:
             a, b = found
             change = percent(100.0 * (b - a) / a) if a else ""
-            shown_cards.append(Card(label, f"{shown(a, 3)} → {shown(b, 3)} {unit}", change, f"{names[0]} → {names[1]}"))
+            shown_cards.append(Card(label, f"{shown(a, 3)} → {shown(b, 3)}{unit}", change, f"{names[0]} → {names[1]}"))
     return tuple(shown_cards)
 
 
@@ -163,7 +163,7 @@ def _indices(names: tuple[str, str], manoeuvres: Mapping[str, Any]) -> Table:
         a, b = number(row["a"]), number(row["b"])
         moved = percent(100.0 * (b - a) / a) if a and b is not None else NONE
         rows.append(
-            cells(clean(row["manoeuvre"]), _WORDS.get(row["index"], row["index"]), shown(a, 4), shown(b, 4), moved)
+            cells(run_words(row["manoeuvre"]), _WORDS.get(row["index"], row["index"]), shown(a, 4), shown(b, 4), moved)
         )
     return Table(
         "indices-table",

@@ -14,7 +14,7 @@ from .differences import differences
 from .forces import ship_of
 from .load import DiagnosisRecord, Kind, inputs_of, motions_in
 from .of_runs import of_runs, parameters_of
-from .plot import Axis, Bar, Figure, Panel
+from .plot import Axis, Color, Dots, Figure, Line, Look, Mark, Panel
 from .tables import tone
 from .wording import (
     CHANNELS,
@@ -22,6 +22,7 @@ from .wording import (
     beyond_noise,
     change,
     clean,
+    count,
     index_words,
     number,
     percent,
@@ -50,7 +51,6 @@ _READ = {
 }
 """Factor and unit in which people read a quantity."""
 
-_BEYOND = "variance of the error less that of the sensor's noise, as a share of it; where large, multiples of the noise"
 _FORCE_WORDS = {
     "dX": "surge [kN]", "dY": "sway [kN]", "dN": "yaw [kN m]",
     "dX'": "surge′ [–]", "dY'": "sway′ [–]", "dN'": "yaw′ [–]",
@@ -111,7 +111,7 @@ def _cards(record: DiagnosisRecord) -> tuple[Card, ...]:
     if data["causes"]:
         removed = share(gain["share_above_noise_removed"])
         causes = ", ".join(clean(cause["effect"]) for cause in data["causes"])
-        note = f"95\u00a0% of draws of trials: {span(*gain['share_ci95'])}; by {causes}"
+        note = f"by {causes}; 95\u00a0% interval over trials: {span(*gain['share_ci95'])}"
         return (
             *cards_of_misfit({}, record.results, where="held out")[:2],
             Card("Error beyond noise removed", removed, note=note, tone="good"),
@@ -205,7 +205,9 @@ def _causes(data: Mapping[str, Any]) -> Section | None:
         looked = len(
             {row["effect"] for row in data["candidates"]} | {row["effect"] for row in data.get("detectability") or ()}
         )
-        more = f"{looked} effects were looked at; which of them these trials would have shown stands below."
+        more = (
+            f"{count(looked, 'effect was', 'effects were')} looked at; what these trials would have shown stands below."
+        )
         nothing = Nothing("No cause was found.", more if looked else "")
         return Section("causes", "Causes", (nothing, *said, *unexplained.traces(data)))
     blocks: list[Block] = [*said]
@@ -260,7 +262,7 @@ def _why(data: Mapping[str, Any]) -> Section | None:
         return None
     table = Table(
         "candidates-table",
-        f"All {len(data['candidates'])} hypotheses at the first look",
+        f"{count(len(data['candidates']), 'hypothesis', 'hypotheses')} at the first look",
         ("effect", "parameters", "score [–]", "fall of chi-squared [–]", "by chance", "J, held out"),
         tuple(
             cells(
@@ -282,7 +284,7 @@ def _why(data: Mapping[str, Any]) -> Section | None:
         ),
         raw=True,
     )
-    every = Fold(f"All {len(data['candidates'])} hypotheses", (table,))
+    every = Fold(f"All hypotheses: {len(data['candidates'])}", (table,))
     if not data["causes"]:
         sentence = (
             "No hypothesis explains more than chance would."
@@ -313,16 +315,17 @@ def _candidates_figure(rows: Sequence[Mapping[str, Any]], found: bool) -> Figure
     gains = [max(float(row["gain"]), 0.1) for row in rows]
     log = max(gains) > 30.0 * min(gains)
     least = 0.5 * min(gains) if log else 0.0
-    marks = tuple(
-        Bar((least, gain), (k - 0.31, k + 0.31), "after" if k == 0 and found else "muted", 1.0 if k == 0 else 0.7)
-        for k, gain in enumerate(gains)
-    )
+    marks: list[Mark] = []
+    for k, gain in enumerate(gains):
+        color: Color = "after" if k == 0 and found else "muted"
+        marks.append(Line((least, gain), (k, k), Look(color, 3.0)))
+        marks.append(Dots((gain,), (k,), Look(color, marker="o", size=9.0)))
     ticks = tuple(
         (float(k), f"{clean(row['effect'])} ({', '.join(parameters_of(row))})"[:44]) for k, row in enumerate(rows)
     )
     y = Axis(low=len(rows) - 0.4, high=-0.6, ticks=ticks, grid=False)
     x = Axis("fall of chi-squared when refitted [–]", low=least, log=log)
-    panel = Panel(marks, x, y, shape=-(25.0 * len(rows) + 48.0))
+    panel = Panel(tuple(marks), x, y, shape=-(25.0 * len(rows) + 48.0))
     return Figure("candidates", "What each hypothesis alone would explain", (panel,))
 
 
@@ -389,26 +392,15 @@ def _where(data: Mapping[str, Any]) -> Section | None:
 
 
 def _residuals(evidence: Mapping[str, Any], found: bool) -> Table:
+    runs = ("before", "after") if found else ("before",)
     rows = []
     for name in evidence["excess_before"]:
         words = CHANNELS[name].words if name in CHANNELS else name
-        after = (
-            [beyond_noise(evidence["excess_after"].get(name)), shown(evidence["short_horizon_after"].get(name), 2)]
-            if found
-            else []
-        )
-        rows.append(
-            cells(
-                clean(words),
-                beyond_noise(evidence["excess_before"].get(name)),
-                *after[:1],
-                shown(evidence["short_horizon_before"].get(name), 2),
-                *after[1:],
-            )
-        )
-    heads = (
-        ("beyond noise, before", "after", "restarted, before", "after") if found else ("beyond noise", "restarted [–]")
-    )
+        whole = [_over_noise(evidence[f"excess_{which}"].get(name)) for which in runs]
+        begun = [shown(evidence[f"short_horizon_{which}"].get(name), 2) for which in runs]
+        rows.append(cells(clean(words), *whole, *begun))
+    heads: tuple[str, ...] = ("error over noise, before [–]", "after", "restarted, before [–]", "after")
+    heads = heads if found else ("error over noise [–]", "restarted [–]")
     return Table(
         "residuals-table",
         "Error of each channel",
@@ -416,10 +408,16 @@ def _residuals(evidence: Mapping[str, Any], found: bool) -> Table:
         tuple(rows),
         range(1, 1 + len(heads)),
         (
-            ("beyond noise", _BEYOND),
-            ("restarted", "root mean square error of simulations begun anew every minute, over the noise: 1 is noise"),
+            ("error over noise", "root mean square error of whole trials over that of the sensor's noise: 1 is noise"),
+            ("restarted", "the same of simulations begun anew every minute"),
         ),
     )
+
+
+def _over_noise(excess: Any) -> str:
+    """How many times the noise an error is, from its variance beyond that of the noise as a share of it."""
+    size = number(excess)
+    return NONE if size is None else shown(math.sqrt(max(1.0 + size, 0.0)), 2)
 
 
 def _forces(forces: Mapping[str, Any], which: str, words: str) -> Table:
@@ -440,7 +438,7 @@ def _forces(forces: Mapping[str, Any], which: str, words: str) -> Table:
         (
             ("column", "share of the force's variance that this quantity alone predicts, on samples not used for it"),
             ("noise", "share of it that is noise of the sensors"),
-            ("′", "over 0.5 ρ L d U²: what grows with the square of speed is constant in it"),
+            ("with ′", "over 0.5 ρ L d U²: what grows with the square of speed is constant in it"),
         ),
     )
 

@@ -92,13 +92,20 @@ def _verdict(record: ModelsRecord) -> str:
 
 
 def _cards(record: ModelsRecord) -> tuple[Card, ...]:
-    shown_cards = []
-    for model in record.data["models"][:6]:
-        note = f"all runs, anew every {shown(record.data['window_s'], 3)} s"
-        shown_cards.append(
-            Card(f"L_MSE, {clean(model['name'])}", _mean(model["windows"][0], model["members"]), note=note)
-        )
-    return tuple(shown_cards)
+    """The models that do best on all runs, begun anew."""
+    known = [one for one in record.data["models"] if number(one["windows"][0]["mean"]) is not None]
+    cards = []
+    for model in sorted(known, key=lambda one: float(one["windows"][0]["mean"]))[:4]:
+        found = model["windows"][0]
+        place, heading = number(found.get("position_rms_m")), number(found.get("heading_rms_deg"))
+        score = f"L_MSE {_mean(found, model['members'])}"
+        window = f"all runs, anew every {shown(record.data['window_s'], 3)} s"
+        if place is None:  # records of older versions do not say
+            cards.append(Card(f"Off, {clean(model['name'])}", score, note=window))
+        else:
+            off = f"{shown(place, 3)} m, {shown(heading, 2)}°"
+            cards.append(Card(f"Off, {clean(model['name'])}", off, note=f"{score}; {window}"))
+    return tuple(cards)
 
 
 def _tables(record: ModelsRecord, convention: str) -> list[Table]:

@@ -179,8 +179,10 @@ MODELS = (
     Look("before", 1.7, "dash", "^"),
     Look("flag", 1.7, "dot", "s"),
     Look("third", 1.7, "long", "D"),
+    Look("muted", 1.7, "dash", "x"),
+    Look("ink", 1.7, "dot", "+"),
 )
-"""How the models of a comparison are drawn everywhere; a fifth begins anew."""
+"""How the models of a comparison are drawn everywhere; a seventh begins anew."""
 
 
 def model_look(place: int) -> Look:

@@ -16,7 +16,7 @@ from .common import doubts, picture
 from .load import Kind, columns_in
 from .plot import LOOKS, Look
 from .tables import pairs
-from .wording import NONE, PRINCIPAL, clean, count, number, shown
+from .wording import NONE, PRINCIPAL, clean, count, number, run_words, shown
 
 if TYPE_CHECKING:
     from ..arrays import FloatArray
@@ -148,26 +148,43 @@ def _verdict(record: PredictRecord) -> str:
 
 
 def _cards(record: PredictRecord) -> tuple[Card, ...]:
-    data = record.data
-    drawn = "drawn" if data["drawn"] else "the members the model has"
-    shown_cards = [Card("particles", str(data["particles"]), note=drawn if record.several else "one model: no band")]
-    scores = data["scores"]
+    scores = record.data["scores"]
+    cards = _off(record)
     if scores:
         for level in (50, 90):
             if number(scores[f"coverage_{level}"]) is not None:
-                shown_cards.append(Card(f"held by bands of {level} %", f"{100.0 * scores[f'coverage_{level}']:.0f} %"))
-        shown_cards += [
-            Card(name, shown(scores[name], 3)) for name in ("L_Eucl", "L_Maha") if number(scores[name]) is not None
-        ]
-        return tuple(shown_cards)
+                held = f"{100.0 * scores[f'coverage_{level}']:.0f}\u00a0%"
+                note = f"of the measured samples; {level}\u00a0% is right"
+                cards.append(Card(f"Held by bands of {level}\u00a0%", held, note=note))
+        return tuple(cards[:4])
     for run in record.runs:
         for row in run["indices"]:
             if row["index"] in ("advance_m", "tactical_diameter_m", "overshoot_1_deg", "track_reach_m"):
-                unit = "L" if row["over_L"] else row["unit"]
-                shown_cards.append(
-                    Card(f"{row['words']}, {clean(run['id'])}", f"{banded(row['over_L'] or row)} {unit}")
-                )
-    return tuple(shown_cards[:7])
+                label = f"{row['words'].capitalize()}, {run_words(run['id'])}"
+                lengths = f"{banded(row['over_L'])} ship lengths" if row["over_L"] else ""
+                cards.append(Card(label, f"{banded(row)} {row['unit']}", note=lengths))
+    return tuple(cards[:4])
+
+
+def _off(record: PredictRecord) -> list[Card]:
+    """How far the mean is off what was measured, over the runs that are drawn; none where nothing was."""
+    import numpy as np
+
+    squares: dict[str, list[float]] = {"place": [], "heading": []}
+    for bands in record.bands.values():
+        gaps = {name: of["mean"] - of["measured"] for name, of in bands.items() if name in ("x", "y", "psi")}
+        place = gaps["x"] ** 2 + gaps["y"] ** 2
+        if np.isfinite(place).any():
+            squares["place"].append(float(np.sqrt(np.nanmean(place))))
+            squares["heading"].append(float(np.degrees(np.sqrt(np.nanmean(gaps["psi"] ** 2)))))
+    if not squares["place"]:
+        return []
+    place_off, heading_off = (sum(values) / len(values) for values in squares.values())
+    note = f"root mean square, mean of {count(len(squares['place']), 'trial')}"
+    return [
+        Card("The mean is off track by", f"{shown(place_off, 3)} m", note=note),
+        Card("Off heading by", f"{shown(heading_off, 2)}°", note=note),
+    ]
 
 
 def _whisker_rows(record: PredictRecord) -> dict[str, list[dict[str, Any]]]:

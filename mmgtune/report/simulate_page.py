@@ -15,7 +15,7 @@ from .forces import NO_SHIP, Ship, ship_of
 from .load import Kind, inputs_of, motions_in
 from .plot import LOOKS
 from .tracks import distance_from
-from .wording import NONE, Channel, clean, count, index_words, is_index, listing, number, sentence, shown
+from .wording import NONE, Channel, clean, count, index_words, is_index, listing, number, run_words, sentence, shown
 
 if TYPE_CHECKING:
     from ..arrays import FloatArray
@@ -99,15 +99,16 @@ def _verdict(record: SimulationRecord, ship: str) -> str:
         return f"Over whole trials the simulated {ship} is {shown(place, 3)} m off track{off} in the mean of {where}."
     said: list[str] = []
     for run in record.runs:
-        found = run["indices"]
-        diameter, advance = (number(found.get(f"{name}_over_L")) for name in ("tactical_diameter", "advance"))
-        if diameter is not None and len(said) < 2:
-            said.append(f"{clean(run['id'])}: advance {shown(advance, 3)}, tactical diameter {shown(diameter, 3)} L_pp")
-        elif number(found.get("overshoot_1_deg")) is not None and len(said) < 3:
-            said.append(f"{clean(run['id'])}: first overshoot {shown(found['overshoot_1_deg'], 3)}°")
+        found, name = run["indices"], run_words(run["id"])
+        diameter, advance = (number(found.get(f"{key}_over_L")) for key in ("tactical_diameter", "advance"))
+        if diameter is not None and len(said) < 1:
+            lengths = f"advance {shown(advance, 3)} and tactical diameter {shown(diameter, 3)} ship lengths"
+            said.append(f"{name}, {lengths}")
+        elif number(found.get("overshoot_1_deg")) is not None and len(said) < 2:
+            said.append(f"{name}, first overshoot {shown(found['overshoot_1_deg'], 2)}°")
     judged = [one for run in record.runs for one in run["criteria"] if one["passed"] is not None]
     failed = [one for one in judged if not one["passed"]]
-    text = f"{ship} turns: " + "; ".join(said) if said else f"{count(len(record.runs), 'run')} of {ship} simulated"
+    text = f"{ship}: " + "; ".join(said) if said else f"{count(len(record.runs), 'run')} of {ship} simulated"
     if judged:
         text += ". All IMO criteria that apply are met" if not failed else f". {len(failed)} IMO criteria are not met"
     return text + "."
@@ -125,10 +126,10 @@ def _cards(record: SimulationRecord) -> tuple[Card, ...]:
         advance = number(found.get("advance_m"))
         if advance is not None and len(cards) < 2:
             lengths = f"{shown(found['advance_over_L'], 3)} ship lengths"
-            cards.append(Card(f"Advance, {clean(run['id'])}", f"{shown(advance, 3)} m", note=lengths))
+            cards.append(Card(f"Advance, {run_words(run['id'])}", f"{shown(advance, 3)} m", note=lengths))
         for name in _OVERSHOOTS[:1]:
             if number(found.get(name)) is not None and len(cards) < 3:
-                cards.append(Card(f"First overshoot, {clean(run['id'])}", f"{shown(found[name], 3)}°"))
+                cards.append(Card(f"First overshoot, {run_words(run['id'])}", f"{shown(found[name], 3)}°"))
     judged = [one for run in record.runs for one in run["criteria"] if one["passed"] is not None]
     if judged:
         good = sum(bool(one["passed"]) for one in judged)
@@ -146,8 +147,8 @@ def _motions(record: SimulationRecord) -> Section | None:
         own = dict(record.motions[str(run["id"])])
         if "simulated" in own:
             own["simulated"] = record.ship.with_forces(own["simulated"])
-        note = f"{shown(run['duration_s'], 4)} s, {clean(run['status'])}"
-        manoeuvres.append(motions.Manoeuvre(clean(run["id"]), own, note=note))
+        note = f"{shown(run['duration_s'], 4)} s" + ("" if run["status"] == "ok" else f", {clean(run['status'])}")
+        manoeuvres.append(motions.Manoeuvre(run_words(run["id"]), own, note=note))
     runs = [motions.Run("simulated", "simulated", LOOKS["after"])]
     if record.measured:
         runs.insert(0, motions.Run("measured", "measured", LOOKS["measured"], True))
@@ -167,7 +168,7 @@ def _indices(record: SimulationRecord) -> Section | None:
                 continue
             words, unit = index_words(key)
             length = number(run["indices"].get(key.removesuffix("_m") + "_over_L")) if key.endswith("_m") else None
-            line: list[str | Cell] = [clean(run["id"]), f"{words} [{unit}]" if unit else words, shown(value)]
+            line: list[str | Cell] = [run_words(run["id"]), f"{words} [{unit}]" if unit else words, shown(value)]
             line.append(shown(length, 3) if length is not None else NONE)
             if record.measured:
                 line.append(shown(measured.get(key)))
@@ -204,7 +205,7 @@ def _criteria(record: SimulationRecord) -> Section | None:
                 verdict = Cell(f"not applicable: {clean(one['reason'])}")
             rows.append(
                 cells(
-                    clean(run["id"]), clean(one["name"]), shown(one["value"], 3), shown(one["limit"], 3),
+                    run_words(run["id"]), clean(one["name"]), shown(one["value"], 3), shown(one["limit"], 3),
                     clean(one["unit"]), verdict, clean(one["source"]),
                 )
             )  # fmt: skip

@@ -27,7 +27,7 @@ FILE_COLORS = {
 
 FONT = 11.5
 WIDE, NARROW = 760, 360
-_LETTER = 0.56
+_LETTER = 0.62
 """Width of a letter over its size, of a plain font."""
 
 _POINTS = 900
@@ -68,7 +68,7 @@ def inline(figure: Figure) -> str:
             body = _panel(panel, width, height, ink)
             label = f'role="img" aria-label="{_quoted(alt)}"'
             panels.append(f'<svg class="panel {name}" viewBox="0 0 {width} {height}" {label}>{body}</svg>')
-    many = "panels alone" if alone else "panels"
+    many = "panels alone" if alone else "panels few" if len(figure.panels) <= 3 else "panels"
     return f'<div class="drawn">{legend}<div class="{many}">{"".join(panels)}</div></div>'
 
 
@@ -188,7 +188,7 @@ def _panel(panel: Panel, width: int, height: int, ink: Ink) -> str:
         y_places = tuple(ticks.logarithmic(y_low, y_high) if panel.y.log else ticks.linear(y_low, y_high, few))
     longest = 22 if narrow else 48
     y_places = tuple((place, _cut(text, longest)) for place, text in y_places)
-    left = 9.0 + max((_width(text) for _, text in y_places), default=10.0) + (17.0 if panel.y.words else 0.0)
+    left = 12.0 + max((_width(text) for _, text in y_places), default=10.0) + (17.0 if panel.y.words else 0.0)
     left = min(left, 0.5 * width)
     if panel.equal:
         (x_low, x_high), (y_low, y_high) = _equal(
@@ -216,7 +216,7 @@ def _panel(panel: Panel, width: int, height: int, ink: Ink) -> str:
                 _letters(width - right + 6.0, y + 0.35 * mark.size, mark.text, mark.color, "start", mark.size, ink)
             )
     if panel.title:
-        most = int((width - 12) / (_LETTER * FONT))
+        most = int((width - left - 4) / (1.04 * _LETTER * FONT))
         out.append(_letters(left, 13.0, _cut(panel.title, most), "ink", "start", FONT, ink, bold=True))
     if panel.x.words:
         words = _cut(panel.x.words, int((width - 8) / (_LETTER * FONT)))

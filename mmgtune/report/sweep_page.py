@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from .. import limits
+from ..errors import OptionError
 from . import advice, figures, misfit
 from .blocks import Card, Cell, Commands, Page, Prose, Section, Table, cells
-from .common import assumptions, generated_banner, misfit_card, picture, provenance, warnings
+from .common import assumptions, cards_of_misfit, generated_banner, misfit_card, picture, provenance, warnings
 from .load import Kind, SweepRecord
 from .tables import described
 from .wording import NONE, clean, coefficient_text, listing, number, short
@@ -46,7 +50,7 @@ def build(record: SweepRecord) -> Page:
         ),
         banners=generated_banner(data["trials"]),
         warnings=warnings(data),
-        cards=_cards(data, runs, best),
+        cards=_cards(record, best),
         sections=tuple(section for section in sections if section is not None),
     )
 
@@ -67,22 +71,21 @@ def _coefficients(runs: Sequence[Mapping[str, Any]], best: float | None) -> Sect
     return Section("coefficients", "Tuned coefficients", blocks)
 
 
-def _cards(data: Mapping[str, Any], runs: Sequence[Mapping[str, Any]], best: float | None) -> tuple[Card, ...]:
+def _cards(record: SweepRecord, best: float | None) -> tuple[Card, ...]:
+    data, runs = record.data, record.runs
     by = clean((data.get("recommended") or {}).get("by") or "")
     notes = [f"±{100.0 * best:g}\u00a0%"] if best is not None else []
     notes += [f"chosen by {_JUDGES.get(by, by)}"] if by else []
     shown_cards = [Card("Recommended range", f"a_r = {best:g}" if best is not None else NONE, note=", ".join(notes))]
     run = next((run for run in runs if best is not None and number(run["a_r"]) == best), None)
     if run is not None:
-        shown_cards.append(misfit_card("Misfit J, trials tuned on", data.get("J_tune_before"), run.get("J_tune"), ""))
-        shown_cards.append(
-            misfit_card(
-                "Misfit J, test trials",
-                data.get("J_test_before"),
-                run.get("J_test"),
-                "no test set: each trial was left out in turn" if data.get("leave_one_out") else "no test set",
-            )
-        )
+        shown_cards = [*_off(record, run)[:1], *shown_cards]
+        none = "no test set: each trial was left out in turn" if data.get("leave_one_out") else "no test set"
+        if number(run.get("J_test")) is not None:
+            shown_cards.append(misfit_card("Misfit J, test trials", data.get("J_test_before"), run.get("J_test"), none))
+        else:
+            card = misfit_card("Misfit J, trials tuned on", data.get("J_tune_before"), run.get("J_tune"), "")
+            shown_cards.append(replace(card, note=none))
     found = (data.get("overfitting") or {}).get("found")
     if found is not None:
         shown_cards.append(
@@ -94,6 +97,16 @@ def _cards(data: Mapping[str, Any], runs: Sequence[Mapping[str, Any]], best: flo
             )
         )
     return tuple(shown_cards)
+
+
+def _off(record: SweepRecord, run: Mapping[str, Any]) -> tuple[Card, ...]:
+    """How far off the fit of a range is, in metres and degrees; nothing where its folder is not there."""
+    folder = misfit.run_folder(run)
+    path = record.folder / (folder or "") / "fit.json"
+    if folder is None or not path.is_file():
+        return ()
+    fit = json.loads(limits.text(path, limits.RECORD_BYTES, OptionError))
+    return cards_of_misfit({}, fit["trial_results"])
 
 
 def _overfitting(data: Mapping[str, Any]) -> tuple[Prose, ...]:

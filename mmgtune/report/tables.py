@@ -263,8 +263,13 @@ def restarts(entries: Sequence[Mapping[str, Any]]) -> Table:
 
 
 def pairs(
-    id: str, caption: str, titles: tuple[str, str], items: Iterable[tuple[str, str]], numeric: bool = False
+    id: str,
+    caption: str,
+    titles: tuple[str, str],
+    items: Iterable[tuple[str, str]],
+    numeric: bool = False,
+    raw: bool = False,
 ) -> Table:
     """A two-column table of names and texts, or names and numbers."""
     rows = tuple(cells(clean(name), clean(text)) for name, text in items)
-    return Table(id, caption, titles, rows, (1,) if numeric else ())
+    return Table(id, caption, titles, rows, (1,) if numeric else (), raw=raw)

@@ -129,7 +129,7 @@ def _track(one: Manoeuvre, runs: Sequence[Run], spacing: float, title: str) -> P
         x, y, t = (one.runs[run.key][name] for name in ("x", "y", "t"))
         marks.append(Line(y, x, dense(run.look)))
         places = np.unique([int(np.nanargmin(np.abs(t - at))) for at in _times(t, spacing)]).astype(int)
-        marks.append(Dots(y[places], x[places], replace(run.look, size=4.0)))
+        marks.append(Dots(y[places], x[places], replace(run.look, size=4.0, marker=run.look.marker or "o")))
     first = next((one.runs[run.key] for run in runs if len(one.runs.get(run.key, {}).get("x", ()))), None)
     if first is not None:
         marks.append(Dots(first["y"][:1], first["x"][:1], Look("muted", marker="+", size=9.0)))

@@ -13,7 +13,7 @@ from .common import doubts, generated_banner, made_table, picture, rms_errors
 from .load import Kind, inputs_of, motions_in
 from .plot import LOOKS, Axis, Dots, Figure, Look, Mark, Panel, model_look
 from .tables import pairs
-from .wording import NONE, Channel, change, clean, count, number, percent, sentence, shown
+from .wording import NONE, Channel, clean, count, number, sentence, share, shown
 
 if TYPE_CHECKING:
     from ..arrays import FloatArray
@@ -89,8 +89,8 @@ def _verdict(record: ValidationRecord) -> str:
     beside = ""
     if others:
         next_best = min(others, key=lambda one: float(one["L_MSE"]))
-        beside = f"; its error L_MSE is {percent(change(next_best['L_MSE'], best['L_MSE']))} beside that of "
-        beside += clean(next_best["profile"])
+        less = share(1.0 - float(best["L_MSE"]) / float(next_best["L_MSE"])) if next_best["L_MSE"] else "0 %"
+        beside = f"; its error L_MSE is {less} lower than that of {clean(next_best['profile'])}"
     return f"{over} {clean(best['profile'])} does best, {off}{beside}."
 
 

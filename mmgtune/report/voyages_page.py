@@ -9,14 +9,14 @@ from typing import Any
 
 from ..arrays import FloatArray
 from ..units import shown_in
-from . import motion_block, motions
+from . import measures, motion_block, motions
 from . import voyages_figures as figures
 from .blocks import Card, Cell, Fold, Page, Prose, Section, Table, cells
 from .common import doubts, generated_banner, picture
 from .load import Kind, columns_in
 from .plot import LOOKS, model_look
 from .tables import pairs
-from .wording import NONE, clean, count, input_channel, number, percent, shown
+from .wording import NONE, clean, count, input_channel, number, percent, share, shown
 
 PANELS = 8
 """Features drawn at most; all are in the tables."""
@@ -57,11 +57,11 @@ def build(record: VoyagesRecord) -> Page:
     data = record.data
     scored = bool(data["n_windows"])
     sections = [
+        _windows(record) if scored else None,
         _classes(record) if scored else None,
         _measures(record) if scored else None,
         _compared(data) if data.get("comparisons") else None,
         _where(record) if scored else None,
-        _windows(record) if scored else None,
         _logs(data),
         _how(data),
         _provenance(data),
@@ -95,37 +95,25 @@ def _warnings(data: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def _cards(record: VoyagesRecord) -> tuple[Card, ...]:
-    shown_cards = []
-    for one in record.models[:3]:
-        row = one["measures"]["cVDM"]
-        shown_cards.append(
-            Card(
-                f"Median cVDM, {figures.cut(one['profile'], 28)}",
-                f"{_percent(row['median'])}",
-                note=f"half of the windows between {_percent(row['q25'])} and {_percent(row['q75'])}",
-            )
-        )
     first = record.models[0]
+    name = figures.cut(first["profile"], 28)
+    off, whole = first["measures"]["MED"], first["measures"]["cVDM"]
+    note = f"median; half of the windows between {shown(off['q25'], 3)} and {shown(off['q75'], 3)} m"
+    cards = [Card(f"Off track, {name}", f"{shown(off['median'], 3)} m", note=note)]
+    if len(record.models) > 1:
+        other = record.models[1]["measures"]["MED"]
+        words = f"Off track, {figures.cut(record.models[1]['profile'], 28)}"
+        cards.append(Card(words, f"{shown(other['median'], 3)} m", note="median of the windows"))
     names = record.data["classes"]["names"]
-    good = sum(first["classes"][name] for name in names[:2])
-    share = 100.0 * good / max(1, sum(first["classes"].values()))
-    shown_cards.append(
-        Card(
-            "Optimal or satisfactory",
-            f"{share:.0f}\u00a0%",
-            note=f"of the windows, {figures.cut(first['profile'], 28)}",
-        )
-    )
+    good = sum(first["classes"][one] for one in names[:2])
+    total = 100.0 * good / max(1, sum(first["classes"].values()))
+    note = f"of the windows, {name}; median cVDM {_percent(whole['median'])}"
+    cards.append(Card("Optimal or satisfactory", f"{total:.0f}\u00a0%", note=note))
     most = first["where"][0] if first.get("where") else None
     if most is not None:
-        shown_cards.append(
-            Card(
-                "Tells most of the error",
-                clean(most["words"]),
-                note=f"{100.0 * (number(most['explained']) or 0.0):.0f}\u00a0% of the variance of log cVDM",
-            )
-        )
-    return tuple(shown_cards)
+        note = f"{share(most['explained'])} of the variance of log cVDM"
+        cards.append(Card("Tells most of the error", clean(most["words"]), note=note))
+    return tuple(cards)
 
 
 def _classes(record: VoyagesRecord) -> Section:
@@ -169,15 +157,15 @@ def _measures(record: VoyagesRecord) -> Section:
     rows = []
     for one in record.models:
         for name, row in one["measures"].items():
-            unit = "" if row["unit"] == "mixed" else f" [{row['unit']}]"
             numbers = [shown(row[key], 3) for key in ("mean", "q05", "q25", "median", "q75", "q95")]
-            rows.append(cells(clean(one["profile"]), f"{clean(name)}{unit}", *numbers))
+            rows.append(cells(clean(one["profile"]), measures.with_unit(clean(name)), *numbers))
     table = Table(
         "measures-table",
         "Seven distance measures over all windows: mean, and the values that 5, 25, 50, 75 and 95 % stay below",
         ("model", "measure", "mean", "5 %", "25 %", "median", "75 %", "95 %"),
         tuple(rows),
         numeric=range(2, 8),
+        about=measures.about(list(record.models[0]["measures"])),
     )
     scores = Table(
         "scores-table",
@@ -188,6 +176,7 @@ def _measures(record: VoyagesRecord) -> Section:
             for one in record.models
         ),
         numeric=(2, 3),
+        about=(("J [–]", measures.J), ("L_MSE [–]", measures.L_MSE)),
     )
     caption = "A curve further left is the better model; dashed: the limits of the classes."
     return Section(

@@ -216,6 +216,21 @@ def listing(names: list[str], limit: int = 6) -> str:
     return names[0] if len(names) == 1 else ", ".join(names[:-1]) + " and " + names[-1]
 
 
+_RUN = re.compile(r"(turn|zigzag)_([pm])(\d+(?:\.\d+)?)(?:_(\d+(?:\.\d+)?))?")
+
+
+def run_words(name: Any) -> str:
+    """A manoeuvre by orders in words: turn_p35 is a turn 35° to starboard; other names as they are."""
+    found = _RUN.fullmatch(str(name))
+    if found is None:
+        return clean(name)
+    kind, side, rudder, heading = found.groups()
+    where = "starboard" if side == "p" else "port"
+    if kind == "turn":
+        return f"turn {rudder}° to {where}"
+    return f"zigzag {rudder}/{heading or rudder}" + ("" if side == "p" else " to port")
+
+
 def count(amount: int, noun: str, plural: str = "") -> str:
     """A number with its noun: "1 trial", "8 trials"."""
     return f"{amount} {noun if amount == 1 else plural or noun + 's'}"

@@ -8,7 +8,7 @@ import pytest
 
 from mmgtune.report import render
 
-from . import fake_run
+from . import fake_run, more_runs
 
 
 @pytest.fixture(scope="session")
@@ -34,6 +34,15 @@ def voyages_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = fake_run.make_voyages(tmp_path_factory.mktemp("voyages") / "run")
     render(folder)
     return folder
+
+
+@pytest.fixture(scope="session")
+def more(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """Rendered run folders of all other kinds, by name."""
+    found = more_runs.make(tmp_path_factory.mktemp("more"))
+    for folder in found.values():
+        render(folder)
+    return found
 
 
 @pytest.fixture(scope="session")

@@ -92,7 +92,7 @@ def test_fit_opens_clean_and_draws(browser: Any, fit_folder: Path, scheme: str) 
         assert visit.requests == [visit.url]
         assert visit.ink(".track > canvas") > 10_000
         panels = visit.page.locator(".viewer .small")
-        titles = panels.locator("h4").all_text_contents()
+        titles = panels.locator("h3").all_text_contents()
         assert len(titles) == panels.count() == 7  # two inputs, the distance off track, four motions
         assert all("[" in title for title in titles)
         assert visit.ink(".grid .small:nth-child(2) canvas") > 2_000

@@ -105,7 +105,8 @@ const Motions = (() => {
         make("div", { className: "zoom" }, button("+", "Zoom in", () => this.zoom(1.5)),
           button("−", "Zoom out", () => this.zoom(1 / 1.5)), button("Whole", "Show the whole track", () => this.whole())), this.tip);
       this.readout = make("table", { className: "readout" });
-      this.side = make("div", { className: "side" }, this.readout);
+      this.beside = make("div", { className: "readout-holder" }, this.readout);
+      this.side = make("div", { className: "side" }, this.beside);
       this.slider = make("input", { type: "range", min: 0, max: 1000, step: 1, value: 0, oninput: () => this.at(this.fromSlider()) });
       this.clock = make("output");
       this.time = make("div", { className: "time" }, make("label", { textContent: "Time", htmlFor: "" }), this.slider, this.clock);
@@ -120,7 +121,7 @@ const Motions = (() => {
       below.append(make("button", { type: "button", className: "save", textContent: "Save as CSV", onclick: () => this.save() }));
       this.grid = make("div", { className: "grid" });
       this.note = make("p", { className: "hint note" });
-      this.holder.append(bar, make("div", { className: "stage" }, this.track, this.side), this.time, this.note,
+      this.holder.append(bar, make("div", { className: "stage" }, make("div", { className: "left" }, this.track, this.time), this.side), this.note,
         make("p", { className: "hint wide", textContent: "Point at a track or a history for the state there. Drag a track to move it, Ctrl and wheel or the buttons zoom; drag across a history to see that time alone." }),
         below, this.grid);
       this.listen();
@@ -176,22 +177,22 @@ const Motions = (() => {
       const panel = (channel, holder, difference) => {
         const canvas = make("canvas", { ariaHidden: "true" });
         const title = difference ? `${channel.words}, simulated − measured [${channel.unit}]` : `${channel.words} [${channel.unit}]`;
-        const box = make("div", { className: "small" }, make("h4", { textContent: title, title }), canvas);
+        const box = make("div", { className: "small" }, make("h3", { textContent: title, title }), canvas);
         holder.append(box);
         const made = { channel, canvas, box, difference };
         this.pointing(made);
         return made;
       };
-      this.side.replaceChildren(this.readout);
+      this.side.replaceChildren(this.beside);
       this.grid.replaceChildren();
-      const beside = channels.filter((channel) => channel.group !== "state");
-      this.drawn = beside.map((channel, k) => panel(channel, k < 5 ? this.side : this.grid, false));
+      const driven = channels.filter((channel) => channel.group !== "state");
+      const states = channels.filter((channel) => channel.group === "state");
+      const beside = new Set([...driven, ...states].slice(0, Math.max(5 - Math.floor(this.runs.length / 4), 3)));
+      this.drawn = driven.map((channel) => panel(channel, beside.has(channel) ? this.side : this.grid, false));
       if (this.truth && this.runs.length > 1) {
         this.drawn.push(panel({ name: "off", words: "distance off the measured track", unit: "m", group: "off" }, this.grid, false));
       }
-      for (const channel of channels) {
-        if (channel.group === "state") this.drawn.push(panel(channel, this.grid, this.differences));
-      }
+      for (const channel of states) this.drawn.push(panel(channel, beside.has(channel) ? this.side : this.grid, this.differences));
       this.draw();
     }
 
@@ -299,7 +300,12 @@ const Motions = (() => {
       pen.fillStyle = this.paint.after;
       pen.globalAlpha = 0.1;
       pen.beginPath();
-      for (const [, x, y, xx, xy, yy] of this.regions) {
+      const between = [];
+      this.regions.forEach((one, k) => {
+        const next = this.regions[k + 1];
+        for (let part = 0; part < (next ? 4 : 1); part++) between.push(next ? one.map((value, j) => value + part / 4 * (next[j] - value)) : one);
+      });
+      for (const [, x, y, xx, xy, yy] of between) {
         const mean = 0.5 * (xx + yy), rest = Math.hypot(0.5 * (xx - yy), xy), turn = 0.5 * Math.atan2(2 * xy, yy - xx);
         const [long, short] = [mean + rest, Math.max(mean - rest, 0)].map((value) => 2.146 * Math.sqrt(value) / place.view.scale);
         pen.moveTo(place.across(y) + long * Math.cos(turn), place.up(x) - long * Math.sin(turn));

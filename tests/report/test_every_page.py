@@ -1,0 +1,193 @@
+"""Every kind of report on every screen and on paper, as a reader meets it."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from mmgtune.report import html, load, render
+from mmgtune.report.kinds import KINDS
+from tests import axe
+from tests.browser import chromium
+
+from .test_browser import OPEN_ALL, OVERFLOW, Visit
+
+pytestmark = [pytest.mark.browser, pytest.mark.xdist_group("report"), pytest.mark.slow(25)]
+
+HOSTILE = "</script><img src=x onerror=alert(1)>"
+SCREENS = {
+    "desktop": ({"width": 1400, "height": 900}, "light"),
+    "desktop, dark": ({"width": 1400, "height": 900}, "dark"),
+    "phone, dark": ({"width": 390, "height": 844}, "dark"),
+    "phone": ({"width": 390, "height": 844}, "light"),
+}
+PAGES = ("fit", "sweep", "leave-out", "diagnosis", "nothing", "unexplained", "validate", "voyages", "predict",
+         "comparison", "model-comparison", "simulate", "trials", "check", "learning")  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    """Chromium, or a skip."""
+    yield from chromium()
+
+
+@pytest.fixture(scope="module")
+def runs(more: dict[str, Path], fit_folder: Path, sweep_folder: Path, voyages_folder: Path) -> dict[str, Path]:
+    """A rendered run folder of every kind."""
+    return {"fit": fit_folder, "sweep": sweep_folder, "voyages": voyages_folder, **more}
+
+
+def test_every_kind_is_here(runs: dict[str, Path]) -> None:
+    assert set(PAGES) == set(runs)
+    files = {kind.file for kind in KINDS} - {"ensemble.json", "hybrid.json", "heading_keeping.json"}
+    assert files == {one.file for one in KINDS for folder in runs.values() if (folder / one.file).is_file()}
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_screens(browser: Any, runs: dict[str, Path], name: str, tmp_path: Path) -> None:
+    rules = axe.script() if _has_axe() else ""
+    with Visit(browser, runs[name] / "report.html") as visit:
+        page = visit.page
+        assert 1 <= page.locator(".card").count() <= 4
+        first = page.locator("main section").first
+        assert first.locator("canvas, svg.panel, .nothing").count()  # a picture before any table
+        for screen, (shape, scheme) in SCREENS.items():
+            page.set_viewport_size(shape)
+            page.emulate_media(color_scheme=scheme)
+            page.wait_for_timeout(60)
+            assert page.evaluate(OVERFLOW) == 0, screen
+            assert len(page.screenshot(path=tmp_path / f"{screen}.png", full_page=True)) > 30_000
+            if rules and screen != "phone":
+                assert axe.violations(page, rules) == [], screen
+        page.evaluate(OPEN_ALL)
+        assert page.evaluate(OVERFLOW) == 0
+        if rules:
+            assert axe.violations(page, rules) == []
+        text = page.locator("body").inner_text()
+        assert not re.search(r"[−-]0\.0+\s%|\d{5,}\s%|NaN|undefined", text)
+        assert visit.complaints == []
+        assert visit.requests == [visit.url]
+
+
+def _has_axe() -> bool:
+    try:
+        axe.script()
+    except pytest.skip.Exception:
+        return False
+    return True
+
+
+@pytest.mark.parametrize("name", ["fit", "diagnosis", "validate"])
+def test_paper(browser: Any, runs: dict[str, Path], name: str) -> None:
+    with Visit(browser, runs[name] / "report.html") as visit:
+        paper = visit.page.pdf(format="A4")
+        assert 2 <= len(re.findall(rb"/Type\s*/Page\b(?!s)", paper)) <= 6
+        visit.page.emulate_media(media="print")
+        assert visit.page.locator(".static svg.panel >> visible=true").count() >= 4
+        assert visit.page.locator(".raw >> visible=true").count() == 0
+        assert visit.page.locator(".viewer, .copy, .filter, nav >> visible=true").count() == 0
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_the_keyboard_reaches_everything(browser: Any, runs: dict[str, Path], name: str) -> None:
+    with Visit(browser, runs[name] / "report.html", viewport={"width": 390, "height": 844}) as visit:
+        wanted = visit.page.evaluate(
+            """() => { const seen = (one) => one.checkVisibility() && !one.disabled;
+            const all = [...document.querySelectorAll('a, button, input, select, summary, [tabindex="0"]')]
+              .filter(seen);
+            all.forEach((one, k) => { one.dataset.k = k; });
+            const scrolled = [...document.querySelectorAll('.scroll')]
+              .filter((one) => seen(one) && one.scrollWidth > one.clientWidth + 2 && one.tabIndex !== 0);
+            return [all.length, scrolled.length]; }"""
+        )
+        assert wanted[1] == 0  # what scrolls can be scrolled by keys
+        reached = set()
+        visit.page.evaluate("document.body.tabIndex = -1; document.body.focus()")
+        for _ in range(wanted[0] + 2):
+            visit.page.keyboard.press("Tab")
+            reached.add(visit.page.evaluate("document.activeElement.dataset.k"))
+        assert len(reached - {None}) == wanted[0]
+
+
+def test_nothing_found_looks_like_nothing_found(runs: dict[str, Path]) -> None:
+    page = (runs["nothing"] / "report.html").read_text(encoding="utf-8")
+    assert '<p class="nothing"><strong>No cause was found.</strong>' in page
+    assert "explains most" not in page
+    bars = re.findall(r'<figure id="candidates-figure".*?</figure>', page, re.S)
+    assert not any("var(--after)" in one for one in bars)
+
+
+def test_unexplained_opens_where_the_error_lives(runs: dict[str, Path]) -> None:
+    page = (runs["unexplained"] / "report.html").read_text(encoding="utf-8")
+    sections = re.findall(r'<section id="([a-z]+)"', page)
+    assert sections[:3] == ["motions", "evidence", "causes"]
+    assert "times the noise" in page
+    assert not re.search(r"\d{4,}\s%", page)
+
+
+def test_one_result_has_one_figure(runs: dict[str, Path]) -> None:
+    record = json.loads((runs["diagnosis"] / "diagnosis.json").read_text(encoding="utf-8"))
+    page = (runs["diagnosis"] / "report.html").read_text(encoding="utf-8")
+    said = re.search(r"removes ([\d.]+) % of the error", record["sentence"])
+    assert said is not None
+    assert f">{said[1]}\u00a0%<" in page
+    assert "100.00" not in page
+    assert "100.0 to 100.0" not in page
+
+
+def test_fragments_for_notebooks(runs: dict[str, Path]) -> None:
+    for folder in runs.values():
+        kind, run = load.find(folder, KINDS)
+        text = html.fragment(kind.build(run))
+        assert text.startswith('<div class="mmgtune">')
+        assert "<script" not in text
+        assert "<h1>" in text
+        assert text.count("<div") == text.count("</div>")
+
+
+def test_hostile_names_stay_inert_everywhere(browser: Any, runs: dict[str, Path], tmp_path: Path) -> None:
+    for name in ("leave-out", "diagnosis", "validate", "check", "comparison", "learning"):
+        folder = tmp_path / name
+        shutil.copytree(runs[name], folder, ignore=shutil.ignore_patterns("report.*", "figures"))
+        path = next(folder / kind.file for kind in KINDS if (folder / kind.file).is_file())
+        path.write_text(json.dumps(_renamed(json.loads(path.read_text(encoding="utf-8")))), encoding="utf-8")
+        render(folder)
+        kind, run = load.find(folder, KINDS)
+        assert "<img" not in html.fragment(kind.build(run)), name
+        with Visit(browser, folder / "report.html", viewport={"width": 390, "height": 844}) as visit:
+            assert visit.complaints == [], name
+            assert visit.requests == [visit.url], name
+            assert visit.page.locator("img").count() == 0, name
+            assert HOSTILE in visit.page.locator("body").inner_text() or name == "learning"
+            assert visit.page.evaluate(OVERFLOW) == 0, name
+
+
+TEXTS = (
+    "sentence",
+    "reason",
+    "name",
+    "profile",
+    "trials",
+    "ship",
+    "what",
+    "why",
+    "note",
+    "citation",
+    "licence",
+    "source",
+)
+
+
+def _renamed(data: Any, key: str = "") -> Any:
+    """The record with a hostile ending on every text that is shown as it is."""
+    if isinstance(data, dict):
+        return {name: value if name == "inputs" else _renamed(value, name) for name, value in data.items()}
+    if isinstance(data, list):
+        return [_renamed(value, key) for value in data]
+    return f"{data} {HOSTILE}" if isinstance(data, str) and key in TEXTS else data
