@@ -16,7 +16,7 @@ from ..fitting.comparison import TrialComparison, compare, finite
 from ..fitting.least_squares import fit_offsets
 from ..fitting.problem import FitProblem
 from ..objective import Objective, cases_of, make_objective
-from ..trial import Trial
+from ..trial import Coverage, Trial
 from .elsewhere import FIRST, estimated_there, first_part
 from .runs import labels_of
 from .search import Found
@@ -184,10 +184,11 @@ def held_out_fits(
     if test or len(runs) < 2:
         yield list(points), list(test or bench.trials)
         return
+    coverage = Coverage.of(bench.trials, bench.model.L_pp)  # what is left may turn to one side alone
     for run in runs:
         others = [trial for trial in bench.trials if trial.run != run]
         names = [name for name in bench.box.names if name not in bench.targets]
-        rest = make_workbench(bench.model.profile, others, bench.options, names)
+        rest = make_workbench(bench.model.profile, others, bench.options, names, coverage)
         rest.targets = bench.targets
         rest.know(replace(bench.noise, cases=rest.problem.cases))
         keep = [i for i, trial in enumerate(bench.trials) if trial.run != run]

@@ -199,16 +199,21 @@ def noise_levels(trials: Sequence[Trial]) -> FloatArray:
 
 
 def make_workbench(
-    profile: ShipProfile, trials: Sequence[Trial], options: DiagnoseOptions, names: Sequence[str] = ()
+    profile: ShipProfile,
+    trials: Sequence[Trial],
+    options: DiagnoseOptions,
+    names: Sequence[str] = (),
+    coverage: Coverage | None = None,
 ) -> Workbench:
     """The workbench of a profile and the trials causes are looked for on.
 
-    names  parameters of effects that will be fitted, besides the targets
+    names     parameters of effects that will be fitted, besides the targets
+    coverage  what trials visit, which says what is tied; that of these trials where None
     Raises OptionError for targets, box or channels that make no sense.
     """
     own = Model(profile)
     targets = choose_targets(own, options.targets, options.fixed)
-    targets, ties = tied(profile, targets, Coverage.of(trials, own.L_pp))
+    targets, ties = tied(profile, targets, coverage or Coverage.of(trials, own.L_pp))
     model = Model(with_all_effects(profile), ties)
     sigma = noise_levels(trials)
     channels = [c for c in STATES if not options.channels or c in {"v_m" if o == "v" else o for o in options.channels}]
