@@ -33,7 +33,7 @@ def needs(name):
 def test_disguises_of_bundled_trials(tmp_path):
     logs = bundled_logs()
     right = total = 0
-    for number in range(14):
+    for number in range(8):
         rng = np.random.default_rng([5, number])
         folder = tmp_path / str(number)
         folder.mkdir()
@@ -51,7 +51,7 @@ def test_disguises_of_bundled_trials(tmp_path):
 def test_disguises_of_measured_trials(tmp_path, name):
     preset, pattern, _ = SETS[name]
     logs = plain_logs(DATA / name, preset, pattern)
-    for number in range(2):
+    for number in range(1):
         rng = np.random.default_rng([7, number])
         folder = tmp_path / str(number)
         folder.mkdir()

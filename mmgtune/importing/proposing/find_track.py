@@ -110,20 +110,23 @@ def _better_heading(find: Finder, scores: Mapping[Track, float], windows: Sequen
         if (one.x, one.y, one.geographic, one.south, one.west)
         == (best.x, best.y, best.geographic, best.south, best.west)
         and (one.left, one.east) == (best.left, best.east)
-        and score > (0.3 if find.said[one.psi] == "psi" and find.said[best.psi] == "cog" else 0.75) * scores[best]
+        and score > (0.3 if find.said[one.psi] == "psi" and find.said[best.psi] == "cog" else 0.5) * scores[best]
     ]
     if len(same) < 2 or find.said[best.psi] == "psi":
         return best
     merits = {}
     for track in same:
-        misses, rates = [], 0
+        misses, rates = [], []
         for sample, w in zip(find.samples, windows, strict=True):
             if w.enough:
                 look = Look(sample, w, track)
                 found = courses(look, [track.psi], find.units_said)
                 misses.append(min((one.miss for one in found), default=np.pi))
                 among = [k for k in find.numeric if k not in (track.x, track.y, track.psi)]
-                rates += any(abs(c) > 0.95 for _, c, _ in yaw_rates(look, among, find.units_said).values())
+                rates.append(max((abs(c) for _, c, _ in yaw_rates(look, among, find.units_said).values()), default=0.0))
         named = (find.said[track.psi] == "psi") - (find.said[track.psi] == "cog")
-        merits[track] = (named, rates, float(np.median(misses)))
+        followed = float(np.mean(rates)) if rates else 0.0
+        # One that follows the course far less well is the heading only where a yaw rate follows it.
+        if named > 0 or scores[track] > 0.75 * scores[best] or followed > 0.99:
+            merits[track] = (named, round(followed, 2), float(np.median(misses)))
     return max(merits, key=lambda one: merits[one])
