@@ -7,6 +7,7 @@ import traceback
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -194,8 +195,9 @@ def history_in(folder: Path) -> dict[str, FloatArray]:
 
     if not (folder / "history.parquet").is_file():
         return {}
-    frame = _parquet(folder / "history.parquet")
-    return {str(name): frame[name].to_numpy(dtype=np.float64) for name in frame.columns} if len(frame) else {}
+    columns = _parquet(folder / "history.parquet")
+    known = {name: values.astype(np.float64) for name, values in columns.items() if values.dtype != object}
+    return known if all(len(values) for values in known.values()) else {}
 
 
 def motions_in(folder: Path, inputs: Sequence[Channel]) -> dict[str, dict[str, Motion]]:
@@ -207,15 +209,22 @@ def motions_in(folder: Path, inputs: Sequence[Channel]) -> dict[str, dict[str, M
         raise _problem(
             "the run folder is not whole", path, "it lacks the measured and simulated motions", "run the fit again"
         )
-    frame = _parquet(path)
+    columns = _parquet(path)
     names = (*_COLUMNS, *(channel.name for channel in inputs))
-    lacking = [name for name in ("trial", "which", *names) if name not in frame.columns]
+    lacking = [name for name in ("trial", "which", *names) if name not in columns]
     if lacking:
         raise _problem("the motions are not whole", path, "columns lack: " + ", ".join(lacking), "run the fit again")
+    trials, which = columns["trial"], columns["which"]
+    edges = 1 + np.flatnonzero((trials[1:] != trials[:-1]) | (which[1:] != which[:-1]))
+    ends = [0, *edges.tolist(), len(trials)] if len(trials) else [0]
+    rows: dict[tuple[str, str], list[slice]] = {}
+    for first, last in pairwise(ends):
+        rows.setdefault((str(trials[first]), str(which[first])), []).append(slice(first, last))
     found: dict[str, dict[str, Motion]] = {}
-    for (trial, which), rows in frame.groupby(["trial", "which"], sort=False, observed=True):
-        columns = {name: rows[name].to_numpy(dtype=np.float64) for name in names}
-        found.setdefault(str(trial), {})[str(which)] = columns
+    for (trial, run), pieces in rows.items():
+        found.setdefault(trial, {})[run] = {
+            name: np.concatenate([columns[name][piece] for piece in pieces]).astype(np.float64) for name in names
+        }
     return found
 
 
@@ -225,21 +234,35 @@ def columns_in(path: Path, names: Sequence[str], texts: Sequence[str] = ()) -> d
 
     if not path.is_file():
         raise _problem("the run folder is not whole", path, "a file of its results is missing", "run it again")
-    frame = _parquet(path)
-    lacking = [name for name in names if name not in frame.columns]
+    columns = _parquet(path)
+    lacking = [name for name in names if name not in columns]
     if lacking:
         raise _problem("the run's data are not whole", path, "columns lack: " + ", ".join(lacking), "run it again")
-    return {
-        name: frame[name].to_numpy(dtype=object) if name in texts else frame[name].to_numpy(dtype=np.float64)
-        for name in names
-    }
+    return {name: columns[name].astype(object if name in texts else np.float64) for name in names}
 
 
-def _parquet(path: Path) -> Any:
-    """A parquet file as a data frame."""
-    import pandas as pd
+def _parquet(path: Path) -> dict[str, Any]:
+    """The columns of a parquet file by name, (n_rows,) each: numbers as they are, NaN for none, and texts as objects.
+
+    Without pandas, which takes longer to import than a page to make; ``read_table`` and ``to_numpy`` would import it.
+    """
+    import pyarrow.parquet as pq
 
     try:
-        return pd.read_parquet(path)
+        with pq.ParquetFile(path) as file:
+            table = file.read()
+        return {name: _column(table.column(name)) for name in table.column_names}
     except Exception as error:
         raise _problem("the run's data cannot be read", path, str(error), "run the fit again") from error
+
+
+def _column(column: Any) -> Any:
+    """A column of Arrow as an array, (n_rows,)."""
+    import numpy as np
+    import pyarrow as pa
+
+    if pa.types.is_integer(column.type) or pa.types.is_floating(column.type):
+        if column.null_count:
+            return np.array([np.nan if value is None else value for value in column.to_pylist()], dtype=np.float64)
+        return np.concatenate([np.empty(0), *(np.from_dlpack(chunk) for chunk in column.chunks)])
+    return np.array(column.to_pylist(), dtype=object)
