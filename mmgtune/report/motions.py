@@ -152,10 +152,9 @@ def _written(one: Manoeuvre, key: str, channels: Sequence[Channel], limit: int) 
         turn = 0.0
         if channel.name == "psi":
             values = unwrapped(values)
-            truth = next((other["psi"] for name, other in one.runs.items() if name == "measured"), None)
-            if truth is not None and key != "measured":
-                turn = turns(values, unwrapped(truth))
-                values = values - turn
+            truth = unwrapped(one.runs.get("measured", next(iter(one.runs.values())))["psi"])
+            turn = turns(values, truth) + _whole_turns(truth)
+            values = values - turn
         columns[channel.name] = packed(values[keep] * channel.factor)
         if channel.name in bands:
             low, high = ((end - turn)[keep] * channel.factor for end in bands[channel.name])
@@ -233,6 +232,14 @@ def unwrapped(psi: FloatArray) -> FloatArray:
     smooth = psi.copy()
     smooth[good] = np.unwrap(psi[good])
     return smooth
+
+
+def _whole_turns(psi: FloatArray) -> float:
+    """The turns a heading has behind it where it begins [rad], as after days at sea."""
+    import numpy as np
+
+    first = psi[np.isfinite(psi)][:1]
+    return float(2.0 * math.pi * np.trunc(first[0] / (2.0 * math.pi))) if len(first) else 0.0
 
 
 def turns(psi: FloatArray, reference: FloatArray) -> float:

@@ -11,6 +11,7 @@ import pytest
 from mmgtune.report import advice, confidence, motion_block, motions, tables, tracks, wording
 from mmgtune.report.html import embedded
 from mmgtune.report.markdown import escaped
+from mmgtune.report.plot import Look
 
 
 @pytest.mark.parametrize(
@@ -104,6 +105,9 @@ def test_headings_begin_in_the_turn_of_the_measured_one() -> None:
     found = payload["manoeuvres"][0]["runs"]
     gap = motions.unpacked(found["after"]["psi"]) - motions.unpacked(found["measured"]["psi"])
     assert gap == pytest.approx(np.degrees(0.1), abs=0.03)
+    days = motions.Manoeuvre("late", {"": rest | {"psi": 0.3 * t - 2 * np.pi * 37 - 0.5}})
+    payload, _ = motions.payload([days], [motions.Run("", "measured", Look())], ())
+    assert motions.unpacked(payload["manoeuvres"][0]["runs"][""]["psi"])[0] == pytest.approx(-np.degrees(0.5), abs=0.03)
 
 
 @pytest.mark.parametrize("size", [1e-9, 1.0, 1e9])
