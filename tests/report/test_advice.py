@@ -69,7 +69,8 @@ def test_reasons_stand_before_commands(more: dict[str, Path]) -> None:
 @pytest.mark.parametrize("misses", [False, True])
 def test_a_fit_that_misses_held_out_trials_is_to_be_diagnosed(misses: bool) -> None:
     data = {
-        "profile": {"id": "suzaku"}, "trials": {"path": "mine"}, "options": {}, "out": "run", "J_test": 2.0, "misses": misses,
+        "profile": {"id": "suzaku"}, "trials": {"path": "mine"}, "options": {}, "out": "run", "J_test": 2.0,
+        "misses": misses,
     }  # fmt: skip
     commands = [command for _, command in advice.after_fit(data)]
     assert any(command.startswith("mmgtune diagnose") for command in commands) is misses
