@@ -91,6 +91,7 @@ EFFECT = FlowEffect(
     told_as={("north", "east"): ("speed", "towards"), ("north_rate", "east_rate"): ("gain", "gaining")},
     sentence=_sentence,
     of_measured={"measured": "current"},
+    besides=("north_rate", "east_rate"),
     stand_in=("north", "east", "north_rate", "east_rate"),
     varies=("north", "east", "north_rate", "east_rate"),
 )

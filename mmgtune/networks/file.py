@@ -40,10 +40,20 @@ def save_network(network: Trained, path: Path, *, overwrite: bool = False) -> Pa
         for name, values in of.items()
     }
     text = json.dumps(header, sort_keys=True, allow_nan=False)
-    content = save(arrays, metadata={"format": FORMAT, "schema": str(SCHEMA), "network": text})
+    content = in_order(save(arrays, metadata={"format": FORMAT, "schema": str(SCHEMA), "network": text}))
     with atomic(path, overwrite) as part:
         part.write_bytes(content)
     return path
+
+
+def in_order(content: bytes) -> bytes:
+    """The same file with its metadata sorted, which the library writes in any order: the same model, the same bytes."""
+    size = int.from_bytes(content[:8], "little")
+    header = json.loads(content[8 : 8 + size])
+    header["__metadata__"] = dict(sorted(header["__metadata__"].items()))
+    text = json.dumps(header, separators=(",", ":"), ensure_ascii=False).encode()
+    text += b" " * (-len(text) % 8)
+    return len(text).to_bytes(8, "little") + text + content[8 + size :]
 
 
 def _described(model: Trained) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:

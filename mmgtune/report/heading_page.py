@@ -154,7 +154,7 @@ def _made(data: Mapping[str, Any]) -> Section:
         "made",
         "How it was made",
         (
-            pairs("made-table", "What was run", ("", ""), items),
+            pairs("made-table", "What was run", ("what", "value"), items),
             pairs("options-table", "Options", ("option", "value"), chosen),
         ),
     )

@@ -208,7 +208,7 @@ def made_section(data: Mapping[str, Any], more: Sequence[tuple[str, str]]) -> Se
     ]
     chosen = [(clean(name), clean(value)) for name, value in made["options"].items()]
     options = pairs("options-table", "Options", ("option", "value"), chosen)
-    about = pairs("made-table", "What it was made from", ("", ""), items)
+    about = pairs("made-table", "What it was made from", ("what", "value"), items)
     return Section("made", "How it was made", (about, Fold("All options", (options,))))
 
 

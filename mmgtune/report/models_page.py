@@ -244,7 +244,7 @@ def _made(record: ModelsRecord) -> Section:
         "How it was made",
         (
             models,
-            pairs("made-table", "What it was made from", ("", ""), items),
+            pairs("made-table", "What it was made from", ("what", "value"), items),
             Fold("Hashes of the trials", (pairs("hashes-table", "Hashes", ("trial", "SHA-256"), hashes),)),
         ),
     )

@@ -300,7 +300,9 @@ def _made(record: PredictRecord) -> Section:
     hashes = [(clean(run["id"]), clean(run["trial"]["sha256"])) for run in record.runs if run["trial"]]
     folded = (Fold("Hashes of the trials", (pairs("hashes-table", "Hashes", ("trial", "SHA-256"), hashes),)),)
     return Section(
-        "made", "How it was made", (pairs("made-table", "What it was made from", ("", ""), items), *(hashes and folded))
+        "made",
+        "How it was made",
+        (pairs("made-table", "What it was made from", ("what", "value"), items), *(hashes and folded)),
     )
 
 

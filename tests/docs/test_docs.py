@@ -16,7 +16,7 @@ ROOT = Path(__file__).parent.parent.parent
 PAGES = [
     ROOT / "README.md",
     *sorted((ROOT / "docs").glob("**/*.md")),
-    *ROOT.glob("*/*/README.md"),
+    *(page for page in ROOT.glob("*/*/README.md") if "node_modules" not in page.parts),
     *ROOT.glob("*/README.md"),
 ]
 

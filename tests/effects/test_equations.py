@@ -152,7 +152,7 @@ def test_memory_is_a_lag_of_first_order():
 
 def test_flow_effects_are_velocities_over_ground_seen_from_the_ship():
     north, east = 0.3, -0.2
-    u, v = find_effect("current").function(MOVING, STILL, find_effect("current").params(north, east, 1.0))
+    u, v = find_effect("current").function(MOVING, STILL, find_effect("current").params(north, east, 0.0, 0.0, 1.0))
     towards = math.atan2(east, north) - MOVING.psi
     speed = math.hypot(north, east)
     assert (u, v) == pytest.approx((speed * math.cos(towards), speed * math.sin(towards)))

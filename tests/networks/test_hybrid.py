@@ -92,7 +92,7 @@ def test_what_it_remembers_is_a_lag_of_the_velocities():
     predictor = HybridPredictor(hybrid)
     given = cases()
     ship = predictor.lanes(predictor.model, predictor.model.matrix())
-    log = Logged(predictor.model, given, 1, None)
+    log = Logged(predictor.model, given, 1, ship.shift)
     run = LaneRun(ship, State(*given.initial.T), log.inputs(1, 0.0), log.around(1, 0.0))
     velocities, kept = [run.s[3:6, 0]], [run.s[-3:, 0]]
     for k in range(1, given.t.shape[1]):

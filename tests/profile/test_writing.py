@@ -55,7 +55,10 @@ def extend(profile, rng):
         chosen = [name for name in effect.parameters if rng.random() < 0.5]
         words = {name: effect.parameters[name].choices for name in chosen}
         given = {
-            name: rng.choice([*words[name].values()]) if words[name] else rng.uniform(1e-9, 0.5) for name in chosen
+            name: rng.choice([*words[name].values()])
+            if words[name]
+            else rng.uniform(1e-9, min(0.5, effect.parameters[name].high or 0.5))
+            for name in chosen
         }
         values[effect.tag] = given
         stderr[effect.tag] = {name: rng.uniform(0.0, 1.0) for name in given if not words[name] and rng.random() < 0.5}

@@ -3,11 +3,11 @@
 import json
 
 import pytest
-from mmgtune.report.page import Picture
 
 from mmgtune.diagnose.contributions import Contribution
 from mmgtune.diagnose.whereabouts import whereabouts
-from mmgtune.report import unexplained
+from mmgtune.report import svg, unexplained
+from mmgtune.report.blocks import Picture
 from tests.diagnose.test_whereabouts import run as force_run
 
 pytestmark = pytest.mark.slow(3)
@@ -21,30 +21,30 @@ def record():
     return json.loads(json.dumps({"whereabouts": found.to_dict()}))
 
 
+def pictures(found):
+    return {block.id: block for block in found if isinstance(block, Picture)}
+
+
 def test_the_section_says_and_draws_where_it_lives(record):
-    drawings = {}
-    section = unexplained.section(record, drawings)
-    assert list(drawings) == ["where-and-when", "against-what", "force-histories", "removable"]
-    assert [block.id for block in section.blocks if isinstance(block, Picture)] == list(drawings)
-    said = " ".join(section.blocks[0].sentences)
+    found = unexplained.blocks(record)
+    drawn = pictures(found)
+    assert list(drawn) == ["where-and-when", "against-what", "force-histories", "removable"]
+    said = " ".join(found[0].sentences)
     assert "sway force follows the heading" in said
-    texts = drawings["against-what"].svg
-    assert "heading [deg]" in texts
-    assert "run_" in drawings["where-and-when"].svg
-    assert "<0>" not in drawings["where-and-when"].svg  # names come from files
+    assert "heading [deg]" in svg.file(drawn["against-what"].figure)
+    runs = svg.file(drawn["where-and-when"].figure)
+    assert "run_" in runs
+    assert "<0>" not in runs  # names come from files
 
 
 def test_without_forces_the_runs_and_causes_are_drawn():
     found = whereabouts([], {"a": 3.0, "b": 1.0}, {"wind": 0.1}).to_dict()
-    drawings = {}
-    section = unexplained.section({"whereabouts": found}, drawings)
-    assert section is not None
-    assert list(drawings) == ["where-and-when", "removable"]
+    assert list(pictures(unexplained.blocks({"whereabouts": found}))) == ["where-and-when", "removable"]
 
 
 def test_records_without_it_have_no_section(record):
-    assert unexplained.section({}, {}) is None
-    assert unexplained.section({"whereabouts": None}, {}) is None
+    assert unexplained.blocks({}) == []
+    assert unexplained.blocks({"whereabouts": None}) == []
     assert unexplained.traces({}) == []
 
 

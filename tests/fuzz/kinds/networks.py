@@ -12,6 +12,7 @@ import numpy as np
 
 from mmgtune.backends import pad
 from mmgtune.networks import Mixture, load_network, predictor_of, save_network
+from mmgtune.networks.file import in_order
 from tests.networks.made import ensemble, network
 from tests.networks.test_hybrid import a_hybrid
 
@@ -49,7 +50,7 @@ def make(rng: np.random.Generator) -> Files:
         arrays[name] = pick(rng, ARRAYS)(rng, arrays[name])
         if arrays[name] is None:
             del arrays[name]
-    return {"model.safetensors": save(arrays, metadata=metadata)}
+    return {"model.safetensors": in_order(save(arrays, metadata=metadata))}
 
 
 def _text(tree: Any) -> str:
