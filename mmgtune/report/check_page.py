@@ -159,7 +159,7 @@ def _all(data: Mapping[str, Any]) -> Section:
                 clean(row["reason"]),
             )
         )
-    heads = ("trial", "metric", "baseline", "now", "change", "allowed", "", "why")
+    heads = ("trial", "metric", "baseline", "now", "change", "allowed", "verdict", "why")
     table = Table("items-table", "All metrics, the worst first", heads, tuple(lines), range(2, 6))
     block: Block = table if len(lines) <= 24 else Fold(f"All {len(lines)} metrics", (table,))
     return Section("items", "All metrics", (block,) if lines else (Prose(("There are none.",)),))

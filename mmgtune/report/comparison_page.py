@@ -212,7 +212,7 @@ def _made(profiles: Sequence[Mapping[str, Any]]) -> Section:
         cells("SHA-256", *(clean(one["sha256"]) for one in profiles)),
     ]
     title = "What was compared"
-    table = Table("profiles-table", title, ("", *(clean(one["name"]) for one in profiles)), tuple(rows))
+    table = Table("profiles-table", title, ("what", *(clean(one["name"]) for one in profiles)), tuple(rows))
     return Section("profiles", "Profiles", (table,))
 
 

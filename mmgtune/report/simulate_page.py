@@ -211,7 +211,7 @@ def _criteria(record: SimulationRecord) -> Section | None:
             )  # fmt: skip
     if not rows:
         return None
-    heads = ("run", "criterion", "value", "limit", "unit", "", "source")
+    heads = ("run", "criterion", "value", "limit", "unit", "verdict", "source")
     table = Table("criteria-table", "Criteria of the IMO", heads, tuple(rows), (2, 3))
     return Section("criteria", "Criteria", (table,))
 
