@@ -135,12 +135,12 @@ def quality_text(quality: dict[str, Any], common: Set[str] = frozenset(), told: 
             said += f"; rounding alone {positions['rounding_x_m']:.3g} and {positions['rounding_y_m']:.3g} m"
         lines.append(said)
     lines.append(f"  rudder    turns the ship to its side: {rudder['side']}, agreement {rudder['agreement']:+.2f}")
-    told = []
+    by_input = []
     for name, changes in q["controls"].items():
         unit = shown_in(INPUTS[name].unit)[0]
         orders = "ORDERS? " if changes["orders"] else ""
-        told.append(f"{INPUTS[name].words} {orders}up to {changes[f'fastest_{unit}_per_s']:.3g} {unit}/s")
-    lines.append("  controls  " + ", ".join(told))
+        by_input.append(f"{INPUTS[name].words} {orders}up to {changes[f'fastest_{unit}_per_s']:.3g} {unit}/s")
+    lines.append("  controls  " + ", ".join(by_input))
     lines += [f"  note      {note}" for note in q["notes"] if note not in common]
     for f in q["findings"]:
         if f["severity"] != "note":

@@ -112,7 +112,8 @@ def _compare_models(folder: Path) -> None:
 def _learning(folder: Path) -> None:
     """A training by hand: the program's own takes an extra that may not be installed."""
     motion = fake_run.motion(20.0, 200, 190.0, 3.1, 20.0)
-    track = {"north_m": motion["x"].tolist(), "east_m": motion["y"].tolist()}
+    columns = {"north_m": "x", "east_m": "y", "psi_rad": "psi", "u_m_s": "u", "v_m_s": "v_m", "r_rad_s": "r"}
+    shown = {name: motion[state].tolist() for name, state in columns.items()}
     score = {"L_MSE": 0.4, "L_MSE_by_state": dict.fromkeys(("x", "y", "psi", "u", "v_m", "r"), 0.07), "runs": 2}
     curve = [{"step": step, "loss": 9.0 / step, "score": 4.0 / step} for step in (100, 200, 300)]
     data = {
@@ -123,7 +124,8 @@ def _learning(folder: Path) -> None:
         "members": [{"seed": 1, "steps": 300, "loss": 0.03, "score": 0.02, "best_step": 300, "curve": curve,
                      "events": [{"step": 150, "why": "loss", "back_to": 100, "rate_factor": 0.5}]}],
         "scores": {"test": {**score, "trials": ["turn_p35"], "by_manoeuvre": {"turning": score}}},
-        "drawn": [{"id": "turn_p35", "manoeuvre": "turning", "L_MSE": 0.4, "measured": track, "members": [track]}],
+        "drawn": [{"id": "turn_p35", "manoeuvre": "turning", "L_MSE": 0.4, "t_s": motion["t"].tolist(),
+                   "measured": shown, "members": [shown]}],
         "provenance": {
             "trials": {"path": "trials/suzaku", "learned_from": ["turn_p10"], "sources": ["generated"], "licence": "",
                        "citation": ""},
