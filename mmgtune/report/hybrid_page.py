@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -177,11 +178,11 @@ def _curves_figure(tried: Sequence[Mapping[str, Any]]) -> Figure | None:
 
 def _next(record: HybridRecord) -> Commands:
     data = record.data
-    path = shortest(data["provenance"]["profile"].get("path") or data["ship"], "ship_profiles")
-    trials = shortest(data["provenance"]["trials"].get("path") or "TRIALS", "trials")
+    path = shlex.quote(shortest(data["provenance"]["profile"].get("path") or data["ship"], "ship_profiles"))
+    trials = shlex.quote(shortest(data["provenance"]["trials"].get("path") or "TRIALS", "trials"))
     if not data["gained"]:
         return Commands((("See what the profile gets wrong, and why", f"mmgtune diagnose -p {path} -t {trials}"),))
-    model = f"{record.folder.as_posix()}/model.safetensors"
+    model = shlex.quote(f"{record.folder.as_posix()}/model.safetensors")
     window = number(data["window_s"])
     restart = f" --restart {window:g}" if window else ""
     return Commands(

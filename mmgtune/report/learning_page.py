@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -161,10 +162,10 @@ def events_said(record: LearningRecord) -> tuple[Prose, ...]:
 
 def next_steps(record: LearningRecord) -> Commands:
     """What the model can be used for."""
-    model = f"{record.folder.as_posix()}/model.safetensors"
+    model = shlex.quote(f"{record.folder.as_posix()}/model.safetensors")
     made = record.data["provenance"]
-    ship = shortest(made["profile"].get("path") or record.data["ship"], "ship_profiles")
-    trials = shortest(made["trials"].get("path") or "TRIALS", "trials")
+    ship = shlex.quote(shortest(made["profile"].get("path") or record.data["ship"], "ship_profiles"))
+    trials = shlex.quote(shortest(made["trials"].get("path") or "TRIALS", "trials"))
     window = number(record.data["window_s"])
     restart = f" --restart {window:g}" if window else ""
     return Commands(
