@@ -187,7 +187,7 @@ def after_validation(data: Mapping[str, Any]) -> Advice:
 def after_voyages(data: Mapping[str, Any]) -> Advice:
     """(reason, command) pairs that follow from a validation on voyages."""
     voyages = shortest(data["trials"].get("path") or "VOYAGES", "trials")
-    named = {one.get("name") or one["id"]: one.get("path") for one in data["profiles"]}
+    named = {name: one.get("path") for name, one in data["profiles"].items()}
     paths = [shortest(named.get(one["profile"]) or one["profile"], "ship_profiles") for one in data["models"]]
     models = " ".join(map(shlex.quote, paths))
     longer = 2.0 * (number(data.get("window_s")) or 120.0)

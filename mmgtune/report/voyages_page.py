@@ -11,6 +11,7 @@ from ..arrays import FloatArray
 from ..units import shown_in
 from . import advice, measures, motion_block, motions
 from . import voyages_figures as figures
+from .band_scores import bands_section
 from .blocks import Card, Cell, Commands, Fold, Page, Prose, Section, Table, cells
 from .common import doubts, generated_banner, picture
 from .load import Kind, columns_in
@@ -60,6 +61,7 @@ def build(record: VoyagesRecord) -> Page:
         _windows(record) if scored else None,
         _classes(record) if scored else None,
         _measures(record) if scored else None,
+        bands_section(record.models, "windows evenly among all"),
         _compared(data) if data.get("comparisons") else None,
         _where(record) if scored else None,
         _logs(data),

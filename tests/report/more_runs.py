@@ -100,6 +100,33 @@ def _predict(folder: Path) -> None:
     write_prediction(predict(scattered(Model(load_profile("suzaku")), 20), trials=two_trials()), folder)
 
 
+def _plan(folder: Path) -> None:
+    """A plan by hand: the program's own takes particles of a posterior."""
+    names = (("turn_m35", "turn, 35 deg to port"), ("zigzag_p20_20", "zigzag 20/20, starboard first"))
+    trials = [
+        {
+            "id": id,
+            "kind": "turn",
+            "trial": words,
+            "duration_s": 500.0,
+            "half_width_after": 6.0 + k,
+            "shrinks": 0.4 - k / 9,
+        }
+        for k, (id, words) in enumerate(names)
+    ]
+    data = {
+        "schema": 1, "kind": "plan", "model": "runs/bands", "ship": "suzaku", "sha256": "ab", "linear_share": 0.9,
+        "question": {"text": "advance, turn 35", "asked": "turn 35", "index": "advance_m", "words": "advance",
+                     "unit": "m", "order": "turn with 35 deg of rudder to starboard", "mean": 250.0, "half_width": 10.0,
+                     "particles": 20},
+        "trials": trials, "left_out": ["spiral: the ship leaves what the model can do"], "notes": ["a note"],
+        "options": {"level": 90.0}, "wall_s": 1.0,
+        "provenance": {"command": "mmgtune plan runs/bands -q 'advance, turn 35' --out run", "mmgtune": "1",
+                       "created": "2026-01-01"},
+    }  # fmt: skip
+    (folder / "plan.json").write_text(json.dumps(data), encoding="utf-8")
+
+
 def _compare(folder: Path) -> None:
     known("suzaku", "suzaku_fam").write(folder)
 
@@ -145,5 +172,5 @@ def _edited(path: Path, edit: Callable[[dict[str, Any]], None]) -> None:
 HOW: dict[str, Callable[[Path], None]] = {
     "diagnosis": _diagnosis, "leave-out": _leave_out, "validate": _validate, "simulate": _simulate, "trials": _trials,
     "check": _check, "predict": _predict, "comparison": _compare, "model-comparison": _compare_models,
-    "learning": _learning,
+    "learning": _learning, "plan": _plan,
 }  # fmt: skip
