@@ -170,7 +170,7 @@ def base_fit(bench: Workbench) -> Point:
     rng = np.random.default_rng(bench.options.seed)
     starts = np.column_stack([bench.null(names), *rng.uniform(size=(STARTS - 1, len(names)))])
     held = bench.problem_of(names, Integrator("euler")).held()  # a quarter of the work, and only a start
-    ends = sorted(solve(held, starts, max_iterations=40, tolerance=1.0), key=lambda end: end.J)
+    ends = sorted(solve(held, starts, max_iterations=40, tolerance=1.0, trusting=True), key=lambda end: end.J)
     point = bench.refit(names, np.column_stack([end.unit for end in ends[:3]]), np.zeros_like(bench.problem.offsets))
     for _ in range(AGAIN):  # initial states at the end of their range make a bad start; from there it is a new one
         again = bench.refit(names, point.unit[:, None], point.offsets, tolerance=PRECISE)

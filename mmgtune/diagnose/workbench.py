@@ -145,6 +145,7 @@ class Workbench:
             whiten=whiten,
             tolerance=tolerance,
             beliefs=None if apart is None else (apart, np.zeros(len(names))),
+            trusting=True,
         )
         self.refits += len(ends)
         best = min(ends, key=lambda end: self._total(end, apart))
