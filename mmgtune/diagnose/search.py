@@ -26,6 +26,15 @@ from .workbench import TOLERANCE, Point, Workbench
 STARTS = 6
 """Starts of the base fit."""
 
+BEST = 3
+"""Ends of these that are gone on from, where they differ."""
+
+SAME = 1e-3
+"""Relative difference of what is made small within which two of them are one."""
+
+ROUGHLY = 20.0
+"""Fall of chi-squared that counts as none there."""
+
 STRONG = 1.2
 """Chi-squared per residual beyond which every named hypothesis makes a step before the best are refitted."""
 
@@ -182,13 +191,17 @@ class _Known:
 
 
 def base_fit(bench: Workbench) -> Point:
-    """The targets re-tuned without any effect: from several starts with held initial states, then with free ones."""
+    """The targets re-tuned without any effect: from several starts, in larger steps of the integration at first.
+
+    Initial states are estimated from the first: on long runs those that were measured, noise and all, lead astray.
+    """
     names = bench.targets
     rng = np.random.default_rng(bench.options.seed)
     starts = np.column_stack([bench.null(names), *rng.uniform(size=(STARTS - 1, len(names)))])
-    held = bench.problem_of(names, Integrator("euler")).held()  # a quarter of the work, and only a start
-    ends = sorted(solve(held, starts, max_iterations=40, tolerance=1.0, trusting=True), key=lambda end: end.J)
-    point = bench.refit(names, np.column_stack([end.unit for end in ends[:3]]), np.zeros_like(bench.problem.offsets))
+    quick = bench.problem_of(names, Integrator("euler"))  # a quarter of the work, and only a start
+    ends = sorted(solve(quick, starts, max_iterations=40, tolerance=ROUGHLY, trusting=True), key=lambda end: end.J)
+    apart = [end for k, end in enumerate(ends) if k == 0 or end.J > (1.0 + SAME) * ends[k - 1].J][:BEST]
+    point = bench.refit(names, np.column_stack([end.unit for end in apart]), ends[0].offsets)
     for _ in range(AGAIN):  # initial states at the end of their range make a bad start; from there it is a new one
         again = bench.refit(names, point.unit[:, None], point.offsets, tolerance=PRECISE)
         better = point.chi2 - again.chi2

@@ -26,6 +26,9 @@ QUIET = 1e-9
 DAMPINGS = 10.0 ** np.array([-3.0, -1.0, 0.5, 2.0])
 """Multiples of the last damping tried side by side, as lanes of one call."""
 
+FIRM = 10.0
+"""Damping from which steps of initial states are damped too: far from any fit these alone would leave their range."""
+
 HARDLY = 1e-9
 """Damping of the step whose promise is asked for, as a share of the curvature."""
 
@@ -148,10 +151,15 @@ def solve(
                 last[i] = promised <= tolerance
                 damping[row] = min(damping[row], 1e-3) if last[i] else damping[row]
             for k, factor in enumerate(DAMPINGS):
+                at = linear[i]
+                if damping[row] * factor > FIRM:
+                    at = at.damped(damping[row] * factor)
+                    hessian = at.hessian + ridge * np.eye(len(z)) + believed
+                    gradient = at.gradient + ridge * (z[:, row] - centre) + believed @ (z[:, row] - likely)
                 damped = hessian + np.diag(damping[row] * factor * scale)
                 nearby = tried[:, i, 0, k - 1] if k else None
                 tried[:, i, 0, k] = bounded_step(damped, gradient, z[:, row], nearby)
-                moved[:, i, 0, k] = linear[i].offsets(tried[:, i, 0, k] - z[:, row])
+                moved[:, i, 0, k] = at.offsets(tried[:, i, 0, k] - z[:, row])
         if last.all():
             tried, moved = tried[:, :, :1], moved[:, :, :1]
         else:
@@ -284,10 +292,17 @@ class _Linear:
     """
 
     def __init__(
-        self, problem: FitProblem, d: FloatArray, residuals: FloatArray, jacobian: FloatArray, by_offset: FloatArray
+        self,
+        problem: FitProblem,
+        d: FloatArray,
+        residuals: FloatArray,
+        jacobian: FloatArray,
+        by_offset: FloatArray,
+        damping: float = 0.0,
     ):
         self.residuals = residuals
-        self._jacobian, self._by_offset, self._rows = jacobian, by_offset, problem.rows_of_cases
+        self._problem, self._jacobian, self._by_offset = problem, jacobian, by_offset
+        self._rows = problem.rows_of_cases
         self.hessian = jacobian.T @ jacobian
         self.gradient = jacobian.T @ residuals
         self._own: list[FloatArray] = []
@@ -297,10 +312,12 @@ class _Linear:
         self.settling = 0.0
         if problem.sigma is None:
             return
-        for case, rows in enumerate(problem.rows_of_cases):
+        for case, rows in enumerate(self._rows):
             S, J = by_offset[rows], jacobian[rows]
             prior = problem.prior[case]
             own = S.T @ S + np.diag(prior)
+            if damping:
+                own += damping * np.diag(np.diag(own))
             cross = S.T @ J
             slope = S.T @ residuals[rows] + prior * d[case]
             solved = np.linalg.solve(own, np.column_stack([slope, cross]))
@@ -309,6 +326,12 @@ class _Linear:
             self.settling += float(slope @ solved[:, 0])
             self._from_step.append((solved[:, 0], solved[:, 1:]))
             self._own.append(own)
+
+    def damped(self, damping: float) -> _Linear:
+        """The same with steps of the offsets damped."""
+        if self._limit is None:
+            return self
+        return _Linear(self._problem, self._d, self.residuals, self._jacobian, self._by_offset, damping)
 
     def offsets(self, step: FloatArray) -> FloatArray:
         """(n_cases, 6) best offsets after a step (n_targets,) of the targets, kept within their limit."""
