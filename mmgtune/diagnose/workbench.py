@@ -75,7 +75,6 @@ class Workbench:
     noise: NoiseModel
     own_effects: tuple[str, ...] = ()
     spreads: dict[str, float] = field(default_factory=dict)
-    refits: int = field(default=0)
 
     @cached_property
     def visited(self) -> Visited:
@@ -130,7 +129,30 @@ class Workbench:
         tolerance: float = TOLERANCE,
         spreads: Mapping[str, float] | None = None,
     ) -> Point:
-        """The best fit of ``names`` from starts (n_names, n_starts), initial states beginning at ``offsets``.
+        """The best of ``refits``."""
+        ends = self.refits(
+            names,
+            starts,
+            offsets,
+            integrator=integrator,
+            max_iterations=max_iterations,
+            tolerance=tolerance,
+            spreads=spreads,
+        )
+        return min(ends, key=lambda end: end.chi2)
+
+    def refits(
+        self,
+        names: Sequence[str],
+        starts: FloatArray,
+        offsets: FloatArray,
+        *,
+        integrator: Integrator | None = None,
+        max_iterations: int = 30,
+        tolerance: float = TOLERANCE,
+        spreads: Mapping[str, float] | None = None,
+    ) -> list[Point]:
+        """Fits of ``names`` from starts (n_names, n_starts), initial states beginning at ``offsets``.
 
         spreads  of values that groups of runs have of their own, those of the workbench where None
         """
@@ -145,10 +167,12 @@ class Workbench:
             whiten=whiten,
             tolerance=tolerance,
             beliefs=None if apart is None else (apart, np.zeros(len(names))),
+            trusting=True,
         )
-        self.refits += len(ends)
-        best = min(ends, key=lambda end: self._total(end, apart))
-        return Point(tuple(names), best.unit, best.offsets, self._total(best, apart), problem.integrator, spreads)
+        return [
+            Point(tuple(names), end.unit, end.offsets, self._total(end, apart), problem.integrator, spreads)
+            for end in ends
+        ]
 
     def _total(self, end: LeastSquaresResult, apart: FloatArray | None) -> float:
         unlike = 0.0 if apart is None else float(np.sum((apart @ end.unit) ** 2))
