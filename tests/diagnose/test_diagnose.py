@@ -151,6 +151,12 @@ def test_the_extended_profile_is_a_profile_like_any_other(tmp_path):
         assert coefficient.stderr > 0.0
     again = diagnose(extended, load_trials(tmp_path))
     assert again.verdict == "none", [cause.tag for cause in again.causes]
+    doubted = replace(result, interrupted=True)
+    profile = parse_profile(doubted.extended_text())
+    assert "effects.current" not in profile.sections
+    assert profile.value("wake.w_P0") == pytest.approx(result.retuned["wake.w_P0"])
+    assert profile.value("wake.w_P0") != pytest.approx(extended.value("wake.w_P0"))
+    assert profile.provenance["not_believed"] == ["current"]
 
 
 LIKE_IT = ("heading-bias", "gyro-bias", "current", "rudder-offset", "antenna")
