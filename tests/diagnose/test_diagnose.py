@@ -155,6 +155,12 @@ def test_the_extended_profile_is_a_profile_like_any_other(tmp_path):
         assert coefficient.stderr > 0.0
     again = diagnose(extended, load_trials(tmp_path), DiagnoseOptions(effects=LIKE_IT))
     assert again.verdict == "none", [cause.tag for cause in again.causes]
+    doubted = replace(result, interrupted=True)
+    profile = parse_profile(doubted.extended_text())
+    assert "effects.current" not in profile.sections
+    assert profile.value("wake.w_P0") == pytest.approx(result.retuned["wake.w_P0"])
+    assert profile.value("wake.w_P0") != pytest.approx(extended.value("wake.w_P0"))
+    assert profile.provenance["not_believed"] == ["current"]
 
 
 def test_names_order_and_metadata_of_the_files_do_not_matter(tmp_path):
