@@ -43,14 +43,14 @@ LIKE_IT = ("heading-bias", "gyro-bias", "current", "rudder-offset", "antenna")
 """Among them a bias of the heading, or a current, can be taken for another."""
 
 
-TYPICAL = ["steering-lag", "antenna"]
-"""An actuator and a sensor; flow and others are below.  The full study has them all."""
+TYPICAL = {"steering-lag": (), "antenna": ("antenna", "position-latency", "speed-scale", *LIKE_IT[:-1])}
+"""An actuator among all causes, a sensor among those like it; others are below.  The full study has them all."""
 
 
 @pytest.mark.parametrize("tag", TYPICAL)
 def test_a_typical_effect_is_named(tag, tmp_path):
     case = single(tag, 3, seed=1)
-    result = said_of(case, tmp_path)
+    result = said_of(case, tmp_path, effects=TYPICAL[tag])
     document = result.to_dict()
     json.dumps(document, allow_nan=False)
     assert outcome(case.effects, document) == "right", (result.verdict, document["causes"])
@@ -185,7 +185,7 @@ def test_names_order_and_metadata_of_the_files_do_not_matter(tmp_path):
 
 def test_a_coarse_integration_step_is_a_cause(tmp_path):
     case = null(3)
-    result = said_of(case, tmp_path, integrator="euler")
+    result = said_of(case, tmp_path, integrator="euler", effects=LIKE_IT)
     assert [cause.tag for cause in result.causes] == ["integration-step"]
     assert "integration step" in result.sentence()
 
