@@ -196,6 +196,18 @@ def test_the_command_has_a_table_and_json(desk):
     assert document["question"]["unit"] == "m"
 
 
+@pytest.mark.slow(5)
+def test_a_plan_with_a_folder_has_a_report(desk):
+    arguments = ("plan", "bands", "--question", QUESTION, "--kind", "straight", "--no-half-speed", "--out", "plan")
+    ended = run(*arguments, cwd=desk)
+    assert ended.code == 0, ended.err
+    assert ended.out.splitlines()[-1] == "Report: plan/report.html"
+    page = (desk / "plan" / "report.html").read_text(encoding="utf-8")
+    assert "To sail next: straight run." in page
+    assert "mmgtune</span> predict bands --turn -35" in page
+    assert run(*arguments, cwd=desk).code == 2
+
+
 @pytest.mark.slow(6)
 @pytest.mark.parametrize(
     ("arguments", "words"),

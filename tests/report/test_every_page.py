@@ -28,7 +28,7 @@ SCREENS = {
     "phone": ({"width": 390, "height": 844}, "light"),
 }
 PAGES = ("fit", "sweep", "leave-out", "diagnosis", "nothing", "unexplained", "validate", "voyages", "predict",
-         "comparison", "model-comparison", "simulate", "trials", "check", "learning")  # fmt: skip
+         "comparison", "model-comparison", "simulate", "trials", "check", "learning", "plan")  # fmt: skip
 
 
 @pytest.fixture(scope="module")
