@@ -64,12 +64,14 @@ class Course:
     slope, slope_error  by unit of time, and half its 95 % interval
     grows    whether the slope is believed
     changes  in time
+    fitted   (n,) the line with its steps
     """
 
     slope: float
     slope_error: float
     grows: bool
     changes: tuple[Change, ...]
+    fitted: FloatArray
 
 
 def course(t: FloatArray, y: FloatArray, error: FloatArray, looked_at: int = 1) -> Course | None:
@@ -98,7 +100,7 @@ def course(t: FloatArray, y: FloatArray, error: FloatArray, looked_at: int = 1) 
     for k, place in enumerate(places):
         first, last = _interval(t, y, root, places, place)
         changes.append(Change(place, first, last, float(theta[2 + k]), float(half[2 + k]), found[place]))
-    return Course(float(theta[1]), float(half[1]), bool(p_slope < level), tuple(changes))
+    return Course(float(theta[1]), float(half[1]), bool(p_slope < level), tuple(changes), _design(t, places) @ theta)
 
 
 def _places(n: int, taken: Sequence[int]) -> list[int]:
