@@ -79,7 +79,7 @@ def run(
     if not no_report:
         render(out)
     if json:
-        c.print_json(result.document)
+        c.print_json(dict(result.document))
     else:
         c.show(summary(result.document))
         ran = f"{len(result.ran)} jobs run on {result.workers} workers in {result.wall_s:.1f} s"
@@ -176,10 +176,9 @@ def _plan_dict(plan: FleetPlan, options: FleetOptions) -> dict[str, Any]:
 def summary(document: Mapping[str, Any]) -> str:
     """The results of a fleet as a person wants to read them in a terminal."""
     jobs = document["jobs"]
-    lines = [
-        f"{len(document['ships'])} ships, {len(document['dates'])} dates: {jobs['total']} jobs; nothing wrong in "
-        f"{jobs['good']}, something in {jobs['no']}, {jobs['failed']} failed, {jobs['missing']} not run yet."
-    ]
+    head = f"{len(document['ships'])} ships, {len(document['dates'])} dates: {jobs['total']} jobs; "
+    parts = f"nothing wrong in {jobs['good']}, something in {jobs['no']}, {jobs['failed']} failed"
+    lines = [f"{head}{parts}, {jobs['missing']} not run yet."]
     for one in document["failures"][:SHOWN]:
         lines.append(f"failed: {one['ship']} {one['date']} {one['name']}")
         for problem in one["problems"]:
@@ -198,5 +197,6 @@ def summary(document: Mapping[str, Any]) -> str:
         said = ", ".join(f"{one['ship']} {one['off_track']:.3g} -> {one['tuned_track']:.3g} m" for one in best)
         lines += ["", f"Most to gain by recalibration: {said}."]
     for one in document["classes"]:
-        lines += ["", f"Class {one['name']}: mean and spread of {len(one['coefficients'])} coefficients, {one['ships']} ships."]
+        said = f"mean and spread of {len(one['coefficients'])} coefficients, {one['ships']} ships"
+        lines += ["", f"Class {one['name']}: {said}."]
     return "\n".join(lines)

@@ -15,8 +15,8 @@ from typer.models import OptionInfo
 
 from ..errors import MmgtuneError, OptionError, Problem
 from ..options import FLAGS, Options, again, choice, flags_of, in_flags
-from ..options.flags import off_flag
 from ..options.choice import OUTPUT
+from ..options.flags import off_flag
 from . import completing
 
 

@@ -8,8 +8,8 @@ of the weighted squares, by an F test, is less likely than ``LEVEL`` over all pl
 (Bonferroni), so that of a whole fleet without any change one such report in twenty shows one.  Steps are looked for one
 after the other, and in pairs where none shows alone: what goes and comes back hides itself from one step.
 
-When: places k have weights prop. to RSS_k^(-dof/2), the posterior for a flat prior on place and the usual ones on level,
-slope, step and variance; the interval is of the likeliest places that together have 95 %.
+When: places k have weights proportional to RSS_k^(-dof/2), the posterior for a flat prior on place and the usual ones
+on level, slope, step and variance; the interval is of the likeliest places that together have 95 %.
 """
 
 from __future__ import annotations
@@ -109,15 +109,11 @@ def _places(n: int, taken: Sequence[int]) -> list[int]:
     return [k for k in range(2, n - 1) if all(abs(k - edge) >= 2 for edge in edges)]
 
 
-def _one_more(
-    t: FloatArray, y: FloatArray, root: FloatArray, taken: tuple[int, ...], level: float
-) -> dict[int, float]:
+def _one_more(t: FloatArray, y: FloatArray, root: FloatArray, taken: tuple[int, ...], level: float) -> dict[int, float]:
     return _best(t, y, root, taken, [(k,) for k in _places(len(t), taken)], level)
 
 
-def _two_more(
-    t: FloatArray, y: FloatArray, root: FloatArray, taken: tuple[int, ...], level: float
-) -> dict[int, float]:
+def _two_more(t: FloatArray, y: FloatArray, root: FloatArray, taken: tuple[int, ...], level: float) -> dict[int, float]:
     if len(t) > PAIRS or len(taken) + 2 > MOST:
         return {}
     pairs = [pair for pair in combinations(_places(len(t), taken), 2) if pair[1] - pair[0] >= 2]
@@ -166,12 +162,11 @@ def _solution(
     theta = np.linalg.lstsq(A, y * root, rcond=None)[0]
     off = y * root - A @ theta
     dof = len(t) - A.shape[1]
-    return theta, np.linalg.pinv(A.T @ A) * float(off @ off) / dof, dof
+    covariance: FloatArray = np.linalg.pinv(A.T @ A) * float(off @ off) / dof
+    return np.asarray(theta, dtype=float), covariance, dof
 
 
-def _interval(
-    t: FloatArray, y: FloatArray, root: FloatArray, places: tuple[int, ...], place: int
-) -> tuple[int, int]:
+def _interval(t: FloatArray, y: FloatArray, root: FloatArray, places: tuple[int, ...], place: int) -> tuple[int, int]:
     """Numbers of dates a step lies between, the others where they are."""
     others = tuple(k for k in places if k != place)
     candidates = sorted({*_places(len(t), others), place})

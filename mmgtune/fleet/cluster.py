@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..errors import OptionError, Problem
@@ -119,14 +119,14 @@ def run_there(jobs: Sequence[Job], out: str, client: Client, seconds_a_job: floa
             for job in batch:
                 yield job, "killed", 0.0
         else:
-            raise OptionError(
-                Problem("a worker cannot run jobs", str(client.scheduler.address), repr(error), "install the same mmgtune there")
-            ) from error
+            fix = "install the same mmgtune there, and see that workers reach the folders of this machine"
+            problem = Problem("a worker cannot run jobs", str(client.scheduler.address), repr(error), fix)
+            raise OptionError(problem) from error
         if (more := submitted()) is not None:
             ending.add(more)
 
 
-def _work(documents: list[dict[str, Any]], out: str) -> list[tuple[str, str, float]]:
+def _work(documents: Sequence[Mapping[str, Any]], out: str) -> list[tuple[str, str, float]]:
     """A task on a worker."""
     if os.environ.get("MMGTUNE_THREADS") != "1":
         one_thread()

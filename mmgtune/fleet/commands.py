@@ -40,7 +40,7 @@ class Facts:
 
     answer    "good" or "no": whether nothing was found wrong
     verdict   in a sentence
-    off_track, off_heading    root mean square of the model as given [m], [deg]; on trials not tuned on, where there are any
+    off_track, off_heading  root mean square of the model as given [m], [deg], on trials not tuned on if there are any
     tuned_track, tuned_heading  of the tuned one
     causes    what was named, by the effect's tag; sentences say it
     names, values, before, errors  coefficients that were tuned
@@ -104,12 +104,12 @@ def _of_fit(document: Mapping[str, Any], verdict: str, answer: str) -> Facts:
     )
 
 
-def _errors(results: Sequence[Mapping[str, Any]]) -> dict[str, float | None]:
+def _errors(results: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     """How far off before and after, on the trials that were not tuned on, all where there are none."""
     from ..report.findings import mean_off_heading, mean_off_track
 
     rows = [row for row in results if row["role"] == "test"] or list(results)
-    found: dict[str, float | None] = {}
+    found: dict[str, Any] = {}
     for name, when in (("off", "before"), ("tuned", "after")):
         found[f"{name}_track"] = mean_off_track(rows, when)
         found[f"{name}_heading"] = mean_off_heading(rows, when)
@@ -228,7 +228,8 @@ def _check(task: Task, folder: Path) -> tuple[str, Facts]:
     document = {**report.to_dict(), **made_by(task.label), "out": str(folder)}
     write_text(folder / "check.json", json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
     if report.verdict == "not comparable":
-        why = "; ".join(dict.fromkeys(item.reason for item in report.items if item.status == "not comparable" and item.reason))
+        lost = [item.reason for item in report.items if item.status == "not comparable" and item.reason]
+        why = "; ".join(dict.fromkeys(lost))
         raise OptionError(Problem("the check could not compare", str(task.baseline), why, "write the baseline anew"))
     answer = "good" if report.verdict == "pass" else "no"
     sources = {name: trial.source for name, trial in data.trials.items()}

@@ -94,7 +94,8 @@ def _job(entry: Entry, base: Path, place: str, ship: str, date: str, profiles: d
         try:
             profiles[path] = load_profile(path).text
         except ProfileError as error:
-            told = [Problem(one.what, one.where, one.why or f"it is that of ship '{ship}'", one.fix) for one in error.problems]
+            whose = f"it is that of ship '{ship}'"
+            told = [Problem(one.what, one.where, one.why or whose, one.fix) for one in error.problems]
             raise ProfileError(*told) from error
     baseline = None
     if entry.baseline:

@@ -114,7 +114,13 @@ def _course(what: Course | None) -> dict[str, Any] | None:
     if what is None:
         return None
     places = [one.after for one in what.changes]
-    return {"slope": what.slope, "slope_error": what.slope_error, "grows": what.grows, "places": places, "fitted": what.fitted.tolist()}
+    return {
+        "slope": what.slope,
+        "slope_error": what.slope_error,
+        "grows": what.grows,
+        "places": places,
+        "fitted": what.fitted.tolist(),
+    }
 
 
 def _sentence(one: Series, size: float, error: float, between: tuple[str, str]) -> str:

@@ -23,6 +23,7 @@ from .record import JOBS, RECORD, made_before, write_record
 from .table import FleetTable, read_table
 from .work import remove_attempts
 
+
 @dataclass(frozen=True)
 class Progress:
     """How far a run has come: jobs of all, of them those found before it began, answers so far, workers lost."""

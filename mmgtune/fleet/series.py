@@ -58,7 +58,9 @@ def series_of(rows: Sequence[Mapping[str, Any]]) -> list[Series]:
         if row["answer"] == "failed":
             continue
         if row["off_track"] is not None:
-            found.setdefault((row["ship"], row["name"], OFF_TRACK), []).append((row["date"], row["off_track"], math.nan))
+            found.setdefault((row["ship"], row["name"], OFF_TRACK), []).append(
+                (row["date"], row["off_track"], math.nan)
+            )
         for name, value, error in zip(row["names"], row["values"], row["errors"], strict=True):
             if value is not None:
                 told = (row["date"], value, math.nan if error is None else error)

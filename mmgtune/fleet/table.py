@@ -85,7 +85,9 @@ class _Reader(TomlReader):
         self.unknown("", self.data, ("schema", "jobs"))
         jobs = self.data.get("jobs")
         if not isinstance(jobs, list) or not jobs or not all(isinstance(one, dict) for one in jobs):
-            self.problem("the table has no jobs", "", "jobs", fix="write an entry: [[jobs]], then command, profile, ...")
+            self.problem(
+                "the table has no jobs", "", "jobs", fix="write an entry: [[jobs]], then command, profile, ..."
+            )
             return ()
         lines = self.text.splitlines()
         begins = [k for k, line in enumerate(lines) if _HEAD.match(line)]
@@ -95,7 +97,9 @@ class _Reader(TomlReader):
         found: list[Entry] = []
         for job, first, last in zip(jobs, begins, [*begins[1:], len(lines)], strict=True):
             own = line_index("\n".join(lines[first + 1 : last]).replace("[jobs.options]", "[options]"))
-            self.lines = {("jobs", key) if not table else (table, key): k + first + 1 for (table, key), k in own.items()}
+            self.lines = {
+                ("jobs", key) if not table else (table, key): k + first + 1 for (table, key), k in own.items()
+            }
             self.lines[("jobs", "")] = first + 1
             entry = self._entry(job)
             found += [entry] if entry else []

@@ -11,7 +11,7 @@ import shutil
 import tempfile
 import time
 import traceback
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
@@ -33,9 +33,8 @@ def one_thread() -> None:
     """One kernel thread and one of linear algebra in this process: the cores are shared out by processes."""
     for name in ("MMGTUNE_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ[name] = "1"
-    from threadpoolctl import threadpool_limits
-
     import numpy  # noqa: F401  # its threads are there to be limited
+    from threadpoolctl import threadpool_limits
 
     threadpool_limits(limits=1, user_api="blas")
 
@@ -65,7 +64,7 @@ def run_job(document: Mapping[str, Any], out: str) -> tuple[str, str, float]:
     return job.key, str(row["answer"]), float(row["seconds"])
 
 
-def run_jobs(documents: list[Mapping[str, Any]], out: str) -> list[tuple[str, str, float]]:
+def run_jobs(documents: Sequence[Mapping[str, Any]], out: str) -> list[tuple[str, str, float]]:
     """Several jobs one after the other, each with its row as soon as it is done."""
     return [run_job(document, out) for document in documents]
 
@@ -107,7 +106,9 @@ def _unchanged(source: Source, stack: ExitStack) -> Path:
     if now != dict(source.files):
         other = sorted(name for name in {*now, *source.files} if now.get(name) != source.files.get(name))
         what = "the data changed since the job was made" if now else "the data of the job are not there"
-        fix = "run the fleet again with resume=True: changed jobs are made anew" if now else "look whether workers see that folder"
+        fix = "look whether workers see that folder"
+        if now:
+            fix = "run the fleet again with resume=True: changed jobs are made anew"
         raise TrialError(Problem(what, source.path, ", ".join(other[:5]), fix))
     return stack.enter_context(fetched(source.path))
 
@@ -116,7 +117,8 @@ def _says(record: Path, folder: str) -> None:
     """Put the place of the run folder into its record."""
     document = json.loads(record.read_text(encoding="utf-8"))
     if "out" in document:
-        write_text(record, json.dumps({**document, "out": folder}, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+        text = json.dumps({**document, "out": folder}, indent=1, allow_nan=False, ensure_ascii=False)
+        write_text(record, text + "\n")
 
 
 def _replace(here: Path, final: Path) -> None:

@@ -23,8 +23,8 @@ Nothing here is heavy to import: the command line builds its flags from it befor
 from .choice import Choice, Options, again, choice, choices
 from .diagnosis import DiagnoseOptions
 from .estimating import EstimateOptions
-from .fleet import FleetOptions
 from .flags import FLAGS, flags_of, in_flags
+from .fleet import FleetOptions
 from .generating import MakeOptions
 from .learning import EnsembleOptions, HybridOptions, LearnOptions, MixtureOptions, TrainingOptions
 from .orders import SimulateOptions

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from typing import Any
 
 from .plot import Axis, Bar, Dots, Figure, Line, Look, Mark, Panel, Rule
@@ -53,7 +54,11 @@ def ships_over_time(
     middle = math.exp(0.5 * (low + high)) if known else None
     legend: list[Any] = [
         (f"{shown(value, 2)} m off track", ("before", density))
-        for value, density in ((min(known, default=None), PALE), (middle, 0.5 * (PALE + FULL)), (max(known, default=None), FULL))
+        for value, density in (
+            (min(known, default=None), PALE),
+            (middle, 0.5 * (PALE + FULL)),
+            (max(known, default=None), FULL),
+        )
         if value is not None
     ]
     legend += [("a change began", CHANGED)] if changed else []
@@ -84,10 +89,12 @@ def _course(one: Mapping[str, Any]) -> Panel:
         half = number(error)
         if value is not None and half is not None:
             marks.append(Line((k, k), (value - half, value + half), Look("muted", 1.0)))
-    marks.append(Dots(at, [math.nan if value is None else value for value in values], Look("ink", marker="o", size=4.0)))
+    marks.append(
+        Dots(at, [math.nan if value is None else value for value in values], Look("ink", marker="o", size=4.0))
+    )
     fitted = [number(value) for value in one["course"]["fitted"]]
     edges = [0, *one["course"]["places"], len(dates)]
-    for first, last in zip(edges, edges[1:], strict=False):
+    for first, last in pairwise(edges):
         part = [math.nan if value is None else value for value in fitted[first:last]]
         marks.append(Line(at[first:last], part, Look("after", 1.6, "dash")))
     every = max(1, math.ceil(len(dates) / 4))

@@ -153,7 +153,9 @@ def _picture(
 ) -> Block:
     errors = {(one["ship"], one["date"]): number(one["off_track"]) for one in rows}
     if not any(value is not None for value in errors.values()):
-        return Nothing("No job says how far off the models are in metres.", "Fits, sweeps, diagnoses and validations do.")
+        return Nothing(
+            "No job says how far off the models are in metres.", "Fits, sweeps, diagnoses and validations do."
+        )
     failed = [(one["ship"], one["date"]) for one in rows if one["answer"] == "failed"]
     drawn = fleet_figures.ships_over_time(ships[:ROWS], dates, errors, failed, sorted(marks))
     more = f" The first {ROWS} of {len(ships)} ships." if len(ships) > ROWS else ""
@@ -257,7 +259,11 @@ def _causes(data: Mapping[str, Any]) -> Section | None:
     rows = tuple(
         cells(clean(tag), str(n), listing(list(dict.fromkeys(ships[tag])), 8)) for tag, n in found.most_common()
     )
-    return Section("causes", "Named causes", (Table("causes-table", "Causes that diagnoses named", ("cause", "dates", "ships"), rows, (1,)),))
+    return Section(
+        "causes",
+        "Named causes",
+        (Table("causes-table", "Causes that diagnoses named", ("cause", "dates", "ships"), rows, (1,)),),
+    )
 
 
 def _gains(data: Mapping[str, Any]) -> Section | None:
@@ -299,8 +305,8 @@ def _classes(data: Mapping[str, Any]) -> Section | None:
         title = f"Class {clean(one['name'])}: {count(one['ships'], 'ship')}"
         tables.append(Table(f"class-{place}-table", title, head, rows, (1, 2, 3, 4, 5)))
     said = (
-        "Mean and spread of each coefficient among sister ships, one standard deviation; "
-        "what was known before any trial is its formula's scatter or a quarter of its box.",
+        "Mean and spread of each coefficient among sister ships, one standard deviation.",
+        "What was known before any trial is the scatter of its formula, or a quarter of its box.",
     )
     return Section("classes", "Sister ships", (Prose(said), *tables)) if tables else None
 
@@ -317,7 +323,9 @@ def _failures(data: Mapping[str, Any]) -> Section | None:
         for problem in one["problems"]
     )  # fmt: skip
     head = ("ship", "date", "job", "what", "where", "why", "fix")
-    return Section("failures", "Jobs that could not run", (Table("failures-table", "Errors of jobs", head, rows, cards=True),))
+    return Section(
+        "failures", "Jobs that could not run", (Table("failures-table", "Errors of jobs", head, rows, cards=True),)
+    )
 
 
 def _next(data: Mapping[str, Any]) -> Section:
@@ -328,18 +336,23 @@ def _next(data: Mapping[str, Any]) -> Section:
         table = clean(data["table"]) or "fleet.toml"
         items.append(("Run what failed or is missing", f"mmgtune fleet run {table} --out {out} --resume{retry}"))
     if data["classes"]:
-        items.append(("Calibrate a ship with few trials by what her sisters say", f"mmgtune fit -p SHIP.toml -t TRIALS --prior {out}"))
+        items.append(
+            (
+                "Calibrate a ship with few trials by what her sisters say",
+                f"mmgtune fit -p SHIP.toml -t TRIALS --prior {out}",
+            )
+        )
     items.append(("Put the results together anew", f"mmgtune fleet report {out}"))
     return Section("next", "What to do next", (Commands(tuple(items)),))
 
 
 def _rules(data: Mapping[str, Any]) -> Section:
     rules = data["rules"]
+    none = share(1.0 - rules["level"])
     said = (
-        "A change is a step in a straight line over time, with one slope all along; errors of dates count as normal and "
-        "independent of each other.",
-        f"Chance is counted over all places and all series: in {share(1.0 - rules['level'])} of fleets without any "
-        "change none is reported.",
+        "A change is a step in a straight line over time, with one slope all along.",
+        "Errors of dates count as normal and independent of each other.",
+        f"Chance is counted over all places and series: in {none} of fleets without any change none is reported.",
         "What changed on one date alone, and came back on the next, does not count.",
         "That two quantities change together says when to look, not why: a diagnosis of that date says more.",
     )
@@ -355,7 +368,20 @@ def _made(data: Mapping[str, Any]) -> Section:
 
 KIND = Kind(
     "fleet",
-    ("jobs", "ships", "dates", "cells", "failures", "rules", "series", "changes", "trends", "ranking", "classes", "out"),
+    (
+        "jobs",
+        "ships",
+        "dates",
+        "cells",
+        "failures",
+        "rules",
+        "series",
+        "changes",
+        "trends",
+        "ranking",
+        "classes",
+        "out",
+    ),
     lambda folder, data: data,
     build,
 )

@@ -29,9 +29,12 @@ def _rendered(template: str, page: Page, payloads: list[str]) -> str:
 
     from . import svg
 
-    return _environment().get_template(template).render(  # type: ignore[no-any-return]
-        page=page, drawn=lambda figure: Markup(svg.inline(figure)), payloads=[Markup(text) for text in payloads]
+    text: str = (
+        _environment()
+        .get_template(template)
+        .render(page=page, drawn=lambda figure: Markup(svg.inline(figure)), payloads=[Markup(one) for one in payloads])
     )
+    return text
 
 
 @cache
