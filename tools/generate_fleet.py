@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -47,6 +48,9 @@ SECONDS = 240.0
 RATE = 2.3 * DEG
 """Length of a trial [s], and rate of the steering gear [rad/s]."""
 
+MONTHLY = ("turn_p25", "zigzag_p15")
+"""What each ship sails every month."""
+
 TABLE = """# The state of each ship, month by month: what differs from her profile now.
 schema = 1
 
@@ -76,41 +80,51 @@ def sister(base: ShipProfile, k: int, rng: np.random.Generator, spread: float = 
     return replace(ship, id=name, name=f"Sister {k + 1}", template="")
 
 
-def orders(kind: str, t: FloatArray) -> FloatArray:
-    """Rudder angles (n,) [rad] at times (n,): over to 25 deg, or 15 deg to and fro every 40 s."""
-    if kind == "turn":
-        wanted = np.where(t >= 10.0, 25.0 * DEG, 0.0)
-    else:
-        wanted = np.where(t >= 10.0, 15.0 * DEG * np.where(((t - 10.0) // 40.0) % 2 == 0, 1.0, -1.0), 0.0)
-    angle, moved = 0.0, np.zeros(len(t))
+def orders(name: str, t: FloatArray) -> FloatArray:
+    """Rudder angles (n,) [rad] at times (n,) of a trial by name: turn_p25 goes over to 25 deg to starboard and stays,
+    zigzag_m15 begins to port and goes over to the other side every 40 s."""
+    kind, _, angle = name.partition("_")
+    size = (1.0 if angle[0] == "p" else -1.0) * float(angle[1:]) * DEG
+    side = 1.0 if kind == "turn" else np.where(((t - 10.0) // 40.0) % 2 == 0, 1.0, -1.0)
+    wanted = np.where(t >= 10.0, size * side, 0.0)
+    angle_now, moved = 0.0, np.zeros(len(t))
     for i in range(1, len(t)):
         step = RATE * (t[i] - t[i - 1])
-        angle += float(np.clip(wanted[i] - angle, -step, step))
-        moved[i] = angle
+        angle_now += float(np.clip(wanted[i] - angle_now, -step, step))
+        moved[i] = angle_now
     return moved
 
 
 def sailed(
-    ship: ShipProfile, ids: dict[str, str], state: dict[str, dict[str, float]], rng: np.random.Generator
+    ship: ShipProfile,
+    names: Sequence[str],
+    state: dict[str, dict[str, float]],
+    rng: np.random.Generator,
+    *,
+    calm: bool = False,
 ) -> list[Trial]:
-    """Trials, id to kind, of a ship with effects {tag: {parameter: value}}, as her sensors show them."""
+    """Trials by name, see ``orders``, of a ship with effects {tag: {parameter: value}}, as her sensors show them.
+
+    calm  without current and noise: what is true
+    """
     t = np.arange(0.0, SECONDS + 0.5, 1.0)
+    quiet = 0.0 if calm else 1.0
     trials = []
-    for name, kind in ids.items():
-        current = {"north": CURRENT * rng.standard_normal(), "east": CURRENT * rng.standard_normal()}
+    for name in names:
+        current = {way: quiet * CURRENT * rng.standard_normal() for way in ("north", "east")}
         real = with_effects(ship, {**state, "current": current}, "hidden")
         heading, n = rng.uniform(-np.pi, np.pi), rng.uniform(100.0, 106.0) / 60.0
         zero = np.zeros_like(t)
-        known = {"psi": zero + heading, "u": zero + 3.0, "n": zero + n, "delta": orders(kind, t)}
+        known = {"psi": zero + heading, "u": zero + 3.0, "n": zero + n, "delta": orders(name, t)}
         asked = Trial(
-            id=name, ship=ship.id, manoeuvre="turning" if kind == "turn" else "zigzag", source="generated", t=t,
+            id=name, ship=ship.id, manoeuvre="turning" if name.startswith("turn") else "zigzag", source="generated", t=t,
             x=zero, y=zero, v_m=zero, r=zero, **known,
         )  # fmt: skip
         (motion,) = simulate(real, [asked], integrator=Integrator("rk4"))
-        noise = np.array(list(NOISE.values())) * rng.standard_normal(motion.states.shape)
+        noise = quiet * np.array(list(NOISE.values())) * rng.standard_normal(motion.states.shape)
         shown = as_trial(ship, replace(motion, states=motion.states + noise))
-        note = "Generated, not measured: a made-up sister of SUZAKU, with hidden causes and sensor noise."
-        trials.append(replace(shown, manoeuvre=asked.manoeuvre, noise=dict(NOISE), note=note))
+        note = "Generated, not measured: a made-up sister of SUZAKU" + ("." if calm else ", with sensor noise.")
+        trials.append(replace(shown, manoeuvre=asked.manoeuvre, noise={} if calm else dict(NOISE), note=note))
     return trials
 
 
@@ -163,7 +177,7 @@ def make(folder: Path, n_ships: int = 20, n_months: int = 24, seed: int = 1) -> 
         own = np.random.default_rng([seed, k])
         for month in range(n_months):
             place = folder / "logs" / ship.id / date_of(month)
-            for trial in sailed(ship, {"turn": "turn", "zigzag": "zigzag"}, state_of(lot, month), own):
+            for trial in sailed(ship, MONTHLY, state_of(lot, month), own):
                 write_trial(trial, place / f"{trial.id}.parquet", overwrite=True)
         told[ship.id] = {
             "fouling_a_year": lot["fouling"],

@@ -2,10 +2,11 @@
 
 Near the optimum minus twice the logarithm is J over the weight s2 of ``weighing`` but for a constant, and
 
-    log p(trials | theta) = constant - theta' H theta / 2 + b' theta,    H = S' S / s2,    b = H theta_0 - S' r / s2
+    log p(trials | theta) = constant - theta' H theta / 2 + b' theta,    H = S' S / s2,    b = H theta_0 - g
 
-with residuals r and their derivatives S at theta_0.  H may be singular: where trials say nothing of a combination, it
-says nothing of it either.  b holds whether theta_0 is the optimum, on a bound, or drawn towards a prior.
+with derivatives S of the residuals and the slope g at the optimum theta_0 of the fit: none where J alone was made
+small, that of the prior turned round where there was one.  H may be singular: where trials say nothing of a combination
+it says nothing of it either.  An optimum on a bound of the box is taken to be there.
 """
 
 from __future__ import annotations

@@ -18,6 +18,9 @@ OFF_TRACK = "off_track"
 YEAR = 365.25
 """Days."""
 
+TINY = 1e-6
+"""Error [m] that counts as none."""
+
 
 @dataclass(frozen=True)
 class Series:
@@ -92,12 +95,18 @@ def called(name: str) -> tuple[str, str, str, float]:
 
 
 def courses(series: Sequence[Series]) -> list[tuple[Series, Course]]:
-    """What each series does, of those that are long enough; chance is counted over all of them."""
-    return [
-        (one, found)
-        for one in series
-        if (found := course(one.years, np.array(one.values), np.array(one.errors), len(series))) is not None
-    ]
+    """What each series does, of those that are long enough; chance is counted over all of them.
+
+    Errors in metres are looked at by their logarithm: they are never negative, and scatter as they are large.
+    """
+    found = []
+    for one in series:
+        values, errors = np.array(one.values), np.array(one.errors)
+        lengths = one.name == OFF_TRACK
+        what = course(one.years, np.log(np.maximum(values, TINY)) if lengths else values, errors, len(series))
+        if what is not None:
+            found.append((one, what.exponential() if lengths else what))
+    return found
 
 
 def middle_of(text: str) -> date:

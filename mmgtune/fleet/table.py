@@ -162,8 +162,6 @@ class _Reader(TomlReader):
             for one in error.problems:
                 key = one.where.partition("=")[0]
                 self.problem(one.what, "options", key, one.why, one.fix)
-                if ("options", key) not in self.lines:
-                    self.problems[-1] = Problem(one.what, f"{self.where}, line {self.line('jobs')}", one.why, one.fix)
             return None
 
 
