@@ -28,7 +28,7 @@ SCREENS = {
     "phone": ({"width": 390, "height": 844}, "light"),
 }
 PAGES = ("fit", "sweep", "leave-out", "diagnosis", "nothing", "unexplained", "validate", "voyages", "predict",
-         "comparison", "model-comparison", "simulate", "trials", "check", "learning", "plan")  # fmt: skip
+         "comparison", "model-comparison", "simulate", "trials", "check", "learning", "plan", "fleet")  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -152,7 +152,7 @@ def test_fragments_for_notebooks(runs: dict[str, Path]) -> None:
 
 
 def test_hostile_names_stay_inert_everywhere(browser: Any, runs: dict[str, Path], tmp_path: Path) -> None:
-    for name in ("leave-out", "diagnosis", "validate", "check", "comparison", "learning"):
+    for name in ("leave-out", "diagnosis", "validate", "check", "comparison", "learning", "fleet"):
         folder = tmp_path / name
         shutil.copytree(runs[name], folder, ignore=shutil.ignore_patterns("report.*", "figures"))
         path = next(folder / kind.file for kind in KINDS if (folder / kind.file).is_file())
