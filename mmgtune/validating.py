@@ -8,7 +8,7 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from .bands import Pooled, pooled
+from .bands import Pooled, pooled, pooled_by
 from .circumstances import notes_on
 from .displayed import Plotted, inert
 from .errors import OptionError, Problem
@@ -205,10 +205,8 @@ def bands_of(predictor: Predictor, pieces: Sequence[Trial], sigma: Mapping[str, 
     if particles.n_members < 2:
         return {}
     found = window_scores(particles, pieces)
-    kinds = dict.fromkeys(one.manoeuvre for one in found)
-    return {None: pooled(found, sigma)} | {
-        kind: pooled([one for one in found if one.manoeuvre == kind], sigma) for kind in kinds
-    }
+    whole: dict[str | None, Pooled] = {None: pooled(found, sigma)}
+    return whole | dict(pooled_by(lambda one: one.manoeuvre, found, sigma))
 
 
 def _stated(predictor: Predictor, data: TrialSet, backend: str) -> tuple[IndexComparison, ...]:

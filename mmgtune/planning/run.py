@@ -26,7 +26,7 @@ from ..posterior.room import room_of
 from ..predicting.asked import Approach, approach_of
 from ..provenance import made_by
 from ..threads import blas_on_one_thread
-from .candidates import candidates
+from .candidates import candidates, logs
 from .expected import POINTS, answers, gradient, share_left, slopes_of
 from .question import Question, read_question
 
@@ -163,8 +163,8 @@ def plan_trial(model: str | Path | Particles, question: str, options: PlanOption
     backend, integrator = get_backend(options.backend), options.make_integrator()
     linear = float(g @ C @ g) / band.deviation**2
     found, lost = [], []
-    for one in candidates(particles.profile, approach, options.kind, options.half_speed):
-        trial = one.sailed(particles.profile, noise)
+    possible = candidates(particles.profile, approach, options.kind, options.half_speed)
+    for one, trial in zip(possible, logs(particles.profile, possible, noise), strict=True):
         if trial is None:
             lost.append(f"{one.words}: the ship leaves what the model can do")
             continue

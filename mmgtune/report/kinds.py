@@ -11,6 +11,7 @@ from . import (
     diagnosis_page,
     ensemble_page,
     fit_page,
+    fleet_page,
     heading_page,
     hybrid_page,
     learning_page,
@@ -44,6 +45,7 @@ KINDS: tuple[Kind, ...] = tuple(
         validate_page,
         check_page,
         simulate_page,
+        fleet_page,
     )
 )
 """Every kind, in the order in which their files are looked for."""

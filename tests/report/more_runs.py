@@ -3,15 +3,23 @@
 from __future__ import annotations
 
 import json
+import math
 import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from mmgtune.checking import check, update_baseline
 from mmgtune.comparing_models import CompareModelsOptions, compare_models, write_model_comparison
 from mmgtune.diagnose import DiagnoseOptions, diagnose, write_diagnosis
-from mmgtune.fitting import LeaveOutOptions, leave_out, write_left_out
+from mmgtune.errors import Problem
+from mmgtune.fitting import Information, LeaveOutOptions, leave_out, write_left_out
+from mmgtune.fleet import rows
+from mmgtune.fleet.commands import INFORMATION, Facts
+from mmgtune.fleet.job import Job, Source
+from mmgtune.fleet.record import JOBS, write_record
 from mmgtune.model import Model
 from mmgtune.options import SimulateOptions, ValidateOptions
 from mmgtune.predicting import predict, write_prediction
@@ -159,6 +167,36 @@ def _learning(folder: Path) -> None:
     (folder / "learning.json").write_text(json.dumps(data), encoding="utf-8")
 
 
+def _fleet(folder: Path) -> None:
+    """Results of jobs by hand, put together by the program's own."""
+    for k, ship in enumerate(("aa", "bb", "cc", "dd")):
+        for month in range(12):
+            job = Job(ship, f"2025-{month + 1:02d}", "state", "fit", "", "", Source("", {}), {}, "1", "coasters")
+            bent = 2.0 if ship == "bb" and month >= 5 else 0.0
+            wave = 0.02 * ((7 * month + 3 * k) % 5 - 2)
+            off, row = 3.0 + k + 4.0 * bent + wave, ("effects.rudder-offset.angle", "effects.resistance.factor")
+            values = [math.radians(bent + wave), 1.0 + 0.02 * month + wave]
+            causes = ("rudder-offset",) if bent and month == 6 else ()
+            facts = Facts("no" if causes else "good", "as it is", off, 1.0, 1.0 + wave, 0.5, causes, (), row, values,
+                          (0.0, 1.0), (0.001, None), True)  # fmt: skip
+            known = rows.made(job, facts, "fit.json", 0.4)
+            if (ship, month) == ("cc", 3):
+                wrong = Problem("the trials cannot be read", "logs/cc/turn.parquet", "no such file", "look for it")
+                known = rows.failed(job, [wrong], 0.1)
+            rows.write(folder, job, known)
+    one = Job("dd", "2025-12", "look", "diagnose", "", "", Source("", {}), {}, "1")
+    rows.write(folder, one, rows.made(one, Facts("good", "nothing"), "diagnosis.json", 2.0))
+    told = Information(("hull.R_0",), np.eye(1), np.ones(1), np.full(1, 0.9), np.full(1, 0.2))
+    for ship in ("aa", "bb", "cc"):
+        (folder / "runs" / ship / "2025-01" / "state").mkdir(parents=True)
+        (folder / "runs" / ship / "2025-01" / "state" / INFORMATION).write_text(json.dumps(told.to_dict()))
+    (folder / JOBS).write_text(json.dumps({"jobs": [{"key": "0" * 16}]}))
+    document = write_record(folder, {**made_by("mmgtune fleet run fleet.toml"), "table": "fleet.toml"})
+    assert [one["name"] for one in document["changes"]] == [
+        "effects.rudder-offset.angle", "off_track"
+    ], document["changes"]  # fmt: skip
+
+
 def _edited(path: Path, edit: Callable[[dict[str, Any]], None]) -> None:
     data = json.loads(path.read_text(encoding="utf-8"))
     edit(data)
@@ -168,5 +206,5 @@ def _edited(path: Path, edit: Callable[[dict[str, Any]], None]) -> None:
 HOW: dict[str, Callable[[Path], None]] = {
     "diagnosis": _diagnosis, "leave-out": _leave_out, "validate": _validate, "simulate": _simulate, "trials": _trials,
     "check": _check, "predict": _predict, "comparison": _compare, "model-comparison": _compare_models,
-    "learning": _learning, "plan": _plan,
+    "learning": _learning, "plan": _plan, "fleet": _fleet,
 }  # fmt: skip
