@@ -82,7 +82,12 @@ def test_tls_is_passed_through(tmp_path: Path) -> None:
         tls_client_cert=cert, tls_client_key=key, require_encryption=True,
     )  # fmt: skip
     with distributed.LocalCluster(
-        n_workers=1, threads_per_worker=1, processes=False, host="tls://127.0.0.1", dashboard_address=None, security=security
+        n_workers=1,
+        threads_per_worker=1,
+        processes=False,
+        host="tls://127.0.0.1",
+        dashboard_address=None,
+        security=security,
     ) as cluster:
         address = cluster.scheduler_address
         assert address.startswith("tls://")
