@@ -235,8 +235,7 @@ def linearise(
 def offset_derivatives(bench: Workbench, point: Point) -> FloatArray:
     """Derivatives of the residuals by the initial offsets of their own case, (n_residuals, 6)."""
     problem = bench.problem_of(point.names, point.integrator)
-    _, _, by_offset = problem.jacobians(point.unit[:, None], point.offsets[:, None])
-    return np.asarray(by_offset[0])
+    return problem.offset_slopes(point.unit, point.offsets)[1]
 
 
 def basis(columns: FloatArray) -> FloatArray:

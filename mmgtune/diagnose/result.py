@@ -170,7 +170,7 @@ class Detectability(Brief):
 class Diagnosis(Plotted):
     """A finished diagnosis.
 
-    theta     tuned targets with all causes in place
+    theta     tuned targets with all causes in place; retuned: without any
     traces    what is statistically there besides and changes nothing that a user would notice; in no profile
     contributions  of the causes, by tag in their order, the others in place
     groups    causes that cannot be told apart, each a list of tags
@@ -194,6 +194,7 @@ class Diagnosis(Plotted):
     leftover: Leftover
     explained_share: float
     theta: Mapping[str, float]
+    retuned: Mapping[str, float]
     noise: Mapping[str, Mapping[str, float]]
     chi2: tuple[float, float]
     evidence: Mapping[str, Any]
@@ -353,10 +354,16 @@ class Diagnosis(Plotted):
         causes = [cite for cause in self.causes if cause.effect for cite in cause.effect.cites]
         return list(dict.fromkeys([*self.profile.cites(), *causes]))
 
-    def extended_profile(self) -> ShipProfile:
-        """The profile with re-tuned targets and the causes, each in its own section.
+    @property
+    def kept(self) -> Mapping[str, float]:
+        """Targets beside the named causes: where none is, tuned without any."""
+        return self.theta if self.named else self.retuned
 
-        What differs between runs belongs to these, not to the ship, and is left out.
+    def extended_profile(self) -> ShipProfile:
+        """The profile with re-tuned targets and the named causes, each in its own section.
+
+        What differs between runs belongs to these, not to the ship, and is left out.  Causes of an answer that is not
+        believed are named, and not in it: ``best_known`` of the record has their sizes.
         """
         made_by = f"mmgtune {self.provenance['mmgtune']}"
         facts = {
@@ -366,15 +373,17 @@ class Diagnosis(Plotted):
             "profile_sha256": self.profile.sha256,
             "trials": self.provenance["trials"]["sha256"],
             "verdict": self.verdict,
-            "causes": [cause.tag for cause in self.causes],
+            "causes": [cause.tag for cause in self.named],
             **({"coverage": self.coverage.to_dict()} if self.coverage and self.coverage.to_dict() else {}),
         }
-        left_out = [cause.tag for cause in self.causes if cause.runs]
+        left_out = [cause.tag for cause in self.named if cause.runs]
         if left_out:
             facts["left_out"] = left_out
+        if self.causes and not self.named:
+            facts["not_believed"] = [cause.tag for cause in self.causes]
         values: dict[str, dict[str, float]] = {}
         stderr: dict[str, dict[str, float | None]] = {}
-        for cause in self.causes:
+        for cause in self.named:
             if cause.effect is not None:
                 for full, estimate in cause.estimates.items():
                     name = full.rpartition(".")[2]
@@ -382,7 +391,7 @@ class Diagnosis(Plotted):
                     stderr.setdefault(cause.tag, {})[name] = estimate.stderr
         told = self.provenance["trials"]
         data = {"licence": told.get("licence", ""), "citation": told.get("citation", "")}
-        retuned = tuned(self.profile, self.theta, {}, facts, "extended", **data)
+        retuned = tuned(self.profile, self.kept, {}, facts, "extended", **data)
         return with_effects(retuned, values, f"diagnosed by {made_by}", stderr)
 
     def extended_text(self) -> str:
@@ -427,7 +436,7 @@ class Diagnosis(Plotted):
             "detectability": [one.to_dict() for one in self.detectability],
             "noise": {name: dict(values) for name, values in self.noise.items()},
             "chi2_per_residual": {"before": self.chi2[0], "after": self.chi2[1]},
-            "theta": finite_values(self.theta),
+            "theta": finite_values(self.kept),
             "inputs": [one.to_dict() for one in self.profile.arrangement.inputs],
             "trial_results": [one.to_dict() for one in self.gain.compared],
             "assumptions": [

@@ -114,8 +114,11 @@ def _diagnose(
     )
     suggestion = _suggestion(bench, found)
     hooks.on_phase("gathering the evidence")
-    values = bench.values(found.final)
-    theta = {name: values[name] for name in bench.targets}
+    theta, retuned = (
+        values | followers(bench.model.ties, values)
+        for point in (found.final, found.base)
+        for values in [{name: bench.values(point)[name] for name in bench.targets}]
+    )
     coverage = Coverage.of(bench.trials, profile.L_pp)
     result = Diagnosis(
         profile=profile,
@@ -130,7 +133,8 @@ def _diagnose(
         gain=gain,
         leftover=left,
         explained_share=_explained(found, before, left),
-        theta=theta | followers(bench.model.ties, theta),
+        theta=theta,
+        retuned=retuned,
         coverage=coverage,
         warnings=tuple(coverage_notes(bench.model, bench.targets, coverage)),
         noise=_noise(bench),

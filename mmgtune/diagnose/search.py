@@ -26,6 +26,15 @@ from .workbench import TOLERANCE, Point, Workbench
 STARTS = 6
 """Starts of the base fit."""
 
+BEST = 3
+"""Ends of these that are gone on from, where they differ."""
+
+SAME = 1e-3
+"""Relative difference of what is made small within which two of them are one."""
+
+ROUGHLY = 20.0
+"""Fall of chi-squared that counts as none there."""
+
 STRONG = 1.2
 """Chi-squared per residual beyond which every named hypothesis makes a step before the best are refitted."""
 
@@ -55,6 +64,9 @@ LEAST_SPREAD = 0.01
 
 ROUGH = 4
 """Steps of a refit before it is compared with the others."""
+
+STARTS_KEPT = 2
+"""Starts of a hypothesis that go on after a first step from each."""
 
 SIZES = (1.0, 0.5, 2.0)
 """Sizes of effects with one side only at which refits start, in typical sizes."""
@@ -164,14 +176,32 @@ class Found:
     finer_step: float | None = None
 
 
+@dataclass(eq=False)
+class _Known:
+    """Refits there are within a look, by the names of the hypothesis.
+
+    ends   finished ones
+    good   whether their noise is the one in use; else they are places to go on from
+    begun  a first step from each start
+    """
+
+    ends: dict[tuple[str, ...], Point] = field(default_factory=dict)
+    good: bool = True
+    begun: dict[tuple[str, ...], list[Point]] = field(default_factory=dict)
+
+
 def base_fit(bench: Workbench) -> Point:
-    """The targets re-tuned without any effect: from several starts with held initial states, then with free ones."""
+    """The targets re-tuned without any effect: from several starts, in larger steps of the integration at first.
+
+    Initial states are estimated from the first: on long runs those that were measured, noise and all, lead astray.
+    """
     names = bench.targets
     rng = np.random.default_rng(bench.options.seed)
     starts = np.column_stack([bench.null(names), *rng.uniform(size=(STARTS - 1, len(names)))])
-    held = bench.problem_of(names, Integrator("euler")).held()  # a quarter of the work, and only a start
-    ends = sorted(solve(held, starts, max_iterations=40, tolerance=1.0), key=lambda end: end.J)
-    point = bench.refit(names, np.column_stack([end.unit for end in ends[:3]]), np.zeros_like(bench.problem.offsets))
+    quick = bench.problem_of(names, Integrator("euler"))  # a quarter of the work, and only a start
+    ends = sorted(solve(quick, starts, max_iterations=40, tolerance=ROUGHLY, trusting=True), key=lambda end: end.J)
+    apart = [end for k, end in enumerate(ends) if k == 0 or end.J > (1.0 + SAME) * ends[k - 1].J][:BEST]
+    point = bench.refit(names, np.column_stack([end.unit for end in apart]), ends[0].offsets)
     for _ in range(AGAIN):  # initial states at the end of their range make a bad start; from there it is a new one
         again = bench.refit(names, point.unit[:, None], point.offsets, tolerance=PRECISE)
         better = point.chi2 - again.chi2
@@ -259,16 +289,18 @@ def look(
     varying = [name for h in hypotheses if h.by for name in h.bases]
     linear = linearise(bench, point, names, varying=varying)
     ranked = scores(linear, hypotheses)
-    best = _refit_best(bench, point, ranked, linear, quick=True, stop=stop)
+    known = _Known()
+    best = _refit_best(bench, point, ranked, linear, known, quick=True, stop=stop)
     richest = best[0].point if best and best[0].gain > 2.0 * ENOUGH else point
     at_best = linear if richest is point else linearise(bench, richest, names)
-    known = _noise_at(bench, at_best)
-    if _differs(bench.noise, known):
-        bench.know(known)
+    noise = _noise_at(bench, at_best)
+    if _differs(bench.noise, noise):
+        bench.know(noise)
         point = bench.refit(point.names, point.unit[:, None], point.offsets)
         linear = linearise(bench, point, names, varying=varying)
         ranked = scores(linear, hypotheses)
-    refits = _believable_first(_refit_best(bench, point, ranked, linear, quick=False, stop=stop))
+        known.good = False
+    refits = _believable_first(_refit_best(bench, point, ranked, linear, known, quick=False, stop=stop))
     finer_gain = None
     if first:
         other = bench.refit(point.names, point.unit[:, None], point.offsets, integrator=finer(point.integrator))
@@ -308,9 +340,16 @@ def _differs(a: noises.NoiseModel, b: noises.NoiseModel) -> bool:
 
 
 def _refit_best(
-    bench: Workbench, point: Point, ranked: Sequence[Score], linear: Linear, *, quick: bool, stop: Stop
+    bench: Workbench,
+    point: Point,
+    ranked: Sequence[Score],
+    linear: Linear,
+    known: _Known,
+    *,
+    quick: bool,
+    stop: Stop,
 ) -> list[Refit]:
-    """The most promising hypotheses refitted, best first."""
+    """The most promising hypotheses refitted, best first; what is found is known from then on."""
     order = sorted(ranked, key=lambda score: -score.score)
     named = [s for s in order if not s.hypothesis.effect.one_of_many and not s.hypothesis.by]
     terms = [s for s in order if s.hypothesis.effect.one_of_many]
@@ -318,12 +357,13 @@ def _refit_best(
     if quick:
         chosen = named[:3] + terms[:1]
     else:
-        chosen = _likely(bench, point, named, stop) if strong else named[:REFITTED]
+        chosen = _likely(bench, point, named, known, stop) if strong else named[:REFITTED]
         chosen += terms[: (2 if strong else 1) * TERMS_REFITTED]
     chosen = [s for s in chosen if s.power > 0.0]
-    fitted = _fitted(bench, linear, point, chosen, strong, stop)
+    fitted = _fitted(bench, linear, point, chosen, known, strong, stop)
     differing = _of_runs_worth(bench, point, order, [end for _, end in fitted], quick=quick)
-    fitted += _fitted(bench, linear, point, differing, strong, stop)
+    fitted += _fitted(bench, linear, point, differing, known, strong, stop)
+    known.ends.update((score.hypothesis.names, end) for score, end in fitted)
     chance = None if quick else ChanceScores(linear, [s.hypothesis for s in ranked], bench.options.seed)
     n_terms = max(1, len(terms))
     refits = [_judged(bench, linear, point, score, end, chance, n_terms=n_terms) for score, end in fitted]
@@ -331,13 +371,19 @@ def _refit_best(
 
 
 def _fitted(
-    bench: Workbench, linear: Linear, point: Point, chosen: Sequence[Score], strong: bool, stop: Stop
+    bench: Workbench,
+    linear: Linear,
+    point: Point,
+    chosen: Sequence[Score],
+    known: _Known,
+    strong: bool,
+    stop: Stop,
 ) -> list[tuple[Score, Point]]:
     """Hypotheses refitted, those that promise much to the end."""
     rough = []
     for score in chosen:
         _go_on(stop)
-        rough.append(_rough(bench, point, score, strong))
+        rough.append(_rough(bench, point, score, known, strong))
     gains = sorted((point.chi2 - end.chi2 for end in rough), reverse=True)
     enough = min([WORTH_GOING_ON * gains[0], *gains[FEW - 1 : FEW]]) if gains else 0.0
     left = min((end.chi2 for end in rough), default=point.chi2) - bench.problem.n_residuals
@@ -395,14 +441,21 @@ def _ordered(bench: Workbench, point: Point, refits: Sequence[Refit], strong: bo
     return [alike, *(refit for refit in found if refit is not alike)]
 
 
-def _likely(bench: Workbench, point: Point, named: Sequence[Score], stop: Stop) -> list[Score]:
+def _likely(bench: Workbench, point: Point, named: Sequence[Score], known: _Known, stop: Stop) -> list[Score]:
     """Of named hypotheses, best scores first, those whose first step from any start explains most, and a few of the
     best scores."""
-    first = []
+    chi2 = []
     for score in named:
         _go_on(stop)
-        first.append(_rough(bench, point, score, True, iterations=1).chi2 if score.power > 0.0 else np.inf)
-    kept = {*np.argsort(first)[:LIKELY].tolist(), *range(REFITTED // 2)}
+        names = score.hypothesis.names
+        if names in known.ends:
+            chi2.append(-np.inf)
+        elif score.power > 0.0:
+            known.begun[names] = _steps(bench, point, score, _starts(bench, point, score, True), 1)
+            chi2.append(min(end.chi2 for end in known.begun[names]))
+        else:
+            chi2.append(np.inf)
+    kept = {*np.argsort(chi2)[:LIKELY].tolist(), *range(REFITTED // 2)}
     return [score for k, score in enumerate(named) if k in kept]
 
 
@@ -452,13 +505,33 @@ def _values(bench: Workbench, point: Point, hypothesis: Hypothesis, end: Point) 
     return np.asarray((end.unit[-len(names) :] - origin(bench, point, names)) / size)
 
 
-def _rough(bench: Workbench, point: Point, score: Score, strong: bool, iterations: int = ROUGH) -> Point:
-    """A few steps towards the best fit with a hypothesis."""
+def _rough(bench: Workbench, point: Point, score: Score, known: _Known, strong: bool) -> Point:
+    """A few steps towards the best fit with a hypothesis, on from what is known of it."""
+    names = score.hypothesis.names
+    if names in known.ends:
+        end = known.ends[names]
+        ends = [end] if known.good else _steps(bench, end, score, end.unit[:, None], ROUGH, strong)
+    elif names in known.begun:
+        null = origin(bench, point, names)
+        begun = sorted(known.begun[names], key=lambda end: end.chi2)
+        away = [end for end in begun if np.any(end.unit[-len(null) :] != null)]  # at the null there is no way on
+        best = (away or begun)[:STARTS_KEPT]
+        starts = np.column_stack([end.unit for end in best])
+        ends = [*begun, *_steps(bench, replace(point, offsets=best[0].offsets), score, starts, ROUGH - 1, strong)]
+    else:
+        ends = _steps(bench, point, score, _starts(bench, point, score, strong), ROUGH, strong)
+    return min(ends, key=lambda end: end.chi2)
+
+
+def _steps(
+    bench: Workbench, point: Point, score: Score, starts: FloatArray, iterations: int, strong: bool = True
+) -> list[Point]:
+    """So many steps of fits with a hypothesis, offsets beginning at those of the point."""
     excess = max(point.chi2 - bench.problem.n_residuals, 0.0)
     hypothesis = score.hypothesis
-    return bench.refit(
+    return bench.refits(
         (*(point.names[i] for i in _kept(point, hypothesis)), *hypothesis.names),
-        _starts(bench, point, score, strong),
+        starts,
         point.offsets,
         max_iterations=iterations,
         tolerance=max(TOLERANCE, 1e-3 * excess),

@@ -1,10 +1,14 @@
-"""The trial that would tell rivals apart: of a list of feasible ones, that on which they differ most."""
+"""The trial that would tell rivals apart: of a list of feasible ones, that on which they differ most.
+
+One that was sailed already is not among them: the rivals do equally well on it.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,6 +18,7 @@ from ..backends import STATES
 from ..objective import Objective, cases_of
 from ..orders import Helmsman, Straight, TurningOrder, Weave, ZigzagOrder, run_manoeuvre
 from ..simulation import Motion, as_trial
+from ..trial import Trial
 from ..units import DEG
 from .workbench import Point, Workbench
 
@@ -49,11 +54,22 @@ class Feasible(NamedTuple):
     heading: float  # at the approach [rad]
     share: float  # of the approach revolutions
     longest: float  # [s]
+    sailed: Callable[[Trial], bool]  # whether a trial has such rudder angles
     engine: Callable[[float], float] | None = None  # share of the revolutions from the share of the speed left
 
 
 SLOWER, HALF = 0.9, 0.5
 """Share of the approach speed at which the engine is told to go slower, and share of the revolutions then."""
+
+
+ANY = math.inf
+"""A heading that does not matter; simulated from north."""
+
+ALIKE = 0.2
+"""Relative difference of rudder angles within which two are alike."""
+
+LEAST = 2.0 * DEG
+"""Rudder angle [rad] below which the rudder is amidships."""
 
 
 def menu(unit_time: float) -> list[Feasible]:
@@ -67,27 +83,90 @@ def menu(unit_time: float) -> list[Feasible]:
         for angle in (35.0, -35.0, 15.0):
             side = "starboard" if angle > 0.0 else "port"
             words = f"turning test, rudder {abs(angle):.0f} deg to {side}, approach heading {heading:.0f} deg"
-            found.append(Feasible(words, TurningOrder(angle * DEG, until=4.0 * math.pi), heading * DEG, 1.0, long))
+            order = TurningOrder(angle * DEG, until=4.0 * math.pi)
+            found.append(Feasible(words, order, heading * DEG, 1.0, long, partial(turned, angle=angle * DEG)))
     for angle in (10.0, 20.0):
         words = f"zigzag {angle:.0f}/{angle:.0f}"
-        found.append(Feasible(words, ZigzagOrder(angle * DEG, angle * DEG, legs=6), 0.0, 1.0, long))
+        found.append(
+            Feasible(
+                words,
+                ZigzagOrder(angle * DEG, angle * DEG, legs=6),
+                ANY,
+                1.0,
+                long,
+                partial(checked, angle=angle * DEG),
+            )
+        )
     words = "turning test, rudder 35 deg to starboard, at 70 % of the revolutions"
-    found.append(Feasible(words, TurningOrder(35.0 * DEG), 0.0, 0.7, long))
+    found.append(Feasible(words, TurningOrder(35.0 * DEG), ANY, 0.7, long, partial(turned, angle=35.0 * DEG)))
     words = (
         "turning test, rudder 15 deg to starboard, the revolutions changed on the way: halved at once when a tenth"
         " of the speed is lost"
     )
-    found.append(Feasible(words, TurningOrder(15.0 * DEG), 0.0, 1.0, long, lambda left: 1.0 if left > SLOWER else HALF))
+    order, engine = TurningOrder(15.0 * DEG), _slower
+    found.append(Feasible(words, order, ANY, 1.0, long, partial(turned, angle=15.0 * DEG), engine))
     for heading in (0.0, 180.0):
         words = f"straight run on heading {heading:.0f} deg"
-        found.append(Feasible(words, Straight(), heading * DEG, 1.0, 12.0 * unit_time))
+        found.append(Feasible(words, Straight(), heading * DEG, 1.0, 12.0 * unit_time, straight))
     words = "rudder orders of changing size every two ship lengths"
-    found.append(Feasible(words, Weave(2.0 * unit_time), 0.0, 1.0, long))
+    found.append(Feasible(words, Weave(2.0 * unit_time), ANY, 1.0, long, wove))
     return found
 
 
+def _slower(left: float) -> float:
+    return 1.0 if left > SLOWER else HALF
+
+
+def _legs(trial: Trial) -> FloatArray:
+    """The largest rudder angle of each stretch to one side [rad], small ones left out."""
+    delta = trial.delta[np.isfinite(trial.delta)]
+    away = delta[np.abs(delta) > max(LEAST, 0.1 * float(np.max(np.abs(delta), initial=0.0)))]
+    if not len(away):
+        return away
+    stretches = np.split(away, np.flatnonzero(np.diff(np.sign(away))) + 1)
+    return np.array([one[np.argmax(np.abs(one))] for one in stretches])
+
+
+def turned(trial: Trial, angle: float) -> bool:
+    """Whether the rudder was held to one side, about at an angle [rad]."""
+    legs = _legs(trial)
+    return len(legs) == 1 and abs(legs[0] - angle) < ALIKE * abs(angle)
+
+
+def checked(trial: Trial, angle: float) -> bool:
+    """Whether the rudder went from side to side, about by an angle [rad] each time."""
+    legs = _legs(trial)
+    return len(legs) > 1 and bool(np.all(np.abs(np.abs(legs) - angle) < ALIKE * angle))
+
+
+def straight(trial: Trial) -> bool:
+    """Whether the rudder stayed about amidships."""
+    return bool(np.isfinite(trial.delta).any()) and not len(_legs(trial))
+
+
+def wove(trial: Trial) -> bool:
+    """Whether rudder angles to both sides were of changing size."""
+    legs = np.abs(_legs(trial))
+    return len(legs) > 2 and float(legs.min()) < (1.0 - 2.0 * ALIKE) * float(legs.max())
+
+
+def holds(trials: Sequence[Trial], one: Feasible, n: float) -> bool:
+    """Whether such a trial was sailed: by rudder angles, heading, and revolutions n [1/s] of the approach."""
+
+    def alike(trial: Trial) -> bool:
+        began = float(np.nanmedian(trial.n[: max(3, trial.n_samples // 20)]))
+        ended = float(np.nanmedian(trial.n[-max(3, trial.n_samples // 5) :]))
+        slowed = ended < (1.0 - 2.0 * ALIKE) * began
+        off = abs(math.remainder(float(trial.psi[0]) - one.heading, 2.0 * math.pi)) if one.heading != ANY else 0.0
+        as_fast = abs(began - one.share * n) < 0.5 * ALIKE * n
+        return one.sailed(trial) and off < 0.25 * math.pi and as_fast and slowed == (one.engine is not None)
+
+    return any(alike(trial) for trial in trials)
+
+
 def suggest(bench: Workbench, rivals: Sequence[tuple[str, Point]]) -> Suggestion | None:
-    """The trial on which the rivals (words, fitted point) differ most; None where the approach is not known.
+    """The trial on which the rivals (words, fitted point) differ most; None where the approach is not known, or all
+    were sailed.
 
     Each keeps what it was fitted to; the predictions start from the same state.
     """
@@ -96,11 +175,12 @@ def suggest(bench: Workbench, rivals: Sequence[tuple[str, Point]]) -> Suggestion
         return None
     objective = Objective(dict(zip(STATES, bench.sigma, strict=True)), dict.fromkeys(STATES, 1.0))
     best: Suggestion | None = None
-    for one in menu(profile.L_pp / profile.approach.speed):
+    feasible = menu(profile.L_pp / profile.approach.speed)
+    for one in [one for one in feasible if not holds(bench.trials, one, profile.approach.n)]:
         motion = run_manoeuvre(
             profile,
             one.helmsman,
-            heading=one.heading,
+            heading=0.0 if one.heading == ANY else one.heading,
             n=one.share * profile.approach.n,
             longest=one.longest,
             step=1.0,

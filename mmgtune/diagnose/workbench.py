@@ -75,7 +75,6 @@ class Workbench:
     noise: NoiseModel
     own_effects: tuple[str, ...] = ()
     spreads: dict[str, float] = field(default_factory=dict)
-    refits: int = field(default=0)
 
     @cached_property
     def visited(self) -> Visited:
@@ -86,6 +85,11 @@ class Workbench:
     def channels(self) -> tuple[str, ...]:
         """Motion channels that count."""
         return tuple(self.noise.channels)
+
+    @property
+    def in_noise(self) -> Objective:
+        """Squares of what counts, in white noise of the sensors."""
+        return _in_noise(self.sigma, self.channels)
 
     def model_of(self, names: Sequence[str]) -> Model:
         """The model with every effect where one of these parameters needs it, else one without those that cost time.
@@ -130,7 +134,30 @@ class Workbench:
         tolerance: float = TOLERANCE,
         spreads: Mapping[str, float] | None = None,
     ) -> Point:
-        """The best fit of ``names`` from starts (n_names, n_starts), initial states beginning at ``offsets``.
+        """The best of ``refits``."""
+        ends = self.refits(
+            names,
+            starts,
+            offsets,
+            integrator=integrator,
+            max_iterations=max_iterations,
+            tolerance=tolerance,
+            spreads=spreads,
+        )
+        return min(ends, key=lambda end: end.chi2)
+
+    def refits(
+        self,
+        names: Sequence[str],
+        starts: FloatArray,
+        offsets: FloatArray,
+        *,
+        integrator: Integrator | None = None,
+        max_iterations: int = 30,
+        tolerance: float = TOLERANCE,
+        spreads: Mapping[str, float] | None = None,
+    ) -> list[Point]:
+        """Fits of ``names`` from starts (n_names, n_starts), initial states beginning at ``offsets``.
 
         spreads  of values that groups of runs have of their own, those of the workbench where None
         """
@@ -145,10 +172,12 @@ class Workbench:
             whiten=whiten,
             tolerance=tolerance,
             beliefs=None if apart is None else (apart, np.zeros(len(names))),
+            trusting=True,
         )
-        self.refits += len(ends)
-        best = min(ends, key=lambda end: self._total(end, apart))
-        return Point(tuple(names), best.unit, best.offsets, self._total(best, apart), problem.integrator, spreads)
+        return [
+            Point(tuple(names), end.unit, end.offsets, self._total(end, apart), problem.integrator, spreads)
+            for end in ends
+        ]
 
     def _total(self, end: LeastSquaresResult, apart: FloatArray | None) -> float:
         unlike = 0.0 if apart is None else float(np.sum((apart @ end.unit) ** 2))
@@ -198,6 +227,10 @@ def noise_levels(trials: Sequence[Trial]) -> FloatArray:
     return np.asarray(np.maximum(found, np.maximum(floor, 1e-12)))
 
 
+def _in_noise(sigma: FloatArray, channels: Sequence[str]) -> Objective:
+    return Objective(dict(zip(STATES, sigma, strict=True)), dict.fromkeys(channels, 1.0))
+
+
 def make_workbench(
     profile: ShipProfile,
     trials: Sequence[Trial],
@@ -217,7 +250,7 @@ def make_workbench(
     model = Model(with_all_effects(profile), ties)
     sigma = noise_levels(trials)
     channels = [c for c in STATES if not options.channels or c in {"v_m" if o == "v" else o for o in options.channels}]
-    objective = Objective(dict(zip(STATES, sigma, strict=True)), dict.fromkeys(channels, 1.0))
+    objective = _in_noise(sigma, channels)
     cases = cases_of(list(trials), objective, model.inputs, model.draught)
     box = make_box(model, (*targets, *(name for name in names if name not in targets)), options.a_r)
     problem = FitProblem.of(

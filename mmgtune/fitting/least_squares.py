@@ -26,6 +26,12 @@ QUIET = 1e-9
 DAMPINGS = 10.0 ** np.array([-3.0, -1.0, 0.5, 2.0])
 """Multiples of the last damping tried side by side, as lanes of one call."""
 
+FIRM = 10.0
+"""Damping from which steps of initial states are damped too: far from any fit these alone would leave their range."""
+
+HARDLY = 1e-9
+"""Damping of the step whose promise is asked for, as a share of the curvature."""
+
 AHEAD = 0.1
 """Share of a step at which its second derivative is taken."""
 
@@ -78,6 +84,7 @@ def solve(
     whiten: Callable[[FloatArray], FloatArray] | None = None,
     tolerance: float = 0.0,
     beliefs: tuple[FloatArray, FloatArray] | None = None,
+    trusting: bool = False,
 ) -> list[LeastSquaresResult]:
     """Minimise J within the unit cube from every column of ``starts`` (n_targets, n_starts).
 
@@ -92,6 +99,8 @@ def solve(
     tolerance       fall of what is minimised that counts as none, if larger than a share of QUIET
     beliefs         (k, n_targets) matrix A and (n_targets,) centre: adds |A (unit - centre)|^2 to what is minimised
                     (not to the J reported)
+    trusting        a start also ends after the step from which the linear problem promises no more than the tolerance,
+                    instead of two steps in a row that bring no more, and two again
     Returns a result per start, never above what it began with.
     """
     n_starts = starts.shape[1]
@@ -129,18 +138,32 @@ def solve(
         if len(rows) == 0 or stop():
             break
         linear = [_Linear(problem, *parts) for parts in zip(*_jacobians(problem, z, d, rows, whiten), strict=True)]
+        last = np.zeros(len(rows), dtype=bool)
         tried = np.empty((len(z), len(rows), 2, len(DAMPINGS)))
         moved = np.empty((len(problem.cases), len(rows), 2, len(DAMPINGS), 6))
         for i, row in enumerate(rows):
             hessian = linear[i].hessian + ridge * np.eye(len(z)) + believed
             gradient = linear[i].gradient + ridge * (z[:, row] - centre) + believed @ (z[:, row] - likely)
             scale = np.maximum(np.diag(hessian), 1e-12 * np.diag(hessian).max() + 1e-300)
+            if trusting:
+                whole = bounded_step(hessian + np.diag(HARDLY * scale), gradient, z[:, row]) - z[:, row]
+                promised = linear[i].settling - 2.0 * float(gradient @ whole) - float(whole @ hessian @ whole)
+                last[i] = promised <= tolerance
+                damping[row] = min(damping[row], 1e-3) if last[i] else damping[row]
             for k, factor in enumerate(DAMPINGS):
+                at = linear[i]
+                if damping[row] * factor > FIRM:
+                    at = at.damped(damping[row] * factor)
+                    hessian = at.hessian + ridge * np.eye(len(z)) + believed
+                    gradient = at.gradient + ridge * (z[:, row] - centre) + believed @ (z[:, row] - likely)
                 damped = hessian + np.diag(damping[row] * factor * scale)
                 nearby = tried[:, i, 0, k - 1] if k else None
                 tried[:, i, 0, k] = bounded_step(damped, gradient, z[:, row], nearby)
-                moved[:, i, 0, k] = linear[i].offsets(tried[:, i, 0, k] - z[:, row])
-        _accelerate(residuals_of, linear, z[:, rows], d[:, rows], damping[rows], tried, moved)
+                moved[:, i, 0, k] = at.offsets(tried[:, i, 0, k] - z[:, row])
+        if last.all():
+            tried, moved = tried[:, :, :1], moved[:, :, :1]
+        else:
+            _accelerate(residuals_of, linear, z[:, rows], d[:, rows], damping[rows], tried, moved)
         unit = tried.reshape(len(z), -1)
         offsets = moved.reshape(len(problem.cases), unit.shape[1], 6)
         costs = cost(unit, offsets)
@@ -159,6 +182,9 @@ def solve(
                 damping[row] *= 1e3
             small = 0.0 < gain <= max(QUIET * value[row], tolerance)
             quiet[row] = quiet[row] + 1 if small else 0
+            if last[i]:
+                converged[row], running[row] = True, False
+                continue
             if quiet[row] >= 2 or damping[row] > 1e8 or value[row] < 1e-24:
                 if value[row] < last_stop[row] - max(QUIET * value[row], tolerance):
                     # It may have been slow only because its damping was high: once more with a low one.
@@ -180,9 +206,9 @@ def fit_offsets(problem: FitProblem, unit: FloatArray, max_iterations: int = 12)
     best = np.zeros((len(problem.cases), 6))
     value = problem.costs_by_case(point, best[:, None])[:, 0]
     for _ in range(max_iterations):
-        parts = _jacobians(problem, point, best[:, None], np.array([0]))
-        linear = _Linear(problem, *(part[0] for part in parts))
-        tried = linear.offsets(np.zeros(len(unit)))
+        residuals, slopes = problem.offset_slopes(unit, best)
+        linear = _Linear(problem, best, residuals, np.empty((len(residuals), 0)), flat_where_lost(slopes))
+        tried = linear.offsets(np.empty(0))
         found = problem.costs_by_case(point, tried[:, None])[:, 0] + np.sum(problem.prior * tried**2, axis=1)
         better = found < value * (1.0 - 1e-9)
         best[better], value[better] = tried[better], found[better]
@@ -262,32 +288,50 @@ class _Linear:
     """The quadratic model of what is minimised around one point, with the offsets of initial states eliminated.
 
     hessian, gradient  by target, halves of the second and first derivatives
+    settling           fall of what is minimised that offsets alone promise
     """
 
     def __init__(
-        self, problem: FitProblem, d: FloatArray, residuals: FloatArray, jacobian: FloatArray, by_offset: FloatArray
+        self,
+        problem: FitProblem,
+        d: FloatArray,
+        residuals: FloatArray,
+        jacobian: FloatArray,
+        by_offset: FloatArray,
+        damping: float = 0.0,
     ):
         self.residuals = residuals
-        self._jacobian, self._by_offset, self._rows = jacobian, by_offset, problem.rows_of_cases
+        self._problem, self._jacobian, self._by_offset = problem, jacobian, by_offset
+        self._rows = problem.rows_of_cases
         self.hessian = jacobian.T @ jacobian
         self.gradient = jacobian.T @ residuals
         self._own: list[FloatArray] = []
         self._d = d
         self._limit = None if problem.sigma is None else LARGEST * problem.sigma
         self._from_step: list[tuple[FloatArray, FloatArray]] = []
+        self.settling = 0.0
         if problem.sigma is None:
             return
-        for case, rows in enumerate(problem.rows_of_cases):
+        for case, rows in enumerate(self._rows):
             S, J = by_offset[rows], jacobian[rows]
             prior = problem.prior[case]
             own = S.T @ S + np.diag(prior)
+            if damping:
+                own += damping * np.diag(np.diag(own))
             cross = S.T @ J
             slope = S.T @ residuals[rows] + prior * d[case]
             solved = np.linalg.solve(own, np.column_stack([slope, cross]))
             self.hessian -= cross.T @ solved[:, 1:]
             self.gradient -= cross.T @ solved[:, 0]
+            self.settling += float(slope @ solved[:, 0])
             self._from_step.append((solved[:, 0], solved[:, 1:]))
             self._own.append(own)
+
+    def damped(self, damping: float) -> _Linear:
+        """The same with steps of the offsets damped."""
+        if self._limit is None:
+            return self
+        return _Linear(self._problem, self._d, self.residuals, self._jacobian, self._by_offset, damping)
 
     def offsets(self, step: FloatArray) -> FloatArray:
         """(n_cases, 6) best offsets after a step (n_targets,) of the targets, kept within their limit."""

@@ -280,8 +280,7 @@ class FitProblem:
         base_offsets = np.repeat(self.offsets[:, None], n_points, axis=1) if offsets is None else offsets
         moved = np.repeat(base_offsets[:, :, None], n_columns, axis=2)
         if self.sigma is not None:
-            for k in range(6):
-                moved[:, :, 1 + n_moved + k, k] += step * self.sigma[:, None, k] * 1e3
+            self._move_offsets(moved[:, :, 1 + n_moved :], step)
         n_lanes = n_points * n_columns
         values = self.residuals(columns.reshape(n_targets, n_lanes), moved.reshape(len(self.cases), n_lanes, 6))
         values = values.T.reshape(-1, n_points, n_columns).transpose(1, 0, 2)
@@ -293,9 +292,30 @@ class FitProblem:
             slopes /= steps.T[:, None, :]
             by_offset = values[:, :, 1 + n_moved :] - base
             if self.sigma is not None:
-                for case, rows in enumerate(self.rows_of_cases):
-                    by_offset[:, rows] /= step * self.sigma[case] * 1e3
+                self._over_offsets(by_offset, step)
         return base[:, :, 0], slopes, by_offset
+
+    def offset_slopes(self, unit: FloatArray, offsets: FloatArray, step: float = 1e-6) -> tuple[FloatArray, FloatArray]:
+        """Residuals (n_rows,) and derivatives (n_rows, 6) by the offsets alone, as of ``jacobians``, at one point."""
+        moved = np.repeat(offsets[:, None], 7, axis=1)
+        self._move_offsets(moved[:, None, 1:], step)
+        values = self.residuals(np.repeat(unit[:, None], 7, axis=1), moved).T
+        with np.errstate(invalid="ignore"):
+            slopes = values[:, 1:] - values[:, :1]
+            self._over_offsets(slopes[None], step)
+        return values[:, 0], slopes
+
+    def _move_offsets(self, moved: FloatArray, step: float) -> None:
+        """Move offset k in column k of (n_cases, n_points, 6, 6)."""
+        assert self.sigma is not None  # asked where initial states are estimated
+        for k in range(6):
+            moved[:, :, k, k] += step * self.sigma[:, None, k] * 1e3
+
+    def _over_offsets(self, changed: FloatArray, step: float) -> None:
+        """Make derivatives of what that changed, (n_points, n_rows, 6)."""
+        assert self.sigma is not None
+        for case, rows in enumerate(self.rows_of_cases):
+            changed[:, rows] /= step * self.sigma[case] * 1e3
 
     def _moved_together(self) -> list[list[int]]:
         """Targets by number that no case has two of: values of one coefficient for different groups."""

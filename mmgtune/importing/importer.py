@@ -92,7 +92,13 @@ class Imported:
 
     def text(self) -> str:
         """The report for people."""
-        return "\n".join(quality_text(one) for one in self.quality)
+        common: set[str] = set.intersection(*(set(one["notes"]) for one in self.quality)) if self.quality else set()
+        if len(self.quality) < 2:
+            common = set()
+        told: set[tuple[str, str]] = set()
+        lines = [quality_text(one, common, told) for one in self.quality]
+        of_all = [note for note in self.quality[0]["notes"] if note in common] if self.quality else []
+        return "\n".join([*lines, *(f"all {len(self.quality)} trials: {note}" for note in of_all)])
 
 
 def import_logs(

@@ -1,10 +1,12 @@
 """What data cannot tell apart is a group with the trial that would; what parameters must reach is reached."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from mmgtune.diagnose import DiagnoseOptions, diagnose
-from mmgtune.diagnose.separate import menu
+from mmgtune.diagnose.separate import holds, menu
 from mmgtune.orders import run_manoeuvre
 from mmgtune.profile import load_profile
 from mmgtune.trial import load_trials
@@ -47,3 +49,17 @@ def test_one_trial_of_the_menu_changes_its_revolutions():
     assert n[0] == ship.approach.n
     assert n[-1] == 0.5 * ship.approach.n
     assert np.count_nonzero(np.diff(n)) == 1
+
+
+def test_no_trial_is_suggested_that_was_sailed():
+    """Of the bundled turns of 35 deg that to starboard begins at 111 deg, that to port at -56 deg."""
+    ship = load_profile("suzaku")
+    trials = list(load_trials("suzaku").trials.values())
+    sailed = [one.words for one in menu(ship.L_pp / ship.approach.speed) if holds(trials, one, ship.approach.n)]
+    assert sailed == [
+        "turning test, rudder 35 deg to starboard, approach heading 90 deg",
+        "zigzag 10/10",
+        "zigzag 20/20",
+    ]
+    slower = [replace(trial, n=0.6 * trial.n) for trial in trials]
+    assert not any(holds(slower, one, ship.approach.n) for one in menu(ship.L_pp / ship.approach.speed))

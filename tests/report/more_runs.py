@@ -108,6 +108,33 @@ def _predict(folder: Path) -> None:
     write_prediction(predict(scattered(Model(load_profile("suzaku")), 20), trials=two_trials()), folder)
 
 
+def _plan(folder: Path) -> None:
+    """A plan by hand: the program's own takes particles of a posterior."""
+    names = (("turn_m35", "turn, 35 deg to port"), ("zigzag_p20_20", "zigzag 20/20, starboard first"))
+    trials = [
+        {
+            "id": id,
+            "kind": "turn",
+            "trial": words,
+            "duration_s": 500.0,
+            "half_width_after": 6.0 + k,
+            "shrinks": 0.4 - k / 9,
+        }
+        for k, (id, words) in enumerate(names)
+    ]
+    data = {
+        "schema": 1, "kind": "plan", "model": "runs/bands", "ship": "suzaku", "sha256": "ab", "linear_share": 0.9,
+        "question": {"text": "advance, turn 35", "asked": "turn 35", "index": "advance_m", "words": "advance",
+                     "unit": "m", "order": "turn with 35 deg of rudder to starboard", "mean": 250.0, "half_width": 10.0,
+                     "particles": 20},
+        "trials": trials, "left_out": ["spiral: the ship leaves what the model can do"], "notes": ["a note"],
+        "options": {"level": 90.0}, "wall_s": 1.0,
+        "provenance": {"command": "mmgtune plan runs/bands -q 'advance, turn 35' --out run", "mmgtune": "1",
+                       "created": "2026-01-01"},
+    }  # fmt: skip
+    (folder / "plan.json").write_text(json.dumps(data), encoding="utf-8")
+
+
 def _compare(folder: Path) -> None:
     known("suzaku", "suzaku_fam").write(folder)
 
@@ -120,7 +147,8 @@ def _compare_models(folder: Path) -> None:
 def _learning(folder: Path) -> None:
     """A training by hand: the program's own takes an extra that may not be installed."""
     motion = fake_run.motion(20.0, 200, 190.0, 3.1, 20.0)
-    track = {"north_m": motion["x"].tolist(), "east_m": motion["y"].tolist()}
+    columns = {"north_m": "x", "east_m": "y", "psi_rad": "psi", "u_m_s": "u", "v_m_s": "v_m", "r_rad_s": "r"}
+    shown = {name: motion[state].tolist() for name, state in columns.items()}
     score = {"L_MSE": 0.4, "L_MSE_by_state": dict.fromkeys(("x", "y", "psi", "u", "v_m", "r"), 0.07), "runs": 2}
     curve = [{"step": step, "loss": 9.0 / step, "score": 4.0 / step} for step in (100, 200, 300)]
     data = {
@@ -131,7 +159,8 @@ def _learning(folder: Path) -> None:
         "members": [{"seed": 1, "steps": 300, "loss": 0.03, "score": 0.02, "best_step": 300, "curve": curve,
                      "events": [{"step": 150, "why": "loss", "back_to": 100, "rate_factor": 0.5}]}],
         "scores": {"test": {**score, "trials": ["turn_p35"], "by_manoeuvre": {"turning": score}}},
-        "drawn": [{"id": "turn_p35", "manoeuvre": "turning", "L_MSE": 0.4, "measured": track, "members": [track]}],
+        "drawn": [{"id": "turn_p35", "manoeuvre": "turning", "L_MSE": 0.4, "t_s": motion["t"].tolist(),
+                   "measured": shown, "members": [shown]}],
         "provenance": {
             "trials": {"path": "trials/suzaku", "learned_from": ["turn_p10"], "sources": ["generated"], "licence": "",
                        "citation": ""},
@@ -181,5 +210,5 @@ def _edited(path: Path, edit: Callable[[dict[str, Any]], None]) -> None:
 HOW: dict[str, Callable[[Path], None]] = {
     "diagnosis": _diagnosis, "leave-out": _leave_out, "validate": _validate, "simulate": _simulate, "trials": _trials,
     "check": _check, "predict": _predict, "comparison": _compare, "model-comparison": _compare_models,
-    "learning": _learning, "fleet": _fleet,
+    "learning": _learning, "plan": _plan, "fleet": _fleet,
 }  # fmt: skip
