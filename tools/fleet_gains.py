@@ -4,8 +4,8 @@
 
 Sisters are made (``tools.generate_fleet``): their coefficients lie about those that Suyama et al. (2023, Table 7) found
 for SUZAKU, 6 % of each apart, and all are calibrated from her pre-determined values.  In five folds, sixteen sisters
-with four trials each make the class; each of the other four is calibrated to one, two and four of her own trials, alone
-and with the class as a prior, and simulated on four further trials of hers.  Trials to tune to have the noise of sensors
+with four trials each make the class; each of the others is calibrated to one, two and four of her own trials, alone and
+with the class as a prior, and simulated on four further trials of hers.  Trials to tune to have the noise of sensors
 and a weak current that nobody measures; held-out ones are without, so that what is counted is the model's error.
 Intervals are of the mean over ships, by drawing ships anew.
 """

@@ -116,15 +116,14 @@ def sailed(
         heading, n = rng.uniform(-np.pi, np.pi), rng.uniform(100.0, 106.0) / 60.0
         zero = np.zeros_like(t)
         known = {"psi": zero + heading, "u": zero + 3.0, "n": zero + n, "delta": orders(name, t)}
-        asked = Trial(
-            id=name, ship=ship.id, manoeuvre="turning" if name.startswith("turn") else "zigzag", source="generated", t=t,
-            x=zero, y=zero, v_m=zero, r=zero, **known,
-        )  # fmt: skip
+        manoeuvre = "turning" if name.startswith("turn") else "zigzag"
+        still = {"x": zero, "y": zero, "v_m": zero, "r": zero}
+        asked = Trial(id=name, ship=ship.id, manoeuvre=manoeuvre, source="generated", t=t, **still, **known)
         (motion,) = simulate(real, [asked], integrator=Integrator("rk4"))
         noise = quiet * np.array(list(NOISE.values())) * rng.standard_normal(motion.states.shape)
         shown = as_trial(ship, replace(motion, states=motion.states + noise))
         note = "Generated, not measured: a made-up sister of SUZAKU" + ("." if calm else ", with sensor noise.")
-        trials.append(replace(shown, manoeuvre=asked.manoeuvre, noise={} if calm else dict(NOISE), note=note))
+        trials.append(replace(shown, manoeuvre=manoeuvre, noise={} if calm else dict(NOISE), note=note))
     return trials
 
 

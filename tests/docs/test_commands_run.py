@@ -76,9 +76,9 @@ def desk(tmp_path):
     return tmp_path
 
 
-def own_trials(desk, name):
-    """A small set of trials under that name: the bundled ones, every other sample of them."""
-    for trial in TRIALS:
+def own_trials(desk, name, trials=TRIALS):
+    """A small set of trials under that name: bundled ones, every other sample of them."""
+    for trial in trials:
         whole = read_trial(folder("trials") / "suzaku" / f"{trial}.parquet")
         thin = {channel: getattr(whole, channel)[::2] for channel in ATTRIBUTES.values()}
         write_trial(replace(whole, **thin), desk / name / f"{trial}.parquet", overwrite=True)
@@ -111,6 +111,9 @@ def test_commands_of_a_page_run(page, desk):
         r'```(?:toml|csv) title="([^"]+)"\n(.*?)```', page.read_text(encoding="utf-8"), re.DOTALL
     ):
         (desk / name).write_text(text, encoding="utf-8")
+    if page.name == "fleets.md":
+        for ship in ("s1", "s2", "s3"):
+            own_trials(desk, f"measured/{ship}/2026-05", ("turn_m20", "zigzag_20"))
     if page.name == "ci.md":
         shutil.rmtree(desk / "trials")
         own_trials(desk, "trials")

@@ -12,7 +12,8 @@ from mmgtune.trial import read_trial, write_trial
 from mmgtune.trial.schema import ATTRIBUTES
 
 FIT = 'options = { method = "least-squares", starts = 1, a_r = 0.3, targets = ["hull.R_0", "hull.Y_v", "wake.w_P0"] }'
-TABLE = """schema = 1
+TABLE = (
+    """schema = 1
 
 [[jobs]]
 name = "state"
@@ -20,7 +21,9 @@ command = "fit"
 profile = "suzaku"
 trials = "logs/{ship}/{date}"
 class = "coasters"
-""" + FIT
+"""
+    + FIT
+)
 
 QUICK = """schema = 1
 

@@ -81,9 +81,8 @@ def test_tls_is_passed_through(tmp_path: Path) -> None:
         tls_ca_file=ca, tls_scheduler_cert=cert, tls_scheduler_key=key, tls_worker_cert=cert, tls_worker_key=key,
         tls_client_cert=cert, tls_client_key=key, require_encryption=True,
     )  # fmt: skip
-    with distributed.LocalCluster(
-        n_workers=1, threads_per_worker=1, processes=False, host="tls://127.0.0.1", dashboard_address=None, security=security
-    ) as cluster:
+    how = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
+    with distributed.LocalCluster(host="tls://127.0.0.1", security=security, **how) as cluster:
         address = cluster.scheduler_address
         assert address.startswith("tls://")
         with connected(FleetOptions(scheduler=address, **files)) as client:

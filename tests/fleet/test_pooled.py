@@ -100,6 +100,7 @@ def test_a_fit_begins_from_what_sisters_say(sisters_file: Path, tmp_path: Path) 
     drawn, alone = (np.abs(np.array([one.theta[name] for name in NAMES]) - box.centre) for one in (result, plain))
     assert (drawn / box.scatter).sum() < (alone / box.scatter).sum()
 
+
 def test_what_trials_say_does_not_hold_what_was_known_before(tmp_path: Path) -> None:
     make_logs(tmp_path, ("a1",), ("2025-01",))
     data = load_trials(tmp_path / "logs" / "a1" / "2025-01")
@@ -126,7 +127,19 @@ def test_what_trials_say_does_not_hold_what_was_known_before(tmp_path: Path) -> 
 
 
 def test_the_command_and_its_errors(sisters_file: Path, tmp_path: Path) -> None:
-    quick = ["fit", "-p", "suzaku", "-t", "logs/a4/2025-01", "--method", "least-squares", "--starts", "1", "--ar", "0.3"]
+    quick = [
+        "fit",
+        "-p",
+        "suzaku",
+        "-t",
+        "logs/a4/2025-01",
+        "--method",
+        "least-squares",
+        "--starts",
+        "1",
+        "--ar",
+        "0.3",
+    ]
     few = ["--targets", ",".join(NAMES)]
     planned = run(*quick, *few, "--prior", "fleet", "--dry-run", cwd=tmp_path)
     assert planned.code == 0, planned.err

@@ -115,7 +115,9 @@ def test_killed_workers_and_a_killed_driver_lose_nothing(tmp_path: Path) -> None
     driver.communicate(timeout=60)
     _until(lambda: not any(Path(f"/proc/{worker}").exists() for worker in workers))  # nobody stays behind
     done = _rows(out)
-    ended = command("fleet", "run", "fleet.toml", "--out", "out", "--resume", "--workers", "1", "--no-report", cwd=tmp_path)
+    ended = command(
+        "fleet", "run", "fleet.toml", "--out", "out", "--resume", "--workers", "1", "--no-report", cwd=tmp_path
+    )
     assert ended.code == 0, ended.err
     rows = read_results(out)
     assert done <= len(rows) == len({row["key"] for row in rows}) == 6

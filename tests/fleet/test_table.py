@@ -38,7 +38,9 @@ def said(path: Path) -> str:
 
 def test_patterns_become_jobs_of_ships_and_dates(fleet: Path) -> None:
     jobs = expand(read_table(fleet))
-    assert [(job.ship, job.date) for job in jobs] == [(s, d) for s in ("a1", "a2", "a3") for d in ("2025-01", "2025-02")]
+    assert [(job.ship, job.date) for job in jobs] == [
+        (s, d) for s in ("a1", "a2", "a3") for d in ("2025-01", "2025-02")
+    ]
     assert len({job.key for job in jobs}) == 6
     assert jobs[0].place == "runs/a1/2025-01/state"
     assert set(jobs[0].trials.files) == {"turn_p35.parquet", "zigzag_20.parquet"}
