@@ -27,6 +27,11 @@ from .fitting import fit as fit
 from .fitting import leave_out as leave_out
 from .fitting import sweep as sweep
 from .fitting import write_run as write_run
+from .fleet import FleetPlan as FleetPlan
+from .fleet import FleetRun as FleetRun
+from .fleet import plan_fleet as plan_fleet
+from .fleet import read_results as read_results
+from .fleet import run_fleet as run_fleet
 from .generating import Made as Made
 from .generating import make_trials as make_trials
 from .heading_keeping import HeadingStudy as HeadingStudy
@@ -55,6 +60,7 @@ from .options import DiagnoseOptions as DiagnoseOptions
 from .options import EnsembleOptions as EnsembleOptions
 from .options import EstimateOptions as EstimateOptions
 from .options import FitOptions as FitOptions
+from .options import FleetOptions as FleetOptions
 from .options import HeadingOptions as HeadingOptions
 from .options import HybridOptions as HybridOptions
 from .options import LearnOptions as LearnOptions

@@ -16,6 +16,7 @@ from .files import refuse_existing, write_text
 from .given import ShipGiven, ship_of
 from .options import SimulateOptions
 from .physics.prime import force_unit, moment_unit
+from .physics.quantities import STATES
 from .profile import ShipProfile
 from .profile.changing import scale_of
 from .simulating import simulate
@@ -218,10 +219,15 @@ def _manoeuvres(ships: tuple[ShipProfile, ShipProfile]) -> dict[str, Any]:
         if all(isinstance(one[id].get(name), float) for one in found)
     ]
     tracks: dict[str, Any] = {}
+    motions: dict[str, Any] = {}
     for key, one, ship in zip("ab", both, ships, strict=True):
         for motion in one:
+            every = slice(None, None, max(1, len(motion.t) // POINTS))
+            columns = {"t": motion.t, **dict(zip(STATES, motion.states.T, strict=True))}
+            motions.setdefault(motion.id, {})[key] = {
+                name: [float(f"{value:.6g}") for value in values[every]] for name, values in columns.items()
+            }
             if motion.id.startswith("turn"):
-                some = motion.states[:: max(1, len(motion.t) // POINTS), :2] / ship.L_pp
-                north, east = np.round(some, 4).T.tolist()
+                north, east = np.round(motion.states[every, :2] / ship.L_pp, 4).T.tolist()
                 tracks.setdefault(motion.id, {})[key] = {"north": north, "east": east}
-    return {"indices": rows, "tracks": tracks}
+    return {"indices": rows, "tracks": tracks, "motions": motions, "L_pp": ships[0].L_pp}

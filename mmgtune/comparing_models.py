@@ -21,9 +21,11 @@ from .displayed import Brief, Displayed
 from .errors import OptionError, Problem, closest
 from .files import write_text
 from .given import TrialsGiven, trials_of
+from .inputs import INPUTS
 from .options import CompareModelsOptions
 from .predictor import Predictor, Sampling, Uncertain, particles_of, profile_of
 from .provenance import made_by
+from .recording import MOST, write_motions
 from .trial import Trial, TrialSet
 from .validating import Scorable, predictors_of, sigma_of
 from .validation import L_MSE, TrialScore, by_manoeuvre, by_member, by_run, off_by, score, window_scores
@@ -295,7 +297,14 @@ def _only(data: TrialSet, only: Sequence[str]) -> TrialSet:
 
 
 def write_model_comparison(result: ModelComparison, folder: Path, command: str = "") -> dict[str, Any]:
-    """Write the record into a run folder.  Returns it; raises OutputError."""
-    document = {**result.to_dict(command), "out": str(folder)}
+    """Write the record into a run folder, and the motions of whole trials.  Returns it; raises OutputError."""
+    pieces = list(result.data.trials.values())[:MOST]
+    names = write_motions({one.name: one.predictor for one in result.models}, pieces, folder)
+    document = {
+        **result.to_dict(command),
+        "L_pp": result.models[0].predictor.L_pp,
+        "inputs": [INPUTS[name].to_dict() for name in names],
+        "out": str(folder),
+    }
     write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
     return document

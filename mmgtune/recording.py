@@ -13,11 +13,11 @@ from .files import write_text
 from .fitting.folder import write_table
 from .inputs import INPUTS
 from .physics.quantities import STATES
-from .predictor import profile_of
+from .predictor import Predictor, profile_of
 from .provenance import made_by
 from .simulating import Simulated
 from .simulation import Motion, simulate
-from .trial import TrialSet
+from .trial import Trial, TrialSet
 from .validating import Validation
 
 DRAWN = "drawn"
@@ -67,16 +67,7 @@ def write_validation(result: Validation, data: TrialSet, folder: Path, command: 
     """
     restart = result.options.restart
     pieces = list((data.in_windows(restart) if restart else data).trials.values())[:MOST]
-    names = list(dict.fromkeys(name for one in result.profiles for name in one.predictor.inputs))
-    columns = _columns(names)
-    for trial in pieces:
-        _add(columns, trial.id, "measured", trial.t, trial.motion, trial.inputs(names))
-    for one in result.profiles:
-        for motion in _first_members(simulate(one.predictor, pieces)):
-            given = dict(zip(one.predictor.inputs, motion.controls.T, strict=True))
-            driven = np.column_stack([given.get(name, np.full(len(motion.t), np.nan)) for name in names])
-            _add(columns, motion.id, one.name, motion.t, motion.states, driven)
-    write_table(folder / "motions.parquet", _joined(columns))
+    names = write_motions({one.name: one.predictor for one in result.profiles}, pieces, folder)
     ships = [profile for one in result.profiles if (profile := profile_of(one.predictor)) is not None]
     document = {
         **result.to_dict(),
@@ -89,6 +80,24 @@ def write_validation(result: Validation, data: TrialSet, folder: Path, command: 
     }
     _write(folder / "validate.json", document)
     return document
+
+
+def write_motions(models: Mapping[str, Predictor], pieces: Sequence[Trial], folder: Path) -> list[str]:
+    """Write motions.parquet: trials as measured, and as the first member of each model makes them.
+
+    Returns the names of what drives the models, of which there is a column each.
+    """
+    names = list(dict.fromkeys(name for predictor in models.values() for name in predictor.inputs))
+    columns = _columns(names)
+    for trial in pieces:
+        _add(columns, trial.id, "measured", trial.t, trial.motion, trial.inputs(names))
+    for called, predictor in models.items():
+        for motion in _first_members(simulate(predictor, pieces)):
+            given = dict(zip(predictor.inputs, motion.controls.T, strict=True))
+            driven = np.column_stack([given.get(name, np.full(len(motion.t), np.nan)) for name in names])
+            _add(columns, motion.id, called, motion.t, motion.states, driven)
+    write_table(folder / "motions.parquet", _joined(columns))
+    return names
 
 
 def _first_members(motions: Sequence[Motion]) -> list[Motion]:

@@ -19,6 +19,8 @@ _FACTORS: dict[str, dict[str, float]] = {
     "rad": {"rad": 1.0, "deg": DEG},
     "deg": {"deg": 1.0, "rad": 1.0 / DEG},
     "rad/s": {"rad/s": 1.0, "deg/s": DEG, "deg/min": DEG / 60.0},
+    "rad/s^2": {"rad/s^2": 1.0, "deg/s^2": DEG},
+    "m/s^2": {"m/s^2": 1.0, "m/s in ten minutes": 1.0 / 600.0},
     "1/s": {"1/s": 1.0, "rps": 1.0, "rpm": 1.0 / 60.0},
     "1/s^2": {"1/s^2": 1.0, "rpm/s": 1.0 / 60.0},
     "N": {"N": 1.0, "kN": 1e3},
@@ -51,11 +53,25 @@ DIMENSIONLESS = ("-", "prime")
 _SHOWN = {"rad": "deg", "rad/s": "deg/s", "1/s": "rpm", "1/s^2": "rpm/s"}
 """SI units that people read something else for."""
 
+_IN_SENTENCES = {"rad/s^2": "deg/s^2", "N": "kN", "m/s^2": "m/s in ten minutes"}
+"""More of these, for sizes of causes."""
+
+_SIGNS = {"deg": "°", "deg/s": "°/s", "deg/s^2": "°/s²"}
+
 
 def shown_in(unit: str) -> tuple[str, float]:
     """The unit people read instead of an SI one, and the factor to it: degrees, revolutions per minute."""
     shown = _SHOWN.get(unit, unit)
     return shown, 1.0 if shown == unit else 1.0 / _FACTORS[unit][shown]
+
+
+def read_as(unit: str) -> tuple[str, float]:
+    """The unit in which people read the size of a cause, with signs for words (°), and the factor to it from SI."""
+    word, factor = shown_in(unit)
+    if unit in _IN_SENTENCES:
+        word = _IN_SENTENCES[unit]
+        factor = 1.0 / _FACTORS[unit][word]
+    return _SIGNS.get(word, word), factor
 
 
 _QUANTITY = re.compile(r"^\s*((?:[-+0-9.eE]+\s*,\s*)*[-+0-9.eE]+)\s*([^\s0-9].*?|1/.*?)?\s*$")

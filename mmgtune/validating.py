@@ -8,7 +8,7 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from .bands import Pooled, pooled
+from .bands import Pooled, pooled, pooled_by
 from .circumstances import notes_on
 from .displayed import Plotted, inert
 from .errors import OptionError, Problem
@@ -148,7 +148,7 @@ def validate(
             notes = [f"the trials are of '{data.ship}', '{name}' was trained for '{own}'", *notes]
         scores = tuple(score(predictor, pieces, sigma)) if pieces else ()
         stated = _stated(predictor, data, options.backend)
-        bands = _bands(predictor, pieces, sigma) if pieces else {}
+        bands = bands_of(predictor, pieces, sigma) if pieces else {}
         scored.append(Scored(name, predictor, scores, repeated, stated, tuple(notes), bands))
     return Validation(tuple(scored), called, sigma, options.sigma_from or called, options, tuple(pieces))
 
@@ -195,17 +195,18 @@ def predictors_of(
     }
 
 
-def _bands(predictor: Predictor, pieces: Sequence[Trial], sigma: Mapping[str, float]) -> dict[str | None, Pooled]:
-    """Scores of the bands of a predictor that draws particles, or has several members; of others nothing."""
+def bands_of(predictor: Predictor, pieces: Sequence[Trial], sigma: Mapping[str, float]) -> dict[str | None, Pooled]:
+    """Scores of the bands of a predictor that draws particles, or has several members; of others nothing.
+
+    By kind of manoeuvre, and under None all together.
+    """
     how = ParticleOptions()
     particles = particles_of(predictor, how.particles, how.seed)
     if particles.n_members < 2:
         return {}
     found = window_scores(particles, pieces)
-    kinds = dict.fromkeys(one.manoeuvre for one in found)
-    return {None: pooled(found, sigma)} | {
-        kind: pooled([one for one in found if one.manoeuvre == kind], sigma) for kind in kinds
-    }
+    whole: dict[str | None, Pooled] = {None: pooled(found, sigma)}
+    return whole | dict(pooled_by(lambda one: one.manoeuvre, found, sigma))
 
 
 def _stated(predictor: Predictor, data: TrialSet, backend: str) -> tuple[IndexComparison, ...]:

@@ -77,10 +77,10 @@ def main() -> None:
     )
     before = prior_of(profile, options)
     rows: list[dict[str, Any]] = []
-    runs = list(dict.fromkeys(trial.cut_from or trial.id for trial in trials))
+    runs = list(dict.fromkeys(trial.run for trial in trials))
     for run in runs[: given.most]:
         began = time.process_time()
-        left = [trial for trial in trials if (trial.cut_from or trial.id) == run]
+        left = [trial for trial in trials if trial.run == run]
         found = posterior(profile, [trial for trial in trials if trial not in left], options)
         ship = found.particles.predictor(as_logged=True).drawn(200, 1)
         for trial in left:

@@ -7,7 +7,7 @@ pooled     the same over many windows
 """
 
 from .indices import IndexBand, index_band
-from .pooled import LEVELS, Pooled, WindowScore, pooled, score_window
+from .pooled import LEVELS, Pooled, WindowScore, pooled, pooled_by, score_window
 from .quantiles import central, fan, quantiles, widest
 from .scores import covariances, covered, crps, squared_error, squared_mahalanobis, standardised_error
 
@@ -23,6 +23,7 @@ __all__ = [
     "fan",
     "index_band",
     "pooled",
+    "pooled_by",
     "quantiles",
     "score_window",
     "squared_error",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -172,6 +172,17 @@ class Pooled:
             "CRPS_by_state": dict(self.CRPS_by_state),
             "width_90_by_state": dict(self.width_by_state),
         }
+
+
+def pooled_by(
+    key: Callable[[WindowScore], str | None], scores: Sequence[WindowScore], sigma: Mapping[str, float]
+) -> dict[str, Pooled]:
+    """Windows together by what ``key`` says of each, in the order met; those it says nothing of are left out."""
+    of: dict[str, list[WindowScore]] = {}
+    for one in scores:
+        if (name := key(one)) is not None:
+            of.setdefault(name, []).append(one)
+    return {name: pooled(some, sigma) for name, some in of.items()}
 
 
 def pooled(scores: Sequence[WindowScore], sigma: Mapping[str, float]) -> Pooled:

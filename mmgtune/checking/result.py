@@ -93,8 +93,9 @@ class Changed:
     share: float | None
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON; a coefficient at infinity is null."""
-        return {**self.__dict__, "baseline": finite(self.baseline), "now": finite(self.now)}
+        """For JSON; a coefficient at infinity is null, as is one that there is not, which ``only`` says."""
+        only = "now" if self.baseline is None else "baseline" if self.now is None else None
+        return {**self.__dict__, "baseline": finite(self.baseline), "now": finite(self.now), "only": only}
 
     def __str__(self) -> str:
         if self.baseline is None or self.now is None:

@@ -22,6 +22,7 @@ from . import (
     diagnose,
     doctor,
     fit,
+    fleet,
     interrupts,
     learn,
     leave_out,
@@ -102,6 +103,7 @@ app.command("plan", cls=Command, epilog=EPILOG)(plan.command)
 app.command("report", cls=Command, epilog=EPILOG)(report.command)
 app.command("cite", cls=Command, epilog=EPILOG)(cite.command)
 app.command("doctor", cls=Command, epilog=EPILOG)(doctor.command)
+app.add_typer(fleet.app, name="fleet", epilog=EPILOG)
 app.add_typer(learn.app, name="learn", epilog=EPILOG)
 app.add_typer(study.app, name="study", epilog=EPILOG)
 app.add_typer(trials.app, name="trials", epilog=EPILOG)

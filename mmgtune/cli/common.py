@@ -60,6 +60,17 @@ Trials = Annotated[
         metavar=TRIALS,
     ),
 ]
+TheirOwnInputs = Annotated[
+    str | None,
+    typer.Option(
+        "--trials",
+        "-t",
+        help="Take these trials with their own inputs instead.",
+        rich_help_panel=INPUT,
+        autocompletion=completing.trials,
+        metavar=TRIALS,
+    ),
+]
 Json = Annotated[
     bool, typer.Option("--json", help="Print the result as one JSON document on stdout.", rich_help_panel=OUTPUT)
 ]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..options import FitOptions, in_flags
+from ..units import in_time
 from . import common as c
 from .banded import bands_on
 from .exitcodes import ExitCode
@@ -20,7 +21,11 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from ..fitting import FitResult
+    from ..fitting import FitResult, Plan
+
+
+LONG = 60.0
+"""Seconds that a fit may take without a word on how it could take fewer."""
 
 
 @takes(options=FitOptions, run=RunOptions)
@@ -63,6 +68,8 @@ def command(
     if run.dry_run:
         c.print_plan(plan, folder)
         return
+    if not run.quiet and plan.seconds[0] > LONG:
+        c.say(f"note: {in_time_of(plan)}")
     with claimed(folder, force=run.force, resume=run.resume), Progress(run.quiet, folder) as progress:
         result = fit(
             ship,
@@ -97,6 +104,15 @@ def command(
     progress.leave()
     if strict and not result.converged:
         raise typer.Exit(ExitCode.NO)
+
+
+def in_time_of(plan: Plan) -> str:
+    """How long a fit may take, and what shortens that."""
+    low, high = (in_time(seconds) for seconds in plan.seconds)
+    return (
+        f"this takes about {low} to {high} on this machine; quicker with --method least-squares, fewer --starts or "
+        "fewer --targets; Ctrl-C keeps the best so far"
+    )
 
 
 def next_steps(result: FitResult, profile: str, trials: str) -> list[str]:

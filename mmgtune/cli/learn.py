@@ -175,7 +175,7 @@ def hybrid_summary(_: LearnedHybrid, found: dict[str, Any], folder: str, report:
         before, after = (found["scores"][which]["L_MSE"] for which in ("before", "after"))
         shown = ["diverged" if one is None else f"{one:.4g}" for one in (before, after)]
         lines.append(f"held out: L_MSE {shown[0]} -> {shown[1]}")
-    return "\n".join([*lines, *_ending(found, found["events"], folder, report)])
+    return "\n".join([*lines, "", SCALE, *_ending(found, found["events"], folder, report)])
 
 
 def summary(result: Learned, found: dict[str, Any], folder: str, report: bool) -> str:
@@ -189,7 +189,7 @@ def summary(result: Learned, found: dict[str, Any], folder: str, report: bool) -
         if scores:
             lines += ["", f"L_MSE on the trials of {role}, mean and deviation over seeds", *_by_kind(scores)]
     events = [event for one in members for event in one["events"]]
-    return "\n".join([*lines, *_ending(found, events, folder, report)])
+    return "\n".join([*lines, "", SCALE, *_ending(found, events, folder, report)])
 
 
 def ensemble_summary(result: LearnedEnsemble, found: dict[str, Any], folder: str, report: bool) -> str:
@@ -206,7 +206,13 @@ def ensemble_summary(result: LearnedEnsemble, found: dict[str, Any], folder: str
     for role, scores in result.scores.items():
         lines += ["", f"L_MSE on the trials {_ROLES[role]}, mean and deviation over members", *_by_kind(scores)]
     events = [event for one in members for event in one["events"]]
-    return "\n".join([*lines, *_ending(found, events, folder, report)])
+    return "\n".join([*lines, "", SCALE, *_ending(found, events, folder, report)])
+
+
+SCALE = (
+    "L_MSE is counted in the spread of the trials that tune; mmgtune compare counts in that of the trials it is given, "
+    "or of those named by --sigma-from."
+)
 
 
 _ROLES = {"test": "held out", "validation": "kept back", "learned": "learned from"}

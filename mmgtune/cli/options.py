@@ -16,6 +16,7 @@ from typer.models import OptionInfo
 from ..errors import MmgtuneError, OptionError, Problem
 from ..options import FLAGS, Options, again, choice, flags_of, in_flags
 from ..options.choice import OUTPUT
+from ..options.flags import off_flag
 from . import completing
 
 
@@ -155,8 +156,11 @@ def parameters_of(of: type[Options]) -> list[inspect.Parameter]:
     found = []
     for name, known in flags_of(of).items():
         kind, default = _typed(hints[name], defaults[name])
-        off = f"/--no-{known.flag.lstrip('-')}" if defaults[name] is True else ""  # what is on can be turned off
-        decls = [known.flag + off, *([known.short] if known.short else [])]
+        shown = known.flag
+        if defaults[name] is True:  # what is on can be turned off
+            off = off_flag(known.flag)
+            shown = f" /{off}" if off == known.flag else f"{known.flag}/{off}"
+        decls = [shown, *([known.short] if known.short else [])]
         if known.names is not None:
             NAMES[name] = known.names
         option = typer.Option(

@@ -9,11 +9,12 @@ import typer
 
 from ..options import PlanOptions
 from . import common as c
+from .compare import FolderOptions
 from .options import takes
 from .predict import decimals_of
 
 
-@takes(options=PlanOptions)
+@takes(options=PlanOptions, run=FolderOptions)
 def command(
     model: Annotated[str, typer.Argument(help="Particles of posterior: a run folder or its particles.parquet.")],
     question: Annotated[
@@ -27,6 +28,7 @@ def command(
     ],
     *,
     options: PlanOptions,
+    run: FolderOptions,
     json: c.Json = False,
 ) -> None:
     """Which trial to sail next: by how much each would shrink the band of a question, best first.
@@ -39,17 +41,27 @@ def command(
 
       mmgtune plan runs/bands --question "tactical diameter, turn -35"
 
-      mmgtune plan runs/bands --question "1st overshoot, zigzag 20/20" --kind turn --kind zigzag
+      mmgtune plan runs/bands --question "1st overshoot, zigzag 20/20" --kind turn --kind zigzag --out runs/plan
     """
-    from ..planning import plan_trial
+    from ..planning import plan_trial, write_plan
 
-    document = plan_trial(model, question, options).to_dict(c.command_line())
+    if run.out is None:
+        document = plan_trial(model, question, options).to_dict(c.command_line())
+    else:
+        from ..fitting import claimed
+        from ..report import render
+
+        with claimed(run.out, force=run.force):
+            document = write_plan(plan_trial(model, question, options), run.out, c.command_line())
+            render(run.out)
     if json:
         c.print_json(document)
         return
     c.show(summary(document))
     for note in document["notes"]:
         c.say(f"note: {note}")
+    if run.out is not None:
+        c.show(f"Report: {run.out}/report.html")
 
 
 def summary(document: Mapping[str, Any]) -> str:

@@ -26,17 +26,7 @@ def command(
     orders: Annotated[
         str | None, typer.Argument(help="CSV file: time and inputs with units in its header, a row an order.")
     ] = None,
-    trials: Annotated[
-        str | None,
-        typer.Option(
-            "--trials",
-            "-t",
-            help="Predict these trials with their own inputs instead.",
-            rich_help_panel=c.INPUT,
-            metavar=c.TRIALS,
-            autocompletion=completing.trials,
-        ),
-    ] = None,
+    trials: c.TheirOwnInputs = None,
     *,
     options: PredictOptions,
     run: FolderOptions,

@@ -11,6 +11,7 @@ import typer
 
 from ..errors import OptionError, Problem
 from ..options import EstimateOptions
+from ..units import DIMENSIONLESS
 from . import common as c
 from . import completing
 from .options import takes
@@ -271,7 +272,7 @@ def _side_by_side(found: Comparison) -> str:
     rows = []
     for row in found.data["coefficients"]:
         if row["a"] != row["b"]:
-            unit = "" if row["unit"] in ("-", "prime") else f" [{row['unit']}]"
+            unit = "" if row["unit"] in DIMENSIONLESS else f" [{row['unit']}]"
             rows.append((row["name"] + unit, number(row["a"]), number(row["b"])))
     rows.append(("", "", ""))
     for row in found.data["manoeuvres"]["indices"]:

@@ -10,7 +10,6 @@ import typer
 from ..errors import OptionError, Problem
 from ..options import PredictOptions, SimulateOptions
 from . import common as c
-from . import completing
 from .banded import bands_on
 from .options import takes
 from .predict import banded
@@ -22,17 +21,7 @@ if TYPE_CHECKING:
 @takes(options=SimulateOptions)
 def command(
     profile: c.Profile = "suzaku",
-    trials: Annotated[
-        str | None,
-        typer.Option(
-            "--trials",
-            "-t",
-            help="Simulate these trials with their own inputs instead.",
-            rich_help_panel=c.INPUT,
-            metavar=c.TRIALS,
-            autocompletion=completing.trials,
-        ),
-    ] = None,
+    trials: c.TheirOwnInputs = None,
     *,
     options: SimulateOptions,
     out: Annotated[

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from shlex import quote
 from typing import Annotated
 
 import typer
@@ -224,7 +225,11 @@ def import_(
         return
     c.show(imported.text())
     done = "would be written" if dry_run else f"written to {out}"
-    c.show(f"{len(imported.trials)} trials {done}")
+    trials = "trial" if len(imported.trials) == 1 else "trials"
+    c.show(f"{len(imported.trials)} {trials} {done}")
+    if not dry_run:
+        c.show(f"next: mmgtune trials check {quote(str(out))}")
+        c.show(f"then, with her profile: mmgtune fit -p PROFILE -t {quote(str(out))}")
 
 
 @app.command("make")

@@ -80,6 +80,10 @@ def summary(result: VoyageValidation, folder: str, report: bool) -> str:
         lines += ["", _row("median (95 % stay below)", [one["profile"][-20:] for one in models], 22)]
         for name, row in models[0]["measures"].items():
             lines.append(_row(f"{name} [{row['unit']}]", [_median(one["measures"][name]) for one in models], 22))
+        for one in models:
+            if held := one.get("bands"):
+                share = "-" if held["coverage_90"] is None else f"{100.0 * held['coverage_90']:.0f} %"
+                lines.append(f"bands of 90 % of {one['profile']} hold {share} of {held['windows']} windows")
         for one in found["comparisons"]:
             lines.append(_compared(one, found["drawn_anew"]))
         first = models[0]

@@ -7,7 +7,8 @@ noise, inputs     what chance does to residuals
 linear, screening signatures beyond re-tuning, scores, critical values
 search            forward search, backward look, rivals
 contributions     what each cause brings beside the others; traces; record: how often such an answer was right
-intervals, gain, leftover, separate   sizes, held-out gain, what is left, the trial that would tell
+unseen, gain      fitted points on trials they were not fitted to, and what causes gain there
+intervals, leftover, separate         sizes, what is left, the trial that would tell
 runs, hierarchy, by_run, elsewhere    what differs from run to run: groups, evidence, words, runs held out
 voyages, legs     windows of logs of hours; what differs from voyage to voyage
 evidence          residual forces and short horizons, before any cause

@@ -14,15 +14,13 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..backends import STATES
-from ..fitting.comparison import compare
 from ..fitting.least_squares import fit_offsets
-from ..objective import Objective, cases_of, make_objective
 from ..trial import Trial
-from .elsewhere import estimated_there, first_part
-from .gain import INDICES, after_first, held_out_fits, problem_on, together
+from .gain import INDICES
 from .hypotheses import Hypothesis
 from .intervals import Estimate, estimates
 from .search import Found, without
+from .unseen import Beside, held_out_fits
 from .workbench import Point, Workbench
 
 SHARE = 0.01
@@ -143,21 +141,15 @@ def _errors(
 ) -> tuple[FloatArray, FloatArray, dict[str, list[float]]]:
     """Squared errors by point and channel (n_points, 6) in variances of white noise, samples by channel (6,), and
     changes of indices from the last point but one to the last."""
-    begins = first_part(points[-1], trials)
-    wide, units = together(bench, [estimated_there(bench, point, trials) for point in points])
-    objective = Objective(dict(zip(STATES, bench.sigma, strict=True)), dict.fromkeys(bench.channels, 1.0))
-    scaled = problem_on(bench, wide, trials, objective)
-    cases = cases_of(list(trials), objective, scaled.model.inputs, scaled.model.draught)
-    counted = after_first(scaled, begins).cases.weight > 0.0
-    errors = np.zeros((len(units), len(STATES)))
-    for k, unit in enumerate(units):
+    beside = Beside.of(bench, points, trials)
+    scaled, counted = beside.scaled, beside.judged.cases.weight > 0.0
+    errors = np.zeros((len(points), len(STATES)))
+    for k, unit in enumerate(beside.units):
         states = scaled.states(unit[:, None], fit_offsets(scaled, unit)[:, None]).states[:, 0]
-        off = np.where(counted, states - cases.target, 0.0)
+        off = np.where(counted, states - scaled.cases.target, 0.0)
         errors[k] = np.minimum(np.sum((off / bench.sigma) ** 2, axis=(0, 1)), 1e12)
-    by_paper = make_objective(bench.model.L_pp)
-    roles = dict.fromkeys((trial.id for trial in trials), "test")
     changes: dict[str, list[float]] = {name: [] for name in INDICES}
-    for one in compare(problem_on(bench, wide, trials, by_paper), trials, by_paper, roles, *units[-2:]):
+    for one in beside.compared():
         for name in INDICES:
             old, new = one.indices["before"].get(name), one.indices["after"].get(name)
             if old is not None and new is not None:

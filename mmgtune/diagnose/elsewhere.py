@@ -12,12 +12,11 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import IntArray
-from ..backends import STATES
 from ..fitting.box import AT, base_of, group_of
 from ..fitting.least_squares import solve
 from ..fitting.problem import FitProblem
 from ..model import Model
-from ..objective import Objective, cases_of
+from ..objective import cases_of
 from ..trial import Trial
 from .runs import groups_of, labels_of, spread_key
 from .workbench import LOOSE, Point, Workbench
@@ -51,8 +50,7 @@ def estimated_there(bench: Workbench, point: Point, trials: Sequence[Trial]) -> 
     if not names:
         return point
     own = bench.model_of(point.names)
-    objective = Objective(dict(zip(STATES, bench.sigma, strict=True)), dict.fromkeys(bench.channels, 1.0))
-    cases = cases_of(list(trials), objective, own.inputs, own.draught)
+    cases = cases_of(list(trials), bench.in_noise, own.inputs, own.draught)
     weight = cases.weight.copy()
     for case, end in enumerate(first_part(point, trials)):
         weight[case, max(end, 2) :] = 0.0

@@ -2,25 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..backends import STATES
 from ..displayed import Brief
 from ..fitting.box import group_of
-from ..fitting.comparison import TrialComparison, compare, finite
+from ..fitting.comparison import TrialComparison, finite
 from ..fitting.least_squares import fit_offsets
 from ..fitting.problem import FitProblem
-from ..objective import Objective, cases_of, make_objective
-from ..trial import Coverage, Trial
+from ..objective import make_objective
+from ..trial import Trial
 from .elsewhere import FIRST, estimated_there, first_part
-from .runs import labels_of
 from .search import Found
-from .workbench import Point, Workbench, make_workbench
+from .unseen import Beside, held_out_fits, problem_on
+from .workbench import Point, Workbench
 
 RESAMPLES = 2000
 """Resamples of the trials an interval is made from."""
@@ -173,41 +173,9 @@ def held_out(bench: Workbench, found: Found, test: Sequence[Trial]) -> Gain:
     return Gain("each", tuple(every), np.concatenate(rows), *_by_noise(bench, left), used)
 
 
-def held_out_fits(
-    bench: Workbench, points: Sequence[Point], test: Sequence[Trial]
-) -> Iterator[tuple[list[Point], list[Trial]]]:
-    """Fitted points with trials they were not fitted to: the test trials, or each run in turn, all refitted without it.
-
-    Where there is but one run, that run.
-    """
-    runs = list(dict.fromkeys(trial.run for trial in bench.trials))
-    if test or len(runs) < 2:
-        yield list(points), list(test or bench.trials)
-        return
-    coverage = Coverage.of(bench.trials, bench.model.L_pp)  # what is left may turn to one side alone
-    for run in runs:
-        others = [trial for trial in bench.trials if trial.run != run]
-        names = [name for name in bench.box.names if name not in bench.targets]
-        rest = make_workbench(bench.model.profile, others, bench.options, names, coverage)
-        rest.targets = bench.targets
-        rest.know(replace(bench.noise, cases=rest.problem.cases))
-        keep = [i for i, trial in enumerate(bench.trials) if trial.run != run]
-        refitted = [_refit_without(rest, point, keep) for point in points]
-        yield refitted, [trial for trial in bench.trials if trial.run == run]
-
-
 def _share_used(point: Point, trials: Sequence[Trial]) -> float:
     """Share of each run that something is estimated on."""
     return FIRST if first_part(point, trials).any() else 0.0
-
-
-def _refit_without(rest: Workbench, point: Point, keep: Sequence[int]) -> Point:
-    """A point refitted on the trials that are left, without values of runs that are not among them."""
-    labels = frozenset[str]().union(*rest.problem.groups)
-    own = [i for i, name in enumerate(point.names) if not group_of(name) or group_of(name) in labels]
-    names = [point.names[i] for i in own]
-    offsets = point.offsets[keep]
-    return rest.refit(names, point.unit[own][:, None], offsets, integrator=point.integrator, spreads=point.spreads)
 
 
 def _chance(bench: Workbench, trials: Sequence[Trial], point: Point | None = None) -> tuple[float, float]:
@@ -236,59 +204,20 @@ def J_of(bench: Workbench, point: Point, test: Sequence[Trial]) -> float | None:
     return finite(float(problem.costs(point.unit[:, None], offsets[:, None])[0]))
 
 
-def problem_on(bench: Workbench, point: Point, trials: Sequence[Trial], objective: Objective) -> FitProblem:
-    """The problem of what is free in a point, on other trials."""
-    own = bench.problem_of(point.names, point.integrator)
-    sigma = np.repeat(bench.sigma[None], len(trials), axis=0)
-    cases = cases_of(list(trials), objective, own.model.inputs, own.model.draught)
-    problem = FitProblem.of(own.model, cases, own.box, own.backend, own.integrator, sigma)
-    return problem.with_groups([labels_of(trial) for trial in trials])
-
-
 def _on(
     bench: Workbench, before: Point, after: Point, trials: Sequence[Trial]
 ) -> tuple[list[TrialComparison], FloatArray]:
     """Comparisons and chi-squared above noise (n_trials, 2) on trials; the latter on what follows the part of each that
     something is estimated on."""
-    begins = first_part(after, trials)
-    wide, units = together(bench, (before, estimated_there(bench, after, trials)))
-    roles = dict.fromkeys((trial.id for trial in trials), "test")
-    by_paper = make_objective(bench.model.L_pp)
-    compared = [
-        one
-        for some in ([[trial] for trial in trials] if begins.any() else [trials])
-        for one in compare(problem_on(bench, wide, some, by_paper), some, by_paper, roles, *units)
-    ]
-    objective = Objective(dict(zip(STATES, bench.sigma, strict=True)), dict.fromkeys(bench.channels, 1.0))
-    scaled = problem_on(bench, wide, trials, objective)
-    judged = after_first(scaled, begins)
+    beside = Beside.of(bench, (before, after), trials)
+    compared = beside.compared(together=not beside.begins.any())
+    judged = beside.judged
     floor = np.array([_floor(bench, judged, case) for case in range(len(trials))])
     excess = np.empty((len(trials), 2))
-    for k, unit in enumerate(units):
-        offsets = fit_offsets(scaled, unit)
+    for k, unit in enumerate(beside.units):
+        offsets = fit_offsets(beside.scaled, unit)
         excess[:, k] = judged.costs_by_case(unit[:, None], offsets[:, None])[:, 0] - floor
     return compared, np.where(np.isfinite(excess), excess, 1e12)
-
-
-def after_first(problem: FitProblem, begins: IntArray) -> FitProblem:
-    """A problem in which the first samples of each case, (n_cases,), do not count."""
-    weight = problem.cases.weight.copy()
-    for case, begin in enumerate(begins):
-        weight[case, :begin] = 0.0
-    return problem.with_cases(replace(problem.cases, weight=weight))
-
-
-def together(bench: Workbench, points: Sequence[Point]) -> tuple[Point, list[FloatArray]]:
-    """A point whose names are those of all, what is not free in one at its null, and the positions of each in it."""
-    names = tuple(dict.fromkeys(name for point in points for name in point.names))
-    last = points[-1]
-    wide = Point(names, bench.null(names), last.offsets, last.chi2, last.integrator)
-    units = []
-    for point in points:
-        unit = wide.unit.copy()
-        unit[[names.index(name) for name in point.names]] = point.unit
-        units.append(unit)
-    return wide, units
 
 
 def _floor(bench: Workbench, problem: FitProblem, case: int) -> float:

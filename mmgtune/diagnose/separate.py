@@ -87,8 +87,16 @@ def menu(unit_time: float) -> list[Feasible]:
             found.append(Feasible(words, order, heading * DEG, 1.0, long, partial(turned, angle=angle * DEG)))
     for angle in (10.0, 20.0):
         words = f"zigzag {angle:.0f}/{angle:.0f}"
-        zigzag = ZigzagOrder(angle * DEG, angle * DEG, legs=6)
-        found.append(Feasible(words, zigzag, ANY, 1.0, long, partial(checked, angle=angle * DEG)))
+        found.append(
+            Feasible(
+                words,
+                ZigzagOrder(angle * DEG, angle * DEG, legs=6),
+                ANY,
+                1.0,
+                long,
+                partial(checked, angle=angle * DEG),
+            )
+        )
     words = "turning test, rudder 35 deg to starboard, at 70 % of the revolutions"
     found.append(Feasible(words, TurningOrder(35.0 * DEG), ANY, 0.7, long, partial(turned, angle=35.0 * DEG)))
     words = (
@@ -143,7 +151,7 @@ def wove(trial: Trial) -> bool:
 
 
 def holds(trials: Sequence[Trial], one: Feasible, n: float) -> bool:
-    """Whether such a trial was sailed, by rudder, heading and revolutions; n [1/s] are those of the approach."""
+    """Whether such a trial was sailed: by rudder angles, heading, and revolutions n [1/s] of the approach."""
 
     def alike(trial: Trial) -> bool:
         began = float(np.nanmedian(trial.n[: max(3, trial.n_samples // 20)]))

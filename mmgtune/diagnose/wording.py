@@ -6,21 +6,13 @@ import math
 from collections.abc import Mapping
 
 from ..effects import Effect
-from ..units import DEG
+from ..units import DIMENSIONLESS, read_as
 from .intervals import Estimate
-
-_SHOWN = {
-    "rad": (1.0 / DEG, "°"),
-    "rad/s": (1.0 / DEG, "°/s"),
-    "rad/s^2": (1.0 / DEG, "°/s²"),
-    "N": (1e-3, " kN"),
-    "m/s^2": (600.0, " m/s in ten minutes"),
-}
 
 
 def quantity(value: float, error: float | None, unit: str) -> str:
     """A value with its 95 % half width: "0.47 ± 0.03 m/s"."""
-    factor, word = _SHOWN.get(unit, (1.0, "" if unit in ("-", "prime") else f" {unit}"))
+    word, factor = _after_number(unit)
     value *= factor
     if not math.isfinite(value):
         return "infinite"
@@ -33,9 +25,15 @@ def quantity(value: float, error: float | None, unit: str) -> str:
 
 def range_in_words(low: float, high: float, unit: str) -> str:
     """From the least to the largest: "0.2 to 0.4 m/s"."""
-    factor, word = _SHOWN.get(unit, (1.0, "" if unit in ("-", "prime") else f" {unit}"))
+    word, factor = _after_number(unit)
     ends = [f"{end * factor:.2g}" for end in (low, high)]
     return f"{' to '.join(dict.fromkeys(ends))}{word}"
+
+
+def _after_number(unit: str) -> tuple[str, float]:
+    """The unit as it stands behind a number, and the factor to it."""
+    word, factor = read_as(unit)
+    return "" if unit in DIMENSIONLESS else word if word.startswith("°") else f" {word}", factor
 
 
 def parameters_in_words(effect: Effect, estimates: Mapping[str, Estimate]) -> dict[str, str]:

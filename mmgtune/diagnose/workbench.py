@@ -86,6 +86,11 @@ class Workbench:
         """Motion channels that count."""
         return tuple(self.noise.channels)
 
+    @property
+    def in_noise(self) -> Objective:
+        """Squares of what counts, in white noise of the sensors."""
+        return _in_noise(self.sigma, self.channels)
+
     def model_of(self, names: Sequence[str]) -> Model:
         """The model with every effect where one of these parameters needs it, else one without those that cost time.
 
@@ -222,6 +227,10 @@ def noise_levels(trials: Sequence[Trial]) -> FloatArray:
     return np.asarray(np.maximum(found, np.maximum(floor, 1e-12)))
 
 
+def _in_noise(sigma: FloatArray, channels: Sequence[str]) -> Objective:
+    return Objective(dict(zip(STATES, sigma, strict=True)), dict.fromkeys(channels, 1.0))
+
+
 def make_workbench(
     profile: ShipProfile,
     trials: Sequence[Trial],
@@ -241,7 +250,7 @@ def make_workbench(
     model = Model(with_all_effects(profile), ties)
     sigma = noise_levels(trials)
     channels = [c for c in STATES if not options.channels or c in {"v_m" if o == "v" else o for o in options.channels}]
-    objective = Objective(dict(zip(STATES, sigma, strict=True)), dict.fromkeys(channels, 1.0))
+    objective = _in_noise(sigma, channels)
     cases = cases_of(list(trials), objective, model.inputs, model.draught)
     box = make_box(model, (*targets, *(name for name in names if name not in targets)), options.a_r)
     problem = FitProblem.of(

@@ -2,31 +2,40 @@
 
 from ..options import METHODS, FitOptions, LeaveOutOptions, SweepOptions
 from .folder import claimed, prepare, refuse_taken, write_document, write_run
+from .information import Information
+from .informing import information_of
 from .leaving_out import BandsLeftOut, LeftOut, leave_out, write_left_out
 from .planning import Plan, plan_fit, plan_leave_out, plan_sweep
+from .pooled import CLASSES, FEWEST, SisterClass, pooled
 from .result import FitResult
 from .run import Hooks, fit, in_pieces, make_problem
 from .sweeping import SweepResult, sweep
 
 __all__ = [
+    "CLASSES",
+    "FEWEST",
     "METHODS",
     "BandsLeftOut",
     "FitOptions",
     "FitResult",
     "Hooks",
+    "Information",
     "LeaveOutOptions",
     "LeftOut",
     "Plan",
+    "SisterClass",
     "SweepOptions",
     "SweepResult",
     "claimed",
     "fit",
     "in_pieces",
+    "information_of",
     "leave_out",
     "make_problem",
     "plan_fit",
     "plan_leave_out",
     "plan_sweep",
+    "pooled",
     "prepare",
     "refuse_taken",
     "sweep",

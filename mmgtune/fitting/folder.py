@@ -99,14 +99,21 @@ def claimed(folder: Path, *, force: bool = False, resume: bool = False) -> Itera
 
     Raises OutputError as ``prepare`` does, and where another run is writing there.
     """
-    if not folder.exists():
+    made = not folder.exists()
+    if made:
         _make(folder)
     elif not folder.is_dir():
         prepare(folder)  # says what is wrong
-    with alone_in(folder):
-        prepare(folder, force=force, resume=resume)
-        remove_left_overs(folder)
-        yield folder
+    try:
+        with alone_in(folder):
+            prepare(folder, force=force, resume=resume)
+            remove_left_overs(folder)
+            yield folder
+    except BaseException:
+        if made:  # of a command that is refused no empty folder stays
+            with contextlib.suppress(OSError):
+                folder.rmdir()
+        raise
 
 
 def write_run(result: FitResult, folder: Path) -> dict[str, Any]:

@@ -296,7 +296,7 @@ class FitProblem:
         return base[:, :, 0], slopes, by_offset
 
     def offset_slopes(self, unit: FloatArray, offsets: FloatArray, step: float = 1e-6) -> tuple[FloatArray, FloatArray]:
-        """Residuals (n_rows,) and derivatives (n_rows, 6) by the offsets alone at one point, as in ``jacobians``."""
+        """Residuals (n_rows,) and derivatives (n_rows, 6) by the offsets alone, as of ``jacobians``, at one point."""
         moved = np.repeat(offsets[:, None], 7, axis=1)
         self._move_offsets(moved[:, None, 1:], step)
         values = self.residuals(np.repeat(unit[:, None], 7, axis=1), moved).T

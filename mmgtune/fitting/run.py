@@ -33,6 +33,7 @@ from .initial import deviations
 from .journal import journalled
 from .least_squares import LeastSquaresResult, fit_offsets, solve
 from .one_sided import tied
+from .pooled import Pooled, SistersPrior, pooled, read_sisters, with_sisters
 from .problem import FitProblem
 from .result import Beside, FitResult
 from .robust import weigh_down
@@ -80,6 +81,7 @@ class Setting:
 
     estimated  whether trials start from an estimated state
     terms      what is made small besides J
+    sisters    what sister ships say beforehand, None where they are not asked
     """
 
     model: Model
@@ -91,11 +93,12 @@ class Setting:
     integrator: Integrator
     estimated: bool
     terms: tuple[Term, ...] = ()
+    sisters: Pooled | None = None
 
     def holding(self, names: Sequence[str]) -> Setting:
         """The same with some targets held at their pre-determined values."""
         left = [name for name in self.box.names if name not in names]
-        return replace(self, box=make_box(self.model, left, self.a_r))
+        return replace(self, box=boxed(self.model, left, self.a_r, self.sisters))
 
     def problem(self, ids: Sequence[str] = ()) -> FitProblem:
         """The problem of fitting the tune trials, or the trials ``ids``.
@@ -137,7 +140,11 @@ def make_setting(profile: ShipProfile, trials: TrialSet, options: FitOptions) ->
     standardised = options.objective == "standardised" and trials.tune
     scales = spread([trials.trials[name] for name in trials.tune]) if standardised else None
     objective = make_objective(model.L_pp, options.channels, options.window, scales=scales, every=options.every)
-    box = make_box(model, names, options.a_r)
+    sisters = None
+    if options.sisters is not None:  # her own trials count once
+        sisters = pooled(read_sisters(options.sisters, profile.id).without(profile.id).without(trials.ship))
+    box = boxed(model, names, options.a_r, sisters)
+    prior = ScatterPrior() if sisters is None else SistersPrior()
     return Setting(
         model,
         trials,
@@ -147,8 +154,15 @@ def make_setting(profile: ShipProfile, trials: TrialSet, options: FitOptions) ->
         get_backend(options.backend),
         options.make_integrator(),
         options.initial == "estimated",
-        (ScatterPrior(),) if options.prior and len(box.from_formula) else (),
+        (prior,) if options.prior and len(box.from_formula) else (),
+        sisters,
     )
+
+
+def boxed(model: Model, names: Sequence[str], a_r: float | None, sisters: Pooled | None) -> Box:
+    """The box of targets, with what sister ships say of them."""
+    box = make_box(model, names, a_r)
+    return box if sisters is None else with_sisters(box, sisters)
 
 
 def make_problem(profile: ShipProfile, trials: TrialSet, options: FitOptions, ids: Sequence[str] = ()) -> FitProblem:
@@ -186,6 +200,8 @@ def fit(
     if checkpoint_folder is None:
         return _fit(profile, trials, options, hooks, None, resume, more_starts, provenance)
     identity = identity_of(profile, trials, options, provenance)
+    if options.sisters is not None:
+        identity["sisters"] = read_sisters(options.sisters, profile.id).sha256
     checkpoint = Checkpoint(checkpoint_folder, identity)
     if resume and checkpoint.path.is_file():
         checkpoint.load()  # says first what is wrong with the larger part

@@ -75,14 +75,14 @@ def weigh(
     if not problem.n_residuals:
         return problem.with_weight(1.0), Weight(1.0, {}, {}, 0, True)
     at = LeastSquaresResult(start, problem.offsets, 0.0, 0, True)
-    found = _weight(problem.with_weight(1.0), at, learning=False)
+    found = weight_at(problem.with_weight(1.0), at, learning=False)
     least = FALL * found.s2
     for k in range(ROUNDS):
         if stop():
             break
         weighed = problem.with_weight(found.s2).with_offsets(at.offsets)
         at = solve(weighed, at.unit[:, None], stop=stop, tolerance=CLOSE * found.s2)[0]
-        new = replace(_weight(weighed.with_offsets(at.offsets), at), rounds=k + 1)
+        new = replace(weight_at(weighed.with_offsets(at.offsets), at), rounds=k + 1)
         new = replace(new, s2=max(new.s2, least))
         change = abs(new.s2 / found.s2 - 1.0)
         found = replace(new, settled=change < SETTLED)
@@ -91,7 +91,7 @@ def weigh(
     return problem.with_weight(found.s2), found
 
 
-def _weight(problem: FitProblem, at: LeastSquaresResult, learning: bool = True) -> Weight:
+def weight_at(problem: FitProblem, at: LeastSquaresResult, learning: bool = True) -> Weight:
     """The weight that residuals at a point call for; ``learning`` counts degrees of freedom."""
     residuals = problem.residuals(at.unit[:, None], at.offsets[:, None])[0]
     series = series_of(problem)

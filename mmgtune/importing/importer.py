@@ -15,7 +15,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import LogError, Problem
-from ..files import refuse_existing, write_text
+from ..files import refuse_existing, true_path, write_text
 from ..trial import Trial, write_trial
 from ..trial.schema import ATTRIBUTES, directions, known_column
 from ..trial.unusable import unusable
@@ -92,7 +92,13 @@ class Imported:
 
     def text(self) -> str:
         """The report for people."""
-        return "\n".join(quality_text(one) for one in self.quality)
+        common: set[str] = set.intersection(*(set(one["notes"]) for one in self.quality)) if self.quality else set()
+        if len(self.quality) < 2:
+            common = set()
+        told: set[tuple[str, str]] = set()
+        lines = [quality_text(one, common, told) for one in self.quality]
+        of_all = [note for note in self.quality[0]["notes"] if note in common] if self.quality else []
+        return "\n".join([*lines, *(f"all {len(self.quality)} trials: {note}" for note in of_all)])
 
 
 def import_logs(
@@ -152,7 +158,7 @@ def import_logs(
 
 
 def _name(template: str, log: Path) -> str:
-    written = template.replace("{stem}", log.stem).replace("{parent}", log.resolve().parent.name)
+    written = template.replace("{stem}", log.stem).replace("{parent}", true_path(log).parent.name)
     return re.sub(r"[^\w.-]+", "_", written).strip("._") or "trial"
 
 
@@ -352,7 +358,7 @@ def _trial(id: str, piece: Piece, notes: list[str], log_map: LogMap, cut_from: s
     trial = Trial(
         id=id,
         ship=log_map.ship,
-        manoeuvre=piece.follows or log_map.manoeuvre.replace("{parent}", record.path.resolve().parent.name),
+        manoeuvre=piece.follows or log_map.manoeuvre.replace("{parent}", true_path(record.path).parent.name),
         source=log_map.source,
         **required,
         extra={name: values for name, values in kept.items() if known_column(name)},

@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from shlex import quote
 from typing import Any
 
 import numpy as np
@@ -92,13 +93,22 @@ class Proposal:
             lines.append(f"answer {'it' if len(self.asks) == 1 else f'these {len(self.asks)}'} in {name}, then import")
         elif not self.problems:
             lines.append(f"the map imports all {len(self.logs)} logs, as {self.imported} trials")
-        shown = self.logs[0].name if len(self.logs) == 1 else "LOG..."
-        lines.append(f"next: mmgtune trials import {shown} --map {name} -o FOLDER --dry-run")
+        lines.append(f"next: mmgtune trials import {_given(self.logs)} --map {quote(name)} -o trials --dry-run")
         return lines
 
     def map(self, path: Path = Path("map")) -> LogMap:
         """The map, read.  Raises LogError where it asks."""
         return parse_map(self.text, path)
+
+
+def _given(logs: Sequence[Path]) -> str:
+    """Logs as they may be given on the command line: many of one folder by the pattern that names just these."""
+    if len(logs) > 3 and len({(log.parent, log.suffix) for log in logs}) == 1:
+        folder, suffix = logs[0].parent, logs[0].suffix
+        there = {one for one in folder.glob(f"*{suffix}") if not one.name.startswith(".")} if suffix else set()
+        if there == set(logs):
+            return f"{quote(str(folder))}/*{quote(suffix)}" if folder != Path() else f"*{quote(suffix)}"
+    return " ".join(quote(str(log)) for log in logs)
 
 
 def propose_map(logs: Sequence[Path | str]) -> Proposal:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import MutableSet, Set
 from dataclasses import replace
 from typing import Any
 
@@ -81,8 +82,17 @@ def quality_of(
     }
 
 
-def quality_text(quality: dict[str, Any]) -> str:
-    """The same for people."""
+Told = tuple[str, str]
+"""Why something is wrong, and the fix."""
+
+
+def quality_text(quality: dict[str, Any], common: Set[str] = frozenset(), told: MutableSet[Told] | None = None) -> str:
+    """The same for people.
+
+    common  notes that are said elsewhere
+    told    reasons and fixes that were given before, which are not said again; those given here are added
+    """
+    given: MutableSet[Told] = set() if told is None else told
     q = quality
     lines = [
         (
@@ -125,20 +135,18 @@ def quality_text(quality: dict[str, Any]) -> str:
             said += f"; rounding alone {positions['rounding_x_m']:.3g} and {positions['rounding_y_m']:.3g} m"
         lines.append(said)
     lines.append(f"  rudder    turns the ship to its side: {rudder['side']}, agreement {rudder['agreement']:+.2f}")
-    told = []
+    by_input = []
     for name, changes in q["controls"].items():
         unit = shown_in(INPUTS[name].unit)[0]
         orders = "ORDERS? " if changes["orders"] else ""
-        told.append(f"{INPUTS[name].words} {orders}up to {changes[f'fastest_{unit}_per_s']:.3g} {unit}/s")
-    lines.append("  controls  " + ", ".join(told))
-    lines += [f"  note      {note}" for note in q["notes"]]
-    lines += [
-        f"  {f['severity']}   {f['what']}"
-        + (f"; {f['why']}" if f["why"] else "")
-        + (f"; fix: {f['fix']}" if f["fix"] else "")
-        for f in q["findings"]
-        if f["severity"] != "note"
-    ]
+        by_input.append(f"{INPUTS[name].words} {orders}up to {changes[f'fastest_{unit}_per_s']:.3g} {unit}/s")
+    lines.append("  controls  " + ", ".join(by_input))
+    lines += [f"  note      {note}" for note in q["notes"] if note not in common]
+    for f in q["findings"]:
+        if f["severity"] != "note":
+            more = [f["why"], f"fix: {f['fix']}" if f["fix"] else ""] if (f["why"], f["fix"]) not in given else []
+            given.add((f["why"], f["fix"]))
+            lines.append("; ".join([f"  {f['severity']}   {f['what']}", *filter(None, more)]))
     return "\n".join(lines)
 
 

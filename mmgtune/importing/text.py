@@ -170,6 +170,8 @@ def start_of(path: Path) -> bytes:
             content = file.read(PEEK)
     except OSError as error:
         fix = "check the path, and that you may read the file"
+        if path.is_dir():
+            fix = f"name the logs in it, such as {path}/*.csv"
         raise LogError(Problem("the log cannot be opened", str(path), error.strerror or str(error), fix)) from error
     if not content.strip():
         raise LogError(Problem("the log is empty", str(path), fix="copy it again from where it was made"))

@@ -29,7 +29,10 @@ ENSEMBLE_RESULT = "ensemble.json"
 MODEL = "model.safetensors"
 
 POINTS = 200
-"""Points of a drawn track, about."""
+"""Points of a drawn motion, about."""
+
+SHOWN = ("north_m", "east_m", "psi_rad", "u_m_s", "v_m_s", "r_rad_s")
+"""Columns of drawn motions, in the order of the states."""
 
 
 def document_of(result: Learned) -> dict[str, Any]:
@@ -132,8 +135,8 @@ def _reading(result: LearnedHybrid) -> dict[str, Any] | None:
 def drawn(
     models: Sequence[Predictor], trials: Sequence[Trial], restart: float | None, role: str
 ) -> list[dict[str, Any]]:
-    """Of each kind of manoeuvre the window of median error of the last model: tracks [m] as measured, and as all
-    members of all models make them."""
+    """Of each kind of manoeuvre the window of median error of the last model: motions as measured, and as all members
+    of all models make them."""
     pieces = pieces_of(trials, restart)
     sigma = spread(trials)
     errors: dict[str, float] = {}
@@ -150,9 +153,10 @@ def drawn(
                 "manoeuvre": kind,
                 "role": role,
                 "L_MSE": errors[of.id] if math.isfinite(errors[of.id]) else None,
-                "measured": _track(of.motion[every]),
+                "t_s": [round(float(t), 3) for t in of.t[every] - of.t[0]],
+                "measured": _motion(of.motion[every]),
                 "members": [
-                    _track(motion.states[every])
+                    _motion(motion.states[every])
                     for model in models
                     for motion in simulate(model, [of])
                     if not motion.diverged
@@ -162,12 +166,16 @@ def drawn(
     return found
 
 
-def _track(states: FloatArray) -> dict[str, list[float | None]]:
-    """North and east [m] to the centimetre; null in gaps."""
+def _motion(states: FloatArray) -> dict[str, list[float | None]]:
+    """States by name: metres to the centimetre, the rest to five digits; null in gaps."""
     return {
-        name: [round(float(v), 2) if math.isfinite(v) else None for v in column]
-        for name, column in (("north_m", states[:, 0]), ("east_m", states[:, 1]))
+        name: [_short(float(v), name) if math.isfinite(v) else None for v in column]
+        for name, column in zip(SHOWN, states.T, strict=True)
     }
+
+
+def _short(value: float, name: str) -> float:
+    return round(value, 2) if name.endswith("_m") else float(f"{value:.5g}")
 
 
 def write_learned(result: Learned | LearnedHybrid | LearnedEnsemble, folder: Path) -> dict[str, Any]:

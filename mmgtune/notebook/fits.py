@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..units import DIMENSIONLESS
 from .ships import measured, simulated
 from .view import Line, Room, Row, View
 
@@ -39,7 +40,7 @@ def coefficient(row: Mapping[str, Any]) -> Row:
         "low": row["low"],
         "high": row["high"],
         "before": row["pre_determined"],
-        "unit": "" if row["unit"] in ("-", "prime") else row["unit"],
+        "unit": "" if row["unit"] in DIMENSIONLESS else row["unit"],
         "bound": BOUND.get(row["at_bound"], ""),
         "determined": "" if row["determined"] else "no",
         "what": row["label"],
@@ -114,7 +115,7 @@ def posterior(result: Posterior) -> View:
             "5 %": row["low"],
             "95 %": row["high"],
             "deviation before": row["prior_deviation"],
-            "unit": "" if row["unit"] in ("-", "prime") else row["unit"],
+            "unit": "" if row["unit"] in DIMENSIONLESS else row["unit"],
         }
         for row in document["numbers"]
     ]

@@ -14,6 +14,7 @@ estimating  profile new
 learning    learn
 generating  trials make
 studying    study
+fleet       fleet run
 flags       what fields are called on the command line
 
 Nothing here is heavy to import: the command line builds its flags from it before it knows what is wanted.
@@ -23,6 +24,7 @@ from .choice import Choice, Options, again, choice, choices
 from .diagnosis import DiagnoseOptions
 from .estimating import EstimateOptions
 from .flags import FLAGS, flags_of, in_flags
+from .fleet import FleetOptions
 from .generating import MakeOptions
 from .learning import EnsembleOptions, HybridOptions, LearnOptions, MixtureOptions, TrainingOptions
 from .orders import SimulateOptions
@@ -49,6 +51,7 @@ __all__ = [
     "EnsembleOptions",
     "EstimateOptions",
     "FitOptions",
+    "FleetOptions",
     "HeadingOptions",
     "HybridOptions",
     "LearnOptions",
@@ -82,6 +85,7 @@ for _of in (
     EnsembleOptions,
     EstimateOptions,
     FitOptions,
+    FleetOptions,
     HeadingOptions,
     HybridOptions,
     LearnOptions,

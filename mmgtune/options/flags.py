@@ -30,10 +30,15 @@ def in_flags(text: str) -> str:
         if name not in FLAGS:
             return found[0]
         if value == "False":
-            return f"--no-{FLAGS[name].lstrip('-')}"
+            return off_flag(FLAGS[name])
         return FLAGS[name] if value == "True" else f"{FLAGS[name]} {value}"
 
     return _KEYWORD.sub(flagged, text)
+
+
+def off_flag(flag: str) -> str:
+    """What turns off what is on unless it is turned off; the flag itself where it is named after that."""
+    return flag if flag.startswith("--no-") else f"--no-{flag.lstrip('-')}"
 
 
 _KEYWORD = re.compile(r'(?<![\w.-])([a-z]\w*)=("[^"]*"|[^\s;)?]*[^\s;,.)?])')

@@ -43,7 +43,7 @@ class TrainingOptions(Options):
     def problems(self) -> list[Problem]:
         """There must be a validation before the end."""
         found = super().problems()
-        if self.validate_every > self.steps:
+        if self.validate_every > self.steps > 0:
             what = f"every {self.validate_every} updates of {self.steps} is never"
             found.append(Problem(what, "validate_every", fix=f"write validate_every={self.steps} or less"))
         return found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from ..errors import Problem
@@ -55,7 +56,8 @@ class TuningOptions(SimulationOptions):
     )
     prior: bool = choice(
         True,
-        "Count how far coefficients move from what formulas that say their scatter give.",
+        "Do not count how far coefficients move from what formulas that say their scatter, or sisters, give.",
+        flag="--no-prior",
     )
     initial: str = choice(
         "measured",
@@ -102,6 +104,18 @@ class FitOptions(SearchOptions):
         above=0,
         most=5,
     )
+    sisters: Path | None = choice(
+        None,
+        "Prior of sister ships: the folder of a fleet whose table names their class, or the file of a class.",
+        flag="--prior",
+    )
+
+    def problems(self) -> list[Problem]:
+        """What makes no sense; sisters are a prior."""
+        found = super().problems()
+        if self.sisters is not None and not self.prior:
+            found.append(Problem("a prior of sister ships, and none", "sisters", fix="leave prior=False out"))
+        return found
 
     def posterior_options(self) -> PosteriorOptions:
         """The choices of particles of the same ship and trials."""

@@ -7,6 +7,6 @@ run         from particles and a question to a ranking
 """
 
 from .question import Question
-from .run import Expected, TrialPlan, plan_trial
+from .run import Expected, TrialPlan, plan_trial, write_plan
 
-__all__ = ["Expected", "Question", "TrialPlan", "plan_trial"]
+__all__ = ["Expected", "Question", "TrialPlan", "plan_trial", "write_plan"]

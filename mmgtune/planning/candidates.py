@@ -12,7 +12,7 @@ from ..arrays import FloatArray
 from ..inputs import INPUTS
 from ..model import Model
 from ..options.planning import KINDS
-from ..orders import Helmsman, SpiralOrder, Straight, TurningOrder, Weave, ZigzagOrder, run_manoeuvre
+from ..orders import Helmsman, Sailing, SpiralOrder, Straight, TurningOrder, Weave, ZigzagOrder, run_manoeuvres
 from ..predicting.asked import Approach
 from ..profile import ShipProfile
 from ..simulating import turn_name, zigzag_name
@@ -57,26 +57,31 @@ class Candidate:
     longest: float
     astern: bool = False
 
-    def sailed(self, profile: ShipProfile, noise: FloatArray) -> Trial | None:
-        """What a profile's log of it would be, with the deviations (6,) of its sensors; None where she leaves it."""
-        unit = profile.L_pp / self.approach.speed
-        sample = min(1.0, SAMPLE * unit)
-        found = run_manoeuvre(
-            profile,
+    def sailing(self, L_pp: float) -> Sailing:
+        """What is simulated."""
+        sample = min(1.0, SAMPLE * L_pp / self.approach.speed)
+        return Sailing(
             self.helmsman(),
-            id=self.id,
-            speed=self.approach.speed,
-            n=self.approach.n,
+            self.id,
+            self.approach.speed,
+            self.approach.n,
             longest=self.longest,
             sample=sample,
             step=sample,
             engine=(lambda _: -1.0) if self.astern else None,
         )
-        if found.diverged:
-            return None
-        if self.astern:
-            found = _until_stopped(found)
-        return replace(as_trial(profile, found), noise=dict(zip(MOTION, noise.tolist(), strict=True)))
+
+
+def logs(profile: ShipProfile, asked: Sequence[Candidate], noise: FloatArray) -> list[Trial | None]:
+    """What a profile's log of each would be, with the deviations (6,) of its sensors; None where it diverges."""
+    deviations = dict(zip(MOTION, noise.tolist(), strict=True))
+    motions = run_manoeuvres(profile, [one.sailing(profile.L_pp) for one in asked])
+    return [
+        None
+        if motion.diverged
+        else replace(as_trial(profile, _until_stopped(motion) if one.astern else motion), noise=deviations)
+        for one, motion in zip(asked, motions, strict=True)
+    ]
 
 
 def candidates(profile: ShipProfile, approach: Approach, kinds: Sequence[str], half: bool) -> list[Candidate]:

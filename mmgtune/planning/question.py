@@ -24,11 +24,13 @@ class Question:
     """An index of a manoeuvre.
 
     text   as it was asked
+    plain  the manoeuvre as options of commands have it: "turn -35"
     index  what is asked, with its unit
     asked  the manoeuvre
     """
 
     text: str
+    plain: str
     index: Known
     asked: Asked
 
@@ -51,7 +53,7 @@ def read_question(text: str, predictor: Predictor, approach: Approach) -> Questi
             Problem(f"a {kind} has no {KNOWN[name].words}", "question", fix=closest(words.strip(), fitting))
         )
     (one,) = asked(predictor, options, approach)
-    return Question(text, KNOWN[name], one)
+    return Question(text, f"{kind} {rest}".strip(), KNOWN[name], one)
 
 
 def _shown_by(name: str) -> tuple[str, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import time
 from collections.abc import Mapping
@@ -16,6 +17,7 @@ from ..backends import get_backend
 from ..bands import IndexBand, index_band
 from ..displayed import Displayed
 from ..errors import OptionError, Problem, ProfileError
+from ..files import write_text
 from ..networks import named_ship
 from ..options import PlanOptions, PredictOptions
 from ..particles import ParticlePredictor, Particles
@@ -24,9 +26,11 @@ from ..posterior.room import room_of
 from ..predicting.asked import Approach, approach_of
 from ..provenance import made_by
 from ..threads import blas_on_one_thread
-from .candidates import candidates
+from .candidates import candidates, logs
 from .expected import POINTS, answers, gradient, share_left, slopes_of
 from .question import Question, read_question
+
+RESULT = "plan.json"
 
 MOSTLY = 0.5
 """Share of the variance of an answer that its mean slopes must account for, else there is a note."""
@@ -67,6 +71,7 @@ class Expected:
 class TrialPlan(Displayed):
     """Trials by what they tell of a question, best first.
 
+    model   what the particles were called
     band    of the question now; half  of its width
     linear  share of the variance of the question that its mean slopes account for
     lost    trials that cannot be simulated or judged, in words
@@ -74,6 +79,7 @@ class TrialPlan(Displayed):
     """
 
     particles: Particles
+    model: str
     question: Question
     band: IndexBand
     half: float
@@ -100,12 +106,14 @@ class TrialPlan(Displayed):
         return {
             "schema": 1,
             "kind": "plan",
+            "model": self.model,
             "ship": self.particles.profile.id,
             "sha256": self.particles.profile.sha256,
             "learnt_from": facts.get("trials"),
             "temper": facts.get("temper"),
             "question": {
                 "text": self.question.text,
+                "asked": self.question.plain,
                 "index": self.question.index.key,
                 "words": self.question.index.words,
                 "unit": self.question.index.unit,
@@ -155,8 +163,8 @@ def plan_trial(model: str | Path | Particles, question: str, options: PlanOption
     backend, integrator = get_backend(options.backend), options.make_integrator()
     linear = float(g @ C @ g) / band.deviation**2
     found, lost = [], []
-    for one in candidates(particles.profile, approach, options.kind, options.half_speed):
-        trial = one.sailed(particles.profile, noise)
+    possible = candidates(particles.profile, approach, options.kind, options.half_speed)
+    for one, trial in zip(possible, logs(particles.profile, possible, noise), strict=True):
         if trial is None:
             lost.append(f"{one.words}: the ship leaves what the model can do")
             continue
@@ -172,6 +180,7 @@ def plan_trial(model: str | Path | Particles, question: str, options: PlanOption
         raise OptionError(Problem("no trial of these kinds can be judged", "kind", why, "ask for others"))
     return TrialPlan(
         particles=particles,
+        model=str(model) if isinstance(model, str | Path) else particles.profile.id,
         question=asked,
         band=band,
         half=band.half,
@@ -182,6 +191,13 @@ def plan_trial(model: str | Path | Particles, question: str, options: PlanOption
         options=options,
         wall_s=time.perf_counter() - began,
     )
+
+
+def write_plan(result: TrialPlan, folder: Path, command: str = "") -> dict[str, Any]:
+    """Write the record into a run folder.  Returns it; raises OutputError."""
+    document = {**result.to_dict(command), "out": str(folder)}
+    write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+    return document
 
 
 def _particles(model: str | Path | Particles) -> Particles:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..bands import Pooled, WindowScore, pooled
+from ..bands import Pooled, WindowScore, pooled, pooled_by
 from ..fitting import BandsLeftOut, LeftOut, leave_out
 from ..fitting.extending import settled
 from ..fitting.journal import journalled, remembered
@@ -95,8 +95,5 @@ def foretold(
 def _pooled(scores: Sequence[WindowScore], sigma: Mapping[str, float]) -> tuple[dict[str, Pooled], dict[str, Pooled]]:
     if not scores:
         return {}, {}
-    kinds = dict.fromkeys(one.manoeuvre for one in scores if one.manoeuvre)
-    runs = dict.fromkeys(one.run for one in scores)
-    by_kind = {kind: pooled([one for one in scores if one.manoeuvre == kind], sigma) for kind in kinds}
-    by_run = {run: pooled([one for one in scores if one.run == run], sigma) for run in runs}
-    return {"": pooled(list(scores), sigma), **by_kind}, by_run
+    by_kind = pooled_by(lambda one: one.manoeuvre or None, scores, sigma)
+    return {"": pooled(scores, sigma), **by_kind}, pooled_by(lambda one: one.run, scores, sigma)

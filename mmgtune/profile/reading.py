@@ -40,7 +40,10 @@ def find_profile(name: str | Path) -> Path:
         return found
     fix = f"give a path to a TOML file, or a bundled name: {', '.join(profile_names())}"
     if path.is_dir():
-        raise ProfileError(Problem("the profile is a folder, not a file", str(name), fix=fix))
+        there = sorted(one.name for one in path.glob("*.toml"))[:3]
+        fix = f"name one of its files ({', '.join(there)}), or " * bool(there) + fix
+        why = "it is no run folder with a model in it" if not there else ""
+        raise ProfileError(Problem("the profile is a folder, not a file", str(name), why, fix=fix))
     trained = network_names()
     fix += f"; where trained models do: {', '.join(trained)}" if trained else ""
     why = "it is a trained model, which only simulation, scoring and prediction take" if name in trained else ""

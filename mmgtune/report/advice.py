@@ -58,7 +58,7 @@ def after_fit(data: Mapping[str, Any]) -> Advice:
     reason = "Take the tuned ship through manoeuvres that were not measured, against the IMO criteria"
     items.append((reason, f"mmgtune simulate -p {tuned} --turn 35 --turn -35 --zigzag 10/10 --zigzag 20/20"))
     if data.get("command"):
-        items.append(("Repeat this run", clean(data["command"])))
+        items.append(("Repeat this run", again(data["command"])))
     return tuple(items)
 
 
@@ -89,7 +89,7 @@ def after_sweep(data: Mapping[str, Any]) -> Advice:
         wider = ",".join(f"{chosen + step:.2g}" for step in (0.0, 0.1, 0.2))
         items.append(("The widest range did best: try wider ones", f"mmgtune sweep {profile} {trials} --ar {wider}"))
     if data.get("command"):
-        items.append(("Repeat this sweep", clean(data["command"])))
+        items.append(("Repeat this sweep", again(data["command"])))
     return tuple(items)
 
 
@@ -128,6 +128,13 @@ def after_diagnosis(data: Mapping[str, Any]) -> Advice:
     return tuple(items)
 
 
+def again(command: str) -> str:
+    """A command that was given before, as it can be given again: a folder it wrote to is there by now."""
+    words = [word for word in shlex.split(clean(command)) if word not in ("--resume", "--force")]
+    named = any(word in ("--out", "-o") or word.startswith("--out=") for word in words)
+    return shlex.join([*words, "--force"] if named else words)
+
+
 def of_the_day(tag: str) -> bool:
     """Whether an effect is of the trials rather than of the ship: current, wind, errors of sensors."""
     effect = find_effect(tag)
@@ -158,7 +165,7 @@ def after_simulation(data: Mapping[str, Any], measured: bool) -> Advice:
         items.append(("The runs are trial files: their indices by the same code as of measured ones",
                       f"mmgtune trials inspect {out}"))  # fmt: skip
     if data.get("command"):
-        items.append(("Repeat this simulation", f"{clean(data['command'])} --force"))
+        items.append(("Repeat this simulation", again(data["command"])))
     return tuple(items)
 
 
@@ -174,6 +181,26 @@ def after_validation(data: Mapping[str, Any]) -> Advice:
     if not data.get("window_s"):
         reason = "Score short windows instead, in which errors do not add up along a run"
         items.append((reason, f"mmgtune validate {names} {trials} --restart 60"))
+    return tuple(items)
+
+
+def after_voyages(data: Mapping[str, Any]) -> Advice:
+    """(reason, command) pairs that follow from a validation on voyages."""
+    voyages = shortest(data["trials"].get("path") or "VOYAGES", "trials")
+    named = {name: one.get("path") for name, one in data["profiles"].items()}
+    paths = [shortest(named.get(one["profile"]) or one["profile"], "ship_profiles") for one in data["models"]]
+    models = " ".join(map(shlex.quote, paths))
+    longer = 2.0 * (number(data.get("window_s")) or 120.0)
+    items = [
+        (
+            "See windows of twice the length, in which errors of forces have longer to add up",
+            f"mmgtune validate {models} {shlex.quote(voyages)} --restart {longer:g}",
+        )
+    ]
+    first = data["models"][0]
+    if first.get("sha256"):
+        reason = "See how the first model turns and stops in calm water, against the IMO criteria"
+        items.append((reason, f"mmgtune simulate -p {shlex.quote(paths[0])} --turn 35 --turn -35 --zigzag 10/10"))
     return tuple(items)
 
 

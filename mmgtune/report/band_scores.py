@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from .wording import NONE, number, shown
+from .blocks import Prose, Section, Table, cells
+from .wording import NONE, clean, number, shown
 
 MEANING = (
     "L_fit is the mean squared distance of a particle from what was measured over the noise that a trial states "
@@ -46,3 +47,17 @@ def score_cells(scores: Mapping[str, Any]) -> list[str]:
         held(scores["coverage_90"]),
         shown(scores["sharpness"], 3),
     ]
+
+
+def bands_section(models: Sequence[Mapping[str, Any]], of: str) -> Section | None:
+    """How well the bands of the models that have some hold what was measured; None where none has.
+
+    models  rows with "profile", and "bands" where there are any
+    of      on what, as the end of the table's caption
+    """
+    rows = tuple(cells(clean(one["profile"]), *score_cells(one["bands"])) for one in models if one.get("bands"))
+    if not rows:
+        return None
+    caption = f"Whether the bands held what was measured, on {of}"
+    table = Table("bands-table", caption, ("model", *SCORE_HEADS), rows, range(1, 1 + len(SCORE_HEADS)))
+    return Section("bands", "Bands", (table, Prose((MEANING,))))

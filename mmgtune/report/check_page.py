@@ -60,7 +60,7 @@ def _cards(data: Mapping[str, Any]) -> tuple[Card, ...]:
         unit = f" {clean(worst['unit'])}" if worst["unit"] else ""
         value = f"{shown(worst['baseline'], 3)} → {shown(worst['now'], 3)}{unit}"
         note = f"{clean(worst['metric'])} of {clean(worst['trial'])}, allowed {shown(worst['allowed'], 2)}{unit}"
-        cards.append(Card("Worst", value, note=note, tone="bad"))
+        cards.append(Card("Worst in its own unit", value, note=note, tone="bad"))
     else:
         cards += _means(data)
     counts = data["counts"]
@@ -130,8 +130,8 @@ def _changed(data: Mapping[str, Any]) -> Section | None:
     lines = tuple(
         cells(
             clean(row["name"]),
-            coefficient_text(row["baseline"]),
-            coefficient_text(row["now"]),
+            NONE if row.get("only") == "now" else coefficient_text(row["baseline"]),
+            NONE if row.get("only") == "baseline" else coefficient_text(row["now"]),
             str(row["line"]) if row["line"] is not None else NONE,
             share(row["share"]),
         )
@@ -140,7 +140,8 @@ def _changed(data: Mapping[str, Any]) -> Section | None:
     heads = ("coefficient", "baseline", "now", "line of the profile", "undoes")
     about = (("undoes", "share of what J got worse by that this coefficient's old value alone takes back"),)
     table = Table("changed-table", "Coefficients that are not what they were", heads, lines, (1, 2, 3, 4), about)
-    return Section("changed", "Changed coefficients", (table,))
+    block: Block = table if len(lines) <= 24 else Fold(f"All {len(lines)} that changed", (table,))
+    return Section("changed", "Changed coefficients", (block,))
 
 
 def _all(data: Mapping[str, Any]) -> Section:

@@ -7,11 +7,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from .blocks import Card, Cell, Page, Prose, Section, Table, cells
+from . import motion_block, motions
+from .blocks import Block, Card, Cell, Fold, Page, Prose, Section, Table, cells
 from .common import doubts, picture
 from .load import Kind
 from .plot import Axis, Figure, Line, Look, Mark, Panel
 from .wording import NONE, clean, coefficient_text, number, percent, run_words, shown
+
+LONG = 20
+"""Coefficients that differ, more than which are folded away."""
 
 _LOOKS = {"a": Look("before", 1.6), "b": Look("after", 1.6, "dash")}
 _FORCES = (
@@ -21,7 +25,7 @@ _FORCES = (
         "over_rudder",
         "delta_deg",
         "rudder angle [°]",
-        "rudder with the hull's reaction, straight ahead",
+        "rudder with hull, straight on",
         ("X", "Y", "N"),
     ),
 )
@@ -58,6 +62,8 @@ def build(record: ComparisonRecord) -> Page:
     data, names = record.data, record.names
     manoeuvres = data["manoeuvres"]
     sections: list[Section] = []
+    if manoeuvres.get("motions"):  # records of older versions have none
+        sections.append(_motions(names, manoeuvres))
     if manoeuvres["indices"]:
         blocks = (
             picture(_turns(names, manoeuvres["tracks"]), "Turning circles", _circles(names, manoeuvres["indices"])),
@@ -66,7 +72,10 @@ def build(record: ComparisonRecord) -> Page:
         sections.append(Section("manoeuvres", "Standard manoeuvres", blocks))
     caption = f"Prime system, at {shown(data['speed_mps'], 3)} m/s. X forward, Y and N to starboard."
     sections.append(Section("forces", "Forces", (picture(_forces(names, data["forces"]), "Forces", caption),)))
-    sections.append(Section("coefficients", "Coefficients", (_coefficients(names, data["coefficients"]),)))
+    differ: Block = _coefficients(names, data["coefficients"])
+    if isinstance(differ, Table) and len(differ.rows) > LONG:
+        differ = Fold(f"All {len(differ.rows)} coefficients that differ", (differ,))
+    sections.append(Section("coefficients", "Coefficients", (differ,)))
     sections.append(_made(data["profiles"]))
     titles = [clean(one["title"]) for one in data["profiles"]]
     return Page(
@@ -128,6 +137,25 @@ def _circles(names: tuple[str, str], rows: Sequence[Mapping[str, Any]]) -> str:
                 wider = f"{percent(100.0 * abs(stbd - port) / min(stbd, port)).lstrip('+')} wider to {side}"
             parts.append(f"{name} turns {wider}")
     return "; ".join(parts) + "." if parts else "Tracks in lengths of each ship."
+
+
+def _motions(names: tuple[str, str], manoeuvres: Mapping[str, Any]) -> Section:
+    """Standard manoeuvres of both, each from her own approach."""
+    import numpy as np
+
+    runs = [motions.Run(key, name[-30:], _LOOKS[key]) for key, name in zip("ab", names, strict=True)]
+    found = [
+        motions.Manoeuvre(
+            run_words(id),
+            {key: {name: np.array(values, dtype=float) for name, values in of[key].items()} for key in of},
+        )
+        for id, of in manoeuvres["motions"].items()
+    ]
+    caption = "Standard manoeuvres of both, each from the approach her profile states."
+    block = motion_block.of_manoeuvres(
+        found, runs, (), caption, said="Tracks of standard manoeuvres.", L_pp=number(manoeuvres.get("L_pp"))
+    )
+    return Section("motions", "Tracks and time histories", (block,))
 
 
 def _turns(names: tuple[str, str], tracks: Mapping[str, Any]) -> Figure:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from ..units import DIMENSIONLESS, read_as
 from . import advice, findings, measures, motion_block, unexplained
 from .blocks import Block, Card, Cell, Commands, Fold, Nothing, Page, Prose, Section, Table, cells
 from .common import assumptions, cards_of_misfit, doubts, generated_banner, picture, provenance
@@ -42,14 +43,6 @@ _RUNS = {"measured": "measured", "before": "without a cause", "after": "with the
 
 _BARS = 12
 """Hypotheses drawn."""
-
-_READ = {
-    "rad": (180.0 / math.pi, "°"),
-    "rad/s": (180.0 / math.pi, "°/s"),
-    "rad/s^2": (180.0 / math.pi, "°/s²"),
-    "N": (1e-3, "kN"),
-}
-"""Factor and unit in which people read a quantity."""
 
 _FORCE_WORDS = {
     "dX": "surge [kN]", "dY": "sway [kN]", "dN": "yaw [kN m]",
@@ -190,7 +183,7 @@ def _voyages(data: Mapping[str, Any]) -> Section | None:
 
 
 def _head(name: str, unit: str) -> str:
-    return clean(name) if unit in ("-", "prime") else f"{clean(name)} [{clean(unit)}]"
+    return clean(name) if unit in DIMENSIONLESS else f"{clean(name)} [{clean(unit)}]"
 
 
 def _with_error(value: Mapping[str, Any]) -> tuple[str, str]:
@@ -222,7 +215,7 @@ def _causes(data: Mapping[str, Any]) -> Section | None:
     for cause in listed:
         for name, value in cause["parameters"].items():
             low, high = value["ci95"]
-            factor, unit = _READ.get(value["unit"], (1.0, clean(value["unit"])))
+            unit, factor = read_as(clean(value["unit"]))
             interval = f"{_end(low, factor)} … {_end(high, factor)}"
             size = shown(factor * value["value"]) if number(value["value"]) is not None else "∞"
             rows.append(cells(clean(cause["effect"]), clean(name), size, interval, unit, _p(cause["p_value"])))
@@ -512,8 +505,8 @@ def _limits(row: Mapping[str, Any]) -> str:
     found = []
     for name, limit in row["detection_limit"].items():
         if limit is not None:
-            factor, unit = _READ.get(row["units"].get(name), (1.0, row["units"].get(name, "")))
-            pure = unit in ("-", "prime")
+            unit, factor = read_as(row["units"].get(name, ""))
+            pure = unit in DIMENSIONLESS
             found.append(f"{name} {shown(factor * limit, 4 if pure else 2)} {'' if pure else unit}".strip())
     return ", ".join(found) or "not within its range"
 

@@ -7,11 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from ..units import DIMENSIONLESS
 from .plot import Axis, Bar, Dots, Figure, Line, Look, Mark, Panel, Rule
-from .wording import clean, number
-
-NORMAL = 1.96
-"""Half width of a 95 % interval, in standard errors."""
+from .wording import NORMAL, clean, number
 
 LONGEST = 14
 """Letters of a name that are written under the axis."""
@@ -31,7 +29,7 @@ def differences(found: Sequence[Mapping[str, Any]]) -> Figure:
 
 def axis_words(one: Mapping[str, Any], name: str) -> str:
     """What a panel shows, with its unit."""
-    unit = "–" if one["unit"] in ("-", "prime") else clean(one["unit"])
+    unit = "–" if one["unit"] in DIMENSIONLESS else clean(one["unit"])
     relative = " over mean" if one["relative_to_mean"] else ""
     return f"{clean(one['quantity'])} {clean(name)}{relative} [{unit}]"
 

@@ -6,6 +6,7 @@ from typing import Any
 
 from .blocks import Card, Page, Prose, Section, Table, cells
 from .common import picture, rms_errors
+from .learned_motions import block
 from .learning_page import (
     MEANING,
     ROLES,
@@ -15,7 +16,6 @@ from .learning_page import (
     made_section,
     next_steps,
     scores_table,
-    tracks_figure,
     tracks_words,
 )
 from .load import Kind
@@ -31,7 +31,7 @@ def build(record: LearningRecord) -> Page:
     """Everything the report of an ensemble says."""
     data = record.data
     watched = "runs kept back" if data["watched_by"] else "all windows learned from"
-    tracks, curves = tracks_figure(data["drawn"]), curves_figure(record.members, f"loss on {watched} [–]")
+    curves = curves_figure(record.members, f"loss on {watched} [–]")
     curves_words = (
         "Loss of each network on the windows of an update, and, of the running mean of its weights, on "
         f"{watched}. Each is trained to the end: none is chosen."
@@ -46,7 +46,7 @@ def build(record: LearningRecord) -> Page:
         warnings=("The training was stopped early; --resume continues it.",) if data["interrupted"] else (),
         cards=_cards(record),
         sections=(
-            Section("tracks", "What its members predict", (picture(tracks, "Tracks", tracks_words(record)),)),
+            Section("tracks", "What its members predict", (block(data["drawn"], tracks_words(record)),)),
             Section("scores", "Errors by kind of manoeuvre", (scores_table(record), Prose((MEANING,)))),
             Section(
                 "learning",

@@ -76,13 +76,13 @@ def motions(name: str, alt: str, bands: Mapping[str, Columns], level: float, sev
     return Figure(name, alt, tuple(panels), _legend(level, several, seen), 2)
 
 
-def indices(rows: Mapping[str, Sequence[Mapping[str, Any]]], level: float, several: bool) -> Figure:
-    """Whiskers: mean and band of each index, a panel for each unit.
+def indices(rows: Mapping[tuple[str, str], Sequence[Mapping[str, Any]]], level: float, several: bool) -> Figure:
+    """Whiskers: mean and band of each index, a panel for each run and unit.
 
-    rows  by unit: ``label``, ``mean``, ``low``, ``high`` and ``measured``, None where there is none
+    rows  by run and unit: ``label``, ``mean``, ``low``, ``high`` and ``measured``, None where there is none
     """
     seen = any(row["measured"] is not None for of in rows.values() for row in of)
-    panels = tuple(_whiskers(of, unit) for unit, of in rows.items())
+    panels = tuple(_whiskers(of, run, unit) for (run, unit), of in rows.items())
     legend = _legend(level, several, seen, whiskers=True)
     return Figure("indices", "Indices of the manoeuvres with their bands", panels, legend, 1)
 
@@ -139,7 +139,7 @@ def spread(marks: Sequence[Mapping[str, float]], most: int) -> list[Mapping[str,
     return [marks[round(k * (len(marks) - 1) / (most - 1))] for k in range(most)]
 
 
-def _whiskers(rows: Sequence[Mapping[str, Any]], unit: str) -> Panel:
+def _whiskers(rows: Sequence[Mapping[str, Any]], run: str, unit: str) -> Panel:
     known = [value for row in rows for key in ("mean", "low", "high", "measured") if (value := row[key]) is not None]
     reach = max(known, default=1.0)
     marks: list[Mark] = []
@@ -157,7 +157,7 @@ def _whiskers(rows: Sequence[Mapping[str, Any]], unit: str) -> Panel:
     ticks = tuple((float(k), clean(row["label"])[-44:]) for k, row in enumerate(rows))
     y = Axis(low=len(rows) - 0.4, high=-0.6, ticks=ticks, grid=False)
     x = Axis(f"[{unit}]", low=min(0.0, *known) if known else 0.0)
-    return Panel(tuple(marks), x, y, shape=-(26.0 * len(rows) + 45.0))
+    return Panel(tuple(marks), x, y, run, shape=-(26.0 * len(rows) + 62.0))
 
 
 def _legend(

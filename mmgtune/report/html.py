@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,20 +25,29 @@ def fragment(page: Page) -> str:
 
 
 def _rendered(template: str, page: Page, payloads: list[str]) -> str:
-    import jinja2
     from markupsafe import Markup
 
     from . import svg
 
-    environment = jinja2.Environment(
+    text: str = (
+        _environment()
+        .get_template(template)
+        .render(page=page, drawn=lambda figure: Markup(svg.inline(figure)), payloads=[Markup(one) for one in payloads])
+    )
+    return text
+
+
+@cache
+def _environment() -> Any:
+    """What makes pages of templates; it compiles each of them once in a process."""
+    import jinja2
+
+    return jinja2.Environment(
         loader=jinja2.FileSystemLoader(_TEMPLATES),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
-    )
-    return environment.get_template(template).render(
-        page=page, drawn=lambda figure: Markup(svg.inline(figure)), payloads=[Markup(text) for text in payloads]
     )
 
 

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from . import learned_motions
 from .advice import shortest
 from .blocks import Block, Card, Commands, Page, Prose, Section, Table, cells
 from .common import picture, rms_errors
-from .learning_page import made_section, track_line
+from .learning_page import made_section
 from .load import Kind
 from .plot import Axis, Figure, Line, Look, Mark, Panel, Rule, model_look
 from .tables import tone
@@ -28,16 +30,17 @@ class HybridRecord:
 def build(record: HybridRecord) -> Page:
     """Everything the report of a hybrid says."""
     data = record.data
-    tracks, curves = _tracks_figure(data["drawn"]), _curves_figure(data["tried"])
+    curves = _curves_figure(data["tried"])
     gained = bool(data["gained"])
     words = (
         "Of each kind of manoeuvre the window of median error, from its first measured state: measured, the model of "
         "forces alone, and with the network."
     )
+    tracks = learned_motions.block(data["drawn"], words, ("forces alone", "hybrid"))
     sections = [
         Section("gains", "Gain on unseen runs", (_gains(data),)) if gained else None,
         _reading(data["reading"]) if gained else None,
-        Section("tracks", "What it predicts", (picture(tracks, "Tracks", words),)),
+        Section("tracks", "What it predicts", (tracks,)),
         Section("learning", "How it was chosen", _curves(curves, data)),
         Section("next", "What to do next", (_next(record),)),
         made_section(data, [("memory of velocities", f"{shown(data['lag_s'], 3)} s")]),
@@ -173,25 +176,13 @@ def _curves_figure(tried: Sequence[Mapping[str, Any]]) -> Figure | None:
     return Figure("curves", "Error on unseen runs by updates", tuple(panels), legend) if panels else None
 
 
-def _tracks_figure(drawn: Sequence[Mapping[str, Any]]) -> Figure:
-    measured, looks = Look("ink", 1.9), (Look("before", 1.3, "dot"), Look("after", 1.5, "dash"))
-    panels = []
-    for one in drawn:
-        marks = [track_line(one["measured"], measured)]
-        marks += [track_line(track, look) for track, look in zip(one["members"], looks, strict=False)]
-        title = clean(one["manoeuvre"]) or clean(one["id"])
-        panels.append(Panel(tuple(marks), Axis("east [m]"), Axis("north [m]"), title, 0.95, equal=True))
-    legend = (("measured", measured), ("forces alone", looks[0]), ("hybrid", looks[1]))
-    return Figure("tracks", "Tracks as measured, of the model and of the hybrid", tuple(panels), legend)
-
-
 def _next(record: HybridRecord) -> Commands:
     data = record.data
-    path = shortest(data["provenance"]["profile"].get("path") or data["ship"], "ship_profiles")
-    trials = shortest(data["provenance"]["trials"].get("path") or "TRIALS", "trials")
+    path = shlex.quote(shortest(data["provenance"]["profile"].get("path") or data["ship"], "ship_profiles"))
+    trials = shlex.quote(shortest(data["provenance"]["trials"].get("path") or "TRIALS", "trials"))
     if not data["gained"]:
         return Commands((("See what the profile gets wrong, and why", f"mmgtune diagnose -p {path} -t {trials}"),))
-    model = f"{record.folder.as_posix()}/model.safetensors"
+    model = shlex.quote(f"{record.folder.as_posix()}/model.safetensors")
     window = number(data["window_s"])
     restart = f" --restart {window:g}" if window else ""
     return Commands(

@@ -11,11 +11,13 @@ from . import (
     diagnosis_page,
     ensemble_page,
     fit_page,
+    fleet_page,
     heading_page,
     hybrid_page,
     learning_page,
     leave_out_page,
     models_page,
+    plan_page,
     predict_page,
     simulate_page,
     sweep_page,
@@ -38,10 +40,12 @@ KINDS: tuple[Kind, ...] = tuple(
         models_page,
         heading_page,
         predict_page,
+        plan_page,
         leave_out_page,
         validate_page,
         check_page,
         simulate_page,
+        fleet_page,
     )
 )
 """Every kind, in the order in which their files are looked for."""

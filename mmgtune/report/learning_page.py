@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from . import learned_motions
 from .advice import shortest
 from .blocks import Card, Commands, Fold, Page, Prose, Section, Table, cells
 from .common import picture, rms_errors
@@ -49,9 +51,9 @@ class LearningRecord:
 def build(record: LearningRecord) -> Page:
     """Everything the report of a training says."""
     data = record.data
-    tracks, curves = tracks_figure(data["drawn"]), curves_figure(record.members, "L_MSE of validation [–]")
+    curves = curves_figure(record.members, "L_MSE of validation [–]")
     sections = [
-        Section("tracks", "What it predicts", (picture(tracks, "Tracks", tracks_words(record)),)),
+        Section("tracks", "What it predicts", (learned_motions.block(data["drawn"], tracks_words(record)),)),
         Section("scores", "Errors by kind of manoeuvre", (scores_table(record), Prose((MEANING,)))),
         Section("learning", "How it learned", (picture(curves, "Learning curves", _CURVES), *events_said(record))),
         Section("next", "What to do next", (next_steps(record),)),
@@ -101,24 +103,6 @@ def tracks_words(record: LearningRecord) -> str:
         f"as {count(len(record.members), 'network')} predict it from the first state and the "
         "inputs."
     )
-
-
-def tracks_figure(drawn: Sequence[Mapping[str, Any]]) -> Figure:
-    """Tracks as measured and as the members predict them, a kind of manoeuvre to each panel."""
-    measured, predicted = Look("ink", 1.6), Look("after", 1.1, "dash")
-    panels = []
-    for one in drawn:
-        marks = [track_line(member, predicted) for member in one["members"]]
-        marks.append(track_line(one["measured"], measured))
-        title = f"{clean(one['manoeuvre']) or clean(one['id'])}: L_MSE {shown(one['L_MSE'], 2)}"
-        panels.append(Panel(tuple(marks), Axis("east [m]"), Axis("north [m]"), title, 0.95, equal=True))
-    legend = (("measured", measured), ("predicted", predicted))
-    return Figure("tracks", "Tracks as measured and as predicted", tuple(panels), legend)
-
-
-def track_line(track: Mapping[str, Any], look: Look) -> Line:
-    """A track over the ground, north up; gaps stay open."""
-    return Line(track["east_m"], track["north_m"], look)
 
 
 _CURVES = (
@@ -178,10 +162,10 @@ def events_said(record: LearningRecord) -> tuple[Prose, ...]:
 
 def next_steps(record: LearningRecord) -> Commands:
     """What the model can be used for."""
-    model = f"{record.folder.as_posix()}/model.safetensors"
+    model = shlex.quote(f"{record.folder.as_posix()}/model.safetensors")
     made = record.data["provenance"]
-    ship = shortest(made["profile"].get("path") or record.data["ship"], "ship_profiles")
-    trials = shortest(made["trials"].get("path") or "TRIALS", "trials")
+    ship = shlex.quote(shortest(made["profile"].get("path") or record.data["ship"], "ship_profiles"))
+    trials = shlex.quote(shortest(made["trials"].get("path") or "TRIALS", "trials"))
     window = number(record.data["window_s"])
     restart = f" --restart {window:g}" if window else ""
     return Commands(

@@ -5,16 +5,21 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from . import fans
+from . import fans, motion_block, motions
 from .band_scores import MEANING, SCORE_HEADS, score_cells
 from .blocks import Block, Card, Cell, Fold, Page, Prose, Section, Table, cells
 from .common import picture
-from .load import Kind
-from .plot import Axis, Dots, Figure, Line, Look, Mark, Panel, model_look
+from .load import Kind, inputs_of, motions_in
+from .plot import LOOKS, Axis, Dots, Figure, Line, Look, Mark, Panel, model_look
 from .tables import pairs
-from .wording import NONE, clean, count, listing, number, shown
+from .wording import NONE, Channel, clean, count, listing, number, shown
+
+if TYPE_CHECKING:
+    from ..arrays import FloatArray
+
+    Motion = Mapping[str, FloatArray]
 
 _MEANING = (
     "L_MSE is the mean over time of the sum over all six states of squared differences over their variance (Wakita et "
@@ -26,10 +31,12 @@ _MEANING = (
 
 @dataclass(frozen=True)
 class ModelsRecord:
-    """A comparison of models as its folder holds it: model_comparison.json."""
+    """A comparison of models as its folder holds it: model_comparison.json, motions.parquet."""
 
     folder: Path
     data: Mapping[str, Any]
+    motions: Mapping[str, Mapping[str, Motion]]
+    inputs: Sequence[Channel]
 
     @property
     def names(self) -> list[str]:
@@ -58,11 +65,16 @@ def build(record: ModelsRecord) -> Page:
     ]
     caption = "L_MSE by kind of manoeuvre: mean and standard deviation over the networks; the number of runs below."
     sections.insert(0, Section("errors", "Errors", (picture(_figure(record), "Errors", caption), Prose((_MEANING,)))))
+    if record.motions:
+        sections.insert(0, _motions(record))
     if "bands" in data["models"][0]["windows"][0]:  # records of older versions have none
         sections.append(_bands(record))
     lost = _lost(record)
     if lost:
-        sections.insert(1, Section("diverged", "What diverged", (Prose(tuple(lost), listed=True, tone="warning"),)))
+        sections.insert(
+            1 + bool(record.motions),
+            Section("diverged", "What diverged", (Prose(tuple(lost), listed=True, tone="warning"),)),
+        )
     banner = "The trials are generated, not measured: this says how the method works, not how a real ship moves."
     return Page(
         title="Models compared",
@@ -182,6 +194,25 @@ def _lost(record: ModelsRecord) -> list[str]:
     return found
 
 
+def _motions(record: ModelsRecord) -> Section:
+    """Whole trials as measured, and as each model makes them from the first state."""
+    runs = [motions.Run("measured", "measured", LOOKS["measured"], True)]
+    runs += [
+        motions.Run(str(one["name"]), clean(one["name"])[-30:], replace(model_look(k), marker="o"))
+        for k, one in enumerate(record.data["models"])
+    ]
+    several = any(one["members"] > 1 for one in record.data["models"])
+    caption = "Whole trials from the first measured state, with the measured inputs" + (
+        "; of several networks the first." if several else "."
+    )
+    block = motion_block.of_manoeuvres(
+        [motions.Manoeuvre(clean(id), found) for id, found in record.motions.items()],
+        runs, record.inputs, caption, said="Tracks as measured and as the models make them.",
+        L_pp=number(record.data.get("L_pp")), notes=(motion_block.FULL,),
+    )  # fmt: skip
+    return Section("motions", "Tracks and time histories", (block,))
+
+
 def _figure(record: ModelsRecord) -> Figure:
     columns = record.columns(False)
     width = 0.7 / max(len(record.names), 1)
@@ -250,4 +281,10 @@ def _made(record: ModelsRecord) -> Section:
     )
 
 
-KIND = Kind("model-comparison", ("trials", "columns", "models", "sigma", "window_s", "provenance"), ModelsRecord, build)
+def _read(folder: Path, data: Mapping[str, Any]) -> ModelsRecord:
+    """The record, and the motions beside it, which folders of older versions have not."""
+    inputs = inputs_of(folder, data) if "inputs" in data else []
+    return ModelsRecord(folder, data, motions_in(folder, inputs) if inputs else {}, inputs)
+
+
+KIND = Kind("model-comparison", ("trials", "columns", "models", "sigma", "window_s", "provenance"), _read, build)

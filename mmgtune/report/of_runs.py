@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Any
 
+from ..units import DIMENSIONLESS, read_as
 from .blocks import Block, Prose, Table, cells
-from .wording import NONE, clean, number, shown
-
-NORMAL = 1.96
-"""Half width of a 95 % interval, in standard errors."""
-
-_READ = {"rad": (180.0 / math.pi, "°"), "N": (1e-3, "kN")}
-"""Factor and unit in which people read a quantity."""
+from .wording import NONE, NORMAL, clean, number, shown
 
 
 def of_runs(cause: Mapping[str, Any]) -> list[Block]:
@@ -21,8 +15,8 @@ def of_runs(cause: Mapping[str, Any]) -> list[Block]:
     found = cause.get("by_run")
     if not found:
         return []
-    factor, unit = _READ.get(found["unit"], (1.0, clean(found["unit"])))
-    head = "size" if found["unit"] in ("-", "prime") else f"size [{unit}]"
+    unit, factor = read_as(clean(found["unit"]))
+    head = "size" if found["unit"] in DIMENSIONLESS else f"size [{unit}]"
     rows = []
     for row in found["values"]:
         direction = number(row["direction_deg"])

@@ -187,21 +187,20 @@ def _off(record: PredictRecord) -> list[Card]:
     ]
 
 
-def _whisker_rows(record: PredictRecord) -> dict[str, list[dict[str, Any]]]:
-    """The principal indices of the runs that are drawn, by unit."""
-    found: dict[str, list[dict[str, Any]]] = {}
+def _whisker_rows(record: PredictRecord) -> dict[tuple[str, str], list[dict[str, Any]]]:
+    """The principal indices of the runs that are drawn, by run and unit."""
+    found: dict[tuple[str, str], list[dict[str, Any]]] = {}
     for run in record.drawn():
         for row in run["indices"]:
             if row["index"] not in (*PRINCIPAL, "track_reach_m", "head_reach_m") or row["unit"] not in ("m", "deg"):
                 continue
             values = row["over_L"] or row
-            label = f"{clean(run['id'])[-22:]}: {row['words']}"
             unit = "ship lengths" if row["over_L"] else row["unit"]
             several = (
                 {"low": values["low"], "high": values["high"]} if record.several else dict.fromkeys(("low", "high"))
             )
-            found.setdefault(unit, []).append(
-                {"label": label, "mean": values["mean"], "measured": values["measured"], **several}
+            found.setdefault((clean(run["id"])[-36:], unit), []).append(
+                {"label": row["words"], "mean": values["mean"], "measured": values["measured"], **several}
             )
     return found
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import advice, measures, motion_block, motions, tables
+from .band_scores import bands_section
 from .blocks import Block, Card, Commands, Fold, Page, Section, Table, cells
 from .common import doubts, generated_banner, made_table, picture, rms_errors
 from .load import Kind, inputs_of, motions_in
@@ -48,6 +49,7 @@ def build(record: ValidationRecord) -> Page:
     sections = [
         _motions(record),
         _scores(record) if record.scored else None,
+        bands_section(record.models, "these trials"),
         _stated(record),
         _repeated(record),
         Section("next", "What to do next", (Commands(advice.after_validation(data)),)),

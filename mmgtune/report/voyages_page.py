@@ -9,9 +9,10 @@ from typing import Any
 
 from ..arrays import FloatArray
 from ..units import shown_in
-from . import measures, motion_block, motions
+from . import advice, measures, motion_block, motions
 from . import voyages_figures as figures
-from .blocks import Card, Cell, Fold, Page, Prose, Section, Table, cells
+from .band_scores import bands_section
+from .blocks import Card, Cell, Commands, Fold, Page, Prose, Section, Table, cells
 from .common import doubts, generated_banner, picture
 from .load import Kind, columns_in
 from .plot import LOOKS, model_look
@@ -60,9 +61,11 @@ def build(record: VoyagesRecord) -> Page:
         _windows(record) if scored else None,
         _classes(record) if scored else None,
         _measures(record) if scored else None,
+        bands_section(record.models, "windows evenly among all"),
         _compared(data) if data.get("comparisons") else None,
         _where(record) if scored else None,
         _logs(data),
+        Section("next", "What to do next", (Commands(advice.after_voyages(data)),)) if scored else None,
         _how(data),
         _provenance(data),
     ]
@@ -256,7 +259,8 @@ def _where_caption(data: Mapping[str, Any]) -> str:
     moves = number(data["classes"].get("rudder_moves_from_rad"))
     factor = shown_in("rad")[1]
     said = (
-        "Below each bin the number of windows; bars: 95 % intervals, "
+        "In each title the share of the variance of log cVDM that the feature tells, to either side alike; below each "
+        "bin the number of windows; bars: 95 % intervals, "
         f"{anew} drawn anew. Features go together (a rudder put over slows the ship), so none is a cause by itself."
     )
     return said + (
@@ -297,11 +301,16 @@ def _panel(record: VoyagesRecord, row: Mapping[str, Any]) -> dict[str, Any]:
         models[str(one["profile"])] = [_point(by_ends.get((b["low"], b["high"]))) for b in row["bins"]]
     title = clean(row["words"]) + ("" if named else f" [{unit}]")
     return {
-        "title": f"{title}: explains {100.0 * (number(row['explained']) or 0.0):.0f}\u00a0%",
+        "title": f"{_brief(title)}: {100.0 * (number(row['explained']) or 0.0):.0f}\u00a0%",
         "labels": [figures.bin_label(one, factor) for one in row["bins"]],
         "counts": [shown(one["windows"], 7) for one in row["bins"]],
         "models": models,
     }
+
+
+def _brief(title: str) -> str:
+    """A feature in the room of a panel's title."""
+    return title.replace(" to either side", "")
 
 
 def _point(one: Mapping[str, Any] | None) -> tuple[float | None, float | None, float | None]:

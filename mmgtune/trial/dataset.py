@@ -10,7 +10,7 @@ from typing import Self
 
 from ..displayed import Plotted, inert
 from ..errors import Problem, TrialError, closest
-from ..resources import folder, taken, trial_set_names
+from ..resources import folder, profile_names, taken, trial_set_names
 from .index_trial import IndexTrial, has_index_trials, read_index_trials
 from .model import Trial
 from .parquet import id_in, read_trial
@@ -205,7 +205,8 @@ def find_trials(name: str | Path) -> Path:
         return found
     names = trial_set_names()
     fix = f"give a folder or a Parquet file, or a bundled name; {closest(str(name), names) if names else 'none here'}"
-    raise TrialError(Problem("no such trials", str(name), fix=fix))
+    why = "that is a ship profile; trials are given last" if str(name) in profile_names() else ""
+    raise TrialError(Problem("no such trials", str(name), why, fix))
 
 
 def of_another_ship(trials: Sequence[Trial | Voyage | IndexTrial], ship: str, split: Path) -> list[Problem]:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray
+from ..bands import Pooled
 from ..displayed import Displayed
 from ..measures import UNITS
 from ..options import VoyageOptions
@@ -128,6 +129,7 @@ class VoyageValidation(Displayed):
     drawn       windows to be looked at
     shorter     ids of files that are no voyages by themselves
     notes       on what was around the ship, by model
+    bands       of models that have some, how well these hold windows evenly among all
     interrupted  stopped by the user; everything is of the windows scored by then
     """
 
@@ -145,6 +147,7 @@ class VoyageValidation(Displayed):
     shorter: tuple[str, ...] = ()
     n_logs: int = 0
     notes: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    bands: Mapping[str, Pooled] = field(default_factory=dict)
     interrupted: bool = False
     wall_s: float = 0.0
 
@@ -282,6 +285,7 @@ class VoyageValidation(Displayed):
             "cVDM_parts": {part: _json(_mean(values)) for part, values in scored.parts.items()},
             "tells_most": most.feature.name if most else None,
             "where": [one.to_dict() for one in self.where[name]],
+            **({"bands": self.bands[name].to_dict()} if name in self.bands else {}),
         }
 
     def _drawn(self, one: DrawnWindow) -> dict[str, Any]:

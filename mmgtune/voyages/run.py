@@ -12,6 +12,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..backends import Cases
+from ..bands import Pooled
 from ..circumstances import acts_on_surroundings, extremes, notes
 from ..errors import OptionError, Problem, TrialError
 from ..fitting.journal import journalled, remembered
@@ -19,13 +20,13 @@ from ..fitting.run import facts_of_profile
 from ..given import trials_of
 from ..objective import spread
 from ..options import VoyageOptions
-from ..predictor import PhysicsPredictor, Predictor, draught_of, profile_of
+from ..predictor import PhysicsPredictor, Predictor, Uncertain, draught_of, profile_of
 from ..provenance import made_by
 from ..threads import blas_on_one_thread
 from ..trial import Cutting, Voyage, VoyageSet, load_voyages, voyage_windows, window_at
 from ..trial.voyage_windows import Window, mean_speed, rest_speed
 from ..units import DEG
-from ..validating import Scorable, predictors_of
+from ..validating import Scorable, bands_of, predictors_of
 from .part import Part, noted, recalled
 from .result import DrawnWindow, Log, VoyageValidation
 from .scores import cases_for, score_windows, windows_of
@@ -38,6 +39,10 @@ AT_ONCE = 60_000
 
 EACH = 2
 """Windows drawn of each role: best, median, worst."""
+
+
+BANDED = 200
+"""Windows at most on which bands are held against what was measured, evenly among all."""
 
 
 @dataclass
@@ -170,6 +175,7 @@ def validate_voyages(
     largest = np.concatenate([one["yaw_rate_largest"] for one in gathered.features] or [np.zeros(0)])
     r_max, r_max_from = r_max_of(given, predictors.items(), largest)
     table = gathered.table(r_max) if gathered.ids else None
+    scale = sigma or spreads.sigma()
     by = f"{options.sigma_from}" if options.sigma_from else "the windows, positions from the start of each"
     return VoyageValidation(
         predictors=predictors,
@@ -178,9 +184,10 @@ def validate_voyages(
         table=table,
         r_max=r_max,
         r_max_from=r_max_from,
-        sigma=sigma or spreads.sigma(),
+        sigma=scale,
         sigma_from=by,
         drawn=_drawn(table, data, predictors) if table is not None else (),
+        bands=_bands(table, data, predictors, scale) if table is not None and not interrupted else {},
         provenance=_provenance(predictors, data, logs, command),
         options=options,
         shorter=data.shorter,
@@ -247,6 +254,20 @@ def _drawn(table: WindowTable, data: VoyageSet, predictors: Mapping[str, Predict
             }
             found.append(DrawnWindow(place, role, trial.t, trial.motion, trial.delta, states))
     return tuple(found)
+
+
+def _bands(
+    table: WindowTable, data: VoyageSet, predictors: Mapping[str, Predictor], sigma: Mapping[str, float]
+) -> dict[str, Pooled]:
+    """Scores of the bands of models that have some, on windows evenly among all."""
+    if not any(isinstance(one, Uncertain) or one.n_members > 1 for one in predictors.values()):
+        return {}
+    chosen = np.unique(np.linspace(0, len(table) - 1, min(BANDED, len(table))).astype(int)).tolist()
+    trials = [
+        window_at(data.voyages[int(table.voyage[k])], int(table.row[k]), int(table.n_samples[k])).trial for k in chosen
+    ]
+    found = {name: bands_of(one, trials, sigma) for name, one in predictors.items()}
+    return {name: of[None] for name, of in found.items() if of}
 
 
 def _provenance(

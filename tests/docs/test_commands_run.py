@@ -2,7 +2,8 @@
 
 The pages on measured ships need data that does not travel with the program (tests/measured), the tutorial has a test of
 its own (test_tutorial.py), fits to sea-trial reports take minutes and are run by tests/fitting/test_stated.py, and the
-output of some commands here is what other tests are about: here they must work.
+output of some commands here is what other tests are about: here they must work.  Searches are cut short by options that
+stand after those of the page; whole ones are run by tests/fitting.
 """
 
 import re
@@ -75,15 +76,22 @@ def desk(tmp_path):
     return tmp_path
 
 
-def own_trials(desk, name):
-    """A small set of trials under that name: the bundled ones, every other sample of them."""
-    for trial in TRIALS:
+def own_trials(desk, name, trials=TRIALS):
+    """A small set of trials under that name: bundled ones, every other sample of them."""
+    for trial in trials:
         whole = read_trial(folder("trials") / "suzaku" / f"{trial}.parquet")
         thin = {channel: getattr(whole, channel)[::2] for channel in ATTRIBUTES.values()}
         write_trial(replace(whole, **thin), desk / name / f"{trial}.parquet", overwrite=True)
 
 
-SECONDS = {"README.md": 150, "calibrate.md": 70, "vectwin.md": 40}
+SHORTER = {
+    "fit": ("--method", "least-squares", "--starts", "2"),
+    "sweep": ("--starts", "2"),
+    "plan": ("--particles", "100"),
+}
+"""What is added to commands that would search for long."""
+
+SECONDS = {"README.md": 60, "calibrate.md": 30, "vectwin.md": 40}
 """About, of pages that take much longer than the others."""
 
 
@@ -103,6 +111,9 @@ def test_commands_of_a_page_run(page, desk):
         r'```(?:toml|csv) title="([^"]+)"\n(.*?)```', page.read_text(encoding="utf-8"), re.DOTALL
     ):
         (desk / name).write_text(text, encoding="utf-8")
+    if page.name == "fleets.md":
+        for ship in ("s1", "s2", "s3"):
+            own_trials(desk, f"measured/{ship}/2026-05", ("turn_m20", "zigzag_20"))
     if page.name == "ci.md":
         shutil.rmtree(desk / "trials")
         own_trials(desk, "trials")
@@ -110,7 +121,8 @@ def test_commands_of_a_page_run(page, desk):
     if any("runs/demo" in line for line in lines):
         assert run("fit", *QUICK, "--out", "runs/demo", cwd=desk).code == 0
     for line in lines:
-        ended = run(*words(line, desk), cwd=desk, env={"GITHUB_STEP_SUMMARY": "summary.md"})
+        command, *others = words(line, desk)
+        ended = run(command, *others, *SHORTER.get(command, ()), cwd=desk, env={"GITHUB_STEP_SUMMARY": "summary.md"})
         # What a diagnosis says of these trials is for it to say.
         good = (0, 1) if "--fail-on" in line else (0,)
         assert ended.code in good, (line, ended.out[-2000:], ended.err)

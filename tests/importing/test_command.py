@@ -19,7 +19,7 @@ def test_import_check_and_again(folder):
     command = ("trials", "import", "zigzag.csv", "--map", "map.toml", "-o", "trials")
     dry = run(*command, "--dry-run", cwd=folder)
     assert dry.code == 0, dry.err
-    assert "1 trials would be written" in dry.out
+    assert "1 trial would be written" in dry.out
     assert "positions missed by u, v, psi" in dry.out
     assert not (folder / "trials").exists()
     ended = run(*command, "--json", cwd=folder)

@@ -11,7 +11,7 @@ from mmgtune.errors import OptionError, ProfileError
 from mmgtune.options import PlanOptions, PosteriorOptions
 from mmgtune.particles import Particles, save_particles
 from mmgtune.planning import plan_trial
-from mmgtune.planning.candidates import candidates
+from mmgtune.planning.candidates import candidates, logs
 from mmgtune.planning.expected import share_left
 from mmgtune.planning.question import read_question
 from mmgtune.posterior import posterior
@@ -129,7 +129,7 @@ def test_trials_are_what_gear_and_equations_reach(ship):
 def test_a_stop_ends_where_she_has_no_way():
     tanker = load_profile("esso_osaka")
     (stop,) = candidates(tanker, Approach(tanker.approach.speed, tanker.approach.n), ("stop",), False)
-    trial = stop.sailed(tanker, np.full(6, 0.01))
+    (trial,) = logs(tanker, [stop], np.full(6, 0.01))
     assert trial.n[-1] < 0.0
     assert trial.u[:-1].min() > 0.0 >= trial.u[-1]
 
@@ -137,7 +137,7 @@ def test_a_stop_ends_where_she_has_no_way():
 def test_a_log_has_what_was_ordered(ship):
     (spiral, _) = candidates(ship, Approach(ship.approach.speed, ship.approach.n), ("spiral",), False)
     noise = np.array([0.4, 0.4, 0.003, 0.02, 0.02, 0.0005])
-    trial = spiral.sailed(ship, noise)
+    (trial,) = logs(ship, [spiral], noise)
     assert np.degrees(trial.delta.max()) == pytest.approx(25.0, abs=0.1)
     assert np.degrees(trial.delta.min()) == pytest.approx(-25.0, abs=0.1)
     assert trial.t[-1] < spiral.longest
@@ -194,6 +194,18 @@ def test_the_command_has_a_table_and_json(desk):
     assert halves == sorted(halves)
     assert halves[-1] <= document["question"]["half_width"]
     assert document["question"]["unit"] == "m"
+
+
+@pytest.mark.slow(5)
+def test_a_plan_with_a_folder_has_a_report(desk):
+    arguments = ("plan", "bands", "--question", QUESTION, "--kind", "straight", "--no-half-speed", "--out", "plan")
+    ended = run(*arguments, cwd=desk)
+    assert ended.code == 0, ended.err
+    assert ended.out.splitlines()[-1] == "Report: plan/report.html"
+    page = (desk / "plan" / "report.html").read_text(encoding="utf-8")
+    assert "To sail next: straight run." in page
+    assert "mmgtune</span> predict bands --turn -35" in page
+    assert run(*arguments, cwd=desk).code == 2
 
 
 @pytest.mark.slow(6)

@@ -3,15 +3,23 @@
 from __future__ import annotations
 
 import json
+import math
 import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from mmgtune.checking import check, update_baseline
 from mmgtune.comparing_models import CompareModelsOptions, compare_models, write_model_comparison
 from mmgtune.diagnose import DiagnoseOptions, diagnose, write_diagnosis
-from mmgtune.fitting import LeaveOutOptions, leave_out, write_left_out
+from mmgtune.errors import Problem
+from mmgtune.fitting import Information, LeaveOutOptions, leave_out, write_left_out
+from mmgtune.fleet import rows
+from mmgtune.fleet.commands import INFORMATION, Facts
+from mmgtune.fleet.job import Job, Source
+from mmgtune.fleet.record import JOBS, write_record
 from mmgtune.model import Model
 from mmgtune.options import SimulateOptions, ValidateOptions
 from mmgtune.predicting import predict, write_prediction
@@ -100,6 +108,29 @@ def _predict(folder: Path) -> None:
     write_prediction(predict(scattered(Model(load_profile("suzaku")), 20), trials=two_trials()), folder)
 
 
+def _plan(folder: Path) -> None:
+    """A plan by hand: the program's own takes particles of a posterior."""
+    names = (("turn_m35", "turn, 35 deg to port"), ("zigzag_p20_20", "zigzag 20/20, starboard first"))
+    trials = [
+        {
+            "id": id, "kind": "turn", "trial": words, "duration_s": 500.0, "half_width_after": 6.0 + k,
+            "shrinks": 0.4 - k / 9,
+        }
+        for k, (id, words) in enumerate(names)
+    ]  # fmt: skip
+    data = {
+        "schema": 1, "kind": "plan", "model": "runs/bands", "ship": "suzaku", "sha256": "ab", "linear_share": 0.9,
+        "question": {"text": "advance, turn 35", "asked": "turn 35", "index": "advance_m", "words": "advance",
+                     "unit": "m", "order": "turn with 35 deg of rudder to starboard", "mean": 250.0, "half_width": 10.0,
+                     "particles": 20},
+        "trials": trials, "left_out": ["spiral: the ship leaves what the model can do"], "notes": ["a note"],
+        "options": {"level": 90.0}, "wall_s": 1.0,
+        "provenance": {"command": "mmgtune plan runs/bands -q 'advance, turn 35' --out run", "mmgtune": "1",
+                       "created": "2026-01-01"},
+    }  # fmt: skip
+    (folder / "plan.json").write_text(json.dumps(data), encoding="utf-8")
+
+
 def _compare(folder: Path) -> None:
     known("suzaku", "suzaku_fam").write(folder)
 
@@ -112,7 +143,8 @@ def _compare_models(folder: Path) -> None:
 def _learning(folder: Path) -> None:
     """A training by hand: the program's own takes an extra that may not be installed."""
     motion = fake_run.motion(20.0, 200, 190.0, 3.1, 20.0)
-    track = {"north_m": motion["x"].tolist(), "east_m": motion["y"].tolist()}
+    columns = {"north_m": "x", "east_m": "y", "psi_rad": "psi", "u_m_s": "u", "v_m_s": "v_m", "r_rad_s": "r"}
+    shown = {name: motion[state].tolist() for name, state in columns.items()}
     score = {"L_MSE": 0.4, "L_MSE_by_state": dict.fromkeys(("x", "y", "psi", "u", "v_m", "r"), 0.07), "runs": 2}
     curve = [{"step": step, "loss": 9.0 / step, "score": 4.0 / step} for step in (100, 200, 300)]
     data = {
@@ -123,7 +155,8 @@ def _learning(folder: Path) -> None:
         "members": [{"seed": 1, "steps": 300, "loss": 0.03, "score": 0.02, "best_step": 300, "curve": curve,
                      "events": [{"step": 150, "why": "loss", "back_to": 100, "rate_factor": 0.5}]}],
         "scores": {"test": {**score, "trials": ["turn_p35"], "by_manoeuvre": {"turning": score}}},
-        "drawn": [{"id": "turn_p35", "manoeuvre": "turning", "L_MSE": 0.4, "measured": track, "members": [track]}],
+        "drawn": [{"id": "turn_p35", "manoeuvre": "turning", "L_MSE": 0.4, "t_s": motion["t"].tolist(),
+                   "measured": shown, "members": [shown]}],
         "provenance": {
             "trials": {"path": "trials/suzaku", "learned_from": ["turn_p10"], "sources": ["generated"], "licence": "",
                        "citation": ""},
@@ -132,6 +165,36 @@ def _learning(folder: Path) -> None:
         },
     }  # fmt: skip
     (folder / "learning.json").write_text(json.dumps(data), encoding="utf-8")
+
+
+def _fleet(folder: Path) -> None:
+    """Results of jobs by hand, put together by the program's own."""
+    for k, ship in enumerate(("aa", "bb", "cc", "dd")):
+        for month in range(12):
+            job = Job(ship, f"2025-{month + 1:02d}", "state", "fit", "", "", Source("", {}), {}, "1", "coasters")
+            bent = 2.0 if ship == "bb" and month >= 5 else 0.0
+            wave = 0.02 * ((7 * month + 3 * k) % 5 - 2)
+            off, row = 3.0 + k + 4.0 * bent + wave, ("effects.rudder-offset.angle", "effects.resistance.factor")
+            values = [math.radians(bent + wave), 1.0 + 0.02 * month + wave]
+            causes = ("rudder-offset",) if bent and month == 6 else ()
+            facts = Facts("no" if causes else "good", "as it is", off, 1.0, 1.0 + wave, 0.5, causes, (), row, values,
+                          (0.0, 1.0), (0.001, None), True)  # fmt: skip
+            known = rows.made(job, facts, "fit.json", 0.4)
+            if (ship, month) == ("cc", 3):
+                wrong = Problem("the trials cannot be read", "logs/cc/turn.parquet", "no such file", "look for it")
+                known = rows.failed(job, [wrong], 0.1)
+            rows.write(folder, job, known)
+    one = Job("dd", "2025-12", "look", "diagnose", "", "", Source("", {}), {}, "1")
+    rows.write(folder, one, rows.made(one, Facts("good", "nothing"), "diagnosis.json", 2.0))
+    told = Information(("hull.R_0",), np.eye(1), np.ones(1), np.full(1, 0.9), np.full(1, 0.2))
+    for ship in ("aa", "bb", "cc"):
+        (folder / "runs" / ship / "2025-01" / "state").mkdir(parents=True)
+        (folder / "runs" / ship / "2025-01" / "state" / INFORMATION).write_text(json.dumps(told.to_dict()))
+    (folder / JOBS).write_text(json.dumps({"jobs": [{"key": "0" * 16}]}))
+    document = write_record(folder, {**made_by("mmgtune fleet run fleet.toml"), "table": "fleet.toml"})
+    assert [one["name"] for one in document["changes"]] == [
+        "effects.rudder-offset.angle", "off_track"
+    ], document["changes"]  # fmt: skip
 
 
 def _edited(path: Path, edit: Callable[[dict[str, Any]], None]) -> None:
@@ -143,5 +206,5 @@ def _edited(path: Path, edit: Callable[[dict[str, Any]], None]) -> None:
 HOW: dict[str, Callable[[Path], None]] = {
     "diagnosis": _diagnosis, "leave-out": _leave_out, "validate": _validate, "simulate": _simulate, "trials": _trials,
     "check": _check, "predict": _predict, "comparison": _compare, "model-comparison": _compare_models,
-    "learning": _learning,
+    "learning": _learning, "plan": _plan, "fleet": _fleet,
 }  # fmt: skip

@@ -5,19 +5,31 @@ from __future__ import annotations
 import html
 import re
 import shlex
+import shutil
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from typer.main import get_command
 
+from mmgtune.cli import app
+from mmgtune.networks import save_network
 from mmgtune.profile import load_profile
-from mmgtune.report import advice
+from mmgtune.report import advice, render
+from mmgtune.trial import load_trials
 from tests.command import run
+from tests.networks.made import network
 
 pytestmark = [pytest.mark.xdist_group("report"), pytest.mark.slow(20)]
 
 ROOT = Path(__file__).parents[2]
 PLANNED = ("fit", "sweep", "leave-out", "diagnose")
 """Commands that say with --dry-run what they would do, and refuse what they would refuse."""
+
+
+QUICK = (*PLANNED, "validate", "simulate", "trials", "check", "plan", "predict")
+"""Commands that can be run here, if need be with --dry-run."""
 
 
 def commands_of(folder: Path) -> list[str]:
@@ -27,11 +39,16 @@ def commands_of(folder: Path) -> list[str]:
     return [html.unescape(re.sub(r"</?span>", "", text)) for text in found]
 
 
-def paste(command: str, cwd: Path, tmp_path: Path) -> None:
-    """Run a command as pasted, those that take long with --dry-run."""
+def paste(command: str, cwd: Path, tmp_path: Path, quick: Sequence[str] = QUICK) -> None:
+    """Run a command as pasted, those that take long with --dry-run; of others than ``quick`` look at the options."""
     words = shlex.split(command)
     assert words[0] == "mmgtune"
-    more = ("--dry-run",) if words[1] in PLANNED else ()
+    if "&&" in words:  # what comes after needs what the first makes, which takes long
+        words = words[: words.index("&&")]
+    if words[1] not in quick:
+        resolve(words)
+        return
+    more = ("--dry-run",) if words[1] in PLANNED and quick is QUICK else ()
     if words[1] == "simulate" and "--out" in words:
         words[words.index("--out") + 1] = str(tmp_path / "again")
     ended = run(*words[1:], *more, cwd=cwd)
@@ -42,6 +59,77 @@ def paste(command: str, cwd: Path, tmp_path: Path) -> None:
 def test_commands_work_when_pasted(more: dict[str, Path], name: str, tmp_path: Path) -> None:
     commands = commands_of(more[name])
     assert commands
+    for command in commands:
+        paste(command, ROOT, tmp_path)
+
+
+def resolve(words: Sequence[str]) -> None:
+    """A command whose options are known and whose profile and trials are there."""
+    made = get_command(app).commands[words[1]].make_context(words[1], list(words[2:]))  # type: ignore[attr-defined]
+    load_profile(made.params["profile"])
+    load_trials(made.params["trials"])
+
+
+QUICKLY = (
+    "-p",
+    "suzaku",
+    "-t",
+    "suzaku",
+    "--method",
+    "least-squares",
+    "--starts",
+    "1",
+    "--targets",
+    "hull.R_0,rudder.a_H",
+)
+
+
+def test_commands_of_a_fit_work_when_pasted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run("fit", *QUICKLY, "--ar", "0.1", "--out", "a run", cwd=tmp_path).code == 0
+    commands = commands_of(tmp_path / "a run")
+    assert {shlex.split(one)[1] for one in commands} == {"fit", "sweep", "simulate", "posterior"}
+    for command in commands:
+        paste(command, tmp_path, tmp_path, ("simulate", *(("fit",) if "--force" in command else ())))
+
+
+def test_commands_of_a_sweep_work_when_pasted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run("sweep", *QUICKLY, "--ar", "0.1,0.2", "--out", "a run", cwd=tmp_path).code == 0
+    commands = commands_of(tmp_path / "a run")
+    assert {shlex.split(one)[1] for one in commands} >= {"sweep", "simulate"}
+    for command in commands:
+        paste(command, tmp_path, tmp_path, ("simulate",))
+
+
+def test_a_command_can_be_given_again() -> None:
+    assert advice.again("mmgtune fit --out 'a run' --resume") == "mmgtune fit --out 'a run' --force"
+    assert advice.again("mmgtune fit -o run --force") == "mmgtune fit -o run --force"
+    assert advice.again("mmgtune fit --seed 2") == "mmgtune fit --seed 2"
+
+
+def test_commands_of_a_training_work_when_pasted(more: dict[str, Path], tmp_path: Path) -> None:
+    folder = tmp_path / "a run"
+    shutil.copytree(more["learning"], folder)
+    net = network(step=1.0, size=0.1)
+    save_network(replace(net, ship="suzaku", L_pp=83.0), folder / "model.safetensors")
+    render(folder)
+    commands = commands_of(folder)
+    assert [shlex.split(one)[1] for one in commands] == ["validate", "simulate"]
+    for command in commands:
+        paste(command, ROOT, tmp_path)
+
+
+def test_commands_of_a_check_work_when_pasted(more: dict[str, Path], tmp_path: Path) -> None:
+    commands = commands_of(more["check"])
+    assert [shlex.split(one)[1] for one in commands] == ["diagnose"]
+    for command in commands:
+        paste(command, ROOT, tmp_path, ())
+
+
+def test_commands_of_voyages_work_when_pasted(voyages_folder: Path, tmp_path: Path) -> None:
+    commands = commands_of(voyages_folder)
+    assert [shlex.split(one)[1] for one in commands] == ["validate", "simulate"]
     for command in commands:
         paste(command, ROOT, tmp_path)
 

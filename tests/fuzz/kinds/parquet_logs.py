@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
@@ -52,6 +53,19 @@ def other_type(rng: np.random.Generator, columns: dict[str, Any]) -> dict[str, A
             lambda: pa.array(["1"] * n).dictionary_encode(),
             lambda: pa.array(range(n), pa.duration("s")),
             lambda: pa.array(range(n), pa.date64()),
+            lambda: pa.array(np.arange(n), pa.timestamp("us", "Pacific/Chatham")),
+            lambda: pa.array([2**62] * n, pa.timestamp("us")),
+            lambda: pa.array(range(n), pa.time32("s")),
+            lambda: pa.array([Decimal("1.5")] * n, pa.decimal128(38, 20)),
+            lambda: pa.array([Decimal(10**70)] * n, pa.decimal256(76, 3)),
+            lambda: pa.array([[("a", 1.0)]] * n, pa.map_(pa.string(), pa.float64())),
+            lambda: pa.array([{"a": [{"b": None}]}] * n),
+            lambda: pa.array([[0.0, 1.0]] * n, pa.list_(pa.float64(), 2)),
+            lambda: pa.array([b"1234"] * n, pa.binary(4)),
+            lambda: pa.array([None if k % 2 else float(k) for k in range(n)]).dictionary_encode(),
+            lambda: pa.array([2**63 - 1 - k for k in range(n)], pa.int64()),
+            lambda: pa.array([1e-320 * k for k in range(n)]),
+            lambda: pa.array(np.full(n, 3e38, dtype=np.float32)),
         ),
     )()
     return {**columns, name: made}
@@ -70,6 +84,10 @@ def written(rng: np.random.Generator, columns: dict[str, Any], metadata: dict[by
     """A file of the columns, in one of many ways."""
     file = io.BytesIO()
     table = pa.table(columns).replace_schema_metadata(metadata)
+    if rng.random() < 0.1:  # a name twice, or one that is none
+        names = list(table.column_names)
+        names[int(rng.integers(len(names)))] = pick(rng, (*names, "", "\x00", "x [m]", "X", " t", "t\n"))
+        table = table.rename_columns(names)
     pq.write_table(
         table,
         file,

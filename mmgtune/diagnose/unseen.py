@@ -1,0 +1,119 @@
+"""Fitted points on trials that they were not fitted to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..fitting.box import group_of
+from ..fitting.comparison import TrialComparison, compare
+from ..fitting.problem import FitProblem
+from ..objective import Objective, cases_of, make_objective
+from ..trial import Coverage, Trial
+from .elsewhere import estimated_there, first_part
+from .runs import labels_of
+from .workbench import Point, Workbench, make_workbench
+
+
+def held_out_fits(
+    bench: Workbench, points: Sequence[Point], test: Sequence[Trial]
+) -> Iterator[tuple[list[Point], list[Trial]]]:
+    """Fitted points with trials they were not fitted to: the test trials, or each run in turn, all refitted without it.
+
+    Where there is but one run, that run.
+    """
+    runs = list(dict.fromkeys(trial.run for trial in bench.trials))
+    if test or len(runs) < 2:
+        yield list(points), list(test or bench.trials)
+        return
+    coverage = Coverage.of(bench.trials, bench.model.L_pp)  # what is left may turn to one side alone
+    for run in runs:
+        others = [trial for trial in bench.trials if trial.run != run]
+        names = [name for name in bench.box.names if name not in bench.targets]
+        rest = make_workbench(bench.model.profile, others, bench.options, names, coverage)
+        rest.targets = bench.targets
+        rest.know(replace(bench.noise, cases=rest.problem.cases))
+        keep = [i for i, trial in enumerate(bench.trials) if trial.run != run]
+        refitted = [_refit_without(rest, point, keep) for point in points]
+        yield refitted, [trial for trial in bench.trials if trial.run == run]
+
+
+def _refit_without(rest: Workbench, point: Point, keep: Sequence[int]) -> Point:
+    """A point refitted on the trials that are left, without values of runs that are not among them."""
+    labels = frozenset[str]().union(*rest.problem.groups)
+    own = [i for i, name in enumerate(point.names) if not group_of(name) or group_of(name) in labels]
+    names = [point.names[i] for i in own]
+    offsets = point.offsets[keep]
+    return rest.refit(names, point.unit[own][:, None], offsets, integrator=point.integrator, spreads=point.spreads)
+
+
+@dataclass(frozen=True, eq=False)
+class Beside:
+    """Points side by side on trials, each with what differs between runs estimated there.
+
+    begins   (n_trials,) samples of each trial that something is estimated on
+    wide     a point whose names are those of all
+    units    the position of each point in it
+    scaled   the problem in white noise of the sensors, all samples counting
+    """
+
+    bench: Workbench
+    trials: tuple[Trial, ...]
+    begins: IntArray
+    wide: Point
+    units: list[FloatArray]
+    scaled: FitProblem
+
+    @classmethod
+    def of(cls, bench: Workbench, points: Sequence[Point], trials: Sequence[Trial]) -> Beside:
+        """The last point says what something is estimated for."""
+        wide, units = _together(bench, [estimated_there(bench, point, trials) for point in points])
+        scaled = problem_on(bench, wide, trials, bench.in_noise)
+        return cls(bench, tuple(trials), first_part(points[-1], trials), wide, units, scaled)
+
+    @property
+    def judged(self) -> FitProblem:
+        """The same problem in which what something is estimated on does not count."""
+        weight = self.scaled.cases.weight.copy()
+        for case, begin in enumerate(self.begins):
+            weight[case, :begin] = 0.0
+        return self.scaled.with_cases(replace(self.scaled.cases, weight=weight))
+
+    def compared(self, together: bool = True) -> list[TrialComparison]:
+        """Each trial "before" and "after" by the last two points, initial states estimated; by the objective of the
+        paper.
+
+        together  whether initial states of all trials are estimated in one go
+        """
+        by_paper = make_objective(self.bench.model.L_pp)
+        roles = dict.fromkeys((trial.id for trial in self.trials), "test")
+        found: list[TrialComparison] = []
+        for some in [list(self.trials)] if together else [[trial] for trial in self.trials]:
+            problem = problem_on(self.bench, self.wide, some, by_paper)
+            found += compare(problem, some, by_paper, roles, *self.units[-2:])
+        return found
+
+
+def problem_on(bench: Workbench, point: Point, trials: Sequence[Trial], objective: Objective) -> FitProblem:
+    """The problem of what is free in a point, on other trials."""
+    own = bench.problem_of(point.names, point.integrator)
+    sigma = np.repeat(bench.sigma[None], len(trials), axis=0)
+    cases = cases_of(list(trials), objective, own.model.inputs, own.model.draught)
+    problem = FitProblem.of(own.model, cases, own.box, own.backend, own.integrator, sigma)
+    return problem.with_groups([labels_of(trial) for trial in trials])
+
+
+def _together(bench: Workbench, points: Sequence[Point]) -> tuple[Point, list[FloatArray]]:
+    """A point whose names are those of all, what is not free in one at its null, and the positions of each in it."""
+    names = tuple(dict.fromkeys(name for point in points for name in point.names))
+    last = points[-1]
+    wide = Point(names, bench.null(names), last.offsets, last.chi2, last.integrator)
+    units = []
+    for point in points:
+        unit = wide.unit.copy()
+        unit[[names.index(name) for name in point.names]] = point.unit
+        units.append(unit)
+    return wide, units

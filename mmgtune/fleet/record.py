@@ -1,0 +1,154 @@
+"""``fleet.json``: what the results of all jobs say together, for the report and for programs."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from .. import limits
+from ..errors import OptionError, Problem
+from ..files import write_text
+from . import rows as result_rows
+from .changes import FEWEST, LEVEL, SURE, Course
+from .pooling import classes_of, write_classes
+from .series import Series, courses, series_of
+
+RECORD = "fleet.json"
+JOBS = "jobs.json"
+SCHEMA = 1
+
+CELL = ("ship", "date", "name", "command", "answer", "verdict", "off_track", "off_heading", "tuned_track", "causes")
+"""What is told of each job."""
+
+
+def write_record(out: Path, made: Mapping[str, Any]) -> dict[str, Any]:
+    """Write the record of a fleet from its results, and the classes of sister ships.  Returns it.
+
+    made  which program made it, how, and of which table
+    """
+    rows = result_rows.read(out)
+    classes = write_classes(out, classes_of(out, rows))
+    listed = _listed(out)
+    document = {
+        "schema": SCHEMA,
+        "kind": "fleet",
+        **made,
+        "out": str(out),
+        "jobs": _counts(rows, listed),
+        "ships": sorted({row["ship"] for row in rows}),
+        "dates": sorted({row["date"] for row in rows}),
+        "generated": any(row["generated"] for row in rows),
+        "cells": [{**{key: row[key] for key in CELL}, "run": row["run"] if row["record"] else ""} for row in rows],
+        "failures": [_failure(row) for row in rows if row["answer"] == "failed"],
+        "rules": {"level": LEVEL, "interval": SURE, "fewest_dates": FEWEST},
+        **_over_time(rows),
+        "ranking": _ranking(rows),
+        "classes": [{"name": one["name"], **(one["pooled"] or {})} for one in classes],
+    }
+    write_text(out / RECORD, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+    return document
+
+
+def made_before(out: Path) -> dict[str, Any]:
+    """What an earlier record says of how the fleet was made.  Raises OptionError where there is none."""
+    path = out / RECORD
+    try:
+        document = json.loads(limits.text(path, limits.RECORD_BYTES, OptionError))
+        return {key: document[key] for key in ("mmgtune", "created", "command", "environment", "table")}
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        fix = "give the folder that --out of mmgtune fleet run named; one that was stopped goes on with resume=True"
+        raise OptionError(Problem("there is no record of a fleet", str(path), str(error), fix)) from error
+
+
+def _listed(out: Path) -> set[str]:
+    try:
+        return {one["key"] for one in json.loads((out / JOBS).read_text(encoding="utf-8"))["jobs"]}
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise OptionError(Problem("the list of jobs cannot be read", str(out / JOBS), str(error))) from error
+
+
+def _counts(rows: Sequence[Mapping[str, Any]], listed: set[str]) -> dict[str, Any]:
+    answers = Counter(row["answer"] for row in rows)
+    missing = len(listed - {row["key"] for row in rows})
+    seconds = sum(row["seconds"] for row in rows)
+    counts = {answer: answers[answer] for answer in result_rows.ANSWERS}
+    return {"total": len(rows) + missing, **counts, "missing": missing, "seconds": seconds}
+
+
+def _failure(row: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: row[key] for key in ("ship", "date", "name", "command", "problems")}
+
+
+def _over_time(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """Series of quantities, what they do, and the changes of all in time."""
+    every = series_of(rows)
+    found = {(one.ship, one.job, one.name): what for one, what in courses(every)}
+    changes = []
+    told = []
+    for one in every:
+        what = found.get((one.ship, one.job, one.name))
+        told.append({**one.to_dict(), "course": _course(what)})
+        for k, change in enumerate(what.changes if what else ()):
+            between = one.dates[change.first], one.dates[change.last]
+            changes.append(
+                {
+                    **{key: getattr(one, key) for key in ("ship", "job", "name", "tag", "words", "unit")},
+                    "month": one.dates[change.after],
+                    "after": between[0],
+                    "by": between[1],
+                    "size": change.size,
+                    "error": change.error,
+                    "p": change.p,
+                    "sentence": _sentence(one, change.size, change.error, between),
+                    "number": k,
+                }
+            )
+    changes.sort(key=lambda one: (one["month"], one["ship"], one["name"]))
+    return {"series": told, "changes": changes, "trends": _trends(every, found)}
+
+
+def _course(what: Course | None) -> dict[str, Any] | None:
+    if what is None:
+        return None
+    places = [one.after for one in what.changes]
+    return {
+        "slope": what.slope,
+        "slope_error": what.slope_error,
+        "grows": what.grows,
+        "places": places,
+        "fitted": what.fitted.tolist(),
+    }
+
+
+def _sentence(one: Series, size: float, error: float, between: tuple[str, str]) -> str:
+    unit = f" {one.unit}" if one.unit else ""
+    verb = "rises" if size > 0.0 else "falls"
+    words = one.words[0].upper() + one.words[1:]
+    return f"{words} {verb} by {abs(size):.3g}{unit} (+- {error:.2g}) between {between[0]} and {between[1]}"
+
+
+def _trends(every: Sequence[Series], found: Mapping[tuple[str, str, str], Course]) -> list[dict[str, Any]]:
+    """What grows or falls steadily."""
+    rows = []
+    for one in every:
+        what = found.get((one.ship, one.job, one.name))
+        if what is not None and what.grows:
+            said = {key: getattr(one, key) for key in ("ship", "job", "name", "tag", "words", "unit")}
+            rows.append({**said, "slope": what.slope, "error": what.slope_error})
+    return rows
+
+
+def _ranking(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Ships by what a recalibration would gain, from their latest fit: metres off track now, and when tuned."""
+    latest: dict[str, Mapping[str, Any]] = {}
+    for row in rows:
+        if row["off_track"] is not None and row["tuned_track"] is not None:
+            latest[row["ship"]] = row
+    told = []
+    for ship, row in latest.items():
+        keys = ("date", "name", "off_track", "tuned_track", "off_heading", "tuned_heading", "run")
+        told.append({"ship": ship, **{key: row[key] for key in keys}, "gain": row["off_track"] - row["tuned_track"]})
+    return sorted(told, key=lambda one: (-one["gain"], one["ship"]))

@@ -1,0 +1,123 @@
+"""The results of a fleet: a Parquet data set, partitioned by ship and date, with a row for each job.
+
+A row is a file of its own, written whole or not at all, and its name has the key of its job: a job is done where its
+file is there.  So nothing is lost with whoever dies, and nothing stands there twice.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from ..errors import OptionError, Problem
+from ..files import atomic
+from .commands import Facts
+from .job import Job
+
+FOLDER = "results"
+ANSWERS = ("good", "no", "failed")
+"""What a row says of its job: nothing found wrong, something found wrong, could not run."""
+
+_FILE = re.compile(r"(?P<name>.+)-(?P<key>[0-9a-f]{16})\.parquet")
+
+
+def made(job: Job, facts: Facts, record: str, seconds: float) -> dict[str, Any]:
+    """The row of a job that ran, its results in the file ``record`` of its run folder."""
+    return {**_of_job(job), **asdict(facts), "record": record, "seconds": seconds, "problems": []}
+
+
+def failed(job: Job, problems: Sequence[Problem], seconds: float) -> dict[str, Any]:
+    """The row of a job that could not run."""
+    verdict = "; ".join(one.what for one in problems)
+    told = [one.to_dict() for one in problems]
+    return {**_of_job(job), **asdict(Facts("failed", verdict)), "record": "", "seconds": seconds, "problems": told}
+
+
+def _of_job(job: Job) -> dict[str, Any]:
+    return {"name": job.name, "command": job.command, "sisters": job.sisters, "key": job.key, "run": job.place}
+
+
+def path_of(out: Path, job: Job) -> Path:
+    """The file of a job's row."""
+    return out / FOLDER / f"ship={job.ship}" / f"date={job.date}" / f"{job.name}-{job.key}.parquet"
+
+
+def write(out: Path, job: Job, row: Mapping[str, Any]) -> None:
+    """Write the row of a job, and remove that of the same job with other data or options."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    path = path_of(out, job)
+    with atomic(path) as part:
+        pq.write_table(pa.Table.from_pylist([dict(row)], schema=schema()), part, compression="zstd")
+    for other in path.parent.glob(f"{job.name}-*.parquet"):
+        match = _FILE.fullmatch(other.name)
+        if match and match["name"] == job.name and match["key"] != job.key:
+            other.unlink(missing_ok=True)
+
+
+def schema() -> Any:
+    """Columns of the data set but for ship and date, which folders say."""
+    import pyarrow as pa
+
+    texts = ("name", "command", "sisters", "key", "run", "record", "answer", "verdict")
+    numbers = ("seconds", "off_track", "off_heading", "tuned_track", "tuned_heading")
+    problem = pa.struct([(name, pa.string()) for name in ("what", "where", "why", "fix")])
+    return pa.schema(
+        [
+            *((name, pa.string()) for name in texts),
+            *((name, pa.float64()) for name in numbers),
+            ("generated", pa.bool_()),
+            *((name, pa.list_(pa.string())) for name in ("causes", "sentences", "names")),
+            *((name, pa.list_(pa.float64())) for name in ("values", "before", "errors")),
+            ("problems", pa.list_(problem)),
+        ]
+    )
+
+
+def done(out: Path) -> dict[str, Path]:
+    """The files of rows that are there, by the keys of their jobs."""
+    return {match["key"]: path for path, match in _files(out)}
+
+
+def _files(out: Path) -> Iterator[tuple[Path, re.Match[str]]]:
+    folder = out / FOLDER
+    for of_ship in _inside(folder):
+        for of_date in _inside(of_ship):
+            for file in _inside(of_date):
+                if match := _FILE.fullmatch(file.name):
+                    yield file, match
+
+
+def _inside(folder: Path) -> list[Path]:
+    try:
+        return [folder / name for name in sorted(os.listdir(folder))]
+    except (FileNotFoundError, NotADirectoryError):
+        return []
+
+
+def read(out: Path) -> list[dict[str, Any]]:
+    """All rows with their ship and date, by these and name.  Raises OptionError where there is no such data set."""
+    import pyarrow as pa
+    import pyarrow.dataset as ds
+
+    folder = out / FOLDER
+    files = [str(path) for path, _ in _files(out)]
+    if not files:
+        fix = "give the folder that --out of mmgtune fleet run named"
+        raise OptionError(Problem("there are no results of a fleet", str(folder), fix=fix))
+    keys = pa.schema([("ship", pa.string()), ("date", pa.string())])
+    whole = pa.unify_schemas([schema(), keys])
+    parts = ds.partitioning(keys, flavor="hive")
+    try:
+        found = ds.dataset(files, schema=whole, format="parquet", partitioning=parts, partition_base_dir=str(folder))
+        rows: list[dict[str, Any]] = found.to_table().to_pylist()
+    except (OSError, pa.ArrowException) as error:
+        raise OptionError(
+            Problem("the results cannot be read", str(folder), str(error), "run the fleet again with resume=True")
+        ) from error
+    return sorted(rows, key=lambda row: (row["ship"], row["date"], row["name"]))
