@@ -75,6 +75,14 @@ def remove_left_overs(folder: Path) -> None:
                 path.unlink()
 
 
+def true_path(path: Path) -> Path:
+    """Where a path leads, links followed; of links in a ring the path as it is, from the root."""
+    try:
+        return path.resolve()
+    except (OSError, RuntimeError):
+        return path.absolute()
+
+
 @contextlib.contextmanager
 def alone_in(folder: Path) -> Iterator[None]:
     """No other process is inside for the same folder, where there are such locks; a lock dies with its holder.

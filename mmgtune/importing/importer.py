@@ -15,7 +15,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import LogError, Problem
-from ..files import refuse_existing, write_text
+from ..files import refuse_existing, true_path, write_text
 from ..trial import Trial, write_trial
 from ..trial.schema import ATTRIBUTES, directions, known_column
 from ..trial.unusable import unusable
@@ -158,7 +158,7 @@ def import_logs(
 
 
 def _name(template: str, log: Path) -> str:
-    written = template.replace("{stem}", log.stem).replace("{parent}", log.resolve().parent.name)
+    written = template.replace("{stem}", log.stem).replace("{parent}", true_path(log).parent.name)
     return re.sub(r"[^\w.-]+", "_", written).strip("._") or "trial"
 
 
@@ -358,7 +358,7 @@ def _trial(id: str, piece: Piece, notes: list[str], log_map: LogMap, cut_from: s
     trial = Trial(
         id=id,
         ship=log_map.ship,
-        manoeuvre=piece.follows or log_map.manoeuvre.replace("{parent}", record.path.resolve().parent.name),
+        manoeuvre=piece.follows or log_map.manoeuvre.replace("{parent}", true_path(record.path).parent.name),
         source=log_map.source,
         **required,
         extra={name: values for name, values in kept.items() if known_column(name)},

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..heading_keeping import shares_of
-from .blocks import Card, Page, Prose, Section, Table, cells
+from .blocks import Card, Fold, Page, Prose, Section, Table, cells
 from .common import picture
 from .load import Kind
 from .plot import Axis, Bar, Dots, Figure, Look, Mark, Panel
@@ -155,7 +155,7 @@ def _made(data: Mapping[str, Any]) -> Section:
         "How it was made",
         (
             pairs("made-table", "What was run", ("what", "value"), items),
-            pairs("options-table", "Options", ("option", "value"), chosen),
+            Fold("Options", (pairs("options-table", "Options", ("option", "value"), chosen),)),
         ),
     )
 

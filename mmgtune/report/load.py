@@ -144,7 +144,15 @@ def whole(path: Path) -> Iterator[None]:
     """
     try:
         yield
-    except (ArithmeticError, AttributeError, LookupError, RecursionError, TypeError, ValueError) as error:
+    except (
+        ArithmeticError,
+        AttributeError,
+        LookupError,
+        RecursionError,
+        StopIteration,
+        TypeError,
+        ValueError,
+    ) as error:
         # Deep in the page, so the innermost place says which part of it that was.
         part = traceback.extract_tb(error.__traceback__)[-1].name.strip("_").replace("_", " ")
         fix = "run it again; if nothing but mmgtune wrote there, please report it"

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from .advice import again
+from .advice import Advice, again
 from .blocks import Card, Commands, Page, Prose, Section, Table, cells
 from .common import picture
 from .load import Kind
-from .plot import Axis, Bar, Figure, Look, Panel, Rule
+from .plot import Axis, Bar, Figure, Look, Mark, Panel, Rule
 from .tables import pairs
 from .wording import NONE, clean, count, percent, sentence, shown
 
@@ -91,7 +91,7 @@ def build(record: PlanRecord) -> Page:
 def _picture(record: PlanRecord, level: str) -> Any:
     rows = record.trials[:_BARS]
     now = float(record.data["question"]["half_width"])
-    marks = [
+    marks: list[Mark] = [
         Rule(now, Look("flag", 1.4, "dash")),
         *(
             Bar((0.0, float(row["half_width_after"])), (k - 0.31, k + 0.31), "after" if k == 0 else "muted", 0.85)
@@ -127,7 +127,7 @@ def _table(record: PlanRecord) -> Table:
     return Table("trials-table", "Trials, the one that tells most first", heads, rows, (1, 2, 3), cards=True)
 
 
-def _advice(data: Mapping[str, Any]) -> Sequence[tuple[str, str]]:
+def _advice(data: Mapping[str, Any]) -> Advice:
     """(reason, command) pairs that follow from a plan."""
     model = shlex.quote(clean(data["model"]))
     kind, _, angles = clean(data["question"]["asked"]).partition(" ")

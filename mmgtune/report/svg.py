@@ -69,8 +69,8 @@ def inline(figure: Figure) -> str:
             label = f'role="img" aria-label="{_quoted(alt)}"'
             panels.append(f'<svg class="panel {name}" viewBox="0 0 {width} {height}" {label}>{body}</svg>')
     many = "panels alone" if alone else "panels few" if len(figure.panels) <= 3 else "panels"
-    if figure.across == 2 and len(figure.panels) > 2:
-        many = "panels pairs"  # neighbours belong together
+    if figure.columns == 2 and len(figure.panels) > 2:
+        many = "panels pairs"  # neighbours belong together, and of four none stands alone
     return f'<div class="drawn">{legend}<div class="{many}">{"".join(panels)}</div></div>'
 
 

@@ -113,15 +113,11 @@ def _plan(folder: Path) -> None:
     names = (("turn_m35", "turn, 35 deg to port"), ("zigzag_p20_20", "zigzag 20/20, starboard first"))
     trials = [
         {
-            "id": id,
-            "kind": "turn",
-            "trial": words,
-            "duration_s": 500.0,
-            "half_width_after": 6.0 + k,
+            "id": id, "kind": "turn", "trial": words, "duration_s": 500.0, "half_width_after": 6.0 + k,
             "shrinks": 0.4 - k / 9,
         }
         for k, (id, words) in enumerate(names)
-    ]
+    ]  # fmt: skip
     data = {
         "schema": 1, "kind": "plan", "model": "runs/bands", "ship": "suzaku", "sha256": "ab", "linear_share": 0.9,
         "question": {"text": "advance, turn 35", "asked": "turn 35", "index": "advance_m", "words": "advance",

@@ -12,6 +12,7 @@ import pytest
 
 import mmgtune
 from mmgtune.errors import OptionError, TrialError
+from mmgtune.particles import Particles
 from mmgtune.report import render
 from mmgtune.trial import write_trial
 from mmgtune.voyages import Hooks, VoyageOptions, validate_voyages, write_voyages
@@ -306,3 +307,15 @@ def test_stopped_before_anything(voyage_file, tmp_path):
     assert result.n_windows == 0
     write_voyages(result, tmp_path / "run")
     assert render(tmp_path / "run")[0].is_file()
+
+
+def test_bands_of_a_model_with_particles_are_held_against_windows(suzaku, voyage_file):
+    drawn = np.random.default_rng(2).normal(0.017, 0.002, size=(1, 30))
+    uncertain = Particles(suzaku.profile, ("hull.R_0",), drawn, {}).predictor(as_logged=True)
+    result = validate_voyages({"alone": "suzaku", "with bands": uncertain}, voyage_file)
+    assert list(result.bands) == ["with bands"]
+    rows = {one["profile"]: one for one in result.to_dict()["models"]}
+    assert "bands" not in rows["alone"]
+    held = rows["with bands"]["bands"]
+    assert held["windows"] == min(200, result.n_windows)
+    assert 0.0 < held["coverage_50"] < held["coverage_90"] < 1.0

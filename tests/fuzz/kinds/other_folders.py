@@ -83,6 +83,7 @@ def run(folder: Path) -> str:
     files = {path.name: path.read_bytes() for path in folder.iterdir()}
     kind = files.pop("what").decode()
     out = folder / "out"
+    (out / "run").mkdir(parents=True)
     _lay({f"run/{name}": content for name, content in files.items()}, out)
     with contextlib.chdir(out):
         ended = typed("report", "run")
