@@ -114,7 +114,20 @@ class Pooled:
 
 
 def pooled(sisters: SisterClass) -> Pooled:
-    """Mean and spread of the coefficients of a class.  Raises OptionError where it has fewer than three ships."""
+    """Mean and spread of the coefficients of a class.
+
+    Raises OptionError where it has fewer than three ships, or what their trials say is not of any trials.
+    """
+    try:
+        return _pooled(sisters)
+    except np.linalg.LinAlgError as error:
+        fix = "run the fleet of the class again; if nothing but mmgtune wrote the file, please report it"
+        what = f"what the trials of the class '{sisters.name}' say cannot be put together"
+        raise OptionError(Problem(what, "sisters", str(error), fix)) from error
+
+
+def _pooled(sisters: SisterClass) -> Pooled:
+    """See ``pooled``."""
     members = list(sisters.members.values())
     if len(members) < FEWEST:
         what = f"the class '{sisters.name}' has {len(members)} ships to learn a spread from"

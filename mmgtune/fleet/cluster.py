@@ -93,7 +93,7 @@ def run_there(jobs: Sequence[Job], out: str, client: Client, seconds_a_job: floa
     size = max(1, min(MOST, int(TASK_SECONDS / max(seconds_a_job, 1e-3))))
     threads = sum(client.nthreads().values())
     if not threads:
-        fix = "start workers: dask worker ADDRESS --nworkers 2 --nthreads 1"
+        fix = "start workers with dask worker ADDRESS, a process a core and one thread each"
         raise OptionError(Problem("the scheduler has no workers", str(client.scheduler.address), fix=fix))
     size = min(size, max(1, len(jobs) // (AHEAD * threads)))
     batches = iter([jobs[k : k + size] for k in range(0, len(jobs), size)])

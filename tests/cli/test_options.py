@@ -43,9 +43,9 @@ def test_every_field_is_one_flag_of_its_command(command):
     shown = flags_of(command)
     known = choices(of)
     assert set(known) == {one.name for one in fields(of)}
-    taken = [flag for p in shown.values() for flag in p.opts]
+    taken = [flag for p in shown.values() for flag in (*p.opts, *p.secondary_opts)]
     for name, one in known.items():
-        assert one.flag in shown[name].opts
+        assert one.flag in (*shown[name].opts, *shown[name].secondary_opts)
         assert taken.count(one.flag) == 1
         assert shown[name].help == one.help
 

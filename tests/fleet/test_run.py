@@ -13,6 +13,7 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
+from mmgtune.checking import update_baseline
 from mmgtune.errors import OutputError
 from mmgtune.fitting import FitOptions, fit, write_run
 from mmgtune.fleet import read_results, read_table, run_fleet
@@ -152,3 +153,32 @@ def test_a_job_whose_data_changed_fails_and_says_so(fleet: Path, tmp_path: Path)
     (row,) = read_results(tmp_path / "out")
     assert row["problems"][0]["what"] == "the data changed since the job was made"
     assert row["problems"][0]["why"] == "zigzag_20.parquet"
+
+
+@pytest.mark.slow(6)
+def test_every_command_can_be_a_job(tmp_path: Path) -> None:
+    make_logs(tmp_path, ("a1",), ("2025-01",))
+    trials = tmp_path / "logs" / "a1" / "2025-01"
+    update_baseline("suzaku", trials, str(tmp_path / "a1.json"))
+    few = 'targets = ["hull.R_0", "wake.w_P0"]'
+    entries = {
+        "check": 'baseline = "{ship}.json"',
+        "sweep": f'options = {{ method = "least-squares", starts = 1, widths = [0.2, 0.3], {few} }}',
+        "diagnose": f'options = {{ effects = ["rudder-offset"], {few} }}',
+        "validate": "",
+    }
+    head = 'profile = "suzaku"\ntrials = "logs/{ship}/{date}"\n'
+    texts = [f'[[jobs]]\ncommand = "{name}"\n{head}{more}\n' for name, more in entries.items()]
+    (tmp_path / "fleet.toml").write_text("\n".join(["schema = 1", *texts]), encoding="utf-8")
+    for job in expand(read_table(tmp_path / "fleet.toml")):
+        run_job(job.to_dict(), str(tmp_path / "out"))
+    rows = {row["name"]: row for row in read_results(tmp_path / "out")}
+    assert set(rows) == set(entries)
+    assert [one for one in rows.values() if one["problems"]] == []
+    assert rows["check"]["answer"] == "good"
+    assert rows["sweep"]["off_track"] > rows["sweep"]["tuned_track"]
+    assert rows["sweep"]["names"] == ["hull.R_0", "wake.w_P0"]
+    assert rows["validate"]["off_track"] == pytest.approx(rows["sweep"]["off_track"], rel=1e-3)
+    for row in rows.values():
+        assert (tmp_path / "out" / row["run"] / "report.html").is_file()
+        assert json.loads((tmp_path / "out" / row["run"] / row["record"]).read_text())["kind"]
