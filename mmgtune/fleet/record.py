@@ -20,7 +20,10 @@ RECORD = "fleet.json"
 JOBS = "jobs.json"
 SCHEMA = 1
 
-CELL = ("ship", "date", "name", "command", "answer", "verdict", "off_track", "off_heading", "tuned_track", "causes")
+CELL = (
+    "ship", "date", "name", "command", "answer", "verdict", "off_track", "off_heading", "tuned_track", "causes",
+    "profile", "trials",
+)  # fmt: skip
 """What is told of each job."""
 
 

@@ -38,7 +38,15 @@ def failed(job: Job, problems: Sequence[Problem], seconds: float) -> dict[str, A
 
 
 def _of_job(job: Job) -> dict[str, Any]:
-    return {"name": job.name, "command": job.command, "sisters": job.sisters, "key": job.key, "run": job.place}
+    return {
+        "name": job.name,
+        "command": job.command,
+        "sisters": job.sisters,
+        "key": job.key,
+        "run": job.place,
+        "profile": job.profile_path,
+        "trials": job.trials.path,
+    }
 
 
 def path_of(out: Path, job: Job) -> Path:
@@ -64,7 +72,7 @@ def schema() -> Any:
     """Columns of the data set but for ship and date, which folders say."""
     import pyarrow as pa
 
-    texts = ("name", "command", "sisters", "key", "run", "record", "answer", "verdict")
+    texts = ("name", "command", "sisters", "key", "run", "profile", "trials", "record", "answer", "verdict")
     numbers = ("seconds", "off_track", "off_heading", "tuned_track", "tuned_heading")
     problem = pa.struct([(name, pa.string()) for name in ("what", "where", "why", "fix")])
     return pa.schema(

@@ -207,6 +207,35 @@ def after_voyages(data: Mapping[str, Any]) -> Advice:
     return tuple(items)
 
 
+def after_fleet(data: Mapping[str, Any]) -> Advice:
+    """What failed, the latest change, the largest gain, and sisters."""
+    out = clean(data["out"])
+    items: list[tuple[str, str]] = []
+    if data["failures"] or data["jobs"]["missing"]:
+        retry = " --retry" if data["failures"] else ""
+        table = shlex.quote(clean(data["table"]) or "fleet.toml")
+        items.append(
+            ("Run what failed or is missing", f"mmgtune fleet run {table} --out {shlex.quote(out)} --resume{retry}")
+        )
+    cells = {(one["ship"], one["date"], one["name"]): one for one in data["cells"] if "://" not in one["trials"]}
+    for change in data["changes"][-1:]:
+        if cell := cells.get((change["ship"], change["month"], change["job"])):
+            ship, trials = (shlex.quote(clean(cell[key])) for key in ("profile", "trials"))
+            reason = f"Ask why {clean(change['ship'])} changed in {clean(change['month'])}"
+            items.append((reason, f"mmgtune diagnose -p {ship} -t {trials}"))
+    for best in [one for one in data["ranking"] if one["gain"] > 0.0][:1]:
+        if cell := cells.get((best["ship"], best["date"], best["name"])):
+            ship, trials = (shlex.quote(clean(cell[key])) for key in ("profile", "trials"))
+            tuned = shlex.quote(f"{out}/{clean(best['run'])}/profile.toml")
+            reason = f"See what the recalibrated {clean(best['ship'])} does better"
+            items.append((reason, f"mmgtune validate {ship} {tuned} {trials} --manoeuvres"))
+    if data["classes"]:
+        reason = "Calibrate a ship with few trials by what her sisters say"
+        items.append((reason, f"mmgtune fit -p SHIP.toml -t TRIALS --prior {shlex.quote(out)}"))
+    items.append(("Put the results together anew", f"mmgtune fleet report {shlex.quote(out)}"))
+    return tuple(items)
+
+
 def after_check(data: Mapping[str, Any]) -> Advice:
     """(reason, command) pairs that follow from a check."""
     if data["verdict"] == "regressed":

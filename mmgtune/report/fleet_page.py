@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..options import in_flags
-from . import fleet_figures
+from . import advice, fleet_figures
 from .blocks import Block, Card, Cell, Commands, Fold, Nothing, Page, Prose, Section, Table, cells
 from .common import picture
 from .fleet_figures import ROWS
@@ -329,21 +329,7 @@ def _failures(data: Mapping[str, Any]) -> Section | None:
 
 
 def _next(data: Mapping[str, Any]) -> Section:
-    out = clean(data["out"])
-    items = []
-    if data["failures"] or data["jobs"]["missing"]:
-        retry = " --retry" if data["failures"] else ""
-        table = clean(data["table"]) or "fleet.toml"
-        items.append(("Run what failed or is missing", f"mmgtune fleet run {table} --out {out} --resume{retry}"))
-    if data["classes"]:
-        items.append(
-            (
-                "Calibrate a ship with few trials by what her sisters say",
-                f"mmgtune fit -p SHIP.toml -t TRIALS --prior {out}",
-            )
-        )
-    items.append(("Put the results together anew", f"mmgtune fleet report {out}"))
-    return Section("next", "What to do next", (Commands(tuple(items)),))
+    return Section("next", "What to do next", (Commands(advice.after_fleet(data)),))
 
 
 def _rules(data: Mapping[str, Any]) -> Section:

@@ -171,7 +171,9 @@ def _fleet(folder: Path) -> None:
     """Results of jobs by hand, put together by the program's own."""
     for k, ship in enumerate(("aa", "bb", "cc", "dd")):
         for month in range(12):
-            job = Job(ship, f"2025-{month + 1:02d}", "state", "fit", "", "", Source("", {}), {}, "1", "coasters")
+            date = f"2025-{month + 1:02d}"
+            logs = Source(f"logs/{ship}/{date}", {})
+            job = Job(ship, date, "state", "fit", "", "suzaku", logs, {}, "1", "coasters")
             bent = 2.0 if ship == "bb" and month >= 5 else 0.0
             wave = 0.02 * ((7 * month + 3 * k) % 5 - 2)
             off, row = 3.0 + k + 4.0 * bent + wave, ("effects.rudder-offset.angle", "effects.resistance.factor")

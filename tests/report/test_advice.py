@@ -134,6 +134,12 @@ def test_commands_of_voyages_work_when_pasted(voyages_folder: Path, tmp_path: Pa
         paste(command, ROOT, tmp_path)
 
 
+def test_a_fleet_says_whom_to_ask_why(more: dict[str, Path]) -> None:
+    changed, best = [one for one in commands_of(more["fleet"]) if shlex.split(one)[1] in ("diagnose", "validate")]
+    assert changed.startswith("mmgtune diagnose -p suzaku -t logs/bb/2025-0")
+    assert best.endswith("runs/bb/2025-12/state/profile.toml logs/bb/2025-12 --manoeuvres")
+
+
 def test_a_current_is_taken_out_before_calm_water_is_predicted(more: dict[str, Path]) -> None:
     folder = more["diagnosis"]
     (calm,) = [text for text in commands_of(folder) if "calm.toml" in text]
