@@ -54,6 +54,7 @@ class Leftover(Brief):
                where it is clearest
     certainty  the same in standard errors
     explained  by channel, the largest share one quantity explains, and which
+    left_open  variance beyond that noise that what the logged inputs leave open accounts for, as a share of it
     """
 
     excess: float
@@ -61,6 +62,7 @@ class Leftover(Brief):
     alike: dict[str, float]
     certainty: dict[str, float]
     explained: dict[str, tuple[str, float]]
+    left_open: float = 0.0
 
     @property
     def noticed(self) -> bool:
@@ -81,12 +83,13 @@ def leftover(bench: Workbench, point: Point) -> Leftover:
     residuals = residuals_of(bench, point)
     level = _white(residuals)
     left_open = _left_open(bench, point)
-    excess = {}
+    excess, excused = {}, {}
     for k, name in enumerate(STATES):
         if np.isfinite(level[k]) and level[k] > 0.0:
             variance = float(np.nanmean(np.concatenate([r[1:, k] for r in residuals]) ** 2))
             beyond = variance / level[k] ** 2 - 1.0
-            excess[name] = beyond - min(left_open[k] / level[k] ** 2, max(beyond, 0.0))
+            excused[name] = min(float(left_open[k]) / level[k] ** 2, max(beyond, 0.0))
+            excess[name] = beyond - excused[name]
     alike = {window: _alike(bench.trials, residuals, window) for window in WINDOWS}
     clearest = {pair: max((alike[window][pair] for window in WINDOWS), key=lambda one: one[1]) for pair in PAIRS}
     return Leftover(
@@ -95,6 +98,7 @@ def leftover(bench: Workbench, point: Point) -> Leftover:
         alike={pair: correlation for pair, (correlation, _) in clearest.items()},
         certainty={pair: certainty for pair, (_, certainty) in clearest.items()},
         explained=_explained(bench, residuals, [name for name, value in excess.items() if value > NOTICED]),
+        left_open=float(np.mean(list(excused.values()))),
     )
 
 

@@ -38,6 +38,13 @@ MOSTLY = 0.95
 something of a shape is left besides."""
 
 
+OPEN = 0.3
+"""Variance beyond noise that is spoken of where the log of the inputs leaves it open, as a share of the noise."""
+
+BENT = 1.0
+"""Variance beyond noise, as a share of it, that a cause with values of each run may leave where it has a shape: such
+values bend to what is elsewhere, or at another hour, and not of the run at all."""
+
 TOO_MANY = 4
 """Terms of a sum of causes from which it is not believed."""
 
@@ -266,7 +273,8 @@ class Diagnosis(Plotted):
     @property
     def _mostly_left(self) -> bool:
         """Whether what is left has a shape and is too much beside what the causes explain."""
-        return self.leftover.structured and self.explained_share < MOSTLY
+        bent = any(cause.runs for cause in self.causes) and self.leftover.excess > BENT
+        return self.leftover.structured and (self.explained_share < MOSTLY or bent)
 
     @property
     def named(self) -> tuple[Cause, ...]:
@@ -293,6 +301,12 @@ class Diagnosis(Plotted):
                 else "No cause was found by then."
             )
             return f"The search was stopped before its end, so nothing can be concluded. {told}"
+        if self.verdict == "none" and self.leftover.left_open > OPEN:
+            return (
+                f"No cause shows. The re-tuned model leaves {self.leftover.left_open:.0%} of the noise of the sensors "
+                "besides, no more than what revolutions and rudder angle did between two samples of their log leaves "
+                "open: inputs logged more often would tell more."
+            )
         if self.verdict == "none":
             return (
                 "Nothing is wrong beyond the noise of the measurements: the re-tuned model fits these trials, and no "
@@ -422,6 +436,7 @@ class Diagnosis(Plotted):
                 "structured": self.leftover.structured,
                 "unclear": self.unclear,
                 "share_of_noise_variance": self.leftover.excess,
+                "left_open_by_inputs": self.leftover.left_open,
                 "by_channel": self.leftover.channels,
                 "share_explained_by_causes": self.explained_share,
                 "correlation": self.leftover.alike,

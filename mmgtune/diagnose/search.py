@@ -26,6 +26,9 @@ from .workbench import TOLERANCE, Point, Workbench
 STARTS = 6
 """Starts of the base fit."""
 
+QUICK = 20
+"""Steps from each."""
+
 BEST = 3
 """Ends of these that are gone on from, where they differ."""
 
@@ -64,6 +67,9 @@ LEAST_SPREAD = 0.01
 
 ROUGH = 4
 """Steps of a refit before it is compared with the others."""
+
+MOST_STEPS, ALL_STEPS = 10, 30
+"""Further steps of a refit where much is left, and of the best few."""
 
 STARTS_KEPT = 2
 """Starts of a hypothesis that go on after a first step from each."""
@@ -199,7 +205,7 @@ def base_fit(bench: Workbench) -> Point:
     rng = np.random.default_rng(bench.options.seed)
     starts = np.column_stack([bench.null(names), *rng.uniform(size=(STARTS - 1, len(names)))])
     quick = bench.problem_of(names, Integrator("euler"))  # a quarter of the work, and only a start
-    ends = sorted(solve(quick, starts, max_iterations=40, tolerance=ROUGHLY, trusting=True), key=lambda end: end.J)
+    ends = sorted(solve(quick, starts, max_iterations=QUICK, tolerance=ROUGHLY, trusting=True), key=lambda end: end.J)
     apart = [end for k, end in enumerate(ends) if k == 0 or end.J > (1.0 + SAME) * ends[k - 1].J][:BEST]
     point = bench.refit(names, np.column_stack([end.unit for end in apart]), ends[0].offsets)
     for _ in range(AGAIN):  # initial states at the end of their range make a bad start; from there it is a new one
@@ -223,6 +229,7 @@ def search(
     found = Found(base, base)
     left = list(hypotheses)
     dropped: list[Hypothesis] = []
+    once: list[Hypothesis] = []
     while not stop():
         say("looking for a cause" if not found.causes else f"looking for cause {len(found.causes) + 1}")
         try:
@@ -246,6 +253,9 @@ def search(
         known = list(found.causes)
         _drop_superfluous(bench, found, [cause for cause in known[:-1] if cause.by])  # these bend to much
         dropped += [cause for cause in known if cause not in found.causes]
+        bent = [cause for cause in found.causes[:-1] if cause.by and cause not in once]
+        _make_alike(bench, found, bent)
+        once += bent
         left = [h for h in hypotheses if h not in dropped and all(_beside(h, cause) for cause in found.causes)]
         if len(found.causes) >= bench.options.most:
             break
@@ -387,18 +397,25 @@ def _fitted(
     gains = sorted((point.chi2 - end.chi2 for end in rough), reverse=True)
     enough = min([WORTH_GOING_ON * gains[0], *gains[FEW - 1 : FEW]]) if gains else 0.0
     left = min((end.chi2 for end in rough), default=point.chi2) - bench.problem.n_residuals
-    found = []
+    ends = []
     for score, end in zip(chosen, rough, strict=True):
         _go_on(stop)
         gain = point.chi2 - end.chi2
-        if score.hypothesis.by and strong and end.chi2 - bench.problem.n_residuals > HOPELESS * max(left, 0.0):
-            found.append((score, end))
-            continue
-        if gain >= enough and gain > 0.5 * ENOUGH * score.inflation:
-            spreads = _spreads(bench, point, score.hypothesis, _spread(bench, linear, point, score, end))
-            end = bench.refit(end.names, end.unit[:, None], end.offsets, spreads=spreads)
-        found.append((score, end))
-    return found
+        hopeless = score.hypothesis.by and strong and end.chi2 - bench.problem.n_residuals > HOPELESS * max(left, 0.0)
+        if not hopeless and gain >= enough and gain > 0.5 * ENOUGH * score.inflation:
+            end = _on(bench, linear, point, score, end, MOST_STEPS if strong else ALL_STEPS)
+        ends.append(end)
+    best = sorted(range(len(ends)), key=lambda k: ends[k].chi2)[:FEW] if strong else []
+    for k in best:  # where little is known the others may take for ever, and are out of the question
+        _go_on(stop)
+        ends[k] = _on(bench, linear, point, chosen[k], ends[k], ALL_STEPS)
+    return list(zip(chosen, ends, strict=True))
+
+
+def _on(bench: Workbench, linear: Linear, point: Point, score: Score, end: Point, steps: int) -> Point:
+    """A refit gone on with, for so many steps."""
+    spreads = _spreads(bench, point, score.hypothesis, _spread(bench, linear, point, score, end))
+    return bench.refit(end.names, end.unit[:, None], end.offsets, spreads=spreads, max_iterations=steps)
 
 
 def _of_runs_worth(
@@ -616,6 +633,28 @@ def _drop_superfluous(bench: Workbench, found: Found, asked: Sequence[Hypothesis
         if fewer.chi2 - found.final.chi2 < _price(bench, found, hypothesis) + ENOUGH:
             found.causes.remove(hypothesis)
             found.final = fewer
+
+
+def _make_alike(bench: Workbench, found: Found, asked: Sequence[Hypothesis]) -> None:
+    """Make values of each run one for all where that leaves little more than noise beside what was found since.
+
+    The next look asks again whether they differ.
+    """
+    for cause in asked:
+        one = replace(cause, by="", groups=())
+        final = found.final
+        kept = [i for i, name in enumerate(final.names) if name not in cause.names]
+        values = dict(zip(final.names, final.unit, strict=True))
+        mean = [float(np.mean([values[name] for name in cause.names if base_of(name) == base])) for base in one.names]
+        alike = bench.refit(
+            (*(final.names[i] for i in kept), *one.names),
+            np.concatenate([final.unit[kept], mean])[:, None],
+            final.offsets,
+            spreads=final.spreads,
+        )
+        if alike.chi2 < STRONG * bench.problem.n_residuals:
+            found.causes[found.causes.index(cause)] = one
+            found.final = alike
 
 
 def _price(bench: Workbench, found: Found, hypothesis: Hypothesis) -> float:

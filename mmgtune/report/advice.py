@@ -130,7 +130,10 @@ def after_diagnosis(data: Mapping[str, Any]) -> Advice:
 
 def again(command: str) -> str:
     """A command that was given before, as it can be given again: a folder it wrote to is there by now."""
-    words = [word for word in shlex.split(clean(command)) if word not in ("--resume", "--force")]
+    try:
+        words = [word for word in shlex.split(clean(command)) if word not in ("--resume", "--force")]
+    except ValueError:  # no command of a shell
+        return clean(command)
     named = any(word in ("--out", "-o") or word.startswith("--out=") for word in words)
     return shlex.join([*words, "--force"] if named else words)
 

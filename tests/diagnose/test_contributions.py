@@ -187,3 +187,17 @@ def test_a_kind_the_study_never_gave_says_so():
     assert kind_of("found", [1, 2], []) == "two causes"
     assert kind_of("not-separable", [1], [("a", "b")]) == "a group"
     assert record_of("two causes").of >= record_of("two causes").right > 0
+
+
+@pytest.mark.parametrize(
+    ("runs", "excess", "structured", "believed"),
+    [(True, 5.0, True, False), (False, 5.0, True, True), (True, 0.3, True, True), (True, 5.0, False, True)],
+    ids=["of runs", "one for all", "hardly more than noise", "without a shape"],
+)
+def test_values_of_runs_that_leave_a_shape_are_not_believed(runs, excess, structured, believed):
+    seen = SimpleNamespace(
+        causes=[SimpleNamespace(runs=runs or None)],
+        leftover=SimpleNamespace(excess=excess, structured=structured),
+        explained_share=0.99,
+    )
+    assert Diagnosis._mostly_left.fget(seen) is not believed

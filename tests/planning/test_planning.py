@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -204,7 +205,7 @@ def test_a_plan_with_a_folder_has_a_report(desk):
     assert ended.out.splitlines()[-1] == "Report: plan/report.html"
     page = (desk / "plan" / "report.html").read_text(encoding="utf-8")
     assert "To sail next: straight run." in page
-    assert "mmgtune</span> predict bands --turn -35" in page
+    assert "mmgtune predict bands --turn -35" in re.sub("</?span>", "", page)
     assert run(*arguments, cwd=desk).code == 2
 
 

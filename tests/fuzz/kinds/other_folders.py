@@ -23,7 +23,7 @@ from . import Files, Kind
 from .folders import IN_FOLDER, _collected, _fix, _lay
 from .parquet_logs import odd_values, other_type, shorter
 
-MADE = ("simulate", "predict", "comparison", "model-comparison", "validate", "check", "learning", "plan")
+MADE = ("simulate", "model-comparison", "learning", "plan")
 
 
 @functools.cache
