@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import TypedDict, Unpack
 
 import numpy as np
 
@@ -50,6 +51,15 @@ class Point:
     chi2: float
     integrator: Integrator
     spreads: Mapping[str, float] = field(default_factory=dict)
+
+
+class _How(TypedDict, total=False):
+    """What a refit may be told; see ``Workbench.refits``."""
+
+    integrator: Integrator | None
+    max_iterations: int
+    tolerance: float
+    spreads: Mapping[str, float] | None
 
 
 @dataclass(eq=False)
@@ -123,28 +133,9 @@ class Workbench:
         box = self.sub_box(names)
         return np.clip(box.to_unit(box.pre), 0.0, 1.0)
 
-    def refit(
-        self,
-        names: Sequence[str],
-        starts: FloatArray,
-        offsets: FloatArray,
-        *,
-        integrator: Integrator | None = None,
-        max_iterations: int = 30,
-        tolerance: float = TOLERANCE,
-        spreads: Mapping[str, float] | None = None,
-    ) -> Point:
+    def refit(self, names: Sequence[str], starts: FloatArray, offsets: FloatArray, **how: Unpack[_How]) -> Point:
         """The best of ``refits``."""
-        ends = self.refits(
-            names,
-            starts,
-            offsets,
-            integrator=integrator,
-            max_iterations=max_iterations,
-            tolerance=tolerance,
-            spreads=spreads,
-        )
-        return min(ends, key=lambda end: end.chi2)
+        return min(self.refits(names, starts, offsets, **how), key=lambda end: end.chi2)
 
     def refits(
         self,
