@@ -107,9 +107,20 @@ def alone_in(folder: Path) -> Iterator[None]:
             raise OutputError(Problem("another run is writing there", str(folder), why, fix)) from None
         except OSError:  # some network folders have no locks
             pass
+        if not _is_still(handle, folder):
+            why = "a command that made it and was refused took it away again at this moment"
+            raise OutputError(Problem("the folder is gone", str(folder), why, "run the command again"))
         yield
     finally:
         os.close(handle)
+
+
+def _is_still(handle: int, folder: Path) -> bool:
+    """Whether a path leads to what is open."""
+    try:
+        return os.path.samestat(os.fstat(handle), os.stat(folder))
+    except OSError:
+        return False
 
 
 def write_text(path: Path, text: str, overwrite: bool = True) -> Path:

@@ -104,16 +104,16 @@ def claimed(folder: Path, *, force: bool = False, resume: bool = False) -> Itera
         _make(folder)
     elif not folder.is_dir():
         prepare(folder)  # says what is wrong
-    try:
-        with alone_in(folder):
+    with alone_in(folder):
+        try:
             prepare(folder, force=force, resume=resume)
             remove_left_overs(folder)
             yield folder
-    except BaseException:
-        if made:  # of a command that is refused no empty folder stays
-            with contextlib.suppress(OSError):
-                folder.rmdir()
-        raise
+        except BaseException:
+            if made:  # of a command that is refused no empty folder stays; it goes while nobody else can have it
+                with contextlib.suppress(OSError):
+                    folder.rmdir()
+            raise
 
 
 def write_run(result: FitResult, folder: Path) -> dict[str, Any]:

@@ -100,7 +100,8 @@ def solve(
     beliefs         (k, n_targets) matrix A and (n_targets,) centre: adds |A (unit - centre)|^2 to what is minimised
                     (not to the J reported)
     trusting        a start also ends after the step from which the linear problem promises no more than the tolerance,
-                    instead of two steps in a row that bring no more, and two again
+                    instead of two steps in a row that bring no more, and two again; and large damping holds initial
+                    states back too, far from any fit (elsewhere they find the way round a bound by steps of their own)
     Returns a result per start, never above what it began with.
     """
     n_starts = starts.shape[1]
@@ -152,7 +153,7 @@ def solve(
                 damping[row] = min(damping[row], 1e-3) if last[i] else damping[row]
             for k, factor in enumerate(DAMPINGS):
                 at = linear[i]
-                if damping[row] * factor > FIRM:
+                if trusting and damping[row] * factor > FIRM:
                     at = at.damped(damping[row] * factor)
                     hessian = at.hessian + ridge * np.eye(len(z)) + believed
                     gradient = at.gradient + ridge * (z[:, row] - centre) + believed @ (z[:, row] - likely)
