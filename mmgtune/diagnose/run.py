@@ -114,11 +114,7 @@ def _diagnose(
     )
     suggestion = _suggestion(bench, found)
     hooks.on_phase("gathering the evidence")
-    theta, retuned = (
-        values | followers(bench.model.ties, values)
-        for point in (found.final, found.base)
-        for values in [{name: bench.values(point)[name] for name in bench.targets}]
-    )
+    theta, retuned = (_targets_of(bench, point) for point in (found.final, found.base))
     coverage = Coverage.of(bench.trials, profile.L_pp)
     result = Diagnosis(
         profile=profile,
@@ -203,6 +199,13 @@ def _in_order(trials: Sequence[Trial]) -> list[Trial]:
     """Trials without what their files say about them, in an order that depends on what was measured alone."""
     bare = [replace(trial, noise={}) for trial in trials]
     return sorted(bare, key=lambda trial: (trial.n_samples, trial.motion[0].tolist(), trial.delta.tobytes()))
+
+
+def _targets_of(bench: Workbench, point: Point) -> dict[str, float]:
+    """Targets at a point, with what is tied to them."""
+    values = bench.values(point)
+    own = {name: values[name] for name in bench.targets}
+    return own | followers(bench.model.ties, own)
 
 
 def _causes(bench: Workbench, found: Found, sizes: Mapping[str, Estimate], test: Sequence[Trial]) -> list[Cause]:

@@ -119,6 +119,11 @@ def solve(
             own = own + np.sum((beliefs[0] @ (unit - likely[:, None])) ** 2, axis=0)
         return np.asarray(own)
 
+    def of_all(linear: _Linear, at: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Halves of second and first derivatives of all that is minimised."""
+        hessian = linear.hessian + ridge * np.eye(len(at)) + believed
+        return hessian, linear.gradient + ridge * (at - centre) + believed @ (at - likely)
+
     def residuals_of(unit: FloatArray, offsets: FloatArray) -> FloatArray:
         found = problem.residuals(unit, offsets).T
         return found if whiten is None else whiten(found)
@@ -143,8 +148,7 @@ def solve(
         tried = np.empty((len(z), len(rows), 2, len(DAMPINGS)))
         moved = np.empty((len(problem.cases), len(rows), 2, len(DAMPINGS), 6))
         for i, row in enumerate(rows):
-            hessian = linear[i].hessian + ridge * np.eye(len(z)) + believed
-            gradient = linear[i].gradient + ridge * (z[:, row] - centre) + believed @ (z[:, row] - likely)
+            hessian, gradient = of_all(linear[i], z[:, row])
             scale = np.maximum(np.diag(hessian), 1e-12 * np.diag(hessian).max() + 1e-300)
             if trusting:
                 whole = bounded_step(hessian + np.diag(HARDLY * scale), gradient, z[:, row]) - z[:, row]
@@ -155,8 +159,7 @@ def solve(
                 at = linear[i]
                 if trusting and damping[row] * factor > FIRM:
                     at = at.damped(damping[row] * factor)
-                    hessian = at.hessian + ridge * np.eye(len(z)) + believed
-                    gradient = at.gradient + ridge * (z[:, row] - centre) + believed @ (z[:, row] - likely)
+                    hessian, gradient = of_all(at, z[:, row])
                 damped = hessian + np.diag(damping[row] * factor * scale)
                 nearby = tried[:, i, 0, k - 1] if k else None
                 tried[:, i, 0, k] = bounded_step(damped, gradient, z[:, row], nearby)

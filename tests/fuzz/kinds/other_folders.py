@@ -20,7 +20,7 @@ from tests.report import more_runs
 from ..mutating import mutated_bytes, pick, several
 from ..trees import as_json, mutated
 from . import Files, Kind
-from .folders import IN_FOLDER, _collected, _fix, _lay
+from .folders import IN_FOLDER, _collected, _lay, _timeless
 from .parquet_logs import odd_values, other_type, shorter
 
 MADE = ("simulate", "model-comparison", "learning", "plan")
@@ -37,17 +37,6 @@ def whole() -> dict[str, dict[str, bytes]]:
             more_runs.HOW[kind](folder)
             found[kind] = {key: _timeless(content) for key, content in _collected(folder).items() if key != "base.json"}
     return found
-
-
-def _timeless(content: bytes) -> bytes:
-    if content[:4] == b"PAR1":
-        return content
-    try:
-        document = json.loads(content)
-    except ValueError:
-        return content
-    _fix(document)
-    return as_json(document)
 
 
 def _table(rng: np.random.Generator, content: bytes) -> bytes:
