@@ -296,12 +296,18 @@ def _only(data: TrialSet, only: Sequence[str]) -> TrialSet:
     )
 
 
-def write_model_comparison(result: ModelComparison, folder: Path, command: str = "") -> dict[str, Any]:
-    """Write the record into a run folder, and the motions of whole trials.  Returns it; raises OutputError."""
+def write_model_comparison(
+    result: ModelComparison, folder: Path, command: str = "", notes: Sequence[str] = ()
+) -> dict[str, Any]:
+    """Write the record into a run folder, and the motions of whole trials.  Returns it; raises OutputError.
+
+    notes  what a reader of the errors must know
+    """
     pieces = list(result.data.trials.values())[:MOST]
     names = write_motions({one.name: one.predictor for one in result.models}, pieces, folder)
     document = {
         **result.to_dict(command),
+        "notes": list(notes),
         "L_pp": result.models[0].predictor.L_pp,
         "inputs": [INPUTS[name].to_dict() for name in names],
         "out": str(folder),

@@ -101,8 +101,11 @@ class Model:
                 if tie.to in names and tie.name not in names:
                     theta[self.rows[tie.name]] = tie.ratio * theta[self.rows[tie.to]]
         for effect in self.acting(CoefficientsEffect):
+            e = self.parameters(effect, theta)
+            if effect.is_absent(e):
+                continue
             now = {name: theta[row] for name, row in self.rows.items()}
-            for name, value in effect.function(now, self.parameters(effect, theta)).items():
+            for name, value in effect.function(now, e).items():
                 theta[self.rows[name]] = value
         return theta
 

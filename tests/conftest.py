@@ -16,24 +16,41 @@ os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "0.2")
 if "PYTEST_XDIST_WORKER" in os.environ:  # a core each, for the commands that a worker starts too
     for name in ("MMGTUNE_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")
+os.environ.setdefault("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1")  # of messages that numba keeps to itself
 
+from mmgtune.backends.twins import FUSE
 from mmgtune.model import Model
 from mmgtune.profile import load_profile
 from mmgtune.resources import profile_names
 
+os.environ.setdefault("XLA_FLAGS", f"--{FUSE}")  # as the program has it, for tests that import JAX themselves
+
 
 @pytest.hookimpl(tryfirst=True)  # before the plugin of the workers reads the groups
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """The longest first, so that no worker is left with one at the end; those that share what took long in one worker.
+    """Tests that share what took long stay together, in one worker; what takes longest comes first, so that no worker
+    is left with it at the end.
 
-    Markers of a module or of a test say which: ``slow(seconds)`` and ``xdist_group(name)``.
+    Tests with a fixture of their module stay together, and those that a marker ``xdist_group(name)`` says; a marker
+    ``slow(seconds)`` of a module or of a test says how long it takes.
     """
+    together: dict[str, list[pytest.Item]] = {}
+    for item in items:
+        if not item.get_closest_marker("xdist_group") and _has_one_of_its_module(item):
+            item.add_marker(pytest.mark.xdist_group(item.nodeid.partition("::")[0]))
+        group = item.get_closest_marker("xdist_group")
+        together.setdefault(group.args[0] if group else item.nodeid, []).append(item)
 
-    def seconds(item: pytest.Item) -> float:
-        mark = item.get_closest_marker("slow")
-        return float(mark.args[0]) if mark else 0.0
+    def seconds(tests: list[pytest.Item]) -> float:
+        return sum(float(mark.args[0]) for item in tests if (mark := item.get_closest_marker("slow")))
 
-    items.sort(key=seconds, reverse=True)
+    items[:] = [item for tests in sorted(together.values(), key=seconds, reverse=True) for item in tests]
+
+
+def _has_one_of_its_module(item: pytest.Item) -> bool:
+    """Whether a test has a fixture that is made once for its module, which another worker would make again."""
+    fixtures = item._fixtureinfo.name2fixturedefs if isinstance(item, pytest.Function) else {}
+    return any(one.scope == "module" for found in fixtures.values() for one in found)
 
 
 @pytest.fixture(params=profile_names())

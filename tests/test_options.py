@@ -11,7 +11,10 @@ from mmgtune.errors import OptionError
 from mmgtune.options import (
     CheckOptions,
     DiagnoseOptions,
+    EnsembleOptions,
     FitOptions,
+    HybridOptions,
+    LearnOptions,
     LeaveOutOptions,
     SimulateOptions,
     SweepOptions,
@@ -89,3 +92,8 @@ def test_windows_too_short_for_slow_errors():
     trials = list(load_trials("suzaku").in_windows(2.0).trials.values())
     residuals = [np.ones((trial.n_samples, 6)) for trial in trials]
     assert _explained(SimpleNamespace(trials=trials), residuals, ["x", "psi"]) == {}
+
+
+def test_few_updates_need_no_other_option():
+    for kind in (LearnOptions, HybridOptions, EnsembleOptions):
+        assert kind(steps=5).problems() == []

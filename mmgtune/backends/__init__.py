@@ -8,7 +8,7 @@ from ..errors import OptionError, Problem, closest
 from ..physics.quantities import STATES
 from .cases import Backend, Cases, Integrator, LaneResult, pad
 from .compiled import Compiled
-from .kernel_source import WIDTH
+from .kernel.text import WIDTH
 from .numpy_lanes import LaneModel, NumpyLanes
 
 BACKENDS = ("compiled", "numpy", "jax")

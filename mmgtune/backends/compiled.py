@@ -11,12 +11,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
-from ..effects import LagEffect
+from ..arrays import BoolArray, FloatArray, IntArray
+from ..effects import Effect, LagEffect
 from ..model import Model
 from ..physics.quantities import State
 from .cases import Cases, Integrator, LaneResult, finish, lanes_of
-from .kernel_source import N_STATES, WIDTH, functions_of, kernel_source
+from .kernel.source import functions_of, kernel_source
+from .kernel.text import IN_KERNEL, N_STATES, WIDTH, acting_in
 from .logged import Logged
 from .numpy_lanes import LaneModel
 
@@ -83,6 +84,31 @@ def _blocks_of_one_case(n_cases: int, n_candidates: int) -> Blocks:
     return Blocks(case_of, np.tile(thetas, (n_cases, 1)), thetas, np.tile(np.arange(per_case), n_cases), mixed=False)
 
 
+@lru_cache(maxsize=64)
+def _nulls(model: Model, places: tuple[type[Effect], ...]) -> tuple[IntArray, FloatArray, IntArray]:
+    """Rows of the parameters of effects, their nulls, and where those of each effect begin; one without has NaN."""
+    rows: list[int] = []
+    nulls: list[float] = []
+    first = []
+    for effect in acting_in(model, places):
+        first.append(len(rows))
+        fields = dict(zip(effect.params._fields, model.fields(effect), strict=True))
+        for name, null in effect.nulls.items():
+            rows += fields[name]
+            nulls += [null] * len(fields[name])
+        if len(rows) == first[-1]:
+            rows, nulls = [*rows, 0], [*nulls, np.nan]
+    return np.array(rows, dtype=int), np.array(nulls), np.array(first, dtype=int)
+
+
+def present(model: Model, places: tuple[type[Effect], ...], theta: FloatArray) -> BoolArray:
+    """(n, n_effects) which effects any lane of blocks (n, n_rows, n_lanes) of coefficients has: not at their null."""
+    rows, nulls, first = _nulls(model, places)
+    if not len(first):
+        return np.zeros((len(theta), 1), dtype=bool)
+    return np.logical_or.reduceat((theta[:, rows] != nulls[:, None]).any(axis=2), first, axis=1)
+
+
 def first_states(
     model: Model, theta: FloatArray, cases: Cases, initial: FloatArray | None, paired: bool = False
 ) -> FloatArray:
@@ -93,8 +119,11 @@ def first_states(
     n_candidates = 1 if paired else theta.shape[-1]
     if initial is None:
         initial = np.broadcast_to(cases.initial[:, None], (len(cases), n_candidates, N_STATES))
-    if not model.acting(LagEffect):
+    lags = model.acting(LagEffect)
+    if not lags:
         return initial
+    if not present(model, (LagEffect,), theta.reshape(1, len(theta), -1)).any():
+        return np.concatenate([initial, np.zeros((*initial.shape[:2], sum(len(lag.states) for lag in lags)))], axis=2)
     with np.errstate(all="ignore"):
         ship = LaneModel(model, lanes_of(theta, len(cases), paired))
         log = Logged(model, cases, n_candidates, ship.shift)
@@ -104,7 +133,7 @@ def first_states(
 
 
 class Compiled:
-    """Runs kernels made by ``kernel_source``; one per combination of components, kept in memory and on disk."""
+    """Runs kernels made by ``kernel``; one per combination of components, kept in memory and on disk."""
 
     name = "compiled"
 
@@ -154,6 +183,7 @@ class Compiled:
         fixed = (
             np.ascontiguousarray(thetas),
             theta_of,
+            present(model, IN_KERNEL, thetas.reshape(len(thetas), -1, WIDTH)),
             np.ascontiguousarray(start).reshape(n_blocks, -1),
             blocks.case_of,
             blocks.candidate_of,

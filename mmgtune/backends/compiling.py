@@ -6,6 +6,7 @@ folder, named by a hash of everything they were made from, so that numba's own c
 
 from __future__ import annotations
 
+import gc
 import hashlib
 import importlib
 import inspect
@@ -31,6 +32,7 @@ from ..physics import elementary
 from ..physics.integration import between
 from . import vector_math
 from .kernel_folder import Entry, alone, kernel_folder
+from .tuples import inner
 from .vector_math import OPTIONS, select, vector_arctan2, vector_cos, vector_exp, vector_log, vector_sin
 
 __all__ = ["carray", "lane", "load_kernel", "logged_control", "njit", "stack"]
@@ -48,36 +50,43 @@ def stack(context: Any, size: Any) -> Any:
     return types.CPointer(types.float64)(size), generate
 
 
-def lane(of: type, rows: Sequence[int | Sequence[int]], width: int) -> Any:
+def lane(of: type, rows: Sequence[Any], width: int) -> Any:
     """A function of an array of the stack and a lane: the named tuple ``of`` with the lane's numbers of these rows.
 
-    rows   of each field; several where the field is a table
+    rows   of each field; several where the field is a table, or holds a named tuple
     width  lanes of a row
 
     To the same effect as indexing the array for each field, for which numba would take seconds to work out the types.
     """
-    tables = [[row] if isinstance(row, int) else row for row in rows]
-    kinds = [types.float64 if isinstance(row, int) else types.UniTuple(types.float64, len(row)) for row in rows]
-    made = types.NamedUniTuple(kinds[0], len(kinds), of) if len(set(kinds)) == 1 else types.NamedTuple(kinds, of)
+    made = _type_of(of, rows)
 
     @intrinsic
     def load(_context: Any, array: Any, lane: Any) -> Any:
         def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
             data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
 
-            def number(row: int) -> Any:
-                at = builder.add(arguments[1], ir.Constant(ir.IntType(64), row * width))
+            def value(kind: Any, of: Any) -> Any:
+                if kind != types.float64:
+                    own = kind.types if hasattr(kind, "types") else [kind.dtype] * len(of)
+                    return context.make_tuple(builder, kind, [value(*one) for one in zip(own, of, strict=True)])
+                at = builder.add(arguments[1], ir.Constant(ir.IntType(64), of * width))
                 return builder.load(builder.gep(data, [at]))
 
-            values = []
-            for kind, table in zip(kinds, tables, strict=True):
-                numbers = [number(row) for row in table]
-                values.append(numbers[0] if kind == types.float64 else context.make_tuple(builder, kind, numbers))
-            return context.make_tuple(builder, made, values)
+            return value(made, rows)
 
         return made(array, types.int64), generate
 
     return load
+
+
+def _type_of(of: type | None, rows: Any) -> Any:
+    """Numba's type of a number, a table or a named tuple of rows."""
+    if isinstance(rows, int):
+        return types.float64
+    if of is None:
+        return types.UniTuple(types.float64, len(rows))
+    kinds = [_type_of(kind, own) for kind, own in zip(inner(of).values(), rows, strict=True)]
+    return types.NamedUniTuple(kinds[0], len(kinds), of) if len(set(kinds)) == 1 else types.NamedTuple(kinds, of)
 
 
 @njit(**OPTIONS)
@@ -153,6 +162,18 @@ def _source_hash() -> str:
     return digest.hexdigest()
 
 
+@contextmanager
+def _uncollected() -> Iterator[None]:
+    """No looking for unused cycles: a compiler makes millions of objects and keeps them to its end."""
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if enabled:
+            gc.enable()
+
+
 def _compiled_once(function: Any, path: Path) -> Callable[..., None]:
     """The same function; of several processes that call it first, one compiles and the others read what it wrote.
 
@@ -166,7 +187,8 @@ def _compiled_once(function: Any, path: Path) -> Callable[..., None]:
         if not ready:
             with alone(path.with_suffix(".lock")):
                 kept.clean()
-                function.compile(tuple(map(function.typeof_pyval, args)))
+                with _uncollected():
+                    function.compile(tuple(map(function.typeof_pyval, args)))
                 kept.seal()
             ready = True
         function(*args)

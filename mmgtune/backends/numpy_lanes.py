@@ -137,10 +137,14 @@ class LaneModel:
         def acting(kind: type[E]) -> list[Acting[E]]:
             return [Acting(effect, model.parameters(effect, theta)) for effect in model.acting(kind)]
 
-        self.actuators, self.flows, self.forces = acting(ActuatorEffect), acting(FlowEffect), acting(ForceEffect)
-        self.lags, self.sensors, self.factors = acting(LagEffect), acting(SensorEffect), acting(FactorsEffect)
+        def there(kind: type[E]) -> list[Acting[E]]:
+            """Without those that every lane has at their null, where numbers are known."""
+            return [one for one in acting(kind) if on is not NUMPY or not one.effect.is_absent(one.e)]
+
+        self.flows, self.forces = there(FlowEffect), there(ForceEffect)
+        self.sensors, self.factors = there(SensorEffect), there(FactorsEffect)
+        self.actuators, self.lags, self.filters = acting(ActuatorEffect), acting(LagEffect), acting(FilterEffect)
         self.acts_on = [self.arrangement.of_role(one.effect.of) for one in self.actuators]
-        self.filters = acting(FilterEffect)
         self._clocks = acting(ClockEffect)
 
     @property

@@ -104,7 +104,8 @@ class Changed:
         if self.baseline and math.isfinite(self.baseline) and math.isfinite(self.now):
             text += f" ({100.0 * (self.now / self.baseline - 1.0):+.3g} %)"
         if self.share is not None and self.share >= 0.005:
-            text += f", its old value undoes {100.0 * self.share:.0f} % of the loss in J"
+            part = f"{100.0 * self.share:.0f} %" if self.share < 1.0 else "all"
+            text += f", its old value undoes {part} of the loss in J"
         return text
 
 

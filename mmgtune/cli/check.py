@@ -169,7 +169,7 @@ class Given:
         from ..checking.renderers import RENDERERS
 
         if self.format in (None, "text"):
-            c.show(RENDERERS["text"](report, self.everything), end="")
+            c.show(RENDERERS["text"](report, self.everything, c.width()), end="")
             if self.format is None and os.environ.get("GITHUB_ACTIONS") == "true":
                 c.show(RENDERERS["github"](report), end="", commands=True)
         else:

@@ -13,6 +13,7 @@ import typer
 
 from ..options.choice import INPUT, OUTPUT
 from . import completing
+from .output import filled as filled
 from .output import print_json as print_json
 from .output import say as say
 from .output import show as show

@@ -15,8 +15,6 @@ from . import common as c
 from . import completing
 from .options import RunOptions, takes
 
-WIDTH = 25
-
 
 @dataclass(frozen=True)
 class FolderOptions(Options):
@@ -101,26 +99,27 @@ def summary(document: Mapping[str, Any]) -> str:
 
 
 def _table(models: Sequence[Any], columns: Sequence[Any], of: Sequence[int], convention: str) -> list[str]:
-    names = [f"{columns[k]['name'][-40:]} ({columns[k]['runs']})" for k in of]
-    width = max(WIDTH, *(len(name) + 2 for name in names))
-    lines = [f"  {'':<32}" + "".join(f"{name:>{width}}" for name in names)]
+    heads = [f"{columns[k]['name'][-40:]} ({columns[k]['runs']})" for k in of]
+    rows = []
     for model in models:
-        row = [
+        cells = [
             _cell(model[convention][k], model["members"]) + "* "[columns[k]["best"][convention] != model["name"]]
             for k in of
         ]
-        lines.append(f"  {model['name'][-32:]:<32}" + "".join(f"{text:>{width}}" for text in row))
-    return lines
+        rows.append((model["name"][-32:], *cells))
+    return [f"  {line}" for line in c.table(("", *heads), rows, less=2)]
 
 
-_HEADS = ("particles", "L_fit", "L_Eucl", "L_Maha", "correlation", "CRPS", "50 % holds", "90 % holds", "width")
+_HEADS = ("particles", "L_fit", "L_Eucl", "L_Maha", "correlation", "CRPS", "50 % holds", "90 % holds", "width", "lost")
+_SPARE = (5, 4, 3, 2, 7, 1)
+"""Columns that a narrow terminal does without, the first of them first."""
 
 
 def _bands(document: Mapping[str, Any], of: Sequence[int], convention: str) -> list[str]:
-    lines = [f"  {'':<32}" + "".join(f"{head:>12}" for head in _HEADS)]
+    rows: list[tuple[str, ...]] = []
     for k in of:
         column = document["columns"][k]
-        lines.append(f"  {column['name'][-40:]} ({column['runs']})")
+        rows.append((f"{column['name'][-40:]} ({column['runs']})", *("" for _ in _HEADS)))
         for model in document["models"]:
             row = model[convention][k]["bands"]
             best = column["best_CRPS"][convention] == model["name"]
@@ -130,10 +129,11 @@ def _bands(document: Mapping[str, Any], of: Sequence[int], convention: str) -> l
                 _number(row["CRPS"]) + "*" * best,
                 *("-" if row[f"coverage_{n}"] is None else f"{100.0 * row[f'coverage_{n}']:.0f} %" for n in (50, 90)),
                 _number(row["sharpness"]),
+                f"{row['windows_lost']} of {row['windows']}" if row["windows_lost"] else "",
             ]
-            lost = f"  {row['windows_lost']} of {row['windows']} lost" if row["windows_lost"] else ""
-            lines.append(f"    {model['name'][-30:]:<30}" + "".join(f"{text:>12}" for text in cells) + lost)
-    return lines
+            rows.append((f"  {model['name'][-30:]}", *cells))
+    some = len(_HEADS) + any(row[-1] for row in rows)  # nothing is lost, mostly
+    return [f"  {line}" for line in c.table(("", *_HEADS)[:some], [row[:some] for row in rows], less=2, spare=_SPARE)]
 
 
 def _number(value: float | None) -> str:

@@ -146,6 +146,7 @@ def _of_runs(one: ByRun) -> list[str]:
 def summary(result: Diagnosis, folder: str, report: bool) -> str:
     """The result as a person wants to read it in a terminal."""
     from ..profile.doubts import in_words
+    from ..report.wording import span
 
     rows = []
     for row in result.candidates[:12]:
@@ -159,12 +160,13 @@ def summary(result: Diagnosis, folder: str, report: bool) -> str:
         lines.append(result.record.sentence)
     for trace in result.traces:
         lines.append(f"Trace, nothing that would be noticed, and in no profile: {trace.cause.sentence}.")
-    if before is not None and after is not None and result.causes and not result.interrupted:
-        low, high = result.gain.share_removed[1:]
-        lines.append(
-            f"J held out ({result.gain.words}; {result.gain.method}): {before:.4g} -> {after:.4g}; "
-            f"95 % interval of the share removed {100.0 * low:.1f} to {100.0 * high:.1f} %."
-        )
+    where = f"J held out ({result.gain.words}; {result.gain.method})"
+    named = result.causes and result.verdict != "unexplained" and not result.interrupted
+    if named and before is not None and after is not None:
+        removed = span(*result.gain.share_removed[1:]).replace("\u00a0", " ")
+        lines.append(f"{where}: {before:.4g} -> {after:.4g}; 95 % interval of the share removed: {removed}.")
+    elif before is not None:
+        lines.append(f"{where}: {before:.4g}, re-tuned without a cause.")
     for cause in result.causes:
         lines += ["", *_of_runs(cause.runs)] if cause.runs and not result.interrupted else []
     if result.whereabouts:

@@ -82,7 +82,8 @@ def run(
         c.print_json(dict(result.document))
     else:
         c.show(summary(result.document))
-        ran = f"{len(result.ran)} jobs run on {result.workers} workers in {result.wall_s:.1f} s"
+        workers = "1 worker" if result.workers == 1 else f"{result.workers} workers"
+        ran = f"{len(result.ran)} jobs run by {workers} in {result.wall_s:.1f} s"
         again = f", {result.killed} of them again since their worker was killed" if result.killed else ""
         c.show(f"{ran if result.ran else 'Nothing was left to run'}{again}.")
         c.show(f"Results: {out}" if no_report else f"Report: {out}/report.html")

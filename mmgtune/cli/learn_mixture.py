@@ -63,13 +63,27 @@ def command(
         result = learn_mixture(given, network, trials, options, command=c.command_line())
         document = result.write(folder)
         if trials is not None and not no_report:
-            several = {"model of forces": given, "networks": network, "kept": str(folder / MODEL)}
-            write_model_comparison(compare_models(several, trials), folder, c.command_line())
+            several = {"model of forces": given, "networks": network}
+            if 0.0 < document["share"] < 1.0:
+                several[f"mixture ({document['share']:g})"] = str(folder / MODEL)
+            write_model_comparison(compare_models(several, trials), folder, c.command_line(), notes(document))
             render(folder)
     if json:
         c.print_json(document)
     else:
         c.show(summary(document, repr(result.model), report=trials is not None and not no_report))
+
+
+def notes(document: Mapping[str, Any]) -> tuple[str, ...]:
+    """What to know of the errors and of what was kept."""
+    seen, said = document["seen"], []
+    if seen:
+        which = seen[0] if len(seen) == 1 else f"{seen[0]} ..."
+        said.append(f"A part was trained on {len(seen)} of the trials that chose ({which}): errors flatter it.")
+    if document["tried"] and document["share"] in (0.0, 1.0):
+        kept = "networks alone are" if document["share"] else "model of forces alone is"
+        said.append(f"No gain: no mixture does better than one of the two, and the {kept} kept.")
+    return tuple(said)
 
 
 def summary(document: Mapping[str, Any], model: str, *, report: bool) -> str:
@@ -84,14 +98,7 @@ def summary(document: Mapping[str, Any], model: str, *, report: bool) -> str:
             chosen = " *" if row["share"] == document["share"] else ""
             lines.append(f"{row['share']:<8g}{total:>10}" + "".join(f"{one:>12}" for one in errors) + chosen)
         lines += ["error: mean over kinds of manoeuvre of L_MSE over that of the model of forces; * kept", ""]
-    if document["seen"]:
-        n = len(document["seen"])
-        lines += [
-            f"A part was trained on {n} of the trials that chose ({document['seen'][0]} ...): errors flatter it.",
-            "",
-        ]
-    if document["tried"] and document["share"] in (0.0, 1.0):
-        lines.append("No gain: no mixture does better than one of the two alone, which is kept.")
+    lines += [text for note in notes(document) for text in (note, "")]
     lines.append(model)
     if report:
         lines.append(f"Report: {document['out']}/report.html")

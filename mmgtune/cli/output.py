@@ -50,6 +50,17 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]], *, less: int = 0, 
     return columns.table(head, rows, width=width() - less, **how)
 
 
+def filled(parts: Sequence[str], start: str) -> list[str]:
+    """Parts side by side in as many lines as they need, each of which begins with ``start``."""
+    lines = [start + parts[0]] if parts else []
+    for part in parts[1:]:
+        if len(lines[-1]) + 3 + len(part) <= width():
+            lines[-1] += f"   {part}"
+        else:
+            lines.append(start + part)
+    return lines
+
+
 def print_json(document: dict[str, Any]) -> None:
     """One JSON document on stdout."""
     show(json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False))

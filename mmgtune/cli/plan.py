@@ -75,11 +75,12 @@ def summary(document: Mapping[str, Any]) -> str:
     lines = [
         f"{asked['words']}, {asked['order']}: {now} (half the band of {level:g} %)",
         "",
-        f"  {'trial':<56}{'after it':>14}{'of the band goes':>18}{'takes':>9}",
     ]
+    rows = []
     for one in document["trials"]:
         after = f"± {one['half_width_after']:.{decimals}f}{unit}"
-        goes, takes_s = f"{100.0 * one['shrinks']:.0f} %", f"{one['duration_s']:.0f} s"
-        lines.append(f"  {one['trial']:<56}{after:>14}{goes:>18}{takes_s:>9}")
+        rows.append((one["trial"], after, f"{100.0 * one['shrinks']:.0f} %", f"{one['duration_s']:.0f} s"))
+    table = c.table(("trial", "after it", "shrinks by", "takes"), rows, less=2, spare=(3,))
+    lines += [f"  {line}" for line in table]
     lines += [f"  left out: {one}" for one in document["left_out"]]
     return "\n".join(lines)

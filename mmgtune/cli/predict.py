@@ -116,7 +116,8 @@ def _index(row: Mapping[str, Any], n: int, has_band: bool) -> str:
     if row["measured"] is not None:
         beside = f" ({row['over_L']['measured']:.3g} L)" if row["over_L"] else ""
         measured = f"   measured {row['measured']:.4g}{beside}"
-    text = f"  {row['words']:<26}" + "".join(f"{one:<26}" for one in shown) + ("" if row["over_L"] else " " * 26)
+    first, *over = shown
+    text = f"  {row['words']:<25} {first:<17}" + "".join(f" {one:<14}" for one in over or [""])
     return (text + never + measured).rstrip()
 
 

@@ -75,11 +75,13 @@ def summary(result: VoyageValidation, folder: str, report: bool) -> str:
     if result.n_windows:
         limits, models = found["classes"]["cVDM_limits"], found["models"]
         lines += ["", f"windows by cVDM: optimal to {limits[0]:g} %, satisfactory to {limits[1]:g} %"]
-        lines.append(_row("", [*found["classes"]["names"], "diverged"], 14))
-        lines += [_row(one["profile"], [*one["classes"].values(), one["diverged"]], 14) for one in models]
-        lines += ["", _row("median (95 % stay below)", [one["profile"][-20:] for one in models], 22)]
-        for name, row in models[0]["measures"].items():
-            lines.append(_row(f"{name} [{row['unit']}]", [_median(one["measures"][name]) for one in models], 22))
+        counts = [(one["profile"][-40:], *map(str, (*one["classes"].values(), one["diverged"]))) for one in models]
+        lines += _indented(("", *found["classes"]["names"], "diverged"), counts)
+        medians = [
+            (f"{name} [{row['unit']}]", *(_median(one["measures"][name]) for one in models))
+            for name, row in models[0]["measures"].items()
+        ]
+        lines += ["", *_indented(("median (95 % stay below)", *(one["profile"][-20:] for one in models)), medians)]
         for one in models:
             if held := one.get("bands"):
                 share = "-" if held["coverage_90"] is None else f"{100.0 * held['coverage_90']:.0f} %"
@@ -90,7 +92,7 @@ def summary(result: VoyageValidation, folder: str, report: bool) -> str:
         lines += ["", f"where the error of {first['profile']} lives: mean cVDM [%] (windows)"]
         for row in first["where"][:SHOWN]:
             lines.append(f"  {row['words']}, explains {100.0 * row['explained']:.0f} %")
-            lines.append("    " + "   ".join(_bin(one, row["unit"]) for one in row["bins"]))
+            lines += c.filled([_bin(one, row["unit"]) for one in row["bins"]], "    ")
         r_max = found["r_max"]
         if r_max["rad_per_s"] is not None:
             lines += ["", f"cVDM is relative to {r_max['rad_per_s'] / DEG:.3g} deg/s, {r_max['from']}."]
@@ -103,8 +105,8 @@ def summary(result: VoyageValidation, folder: str, report: bool) -> str:
     return "\n".join(lines)
 
 
-def _row(name: str, values: Sequence[Any], width: int) -> str:
-    return f"  {name[-26:]:<28}" + "".join(f"{value:>{width}}" for value in values)
+def _indented(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    return [f"  {line}" for line in c.table(head, rows, less=2)]
 
 
 def _median(row: dict[str, Any]) -> str:

@@ -109,7 +109,7 @@ def set_aside(bench: Workbench, found: Found, test: Sequence[Trial]) -> tuple[li
         p_value = steps[0].refits[0].p_value if steps else 0.0
         traces.append(Aside(cause, {name: sizes[name] for name in cause.names}, p_value, brought[k]))
         found.final = without(bench, found.final, cause)
-        del found.causes[k], found.rivals[k]
+        del found.causes[k]
         brought = contributions(bench, found, test)
     return traces, brought
 

@@ -49,7 +49,7 @@ def estimated_there(bench: Workbench, point: Point, trials: Sequence[Trial]) -> 
     names = unknown(point, trials)
     if not names:
         return point
-    own = bench.model_of(point.names)
+    own = bench.model
     cases = cases_of(list(trials), bench.in_noise, own.inputs, own.draught)
     weight = cases.weight.copy()
     for case, end in enumerate(first_part(point, trials)):

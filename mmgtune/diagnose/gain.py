@@ -210,7 +210,7 @@ def _on(
     """Comparisons and chi-squared above noise (n_trials, 2) on trials; the latter on what follows the part of each that
     something is estimated on."""
     beside = Beside.of(bench, (before, after), trials)
-    compared = beside.compared(together=not beside.begins.any())
+    compared = beside.compared()
     judged = beside.judged
     floor = np.array([_floor(bench, judged, case) for case in range(len(trials))])
     excess = np.empty((len(trials), 2))

@@ -14,6 +14,8 @@ from ..trial import Trial, measured_around
 from .runs import IN_WORDS, groupings
 
 INTEGRATION_STEP = "integration-step"
+INPUTS_HELD = "inputs-held"
+"""Causes that are no effects: they have no parameters."""
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..trial.kinematics import white_noise
 from .workbench import Point, Workbench
 
@@ -31,13 +31,11 @@ def wander(bench: Workbench, point: Point) -> FloatArray:
     rng = np.random.default_rng(bench.options.seed)
     cases = bench.problem.cases
     problem = bench.problem_of(point.names, point.integrator)
-    level = np.array(
-        [[white_noise(logged) for logged in trial.inputs(problem.model.inputs).T] for trial in bench.trials]
-    )[:, None]
-    bend = np.zeros_like(cases.controls)
-    bend[:, 1:-1] = np.abs(np.diff(cases.controls, n=2, axis=1))
-    deviation = np.where(bend > CLEAR * level, np.hypot(level, BETWEEN * bend), level)
-    noise = deviation[:, None] * rng.standard_normal((len(cases), DRAWS, *cases.controls.shape[1:]))
+    noise = rng.standard_normal((len(cases), DRAWS, *cases.controls.shape[1:]))
+    for case, trial in enumerate(bench.trials):
+        for k, logged in enumerate(cases.controls[case].T):
+            known = None if bench.updates is None else bench.updates[case][k]
+            noise[case, :, :, k] = _otherwise(noise[case, :, :, k], logged, trial.n_samples, known)
     controls = np.concatenate([cases.controls[:, None], cases.controls[:, None] + noise], axis=1)
     copies = DRAWS + 1
     many = replace(
@@ -62,3 +60,22 @@ def wander(bench: Workbench, point: Point) -> FloatArray:
         changed[rows] = (runs[1:] - runs[0]).T
         at += n * copies
     return bench.noise.apply(np.where(np.isfinite(changed), changed, 0.0))
+
+
+def _otherwise(drawn: FloatArray, logged: FloatArray, n_samples: int, at: IntArray | None) -> FloatArray:
+    """Standard normal numbers (DRAWS, T) as what else an input (T,) may have been, of which so many samples count.
+
+    at  samples at which the log was updated, None for all: between two updates nothing is known
+    """
+    values = logged[:n_samples] if at is None else logged[at]
+    level = white_noise(values)
+    kept = logged if at is None else values
+    bend = np.zeros(len(kept))
+    bend[1:-1] = np.abs(np.diff(kept, n=2))
+    deviation = np.where(bend > CLEAR * level, np.hypot(level, BETWEEN * bend), level)
+    if at is None:
+        return deviation * drawn
+    changed = np.zeros_like(drawn)
+    for into, one in zip(changed, drawn, strict=True):
+        into[:n_samples] = np.interp(np.arange(n_samples), at, deviation * one[at])
+    return changed

@@ -7,7 +7,7 @@ one.  They are whitened, and freed of what the initial states and the free coeff
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -52,6 +52,7 @@ class Linear:
     tuned       (n_rows, n_free) orthonormal basis of what free coefficients can change
     plain       signatures (n_rows,) of what may differ between runs, by name, coefficients not taken out
     groups      of each trial
+    fitted      what fits leave of whitened residuals (n_residuals, k): (n_rows, k) free of all ``noise`` is free of
     kept        what was worked out from it once
     """
 
@@ -68,6 +69,7 @@ class Linear:
     tuned: FloatArray
     plain: Mapping[str, FloatArray]
     groups: tuple[frozenset[str], ...]
+    fitted: Callable[[FloatArray], FloatArray]
     kept: dict[Any, Any] = field(default_factory=dict)
 
     @property
@@ -215,6 +217,12 @@ def linearise(
     length = np.linalg.norm(slopes[:, [i - 1 for i in at_chosen]], axis=0)
     every = basis(np.column_stack([signature, small]))
     first, blocks = blocks_of(problem)
+
+    def fitted(columns: FloatArray) -> FloatArray:
+        left = problem.without_offsets(columns, by_offset, problem.prior)
+        left -= Q @ (Q.T @ left)
+        return np.asarray(left - every @ (every.T @ left))
+
     return Linear(
         residual=left[:, 0],
         names=chosen,
@@ -229,6 +237,7 @@ def linearise(
         tuned=Q,
         plain=plain,
         groups=problem.groups,
+        fitted=fitted,
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -14,6 +15,15 @@ LAGS = 6
 
 SLOWEST = 0.995
 """Largest autocorrelation assumed of neighbouring samples."""
+
+DRAWS = 8
+"""Realisations of a noise model that show what fitting takes away from it."""
+
+ROUNDS = 6
+"""Times a noise model is corrected for that; each time about half of what is missing comes back."""
+
+NEAR = 4.0
+"""Variance over that of white noise beyond which what is left may be an error of the model, and is not made more of."""
 
 NOTICED = 4.0
 """A fading part counts from this many standard errors of the autocorrelation."""
@@ -38,6 +48,13 @@ class ChannelNoise:
         return self.fading + self.white
 
     @property
+    def autocovariance(self) -> FloatArray:
+        """(LAGS + 1,) of neighbouring samples, the variance first."""
+        found = self.fading * self.phi ** np.arange(LAGS + 1.0)
+        found[0] += self.white
+        return np.asarray(found)
+
+    @property
     def filter(self) -> tuple[float, float, float]:
         """phi, theta, sigma of the process e_k = phi e_(k-1) + a_k + theta a_(k-1) with a_k of deviation sigma."""
         if self.fading <= 0.0:
@@ -58,10 +75,10 @@ class NoiseModel:
 
     cases: Cases
     channels: dict[str, ChannelNoise]
-    _series: list[tuple[str, IntArray]] = field(init=False)
+    _series: list[tuple[str, _Rows]] = field(init=False)
 
     def __post_init__(self) -> None:
-        self._series = series_of(self.cases)
+        self._series = [(channel, _evenly(rows)) for channel, rows in series_of(self.cases)]
 
     @property
     def coloured(self) -> bool:
@@ -78,7 +95,7 @@ class NoiseModel:
                 out[rows] = values[rows] / sigma
                 continue
             with np.errstate(invalid="ignore", over="ignore"):
-                white = _filtered([1.0, -phi], [1.0, theta], values[rows]) / sigma
+                white = _filtered([1.0 / sigma, -phi / sigma], [1.0, theta], values[rows])
                 white[0] *= sigma / np.sqrt(noise.variance)
             out[rows] = white
         return out
@@ -95,6 +112,16 @@ class NoiseModel:
                 part = _filtered([1.0, theta], [1.0, -phi], part)
             out[rows] = part
         return out
+
+
+_Rows = IntArray | slice
+
+
+def _evenly(rows: IntArray) -> _Rows:
+    """Rows as a slice where they are evenly spaced, which NumPy need not copy to look at."""
+    step = int(rows[1] - rows[0]) if len(rows) > 1 else 1
+    whole = np.array_equal(rows, rows[0] + step * np.arange(len(rows)))
+    return slice(int(rows[0]), int(rows[-1]) + 1, step) if whole and step > 0 else rows
 
 
 def _filtered(over: list[float], under: list[float], values: FloatArray) -> FloatArray:
@@ -128,23 +155,46 @@ def white(cases: Cases) -> NoiseModel:
     return NoiseModel(cases, {channel: ChannelNoise() for channel in rows_of_channels(cases)})
 
 
-def estimate(cases: Cases, residuals: FloatArray) -> NoiseModel:
-    """Noise by channel from residuals (n_residuals,) that hold hardly anything but noise, pooled over cases.
+def estimate(
+    cases: Cases, residuals: FloatArray, fitted: Callable[[FloatArray], FloatArray] | None = None
+) -> NoiseModel:
+    """Noise by channel, pooled over cases, from residuals (n_residuals,) that hold hardly anything but noise.
 
-    The white part is what the fading part, extrapolated from lags 1, 2, ..., leaves of the variance.
+    Residuals are in white noise of their channel.  The white part is what the fading part, extrapolated from lags 1, 2,
+    ..., leaves of the variance.
+
+    fitted  what fitting left of residuals (n_residuals, k): it takes away much of what fades slowly, of which a run has
+            few independent samples.  Simulated noise shows how much; None where nothing was fitted.
     """
-    channels = {}
+    found = _autocovariances(cases, residuals[:, None])
+    counts = {channel: sum(map(len, series)) for channel, series in rows_of_channels(cases).items()}
+    model = NoiseModel(cases, {channel: _decompose(found[channel], counts[channel]) for channel in found})
+    far = max((noise.variance for noise in model.channels.values()), default=0.0) > NEAR
+    if fitted is None or far or not model.coloured:
+        return model
+    plain = np.random.default_rng(0).standard_normal((len(residuals), DRAWS))
+    for _ in range(ROUNDS):
+        left = _autocovariances(cases, fitted(model.restore(plain)))
+        channels = dict(model.channels)
+        for channel, noise in model.channels.items():
+            if noise.fading > 0.0:
+                taken = noise.autocovariance - left[channel]
+                channels[channel] = _decompose(found[channel] + taken, counts[channel])
+        model = NoiseModel(cases, channels)
+    return model
+
+
+def _autocovariances(cases: Cases, values: FloatArray) -> dict[str, FloatArray]:
+    """(LAGS + 1,) by channel, of columns (n_residuals, k) pooled."""
+    found = {}
     for channel, series in rows_of_channels(cases).items():
-        parts = [residuals[rows] for rows in series]
-        n = sum(len(part) for part in parts)
-        covariance = np.array(
-            [
-                sum(float(part[lag:] @ part[: len(part) - lag]) for part in parts if len(part) > lag) / n
-                for lag in range(LAGS + 1)
-            ]
-        )
-        channels[channel] = _decompose(covariance, n)
-    return NoiseModel(cases, channels)
+        sums = np.zeros(LAGS + 1)
+        for rows in series:
+            part = values[rows]
+            for lag in range(min(LAGS, len(part) - 1) + 1):
+                sums[lag] += float(np.sum(part[lag:] * part[: len(part) - lag]))
+        found[channel] = sums / (sum(map(len, series)) * values.shape[1])
+    return found
 
 
 def _decompose(covariance: FloatArray, n: int) -> ChannelNoise:

@@ -45,6 +45,9 @@ BENT = 1.0
 """Variance beyond noise, as a share of it, that a cause with values of each run may leave where it has a shape: such
 values bend to what is elsewhere, or at another hour, and not of the run at all."""
 
+WORSE = 0.1
+"""Share by which causes may make the error on test trials larger by chance."""
+
 TOO_MANY = 4
 """Terms of a sum of causes from which it is not believed."""
 
@@ -54,8 +57,9 @@ NEEDED = 0.15
 
 @dataclass(frozen=True, eq=False)
 class Cause:
-    """An effect that was found, with the sizes of its parameters; ``effect`` None for the integration step.
+    """An effect that was found, with the sizes of its parameters; ``effect`` None for what is none.
 
+    words      what it is then: the integration step where they are empty
     estimates  of what is the same in all runs
     runs       what differs between them, None where nothing does
     """
@@ -66,10 +70,13 @@ class Cause:
     p_value: float
     gain_test: float | None
     runs: ByRun | None = None
+    words: str = ""
 
     @property
     def sentence(self) -> str:
         """The cause in words."""
+        if self.effect is None and self.words:
+            return self.words
         if self.effect is None:
             return "The integration step of the simulation is too coarse"
         if self.runs is not None:
@@ -225,7 +232,8 @@ class Diagnosis(Plotted):
         if self.interrupted:
             return "interrupted"
         # Held-out error alone does not tell: with few trials the targets themselves are known too badly for that.
-        fails = self.gain.remains and self.leftover.noticed
+        worse = self.gain.held_out == "test" and self.gain.share_removed[0] < -WORSE
+        fails = self.gain.remains and (self.leftover.noticed or worse)
         fails = fails or bool(self.unclear)
         if self.leftover.structured if not self.causes else fails or self._mostly_left:
             return "found" if any(one.explained >= MOSTLY for one in self.between) else "unexplained"
@@ -339,6 +347,12 @@ class Diagnosis(Plotted):
         if self.groups:
             groups = "; ".join(" or ".join(group) for group in self.groups)
             text = f"These trials cannot tell which it was: {groups}. If the first: {text}"
+        if all(cause.effect is None for cause in self.causes):
+            before, after = self.chi2
+            return (
+                f"{text} With that put right no other cause shows: the error of the re-tuned model falls from "
+                f"{math.sqrt(before):.2g} to {math.sqrt(after):.2g} times the noise of the measurements."
+            )
         them = "it" if len(self.causes) == 1 else "them"
         gained = f"{text} Adding {them} removes {_percent(share)} of the error {where}."
         if not any(cause.runs for cause in self.causes):

@@ -29,14 +29,14 @@ from .by_run import ByRun
 from .contributions import Aside, set_aside
 from .evidence import ResidualForces, explain_forces, noise_share, residual_forces, short_horizon
 from .gain import J_of, held_out
-from .hypotheses import INTEGRATION_STEP, Hypothesis, known_causes, of_runs
+from .hypotheses import INPUTS_HELD, INTEGRATION_STEP, Hypothesis, known_causes, of_runs
 from .intervals import Estimate, estimates
 from .leftover import Leftover, leftover, residuals_of
 from .legs import LEG_NAMES, differences
 from .linear import typical
 from .result import Candidate, Cause, Detectability, Diagnosis, Trace
 from .screening import angles
-from .search import ENOUGH, WORTH, Found, Refit, Step, search
+from .search import ENOUGH, WORTH, Found, Refit, Step, rivals_of, search
 from .separate import Suggestion, suggest
 from .voyages import Choice, looked_at
 from .whereabouts import Whereabouts, whereabouts
@@ -97,6 +97,7 @@ def _diagnose(
     known = [h for h in known if not {h.effect.absorbed.get(v) for v in h.variant} & set(bench.targets)]
     differing_by_run = of_runs(known, seen) if choice is None else []
     found = search(bench, [*known, *differing_by_run], hooks.on_phase, hooks.stop)
+    test = [found.held.evenly(trial) for trial in test] if found.held else test
     hooks.on_phase("measuring the gain")
     traces, brought = set_aside(bench, found, test)
     sizes = estimates(bench, found.final)
@@ -107,12 +108,6 @@ def _diagnose(
     if choice is not None and not hooks.stop():
         hooks.on_phase("comparing the voyages")
         differing = differences(bench, found.final, choice.voyages)
-    groups = tuple(
-        (cause.tag, *(rival.hypothesis.tag for rival in rivals))
-        for cause, rivals in zip(found.causes, found.rivals, strict=True)
-        if rivals
-    )
-    suggestion = _suggestion(bench, found)
     hooks.on_phase("gathering the evidence")
     theta, retuned = (_targets_of(bench, point) for point in (found.final, found.base))
     coverage = Coverage.of(bench.trials, profile.L_pp)
@@ -122,10 +117,10 @@ def _diagnose(
         causes=tuple(_causes(bench, found, sizes, test)),
         traces=tuple(_trace(bench, one) for one in traces),
         contributions=tuple((h.tag, one) for h, one in zip(found.causes, brought, strict=True)),
-        groups=groups,
+        groups=(),
         candidates=tuple(_candidates(bench, found, test)),
         detectability=tuple(_detectability(bench, found.steps[0], known)) if found.steps else (),
-        suggestion=suggestion,
+        suggestion=None,
         gain=gain,
         leftover=left,
         explained_share=_explained(found, before, left),
@@ -135,7 +130,7 @@ def _diagnose(
         warnings=tuple(coverage_notes(bench.model, bench.targets, coverage)),
         noise=_noise(bench),
         chi2=(
-            found.base.chi2 / max(1, bench.problem.n_residuals),
+            _first(found).chi2 / max(1, bench.problem.n_residuals),
             found.final.chi2 / max(1, bench.problem.n_residuals),
         ),
         evidence=_evidence(bench, found, before, left),
@@ -145,9 +140,26 @@ def _diagnose(
         wall_s=time.perf_counter() - began,
         interrupted=hooks.stop(),
     )
-    if result.verdict != "unexplained":
+    if result.verdict == "unexplained":
+        return replace(result, whereabouts=_whereabouts(bench, found))
+    if result.verdict == "interrupted" or not found.causes:
         return result
-    return replace(result, whereabouts=_whereabouts(bench, found))
+    hooks.on_phase("comparing the causes with their rivals")
+    rivals = [rivals_of(bench, found, cause) for cause in found.causes]
+    groups = tuple(
+        (cause.tag, *(rival.hypothesis.tag for rival in of))
+        for cause, of in zip(found.causes, rivals, strict=True)
+        if of
+    )
+    told = replace(result, groups=groups, suggestion=_suggestion(bench, found, rivals))
+    result = replace(told, wall_s=time.perf_counter() - began, interrupted=hooks.stop())
+    return replace(result, whereabouts=_whereabouts(bench, found)) if result.verdict == "unexplained" else result
+
+
+def _first(found: Found) -> Point:
+    """The model re-tuned before anything was put right."""
+    as_given = found.held is None and found.finer_step is None
+    return found.base if as_given else found.steps[0].base
 
 
 def _whereabouts(bench: Workbench, found: Found) -> Whereabouts:
@@ -213,6 +225,8 @@ def _causes(bench: Workbench, found: Found, sizes: Mapping[str, Estimate], test:
     causes: list[Cause] = []
     if found.finer_step is not None:
         causes.append(Cause(INTEGRATION_STEP, None, {}, 0.0, None))
+    if found.held is not None:
+        causes.append(Cause(INPUTS_HELD, None, {}, 0.0, None, words=found.held.sentence))
     J_before = J_of(bench, found.base, test)
     for tag, by in dict.fromkeys((h.tag, h.by) for h in found.causes):
         own = [h for h in found.causes if (h.tag, h.by) == (tag, by)]
@@ -313,11 +327,11 @@ def _explained(found: Found, before: Leftover, left: Leftover) -> float:
     return 1.0 - max(left.excess, 0.0) / before.excess if before.excess > 0.0 else 0.0
 
 
-def _suggestion(bench: Workbench, found: Found) -> Suggestion | None:
+def _suggestion(bench: Workbench, found: Found, rivals: Sequence[Sequence[Refit]]) -> Suggestion | None:
     """The trial that would separate the first cause that has rivals."""
-    for cause, rivals in zip(found.causes, found.rivals, strict=True):
-        if rivals:
-            best = [(cause.tag, found.final), *((r.hypothesis.tag, r.point) for r in rivals[:3])]
+    for cause, of in zip(found.causes, rivals, strict=True):
+        if of:
+            best = [(cause.tag, found.final), *((r.hypothesis.tag, r.point) for r in of[:3])]
             return suggest(bench, best)
     return None
 

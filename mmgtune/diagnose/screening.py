@@ -184,9 +184,7 @@ class ChanceScores:
             if found is None:
                 continue
             drawn = self._drawn(found.chance, signs, pick)
-            # Blocks that were freed of a signature hold less than noise has along it.
-            lacking = np.sqrt(np.maximum(0.0, 1.0 - np.sum(found.chance[0] ** 2, axis=0)))
-            drawn += lacking[:, None] * rng.standard_normal(drawn.shape)
+            drawn += _lacking(found.chance, rng)
             gain = found.hierarchy.gains(drawn, found.hierarchy.spreads(ROUGHLY)).max(axis=0)
             self.largest = np.maximum(self.largest, _evidence(np.maximum(gain, 0.0), degrees(hypothesis)))
         for hypothesis in (one for one in hypotheses if not one.by):
@@ -195,7 +193,8 @@ class ChanceScores:
                     continue
                 Q = basis(columns)
                 chance = linear.chance(Q)
-                score = np.sum(self._drawn(chance, signs, pick) ** 2, axis=0) / inflation(*chance)
+                drawn = self._drawn(chance, signs, pick) + _lacking(chance, rng)
+                score = np.sum(drawn**2, axis=0) / inflation(*chance)
                 self.largest = np.maximum(self.largest, _evidence(score, Q.shape[1]))
         self.largest.sort()
 
@@ -218,6 +217,12 @@ class ChanceScores:
             return beyond / len(self.largest)
         tail = float(self.largest[-10])
         return float(min(1.0, 10.0 / len(self.largest) * np.exp(min(0.0, tail - evidence))))
+
+
+def _lacking(chance: tuple[FloatArray, FloatArray], rng: np.random.Generator) -> FloatArray:
+    """(k, DRAWS) what noise has along directions beyond its blocks: these were freed of the directions themselves."""
+    lacking = np.sqrt(np.maximum(0.0, 1.0 - np.sum(chance[0] ** 2, axis=0)))
+    return np.asarray(lacking[:, None] * rng.standard_normal((len(lacking), DRAWS)))
 
 
 def angles(linear: Linear, hypotheses: Sequence[Hypothesis]) -> FloatArray:

@@ -16,6 +16,7 @@ from ..arrays import FloatArray
 from ..backends import Integrator
 from ..fitting.box import base_of
 from ..fitting.least_squares import solve
+from ..trial import Held
 from . import noise as noises
 from .hypotheses import Hypothesis
 from .linear import Linear, inwards, linearise, typical
@@ -46,6 +47,9 @@ AGAIN = 8
 
 PRECISE = 0.02
 """Fall of chi-squared that counts as none where parameters are reported."""
+
+OF_EXCESS = 1e-4
+"""The same as a share of what is left beyond the noise: where much is, its last digits choose nothing."""
 
 REFITTED = 9
 TERMS_REFITTED = 4
@@ -94,6 +98,10 @@ WORTH = 0.1
 
 ALMOST = 0.9
 """Share of the best gain from which a finer integration step, which has no parameter, is believed before any effect."""
+
+HALF = 0.5
+"""The same of a log that looks held and is read accordingly: it is seen in the log, and a clock that is late explains
+most of it too."""
 
 FINER = 4
 """The integration step as a cause: a Runge-Kutta step this many times finer."""
@@ -151,6 +159,7 @@ class Step:
     accepted whether the best is believed
     reason   why not, where it is not
     finer    fall of chi-squared by a finer integration step, None where not tried
+    evenly   the same by inputs that change evenly between the updates of a log that looks held
     """
 
     base: Point
@@ -161,6 +170,13 @@ class Step:
     accepted: bool
     reason: str
     finer: float | None = None
+    evenly: float | None = None
+
+    def settled_by(self, fall: float | None, share: float) -> bool:
+        """Whether a fall of chi-squared by what has no parameter is believed before any effect, from a share of the
+        best of these."""
+        best = self.refits[0].gain if self.refits else 0.0
+        return fall is not None and fall > max(2.0 * ENOUGH, share * best)
 
 
 @dataclass(eq=False)
@@ -171,15 +187,15 @@ class Found:
     final   with all that were accepted
     causes  accepted hypotheses, in the order found, after those that others made superfluous were dropped
     steps   every look, the last one in vain
-    rivals  for each cause, the other hypotheses that would do nearly as well in its place
+    held    what the logs hold between updates, where that is a cause; the base is read accordingly too
     """
 
     base: Point
     final: Point
     causes: list[Hypothesis] = field(default_factory=list)
     steps: list[Step] = field(default_factory=list)
-    rivals: list[list[Refit]] = field(default_factory=list)
     finer_step: float | None = None
+    held: Held | None = None
 
 
 @dataclass(eq=False)
@@ -207,14 +223,21 @@ def base_fit(bench: Workbench) -> Point:
     quick = bench.problem_of(names, Integrator("euler"))  # a quarter of the work, and only a start
     ends = sorted(solve(quick, starts, max_iterations=QUICK, tolerance=ROUGHLY, trusting=True), key=lambda end: end.J)
     apart = [end for k, end in enumerate(ends) if k == 0 or end.J > (1.0 + SAME) * ends[k - 1].J][:BEST]
-    point = bench.refit(names, np.column_stack([end.unit for end in apart]), ends[0].offsets)
+    starts = np.column_stack([end.unit for end in apart])
+    point = bench.refit(names, starts, ends[0].offsets, tolerance=_unnoticed(bench, ends[0].J))
     for _ in range(AGAIN):  # initial states at the end of their range make a bad start; from there it is a new one
-        again = bench.refit(names, point.unit[:, None], point.offsets, tolerance=PRECISE)
+        tolerance = _unnoticed(bench, point.chi2, PRECISE)
+        again = bench.refit(names, point.unit[:, None], point.offsets, tolerance=tolerance)
         better = point.chi2 - again.chi2
         point = min(again, point, key=lambda one: one.chi2)
         if better < 1e-3 * point.chi2:
             break
     return point
+
+
+def _unnoticed(bench: Workbench, chi2: float, least: float = TOLERANCE) -> float:
+    """Fall of chi-squared that counts as none where it is as large as this."""
+    return max(least, OF_EXCESS * (chi2 - bench.problem.n_residuals))
 
 
 def search(
@@ -237,7 +260,15 @@ def search(
         except _Stopped:
             break
         found.steps.append(step)
-        if step.finer is not None and step.finer > max(2.0 * ENOUGH, ALMOST * _gain(step)):
+        if step.settled_by(step.evenly, HALF):
+            say("the log holds its values")
+            found.held = bench.held
+            bench.read_evenly()
+            found.final = bench.refit(step.base.names, step.base.unit[:, None], step.base.offsets)
+            _drop_superfluous(bench, found, found.causes)  # what was taken for it
+            left = _left(hypotheses, found, dropped)
+            continue
+        if step.settled_by(step.finer, ALMOST):
             say("the integration step is a cause")
             found.finer_step = step.finer
             bench.integrate(finer(bench.problem.integrator))
@@ -256,20 +287,15 @@ def search(
         bent = [cause for cause in found.causes[:-1] if cause.by and cause not in once]
         _make_alike(bench, found, bent)
         once += bent
-        left = [h for h in hypotheses if h not in dropped and all(_beside(h, cause) for cause in found.causes)]
+        left = _left(hypotheses, found, dropped)
         if len(found.causes) >= bench.options.most:
             break
     if found.steps:
         first = found.steps[0].base
         found.base = bench.refit(first.names, first.unit[:, None], first.offsets)
         found.final = bench.refit(found.final.names, found.final.unit[:, None], found.final.offsets, tolerance=PRECISE)
-    if stop():
-        found.rivals = [[] for _ in found.causes]
-        return found
-    if len(found.causes) > 1:
+    if len(found.causes) > 1 and not stop():
         _drop_superfluous(bench, found, found.causes[:-1])
-    say("comparing the causes with their rivals")
-    found.rivals = [_rivals_of(bench, found, k) for k in range(len(found.causes))]
     return found
 
 
@@ -278,8 +304,9 @@ def _beside(hypothesis: Hypothesis, cause: Hypothesis) -> bool:
     return hypothesis.holds(cause) or not set(hypothesis.bases) & set(cause.bases)
 
 
-def _gain(step: Step) -> float:
-    return step.refits[0].gain if step.refits else 0.0
+def _left(hypotheses: Sequence[Hypothesis], found: Found, dropped: Sequence[Hypothesis]) -> list[Hypothesis]:
+    """What may be looked at beside what was found."""
+    return [h for h in hypotheses if h not in dropped and all(_beside(h, cause) for cause in found.causes)]
 
 
 def finer(integrator: Integrator) -> Integrator:
@@ -313,11 +340,18 @@ def look(
     refits = _believable_first(_refit_best(bench, point, ranked, linear, known, quick=False, stop=stop))
     finer_gain = None
     if first:
-        other = bench.refit(point.names, point.unit[:, None], point.offsets, integrator=finer(point.integrator))
+        tolerance = _unnoticed(bench, point.chi2)
+        by = finer(point.integrator)
+        other = bench.refit(point.names, point.unit[:, None], point.offsets, integrator=by, tolerance=tolerance)
         finer_gain = point.chi2 - other.chi2
+    evenly = None
+    if bench.held and bench.updates is None:
+        read = replace(bench)
+        read.read_evenly()
+        evenly = point.chi2 - read.refit(point.names, point.unit[:, None], point.offsets).chi2
     rivals = _rivals(refits) if refits else []
     accepted, reason = _decide(bench, refits, rivals)
-    return Step(point, linear, ranked, refits, rivals, accepted, reason, finer_gain)
+    return Step(point, linear, ranked, refits, rivals, accepted, reason, finer_gain, evenly)
 
 
 def _believable_first(refits: list[Refit]) -> list[Refit]:
@@ -337,7 +371,11 @@ def _go_on(stop: Stop) -> None:
 
 def _noise_at(bench: Workbench, linear: Linear) -> noises.NoiseModel:
     """Noise from the residual less all signatures, in the units residuals had before any whitening."""
-    return noises.estimate(bench.problem.cases, bench.noise.restore(linear.noise[linear.measured]))
+
+    def fitted(residuals: FloatArray) -> FloatArray:
+        return bench.noise.restore(linear.fitted(bench.noise.apply(residuals))[linear.measured])
+
+    return noises.estimate(bench.problem.cases, bench.noise.restore(linear.noise[linear.measured]), fitted)
 
 
 def _differs(a: noises.NoiseModel, b: noises.NoiseModel) -> bool:
@@ -415,7 +453,9 @@ def _fitted(
 def _on(bench: Workbench, linear: Linear, point: Point, score: Score, end: Point, steps: int) -> Point:
     """A refit gone on with, for so many steps."""
     spreads = _spreads(bench, point, score.hypothesis, _spread(bench, linear, point, score, end))
-    return bench.refit(end.names, end.unit[:, None], end.offsets, spreads=spreads, max_iterations=steps)
+    tolerance = _unnoticed(bench, end.chi2)
+    start = end.unit[:, None]
+    return bench.refit(end.names, start, end.offsets, spreads=spreads, max_iterations=steps, tolerance=tolerance)
 
 
 def _of_runs_worth(
@@ -663,9 +703,9 @@ def _price(bench: Workbench, found: Found, hypothesis: Hypothesis) -> float:
     return paid[0] if paid else len(hypothesis.names) * float(np.log(bench.problem.n_residuals))
 
 
-def _rivals_of(bench: Workbench, found: Found, k: int) -> list[Refit]:
-    """Rivals of one cause with all others in place, among those that were near when it was found."""
-    cause = found.causes[k]
+def rivals_of(bench: Workbench, found: Found, cause: Hypothesis) -> list[Refit]:
+    """Other hypotheses that would do nearly as well in the place of a cause, all others in place: of those that were
+    near when it was found."""
     step = next((s for s in found.steps if s.refits and s.refits[0].hypothesis == cause), None)
     if step is None:
         return []

@@ -82,16 +82,14 @@ class Beside:
             weight[case, :begin] = 0.0
         return self.scaled.with_cases(replace(self.scaled.cases, weight=weight))
 
-    def compared(self, together: bool = True) -> list[TrialComparison]:
+    def compared(self) -> list[TrialComparison]:
         """Each trial "before" and "after" by the last two points, initial states estimated; by the objective of the
-        paper.
-
-        together  whether initial states of all trials are estimated in one go
-        """
+        paper."""
         by_paper = make_objective(self.bench.model.L_pp)
         roles = dict.fromkeys((trial.id for trial in self.trials), "test")
         found: list[TrialComparison] = []
-        for some in [list(self.trials)] if together else [[trial] for trial in self.trials]:
+        apart = self.scaled.grouped  # coefficients are of each trial then
+        for some in [[trial] for trial in self.trials] if apart else [list(self.trials)]:
             problem = problem_on(self.bench, self.wide, some, by_paper)
             found += compare(problem, some, by_paper, roles, *self.units[-2:])
         return found

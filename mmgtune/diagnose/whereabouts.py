@@ -28,6 +28,14 @@ PHASES = {
 }
 """When in a run, in words."""
 
+_DURING = {
+    "before": "before the first order",
+    "entry": "within three ship lengths of an order",
+    "checking": "while the rudder checks the turn",
+    "steady": "later than three ship lengths after an order",
+}
+"""The same inside a sentence."""
+
 ENTRY = 3.0
 """Ship lengths run since an order that count as entry."""
 
@@ -154,7 +162,7 @@ class Whereabouts:
             there = math.sqrt(max(self.phases[when].get(axis, 0.0), 0.0))
             found.append(
                 f"By inverse dynamics the {AXES[axis]} stands out most, {size:.2g} times its noise, and most "
-                f"{PHASES[when].partition(':')[0]}, {there:.2g} times."
+                f"{_DURING[when]}, {there:.2g} times."
             )
         best = self.strongest
         if best:

@@ -37,7 +37,7 @@ def _after_number(unit: str) -> tuple[str, float]:
 
 
 def parameters_in_words(effect: Effect, estimates: Mapping[str, Estimate]) -> dict[str, str]:
-    """Each estimated parameter of an effect as text; for a current, say, also its speed and where it sets."""
+    """Each estimated parameter of an effect as text; for a current, say, its speed and, if known, where it sets too."""
     found = {}
     for name, parameter in effect.parameters.items():
         estimate = estimates.get(f"{effect.kind}.{name}")
@@ -55,5 +55,6 @@ def parameters_in_words(effect: Effect, estimates: Mapping[str, Estimate]) -> di
                 )
             )
             found[size] = quantity(length, error, effect.parameters[first].unit)
-            found[direction] = f"{math.degrees(math.atan2(east.value, north.value)) % 360.0:.0f}°"
+            if length > error:  # else it may be any
+                found[direction] = f"{math.degrees(math.atan2(east.value, north.value)) % 360.0:.0f}°"
     return found

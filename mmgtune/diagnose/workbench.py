@@ -9,10 +9,10 @@ from typing import TypedDict, Unpack
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..backends import STATES, Integrator, get_backend
 from ..components import split_name
-from ..effects import Effect, Visited
+from ..effects import Visited
 from ..fitting.box import Box, base_of, choose_targets, group_of, make_box
 from ..fitting.least_squares import LeastSquaresResult, solve
 from ..fitting.one_sided import followers, tied
@@ -21,7 +21,7 @@ from ..model import Model
 from ..objective import Objective, cases_of
 from ..options import DiagnoseOptions
 from ..profile import ShipProfile, with_all_effects
-from ..trial import Coverage, Trial, visited_by
+from ..trial import Coverage, Held, Trial, visited_by
 from ..trial.kinematics import white_noise
 from .noise import NoiseModel, white
 from .runs import between, labels_of
@@ -71,8 +71,9 @@ class Workbench:
     targets   coefficients that may be re-tuned
     box       of the targets and of every parameter of every hypothesis
     noise     as known so far
-    own_effects  tags of effects the profile itself has
     spreads   of values that groups of runs have of their own, by ``runs.spread_key``, in the unit cube
+    held      inputs whose log looks held between updates, None where none does
+    updates   samples at which each input of each trial was updated, where logs were held and are read accordingly
     """
 
     model: Model
@@ -83,8 +84,9 @@ class Workbench:
     box: Box
     problem: FitProblem
     noise: NoiseModel
-    own_effects: tuple[str, ...] = ()
     spreads: dict[str, float] = field(default_factory=dict)
+    held: Held | None = None
+    updates: list[list[IntArray]] | None = None
 
     @cached_property
     def visited(self) -> Visited:
@@ -101,31 +103,13 @@ class Workbench:
         """Squares of what counts, in white noise of the sensors."""
         return _in_noise(self.sigma, self.channels)
 
-    def model_of(self, names: Sequence[str]) -> Model:
-        """The model with every effect where one of these parameters needs it, else one without those that cost time.
-
-        Two models, not one for each set of effects: to compile another takes longer than what it would save.
-        """
-        asked = {name.split(".")[1] for name in names if name.startswith("effects.")} | set(self.own_effects)
-        return self.model if asked & {effect.tag for effect in self._on_demand} else self._quick_model
-
-    @property
-    def _on_demand(self) -> list[Effect]:
-        return [effect for effect in self.model.effects if effect.on_demand]
-
-    @cached_property
-    def _quick_model(self) -> Model:
-        left_out = {effect.kind for effect in self._on_demand}
-        sections = {kind: s for kind, s in self.model.profile.sections.items() if kind not in left_out}
-        return Model(replace(self.model.profile, sections=sections), self.model.ties)
-
     def sub_box(self, names: Sequence[str]) -> Box:
         """The box of some of its names, in their order."""
         return self.box.part(names)
 
     def problem_of(self, names: Sequence[str], integrator: Integrator | None = None) -> FitProblem:
         """The problem of fitting ``names``, everything else at its value in the profile."""
-        problem = self.problem.with_targets(self.model_of(names), self.sub_box(names))
+        problem = self.problem.with_targets(self.model, self.sub_box(names))
         return problem if integrator is None else problem.with_integrator(integrator)
 
     def null(self, names: Sequence[str]) -> FloatArray:
@@ -191,9 +175,24 @@ class Workbench:
         """Simulate by another method in all that follows."""
         self.problem = self.problem.with_integrator(integrator)
 
+    def read_evenly(self) -> None:
+        """Take what the log holds for values at its updates, between which inputs change evenly, in all that follows.
+
+        Only where something looks held.
+        """
+        assert self.held is not None  # asked before
+        names = self.model.inputs
+        self.updates = [[self.held.updates(trial, name) for name in names] for trial in self.trials]
+        self.trials = [self.held.evenly(trial) for trial in self.trials]
+        controls = self.problem.cases.controls.copy()
+        for into, trial in zip(controls, self.trials, strict=True):
+            values = trial.inputs(names)
+            into[: len(values)], into[len(values) :] = values, values[-1]
+        self.problem = self.problem.with_cases(replace(self.problem.cases, controls=controls))
+
     def tuned(self, point: Point, trial: Trial | None = None) -> ShipProfile:
         """The profile with the values of a point, those of the groups of a trial too."""
-        profile = self.model_of(point.names).profile
+        profile = self.model.profile
         sections = dict(profile.sections)
         own = labels_of(trial) if trial is not None else frozenset()
         values = self.values(point)
@@ -252,5 +251,5 @@ def make_workbench(
         integrator=Integrator(options.integrator, options.substeps),
         sigma=np.repeat(LOOSE * sigma[None], len(trials), axis=0),
     ).with_groups([labels_of(trial) for trial in trials])
-    own_effects = tuple(effect.tag for effect in own.effects)
-    return Workbench(model, list(trials), options, sigma, targets, box, problem, white(cases), own_effects)
+    held = Held.of(trials)
+    return Workbench(model, list(trials), options, sigma, targets, box, problem, white(cases), held=held)

@@ -72,7 +72,6 @@ EFFECT = SensorEffect(
         "cosine_alone": _harmonic("cosine", _ALONE),
     },
     variants=(("sine", "cosine"), ("sine_alone", "cosine_alone")),
-    on_demand=True,
     sentence=lambda v: (
         "The compass showed too much by "
         + " and ".join(

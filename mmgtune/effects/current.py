@@ -64,9 +64,13 @@ def _rate(direction: str) -> Parameter:
 def _sentence(v: Mapping[str, str]) -> str:
     if "measured" in v:
         return f"The current measured in the trials acts on the ship, with {v['measured']} times its measured speed"
-    steady = f"The trials were run in a current of {v['speed']} setting towards {v['towards']}"
+    steady = f"The trials were run in a current of {v['speed']}"
+    if "towards" in v:
+        steady += f" setting towards {v['towards']}"
     if "gain" not in v:
         return steady
+    if "gaining" not in v:
+        return f"{steady}, which hardly changed during a run: by {v['gain']}"
     return f"{steady} at the beginning of a run, which gained {v['gain']} towards {v['gaining']}"
 
 

@@ -142,7 +142,6 @@ EFFECT = ForceEffect(
     cites=(),
     fields={term: _coefficient(term) for term in TERMS},
     variants=(),
-    on_demand=True,
     of_parts=("rudder",),
     sentence=lambda v: "Forces of unknown form act",
 )

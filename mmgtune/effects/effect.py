@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Literal, NamedTuple, Protocol
 
+import numpy as np
+
 from ..components import Component, Field
 from ..inputs import Role
 from ..physics.quantities import KNOWN, Force, Lanes, State, Surroundings
@@ -75,7 +77,6 @@ class Effect(Component):
                is tuned, the parameter is not searched for
     needs      coefficients the effect changes; it does not apply to a profile without them
     of_parts   parts of the arrangement's breakdown it works on; it does not apply to a ship without them
-    on_demand  costs simulation time where it is absent: a search has it only in models that ask for it
     one_of_many  its variants are many of one kind, of which chance finds the best: a search charges for the choice
     of_measured  parameters that act on what was measured around the ship, {parameter: one of ``quantities.KNOWN``}
     varies     parameters that may differ from run to run: what surrounds the ship, and what a crew changes between
@@ -99,7 +100,6 @@ class Effect(Component):
     absorbed: Mapping[str, str] = field(default_factory=dict)
     needs: tuple[str, ...] = ()
     of_parts: tuple[str, ...] = ()
-    on_demand: bool = False
     one_of_many: bool = False
     of_measured: Mapping[str, str] = field(default_factory=dict)
     varies: tuple[str, ...] = ()
@@ -131,6 +131,16 @@ class Effect(Component):
     def parameters(self) -> dict[str, Parameter]:
         """The parameters by name."""
         return {name: field for name, field in self.fields.items() if isinstance(field, Parameter)}
+
+    @property
+    def nulls(self) -> dict[str, float]:
+        """Where the parameters stand when it is absent; pivots may stand anywhere."""
+        return {name: one.null for name, one in self.parameters.items() if name not in self.pivots}
+
+    def is_absent(self, e: Any) -> bool:
+        """Whether every lane of ``params`` has it at its null."""
+        nulls = self.nulls
+        return bool(nulls) and all(np.all(getattr(e, name) == null) for name, null in nulls.items())
 
     @property
     def of_the_day(self) -> bool:

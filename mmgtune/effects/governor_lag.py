@@ -52,7 +52,6 @@ EFFECT = ActuatorEffect(
         )
     },
     variants=(("time_constant",),),
-    on_demand=True,
     unvisited=unvisited,
     sentence=lambda v: f"The shaft followed the logged revolutions with a time constant of {v['time_constant']}",
 )

@@ -78,7 +78,6 @@ EFFECT = FilterEffect(
         ),
     },
     variants=(("heading",), ("heading_alone",), ("yaw_rate",)),
-    on_demand=True,
     sentence=lambda v: (
         "The gyro drifted: " + " and ".join(_WORDS[name].format(v[name]) for name in _WORDS if name in v)
     ),

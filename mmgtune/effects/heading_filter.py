@@ -62,7 +62,6 @@ EFFECT = FilterEffect(
         "alone": _constant("velocities being logged in the ship's own axes"),
     },
     variants=(("time_constant",), ("alone",)),
-    on_demand=True,
     sentence=lambda v: (
         "The compass followed the heading with a time constant of "
         + " and ".join(

@@ -89,7 +89,6 @@ EFFECT = ForceEffect(
     cites=(),
     fields={term: _coefficient(term) for term in TERMS},
     variants=tuple((term,) for term in TERMS),
-    on_demand=True,
     one_of_many=True,
     absorbed={term: f"hull.{term}" for term in TERMS},
     sentence=lambda v: (

@@ -78,7 +78,6 @@ EFFECT = LagEffect(
     function=memory,
     start=settled,
     states=("Y", "N"),
-    on_demand=True,
     cites=(),
     fields={
         "time_constant": _constant("the hull's side force and yaw moment"),

@@ -77,6 +77,5 @@ EFFECT = FilterEffect(
         )
     },
     variants=(("seconds",),),
-    on_demand=True,
     sentence=lambda v: f"Positions were logged {v['seconds']} late (negative: ahead)",
 )

@@ -77,7 +77,6 @@ EFFECT = ForceEffect(
     pivots={"pivot": lambda ship: ship.U},
     variants=(("factor",), ("slope",)),
     unvisited=unvisited,
-    on_demand=True,
     absorbed={"factor": "hull.R_0"},
     sentence=lambda v: (
         "The resistance differed from the model's: "

@@ -89,7 +89,6 @@ EFFECT = FactorsEffect(
         else f"The ship sailed in shallow water, as if {v['depth']} deep"
     ),
     needs=("hull.Y_v", "hull.Y_r", "hull.N_v", "hull.N_r"),
-    on_demand=True,
     of_measured={"measured": "depth"},
     stand_in=("depth",),
     varies=("depth",),

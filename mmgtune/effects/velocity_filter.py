@@ -88,6 +88,5 @@ EFFECT = FilterEffect(
         "yaw_rate": _constant("of the yaw rate"),
     },
     variants=(("over_ground",), ("along_axes",), ("yaw_rate",)),
-    on_demand=True,
     sentence=lambda v: "The log smooths " + " and ".join(_WORDS[name].format(v[name]) for name in _WORDS if name in v),
 )

@@ -47,7 +47,6 @@ EFFECT = ForceEffect(
         ),
     },
     variants=(("force", "direction"),),
-    on_demand=True,
     varies=("force", "direction"),
     sentence=lambda v: f"A steady force of {v['force']}, as of waves from {v['direction']}, acted on the ship",
 )

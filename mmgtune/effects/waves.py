@@ -99,7 +99,6 @@ EFFECT = ForceEffect(
     # Steady waves are not looked for: all that trials would show of them is what a constant force does as well.
     variants=(("measured",),),
     sentence=lambda v: f"The waves measured in the trials hold the ship back, as if {v['measured']} times as high",
-    on_demand=True,
     of_measured={"measured": "wave"},
     stand_in=("height",),
     beyond=beyond,

@@ -73,7 +73,6 @@ EFFECT = ForceEffect(
         if "measured" in v
         else f"A wind of {v['speed']} blew from {v['direction']}"
     ),
-    on_demand=True,
     needs=("above_water.A_T",),
     of_measured={"measured": "wind"},
     stand_in=("speed",),

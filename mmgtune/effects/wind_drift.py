@@ -44,7 +44,6 @@ EFFECT = FlowEffect(
     cites=("Wu 1983, Journal of Physical Oceanography 13, 1441-1451",),
     fields={"along": _share("along it"), "across": _share("to the right of it")},
     variants=(("along", "across"),),
-    on_demand=True,
     of_measured={"along": "wind", "across": "wind"},
     sentence=lambda v: (
         f"The water moved with {v['along']} of the measured wind along it and {v['across']} to the right of it"

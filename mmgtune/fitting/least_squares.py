@@ -100,8 +100,9 @@ def solve(
     beliefs         (k, n_targets) matrix A and (n_targets,) centre: adds |A (unit - centre)|^2 to what is minimised
                     (not to the J reported)
     trusting        a start also ends after the step from which the linear problem promises no more than the tolerance,
-                    instead of two steps in a row that bring no more, and two again; and large damping holds initial
-                    states back too, far from any fit (elsewhere they find the way round a bound by steps of their own)
+                    instead of two steps in a row that bring no more, and two again; and initial states that would
+                    leave their range are held at its end in the linear problem, and held back by large damping
+                    (elsewhere they find the way round a bound by steps of their own)
     Returns a result per start, never above what it began with.
     """
     n_starts = starts.shape[1]
@@ -124,6 +125,25 @@ def solve(
         hessian = linear.hessian + ridge * np.eye(len(at)) + believed
         return hessian, linear.gradient + ridge * (at - centre) + believed @ (at - likely)
 
+    def towards(
+        linear: _Linear, at: FloatArray, damping: FloatArray, nearby: FloatArray | None = None
+    ) -> tuple[FloatArray, _Linear]:
+        """Where the quadratic model leads under damping (n_targets,), and the model with offsets held as there."""
+        hessian, gradient = of_all(linear, at)
+        step = bounded_step(hessian + np.diag(damping), gradient, at, nearby)
+        there = linear.about(step - at)
+        if there is not linear:
+            hessian, gradient = of_all(there, at)
+            step = bounded_step(hessian + np.diag(damping), gradient, at, step)
+        return step, there
+
+    def promised_by(linear: _Linear, at: FloatArray, scale: FloatArray) -> float:
+        """Fall of what is minimised by a step that is hardly damped."""
+        step, there = towards(linear, at, HARDLY * scale)
+        hessian, gradient = of_all(there, at)
+        step = step - at
+        return there.settling - 2.0 * float(gradient @ step) - float(step @ hessian @ step)
+
     def residuals_of(unit: FloatArray, offsets: FloatArray) -> FloatArray:
         found = problem.residuals(unit, offsets).T
         return found if whiten is None else whiten(found)
@@ -143,26 +163,24 @@ def solve(
         rows = np.flatnonzero(running)
         if len(rows) == 0 or stop():
             break
-        linear = [_Linear(problem, *parts) for parts in zip(*_jacobians(problem, z, d, rows, whiten), strict=True)]
+        around = zip(*_jacobians(problem, z, d, rows, whiten), strict=True)
+        linear = [_Linear(problem, at, off, J, S, holding=trusting) for at, off, J, S in around]
         last = np.zeros(len(rows), dtype=bool)
         tried = np.empty((len(z), len(rows), 2, len(DAMPINGS)))
         moved = np.empty((len(problem.cases), len(rows), 2, len(DAMPINGS), 6))
         for i, row in enumerate(rows):
-            hessian, gradient = of_all(linear[i], z[:, row])
+            hessian, _ = of_all(linear[i], z[:, row])
             scale = np.maximum(np.diag(hessian), 1e-12 * np.diag(hessian).max() + 1e-300)
             if trusting:
-                whole = bounded_step(hessian + np.diag(HARDLY * scale), gradient, z[:, row]) - z[:, row]
-                promised = linear[i].settling - 2.0 * float(gradient @ whole) - float(whole @ hessian @ whole)
+                promised = promised_by(linear[i], z[:, row], scale)
                 last[i] = promised <= tolerance
                 damping[row] = min(damping[row], 1e-3) if last[i] else damping[row]
             for k, factor in enumerate(DAMPINGS):
                 at = linear[i]
                 if trusting and damping[row] * factor > FIRM:
                     at = at.damped(damping[row] * factor)
-                    hessian, gradient = of_all(at, z[:, row])
-                damped = hessian + np.diag(damping[row] * factor * scale)
                 nearby = tried[:, i, 0, k - 1] if k else None
-                tried[:, i, 0, k] = bounded_step(damped, gradient, z[:, row], nearby)
+                tried[:, i, 0, k], at = towards(at, z[:, row], damping[row] * factor * scale, nearby)
                 moved[:, i, 0, k] = at.offsets(tried[:, i, 0, k] - z[:, row])
         if last.all():
             tried, moved = tried[:, :, :1], moved[:, :, :1]
@@ -288,6 +306,85 @@ def _accelerate(
                 moved[:, i, 1, k] = at.limited(moved[:, i, 0, k] + 0.5 * bend_shift)
 
 
+@dataclass(frozen=True, eq=False)
+class _Offsets:
+    """The offsets of a case's initial state in the quadratic model, those that would leave their range held at its end.
+
+    free       which of the six are not held
+    to_end     (6,) how far those that are held move
+    slopes     (n_rows, n_free) derivatives of the residuals by the others
+    curvature  (n_free, n_free) halves of second derivatives by these
+    cross      (n_free, n_targets) the same by these and the targets
+    by_held    (n_targets,) half of what the held ones add to the derivatives by the targets
+    alone      (n_free,) best step against their slopes where the targets stand
+    by_target  (n_free, n_targets) the same for a unit step of each target
+    promised   fall of what is minimised by the offsets alone
+    """
+
+    free: BoolArray
+    to_end: FloatArray
+    slopes: FloatArray
+    curvature: FloatArray
+    cross: FloatArray
+    by_held: FloatArray
+    alone: FloatArray
+    by_target: FloatArray
+    promised: float
+
+    @classmethod
+    def of(
+        cls,
+        slopes: FloatArray,
+        residuals: FloatArray,
+        jacobian: FloatArray,
+        prior: FloatArray,
+        at: FloatArray,
+        limit: FloatArray | None,
+        damping: float,
+        step: FloatArray | None,
+    ) -> _Offsets:
+        """slopes (n_rows, 6), residuals (n_rows,), jacobian (n_rows, n_targets); prior, place and limit (6,).
+
+        limit  None where none is held
+        step   (n_targets,) of the targets that says which would leave their range; None for none
+        """
+        whole = slopes.T @ slopes + np.diag(prior)
+        if damping:
+            whole += damping * np.diag(np.diag(whole))
+        cross = slopes.T @ jacobian
+        slope = slopes.T @ residuals + prior * at
+        free, to_end = np.ones(6, dtype=bool), np.zeros(6)
+        solved = np.linalg.solve(whole, np.column_stack([slope, cross]))
+        end = at - solved[:, 0] - (0.0 if step is None else solved[:, 1:] @ step)
+        if limit is not None and np.any(np.abs(end) > limit):
+            width = 2.0 * limit
+            there = slope if step is None else slope + cross @ step
+            unit = bounded_step(whole * np.outer(width, width), there * width, np.clip(at / width + 0.5, 0.0, 1.0))
+            free = (unit > 0.0) & (unit < 1.0)
+            to_end[~free] = (unit[~free] - 0.5) * width[~free] - at[~free]
+            pull = slope[free] + whole[np.ix_(free, ~free)] @ to_end[~free]
+            solved = np.linalg.solve(whole[np.ix_(free, free)], np.column_stack([pull, cross[free]]))
+        alone = to_end.copy()
+        alone[free] = -solved[:, 0]
+        return cls(
+            free,
+            to_end,
+            slopes[:, free],
+            whole[np.ix_(free, free)],
+            cross[free],
+            cross.T @ to_end,
+            np.asarray(solved[:, 0]),
+            np.asarray(solved[:, 1:]),
+            -float(2.0 * slope @ alone + alone @ whole @ alone),
+        )
+
+    def move(self, step: FloatArray) -> FloatArray:
+        """(6,) how far the offsets move beside a step (n_targets,) of the targets."""
+        moved = self.to_end.copy()
+        moved[self.free] = -self.alone - self.by_target @ step
+        return moved
+
+
 class _Linear:
     """The quadratic model of what is minimised around one point, with the offsets of initial states eliminated.
 
@@ -302,47 +399,55 @@ class _Linear:
         residuals: FloatArray,
         jacobian: FloatArray,
         by_offset: FloatArray,
+        holding: bool = False,
         damping: float = 0.0,
+        step: FloatArray | None = None,
+        plain: tuple[FloatArray, FloatArray] | None = None,
     ):
         self.residuals = residuals
+        self._plain = plain or (jacobian.T @ jacobian, jacobian.T @ residuals)
+        self._holding, self._damping = holding, damping
         self._problem, self._jacobian, self._by_offset = problem, jacobian, by_offset
         self._rows = problem.rows_of_cases
-        self.hessian = jacobian.T @ jacobian
-        self.gradient = jacobian.T @ residuals
-        self._own: list[FloatArray] = []
+        self.hessian, self.gradient = self._plain[0].copy(), self._plain[1].copy()
+        self._own: list[_Offsets] = []
         self._d = d
         self._limit = None if problem.sigma is None else LARGEST * problem.sigma
-        self._from_step: list[tuple[FloatArray, FloatArray]] = []
         self.settling = 0.0
-        if problem.sigma is None:
+        if self._limit is None:
             return
         for case, rows in enumerate(self._rows):
-            S, J = by_offset[rows], jacobian[rows]
-            prior = problem.prior[case]
-            own = S.T @ S + np.diag(prior)
-            if damping:
-                own += damping * np.diag(np.diag(own))
-            cross = S.T @ J
-            slope = S.T @ residuals[rows] + prior * d[case]
-            solved = np.linalg.solve(own, np.column_stack([slope, cross]))
-            self.hessian -= cross.T @ solved[:, 1:]
-            self.gradient -= cross.T @ solved[:, 0]
-            self.settling += float(slope @ solved[:, 0])
-            self._from_step.append((solved[:, 0], solved[:, 1:]))
+            limit = self._limit[case] if holding else None
+            parts = by_offset[rows], residuals[rows], jacobian[rows], problem.prior[case], d[case]
+            own = _Offsets.of(*parts, limit, damping, step)
+            self.hessian -= own.cross.T @ own.by_target
+            self.gradient += own.by_held - own.cross.T @ own.alone
+            self.settling += own.promised
             self._own.append(own)
 
     def damped(self, damping: float) -> _Linear:
         """The same with steps of the offsets damped."""
         if self._limit is None:
             return self
-        return _Linear(self._problem, self._d, self.residuals, self._jacobian, self._by_offset, damping)
+        return self._again(damping, None)
+
+    def about(self, step: FloatArray) -> _Linear:
+        """The same with those offsets held that would leave their range beside a step (n_targets,) of the targets."""
+        if not self._holding or self._limit is None:
+            return self
+        ends = [d + own.move(step) for d, own in zip(self._d, self._own, strict=True)]
+        held = any(not own.free.all() for own in self._own)
+        return self._again(self._damping, step) if held or np.any(np.abs(ends) > self._limit) else self
+
+    def _again(self, damping: float, step: FloatArray | None) -> _Linear:
+        given = (self._problem, self._d, self.residuals, self._jacobian, self._by_offset)
+        return _Linear(*given, self._holding, damping, step, self._plain)
 
     def offsets(self, step: FloatArray) -> FloatArray:
         """(n_cases, 6) best offsets after a step (n_targets,) of the targets, kept within their limit."""
         if self._limit is None:
             return self._d
-        moved = np.array([d - own - cross @ step for d, (own, cross) in zip(self._d, self._from_step, strict=True)])
-        return self.limited(moved)
+        return self.limited(np.array([d + own.move(step) for d, own in zip(self._d, self._own, strict=True)]))
 
     def limited(self, offsets: FloatArray) -> FloatArray:
         """Offsets kept within their limit."""
@@ -365,18 +470,20 @@ class _Linear:
         """Step and shift that undo a second derivative of the residuals, by least squares over the free targets."""
         gradient = self._jacobian.T @ curved
         pulls = []
-        for rows, own, (_, cross) in zip(self._rows, self._own, self._from_step, strict=False):
-            pull = self._by_offset[rows].T @ curved[rows]
-            gradient -= cross.T @ pull
-            pulls.append(np.linalg.solve(own, pull))
+        for rows, own in zip(self._rows, self._own, strict=False):
+            pull = own.slopes.T @ curved[rows]
+            gradient -= own.by_target.T @ pull
+            pulls.append(np.linalg.solve(own.curvature, pull))
         hessian = self.hessian[np.ix_(free, free)]
         damped = hessian + damping * np.diag(np.maximum(np.diag(hessian), 1e-300))
         step = np.zeros(len(gradient))
         step[free] = -np.linalg.lstsq(damped, gradient[free], rcond=1e-14)[0]
         if self._limit is None:
             return step, np.zeros_like(self._d)
-        shift = [-pull - cross @ step for pull, (_, cross) in zip(pulls, self._from_step, strict=True)]
-        return step, np.array(shift)
+        shift = np.zeros_like(self._d)
+        for into, pulled, own in zip(shift, pulls, self._own, strict=True):
+            into[own.free] = -(pulled + own.by_target @ step)
+        return step, shift
 
 
 def bounded_step(

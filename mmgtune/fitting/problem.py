@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any, Self
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray
 from ..backends import WIDTH, Backend, Cases, Integrator
 from ..model import Model
 from ..predictor import PhysicsPredictor, Prediction
@@ -129,7 +130,7 @@ class FitProblem:
         """Number of differences between simulated and measured motion that count."""
         return self.cases.n_residuals
 
-    @property
+    @cached_property
     def rows_of_cases(self) -> list[slice]:
         """Where the residuals of each case stand."""
         counts = (self.cases.rows >= 0).sum(axis=(1, 2))
@@ -152,15 +153,20 @@ class FitProblem:
         each = [tuple(k for k in range(len(self.box)) if self._is_of(k, case)) for case in range(len(self.cases))]
         return np.stack([made[own] for own in each], axis=1)
 
-    @property
+    @cached_property
     def grouped(self) -> bool:
         """Whether any target is of a group of cases."""
         return any(group_of(name) for name in self.box.names)
 
     def _is_of(self, k: int, case: int) -> bool:
         """Whether target ``k`` is a coefficient of a case."""
-        group = group_of(self.box.names[k])
-        return not group or group in self.groups[case]
+        return bool(self._own[case, k])
+
+    @cached_property
+    def _own(self) -> BoolArray:
+        """(n_cases, n_targets) which targets are coefficients of which case."""
+        groups = [group_of(name) for name in self.box.names]
+        return np.array([[not group or group in own for group in groups] for own in self.groups], dtype=bool)
 
     def initial(self, n_candidates: int, offsets: FloatArray | None) -> FloatArray:
         """Initial states (n_cases, n_candidates, 6)."""

@@ -129,7 +129,7 @@ def _course(what: Course | None) -> dict[str, Any] | None:
 def _sentence(one: Series, size: float, error: float, between: tuple[str, str]) -> str:
     unit = f" {one.unit}" if one.unit else ""
     verb = "rises" if size > 0.0 else "falls"
-    words = one.words[0].upper() + one.words[1:]
+    words = one.words if one.words == one.name else one.words[0].upper() + one.words[1:]
     return f"{words} {verb} by {abs(size):.3g}{unit} (+- {error:.2g}) between {between[0]} and {between[1]}"
 
 

@@ -6,10 +6,11 @@ import json
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ..displayed import Displayed
 from ..errors import OptionError, OutputError, Problem
 from ..files import alone_in, cannot_write, exists, remove_left_overs, write_text
 from ..options import FleetOptions
@@ -39,8 +40,8 @@ class Progress:
         return self.before + sum(self.answers.values())
 
 
-@dataclass(frozen=True, eq=False)
-class FleetRun:
+@dataclass(frozen=True, eq=False, repr=False)
+class FleetRun(Displayed):
     """A finished run of a fleet.
 
     jobs      all of them
@@ -56,7 +57,12 @@ class FleetRun:
     killed: int
     wall_s: float
     workers: int
-    document: Mapping[str, Any] = field(repr=False)
+    document: Mapping[str, Any]
+
+    def __repr__(self) -> str:
+        """In a line."""
+        ships, dates, of = self.document["ships"], self.document["dates"], self.document["jobs"]
+        return f"FleetRun({len(ships)} ships, {len(dates)} dates: {of['total']} jobs, {of['failed']} failed)"
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ def diagnosis(result: Diagnosis) -> View:
     rows: list[Row] = [
         {
             "hypothesis": row.effect,
-            "parameters": ", ".join(row.parameters),
+            "parameters": ", ".join((*row.parameters, *(("of each run",) if row.by else ()))),
             "score": row.score,
             "gain": row.gain,
             "by chance": row.p_value,
@@ -36,7 +36,7 @@ def diagnosis(result: Diagnosis) -> View:
     notes += [f"{words}." for words in in_words(result.profile.doubts())]
     says = [f"Verdict: {result.verdict}. {result.sentence()}"]
     return View(
-        repr(result), says, rows, notes, spare=("parameters", "gain"), motions=lambda: compared(result.gain.compared)
+        repr(result), says, rows, notes, spare=("gain", "score"), motions=lambda: compared(result.gain.compared)
     )
 
 

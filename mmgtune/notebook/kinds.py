@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from . import fits, judgements, ships
+from . import fits, fleets, judgements, ships
 from .view import View
 
 
@@ -44,6 +44,7 @@ KINDS: Mapping[str, Callable[[Any], View]] = {
     "Comparison": judgements.profiles,
     "CheckReport": judgements.check,
     "VoyageValidation": judgements.voyages,
+    "FleetRun": fleets.run,
     "Predicted": _prediction,
     "TrialPlan": _plan,
     "HeadingStudy": _headings,

@@ -51,5 +51,7 @@ def lines_of(view: View, width: int = WIDTH) -> list[str]:
 
 
 def wrapped(text: str, width: int) -> Sequence[str]:
-    """A text in lines."""
-    return textwrap.wrap(text, width, break_long_words=False, break_on_hyphens=False) or [""]
+    """A text in lines, none of which begins with a per cent sign."""
+    kept = text.replace(" %", "\u00a0%")
+    lines = textwrap.wrap(kept, width, break_long_words=False, break_on_hyphens=False)
+    return [line.replace("\u00a0", " ") for line in lines] or [""]

@@ -34,19 +34,13 @@ class TrainingOptions(Options):
         panel=TRAINING,
     )
     restart: float | None = again(LeaveOutOptions, "restart", 100.0)
-    validate_every: int = choice(25, "Updates between two validations.", least=1, most=1_000_000, panel=TRAINING)
+    validate_every: int = choice(
+        25, "Updates between two validations; the last is always one.", least=1, most=1_000_000, panel=TRAINING
+    )
     step: float | None = choice(None, "Time between samples in training.", unit="s", above=0.0, panel=TRAINING)
     seed: int = choice(
         1, "Seed of the first network, and of which runs are kept back.", least=1, most=2**62, panel=REPRODUCE
     )
-
-    def problems(self) -> list[Problem]:
-        """There must be a validation before the end."""
-        found = super().problems()
-        if self.validate_every > self.steps > 0:
-            what = f"every {self.validate_every} updates of {self.steps} is never"
-            found.append(Problem(what, "validate_every", fix=f"write validate_every={self.steps} or less"))
-        return found
 
 
 @dataclass(frozen=True)

@@ -100,7 +100,7 @@ def after_diagnosis(data: Mapping[str, Any]) -> Advice:
     extended = shlex.quote(f"{where}/profile.toml")
     items = []
     if data["causes"]:
-        causes = ", ".join(clean(cause["effect"]) for cause in data["causes"])
+        causes = " and ".join(clean(cause["effect"]) for cause in data["causes"])
         day = [clean(cause["effect"]) for cause in data["causes"] if of_the_day(cause["effect"])]
         items.append(
             (f"See the model with {causes} on every trial", f"mmgtune simulate -p {extended} --trials {trials[3:]}")
@@ -108,8 +108,9 @@ def after_diagnosis(data: Mapping[str, Any]) -> Advice:
         if day:
             calm = shlex.quote(f"{where}/calm.toml")
             reason = (
-                f"Before predicting calm water take the {' and the '.join(day)} out, which belongs to these trials and "
-                "not to the ship: calm.toml is the profile without"
+                f"Before predicting calm water take out the {' and the '.join(day)}, which "
+                f"{'belongs' if len(day) == 1 else 'belong'} to these trials and not to the ship: calm.toml is the "
+                f"profile without {'it' if len(day) == 1 else 'them'}"
             )
             items.append((reason, f"mmgtune simulate -p {calm} --turn 35 --turn -35 --zigzag 10/10 --zigzag 20/20"))
         reason = "Re-tune the coefficients with what was found in the model, within the same range of their values"

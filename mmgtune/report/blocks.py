@@ -29,7 +29,7 @@ class Table:
 
     numeric  the columns of numbers, aligned on the right
     about    column or measure -> what it is, where its name does not say so
-    raw      numbers to look up: folded, and left out on paper
+    raw      numbers to look up: left out on paper
     cards    on a phone every row is a card, for tables that are read row by row
     """
 
@@ -125,6 +125,14 @@ class Section:
     id: str
     title: str
     blocks: tuple[Block, ...]
+
+    @property
+    def printed(self) -> bool:
+        """Whether anything of it is there on paper."""
+        return not all(
+            block.raw if isinstance(block, Table) else isinstance(block, Fold) and not block.printed
+            for block in self.blocks
+        )
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ..metrics import METRICS
 from . import advice
 from .blocks import Block, Card, Cell, Commands, Fold, Nothing, Page, Prose, Section, Table, cells
 from .common import doubts, made_table, picture
@@ -54,13 +55,14 @@ def _verdict(data: Mapping[str, Any]) -> str:
 
 
 def _cards(data: Mapping[str, Any]) -> tuple[Card, ...]:
-    worst = next((row for row in _ordered(data) if row["status"] == "regressed"), None)
+    failed = [row for row in _ordered(data) if row["status"] == "regressed"]
+    worst = next((row for row in failed if row["unit"]), failed[0] if failed else None)
     cards = []
     if worst is not None:
         unit = f" {clean(worst['unit'])}" if worst["unit"] else ""
         value = f"{shown(worst['baseline'], 3)} → {shown(worst['now'], 3)}{unit}"
-        note = f"{clean(worst['metric'])} of {clean(worst['trial'])}, allowed {shown(worst['allowed'], 2)}{unit}"
-        cards.append(Card("Worst in its own unit", value, note=note, tone="bad"))
+        note = f"{_words(worst)} of {clean(worst['trial'])}; up to {shown(worst['allowed'], 3)}{unit} passes"
+        cards.append(Card("Worst that has a unit", value, note=note, tone="bad"))
     else:
         cards += _means(data)
     counts = data["counts"]
@@ -86,40 +88,42 @@ def _means(data: Mapping[str, Any]) -> list[Card]:
 
 
 def _severity(row: Mapping[str, Any]) -> float:
-    """Change over what is allowed: above 1 is a regression."""
-    allowed, moved = number(row["allowed"]), number(row["change"])
-    if moved is None and row["baseline"] is None:
-        moved = number(row["now"])
-    return moved / allowed if allowed and moved is not None else float("inf") if row["status"] == "regressed" else 0.0
+    """Size over what passes, as the check itself has it: above 1 is a regression; infinite where it diverged."""
+    now, allowed = number(row["now"]), number(row["allowed"])
+    if now is None or not allowed:
+        return float("inf") if row["status"] == "regressed" else 0.0
+    return abs(now) / allowed
+
+
+def _words(row: Mapping[str, Any]) -> str:
+    """What people call a metric; older records may have one that is known no more."""
+    known = METRICS.get(str(row["metric"]))
+    return known.words if known else clean(row["metric"])
 
 
 def _ordered(data: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     rank = {"regressed": 0, "not comparable": 1, "improved": 2, "ok": 3}
-    return sorted(data["items"], key=lambda row: (rank.get(row["status"], 4), -abs(_severity(row))))
+    return sorted(data["items"], key=lambda row: (rank.get(row["status"], 4), -_severity(row)))
 
 
 def _worst(data: Mapping[str, Any]) -> Section | None:
     rows = [row for row in _ordered(data) if row["status"] in ("regressed", "improved", "ok")]
-    worse = any(row["status"] == "regressed" for row in rows)
-    rows = sorted(rows, key=_severity if worse else lambda row: abs(_severity(row)), reverse=True)[:_BARS]
+    rows = sorted(rows, key=_severity, reverse=True)[:_BARS]
     if not rows:
         return Section("worst", "Metrics", (Nothing("Nothing could be compared."),))
+    sizes = [min(_severity(row), _FAR) for row in rows]
     marks: list[Mark] = [Rule(1.0, Look("flag", 1.4, "dash"))]
-    for k, row in enumerate(rows):
-        size = max(min(_severity(row), _FAR), -_FAR)
+    for k, (row, size) in enumerate(zip(rows, sizes, strict=True)):
         marks.append(Bar((0.0, size), (k - 0.3, k + 0.3), "flag" if row["status"] == "regressed" else "muted", 0.85))
-    ticks = tuple((float(k), f"{clean(row['trial'])}: {clean(row['metric'])}"[-44:]) for k, row in enumerate(rows))
-    low = min(0.0, *(max(min(_severity(row), _FAR), -_FAR) for row in rows))
-    x = Axis(
-        "change over what is allowed [–]", low - 0.05, max(1.2, *(min(_severity(row), _FAR) for row in rows)) + 0.05
-    )
+    ticks = tuple((float(k), f"{clean(row['trial'])}: {_words(row)}") for k, row in enumerate(rows))
+    x = Axis("size now over the largest that passes [–]", low=0.0, high=max(1.2, *sizes) + 0.05)
     y = Axis(low=len(rows) - 0.4, high=-0.6, ticks=ticks, grid=False)
-    figure = Figure("metrics", "Change of each metric over what is allowed", (Panel(tuple(marks), x, y,
-                    shape=-(25.0 * len(rows) + 50.0)),), (("allowed", Look("flag", 1.4, "dash")),))  # fmt: skip
-    direction = " for the worse" if worse else ""
-    caption = f"The {count(len(rows), 'metric')} that changed most{direction}; right of the line is a regression."
-    if any(abs(_severity(row)) > _FAR for row in rows):
-        caption += f" Bars end at {_FAR:g} times what is allowed."
+    panel = Panel(tuple(marks), x, y, shape=-(25.0 * len(rows) + 50.0))
+    legend = (("passes up to here", Look("flag", 1.4, "dash")),)
+    figure = Figure("metrics", "Size of each metric over the largest that passes", (panel,), legend)
+    caption = f"The {count(len(rows), 'metric')} nearest to failing or beyond: right of the line is a regression."
+    if any(_severity(row) > _FAR for row in rows):
+        caption += f" Bars end at {_FAR:g} times what passes."
     return Section("worst", "What changed", (picture(figure, "Metrics", caption),))
 
 
@@ -148,19 +152,20 @@ def _all(data: Mapping[str, Any]) -> Section:
     lines = []
     for row in _ordered(data):
         unit = f" [{clean(row['unit'])}]" if row["unit"] else ""
+        moved = number(row["change"])
         lines.append(
             cells(
                 clean(row["trial"]),
-                f"{clean(row['metric'])}{unit}",
+                f"{_words(row)}{unit}",
                 shown(row["baseline"]),
                 shown(row["now"]),
-                shown(row["change"], 2),
-                shown(row["allowed"], 2),
+                NONE if moved is None else percent(100.0 * moved),
+                shown(row["allowed"]),
                 Cell(_WORDS.get(row["status"], clean(row["status"])), _TONES.get(row["status"], "")),
                 clean(row["reason"]),
             )
         )
-    heads = ("trial", "metric", "baseline", "now", "change", "allowed", "verdict", "why")
+    heads = ("trial", "metric", "baseline", "now", "change", "passes up to", "verdict", "why")
     table = Table("items-table", "All metrics, the worst first", heads, tuple(lines), range(2, 6))
     block: Block = table if len(lines) <= 24 else Fold(f"All {len(lines)} metrics", (table,))
     return Section("items", "All metrics", (block,) if lines else (Prose(("There are none.",)),))

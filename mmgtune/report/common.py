@@ -104,25 +104,21 @@ def assumptions(data: Mapping[str, Any]) -> Section | None:
     items = data.get("assumptions") or []
     if not items:
         return None
-    return Section(
-        "assumptions",
-        "Assumptions",
+    table = pairs(
+        "assumptions-table",
+        "What the sources leave open, and what was taken",
+        ("assumption", "taken, and why"),
         (
-            pairs(
-                "assumptions-table",
-                "What the sources leave open, and what was taken",
-                ("assumption", "taken, and why"),
-                (
-                    (
-                        str(row.get("name", "")),
-                        ": ".join(filter(None, (str(row.get("value") or ""), str(row.get("note") or "")))),
-                    )
-                    for row in items
-                ),
-                raw=True,
-            ),
+            (
+                str(row.get("name", "")),
+                ": ".join(filter(None, (str(row.get("value") or ""), str(row.get("note") or "")))),
+            )
+            for row in items
         ),
+        raw=True,
     )
+    said = f"{count(len(items), 'number')} that the sources leave open, and what was taken"
+    return Section("assumptions", "Assumptions", (Fold(said, (table,)),))
 
 
 def provenance(data: Mapping[str, Any]) -> Section:

@@ -24,6 +24,7 @@ from .wording import (
     change,
     clean,
     count,
+    fixed,
     index_words,
     number,
     percent,
@@ -43,6 +44,9 @@ _RUNS = {"measured": "measured", "before": "without a cause", "after": "with the
 
 _BARS = 12
 """Hypotheses drawn."""
+
+_LETTERS = 26
+"""Letters of a hypothesis' parameters beside its bar."""
 
 _FORCE_WORDS = {
     "dX": "surge [kN]", "dY": "sway [kN]", "dN": "yaw [kN m]",
@@ -82,7 +86,7 @@ def build(record: DiagnosisRecord) -> Page:
     return Page(
         title=f"{ship}: diagnosis",
         eyebrow=f"{ship} · {_WORDS.get(data['verdict'], clean(data['verdict']))}",
-        verdict=clean(data["sentence"]),
+        verdict=_headline(data)[0],
         banners=generated_banner(data["trials"]),
         warnings=(
             *(("The search was interrupted; this is what was known by then.",) if data.get("interrupted") else ()),
@@ -94,6 +98,15 @@ def build(record: DiagnosisRecord) -> Page:
     )
 
 
+def _headline(data: Mapping[str, Any]) -> tuple[str, str]:
+    """The answer; where nothing can be named that alone, and what comes closest to it for later."""
+    sentence = clean(data["sentence"])
+    if data["verdict"] != "unexplained":
+        return sentence, ""
+    first, _, rest = sentence.partition(". ")
+    return (f"{first}." if rest else first), rest
+
+
 def _held_out(gain: Mapping[str, Any]) -> str:
     """What J is of, and by which method; records of older versions do not say."""
     return ", ".join(clean(word) for word in (gain["held_out"], gain.get("method")) if word)
@@ -103,7 +116,7 @@ def _cards(record: DiagnosisRecord) -> tuple[Card, ...]:
     data, gain = record.data, record.data["gain"]
     if data["causes"]:
         removed = share(gain["share_above_noise_removed"])
-        causes = ", ".join(clean(cause["effect"]) for cause in data["causes"])
+        causes = " and ".join(clean(cause["effect"]) for cause in data["causes"])
         note = f"by {causes}; 95\u00a0% interval over trials: {span(*gain['share_ci95'])}"
         return (
             *cards_of_misfit({}, record.results, where="held out")[:2],
@@ -208,6 +221,8 @@ def _causes(data: Mapping[str, Any]) -> Section | None:
         blocks += unexplained.traces(data)
         return Section("causes", "Causes", tuple(blocks)) if blocks else None
     if not data["causes"]:
+        closest = _headline(data)[1]
+        blocks += [Prose((closest,))] if closest else []
         blocks.append(
             Prose(("None of these can be relied on while something unknown is at work besides.",), tone="warning")
         )
@@ -218,14 +233,14 @@ def _causes(data: Mapping[str, Any]) -> Section | None:
             unit, factor = read_as(clean(value["unit"]))
             interval = f"{_end(low, factor)} … {_end(high, factor)}"
             size = shown(factor * value["value"]) if number(value["value"]) is not None else "∞"
-            rows.append(cells(clean(cause["effect"]), clean(name), size, interval, unit, _p(cause["p_value"])))
+            rows.append(cells(clean(cause["effect"]), clean(name), size, interval, _unit(unit), _p(cause["p_value"])))
         if not cause["parameters"] and not cause.get("by_run"):
             rows.append(cells(clean(cause["effect"]), NONE, NONE, NONE, NONE, _p(cause["p_value"])))
     if rows:
         blocks.append(
             Table(
                 "causes-table",
-                "What was found, with its size",
+                "What was found, with its size" if data["causes"] else "What comes closest, with its size",
                 ("effect", "parameter", "value", "95 % interval", "unit", "by chance"),
                 tuple(rows),
                 (2, 3, 5),
@@ -242,11 +257,17 @@ def _causes(data: Mapping[str, Any]) -> Section | None:
     if suggestion:
         apart = shown(suggestion["largest_position_difference_m"], 3)
         in_all = shown(suggestion["distance_in_noise_deviations"], 3)
-        sentence = f"The trial that would: {clean(suggestion['manoeuvre'])}."
+        would = "The trial that would" if data["groups"] else "The trial that would tell"
+        sentence = f"{would}: {clean(suggestion['manoeuvre'])}."
         sentence += f" There the explanations differ by up to {apart} m, in all {in_all} deviations of the noise."
         blocks.append(Prose((sentence,)))
     blocks += unexplained.traces(data)
-    return Section("causes", "Causes", tuple(blocks))
+    return Section("causes", "Causes" if data["causes"] else "What comes closest", tuple(blocks))
+
+
+def _unit(unit: str) -> str:
+    """A unit in a column of its own, a dash where a number is pure."""
+    return NONE if unit in DIMENSIONLESS else unit
 
 
 def _why(data: Mapping[str, Any]) -> Section | None:
@@ -290,32 +311,51 @@ def _why(data: Mapping[str, Any]) -> Section | None:
 
 
 def _candidates(fitted: Sequence[Mapping[str, Any]], data: Mapping[str, Any]) -> Block:
-    found = bool(data["causes"])
+    named = [clean(cause["effect"]) for cause in data["causes"]]
     best = fitted[0]
     likely = number(best["p_value"])
-    if found:
-        caption = f"{clean(best['effect'])} alone explains most: chi-squared falls by {shown(best['gain'], 3)}."
+    falls = f"chi-squared falls by {shown(best['gain'], 3)}"
+    if clean(best["effect"]) in named:
+        caption = f"Alone, {clean(best['effect'])} explains most: {falls}."
+    elif named:
+        caption = f"Alone, {clean(best['effect'])} explains most: {falls}. {_better(best, named, data['gain'])}"
     elif likely is not None and likely > 0.01:
         caption = f"The largest, {clean(best['effect'])}, is no more than chance brings in {share(likely)} of searches."
     else:
-        caption = f"The largest is {clean(best['effect'])}, chi-squared falls by {shown(best['gain'], 3)}."
-    return picture(_candidates_figure(fitted, found), "What each hypothesis alone would explain", caption)
+        caption = f"The largest is {clean(best['effect'])}, {falls}."
+    return picture(_candidates_figure(fitted, named), "What each hypothesis alone would explain", caption)
 
 
-def _candidates_figure(rows: Sequence[Mapping[str, Any]], found: bool) -> Figure:
-    """The fall of chi-squared of each hypothesis; the best stands out where a cause was found."""
+def _better(alone: Mapping[str, Any], named: Sequence[str], gain: Mapping[str, Any]) -> str:
+    """Why what explains most by itself is not the answer: what both leave on trials that were not used."""
+    answer, other = number(gain.get("J_test_after")), number(alone.get("J_test"))
+    words = " and ".join(named)
+    if answer is None or other is None or answer >= other:
+        return f"Named is {words}."
+    together = f"{words} together leave" if len(named) > 1 else f"{words} leaves"
+    return f"On trials not used {together} J = {shown(answer)}, {clean(alone['effect'])} alone {shown(other)}."
+
+
+def _label(row: Mapping[str, Any]) -> str:
+    """A hypothesis by its parameters, or by how many these are, so that no two are cut to the same."""
+    words = ", ".join(parameters_of(row))
+    if len(words) > _LETTERS:
+        words = f"{len(row['parameters'])} values{', of each run' if row.get('by') else ''}"
+    return f"{clean(row['effect'])} ({words})"
+
+
+def _candidates_figure(rows: Sequence[Mapping[str, Any]], named: Sequence[str]) -> Figure:
+    """The fall of chi-squared of each hypothesis; those of the causes that were found stand out."""
     rows = rows[:_BARS]
     gains = [max(float(row["gain"]), 0.1) for row in rows]
     log = max(gains) > 30.0 * min(gains)
     least = 0.5 * min(gains) if log else 0.0
     marks: list[Mark] = []
     for k, gain in enumerate(gains):
-        color: Color = "after" if k == 0 and found else "muted"
+        color: Color = "after" if clean(rows[k]["effect"]) in named else "muted"
         marks.append(Line((least, gain), (k, k), Look(color, 3.0)))
         marks.append(Dots((gain,), (k,), Look(color, marker="o", size=9.0)))
-    ticks = tuple(
-        (float(k), f"{clean(row['effect'])} ({', '.join(parameters_of(row))})"[:44]) for k, row in enumerate(rows)
-    )
+    ticks = tuple((float(k), _label(row)) for k, row in enumerate(rows))
     y = Axis(low=len(rows) - 0.4, high=-0.6, ticks=ticks, grid=False)
     x = Axis("fall of chi-squared when refitted [–]", low=least, log=log)
     panel = Panel(tuple(marks), x, y, shape=-(25.0 * len(rows) + 48.0))
@@ -390,7 +430,7 @@ def _residuals(evidence: Mapping[str, Any], found: bool) -> Table:
     for name in evidence["excess_before"]:
         words = CHANNELS[name].words if name in CHANNELS else name
         whole = [_over_noise(evidence[f"excess_{which}"].get(name)) for which in runs]
-        begun = [shown(evidence[f"short_horizon_{which}"].get(name), 2) for which in runs]
+        begun = [_times(evidence[f"short_horizon_{which}"].get(name)) for which in runs]
         rows.append(cells(clean(words), *whole, *begun))
     heads: tuple[str, ...] = ("error over noise, before [–]", "after", "restarted, before [–]", "after")
     heads = heads if found else ("error over noise [–]", "restarted [–]")
@@ -410,7 +450,13 @@ def _residuals(evidence: Mapping[str, Any], found: bool) -> Table:
 def _over_noise(excess: Any) -> str:
     """How many times the noise an error is, from its variance beyond that of the noise as a share of it."""
     size = number(excess)
-    return NONE if size is None else shown(math.sqrt(max(1.0 + size, 0.0)), 2)
+    return NONE if size is None else _times(math.sqrt(max(1.0 + size, 0.0)))
+
+
+def _times(value: Any) -> str:
+    """How many times the noise, to a tenth where that says something."""
+    size = number(value)
+    return fixed(size, 1) if size is not None and size < 10.0 else shown(size, 2)
 
 
 def _forces(forces: Mapping[str, Any], which: str, words: str) -> Table:
@@ -468,32 +514,38 @@ def _could_tell(data: Mapping[str, Any]) -> Section | None:
     rows = data.get("detectability") or []
     if not rows:
         return None
-    return Section(
-        "detectability",
-        "What these trials could tell",
-        (
-            Table(
-                "detectability-table",
-                "Effects by how clearly these trials would show them",
-                ("effect", "share", "found from", "closest"),
-                tuple(
-                    cells(
-                        clean(f"{row['effect']} ({', '.join(row['parameters'])})"),
-                        share(row["share_surviving"]),
-                        clean(_limits(row)),
-                        clean(", ".join(f"{twin['effect']} {twin['angle_deg']:.0f}°" for twin in row["twins"])),
-                    )
-                    for row in sorted(rows, key=lambda row: -row["share_surviving"])
-                ),
-                (1,),
-                (
-                    ("share", "of the effect's signature that re-tuning the coefficients cannot imitate"),
-                    ("found from", "the size from which it would be found"),
-                    ("closest", "effects whose signatures are alike; the smaller the angle, the harder to tell apart"),
-                ),
-            ),
+    table = Table(
+        "detectability-table",
+        "Effects by how clearly these trials would show them",
+        ("effect", "share", "found from", "closest"),
+        tuple(
+            cells(
+                clean(f"{row['effect']} ({', '.join(row['parameters'])})"),
+                share(row["share_surviving"]),
+                clean(_limits(row)),
+                clean(_twins(row)),
+            )
+            for row in sorted(rows, key=lambda row: -row["share_surviving"])
         ),
+        (1,),
+        (
+            ("share", "of the effect's signature that re-tuning the coefficients cannot imitate"),
+            ("found from", "the size from which it would be found"),
+            ("closest", "effects whose signatures are alike; the smaller the angle, the harder to tell apart"),
+        ),
+        cards=True,
     )
+    forms = count(len(rows), "form of an effect", "forms of effects")
+    said = f"{forms}: the size from which each would be found, and what is like it"
+    return Section("detectability", "What these trials could tell", (Fold(said, (table,), data["verdict"] == "none"),))
+
+
+def _twins(row: Mapping[str, Any]) -> str:
+    """Effects that look alike in these trials, each once, by its nearest form."""
+    nearest: dict[str, float] = {}
+    for twin in row["twins"]:
+        nearest[twin["effect"]] = min(twin["angle_deg"], nearest.get(twin["effect"], 180.0))
+    return ", ".join(f"{name} {angle:.0f}°" for name, angle in nearest.items())
 
 
 def _end(value: Any, factor: float) -> str:
@@ -507,7 +559,8 @@ def _limits(row: Mapping[str, Any]) -> str:
         if limit is not None:
             unit, factor = read_as(row["units"].get(name, ""))
             pure = unit in DIMENSIONLESS
-            found.append(f"{name} {shown(factor * limit, 4 if pure else 2)} {'' if pure else unit}".strip())
+            space = "" if pure or unit.startswith("°") else " "
+            found.append(f"{name} {shown(factor * limit, 4 if pure else 2)}{space}{'' if pure else unit}")
     return ", ".join(found) or "not within its range"
 
 

@@ -30,6 +30,7 @@ _LOSS = (
 def build(record: LearningRecord) -> Page:
     """Everything the report of an ensemble says."""
     data = record.data
+    networks = count(len(record.members), "network")
     watched = "runs kept back" if data["watched_by"] else "all windows learned from"
     curves = curves_figure(record.members, f"loss on {watched} [–]")
     curves_words = (
@@ -40,13 +41,13 @@ def build(record: LearningRecord) -> Page:
     banner = "The trials it learned from are generated, not measured: this says how the method works, not the ship."
     return Page(
         title=f"Ensemble of {clean(data['ship'])}",
-        eyebrow=f"{count(len(record.members), 'network')} of {data['layers']} × {data['width']} units",
+        eyebrow=f"{clean(data['ship'])} · ensemble of {networks} of {data['layers']} × {data['width']} units",
         verdict=_verdict(record),
         banners=(banner,) if generated else (),
         warnings=("The training was stopped early; --resume continues it.",) if data["interrupted"] else (),
         cards=_cards(record),
         sections=(
-            Section("tracks", "What its members predict", (block(data["drawn"], tracks_words(record)),)),
+            Section("tracks", "What its members predict", (block(data, tracks_words(record)),)),
             Section("scores", "Errors by kind of manoeuvre", (scores_table(record), Prose((MEANING,)))),
             Section(
                 "learning",
@@ -65,7 +66,7 @@ def _verdict(record: LearningRecord) -> str:
     window = number(record.data["window_s"])
     over = f"over {shown(window, 3)} s" if window else "over whole trials"
     return (
-        f"{over.capitalize()} from a measured state its members are {shown(position, 2)} m and {shown(heading, 2)}° "
+        f"{over.capitalize()} from a measured state its members are {shown(position, 3)} m and {shown(heading, 3)}° "
         f"off (root mean square) on {count(len(record.scores['trials']), 'trial')} {ROLES[record.role]}; how far they "
         "disagree says where the data tell them little."
     )
@@ -78,8 +79,8 @@ def _cards(record: LearningRecord) -> tuple[Card, ...]:
     losses = [one["score"] for one in record.members if number(one["score"]) is not None]
     mean = sum(losses) / len(losses) if losses else None
     return (
-        Card(f"Position error, {where}", f"{shown(position, 2)} m", note="root mean square, mean over members"),
-        Card(f"Heading error, {where}", f"{shown(heading, 2)}°", note="root mean square, mean over members"),
+        Card(f"Position error, {where}", f"{shown(position, 3)} m", note="root mean square, mean over members"),
+        Card(f"Heading error, {where}", f"{shown(heading, 3)}°", note="root mean square, mean over members"),
         Card("Loss", shown(mean, 3), note="3 is as near as the noise lets it be"),
         Card("Learned from", count(len(data["learned_from"]), "trial"), note=count(len(record.members), "member")),
     )

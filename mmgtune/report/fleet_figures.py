@@ -53,7 +53,7 @@ def ships_over_time(
     panel = Panel(tuple(marks), x, y, shape=-(18.0 * len(ships) + 60.0))
     middle = math.exp(0.5 * (low + high)) if known else None
     legend: list[Any] = [
-        (f"{shown(value, 2)} m off track", ("before", density))
+        (f"{shown(value, 3)} m off track", ("before", density))
         for value, density in (
             (min(known, default=None), PALE),
             (middle, 0.5 * (PALE + FULL)),

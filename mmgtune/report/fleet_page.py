@@ -74,7 +74,7 @@ def _verdict(data: Mapping[str, Any]) -> str:
         parts.append(f"causes are named for {listing(named, 8)}")
     best = next((one for one in data["ranking"] if one["gain"] > 0.0), None)
     if best is not None:
-        was, now = shown(best["off_track"], 2), shown(best["tuned_track"], 2)
+        was, now = shown(best["off_track"], 3), shown(best["tuned_track"], 3)
         parts.append(f"{clean(best['ship'])} would gain most by a recalibration, {was} to {now} m off track")
     if not parts:
         return f"No change shows in {count(len(data['ships']), 'ship')}."
@@ -100,8 +100,8 @@ def _cards(data: Mapping[str, Any]) -> tuple[Card, ...]:
     if latest:
         ordered = sorted(latest.values())
         worst = max(latest, key=lambda ship: latest[ship])
-        middle = f"{shown(ordered[len(ordered) // 2], 2)} m"
-        note = f"median of ships at their latest date; most: {clean(worst)}, {shown(latest[worst], 2)} m"
+        middle = f"{shown(ordered[len(ordered) // 2], 3)} m"
+        note = f"median of ships at their latest date; most: {clean(worst)}, {shown(latest[worst], 3)}\u00a0m"
         made.append(Card("Off track now", middle, note=note))
     changes = len(data["changes"])
     made.append(Card("Changes", str(changes) if changes else "none", note="steps in what was followed over time"))
@@ -179,7 +179,7 @@ def _cell(one: Mapping[str, Any] | None) -> Cell:
     if one is None:
         return Cell(NONE)
     error = number(one["off_track"])
-    said = [shown(error, 2)] if error is not None else []
+    said = [shown(error, 3)] if error is not None else []
     said += [clean(tag) for tag in one["causes"]]
     if one["answer"] == "failed":
         said = ["failed"]

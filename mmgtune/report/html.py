@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,6 +12,7 @@ if TYPE_CHECKING:
     from .blocks import Page
 
 _TEMPLATES = Path(__file__).resolve().parent / "templates"
+_OPTION = re.compile(r"--[a-z][a-z-]*")
 
 
 def render(page: Page) -> str:
@@ -42,13 +44,22 @@ def _environment() -> Any:
     """What makes pages of templates; it compiles each of them once in a process."""
     import jinja2
 
-    return jinja2.Environment(
+    made = jinja2.Environment(
         loader=jinja2.FileSystemLoader(_TEMPLATES),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    made.filters["options"] = _options_whole
+    return made
+
+
+def _options_whole(text: str) -> str:
+    """Escaped text in which no option of a command is broken over two lines."""
+    from markupsafe import Markup, escape
+
+    return Markup(_OPTION.sub(r'<span class="option">\g<0></span>', str(escape(text))))
 
 
 def embedded(data: Any) -> str:

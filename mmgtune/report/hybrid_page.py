@@ -16,7 +16,7 @@ from .learning_page import made_section
 from .load import Kind
 from .plot import Axis, Figure, Line, Look, Mark, Panel, Rule, model_look
 from .tables import tone
-from .wording import NONE, clean, count, number, percent, shown
+from .wording import MINUS, NONE, clean, count, number, percent, share, shown
 
 
 @dataclass(frozen=True)
@@ -36,11 +36,11 @@ def build(record: HybridRecord) -> Page:
         "Of each kind of manoeuvre the window of median error, from its first measured state: measured, the model of "
         "forces alone, and with the network."
     )
-    tracks = learned_motions.block(data["drawn"], words, ("forces alone", "hybrid"))
+    tracks = learned_motions.block(data, words, ("forces alone", "hybrid"))
     sections = [
+        Section("tracks", "What it predicts", (tracks,)),
         Section("gains", "Gain on unseen runs", (_gains(data),)) if gained else None,
         _reading(data["reading"]) if gained else None,
-        Section("tracks", "What it predicts", (tracks,)),
         Section("learning", "How it was chosen", _curves(curves, data)),
         Section("next", "What to do next", (_next(record),)),
         made_section(data, [("memory of velocities", f"{shown(data['lag_s'], 3)} s")]),
@@ -49,7 +49,7 @@ def build(record: HybridRecord) -> Page:
     banner = "The trials it learned from are generated, not measured: this says how the method works, not the ship."
     return Page(
         title=f"{clean(data['ship'])}: a network beside the model of forces",
-        eyebrow="hybrid",
+        eyebrow=f"{clean(data['ship'])} · hybrid: a network beside the model of forces",
         verdict=_verdict(data),
         banners=(banner,) if sources == ["generated"] else (),
         warnings=("The training was stopped early; --resume continues it.",) if data["interrupted"] else (),
@@ -64,10 +64,10 @@ def _verdict(data: Mapping[str, Any]) -> str:
     if not data["gained"]:
         return "No gain: no network does better than the model of forces alone on runs it has not seen."
     parts = [
-        f"{shown(100 * row['share_removed'], 2)} % in {clean(row['manoeuvre']) or 'all'} ({count(row['runs'], 'run')})"
+        f"{share(row['share_removed'])} in {clean(row['manoeuvre']) or 'all'} ({count(row['runs'], 'run')})"
         for row in data["gains"]
     ]
-    return f"On runs it has not seen the network removes of the model's error {', '.join(parts)}."
+    return f"On runs it has not seen the network removes part of the model's error (L_MSE): {', '.join(parts)}."
 
 
 def _cards(data: Mapping[str, Any]) -> tuple[Card, ...]:
@@ -80,7 +80,7 @@ def _cards(data: Mapping[str, Any]) -> tuple[Card, ...]:
             shown_cards.append(
                 Card(
                     label,
-                    f"{shown(before, 2)} → {shown(after, 2)}{unit}",
+                    f"{shown(before, 3)} → {shown(after, 3)}{unit}",
                     percent(moved),
                     "root mean square",
                     tone(moved),
@@ -115,6 +115,7 @@ def _gains(data: Mapping[str, Any]) -> Table:
         ("manoeuvre", "runs", "model of forces", "hybrid", "removed", "interval"),
         tuple(rows),
         numeric=(1, 2, 3, 4, 5),
+        cards=True,
     )
 
 
@@ -127,9 +128,9 @@ def _reading(found: Mapping[str, Any]) -> Section:
         cells(
             clean(one["title"]),
             clean(one["name"]),
-            clean(one["written"]),
-            f"{shown(100 * one['share'], 2)} %",
-            *(f"{shown(100 * one['shares'][name], 2)} %" for name in ("X", "Y", "N")),
+            clean(one["written"]).replace("-", MINUS),
+            share(one["share"]),
+            *(share(one["shares"][name]) for name in ("X", "Y", "N")),
         )
         for one in found["terms"]
     ]
@@ -140,6 +141,7 @@ def _reading(found: Mapping[str, Any]) -> Section:
         ("term", "name", "value", "share", "surge", "sway", "yaw"),
         tuple(rows),
         numeric=(2, 3, 4, 5, 6),
+        cards=True,
     )
     return Section("reading", "What it says", (words, table))
 

@@ -21,12 +21,14 @@ FEW = 4
 """Members that are drawn each for itself; more as their mean and the range of all."""
 
 
-def block(drawn: Sequence[Mapping[str, Any]], words: str, names: Sequence[str] = ()) -> Motions | Picture:
+def block(data: Mapping[str, Any], words: str, names: Sequence[str] = ()) -> Motions | Picture:
     """One manoeuvre of each kind: measured, and as the members make it.
 
+    data   the record of a training
     names  of the members; where there are none, networks by number
     A record of older versions holds tracks alone: of these there is a picture.
     """
+    drawn: Sequence[Mapping[str, Any]] = data["drawn"]
     members = max(len(one["members"]) for one in drawn)
     each = list(names) or ([f"network {k + 1}" for k in range(members)] if members > 1 else ["network"])
     looks = [model_look(k) for k in range(max(members, len(each)))]
@@ -42,7 +44,8 @@ def block(drawn: Sequence[Mapping[str, Any]], words: str, names: Sequence[str] =
         runs += [motions.Run(str(k), said, look) for k, (said, look) in enumerate(zip(each, looks, strict=False))]
     found = [_manoeuvre(one, many) for one in drawn]
     caption = f"{words} Bands reach from the least to the greatest of all." if many else words
-    return motion_block.of_manoeuvres(found, runs, (), caption, said="Tracks as measured and as predicted.")
+    said = "Tracks as measured and as predicted."
+    return motion_block.of_manoeuvres(found, runs, (), caption, said=said, L_pp=number(data.get("L_pp")))
 
 
 def _manoeuvre(one: Mapping[str, Any], many: bool) -> motions.Manoeuvre:

@@ -53,7 +53,7 @@ def build(record: LearningRecord) -> Page:
     data = record.data
     curves = curves_figure(record.members, "L_MSE of validation [–]")
     sections = [
-        Section("tracks", "What it predicts", (learned_motions.block(data["drawn"], tracks_words(record)),)),
+        Section("tracks", "What it predicts", (learned_motions.block(data, tracks_words(record)),)),
         Section("scores", "Errors by kind of manoeuvre", (scores_table(record), Prose((MEANING,)))),
         Section("learning", "How it learned", (picture(curves, "Learning curves", _CURVES), *events_said(record))),
         Section("next", "What to do next", (next_steps(record),)),
@@ -63,7 +63,7 @@ def build(record: LearningRecord) -> Page:
     banner = "The trials it learned from are generated, not measured: this says how the method works, not the ship."
     return Page(
         title=f"Networks of {clean(data['ship'])}: type {clean(data['type'])}",
-        eyebrow=clean(data["recipe"]),
+        eyebrow=f"{clean(data['ship'])} · networks of type {clean(data['type'])}: {clean(data['recipe'])}",
         verdict=_verdict(record),
         banners=(banner,) if generated else (),
         warnings=("The training was stopped early; --resume continues it.",) if data["interrupted"] else (),
@@ -77,7 +77,7 @@ def _verdict(record: LearningRecord) -> str:
     window = number(record.data["window_s"])
     over = f"over {shown(window, 3)} s" if window else "over whole trials"
     return (
-        f"{over.capitalize()} from a measured state the networks are {shown(position, 2)} m and {shown(heading, 2)}° "
+        f"{over.capitalize()} from a measured state the networks are {shown(position, 3)} m and {shown(heading, 3)}° "
         f"off (root mean square) on {count(len(record.scores['trials']), 'trial')} "
         f"{'that played no part' if record.role == 'test' else 'that chose among their weights'}."
     )
@@ -89,10 +89,14 @@ def _cards(record: LearningRecord) -> tuple[Card, ...]:
     where = ROLES[record.role]
     best = [one["score"] for one in record.members if number(one["score"]) is not None]
     return (
-        Card(f"Position error, {where}", f"{shown(position, 2)} m", note="root mean square"),
-        Card(f"Heading error, {where}", f"{shown(heading, 2)}°", note="root mean square"),
+        Card(f"Position error, {where}", f"{shown(position, 3)} m", note="root mean square"),
+        Card(f"Heading error, {where}", f"{shown(heading, 3)}°", note="root mean square"),
         Card(f"L_MSE, {where}", shown(record.scores["L_MSE"], 3), note=f"mean over {count(len(best), 'seed')}"),
-        Card("Learned from", count(len(data["learned_from"]), "trial"), note=f"chosen by {len(data['chosen_by'])}"),
+        Card(
+            "Learned from",
+            count(len(data["learned_from"]), "trial"),
+            note=f"weights chosen by {len(data['chosen_by'])} more",
+        ),
     )
 
 

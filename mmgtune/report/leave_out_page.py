@@ -77,8 +77,13 @@ def _cards(data: Mapping[str, Any]) -> tuple[Card, ...]:
     return tuple(cards)
 
 
+def _kinds(rows: Sequence[Any]) -> Sequence[Any]:
+    """Rows of all runs, then of each kind of manoeuvre; of one kind alone, which is all runs, it is said once."""
+    return rows[1:] if len(rows) == 2 else rows
+
+
 def _scores(data: Mapping[str, Any]) -> Section:
-    rows = data["scores"]
+    rows = _kinds(data["scores"])
     if not rows:
         return Section("scores", "Trials left out", (Nothing("There is no time series to score."),))
     places = tuple((float(k), f"{clean(row['manoeuvre'])}\n{row['runs']}") for k, row in enumerate(rows))
@@ -135,6 +140,7 @@ def _bands(data: Mapping[str, Any]) -> Section | None:
     kinds = bands.get("by_manoeuvre") or {}
     if not kinds:
         return None
+    held = number(kinds["all"]["coverage_90"]) if "all" in kinds else None
     heads = ("windows", "50 % holds", "90 % holds", "CRPS", "width of 90 %")
     at = [SCORE_HEADS.index(head) for head in heads]
 
@@ -147,7 +153,6 @@ def _bands(data: Mapping[str, Any]) -> Section | None:
         )
         return Table(id, caption, (first, *heads), rows, range(1, 1 + len(heads)), about)
 
-    held = number(kinds["all"]["coverage_90"]) if "all" in kinds else None
     said = NONE if held is None else share(held)
     sentence = f"Bands of 90 % drawn from the other trials hold {said} of what was measured on those left out."
     runs = table("bands-by-run", "By run", "run", bands["by_run"])
@@ -156,7 +161,7 @@ def _bands(data: Mapping[str, Any]) -> Section | None:
         "Bands from the other trials",
         (
             Prose((sentence,)),
-            table("bands-table", "By kind of manoeuvre", "manoeuvre", kinds),
+            table("bands-table", "By kind of manoeuvre", "manoeuvre", dict(_kinds(list(kinds.items())))),
             Fold("By run", (runs,)),
         ),
     )

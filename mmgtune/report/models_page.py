@@ -14,7 +14,7 @@ from .common import picture
 from .load import Kind, inputs_of, motions_in
 from .plot import LOOKS, Axis, Dots, Figure, Line, Look, Mark, Panel, model_look
 from .tables import pairs
-from .wording import NONE, Channel, clean, count, listing, number, shown
+from .wording import NONE, Channel, clean, count, listing, model_names, number, shown
 
 if TYPE_CHECKING:
     from ..arrays import FloatArray
@@ -41,7 +41,12 @@ class ModelsRecord:
     @property
     def names(self) -> list[str]:
         """What the models were called."""
-        return [clean(one["name"]) for one in self.data["models"]]
+        return model_names([one["name"] for one in self.data["models"]])
+
+    @property
+    def models(self) -> list[dict[str, Any]]:
+        """The models, in the order they were given, with what the page calls them."""
+        return [{**one, "called": name} for one, name in zip(self.data["models"], self.names, strict=True)]
 
     @property
     def conventions(self) -> dict[str, str]:
@@ -78,34 +83,36 @@ def build(record: ModelsRecord) -> Page:
     banner = "The trials are generated, not measured: this says how the method works, not how a real ship moves."
     return Page(
         title="Models compared",
-        eyebrow=f"{clean(data['trials']['ship']) or 'ship not stated'} · {clean(data['trials']['name'])}",
+        eyebrow=f"{clean(data['trials']['ship']) or 'ship not stated'} · models on {clean(data['trials']['name'])}",
         verdict=_verdict(record),
         banners=(banner,) if data["trials"]["sources"] == ["generated"] else (),
+        warnings=tuple(clean(text) for text in data.get("notes") or ()),
         cards=_cards(record),
         sections=(*sections, _made(record)),
     )
 
 
 def _verdict(record: ModelsRecord) -> str:
-    said = []
+    """The best model begun anew, and begun once; of the same model its name once."""
+    said, named = [], ""
     for key, words in record.conventions.items():
-        best = record.data["columns"][0]["best"][key]
+        best = next((one for one in record.models if one["name"] == record.data["columns"][0]["best"][key]), None)
         if best is None:
             said.append(f"{words}, every model diverged somewhere")
             continue
-        row = next(one for one in record.data["models"] if one["name"] == best)[key][0]
-        first = record.data["models"][0]
-        beside = ""
-        if best != first["name"] and number(row["ratio"]) is not None:
-            beside = f", {shown(row['ratio'], 2)} times that of {clean(first['name'])}"
-        said.append(f"{words}, {clean(best)} has the least error of all runs, L_MSE {shown(row['mean'], 3)}{beside}")
-    text = "; ".join(said) + "."
-    return text[:1].upper() + text[1:]
+        place, heading = (number(best[key][0].get(name)) for name in ("position_rms_m", "heading_rms_deg"))
+        off = f"L_MSE {shown(best[key][0]['mean'], 3)}"
+        if place is not None:  # records of older versions do not say
+            off = f"{shown(place, 3)} m and {shown(heading, 2)}° off"
+        again = named == best["called"]
+        said.append(f"{words} too: {off}" if again else f"{words}, {best['called']} errs least: {off}")
+        named = best["called"]
+    return f"Over all runs, {'; '.join(said)}."
 
 
 def _cards(record: ModelsRecord) -> tuple[Card, ...]:
     """The models that do best on all runs, begun anew."""
-    known = [one for one in record.data["models"] if number(one["windows"][0]["mean"]) is not None]
+    known = [one for one in record.models if number(one["windows"][0]["mean"]) is not None]
     cards = []
     for model in sorted(known, key=lambda one: float(one["windows"][0]["mean"]))[:4]:
         found = model["windows"][0]
@@ -113,10 +120,10 @@ def _cards(record: ModelsRecord) -> tuple[Card, ...]:
         score = f"L_MSE {_mean(found, model['members'])}"
         window = f"all runs, anew every {shown(record.data['window_s'], 3)} s"
         if place is None:  # records of older versions do not say
-            cards.append(Card(f"Off, {clean(model['name'])}", score, note=window))
+            cards.append(Card(f"Off, {model['called']}", score, note=window))
         else:
             off = f"{shown(place, 3)} m, {shown(heading, 2)}°"
-            cards.append(Card(f"Off, {clean(model['name'])}", off, note=f"{score}; {window}"))
+            cards.append(Card(f"Off, {model['called']}", off, note=f"{score}; {window}"))
     return tuple(cards)
 
 
@@ -127,8 +134,8 @@ def _tables(record: ModelsRecord, convention: str) -> list[Table]:
         if not columns:
             continue
         rows = []
-        for model in record.data["models"]:
-            row: list[str | Cell] = [clean(model["name"]), str(model["members"])]
+        for model in record.models:
+            row: list[str | Cell] = [model["called"], str(model["members"])]
             for k, column in columns:
                 text = _mean(model[convention][k], model["members"])
                 if number(model[convention][k]["ratio"]) is not None:
@@ -149,7 +156,7 @@ def _tables(record: ModelsRecord, convention: str) -> list[Table]:
 def _bands(record: ModelsRecord) -> Section:
     """Whether the bands of the models held what was measured."""
     blocks: list[Block] = []
-    several = [one for one in record.data["models"] if one["particles"] > 1]
+    several = [one for one in record.models if one["particles"] > 1]
     if several:
         nominal = several[0]["windows"][0]["bands"]["calibration"]["nominal"]
         covered = {one["name"]: one["windows"][0]["bands"]["calibration"]["covered"] for one in several}
@@ -158,13 +165,13 @@ def _bands(record: ModelsRecord) -> Section:
     for key, words in record.conventions.items():
         rows = []
         for k, column in record.columns(False):
-            for model in record.data["models"]:
+            for model in record.models:
                 of = model[key][k]["bands"]
                 best = column["best_CRPS"][key] == model["name"]
                 texts: list[str | Cell] = [clean(column["name"]), str(of["particles"]), *score_cells(of)]
                 at = 2 + SCORE_HEADS.index("CRPS")
                 texts[at] = Cell(f"{texts[at]} *", "good") if best else texts[at]
-                rows.append(cells(clean(model["name"]), *texts))
+                rows.append(cells(model["called"], *texts))
         heads = ("model", "manoeuvre", "particles", *SCORE_HEADS)
         caption = f"Bands, {words}; * the least CRPS"
         numeric = range(2, len(heads))
@@ -182,7 +189,7 @@ def _mean(cell: Mapping[str, Any], members: int) -> str:
 
 def _lost(record: ModelsRecord) -> list[str]:
     found = []
-    for model in record.data["models"]:
+    for model in record.models:
         for key, words in record.conventions.items():
             columns = [(k, one) for k, one in enumerate(record.data["columns"]) if k and model[key][k]["diverged"]]
             if columns:
@@ -190,7 +197,7 @@ def _lost(record: ModelsRecord) -> list[str]:
                     [f"{clean(one['name'])} ({model[key][k]['diverged']} of {model['members']})" for k, one in columns],
                     8,
                 )
-                found.append(f"{clean(model['name'])}, {words}: {where}.")
+                found.append(f"{model['called']}, {words}: {where}.")
     return found
 
 
@@ -198,10 +205,10 @@ def _motions(record: ModelsRecord) -> Section:
     """Whole trials as measured, and as each model makes them from the first state."""
     runs = [motions.Run("measured", "measured", LOOKS["measured"], True)]
     runs += [
-        motions.Run(str(one["name"]), clean(one["name"])[-30:], replace(model_look(k), marker="o"))
-        for k, one in enumerate(record.data["models"])
+        motions.Run(str(one["name"]), one["called"], replace(model_look(k), marker="o"))
+        for k, one in enumerate(record.models)
     ]
-    several = any(one["members"] > 1 for one in record.data["models"])
+    several = any(one["members"] > 1 for one in record.models)
     caption = "Whole trials from the first measured state, with the measured inputs" + (
         "; of several networks the first." if several else "."
     )
@@ -217,12 +224,10 @@ def _figure(record: ModelsRecord) -> Figure:
     columns = record.columns(False)
     width = 0.7 / max(len(record.names), 1)
     panels = []
-    several = any(
-        number(cell["mean"]) for model in record.data["models"] for key in record.conventions for cell in model[key]
-    )
+    several = any(number(cell["mean"]) for model in record.models for key in record.conventions for cell in model[key])
     for key, words in record.conventions.items():
         marks: list[Mark] = []
-        for j, model in enumerate(record.data["models"]):
+        for j, model in enumerate(record.models):
             for i, (k, _) in enumerate(columns):
                 cell = model[key][k]
                 if number(cell["mean"]) is None:
@@ -233,7 +238,7 @@ def _figure(record: ModelsRecord) -> Figure:
         ticks = tuple((float(i), f"{clean(one['name'])[:12]}\n{one['runs']}") for i, (_, one) in enumerate(columns))
         x_axis = Axis(low=-0.5, high=len(columns) - 0.5, ticks=ticks, grid=False)
         panels.append(Panel(tuple(marks), x_axis, Axis("L_MSE [–]", log=several), words, 0.75))
-    legend = tuple((clean(model["name"])[-40:], _looks(j)) for j, model in enumerate(record.data["models"]))
+    legend = tuple((model["called"][-40:], _looks(j)) for j, model in enumerate(record.models))
     return Figure("errors", "L_MSE of the models by kind of manoeuvre", tuple(panels), legend)
 
 

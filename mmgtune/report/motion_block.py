@@ -36,20 +36,22 @@ def of_trials(
 
     results  the trials' rows, in their order
     found    trial -> "measured", "before" or "after" -> columns
+    words    of those that are shown; the last of them is the ship's own model
     first    the trial shown first; where it is empty, the one that fits worst
     """
     rows = [row for row in results if str(row["id"]) in found]
     if not rows:
         return None
+    model = list(words)[-1]
     manoeuvres = []
     for row in rows:
-        own = dict(found[str(row["id"])])
-        if len(rows) <= MOST and "after" in own:
-            own["after"] = ship.with_forces(own["after"])
+        own = {which: motion for which, motion in found[str(row["id"])].items() if which in words}
+        if len(rows) <= MOST and model in own:
+            own[model] = ship.with_forces(own[model])
         manoeuvres.append(motions.Manoeuvre(clean(row["id"]), own, note=_note(row, words)))
     names = [str(row["id"]) for row in rows]
-    worst = first if first in names else str(max(rows, key=misfit_of)["id"])
-    chosen = {id(row) for row in tracks.chosen(rows)}
+    worst = first if first in names else str(max(rows, key=lambda row: misfit_of(row, model))["id"])
+    chosen = {id(row) for row in tracks.chosen(rows, model)}
     drawn = [one for one, row in zip(manoeuvres, rows, strict=True) if id(row) in chosen]
     runs = tracks.runs_of(words)
     said = findings.tracks(rows, words["after"]) if "after" in words else caption
@@ -111,9 +113,9 @@ def numbers(
     return (tables_of_motion.distances(results, found, words),)
 
 
-def misfit_of(row: Mapping[str, Any]) -> float:
+def misfit_of(row: Mapping[str, Any], model: str = "after") -> float:
     """J of the model that is spoken of, greatest where the simulation diverged."""
-    size = number(row.get("J_after"))
+    size = number(row.get(f"J_{model}"))
     return float("inf") if size is None else size
 
 

@@ -14,7 +14,7 @@ from .common import picture
 from .load import Kind
 from .plot import Axis, Bar, Figure, Look, Mark, Panel, Rule
 from .tables import pairs
-from .wording import NONE, clean, count, percent, sentence, shown
+from .wording import NONE, clean, count, fixed, percent, sentence, shown
 
 _BARS = 20
 """Trials drawn, those that tell most."""
@@ -51,7 +51,8 @@ def build(record: PlanRecord) -> Page:
     level = shown(data["options"]["level"], 3)
     words = f"{clean(asked['words'])}, {clean(asked['order'])}"
     verdict = (
-        f"To sail next: {clean(best['trial'])}. It takes {100.0 * best['shrinks']:.0f} % of the band of the {words}."
+        f"To sail next: {clean(best['trial'])}. It would narrow the band of the {clean(asked['words'])} "
+        f"({clean(asked['order'])}) by {percent(100.0 * best['shrinks']).lstrip('+')}."
         if best["shrinks"] > 0.0
         else f"No trial looked at tells anything of the {words}."
     )
@@ -65,8 +66,12 @@ def build(record: PlanRecord) -> Page:
             clean(best["trial"]),
             "good" if best["shrinks"] > 0.0 else "",
         ),
-        Card("It takes", f"{shown(best['duration_s'], 3)} s", note="from the approach to its end"),
-        Card("Looked at", count(len(record.trials), "trial"), note=f"{len(data['left_out'])} could not be judged"),
+        Card("It takes", f"{fixed(best['duration_s'], 0)} s", note="from the approach to its end"),
+        Card(
+            "Looked at",
+            count(len(record.trials), "trial"),
+            note=f"{len(data['left_out'])} could not be judged" if data["left_out"] else "",
+        ),
     )
     sections = [
         Section("trials", "Which trial tells most", (_picture(record, level), _table(record), Prose((_MEANING,)))),
@@ -109,8 +114,8 @@ def _picture(record: PlanRecord, level: str) -> Any:
 
 
 def _short(row: Mapping[str, Any]) -> str:
-    """A trial in the room of an axis on a phone."""
-    return clean(row["id"]).replace("_", " ")[-22:]
+    """A trial in the room of an axis."""
+    return clean(row["trial"]).replace(" deg", "°")
 
 
 def _table(record: PlanRecord) -> Table:
@@ -118,12 +123,12 @@ def _table(record: PlanRecord) -> Table:
         cells(
             clean(row["trial"]),
             f"± {shown(row['half_width_after'], 2)}{record.unit}",
-            f"{100.0 * row['shrinks']:.0f} %",
-            f"{shown(row['duration_s'], 3)} s",
+            percent(100.0 * row["shrinks"]).lstrip("+"),
+            f"{fixed(row['duration_s'], 0)} s",
         )
         for row in record.trials
     )
-    heads = ("trial", "half the band after it", "of the band goes", "takes")
+    heads = ("trial", "half the band after it", "shrinks by", "takes")
     return Table("trials-table", "Trials, the one that tells most first", heads, rows, (1, 2, 3), cards=True)
 
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import advice, measures, motion_block, motions
-from .blocks import Block, Card, Cell, Commands, Page, Section, Table, cells
+from .blocks import Block, Card, Cell, Commands, Fold, Page, Section, Table, cells
 from .common import doubts, made_table
 from .forces import NO_SHIP, Ship, ship_of
 from .load import Kind, inputs_of, motions_in
@@ -23,6 +23,12 @@ if TYPE_CHECKING:
     Motion = Mapping[str, FloatArray]
 
 _OVERSHOOTS = ("overshoot_1_deg", "overshoot_2_deg")
+
+_FIRST = ("advance_m", "tactical_diameter_m", *_OVERSHOOTS)
+"""Indices that stand open where there are many."""
+
+_MANY = 60
+"""Rows of indices from which most are folded away."""
 
 
 @dataclass(frozen=True)
@@ -159,7 +165,8 @@ def _motions(record: SimulationRecord) -> Section | None:
 
 
 def _indices(record: SimulationRecord) -> Section | None:
-    rows = []
+    rows: list[tuple[Cell, ...]] = []
+    principal: list[tuple[Cell, ...]] = []
     banded = any(run.get("bands") for run in record.runs)
     for run in record.runs:
         measured = run["measured"] or {}
@@ -176,12 +183,22 @@ def _indices(record: SimulationRecord) -> Section | None:
                 band = (run.get("bands") or {}).get(key)
                 line.append(f"{shown(band['low'], 3)} to {shown(band['high'], 3)}" if band else NONE)
             rows.append(cells(*line))
+            if key in _FIRST:
+                principal.append(rows[-1])
     if not rows:
         return None
     heads = ["run", "index", "simulated", "in ship lengths", *["measured"] * record.measured, *["band"] * banded]
-    blocks: list[Block] = [
-        Table("indices-table", "Indices of the manoeuvres", tuple(heads), tuple(rows), range(2, len(heads)))
-    ]
+
+    def table(id: str, caption: str, of: Sequence[tuple[Cell, ...]]) -> Table:
+        return Table(id, caption, tuple(heads), tuple(of), range(2, len(heads)))
+
+    blocks: list[Block] = [table("indices-table", "Indices of the manoeuvres", rows)]
+    if len(rows) > _MANY and principal:
+        every = table("all-indices-table", "All indices of the manoeuvres", rows)
+        blocks = [
+            table("indices-table", "Principal indices of the manoeuvres", principal),
+            Fold(f"All {len(rows)} indices", (every,)),
+        ]
     distances = [run for run in record.runs if run["measures"]]
     if distances:
         names = list(distances[0]["measures"])
@@ -196,24 +213,30 @@ def _indices(record: SimulationRecord) -> Section | None:
 
 
 def _criteria(record: SimulationRecord) -> Section | None:
-    rows = []
+    rows: list[tuple[Cell, ...]] = []
+    idle: list[tuple[Cell, ...]] = []
     for run in record.runs:
         for one in run["criteria"]:
             passed = one["passed"]
             verdict = Cell("met", "good") if passed else Cell("not met", "bad")
             if passed is None:
                 verdict = Cell(f"not applicable: {clean(one['reason'])}")
-            rows.append(
+            (idle if passed is None else rows).append(
                 cells(
                     run_words(run["id"]), clean(one["name"]), shown(one["value"], 3), shown(one["limit"], 3),
                     clean(one["unit"]), verdict, clean(one["source"]),
                 )
             )  # fmt: skip
-    if not rows:
+    if not rows and not idle:
         return None
     heads = ("run", "criterion", "value", "limit", "unit", "verdict", "source")
-    table = Table("criteria-table", "Criteria of the IMO", heads, tuple(rows), (2, 3))
-    return Section("criteria", "Criteria", (table,))
+    blocks: list[Block] = []
+    if rows:
+        blocks.append(Table("criteria-table", "Criteria of the IMO", heads, tuple(rows), (2, 3)))
+    if idle:
+        table = Table("idle-criteria-table", "Criteria that do not apply", heads, tuple(idle), (2, 3))
+        blocks.append(Fold(f"{count(len(idle), 'criterion', 'criteria')} that do not apply", (table,)))
+    return Section("criteria", "Criteria", tuple(blocks))
 
 
 def _made(data: Mapping[str, Any]) -> Section:

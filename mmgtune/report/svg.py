@@ -13,6 +13,7 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
+from ..columns import cut as shortened
 from . import ticks
 from .plot import DASHES_OF, Area, Axis, Bar, Dots, Figure, Line, Look, Mark, Panel, Rule, Shapes, Words
 
@@ -29,6 +30,12 @@ FONT = 11.5
 WIDE, NARROW = 760, 360
 _LETTER = 0.62
 """Width of a letter over its size, of a plain font."""
+
+_WIDE_LETTER = 0.97
+"""The same of letters such as m, of a font that runs wide."""
+
+_MARGIN = 12.0
+"""Room beside a panel, at least."""
 
 _POINTS = 900
 """Points of a curve that a page of this width can show."""
@@ -112,7 +119,8 @@ def _quoted(text: str) -> str:
 
 
 def _width(text: str, size: float = FONT) -> float:
-    return _LETTER * size * len(text)
+    wide = sum(letter in "mwMW%@" for letter in text)
+    return size * (_LETTER * (len(text) - wide) + _WIDE_LETTER * wide)
 
 
 @dataclass(frozen=True)
@@ -183,13 +191,13 @@ def _panel(panel: Panel, width: int, height: int, ink: Ink) -> str:
     edge = max(
         (_width(mark.text, mark.size) for mark in panel.marks if isinstance(mark, Words) and mark.edge), default=0
     )
-    right = 12.0 + edge
+    right = _MARGIN + edge
     y_places = panel.y.ticks
     if y_places is None:
         few = max(2, int((height - top - bottom) / 34))
         y_places = tuple(ticks.logarithmic(y_low, y_high) if panel.y.log else ticks.linear(y_low, y_high, few))
-    longest = 22 if narrow else 48
-    y_places = tuple((place, _cut(text, longest)) for place, text in y_places)
+    longest = 24 if narrow else 48
+    y_places = tuple((place, shortened(text, longest)) for place, text in y_places)
     left = 12.0 + max((_width(text) for _, text in y_places), default=10.0) + (17.0 if panel.y.words else 0.0)
     left = min(left, 0.5 * width)
     if panel.equal:
@@ -262,7 +270,8 @@ def _grid(
         if panel.x.grid:
             lines.append(f"M{x:.1f} {bottom:.1f}V{top:.1f}")
         for row, piece in enumerate(text.split("\n")):
-            out.append(_letters(x, bottom + 15.0 + 14.0 * row, piece, "muted", "middle", FONT, ink))
+            inside = min(x, right + _MARGIN - 0.5 * _width(piece))
+            out.append(_letters(inside, bottom + 15.0 + 14.0 * row, piece, "muted", "middle", FONT, ink))
     for place, text in y_places:
         y = float(up(place))
         if not (top - 1 <= y <= bottom + 1):
@@ -275,14 +284,15 @@ def _grid(
 
 
 def _spaced(places: Sequence[tuple[float, str]], across: Scale) -> list[tuple[float, str]]:
-    """Ticks whose words do not touch those before them."""
-    found, end = [], -math.inf
+    """Ticks whose words do not touch those before them on any of their lines."""
+    found, ends = [], [-math.inf] * max((text.count("\n") + 1 for _, text in places), default=1)
     for place, text in places:
-        half = 0.5 * max(_width(piece) for piece in text.split("\n"))
         x = float(across(place))
-        if x - half > end + 4.0:
+        halves = {row: 0.5 * _width(piece) for row, piece in enumerate(text.split("\n")) if piece}
+        if all(x - half > ends[row] + 4.0 for row, half in halves.items()):
             found.append((place, text))
-            end = x + half
+            for row, half in halves.items():
+                ends[row] = x + half
     return found
 
 

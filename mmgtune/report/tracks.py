@@ -30,11 +30,11 @@ def runs_of(words: Mapping[str, str]) -> list[Run]:
     return [Run(which, text, LOOKS[which], which == "measured") for which, text in words.items()]
 
 
-def chosen(results: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+def chosen(results: Sequence[Mapping[str, Any]], model: str = "after") -> list[Mapping[str, Any]]:
     """The trials to draw: all of them, or of many the ones that fit worst, in the data set's order."""
     if len(results) <= PANELS:
         return list(results)
-    worst = sorted(results, key=lambda row: -(row.get("J_after") or 0.0))[:PANELS]
+    worst = sorted(results, key=lambda row: -(row.get(f"J_{model}") or 0.0))[:PANELS]
     return [row for row in results if row in worst]
 
 

@@ -90,7 +90,8 @@ def blocks(data: Mapping[str, Any]) -> list[Block]:
     if found["curves"]:
         caption = (
             "Averages over a ship length: mean in bins of equal numbers, their scatter (upright lines), and what noise "
-            "of the sensors makes of such an average (band)."
+            "of the sensors makes of such an average (band). In brackets the share of the force that this quantity "
+            "alone predicts."
         )
         title = "Residual forces against what they follow most"
         made.append(picture(_curves(found["curves"]), title, caption, _follow_table(found)))
@@ -168,7 +169,7 @@ def _height(n_rows: int) -> float:
 
 def _bars(names: Sequence[str], shares: Sequence[float], what: str, title: str = "") -> Panel:
     marks = tuple(
-        Bar((0.0, 100.0 * of), (k - 0.31, k + 0.31), "after" if k == 0 else "muted", 1.0 if k == 0 else 0.7)
+        Bar((0.0, 100.0 * of), (k - 0.31, k + 0.31), "flag" if k == 0 else "muted", 1.0 if k == 0 else 0.7)
         for k, of in enumerate(shares)
     )
     ticks = tuple((float(k), clean(name)[-28:]) for k, name in enumerate(names))
@@ -188,7 +189,7 @@ def _curves(curves: Mapping[str, Mapping[str, Any]]) -> Figure:
             ends = (float(middle - wide), float(middle + wide))
             marks.append(Line((float(place), float(place)), ends, Look(look.color, 0.8)))
         marks += [Line(at, mean, Look(look.color, 1.4)), Dots(at, mean, look)]
-        words = f"{_AXES.get(axis, clean(axis))} · 1000 ({share(curve['share'])} of it)"
+        words = f"{_AXES.get(axis, clean(axis))} · 1000 ({share(curve['share'])})"
         panels.append(Panel(tuple(marks), Axis(title), Axis(), words))
     return Figure("against-what", "Residual forces against what they follow most", tuple(panels))
 

@@ -14,7 +14,7 @@ from .common import doubts, generated_banner, made_table, picture, rms_errors
 from .load import Kind, inputs_of, motions_in
 from .plot import LOOKS, Axis, Dots, Figure, Look, Mark, Panel, model_look
 from .tables import pairs
-from .wording import NONE, Channel, clean, count, number, sentence, share, shown
+from .wording import NONE, Channel, clean, count, model_names, number, sentence, share, shown
 
 if TYPE_CHECKING:
     from ..arrays import FloatArray
@@ -33,8 +33,10 @@ class ValidationRecord:
 
     @property
     def models(self) -> list[dict[str, Any]]:
-        """The models, in the order they were given."""
-        return list(self.data["profiles"])
+        """The models, in the order they were given, with what the page calls them."""
+        profiles = self.data["profiles"]
+        called = model_names([one["profile"] for one in profiles])
+        return [{**one, "called": name} for one, name in zip(profiles, called, strict=True)]
 
     @property
     def scored(self) -> bool:
@@ -55,14 +57,14 @@ def build(record: ValidationRecord) -> Page:
         Section("next", "What to do next", (Commands(advice.after_validation(data)),)),
         _made(data),
     ]
-    names = ", ".join(clean(one["profile"]) for one in record.models)
-    notes = [f"{clean(one['profile'])}: {sentence(note)}." for one in record.models for note in one["notes"]]
+    names = ", ".join(one["called"] for one in record.models)
+    notes = [f"{one['called']}: {sentence(note)}." for one in record.models for note in one["notes"]]
     return Page(
         title=f"{ship}: models on trials",
         eyebrow=f"{names} on {clean(data['trials'])}",
         verdict=_verdict(record),
         banners=generated_banner({"source": data.get("sources") or {}}),
-        warnings=(*notes, *(f"{clean(one['profile'])}: {text}" for one in record.models for text in doubts(one))),
+        warnings=(*notes, *(f"{one['called']}: {text}" for one in record.models for text in doubts(one))),
         cards=_cards(record),
         sections=tuple(section for section in sections if section is not None),
     )
@@ -86,14 +88,16 @@ def _verdict(record: ValidationRecord) -> str:
     over = f"Over {shown(window, 3)} s from a measured state" if window else "Over whole trials"
     off = f"{shown(place, 3)} m and {shown(heading, 2)}° off (root mean square)"
     if len(record.models) == 1:
-        return f"{over} {clean(best['profile'])} is {off}."
-    others = [one for one in record.models if one is not best and number(one.get("L_MSE")) is not None]
+        return f"{over} {best['called']} is {off}."
+    others = [
+        one for one in record.models if one["profile"] != best["profile"] and number(one.get("L_MSE")) is not None
+    ]
     beside = ""
     if others:
         next_best = min(others, key=lambda one: float(one["L_MSE"]))
         less = share(1.0 - float(best["L_MSE"]) / float(next_best["L_MSE"])) if next_best["L_MSE"] else "0 %"
-        beside = f"; its error L_MSE is {less} lower than that of {clean(next_best['profile'])}"
-    return f"{over} {clean(best['profile'])} does best, {off}{beside}."
+        beside = f"; its error L_MSE is {less} lower than that of {next_best['called']}"
+    return f"{over} {best['called']} does best, {off}{beside}."
 
 
 def _cards(record: ValidationRecord) -> tuple[Card, ...]:
@@ -112,7 +116,7 @@ def _cards(record: ValidationRecord) -> tuple[Card, ...]:
         place, heading = _errors(record, one)
         note = f"L_MSE {shown(one['L_MSE'], 3)}, J {shown(one['J'])}"
         lost = "diverged" if place is None else f"{shown(place, 3)} m, {shown(heading, 2)}°"
-        cards.append(Card(f"Off, {clean(one['profile'])[-28:]}", lost, note=note))
+        cards.append(Card(f"Off, {one['called']}", lost, note=note))
     return tuple(cards)
 
 
@@ -121,7 +125,7 @@ def _motions(record: ValidationRecord) -> Section | None:
         return None
     runs = [motions.Run("measured", "measured", LOOKS["measured"], True)]
     for k, one in enumerate(record.models):
-        runs.append(motions.Run(str(one["profile"]), clean(one["profile"])[-30:], replace(model_look(k), marker="o")))
+        runs.append(motions.Run(str(one["profile"]), one["called"], replace(model_look(k), marker="o")))
     first = record.models[0]
     by_id = {str(row["id"]): row for row in first.get("trials") or ()}
     manoeuvres = [
@@ -133,7 +137,7 @@ def _motions(record: ValidationRecord) -> Section | None:
         manoeuvres, runs, record.inputs, "Simulated from the first measured state with the measured inputs.",
         said="Tracks as measured and simulated.", drawn=drawn, selected=worst[0], L_pp=number(record.data.get("L_pp")),
         notes=("All samples are in motions.parquet in the run folder.",),
-        why=f", on which {clean(first['profile'])} does worst",
+        why=f", on which {first['called']} does worst",
     )  # fmt: skip
     return Section("motions", "Tracks and time histories", (block,))
 
@@ -147,7 +151,7 @@ def _note(record: ValidationRecord, row: Mapping[str, Any] | None) -> str:
     if row is None:
         return ""
     place, heading = _errors(record, row)
-    off = f"{clean(record.models[0]['profile'])} {shown(place, 3)} m and {shown(heading, 2)}° off"
+    off = f"{record.models[0]['called']} {shown(place, 3)} m and {shown(heading, 2)}° off"
     return " · ".join(part for part in (clean(row.get("manoeuvre") or ""), off if place is not None else "") if part)
 
 
@@ -159,11 +163,9 @@ def _scores(record: ValidationRecord) -> Section:
         for kind, row in groups.items():
             words = "all" if kind is None else clean(kind) or "not stated"
             runs = row.get("runs", len(one["trials"]))
-            rows.append(cells(clean(one["profile"]), words, str(runs), *_numbers(record, row)))
+            rows.append(cells(one["called"], words, str(runs), *_numbers(record, row)))
         for row in one["trials"]:
-            lines.append(
-                cells(clean(row["id"]), clean(one["profile"]), clean(row["manoeuvre"]), *_numbers(record, row))
-            )
+            lines.append(cells(clean(row["id"]), one["called"], clean(row["manoeuvre"]), *_numbers(record, row)))
     heads = ("off track [m]", "off heading [°]", "L_MSE [–]", "J [–]")
     about = (("off …", "root mean square over all samples"), ("L_MSE", measures.L_MSE), ("J", measures.J))
     table = Table("scores-table", "Scores by kind of manoeuvre", ("model", "manoeuvre", "runs", *heads), tuple(rows),
@@ -198,7 +200,7 @@ def _figure(record: ValidationRecord, kinds: list[str]) -> Figure:
     ticks = tuple((float(k), name) for k, name in enumerate(names))
     x_axis = Axis(low=-0.5, high=len(names) - 0.5, ticks=ticks, grid=False)
     panel = Panel(tuple(marks), x_axis, Axis("L_MSE [–]", log=bool(marks), room=0.1), shape=0.4)
-    legend = tuple((clean(one["profile"])[-30:], look) for one, look in zip(record.models, looks, strict=True))
+    legend = tuple((one["called"], look) for one, look in zip(record.models, looks, strict=True))
     return Figure("errors", "L_MSE by kind of manoeuvre", (panel,), legend)
 
 
@@ -207,7 +209,7 @@ def _stated(record: ValidationRecord) -> Section | None:
     for k, one in enumerate(record.models):
         table = tables.stated_rows(one.get("stated") or (), ("simulated",), ("simulated",), f"stated-{k}")
         if table is not None:
-            blocks.append(replace(table, caption=f"{clean(one['profile'])}: {table.caption}"))
+            blocks.append(replace(table, caption=f"{one['called']}: {table.caption}"))
     return Section("stated", "Stated indices", tuple(blocks)) if blocks else None
 
 
@@ -218,7 +220,7 @@ def _repeated(record: ValidationRecord) -> Section | None:
         for run in (one.get("manoeuvres") or {}).get("trials") or ():
             for key, value in (run.get("simulated") or {}).items():
                 measured = number((run.get("measured") or {}).get(key))
-                rows.append(cells(clean(run.get("id", "")), clean(one["profile"]), clean(key), shown(measured),
+                rows.append(cells(clean(run.get("id", "")), one["called"], clean(key), shown(measured),
                                   shown(value)))  # fmt: skip
     if not rows:
         return None

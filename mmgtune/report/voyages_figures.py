@@ -63,6 +63,10 @@ def distributions(values: Mapping[str, FloatArray], limits: Sequence[float], cla
     return Figure("distributions", "Share of windows below each cVDM, a curve per model", (panel,), tuple(legend))
 
 
+_LETTERS = 30
+"""Letters of the bins that a panel has room for side by side."""
+
+
 def where(panels: Sequence[Mapping[str, Any]]) -> Figure:
     """Mean cVDM by bin with its interval, a panel per feature and a line per model.
 
@@ -85,6 +89,8 @@ def _where(panel: Mapping[str, Any]) -> Panel:
             if low is not None and high is not None:
                 marks.append(Line((k, k), (low, high), Look(look.color, 1.2)))
     labels = [f"{label}\n{count}" for label, count in zip(panel["labels"], panel["counts"], strict=True)]
+    if sum(map(len, panel["labels"])) > _LETTERS:  # every second one lower
+        labels = [text if k % 2 == 0 else f"\n\n{text}" for k, text in enumerate(labels)]
     x = Axis(low=-0.5, high=n_bins - 0.5, ticks=tuple((float(k), text) for k, text in enumerate(labels)), grid=False)
     return Panel(tuple(marks), x, Axis("mean cVDM [%]", low=0.0), panel["title"])
 

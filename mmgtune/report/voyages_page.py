@@ -385,7 +385,9 @@ def _windows(record: VoyagesRecord) -> Section | None:
     )
     caption = f"Windows with the smallest, the median and the largest cVDM of {figures.cut(first, 40)}."
     inputs = (input_channel("delta", "rudder angle", "rad"),)
-    block = motion_block.of_manoeuvres(manoeuvres, runs, inputs, caption, data=(table,), title="Windows")
+    block = motion_block.of_manoeuvres(
+        manoeuvres, runs, inputs, caption, L_pp=number(record.models[0].get("L_pp")), data=(table,), title="Windows"
+    )
     return Section("windows", "Windows", (block,))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -80,6 +80,13 @@ PRINCIPAL = (
     "steady_drift_angle_deg", "time_90_s", "overshoot_1_deg", "overshoot_2_deg", "initial_turning_time_s", "period_s",
 )  # fmt: skip
 """The indices a manoeuvre is first judged by; the others stand in the table of every trial."""
+
+
+MODEL_LETTERS = 40
+"""Letters of a model's name that a page has room for."""
+
+_FILES = (".toml", ".safetensors")
+"""Endings of files that hold a model."""
 
 
 def is_index(key: str) -> bool:
@@ -167,9 +174,9 @@ def share(value: Any) -> str:
 
 
 def span(low: Any, high: Any) -> str:
-    """An interval of shares, said once where both ends are written alike."""
+    """An interval of shares, said as such where both ends are written alike."""
     first, last = share(low), share(high)
-    return first if first == last else f"{first.removesuffix(UNIT_PERCENT)} to {last}"
+    return f"{first} at both ends" if first == last else f"{first.removesuffix(UNIT_PERCENT)} to {last}"
 
 
 def beyond_noise(value: Any) -> str:
@@ -182,6 +189,14 @@ def beyond_noise(value: Any) -> str:
     if size < LARGE:
         return f"{100.0 * size:.0f}\u00a0%"
     return f"{shown(math.sqrt(1.0 + size), 2)} times the noise"
+
+
+def model_names(names: Sequence[Any]) -> list[str]:
+    """What models are called on a page: of a file its folder and name, where they still differ."""
+    whole = [clean(name) for name in names]
+    ends = ["/".join(name.split("/")[-2:]) if name.endswith(_FILES) else name for name in whole]
+    found = [name if len(name) <= MODEL_LETTERS else f"…{name[1 - MODEL_LETTERS :]}" for name in ends]
+    return found if len(set(found)) == len(set(whole)) else whole
 
 
 def clean(text: Any) -> str:

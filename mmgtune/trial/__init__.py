@@ -13,6 +13,7 @@ voyage          logs of days, read block by block; voyage_windows: cut as they a
 wind            the wind it was measured in; current, waves, depth: the others; gaps: what bridges theirs
 surroundings    all that was measured around the ship; surroundings_checks: what is odd about it
 smoothing       channels without their noise
+held            inputs whose log was updated less often than written
 describe        what a trial holds, in numbers; coverage: what trials visit and what they do not
 """
 
@@ -20,6 +21,7 @@ from .checks import check_trial
 from .coverage import BY_SIDE, Coverage, visited_by
 from .dataset import TrialSet, load_trials
 from .finding import Finding
+from .held import Held
 from .index_trial import IndexTrial
 from .model import Trial
 from .parquet import read_trial, write_trial
@@ -36,6 +38,7 @@ __all__ = [
     "Coverage",
     "Cutting",
     "Finding",
+    "Held",
     "IndexTrial",
     "Trial",
     "TrialSet",

@@ -15,7 +15,7 @@ from .index_trial import IndexTrial, has_index_trials, read_index_trials
 from .model import Trial
 from .parquet import id_in, read_trial
 from .pieces import windows
-from .raw_logs import logs_instead
+from .raw_logs import LogInstead, instead, logs_instead
 from .split import SPLIT, Split, read_split
 from .voyage import Voyage
 
@@ -128,10 +128,12 @@ def load_trials(name: str | Path) -> TrialSet:
     trials: dict[str, Trial] = {}
     problems = list(wrong_there)
     ids: list[str | None] = []
+    logs_only = []
     for file in files:
         try:
             trial = read_trial(file)
         except TrialError as error:
+            logs_only += [file] if isinstance(error, LogInstead) else []
             problems += error.problems
             ids.append(id_in(file))
             continue
@@ -142,6 +144,8 @@ def load_trials(name: str | Path) -> TrialSet:
             where = f"{trials[trial.id].path} and {file}"
             problems.append(Problem(what, where, why, "give each its own id, or remove one"))
         trials.setdefault(trial.id, trial)
+    if len(logs_only) == len(files) > 1:
+        raise TrialError(instead(path, logs_only))
     known: dict[str, IndexTrial] = {}
     for one in stated:
         ids.append(one.id)

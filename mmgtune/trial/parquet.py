@@ -21,7 +21,7 @@ from .digest import DIGEST_KEY, digest
 from .footer import rows_of
 from .metadata import facts_of
 from .model import Trial
-from .raw_logs import import_commands
+from .raw_logs import import_commands, refuse_log
 from .schema import ATTRIBUTES, METADATA_KEY, REQUIRED, SCHEMA, known_column
 from .unusable import unusable
 
@@ -38,6 +38,7 @@ def read_trial(path: Path | str) -> Trial:
     path = Path(path)
     held = _read(path)
     columns = held.columns
+    refuse_log(path, held.names, facts=METADATA_KEY in held.metadata)
     facts, problems = facts_of(held.metadata.get(METADATA_KEY), path, held.names)
     problems = problems + held.problems
     if not problems:

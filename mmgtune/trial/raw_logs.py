@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import shlex
 from collections import Counter
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
-from ..errors import Problem
+from ..errors import Problem, TrialError
+from .schema import REQUIRED
 
 KINDS = (".csv", ".txt", ".dat", ".tsv", ".asc", ".log", ".nmea", ".xlsx", ".mat")
 """Endings of files that logs have."""
@@ -15,6 +17,21 @@ NOTES = ("readme", "licence", "license", "citation", "changelog")
 """Beginnings of names that text files beside data have."""
 
 WHY = "trials are Parquet files with columns of known names and units; a map says what the columns of a log are"
+
+
+class LogInstead(TrialError):
+    """A Parquet file has the columns of somebody's log, not those of a trial."""
+
+
+def refuse_log(path: Path, names: Collection[str], *, facts: bool) -> None:
+    """Raise LogInstead for a Parquet file that nobody meant for a trial.
+
+    names  of its columns: few are those of a trial, and there are others
+    facts  whether it says of itself that it is a trial
+    """
+    held = sum(name in names for name in REQUIRED)
+    if not facts and 2 * held < len(REQUIRED) and len(names) > held:
+        raise LogInstead(instead(path, [path]))
 
 
 def raw_logs(path: Path) -> list[Path]:
@@ -29,8 +46,11 @@ def raw_logs(path: Path) -> list[Path]:
 def logs_instead(path: Path) -> Problem | None:
     """The problem of logs where trials are expected, with commands that make trials of them; None of others."""
     found = raw_logs(path)
-    if not found:
-        return None
+    return instead(path, found) if found else None
+
+
+def instead(path: Path, found: Sequence[Path]) -> Problem:
+    """The problem of a file that is a log, or of a folder that holds these."""
     what = f"'{path.name}' is a log, not a trial" if path.is_file() else "the folder holds logs, not trials"
     return Problem(what, str(path), WHY, import_commands(_as_argument(path, found)))
 
@@ -43,7 +63,7 @@ def import_commands(argument: str) -> str:
     )
 
 
-def _as_argument(path: Path, found: list[Path]) -> str:
+def _as_argument(path: Path, found: Sequence[Path]) -> str:
     """Logs as an argument of a shell command: one file, or all of the commonest kind of a folder."""
     if path.is_file() or len(found) == 1:
         return shlex.quote(str(found[0]))

@@ -17,6 +17,7 @@ from .digest import DIGEST_KEY, digest_of
 from .footer import rows_of
 from .metadata import facts_of
 from .parquet import another_digest, layout_of, numbers, unreadable
+from .raw_logs import refuse_log
 from .schema import METADATA_KEY, REQUIRED
 from .unusable import missing_columns, unusable_part
 
@@ -151,6 +152,7 @@ def open_voyage(path: Path | str) -> Voyage:
     layout = layout_of(schema, where)
     limits.VOYAGE_COLUMNS.hold(layout.n_numeric, where, TrialError)
     metadata: Mapping[bytes, bytes] = schema.metadata or {}
+    refuse_log(path, layout.names, facts=METADATA_KEY in metadata)
     facts, problems = facts_of(metadata.get(METADATA_KEY), path, layout.names)
     problems = problems + layout.problems
     held = dict.fromkeys(layout.wanted)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ..errors import Problem, TrialError
 from .dataset import files_of, find_trials, of_another_ship
-from .raw_logs import logs_instead
+from .raw_logs import LogInstead, instead, logs_instead
 from .split import SPLIT, Split, read_split
 from .voyage import Voyage, open_voyage
 
@@ -68,10 +68,13 @@ def load_voyages(name: str | Path) -> VoyageSet:
     path = find_trials(name)
     voyages: list[Voyage] = []
     problems: list[Problem] = []
-    for file in files_of(path):
+    files = files_of(path)
+    logs_only = []
+    for file in files:
         try:
             found = open_voyage(file)
         except TrialError as error:
+            logs_only += [file] if isinstance(error, LogInstead) else []
             problems += error.problems
             continue
         twin = next((one for one in voyages if one.id == found.id), None)
@@ -81,6 +84,8 @@ def load_voyages(name: str | Path) -> VoyageSet:
             why = "trials are told apart by their ids"
             problems.append(Problem(what, where, why, "give each its own id, or remove one"))
         voyages.append(found)
+    if len(logs_only) == len(files) > 1:
+        raise TrialError(instead(path, logs_only))
     said = Split()
     if path.is_dir() and (path / SPLIT).is_file():
         said, wrong = read_split(path / SPLIT, None if problems else [one.id for one in voyages])

@@ -220,7 +220,12 @@ class VoyageValidation(Displayed):
         name = next(iter(self.predictors))
         counts, n = self.classes(name), self.n_windows
         shares = ", ".join(f"{100.0 * counts[key] / n:.0f} % {key}" for key in CLASSES)
-        said = f"{name}: of {n} windows {shares}; median cVDM {self.median(name):.2g} %."
+        off = _distribution(self.table.models[name], "MED")["median"]
+        where = "" if off is None else f"{off:.3g} m off track, "
+        said = (
+            f"{name}: {where}cVDM {self.median(name):.3g} % (medians of {n} windows of {self.options.window:g} s); "
+            f"{shares}."
+        )
         most = most_telling(self.where[name])
         if most is not None and most.explained >= 0.01:
             share = f"{100.0 * most.explained:.0f} % of the variance of log cVDM"
@@ -266,6 +271,7 @@ class VoyageValidation(Displayed):
             "id": predictor.name,
             "sha256": profile.sha256 if profile else None,
             "method": predictor.method,
+            "L_pp": predictor.L_pp,
             "notes": list(self.notes.get(name, ())),
             "doubts": [one.to_dict() for one in profile.doubts()] if profile else [],
         }

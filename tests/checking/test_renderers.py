@@ -16,6 +16,7 @@ from mmgtune.checking.renderers.github import render as github
 from mmgtune.checking.renderers.json import render as as_json
 from mmgtune.checking.renderers.junit import render as junit
 from mmgtune.checking.renderers.markdown import render as markdown
+from mmgtune.checking.renderers.numbers import change
 from mmgtune.checking.renderers.text import difference
 from mmgtune.checking.renderers.text import render as text
 from mmgtune.errors import Problem
@@ -188,6 +189,12 @@ def test_hostile_names_in_markdown(hostile):
 
 def test_hostile_names_in_json(hostile):
     assert json.loads(as_json(hostile))["profile"] == hostile.profile
+
+
+def test_changes_are_plain_numbers():
+    told = [change(Item("a", "J", 1.0, now, None, "regressed")) for now in (1.012, 2.4, 3.9, 20.0)]
+    assert told == ["+1.2 %", "+140 %", "+290 %", "x20"]
+    assert "undoes all of the loss" in str(Changed("hull.N_v", 1.0, 2.0, 3, 1.54))
 
 
 def test_every_format_is_a_file_and_every_file_a_format():

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import mmgtune.cli
-from mmgtune.cli.output import harmless
+from mmgtune.cli.output import filled, harmless
 from mmgtune.profile import load_profile
 from tests.command import typed
 
@@ -46,6 +46,12 @@ def test_json_stays_the_same_json():
     text = json.dumps(document, ensure_ascii=False, indent=1)
     assert json.loads(harmless(text)) == document
     assert not steers(harmless(text))
+
+
+def test_parts_fill_lines(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "24")
+    assert filled(["one: 1", "two: 2", "three: 3", "four: 4"], "  ") == ["  one: 1   two: 2", "  three: 3   four: 4"]
+    assert filled([], "  ") == []
 
 
 @pytest.fixture

@@ -12,8 +12,11 @@ import pytest
 
 from mmgtune.backends import STATES, Integrator
 from mmgtune.diagnose import VERDICTS, DiagnoseOptions, diagnose
+from mmgtune.diagnose.intervals import Estimate
 from mmgtune.diagnose.noise import NoiseModel, estimate
 from mmgtune.diagnose.search import Refit
+from mmgtune.diagnose.wording import parameters_in_words
+from mmgtune.effects import find_effect
 from mmgtune.errors import OptionError
 from mmgtune.profile import load_profile, parse_profile, with_effects
 from mmgtune.simulation import simulate as simulate_trials
@@ -250,6 +253,19 @@ def test_noise_with_a_memory_is_told_from_white_noise_and_whitened():
         assert x.var() == pytest.approx(1.0, abs=0.15)
         assert abs(np.corrcoef(x[1:], x[:-1])[0, 1]) < 0.08
     assert np.allclose(model.restore(white), flat, atol=1e-8)
+
+
+def test_a_rate_that_is_not_there_has_no_direction():
+    ends = {"north": (-0.115, 0.001), "east": (0.096, 0.001), "north_rate": (-7e-7, 2e-6), "east_rate": (-1e-6, 2e-6)}
+    known = {
+        f"effects.current.{name}": Estimate(f"effects.current.{name}", value, value - half, value + half, half / 1.96)
+        for name, (value, half) in ends.items()
+    }
+    effect = find_effect("current")
+    words = effect.sentence(parameters_in_words(effect, known))
+    assert "setting towards 140°, which hardly changed during a run: by 0.0007" in words
+    grown = {**known, "effects.current.east_rate": replace(known["effects.current.east_rate"], value=1e-4, low=9.8e-5)}
+    assert "gained" in effect.sentence(parameters_in_words(effect, grown))
 
 
 def test_options_that_make_no_sense_are_said():

@@ -99,6 +99,7 @@ def test_every_key_of_the_result_is_documented():
     assert missing == []
 
 
+@pytest.mark.slow(2)
 def test_numbers_of_the_readme_are_those_of_the_program():
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     guide = (ROOT / "docs" / "guides" / "calibrate.md").read_text(encoding="utf-8")

@@ -1,5 +1,6 @@
 """Effects: absent at their null bit for bit, alike in both back ends, and each does what it says."""
 
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -81,11 +82,23 @@ def test_every_effect_has_a_strong_value():
     assert list(STRONG) == TAGS
 
 
+@pytest.fixture(scope="module")
+def base(ship):
+    """Cases, and the run of the ship without effects in them, by what they are like and how long [s] they are."""
+
+    @cache
+    def run(like, seconds):
+        cases = like(Model(ship), seconds)
+        return cases, states(Model(ship), cases, backend="numpy")
+
+    return run
+
+
 @pytest.mark.parametrize("tag", TAGS)
-def test_null_is_the_base_run_bit_for_bit_on_numpy(ship, tag):
-    cases = blown(Model(ship), 120)
-    base, null = (states(Model(p), cases, backend="numpy") for p in (ship, with_effects(ship, {tag: {}}, "test")))
-    assert np.array_equal(base, null)
+def test_null_is_the_base_run_bit_for_bit_on_numpy(ship, base, tag):
+    cases, without = base(blown, 120)
+    null = states(Model(with_effects(ship, {tag: {}}, "test")), cases, backend="numpy")
+    assert np.array_equal(without, null)
 
 
 @pytest.mark.slow(6)
@@ -96,22 +109,37 @@ def test_null_is_the_base_run_bit_for_bit_compiled(ship, integrator):
     assert np.array_equal(base, null)
 
 
+@pytest.mark.slow(6)
+@pytest.mark.parametrize("backend", ["numpy", "compiled"])
+def test_null_beside_lanes_with_every_effect_is_the_base_run_bit_for_bit(ship, backend):
+    """Simulators pass by what no lane has; where one has it, the equations themselves must leave the others alone."""
+    strong = Model(with_effects(ship, STRONG, "test"))
+    model = Model(with_every_effect(ship))
+    theta = np.column_stack([strong.matrix()[:, 0], model.matrix()[:, 0], strong.matrix()[:, 0]])
+    cases = blown(Model(ship), 300)
+    base, beside = states(Model(ship), cases, backend=backend), states(model, cases, theta, backend=backend)
+    assert np.array_equal(base[:, 0], beside[:, 1])
+    assert np.array_equal(beside[:, 0], beside[:, 2])
+    assert np.abs(beside[:, 0] - beside[:, 1]).max() > 1.0
+
+
 @pytest.mark.parametrize("tag", TAGS)
-def test_each_changes_the_run_and_can_be_written_and_read(ship, tag):
+def test_each_changes_the_run_and_can_be_written_and_read(ship, base, tag):
     stderr = {name: 0.1 * abs(value) for name, value in STRONG[tag].items()}
     read = parse_profile(with_effects(ship, {tag: STRONG[tag]}, "a test", {tag: stderr}).text)
     for name, value in STRONG[tag].items():
         assert read.value(f"effects.{tag}.{name}") == pytest.approx(value, rel=1e-12)
         assert read.coefficient(f"effects.{tag}.{name}").stderr == pytest.approx(0.1 * abs(value), rel=1e-12)
-    cases = (blown if tag == "wind-drift" else zigzag_like)(Model(ship), 200)
-    base, changed = (states(Model(p), cases, backend="numpy") for p in (ship, read))
-    assert np.abs(changed - base).max() > 3e-4
+    cases, without = base(blown if tag == "wind-drift" else zigzag_like, 200)
+    changed = states(Model(read), cases, backend="numpy")
+    assert np.abs(changed - without).max() > 3e-4
 
 
-@pytest.mark.parametrize("integrator", [Integrator("euler"), Integrator("rk4"), Integrator("rk4", 2)])
+@pytest.mark.slow(8)
+@pytest.mark.parametrize("integrator", [Integrator("euler"), Integrator("rk4", 2)])  # every stage, every substep
 def test_back_ends_agree_with_every_effect_at_once(ship, integrator):
     model = Model(with_effects(ship, STRONG, "test"))
-    cases = blown(model)
+    cases = blown(model, 900 if integrator.name == "euler" else 300)
     compiled, reference = (states(model, cases, backend=name, integrator=integrator) for name in ("compiled", "numpy"))
     assert np.max(np.abs(compiled - reference) / (1.0 + np.abs(reference))) < 1e-9
 

@@ -26,7 +26,7 @@ TUG = ForceEffect(
     fields={"pull": Parameter("pull of the tug, to starboard", "N",
                               bounds=lambda ship: (-0.02 * ship.force, 0.02 * ship.force),
                               typical=lambda ship: 0.002 * ship.force)},
-    variants=(("pull",),), on_demand=True, sentence=lambda v: f"A tug pulled the stern to starboard with {v['pull']}",
+    variants=(("pull",),), sentence=lambda v: f"A tug pulled the stern to starboard with {v['pull']}",
 )
 
 class Race(NamedTuple):
@@ -45,7 +45,7 @@ def memory(found: Any, behind: Any, h: Lanes, e: Race) -> tuple[Force, tuple[Lan
 
 RACE = LagEffect(
     kind="effects.race", tag="race", title="rudder force with two memories", params=Race, function=memory,
-    start=settled, states=("slow", "quick", "total"), cites=(), variants=(("slow", "quick"),), on_demand=True,
+    start=settled, states=("slow", "quick", "total"), cites=(), variants=(("slow", "quick"),),
     fields={"slow": Parameter("slow time constant", "s"), "quick": Parameter("quick time constant", "s")},
 )
 """

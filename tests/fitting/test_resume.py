@@ -15,7 +15,8 @@ from mmgtune.fitting import folder as run_folder
 from mmgtune.fitting.journal import NAME, _hash
 from mmgtune.fitting.least_squares import _asked
 from mmgtune.fitting.run import make_setting
-from mmgtune.trial import load_trials
+from mmgtune.trial import load_trials, write_trial
+from mmgtune.trial.schema import ATTRIBUTES
 from tests.command import run, run_until
 
 pytestmark = pytest.mark.slow(8)
@@ -29,6 +30,17 @@ def same(document):
     if isinstance(document, dict):
         return {key: same(value) for key, value in document.items() if key not in CLOCK}
     return [same(one) for one in document] if isinstance(document, list) else document
+
+
+IN_THREE = LeaveOutOptions(targets=FEW, starts=1, folds=3)
+
+
+@pytest.fixture(scope="module")
+def in_three(tmp_path_factory):
+    """A whole leave-out in three parts, and its journal."""
+    folder = tmp_path_factory.mktemp("whole")
+    whole = leave_out("suzaku", "suzaku", IN_THREE, folder=folder)
+    return same(whole.to_dict()), (folder / NAME).read_bytes()
 
 
 def stopping(phase):
@@ -108,27 +120,24 @@ def test_the_journal_tells_problems_apart(suzaku):
     assert _hash(_asked(setting.problem(("turn_p35", "turn_m35")), starts, ridge=0.0)) in asked
 
 
-def test_half_a_line_at_the_end_is_done_again(tmp_path):
-    options = LeaveOutOptions(targets=FEW, starts=1, folds=3)
+def test_half_a_line_at_the_end_is_done_again(tmp_path, in_three):
     hooks, _ = stopping("leaving out turn_p35")
-    leave_out("suzaku", "suzaku", options, hooks=hooks, folder=tmp_path)
+    leave_out("suzaku", "suzaku", IN_THREE, hooks=hooks, folder=tmp_path)
     text = (tmp_path / NAME).read_text()
     (tmp_path / NAME).write_text(text[:-40])
-    resumed = leave_out("suzaku", "suzaku", options, folder=tmp_path, resume=True)
-    assert same(resumed.to_dict()) == same(leave_out("suzaku", "suzaku", options).to_dict())
+    resumed = leave_out("suzaku", "suzaku", IN_THREE, folder=tmp_path, resume=True)
+    assert same(resumed.to_dict()) == in_three[0]
 
 
-def test_a_changed_line_is_done_again_and_so_is_what_follows(tmp_path):
+def test_a_changed_line_is_done_again_and_so_is_what_follows(tmp_path, in_three):
     """A digit changed in a result, as by a bad disk, went into the numbers of the run without a word."""
-    options = LeaveOutOptions(targets=FEW, starts=1, folds=3)
-    whole = leave_out("suzaku", "suzaku", options, folder=tmp_path)
-    kept = (tmp_path / NAME).read_bytes()
+    whole, kept = in_three
     at = kept.index(b"0.", kept.index(b"\n") + 200)
     for damaged in (kept[: at + 3] + b"7" + kept[at + 4 :], kept[:at] + b"\xff" + kept[at + 1 :]):
         assert damaged != kept
         (tmp_path / NAME).write_bytes(damaged)
-        resumed = leave_out("suzaku", "suzaku", options, folder=tmp_path, resume=True)
-        assert same(resumed.to_dict()) == same(whole.to_dict())
+        resumed = leave_out("suzaku", "suzaku", IN_THREE, folder=tmp_path, resume=True)
+        assert same(resumed.to_dict()) == whole
         assert (tmp_path / NAME).read_bytes() == kept
 
 
@@ -137,8 +146,19 @@ def test_nothing_to_resume(tmp_path):
         leave_out("suzaku", "suzaku", folder=tmp_path, resume=True)
 
 
+def few_trials(folder):
+    """Some bundled trials in a folder, every third sample of them, so that a diagnosis takes a moment."""
+    for name in ("turn_p35", "turn_m20", "zigzag_10"):
+        whole = load_trials("suzaku").trials[name]
+        thin = {channel: getattr(whole, channel)[::3] for channel in ATTRIBUTES.values()}
+        write_trial(replace(whole, **thin), folder / f"{name}.parquet")
+    return folder
+
+
 def test_kill_9_of_a_diagnosis_and_resume(tmp_path):
-    asked = ("diagnose", "--effects", "speed-scale,current", "--targets", "R_0,w_P0", "--no-report", "--quiet")
+    trials = str(few_trials(tmp_path / "trials"))
+    wanted = ("--effects", "speed-scale,current", "--targets", "R_0,w_P0")
+    asked = ("diagnose", "-t", trials, *wanted, "--no-report", "--quiet")
     journal = tmp_path / "cut" / NAME
 
     def far():
@@ -156,7 +176,8 @@ def test_kill_9_of_a_diagnosis_and_resume(tmp_path):
 
 
 def test_ctrl_c_of_a_diagnosis_concludes_nothing(tmp_path):
-    asked = ("diagnose", "--effects", "speed-scale", "--targets", "R_0,w_P0", "--quiet")
+    trials = str(few_trials(tmp_path / "trials"))
+    asked = ("diagnose", "-t", trials, "--effects", "speed-scale", "--targets", "R_0,w_P0", "--quiet")
     journal = tmp_path / "run" / NAME
 
     def begun():

@@ -21,6 +21,12 @@ def problem(suzaku, noisy):
     return make_problem(suzaku.profile, noisy, FitOptions(a_r=0.1))
 
 
+@pytest.fixture(scope="module")
+def searched(problem):
+    """A whole search, of two runs."""
+    return search(problem, 1, problem.box.to_unit(problem.box.pre), populations=(12, 24))
+
+
 def test_cosine_map_reaches_the_bounds():
     z = np.linspace(-3.0, 3.0, 2001)
     unit = to_box(z)
@@ -51,20 +57,19 @@ def test_same_seed_same_search_and_numpy_s_stream_is_left_alone(problem):
     assert not np.array_equal(one.unit, other.unit)
 
 
-def test_replay_is_bit_identical(problem):
-    start = problem.box.to_unit(problem.box.pre)
-    whole = search(problem, 3, start, populations=(12, 24))
+def test_replay_is_bit_identical(problem, searched):
+    start, whole = problem.box.to_unit(problem.box.pre), searched
     asked = []
 
     def stop():
         asked.append(1)
         return len(asked) >= 40
 
-    part = search(problem, 3, start, populations=(12, 24), stop=stop)
+    part = search(problem, 1, start, populations=(12, 24), stop=stop)
     assert not part.finished
     simulated = []
     rest = search(
-        problem, 3, start, populations=(12, 24), recorded=part.costs, on_generation=lambda s: simulated.append(1)
+        problem, 1, start, populations=(12, 24), recorded=part.costs, on_generation=lambda s: simulated.append(1)
     )
     assert np.array_equal(rest.unit, whole.unit)
     assert rest.history == whole.history
@@ -79,10 +84,9 @@ def test_no_files_are_left_behind(problem, tmp_path, monkeypatch):
     assert [p.name for p in tmp_path.iterdir()] == ["cma_signals.in"]
 
 
-def test_least_squares_and_cma_es_agree_with_active_bounds(problem):
+def test_least_squares_and_cma_es_agree_with_active_bounds(problem, searched):
     start = problem.box.to_unit(problem.box.pre)
-    by_squares = solve(problem, start[:, None])[0]
-    by_cma = search(problem, 1, start, populations=(12, 24))
+    by_squares, by_cma = solve(problem, start[:, None])[0], searched
     assert ((by_squares.unit == 0.0) | (by_squares.unit == 1.0)).sum() >= 3
     assert pytest.approx(by_squares.J, rel=1e-4) == by_cma.J
 
@@ -208,7 +212,7 @@ def test_impossible_widths_are_refused_before_any_work(suzaku, noisy, widths):
         sweep(suzaku.profile, noisy, SweepOptions(widths=widths, method="least-squares"))
 
 
-@pytest.mark.parametrize("a_r", [0.2, 0.3, 0.4, 0.5, 0.6])
+@pytest.mark.parametrize("a_r", [0.2, 0.4, 0.6])  # from most bounds met to fewest
 def test_cma_es_and_least_squares_agree_on_the_bundled_trials(suzaku, a_r):
     problem = make_problem(suzaku.profile, load_trials("suzaku"), FitOptions(a_r=a_r))
     start = problem.box.to_unit(problem.box.pre)

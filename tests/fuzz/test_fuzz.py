@@ -31,6 +31,7 @@ def test_what_once_failed(case: Path, tmp_path: Path) -> None:
     assert not outcome.failed, outcome.said
 
 
+@pytest.mark.slow(6)
 def test_cases_can_be_made_again() -> None:
     for kind in KINDS.values():
         assert dict(files_of(kind, 1, 7)) == dict(files_of(kind, 1, 7)), kind.name

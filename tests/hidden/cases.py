@@ -5,6 +5,7 @@ from __future__ import annotations
 import zlib
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cache
 
 import numpy as np
 
@@ -255,6 +256,11 @@ def unknown(k: int, seed: int, noise: Noise = WHITE) -> Case:
 
 
 def _ship(seed: int) -> dict[str, float]:
+    return dict(_steerable(seed))
+
+
+@cache
+def _steerable(seed: int) -> dict[str, float]:
     """The first ship drawn that can be steered: some spin to a standstill, where the model is not valid."""
     rng = _rng("ship", seed)
     while True:

@@ -14,7 +14,7 @@ import numpy as np
 class Unknown:
     """One such effect: how it acts, the magnitude's unit, and magnitudes that are clearly visible but plausible.
 
-    since  the effect of the registry that has come to hold it, "" for none
+    since  the cause that has come to be known for it, "" for none
     """
 
     acts: str
@@ -63,5 +63,7 @@ UNKNOWN: dict[str, Unknown] = {
     ),
     "unknown-sway-bias": Unknown("v logged + magnitude", "m/s", (-0.12, 0.08, 0.15)),
     "unknown-clock-drift": Unknown("control log late by magnitude t / 600 s", "s", (-8.0, 6.0, 10.0)),
-    "unknown-controls-held": Unknown("controls logged every magnitude seconds and held between", "s", (6.0, 8.0, 12.0)),
+    "unknown-controls-held": Unknown(
+        "controls logged every magnitude seconds and held between", "s", (6.0, 8.0, 12.0), "inputs-held"
+    ),
 }

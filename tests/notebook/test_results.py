@@ -12,6 +12,7 @@ import pytest
 
 import mmgtune
 from mmgtune.errors import OptionError, TrialError
+from mmgtune.fleet import FleetRun
 from mmgtune.notebook.kinds import KINDS
 
 HOSTILE = "<img src=x onerror=alert(1)>\"'&amp;\u202e\x9b31m$x_1$"
@@ -98,6 +99,22 @@ def test_every_result_is_a_line_a_table_and_a_text(fitted, trials):
         lines = repr(one.summary()).splitlines()
         assert repr(one) in " ".join(lines)
         assert max(map(len, lines)) <= 80, type(one)
+
+
+def test_a_fleet_in_a_notebook(tmp_path):
+    cells = [
+        {"ship": ship, "date": "2026-01", "name": "state", "answer": "good", "off_track": 158.2, "tuned_track": 113.4,
+         "causes": ["current"]}
+        for ship in ("aa", HOSTILE)
+    ]  # fmt: skip
+    said = "hull.R_0 rises by 0.003 (+- 0.0003) between 2026-03 and 2026-04"
+    document = {"ships": ["aa", HOSTILE], "dates": ["2026-01"], "jobs": {"total": 2, "failed": 0}, "cells": cells,
+                "changes": [{"ship": "aa", "sentence": said}], "failures": []}  # fmt: skip
+    run = FleetRun((), {}, 0, 1.0, 1, document)
+    assert repr(run) == "FleetRun(2 ships, 1 dates: 2 jobs, 0 failed)"
+    assert Tags(run._repr_html_()).tags.isdisjoint({"img", "script"})
+    assert f"aa: {said}." in " ".join(run.summary().split())
+    assert run.to_frame()["off track [m]"].tolist() == [158.2, 158.2]
 
 
 def test_nothing_in_a_result_fills_the_screen(fitted, trials):

@@ -145,7 +145,7 @@ def test_a_current_is_taken_out_before_calm_water_is_predicted(more: dict[str, P
     (calm,) = [text for text in commands_of(folder) if "calm.toml" in text]
     assert calm.startswith("mmgtune simulate -p ")
     page = (folder / "report.html").read_text(encoding="utf-8")
-    assert page.index("Before predicting calm water take the current out") < page.index("calm.toml</span>")
+    assert page.index("Before predicting calm water take out the current") < page.index("calm.toml</span>")
     extended, without = (load_profile(folder / f"{name}.toml") for name in ("profile", "calm"))
     assert "effects.current" in extended.sections
     assert "effects.current" not in without.sections

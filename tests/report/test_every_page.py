@@ -83,7 +83,7 @@ def _has_axe() -> bool:
     return True
 
 
-@pytest.mark.parametrize("name", ["fit", "diagnosis", "validate"])
+@pytest.mark.parametrize("name", ["fit", "diagnosis", "nothing", "unexplained", "validate", "trials"])
 def test_paper(browser: Any, runs: dict[str, Path], name: str) -> None:
     with Visit(browser, runs[name] / "report.html") as visit:
         paper = visit.page.pdf(format="A4")
@@ -92,6 +92,9 @@ def test_paper(browser: Any, runs: dict[str, Path], name: str) -> None:
         assert visit.page.locator(".static svg.panel >> visible=true").count() >= 4
         assert visit.page.locator(".raw >> visible=true").count() == 0
         assert visit.page.locator(".viewer, .copy, .filter, nav >> visible=true").count() == 0
+        empty = """() => [...document.querySelectorAll('main section')].filter((one) => one.checkVisibility())
+          .filter((one) => one.getBoundingClientRect().height < 1.5 * one.querySelector('h2').offsetHeight).length"""
+        assert visit.page.evaluate(empty) == 0  # no heading stands alone
 
 
 @pytest.mark.parametrize("name", PAGES)
@@ -107,11 +110,13 @@ def test_the_keyboard_reaches_everything(browser: Any, runs: dict[str, Path], na
             return [all.length, scrolled.length]; }"""
         )
         assert wanted[1] == 0  # what scrolls can be scrolled by keys
-        reached = set()
-        visit.page.evaluate("document.body.tabIndex = -1; document.body.focus()")
+        visit.page.evaluate(
+            """() => { document.body.tabIndex = -1; document.body.focus(); window.reached = new Set();
+            document.addEventListener('focusin', (event) => window.reached.add(event.target.dataset.k)); }"""
+        )
         for _ in range(wanted[0] + 2):
             visit.page.keyboard.press("Tab")
-            reached.add(visit.page.evaluate("document.activeElement.dataset.k"))
+        reached = set(visit.page.evaluate("[...window.reached]"))
         assert len(reached - {None}) == wanted[0]
 
 

@@ -4,14 +4,28 @@ from __future__ import annotations
 
 import json
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 
-from mmgtune.report import advice, confidence, motion_block, motions, tables, tracks, wording
+from mmgtune.report import (
+    advice,
+    check_page,
+    confidence,
+    diagnosis_page,
+    html,
+    motion_block,
+    motions,
+    svg,
+    tables,
+    tracks,
+    wording,
+)
+from mmgtune.report.blocks import Fold, Motions, Page, Picture, Section, Table
 from mmgtune.report.html import embedded
 from mmgtune.report.markdown import escaped
-from mmgtune.report.plot import Look
+from mmgtune.report.plot import Axis, Bar, Dots, Figure, Line, Look, Panel
 
 
 @pytest.mark.parametrize(
@@ -46,7 +60,7 @@ def test_shares_are_written_in_one_way(value: float | None, text: str | None) ->
 
 
 def test_an_interval_of_one_number_is_said_once() -> None:
-    assert wording.span(0.9999, 1.0) == "99.9\u00a0%"
+    assert wording.span(0.9999, 1.0) == "99.9\u00a0% at both ends"
     assert wording.span(0.4, 0.6) == "40 to 60\u00a0%"
 
 
@@ -178,6 +192,78 @@ def test_deviation() -> None:
     assert tables.deviation(200.0, 210.0, "m") == "+5.0\u00a0%"
     assert tables.deviation(10.0, 8.5, "deg") == "−1.5 deg"
     assert tables.deviation(None, 8.5, "deg") == "–"
+
+
+def test_what_explains_most_alone_need_not_be_the_answer() -> None:
+    def row(effect: str, gain: float, J: float, by: str | None = None) -> dict[str, Any]:
+        names = ["north", "east", "north_rate", "east_rate"] if effect == "current" else ["speed", "direction"]
+        return {"effect": effect, "parameters": names, "by": by, "gain": gain, "p_value": 0.0, "J_test": J}
+
+    rows = [row("wind", 9e6, 9345.0), row("current", 8e6, 1577.0, "trial"), row("current", 6e6, 1213.0)]
+    data = {"causes": [{"effect": "current"}, {"effect": "rudder-offset"}], "gain": {"J_test_after": 0.1952}}
+    block = diagnosis_page._candidates(rows, data)
+    assert isinstance(block, Picture)
+    assert "current and rudder-offset together leave J = 0.1952, wind alone 9345" in block.caption
+    (panel,) = block.figure.panels
+    assert [mark.look.color for mark in panel.marks if isinstance(mark, Dots)] == ["muted", "after", "after"]
+    labels = [words for _, words in panel.y.ticks or ()]
+    assert labels == ["wind (speed, direction)", "current (4 values, of each run)", "current (4 values)"]
+
+
+def test_nothing_found_shows_the_model_it_speaks_of() -> None:
+    t = np.arange(3.0)
+    still = {name: np.zeros(3) for name in ("x", "y", "psi", "u", "v_m", "r")}
+    found = {name: {which: {"t": t, **still} for which in ("measured", "before", "after")} for name in ("a", "b")}
+    results = [{"id": "a", "J_before": 9.0, "J_after": 1.0}, {"id": "b", "J_before": 2.0, "J_after": None}]
+    words = {"measured": "measured", "before": "re-tuned model"}
+    block = motion_block.of_trials(results, found, (), "", words=words)
+    assert isinstance(block, Motions)
+    assert block.selected == 0
+    assert [set(one["runs"]) for one in block.payload["manoeuvres"]] == [{"measured", "before"}] * 2
+
+
+def test_a_check_weighs_metrics_as_its_verdict_does() -> None:
+    def row(metric: str, now: float | None, allowed: float, status: str, unit: str = "") -> dict[str, Any]:
+        return {"trial": "a", "metric": metric, "now": now, "baseline": 1.0, "allowed": allowed, "change": 0.1,
+                "unit": unit, "status": status, "reason": ""}  # fmt: skip
+
+    items = [row("rms_v", 0.0886, 0.055, "regressed", "m/s"), row("J", 3061.0, 700.7, "regressed"),
+             row("MED", 5.0, 10.0, "improved", "m")]  # fmt: skip
+    ordered = check_page._ordered({"items": items})
+    assert [one["metric"] for one in ordered] == ["J", "rms_v", "MED"]
+    section = check_page._worst({"items": items})
+    assert section is not None
+    (block,) = section.blocks
+    assert isinstance(block, Picture)
+    sizes = [mark.x[1] for mark in block.figure.panels[0].marks if isinstance(mark, Bar)]
+    assert sizes == pytest.approx([4.0, 0.0886 / 0.055, 0.5])
+    (worst, *_) = check_page._cards({"items": items, "counts": {}})
+    assert "error of sway, rms of a" in worst.note
+
+
+def test_models_are_called_by_folder_and_file() -> None:
+    names = ["suzaku", "/a/b/runs/fit/profile.toml", "runs/rnn/model.safetensors"]
+    assert wording.model_names(names) == ["suzaku", "fit/profile.toml", "rnn/model.safetensors"]
+    twins = ["a/fit/profile.toml", "b/fit/profile.toml"]
+    assert wording.model_names(twins) == twins
+
+
+def test_options_are_not_broken_over_lines() -> None:
+    page = Page("t", "e", "v", warnings=("--no-refit <b> helps",))
+    assert '<span class="option">--no-refit</span> &lt;b&gt; helps' in html.fragment(page)
+
+
+def test_a_section_of_tables_to_look_up_is_not_on_paper() -> None:
+    table = Table("t", "c", ("a",), (), raw=True)
+    assert not Section("s", "S", (table, Fold("more", (table,)))).printed
+    assert Section("s", "S", (Fold("more", (table,), printed=True),)).printed
+
+
+def test_ticks_stay_inside_and_stagger() -> None:
+    ticks = tuple((float(k), f"{'' if k % 2 == 0 else chr(10)}0.0123–0.4567") for k in range(5))
+    panel = Panel((Line((0.0, 4.0), (1.0, 2.0), Look("after")),), Axis(low=-0.5, high=4.5, ticks=ticks), Axis(), "")
+    text = svg.inline(Figure("f", "f", (panel, panel)))
+    assert text.count("0.0123–0.4567") == 10  # none is left out
 
 
 def test_worst_trial_is_the_diverged_one() -> None:

@@ -110,7 +110,7 @@ def test_numbers_of_the_record_are_on_the_page(fit_folder: Path, page: str) -> N
 
 
 def test_options_are_named_as_a_reader_types_them(fit_folder: Path, page: str) -> None:
-    assert "--initial estimated removes that." in page
+    assert '<span class="option">--initial</span> estimated removes that.' in page
     assert "--initial estimated removes that." in (fit_folder / "report.md").read_text(encoding="utf-8")
 
 

@@ -2,8 +2,11 @@
 
 import shlex
 
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
+from mmgtune import resources
 from mmgtune.errors import TrialError
 from mmgtune.trial import load_trials, load_voyages
 from tests.command import run
@@ -49,6 +52,35 @@ def test_a_file_that_only_is_called_parquet_too(tmp_path):
     with pytest.raises(TrialError, match="not Parquet") as caught:
         load_trials(tmp_path)
     assert "mmgtune trials map" in caught.value.problems[0].fix
+
+
+@pytest.mark.parametrize("load", [load_trials, load_voyages])
+def test_parquet_with_the_columns_of_a_log_is_one(load, tmp_path):
+    write_parquet(tmp_path / "a.parquet")
+    for given in (tmp_path, tmp_path / "a.parquet"):
+        with pytest.raises(TrialError) as caught:
+            load(given)
+        (problem,) = caught.value.problems
+        assert problem.what == "'a.parquet' is a log, not a trial"
+        assert commands(problem.fix)[0] == ["trials", "map", f"{tmp_path}/a.parquet", "-o", "map.toml"]
+    write_parquet(tmp_path / "b.parquet")
+    with pytest.raises(TrialError) as caught:
+        load(tmp_path)
+    (problem,) = caught.value.problems
+    assert problem.what == "the folder holds logs, not trials"
+    assert commands(problem.fix)[1][2] == f"{tmp_path}/*.parquet"
+
+
+def test_a_trial_that_lacks_a_column_is_still_one(tmp_path):
+    whole = pq.read_table(resources.folder("trials") / "suzaku" / "turn_p35.parquet")
+    pq.write_table(whole.drop_columns(["delta"]).replace_schema_metadata(None), tmp_path / "a.parquet")
+    with pytest.raises(TrialError, match="column 'delta' is missing"):
+        load_trials(tmp_path)
+
+
+def write_parquet(path):
+    columns = {name: [0.0, 1.0, 2.0] for name in ("Time", "Lat", "Lon", "HDG", "SOG", "Rudder", "RPM")}
+    pq.write_table(pa.table(columns), path)
 
 
 def test_an_empty_folder_and_one_of_texts_are_not_taken_for_logs(tmp_path):

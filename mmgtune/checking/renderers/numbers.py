@@ -21,7 +21,10 @@ def change(item: Item) -> str:
     """Change of a metric's size in percent, "" where there is none to tell."""
     if item.change is None or math.isinf(item.change):
         return ""
-    return f"{100.0 * item.change:+.2g} %" if abs(item.change) < 10.0 else f"x{item.change + 1.0:.3g}"
+    if abs(item.change) >= 10.0:
+        return f"x{item.change + 1.0:.3g}"
+    percent = 100.0 * item.change
+    return f"{percent:+.0f} %" if abs(percent) >= 100.0 else f"{percent:+.2g} %"
 
 
 def told(item: Item) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ... import columns
 from ..result import CheckReport, Item
 from .numbers import change, value
 
@@ -14,10 +15,11 @@ MOST_CHANGED = 10
 SHOWN = ("regressed", "not comparable", "improved")
 
 
-def render(report: CheckReport, everything: bool = False) -> str:
-    """Lines of at most a screen's width, the verdict last.
+def render(report: CheckReport, everything: bool = False, width: int = 120) -> str:
+    """Lines, the verdict last.
 
     everything  also what passed
+    width  letters of a line of the table
     """
     lines = [_head(report)] if report.profile else []
     lines += [f"error: {problem}" for problem in report.problems]
@@ -25,12 +27,9 @@ def render(report: CheckReport, everything: bool = False) -> str:
     unseen = 0 if everything else len(rows) - MOST
     rows = rows[: len(rows) if everything else MOST]
     if rows:
-        width = max(5, *(len(item.trial) for item in rows))
-        words = max(6, *(len(item.words) for item in rows))
-        lines.append(
-            f" {'trial':<{width}}  {'metric':<{words}} {'baseline':>12} {'now':>12} {'change':>8} {'passes':>12}"
-        )
-        lines += [_row(item, width, words) for item in rows]
+        heads = ("trial", "metric", "baseline", "now", "change", "passes", "")
+        table = columns.table(heads, [_row(item) for item in rows], width=width - 1, words=(0, 1, 6), spare=(5, 2))
+        lines += [f" {line}" for line in table]
         lines += [f" {unseen} more like these; --all lists them"] if unseen > 0 else []
     quiet = [item for item in report.by_status["ok"] if item.change]
     if quiet and not everything:
@@ -77,13 +76,10 @@ def _head(report: CheckReport) -> str:
     return " · ".join(parts) if report.sha256 else f"{report.made_by} · {report.profile}"
 
 
-def _row(item: Item, width: int, words: int) -> str:
-    start = f" {item.trial:<{width}}  {item.words:<{words}} "
+def _row(item: Item) -> tuple[str, ...]:
     if not item.metric:
-        return f"{start}{item.reason}: {item.status.upper()}"
-    numbers = [value(one, item.unit) for one in (item.baseline, item.now)]
+        return (item.trial, item.words, "", "", "", "", f"{item.reason}: {item.status.upper()}")
+    numbers = (value(one, item.unit) for one in (item.baseline, item.now))
     word = {"ok": "ok", "improved": "better"}.get(item.status, item.status.upper())
-    return (
-        f"{start}{numbers[0]:>12} {numbers[1]:>12} {change(item):>8} {value(item.allowed, item.unit):>12}  {word}"
-        + (f" ({item.reason})" if item.reason else "")
-    )
+    said = f"{word} ({item.reason})" if item.reason else word
+    return (item.trial, item.words, *numbers, change(item), value(item.allowed, item.unit), said)

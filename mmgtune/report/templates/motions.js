@@ -69,6 +69,11 @@ const Motions = (() => {
       this.build();
       this.choose(Number(holder.dataset.selected) || 0);
       new ResizeObserver(() => this.soon()).observe(holder);
+      new ResizeObserver(() => {
+        const more = this.beside.scrollWidth > this.beside.clientWidth + 2;
+        this.beside.classList.toggle("more", more);
+        if (more) this.beside.tabIndex = 0; else this.beside.removeAttribute("tabindex");
+      }).observe(this.readout);
       for (const query of ["(prefers-color-scheme: dark)", "(max-width: 760px)"]) {
         matchMedia(query).addEventListener("change", () => this.soon());
       }
@@ -282,7 +287,7 @@ const Motions = (() => {
       for (const at of north.places) {
         const py = place.up(at);
         pen.beginPath(); pen.moveTo(50, py); pen.lineTo(width, py); pen.stroke();
-        if (py > 12 && py < height - 26) pen.fillText(north.text(at), 46, py + 4);
+        if (py > 26 && py < height - 26) pen.fillText(north.text(at), 46, py + 4);
       }
       pen.textAlign = "left";
       pen.fillText("north [m]", 6, 14);
@@ -459,7 +464,7 @@ const Motions = (() => {
       }
       const runs = this.visible();
       const head = make("tr", {}, make("th", { scope: "col", textContent: `at ${words(this.now, this.now < 100 ? 1 : 0)} s` }),
-        ...runs.map((run) => make("th", { scope: "col", className: "number", textContent: run.words })));
+        ...runs.map((run) => make("th", { scope: "col", className: "number", textContent: run.words.replace(/[\/_]/g, "$&\u200b") })));
       const body = rows.map(([name, unit, of, decimals]) => make("tr", {}, make("th", { scope: "row", textContent: `${name} [${unit}]` }),
         ...runs.map((run) => make("td", { className: "number", textContent: words(of(this.motions[run.key]), decimals) }))));
       for (const channel of this.plan.channels.filter((one) => one.group === "input")) {

@@ -1,0 +1,30 @@
+"""Runs of fleets: a row a ship and date."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from .view import Row, View
+
+if TYPE_CHECKING:
+    from ..fleet import FleetRun
+
+
+def run(result: FleetRun) -> View:
+    """A row a ship, date and job: its answer, and how far its model is off as given and re-tuned."""
+    document = result.document
+    rows: list[Row] = [
+        {
+            "ship": cell["ship"],
+            "date": cell["date"],
+            "job": cell["name"],
+            "answer": cell["answer"],
+            "off track [m]": cell["off_track"],
+            "re-tuned [m]": cell["tuned_track"],
+            "causes": ", ".join(cell["causes"]),
+        }
+        for cell in document["cells"]
+    ]
+    changed = [f"{one['ship']}: {one['sentence']}." for one in document["changes"]]
+    failed = [f"{one['ship']}, {one['date']}, {one['name']} failed." for one in document["failures"]]
+    return View(repr(result), changed or ["Nothing changed."], rows, failed, spare=("causes", "job"))

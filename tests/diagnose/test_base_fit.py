@@ -1,0 +1,49 @@
+"""The fit that a diagnosis begins with: on long precise runs it must not end where it cannot go on."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mmgtune.backends import STATES, Integrator
+from mmgtune.diagnose import DiagnoseOptions
+from mmgtune.diagnose.search import base_fit
+from mmgtune.diagnose.workbench import make_workbench
+from mmgtune.profile import tuned
+from mmgtune.simulation import simulate
+from mmgtune.trial import Trial
+
+NOISE = 0.03 * np.array([0.4, 0.4, 0.003, 0.02, 0.02, 0.0005])
+"""Sensors thirty times as good as those of most ships."""
+
+
+def runs(profile, seed, turn, weave):
+    """A turn and a weave of 1500 s each, of a ship whose targets are up to 22 % off the profile's."""
+    rng = np.random.default_rng(seed)
+    off = {name: profile.coefficient(name).value * (1.0 + rng.uniform(-0.22, 0.22)) for name in profile.targets}
+    ship = tuned(profile, off, {}, {}, "made")
+    t = np.arange(0.0, 1500.0, 3.0)
+    zero = np.zeros_like(t)
+    found = []
+    for k, delta in enumerate(
+        (
+            np.clip(2.3 * (t - 10.0), 0.0, abs(turn)) * np.sign(turn),
+            weave * np.clip(1.5 * np.sin(2.0 * np.pi * t / 120.0), -1.0, 1.0),
+        )
+    ):
+        start = {"x": zero, "y": zero, "psi": zero + k, "u": zero + 3.0, "v_m": zero, "r": zero}
+        trial = Trial(f"run_{k}", "suzaku", "", "generated", t, **start, n=zero + 1.7, delta=np.radians(delta))
+        (motion,) = simulate(ship, [trial], integrator=Integrator("rk4"))
+        noisy = motion.states + NOISE * rng.standard_normal(motion.states.shape)
+        found.append(replace(trial, **dict(zip(STATES, noisy.T, strict=True))))
+    return found
+
+
+@pytest.mark.parametrize(
+    ("seed", "turn", "weave", "most"),
+    [(3, 35.0, 20.0, 1.0), (2, -35.0, -10.0, 20.0)],
+    ids=["initial states estimated from the first: 192 without", "their steps damped far from any fit: 58 without"],
+)
+def test_long_precise_runs_are_fitted(suzaku, seed, turn, weave, most):
+    bench = make_workbench(suzaku.profile, runs(suzaku.profile, seed, turn, weave), DiagnoseOptions())
+    assert base_fit(bench).chi2 / bench.problem.n_residuals < most

@@ -1,0 +1,54 @@
+"""Noise of sensors, estimated from what a fit of many numbers leaves of it."""
+
+import numpy as np
+import pytest
+
+from mmgtune.diagnose.noise import ChannelNoise, NoiseModel, estimate
+
+CHANNELS, RUNS, SAMPLES = 6, 4, 400
+TRUE = ChannelNoise(phi=0.96, fading=0.8, white=0.4)
+
+
+class Cases:
+    """Rows of runs whose channels are all measured all along."""
+
+    rows = np.arange(RUNS * SAMPLES * CHANNELS).reshape(RUNS, SAMPLES, CHANNELS)
+
+    def __len__(self):
+        return RUNS
+
+
+def fit_of_slow_changes(per_run):
+    """What a fit of so many slow changes of every channel of every run leaves."""
+    t = np.linspace(0.0, 1.0, SAMPLES)
+    basis, _ = np.linalg.qr(np.column_stack([np.cos(np.pi * k * t) for k in range(per_run)]))
+
+    def fitted(values):
+        left = values.reshape(RUNS, SAMPLES, -1)
+        return (left - basis @ (basis.T @ left)).reshape(values.shape)
+
+    return fitted
+
+
+def mean(model, of):
+    return np.mean([getattr(noise, of) for noise in model.channels.values()])
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_slow_noise_is_seen_whole_through_what_was_fitted_to_it(seed):
+    """Noise that faded over 40 s went into the fit by half, and chance passed for a wind."""
+    true = NoiseModel(Cases(), dict.fromkeys(("x", "y", "psi", "u", "v_m", "r"), TRUE))
+    fitted = fit_of_slow_changes(5)
+    left = fitted(true.restore(np.random.default_rng(seed).standard_normal(Cases.rows.size)))
+    found, naive = estimate(Cases(), left, fitted), estimate(Cases(), left)
+    assert mean(found, "fading") == pytest.approx(TRUE.fading, rel=0.3)
+    assert mean(found, "phi") == pytest.approx(TRUE.phi, abs=0.02)
+    assert mean(found, "white") == pytest.approx(TRUE.white, rel=0.1)
+    assert mean(naive, "fading") < 0.6 * TRUE.fading
+
+
+def test_white_noise_stays_as_it_is():
+    white = np.random.default_rng(1).standard_normal(Cases.rows.size)
+    fitted = fit_of_slow_changes(3)
+    found, naive = estimate(Cases(), fitted(white), fitted), estimate(Cases(), fitted(white))
+    assert found.channels == naive.channels

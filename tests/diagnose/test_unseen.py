@@ -1,0 +1,35 @@
+"""Fitted points on trials that they were not fitted to."""
+
+import numpy as np
+
+from mmgtune.backends import Integrator
+from mmgtune.diagnose import DiagnoseOptions
+from mmgtune.diagnose.unseen import Beside
+from mmgtune.diagnose.workbench import Point, make_workbench
+from mmgtune.profile import load_profile
+from mmgtune.trial import load_trials
+from tests.hidden.cases import of_runs
+from tests.hidden.plant import simulate, write
+
+
+def test_values_of_runs_are_estimated_in_runs_held_out_and_each_run_is_compared_with_its_own(tmp_path):
+    case = of_runs("current", 3, seed=1)
+    write(simulate({}, case.effects, case.seed, case.noise, case.of_trial), tmp_path)
+    trials = load_trials(tmp_path)
+    seen = [trial for name, trial in trials.trials.items() if name not in trials.test][:2]
+    test = [trials.trials[name] for name in sorted(trials.test)[:2]]
+    wanted = ("effects.current.north", "effects.current.east")
+    bench = make_workbench(load_profile("suzaku"), seen, DiagnoseOptions(targets=("hull.R_0",)), wanted)
+    names = (*bench.targets, *(f"{name}@trial:{trial.whole}" for trial in seen for name in wanted))
+    none = Point(bench.targets, bench.null(bench.targets), np.zeros((2, 6)), 0.0, Integrator())
+    spreads = dict.fromkeys((f"{name}@trial" for name in wanted), 0.5)
+    each = Point(names, bench.null(names), np.zeros((2, 6)), 0.0, Integrator(), spreads)
+    beside = Beside.of(bench, (none, each), test)
+    assert set(names) < set(beside.wide.names)
+    values = dict(zip(beside.wide.names, bench.sub_box(beside.wide.names).from_unit(beside.units[-1]), strict=True))
+    for trial, compared in zip(test, beside.compared(), strict=True):
+        truth = case.of_trial[trial.whole]["current"]
+        for name in wanted:
+            assert abs(values[f"{name}@trial:{trial.whole}"] - truth[name.rpartition(".")[2]]) < 0.03
+        assert compared.trial is trial
+        assert compared.J["after"] < 0.1 * compared.J["before"]
