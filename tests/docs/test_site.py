@@ -222,12 +222,12 @@ def test_search(visit):
 @pytest.mark.browser
 @pytest.mark.parametrize("name", ["networks.html", "theory/bands.html", "esso-osaka.html", "reference/commands.html"])
 def test_no_table_is_cut_at_1400_pixels(browser, site, name):
-    page = browser.new_page(viewport={"width": 1400, "height": 900})
-    page.goto((site / name).as_uri())
     cut = """[...document.querySelectorAll('.md-content table')].filter(one => {
       const holder = one.closest('.md-typeset__scrollwrap');
       return holder && one.scrollWidth > holder.clientWidth + 1;
     }).length"""
-    assert page.locator(".md-typeset__scrollwrap table").count()
-    assert page.evaluate(cut) == 0
-    page.close()
+    with browser.new_context(viewport={"width": 1400, "height": 900}) as context:
+        page = context.new_page()
+        page.goto((site / name).as_uri())
+        assert page.locator(".md-typeset__scrollwrap table").count()
+        assert page.evaluate(cut) == 0
