@@ -20,9 +20,14 @@ from .kernel.source import functions_of, kernel_source
 from .kernel.text import IN_KERNEL, N_STATES, WIDTH, acting_in
 from .logged import Logged
 from .numpy_lanes import LaneModel
+from .whole import Whole, whole_of
 
 WORTH_A_THREAD = 20_000
 """Lane-steps (under a millisecond of work) below which starting a second thread costs more than it saves."""
+
+WORTH_COMPILING = 3e8
+"""Stages of lane-steps (some 15 s) from which a kernel made to measure is worth the seconds it takes to compile; until
+then one of all effects serves where there is one."""
 
 FULL = 0.75
 """Share of lanes in use from which the lanes of a block are candidates of one case, which is the quicker way."""
@@ -139,6 +144,8 @@ class Compiled:
 
     def __init__(self) -> None:
         self._kernels: dict[str, Callable[..., None]] = {}
+        self._done: dict[str, float] = {}
+        self._whole_serves: dict[str, bool] = {}
 
     def kernel(self, model: Model) -> Callable[..., None]:
         """The compiled simulator for the components of ``model``."""
@@ -148,6 +155,31 @@ class Compiled:
 
             self._kernels[text] = load_kernel(text, functions_of(model))
         return self._kernels[text]
+
+    def _among_all(self, model: Model, work: float) -> Whole | None:
+        """The model among all effects, where that has a kernel already and the model itself has none worth waiting for.
+
+        work  stages of lane-steps that are to be run
+        """
+        text = kernel_source(model)
+        if text in self._kernels:
+            return None
+        done = self._done[text] = self._done.get(text, 0.0) + work
+        if done > WORTH_COMPILING:
+            return None
+        if text not in self._whole_serves:
+            whole = None if self._is_there(model) else whole_of(model)
+            self._whole_serves[text] = whole is not None and self._is_there(whole.model)
+        return whole_of(model) if self._whole_serves[text] else None
+
+    def _is_there(self, model: Model) -> bool:
+        """Whether a model's kernel needs no compiling."""
+        text = kernel_source(model)
+        if text in self._kernels:
+            return True
+        from .compiling import is_kept
+
+        return is_kept(text, functions_of(model))
 
     def run(
         self,
@@ -163,6 +195,10 @@ class Compiled:
     ) -> LaneResult:
         """See ``Backend.run``."""
         n_cases, n_candidates = len(cases), 1 if paired else theta.shape[-1]
+        position, share = integrator.tableau
+        work = cases.steps * n_candidates * len(position) * integrator.substeps
+        if (whole := self._among_all(model, work)) is not None:
+            model, theta = whole.model, whole.theta(theta)
         blocks = make_blocks(cases, n_candidates, paired)
         n_blocks = len(blocks.case_of)
         first = first_states(model, theta, cases, initial, paired)
@@ -173,7 +209,6 @@ class Compiled:
         columns = n_candidates if blocks.mixed else blocks.thetas.size
         residuals = np.empty((cases.n_residuals, columns) if keep_residuals else (1, 1))
         rows = cases.rows if keep_residuals else np.zeros((1, 1, 1), dtype=np.int64)
-        position, share = integrator.tableau
         theta_of = blocks.theta_of
         if theta.ndim == 3:
             thetas = theta[:, blocks.case_of, blocks.candidate_of].transpose(1, 0, 2).reshape(n_blocks, -1)
@@ -199,7 +234,6 @@ class Compiled:
         )
         results = (keep_states, keep_residuals, cost, fastest2, end, states, residuals)
         kernel = self.kernel(model)
-        work = cases.steps * n_candidates * len(position) * integrator.substeps
         if work < WORTH_A_THREAD or n_blocks == 1 or cores() == 1:
             kernel(*fixed, 0, n_blocks, *results)
         else:

@@ -196,18 +196,35 @@ def _compiled_once(function: Any, path: Path) -> Callable[..., None]:
     return kernel
 
 
+def _foreign(functions: Sequence[Callable[..., Any]]) -> list[ModuleType]:
+    """Modules of functions that are no part of the program."""
+    modules = dict.fromkeys(sys.modules[function.__module__] for function in functions)
+    return [module for module in modules if module.__name__ not in _own]
+
+
+def _path_of(text: str, functions: Sequence[Callable[..., Any]]) -> Path:
+    """Where a generated text is kept, named by all that what is compiled of it depends on."""
+    digest = hashlib.sha256((text + _source_hash()).encode())
+    for module in _foreign(functions):
+        digest.update(Path(str(module.__file__)).read_bytes())
+    return kernel_folder() / f"mmgtune_kernel_{digest.hexdigest()[:16]}.py"
+
+
+def is_kept(text: str, functions: Sequence[Callable[..., Any]] = ()) -> bool:
+    """Whether the kernel of a generated text was compiled before."""
+    path = _path_of(text, functions)
+    return Entry(path.parent / "__pycache__", path.stem).sealed
+
+
 def load_kernel(text: str, functions: Sequence[Callable[..., Any]] = ()) -> Callable[..., None]:
     """The compiled ``kernel`` function of a generated text; compiled at its first call unless cached on disk.
 
     functions  what it calls, some of them perhaps of other packages
     """
-    digest = hashlib.sha256((text + _source_hash()).encode())
-    for module in dict.fromkeys(sys.modules[function.__module__] for function in functions):
-        if module.__name__ not in _own:
-            _register(module)
-            digest.update(Path(str(module.__file__)).read_bytes())
-    name = "mmgtune_kernel_" + digest.hexdigest()[:16]
-    path = kernel_folder() / f"{name}.py"
+    path = _path_of(text, functions)
+    name = path.stem
+    for module in _foreign(functions):
+        _register(module)
     if not path.exists() or path.read_bytes() != text.encode():
         write_text(path, text)
     module = ModuleType(name)

@@ -106,6 +106,11 @@ class Entry:
         self.folder, self.name = folder, name
         self._sums = folder / f"{name}.sums"
 
+    @property
+    def sealed(self) -> bool:
+        """Whether there is one; it may have been broken since."""
+        return self._sums.is_file()
+
     def clean(self) -> None:
         """Throw everything away where a file is not as it was written, or not surely this user's."""
         try:

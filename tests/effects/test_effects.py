@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from mmgtune.backends import Integrator, get_backend, pad
+from mmgtune.backends.compiled import Compiled
+from mmgtune.backends.whole import whole_of
 from mmgtune.effects import effects, find_effect
 from mmgtune.errors import ProfileError
 from mmgtune.fitting.box import make_box
@@ -105,8 +107,34 @@ def test_null_is_the_base_run_bit_for_bit_on_numpy(ship, base, tag):
 @pytest.mark.parametrize("integrator", [Integrator("euler"), Integrator("rk4"), Integrator("rk4", 3)])
 def test_null_is_the_base_run_bit_for_bit_compiled(ship, integrator):
     cases = blown(Model(ship))
-    base, null = (states(Model(p), cases, integrator=integrator) for p in (ship, with_every_effect(ship)))
+    models = [Model(ship), Model(with_every_effect(ship))]
+    for model in models:
+        get_backend("compiled").kernel(model)  # its own, not one of more effects
+    base, null = (states(model, cases, integrator=integrator) for model in models)
     assert np.array_equal(base, null)
+
+
+def test_among_all_effects_a_run_is_that_of_its_own_kernel_bit_for_bit(ship, monkeypatch):
+    taken, take = [], Compiled.kernel
+    monkeypatch.setattr(Compiled, "kernel", lambda self, model: (taken.append(model), take(self, model))[1])
+    monkeypatch.setattr(Compiled, "_is_there", lambda self, one: len(one.effects) > 3)  # whatever others left
+    model = Model(with_effects(ship, {tag: STRONG[tag] for tag in ("steering-lag", "current", "gyro-bias")}, "test"))
+    theta, cases = np.column_stack([model.matrix()[:, 0], model.base]), blown(Model(ship), 300)
+    backend, whole = Compiled(), whole_of(model)
+    backend.run(whole.model, whole.theta(theta), cases)
+    among = backend.run(model, theta, cases, keep_states=True)
+    assert taken == [whole.model, whole.model]
+    backend.kernel(model)
+    own = backend.run(model, theta, cases, keep_states=True)
+    assert taken[2:] == [model, model]
+    assert np.array_equal(among.states, own.states)
+    assert np.array_equal(among.cost, own.cost)
+    for_long = Compiled()
+    for_long.kernel(whole.model)
+    monkeypatch.setattr("mmgtune.backends.compiled.WORTH_COMPILING", 1.5 * cases.steps * 2 * 4)
+    for _ in range(2):
+        for_long.run(model, theta, cases)
+    assert taken[-2:] == [whole.model, model]  # once there is work enough, it gets its own
 
 
 @pytest.mark.slow(6)

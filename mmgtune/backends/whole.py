@@ -1,0 +1,43 @@
+"""A model among the effects it does not have: runs of it through a simulator that is there already.
+
+A simulator made to measure takes seconds to compile, for every combination of effects anew.  That of all effects passes
+by those a run has not, to the same last bit; it takes a little longer.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..model import Model
+from ..profile import with_all_effects
+
+
+@dataclass(frozen=True, eq=False)
+class Whole:
+    """A model with every effect that applies to its ship, those it does not have at their null.
+
+    rows  (n_rows of the model it was made of,) where its coefficients stand there
+    """
+
+    model: Model
+    rows: IntArray
+
+    def theta(self, theta: FloatArray) -> FloatArray:
+        """Coefficients (n_rows, ...) of the model it was made of as coefficients of this one."""
+        base = self.model.base.reshape(-1, *(1 for _ in theta.shape[1:]))
+        found = np.repeat(base, theta[0].size, axis=1).reshape(len(base), *theta.shape[1:])
+        found[self.rows] = theta
+        return found
+
+
+@lru_cache(maxsize=64)
+def whole_of(model: Model) -> Whole | None:
+    """The model among all effects; None where it has all of them."""
+    whole = Model(with_all_effects(model.profile), model.ties)
+    if len(whole.effects) == len(model.effects):
+        return None
+    return Whole(whole, np.array([whole.rows[name] for name in model.rows]))
