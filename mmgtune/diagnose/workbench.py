@@ -237,7 +237,8 @@ def make_workbench(
     own = Model(profile)
     targets = choose_targets(own, options.targets, options.fixed)
     targets, ties = tied(profile, targets, coverage or Coverage.of(trials, own.L_pp))
-    model = Model(with_all_effects(profile), ties)
+    asked = {*options.effects, *(name.split(".")[1] for name in names)} if options.effects else set()
+    model = Model(with_all_effects(profile, asked), ties)
     sigma = noise_levels(trials)
     channels = [c for c in STATES if not options.channels or c in {"v_m" if o == "v" else o for o in options.channels}]
     objective = _in_noise(sigma, channels)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -102,9 +102,13 @@ def with_effects(
     return replace(profile, sections=sections)
 
 
-def with_all_effects(profile: ShipProfile) -> ShipProfile:
-    """The profile with every effect that applies to it and can be a cause; those it does not have at their null."""
-    return with_effects(profile, {e.tag: {} for e in effects() if e.variants and not missing_for(e, profile)}, ABSENT)
+def with_all_effects(profile: ShipProfile, tags: Collection[str] = ()) -> ShipProfile:
+    """The profile with every effect that applies to it and can be a cause; those it does not have at their null.
+
+    tags  of these alone; empty for all
+    """
+    wanted = [e for e in effects() if e.variants and not missing_for(e, profile) and (not tags or e.tag in tags)]
+    return with_effects(profile, {effect.tag: {} for effect in wanted}, ABSENT)
 
 
 def joined(*texts: str) -> str:
