@@ -39,7 +39,7 @@ from .screening import angles
 from .search import ENOUGH, WORTH, Found, Refit, Step, rivals_of, search
 from .separate import Suggestion, suggest
 from .voyages import Choice, looked_at
-from .whereabouts import Whereabouts, whereabouts
+from .whereabouts import Whereabouts, offsets_of, whereabouts
 from .workbench import Point, Workbench, make_workbench
 
 TWINS = 3
@@ -172,7 +172,8 @@ def _whereabouts(bench: Workbench, found: Found) -> Whereabouts:
         left = sum(_excess_by_run(bench, refit.point).values())
         removable[tag] = max(removable.get(tag, 0.0), min(1.0, 1.0 - left / whole))
     ranked = dict(sorted(removable.items(), key=lambda one: -one[1]))
-    return whereabouts(_forces(bench, found.base), by_run, ranked)
+    offsets = offsets_of(residuals_of(bench, found.base), bench.sigma)
+    return whereabouts(_forces(bench, found.base), by_run, ranked, offsets)
 
 
 def _excess_by_run(bench: Workbench, point: Point) -> dict[str, float]:

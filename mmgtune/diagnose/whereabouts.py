@@ -14,10 +14,12 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
+from ..backends import STATES
 from ..fitting.comparison import finite
 from ..trial import Trial, measured_wind
 from ..units import DEG
 from .evidence import FEWEST_BLOCKS, ResidualForces, share_explained
+from .leftover import NOTICED
 
 AXES = {"X": "surge force", "Y": "sway force", "N": "yaw moment"}
 PHASES = {
@@ -68,6 +70,12 @@ SLOW = 0.2
 
 PERIODIC = ("heading", "wind_angle")
 
+LOGGED = {"psi": "heading", "u": "surge velocity", "v_m": "sway velocity", "r": "yaw rate"}
+"""Channels whose sensor can be off by a number; positions begin where they were measured."""
+
+OFF = 0.5
+"""Share of what a channel has beyond its noise from which an offset is spoken of; by how much of it runs may differ."""
+
 WORDS = {
     "heading": "heading",
     "drift": "drift angle",
@@ -115,6 +123,7 @@ class Whereabouts:
     histories  of the worst runs: time, phase and residual forces
                forces of both are averages over the time of a ship length, over 0.5 rho L d U^2, U the rms speed
     removable  by effect, the largest share of the error beyond noise that it alone removes when refitted
+    offsets    by channel, what its log shows more than the model in every run alike [rad, m/s or rad/s]
     """
 
     runs: Mapping[str, float]
@@ -125,6 +134,7 @@ class Whereabouts:
     curves: Mapping[str, Mapping[str, Any]]
     histories: Sequence[Mapping[str, Any]]
     removable: Mapping[str, float]
+    offsets: Mapping[str, float]
 
     @property
     def strongest(self) -> tuple[str, str, float] | None:
@@ -139,6 +149,9 @@ class Whereabouts:
     @property
     def suggestion(self) -> str:
         """The trial or the sensor that would tell most."""
+        if self.offsets:
+            (first, *_) = self.offsets
+            return f"the {LOGGED[first]} from a second sensor in the same runs"
         best = self.strongest
         return TELLS[best[1]] if best else REPEAT
 
@@ -154,6 +167,12 @@ class Whereabouts:
                     break
             found.append(
                 f"{_percent(total)} of the error is in {len(listed)} of {len(self.runs)} runs: {', '.join(listed)}."
+            )
+        for name, offset in self.offsets.items():
+            shown = f"{offset:+.3f} m/s" if name in ("u", "v_m") else f"{offset / DEG:+.3g} deg{'/s' * (name == 'r')}"
+            found.append(
+                f"The log of the {LOGGED[name]} is off by {shown} in every run alike, most of what is left in that "
+                "channel: look at its sensor first, how it is mounted and how it was calibrated."
             )
         axis = max(self.axes, key=lambda one: self.axes[one], default=None)
         if axis is not None and self.axes[axis] > 0.0:
@@ -198,6 +217,7 @@ class Whereabouts:
             "curves": dict(self.curves),
             "histories": list(self.histories),
             "removable": dict(self.removable),
+            "offsets": dict(self.offsets),
             "suggestion": self.suggestion,
         }
 
@@ -214,19 +234,22 @@ def _percent(share: float) -> str:
 
 
 def whereabouts(
-    forces: Sequence[tuple[ResidualForces, Trial]], by_run: Mapping[str, float], removable: Mapping[str, float]
+    forces: Sequence[tuple[ResidualForces, Trial]],
+    by_run: Mapping[str, float],
+    removable: Mapping[str, float],
+    offsets: Mapping[str, float],
 ) -> Whereabouts:
     """Where the error lives.
 
-    forces     residual forces of the trials that are long enough for these, with the trials
-    by_run     error of the motion beyond noise, by run
-    removable  see ``Whereabouts``
+    forces              residual forces of the trials that are long enough for these, with the trials
+    by_run              error of the motion beyond noise, by run
+    removable, offsets  see ``Whereabouts``
     """
     whole = sum(max(value, 0.0) for value in by_run.values())
     runs = {name: max(value, 0.0) / whole for name, value in by_run.items()} if whole > 0.0 else {}
     runs = dict(sorted(runs.items(), key=lambda one: -one[1]))
     if not forces:
-        return Whereabouts(runs, {}, {}, {}, {}, {}, (), removable)
+        return Whereabouts(runs, {}, {}, {}, {}, {}, (), removable, offsets)
     phase = [phases_of(found, trial) for found, trial in forces]
     ratio = [(found.force / np.maximum(found.noise, 1e-300)) ** 2 - 1.0 for found, _ in forces]
     every, excess = np.concatenate(phase), np.concatenate(ratio)
@@ -254,7 +277,30 @@ def whereabouts(
         curves,
         tuple(_history(found, trial, _unit(forces), _ship_length(forces)) for found, trial in worst),
         removable,
+        offsets,
     )
+
+
+def offsets_of(residuals: Sequence[FloatArray], sigma: FloatArray) -> dict[str, float]:
+    """Channels whose error beyond noise is mostly one number in every run, and that number, measured less simulated.
+
+    residuals  simulated less measured by run, (n_samples, 6), NaN in gaps
+    sigma      (6,) white noise of the channels
+    """
+    found: dict[str, float] = {}
+    for name in LOGGED if len(residuals) > 1 else ():
+        k = STATES.index(name)
+        runs = [values[1:, k][np.isfinite(values[1:, k])] for values in residuals]
+        runs = [values for values in runs if len(values)]
+        if len(runs) < 2:
+            continue
+        means = np.array([np.mean(values) for values in runs])
+        offset = float(np.mean(means))
+        excess = float(np.mean(np.concatenate(runs) ** 2) - sigma[k] ** 2)
+        alike = bool(np.all(np.abs(means - offset) < OFF * abs(offset)))
+        if excess > NOTICED * sigma[k] ** 2 and alike and offset**2 > OFF * excess:
+            found[name] = -offset
+    return found
 
 
 def phases_of(found: ResidualForces, trial: Trial) -> IntArray:

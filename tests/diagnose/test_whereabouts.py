@@ -8,7 +8,7 @@ import pytest
 
 from mmgtune.diagnose.evidence import ResidualForces
 from mmgtune.diagnose.evidence.forces import time_since_order
-from mmgtune.diagnose.whereabouts import PHASES, REPEAT, TELLS, Whereabouts, phases_of, whereabouts
+from mmgtune.diagnose.whereabouts import PHASES, REPEAT, TELLS, Whereabouts, offsets_of, phases_of, whereabouts
 from mmgtune.trial import load_trials
 from mmgtune.units import DEG
 
@@ -51,7 +51,7 @@ def run(name, follow=None, k=1, size=0.0, seed=0, heading=0.0):
 def test_a_force_that_follows_the_heading_is_found_with_its_axis():
     headings = np.linspace(0.0, 5.0, 6)
     forces = [run(f"run_{i}", "heading", 1, 3.0, i, heading) for i, heading in enumerate(headings)]
-    found = whereabouts(forces, {"run_0": 30.0, "run_1": 10.0, "run_2": -3.0}, {"current": 0.3})
+    found = whereabouts(forces, {"run_0": 30.0, "run_1": 10.0, "run_2": -3.0}, {"current": 0.3}, {})
     axis, quantity, share = found.strongest
     assert (axis, quantity) == ("Y", "heading")
     assert share > 0.8
@@ -73,7 +73,7 @@ def test_a_force_that_follows_the_heading_is_found_with_its_axis():
 
 
 def test_noise_follows_nothing_and_is_to_be_repeated():
-    found = whereabouts([run(f"run_{i}", seed=i) for i in range(4)], {"run_0": -1.0}, {})
+    found = whereabouts([run(f"run_{i}", seed=i) for i in range(4)], {"run_0": -1.0}, {}, {})
     assert found.strongest is None
     assert found.runs == {}
     assert found.suggestion == REPEAT
@@ -95,7 +95,7 @@ def test_parts_of_a_run_are_told():
 
 
 def test_without_a_trial_long_enough_for_forces_the_runs_are_told():
-    found = whereabouts([], {"a": 4.0, "b": 1.0}, {"wind": 0.1})
+    found = whereabouts([], {"a": 4.0, "b": 1.0}, {"wind": 0.1}, {})
     assert found.runs == {"a": 0.8, "b": 0.2}
     assert found.strongest is None
     assert "80 % of the error is in 1 of 2 runs: a." in found.sentences()
@@ -110,7 +110,7 @@ def test_a_measured_wind_is_among_what_forces_may_follow():
         wind = {"wind_speed": np.full(900, 8.0), "wind_dir": np.mod(towards, 2.0 * np.pi)}
         found.force[:, 2] += 3.0 * np.sin(towards - found.heading)
         forces.append((found, replace(trial, extra=wind)))
-    axis, quantity, share = whereabouts(forces, {}, {}).strongest
+    axis, quantity, share = whereabouts(forces, {}, {}, {}).strongest
     assert (axis, quantity) == ("N", "wind_angle")
     assert share > 0.8
 
@@ -126,14 +126,36 @@ def test_a_measured_wind_is_among_what_forces_may_follow():
     ],
 )
 def test_the_place_is_blamed_last(shares, followed):
-    found = Whereabouts({}, {}, {}, {"Y": 10.0}, {"Y": shares}, {}, (), {})
+    found = Whereabouts({}, {}, {}, {"Y": 10.0}, {"Y": shares}, {}, (), {}, {})
     best = found.strongest
     assert (best[1] if best else "time") == followed
 
 
 def test_what_does_nearly_as_well_is_named_beside():
     phases = {"entry": {"N": 10.0}}
-    found = Whereabouts({}, phases, {}, {"N": 10.0}, {"N": {"drift": 0.34, "east": 0.36, "speed": 0.1}}, {}, (), {})
+    found = Whereabouts({}, phases, {}, {"N": 10.0}, {"N": {"drift": 0.34, "east": 0.36, "speed": 0.1}}, {}, (), {}, {})
     assert (
         "drift angle, which alone predicts 34 % of it; nearly as well do: position east 36 %." in found.sentences()[1]
     )
+
+
+@pytest.mark.parametrize(
+    ("by_run", "found"),
+    [((0.09, 0.07, 0.08), True), ((0.09, -0.07, 0.08), False), ((0.14, 0.02, 0.08), False), ((0.002,) * 3, False)],
+    ids=["alike", "to both sides", "of other size", "within the noise"],
+)
+def test_an_offset_of_a_log_is_one_number_in_every_run(by_run, found):
+    rng = np.random.default_rng(1)
+    sigma = np.array([0.4, 0.4, 0.003, 0.02, 0.02, 0.0005])
+    residuals = [sigma * rng.standard_normal((400, 6)) for _ in by_run]
+    for values, offset in zip(residuals, by_run, strict=True):
+        values[:, 4] -= offset
+        values[:, 0] += np.linspace(0.0, 9.0, 400)  # a track that bends away is no offset
+        values[50:60] = np.nan
+    offsets = offsets_of(residuals, sigma)
+    assert list(offsets) == (["v_m"] if found else [])
+    if found:
+        assert offsets["v_m"] == pytest.approx(np.mean(by_run), abs=0.003)
+        said = whereabouts([], {}, {}, offsets).sentences()
+        assert "sway velocity is off by +0.0" in said[0]
+        assert said[-1] == "What would tell: the sway velocity from a second sensor in the same runs."

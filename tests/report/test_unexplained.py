@@ -17,7 +17,7 @@ pytestmark = pytest.mark.slow(3)
 def record():
     """A record as it is read back: forces that follow the heading in runs of two headings and more."""
     forces = [force_run(f"run_<{i}>", "heading", 1, 3.0, i, float(i)) for i in range(4)]
-    found = whereabouts(forces, {f"run_<{i}>": 4.0 - i for i in range(4)}, {"current": 0.3, "wind": 0.1})
+    found = whereabouts(forces, {f"run_<{i}>": 4.0 - i for i in range(4)}, {"current": 0.3, "wind": 0.1}, {})
     return json.loads(json.dumps({"whereabouts": found.to_dict()}))
 
 
@@ -38,7 +38,7 @@ def test_the_section_says_and_draws_where_it_lives(record):
 
 
 def test_without_forces_the_runs_and_causes_are_drawn():
-    found = whereabouts([], {"a": 3.0, "b": 1.0}, {"wind": 0.1}).to_dict()
+    found = whereabouts([], {"a": 3.0, "b": 1.0}, {"wind": 0.1}, {}).to_dict()
     assert list(pictures(unexplained.blocks({"whereabouts": found}))) == ["where-and-when", "removable"]
 
 
