@@ -18,6 +18,7 @@ from ..backends import STATES
 from ..displayed import Brief
 from ..physics.frame import to_earth
 from ..trial import Trial
+from ..units import DEG
 from .evidence import FEWEST_BLOCKS, share_explained
 from .linear import linearise
 from .noise import rows_of_channels
@@ -43,6 +44,19 @@ BLOCK = 20.0
 """Time [s] residuals are averaged over before asking what explains them."""
 
 
+LOGGED = {"psi": "heading", "u": "surge velocity", "v_m": "sway velocity", "r": "yaw rate"}
+"""Channels whose sensor can be off by a number; positions begin where they were measured."""
+
+OFF = 0.5
+"""Share of what a channel has beyond its noise from which an offset is spoken of; by how much of it runs may differ."""
+
+FEWEST_RUNS = 3
+"""Runs it takes for that."""
+
+BY_CHANCE = 1e-3
+"""Probability that the means of runs are as much alike by chance (Student's test) from which it is none."""
+
+
 @dataclass(frozen=True, repr=False)
 class Leftover(Brief):
     """What is left at a point.
@@ -54,6 +68,7 @@ class Leftover(Brief):
                where it is clearest
     certainty  the same in standard errors
     explained  by channel, the largest share one quantity explains, and which
+    offsets    by channel, what its log shows more than the model in every run alike [rad, m/s or rad/s]
     left_open  variance beyond that noise that what the logged inputs leave open accounts for, as a share of it
     """
 
@@ -62,6 +77,7 @@ class Leftover(Brief):
     alike: dict[str, float]
     certainty: dict[str, float]
     explained: dict[str, tuple[str, float]]
+    offsets: dict[str, float]
     left_open: float = 0.0
 
     @property
@@ -98,6 +114,7 @@ def leftover(bench: Workbench, point: Point) -> Leftover:
         alike={pair: correlation for pair, (correlation, _) in clearest.items()},
         certainty={pair: certainty for pair, (_, certainty) in clearest.items()},
         explained=_explained(bench, residuals, [name for name, value in excess.items() if value > NOTICED]),
+        offsets=offsets_of(residuals, level),
         left_open=float(np.mean(list(excused.values()))),
     )
 
@@ -107,6 +124,38 @@ def residuals_of(bench: Workbench, point: Point) -> list[FloatArray]:
     problem = bench.problem_of(point.names, point.integrator)
     states = problem.states(point.unit[:, None], point.offsets[:, None]).states
     return [states[i, 0, : trial.n_samples] - trial.motion for i, trial in enumerate(bench.trials)]
+
+
+def offsets_of(residuals: Sequence[FloatArray], sigma: FloatArray) -> dict[str, float]:
+    """Channels whose error beyond noise is mostly one number in every run, and that number, measured less simulated.
+
+    residuals  simulated less measured by run, (n_samples, 6), NaN in gaps
+    sigma      (6,) white noise of the channels
+    """
+    from scipy.stats import ttest_1samp  # half a second that most commands do without
+
+    found: dict[str, float] = {}
+    for name in LOGGED:
+        k = STATES.index(name)
+        known = [values[1:, k][np.isfinite(values[1:, k])] for values in residuals]
+        known = [values for values in known if len(values)]
+        if len(known) < FEWEST_RUNS:
+            continue
+        means = np.array([np.mean(values) for values in known])
+        offset = float(np.mean(means))
+        excess = float(np.mean(np.concatenate(known) ** 2) - sigma[k] ** 2)
+        alike = bool(np.all(np.abs(means - offset) < OFF * abs(offset)))
+        if excess <= NOTICED * sigma[k] ** 2 or not alike or offset**2 <= OFF * excess:
+            continue
+        if float(ttest_1samp(means, 0.0).pvalue) < BY_CHANCE:
+            found[name] = -offset
+    return found
+
+
+def in_words(name: str, offset: float) -> str:
+    """An offset of the log of a channel as a sentence without its full stop."""
+    shown = f"{offset:+.3f} m/s" if name in ("u", "v_m") else f"{offset / DEG:+.3g} deg{'/s' if name == 'r' else ''}"
+    return f"The log of the {LOGGED[name]} is off by {shown} in every run alike, most of what is left in that channel"
 
 
 def _white(residuals: Sequence[FloatArray]) -> FloatArray:

@@ -17,7 +17,7 @@ from .by_run import ByRun
 from .contributions import Contribution
 from .gain import Gain
 from .intervals import Estimate
-from .leftover import Leftover
+from .leftover import Leftover, in_words
 from .legs import Difference
 from .record import Record, kind_of, record_of
 from .runs import IN_WORDS
@@ -235,7 +235,8 @@ class Diagnosis(Plotted):
         worse = self.gain.held_out == "test" and self.gain.share_removed[0] < -WORSE
         fails = self.gain.remains and (self.leftover.noticed or worse)
         fails = fails or bool(self.unclear)
-        if self.leftover.structured if not self.causes else fails or self._mostly_left:
+        shaped = self.leftover.structured or bool(self.leftover.offsets)
+        if shaped if not self.causes else fails or self._mostly_left:
             return "found" if any(one.explained >= MOSTLY for one in self.between) else "unexplained"
         if self.groups:
             return "not-separable"
@@ -341,7 +342,8 @@ class Diagnosis(Plotted):
                 if excess < LARGE
                 else f"an error {math.sqrt(1.0 + excess):,.0f} times the noise of the sensors is left"
             )
-            return f"Something is wrong that this program does not know: {left}, and {told}."
+            offsets = " ".join(f"{in_words(*one)}." for one in self.leftover.offsets.items())
+            return f"Something is wrong that this program does not know: {left}, and {told}. {offsets}".rstrip()
         parts = [cause.sentence for cause in self.causes]
         text = ". ".join(parts) + "."
         if self.groups:

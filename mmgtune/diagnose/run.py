@@ -39,7 +39,7 @@ from .screening import angles
 from .search import ENOUGH, WORTH, Found, Refit, Step, rivals_of, search
 from .separate import Suggestion, suggest
 from .voyages import Choice, looked_at
-from .whereabouts import Whereabouts, offsets_of, whereabouts
+from .whereabouts import Whereabouts, whereabouts
 from .workbench import Point, Workbench, make_workbench
 
 TWINS = 3
@@ -141,7 +141,7 @@ def _diagnose(
         interrupted=hooks.stop(),
     )
     if result.verdict == "unexplained":
-        return replace(result, whereabouts=_whereabouts(bench, found))
+        return replace(result, whereabouts=_whereabouts(bench, found, left.offsets))
     if result.verdict == "interrupted" or not found.causes:
         return result
     hooks.on_phase("comparing the causes with their rivals")
@@ -153,7 +153,9 @@ def _diagnose(
     )
     told = replace(result, groups=groups, suggestion=_suggestion(bench, found, rivals))
     result = replace(told, wall_s=time.perf_counter() - began, interrupted=hooks.stop())
-    return replace(result, whereabouts=_whereabouts(bench, found)) if result.verdict == "unexplained" else result
+    if result.verdict == "unexplained":
+        return replace(result, whereabouts=_whereabouts(bench, found, left.offsets))
+    return result
 
 
 def _first(found: Found) -> Point:
@@ -162,8 +164,8 @@ def _first(found: Found) -> Point:
     return found.base if as_given else found.steps[0].base
 
 
-def _whereabouts(bench: Workbench, found: Found) -> Whereabouts:
-    """Where the error of the model without any cause lives."""
+def _whereabouts(bench: Workbench, found: Found, offsets: Mapping[str, float]) -> Whereabouts:
+    """Where the error of the model without any cause lives, and what of it is an offset of a log."""
     by_run = _excess_by_run(bench, found.base)
     whole = sum(by_run.values())
     removable: dict[str, float] = {}
@@ -172,7 +174,6 @@ def _whereabouts(bench: Workbench, found: Found) -> Whereabouts:
         left = sum(_excess_by_run(bench, refit.point).values())
         removable[tag] = max(removable.get(tag, 0.0), min(1.0, 1.0 - left / whole))
     ranked = dict(sorted(removable.items(), key=lambda one: -one[1]))
-    offsets = offsets_of(residuals_of(bench, found.base), bench.sigma)
     return whereabouts(_forces(bench, found.base), by_run, ranked, offsets)
 
 

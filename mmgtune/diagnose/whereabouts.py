@@ -14,12 +14,11 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..backends import STATES
 from ..fitting.comparison import finite
 from ..trial import Trial, measured_wind
 from ..units import DEG
 from .evidence import FEWEST_BLOCKS, ResidualForces, share_explained
-from .leftover import NOTICED
+from .leftover import LOGGED, in_words
 
 AXES = {"X": "surge force", "Y": "sway force", "N": "yaw moment"}
 PHASES = {
@@ -69,12 +68,6 @@ SLOW = 0.2
 """Share of the usual speed below which forces over the square of the speed say nothing."""
 
 PERIODIC = ("heading", "wind_angle")
-
-LOGGED = {"psi": "heading", "u": "surge velocity", "v_m": "sway velocity", "r": "yaw rate"}
-"""Channels whose sensor can be off by a number; positions begin where they were measured."""
-
-OFF = 0.5
-"""Share of what a channel has beyond its noise from which an offset is spoken of; by how much of it runs may differ."""
 
 WORDS = {
     "heading": "heading",
@@ -168,12 +161,10 @@ class Whereabouts:
             found.append(
                 f"{_percent(total)} of the error is in {len(listed)} of {len(self.runs)} runs: {', '.join(listed)}."
             )
-        for name, offset in self.offsets.items():
-            shown = f"{offset:+.3f} m/s" if name in ("u", "v_m") else f"{offset / DEG:+.3g} deg{'/s' * (name == 'r')}"
-            found.append(
-                f"The log of the {LOGGED[name]} is off by {shown} in every run alike, most of what is left in that "
-                "channel: look at its sensor first, how it is mounted and how it was calibrated."
-            )
+        found += [
+            f"{in_words(name, offset)}: look at its sensor first, how it is mounted and how it was calibrated."
+            for name, offset in self.offsets.items()
+        ]
         axis = max(self.axes, key=lambda one: self.axes[one], default=None)
         if axis is not None and self.axes[axis] > 0.0:
             size = math.sqrt(self.axes[axis])
@@ -279,28 +270,6 @@ def whereabouts(
         removable,
         offsets,
     )
-
-
-def offsets_of(residuals: Sequence[FloatArray], sigma: FloatArray) -> dict[str, float]:
-    """Channels whose error beyond noise is mostly one number in every run, and that number, measured less simulated.
-
-    residuals  simulated less measured by run, (n_samples, 6), NaN in gaps
-    sigma      (6,) white noise of the channels
-    """
-    found: dict[str, float] = {}
-    for name in LOGGED if len(residuals) > 1 else ():
-        k = STATES.index(name)
-        runs = [values[1:, k][np.isfinite(values[1:, k])] for values in residuals]
-        runs = [values for values in runs if len(values)]
-        if len(runs) < 2:
-            continue
-        means = np.array([np.mean(values) for values in runs])
-        offset = float(np.mean(means))
-        excess = float(np.mean(np.concatenate(runs) ** 2) - sigma[k] ** 2)
-        alike = bool(np.all(np.abs(means - offset) < OFF * abs(offset)))
-        if excess > NOTICED * sigma[k] ** 2 and alike and offset**2 > OFF * excess:
-            found[name] = -offset
-    return found
 
 
 def phases_of(found: ResidualForces, trial: Trial) -> IntArray:

@@ -8,7 +8,8 @@ import pytest
 
 from mmgtune.diagnose.evidence import ResidualForces
 from mmgtune.diagnose.evidence.forces import time_since_order
-from mmgtune.diagnose.whereabouts import PHASES, REPEAT, TELLS, Whereabouts, offsets_of, phases_of, whereabouts
+from mmgtune.diagnose.leftover import offsets_of
+from mmgtune.diagnose.whereabouts import PHASES, REPEAT, TELLS, Whereabouts, phases_of, whereabouts
 from mmgtune.trial import load_trials
 from mmgtune.units import DEG
 
@@ -141,8 +142,14 @@ def test_what_does_nearly_as_well_is_named_beside():
 
 @pytest.mark.parametrize(
     ("by_run", "found"),
-    [((0.09, 0.07, 0.08), True), ((0.09, -0.07, 0.08), False), ((0.14, 0.02, 0.08), False), ((0.002,) * 3, False)],
-    ids=["alike", "to both sides", "of other size", "within the noise"],
+    [
+        ((0.09, 0.07, 0.08, 0.085, 0.078), True),
+        ((0.09, -0.07, 0.08, 0.085, 0.078), False),
+        ((0.14, 0.02, 0.08, 0.085, 0.078), False),
+        ((0.09, 0.07), False),
+        ((0.002,) * 5, False),
+    ],
+    ids=["alike", "to both sides", "of other size", "in too few runs", "within the noise"],
 )
 def test_an_offset_of_a_log_is_one_number_in_every_run(by_run, found):
     rng = np.random.default_rng(1)
