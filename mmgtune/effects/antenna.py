@@ -1,5 +1,6 @@
-"""Position and velocities are those of an antenna, not of midship."""
+"""Positions, and perhaps velocities, are those of an antenna, not of midship."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from ..physics.frame import to_earth
@@ -12,41 +13,53 @@ class Antenna(NamedTuple):
 
     x: Lanes
     y: Lanes
+    x_alone: Lanes
+    y_alone: Lanes
 
 
-def antenna(state: State, e: Antenna) -> State:
-    """What an antenna at (x, y) in the ship's axes sees of the motion of midship."""
-    north, east = to_earth(state.psi, e.x, e.y)
+def _seen_from(state: State, x: Lanes, y: Lanes, x_alone: Lanes, y_alone: Lanes) -> State:
+    """Motion of a point at (x, y) in the ship's axes, its position (x_alone, y_alone) further on."""
+    north, east = to_earth(state.psi, x + x_alone, y + y_alone)
     return State(
         x=state.x + north,
         y=state.y + east,
         psi=state.psi,
-        u=state.u - state.r * e.y,
-        v_m=state.v_m + state.r * e.x,
+        u=state.u - state.r * y,
+        v_m=state.v_m + state.r * x,
         r=state.r,
     )
 
 
+def antenna(state: State, e: Antenna) -> State:
+    """What is logged of the motion of midship: position and velocities of a point at (x, y) in the ship's axes, or,
+    where velocities have another source, the position alone."""
+    return _seen_from(state, e.x, e.y, e.x_alone, e.y_alone)
+
+
 def antenna_inverse(logged: State, e: Antenna) -> State:
-    """Motion of midship from that of the antenna."""
-    north, east = to_earth(logged.psi, e.x, e.y)
-    return State(
-        x=logged.x - north,
-        y=logged.y - east,
-        psi=logged.psi,
-        u=logged.u + logged.r * e.y,
-        v_m=logged.v_m - logged.r * e.x,
-        r=logged.r,
-    )
+    """Motion of midship from what was logged."""
+    return _seen_from(logged, -e.x, -e.y, -e.x_alone, -e.y_alone)
 
 
-def _arm(direction: str, share: float) -> Parameter:
+def _arm(direction: str, of: str, share: float) -> Parameter:
     return Parameter(
-        f"antenna {direction} of midship",
+        f"antenna {direction} of midship, {of}",
         "m",
         bounds=lambda ship: (-share * ship.L, share * ship.L),
         typical=lambda ship: 0.2 * share * ship.L,
         bounds_source="a little beyond the ends of the ship",
+    )
+
+
+BOTH, ALONE = "positions and velocities being its own", "velocities being those of midship"
+
+
+def _sentence(v: Mapping[str, str]) -> str:
+    said = {"x": "Position and velocities are those", "x_alone": "The position, not the velocities, is that"}
+    return ". ".join(
+        f"{whose} of an antenna {v[x]} forward and {v[x.replace('x', 'y', 1)]} to starboard of midship"
+        for x, whose in said.items()
+        if x in v
     )
 
 
@@ -58,9 +71,13 @@ EFFECT = SensorEffect(
     function=antenna,
     inverse=antenna_inverse,
     cites=(),
-    fields={"x": _arm("forward", 0.6), "y": _arm("to starboard", 0.3)},
-    variants=(("x", "y"),),
-    sentence=lambda v: (
-        f"Position and velocities are those of an antenna {v['x']} forward and {v['y']} to starboard of midship"
-    ),
+    fields={
+        "x": _arm("forward", BOTH, 0.6),
+        "y": _arm("to starboard", BOTH, 0.3),
+        "x_alone": _arm("forward", ALONE, 0.6),
+        "y_alone": _arm("to starboard", ALONE, 0.3),
+    },
+    variants=(("x", "y"), ("x_alone", "y_alone")),
+    besides=("x_alone", "y_alone"),
+    sentence=_sentence,
 )

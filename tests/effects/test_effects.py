@@ -42,7 +42,7 @@ STRONG = {
     "hull-term": {"N_rabsr": -0.01, "Y_vvv": 0.1, "X_absr": 0.01},
     "discrepancy": {"Y_odd0": 0.01, "N_odd3": -0.002, "X_even5": 0.002, "N_even1": 0.001},
     "memory": {"time_constant": 6.0, "sway": 2.0, "yaw": 3.0},
-    "antenna": {"x": 10.0, "y": 3.0},
+    "antenna": {"x": 10.0, "y": 3.0, "x_alone": -6.0, "y_alone": 2.0},
     "heading-bias": {"angle": 0.03, "alone": -0.02},
     "compass-deviation": {"sine": 0.05, "cosine": -0.03, "sine_alone": 0.02, "cosine_alone": 0.02},
     "speed-scale": {"factor": 1.02},

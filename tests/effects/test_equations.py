@@ -172,12 +172,14 @@ def earth(state):
 
 def test_an_antenna_sees_its_own_way():
     effect = find_effect("antenna")
-    e = effect.params(-20.0, 3.0)
+    e = effect.params(-20.0, 3.0, 0.0, 0.0)
     seen = effect.function(MOVING, e)
     arm = complex(-20.0, 3.0)
     assert complex(seen.x, seen.y) == pytest.approx(complex(MOVING.x, MOVING.y) + arm * np.exp(1j * MOVING.psi))
     assert complex(seen.u, seen.v_m) == pytest.approx(complex(MOVING.u, MOVING.v_m) + 1j * MOVING.r * arm)
     assert effect.inverse(seen, e) == pytest.approx(MOVING)
+    alone = effect.function(MOVING, effect.params(0.0, 0.0, -20.0, 3.0))
+    assert alone == pytest.approx(MOVING._replace(x=seen.x, y=seen.y))
 
 
 def test_a_biased_compass_turns_the_axes_and_not_the_track():

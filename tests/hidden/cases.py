@@ -165,7 +165,7 @@ LADDER: dict[str, Draw] = {
     "memory": _one_of(*(_plain(name, (0.1, 0.4, 2.0, 8.0, 16.0)) for name in ("time_constant", "sway", "yaw"))),
     "rudder-stall": _degrees(_plain("angle", (38.0, 35.0, 32.0, 28.0, 22.0))),
     "hull-term": _one_of(*(hull_term(term) for term in HULL_TERMS)),
-    "antenna": _vector(("x", "y"), _sensor(12.0)),
+    "antenna": _one_of(_vector(("x", "y"), _sensor(12.0)), _vector(("x_alone", "y_alone"), _sensor(12.0))),
     "heading-bias": _degrees(_one_of(_signed("angle", _sensor(1.5)), _signed("alone", _sensor(1.5)))),
     "compass-deviation": _degrees(
         _one_of(

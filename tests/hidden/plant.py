@@ -394,16 +394,14 @@ def sail(
 def sensed(rows: np.ndarray, count: int, e: Mapping[str, Mapping[str, float]]) -> np.ndarray:
     """Rows of ``voyage``, the first ``count`` of them, as sensors with their faults log them, each second.
 
-    Positions and velocities are first moved to the antenna, then delayed or filtered, then turned into the axes of the
-    logged heading; the errors of the speed come last.
+    Positions, and velocities where they are its own, are first moved to the antenna, then delayed or filtered, then
+    turned into the axes of the logged heading; the errors of the speed come last.
     """
     t = STEP * np.arange(len(rows))
     x, y, psi, u, v, r, n, delta = rows.T
     lever_x, lever_y = e["antenna"]["x"], e["antenna"]["y"]
-    x, y = (
-        x + lever_x * np.cos(psi) - lever_y * np.sin(psi),
-        y + lever_x * np.sin(psi) + lever_y * np.cos(psi),
-    )
+    far_x, far_y = lever_x + e["antenna"]["x_alone"], lever_y + e["antenna"]["y_alone"]
+    x, y = x + far_x * np.cos(psi) - far_y * np.sin(psi), y + far_x * np.sin(psi) + far_y * np.cos(psi)
     u, v = u - r * lever_y, v + r * lever_x
     latency = e["position-latency"]["seconds"]
     x, y = _late(t, x, latency), _late(t, y, latency)

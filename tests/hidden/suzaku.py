@@ -124,7 +124,7 @@ NULL: dict[str, dict[str, float]] = {
     "memory": {"time_constant": 0.0, "sway": 0.0, "yaw": 0.0},
     "rudder-stall": {"angle": np.inf},
     "hull-term": dict.fromkeys(HULL_TERMS, 0.0),
-    "antenna": {"x": 0.0, "y": 0.0},
+    "antenna": {"x": 0.0, "y": 0.0, "x_alone": 0.0, "y_alone": 0.0},
     "heading-bias": {"angle": 0.0, "alone": 0.0},
     "compass-deviation": {"sine": 0.0, "cosine": 0.0, "sine_alone": 0.0, "cosine_alone": 0.0},
     "position-latency": {"seconds": 0.0},

@@ -203,6 +203,9 @@ def test_sensors(still):
     np.testing.assert_allclose(arm[:, X] - turn[:, X], 10.0 * np.cos(psi) + 4.0 * np.sin(psi), atol=1e-9)
     np.testing.assert_allclose(arm[:, U] - turn[:, U], 4.0 * r, atol=1e-12)
     np.testing.assert_allclose(arm[:, V] - turn[:, V], 10.0 * r, atol=1e-12)
+    far = sailed("antenna", x_alone=10.0, y_alone=-4.0)["turn_p35"]
+    np.testing.assert_array_equal(far[:, [X, Y]], arm[:, [X, Y]])
+    np.testing.assert_array_equal(far[:, [U, V]], turn[:, [U, V]])
     biased = sailed("heading-bias", angle=0.03)["turn_p35"]
     np.testing.assert_allclose(biased[:, PSI], psi + 0.03, atol=1e-12)
     assert biased[10, V] == pytest.approx(turn[10, V] * np.cos(0.03) - turn[10, U] * np.sin(0.03))
