@@ -7,7 +7,7 @@ cause in place, the smallest mismatch of the model's form passes it under some n
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -112,6 +112,14 @@ def set_aside(bench: Workbench, found: Found, test: Sequence[Trial]) -> tuple[li
         del found.causes[k]
         brought = contributions(bench, found, test)
     return traces, brought
+
+
+def alone_of(bench: Workbench, found: Found) -> Found:
+    """What was found with its first cause alone, all else refitted."""
+    final = found.final
+    for cause in found.causes[1:]:
+        final = without(bench, final, cause)
+    return replace(found, final=final, causes=found.causes[:1])
 
 
 def _of(bench: Workbench, found: Found, cause: Hypothesis, test: Sequence[Trial]) -> Contribution:

@@ -113,6 +113,31 @@ class Trace:
 
 
 @dataclass(frozen=True)
+class Doubted:
+    """A sum of causes that explains more than the one that is named, and is not believed.
+
+    effects  their tags
+    why      what speaks against it, in words
+    """
+
+    effects: tuple[str, ...]
+    why: str
+
+    @classmethod
+    def of(cls, result: Diagnosis) -> Doubted:
+        """The causes of a diagnosis that are unclear."""
+        return cls(tuple(tag for tag, _ in result.contributions), result.unclear)
+
+    @property
+    def sentence(self) -> str:
+        return f"More would be removed by {' + '.join(self.effects)}, but {self.why}, so the rest has no name."
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {"effects": list(self.effects), "why": self.why}
+
+
+@dataclass(frozen=True)
 class Candidate:
     """A hypothesis that was looked at: score and refit at the first look; J on the test trials.
 
@@ -192,6 +217,7 @@ class Diagnosis(Plotted):
     evidence  residuals, residual forces and what explains them, for the report
     coverage  what the trials it looked at visit; warnings: what of that a reader must know
     whereabouts  where the error lives, where nothing explains it; None else
+    doubted      the sum of causes that the one named was found in, where that is not believed; None else
     choice    windows of voyages that were looked at, None for trials; differing: what differs between the voyages
     """
 
@@ -218,6 +244,7 @@ class Diagnosis(Plotted):
     warnings: tuple[str, ...] = ()
     interrupted: bool = False
     whereabouts: Whereabouts | None = None
+    doubted: Doubted | None = None
     choice: Choice | None = None
     differing: tuple[Difference, ...] = ()
 
@@ -357,6 +384,8 @@ class Diagnosis(Plotted):
             )
         them = "it" if len(self.causes) == 1 else "them"
         gained = f"{text} Adding {them} removes {_percent(share)} of the error {where}."
+        if self.doubted:
+            gained = f"{gained} {self.doubted.sentence}"
         if not any(cause.runs for cause in self.causes):
             return gained
         if not self.gain.first_part:
@@ -464,6 +493,7 @@ class Diagnosis(Plotted):
                 else [],
             },
             "whereabouts": self.whereabouts.to_dict() if self.whereabouts else None,
+            "doubted": self.doubted.to_dict() if self.doubted else None,
             "detectability": [one.to_dict() for one in self.detectability],
             "noise": {name: dict(values) for name, values in self.noise.items()},
             "chi2_per_residual": {"before": self.chi2[0], "after": self.chi2[1]},

@@ -26,7 +26,7 @@ from ..threads import blas_on_one_thread
 from ..trial import Coverage, Trial, TrialSet, VoyageSet
 from ..trial.smoothing import FEWEST
 from .by_run import ByRun
-from .contributions import Aside, set_aside
+from .contributions import Aside, Contribution, alone_of, contributions, set_aside
 from .evidence import ResidualForces, explain_forces, noise_share, residual_forces, short_horizon
 from .gain import J_of, held_out
 from .hypotheses import INPUTS_HELD, INTEGRATION_STEP, Hypothesis, known_causes, of_runs
@@ -34,7 +34,7 @@ from .intervals import Estimate, estimates
 from .leftover import Leftover, leftover, residuals_of
 from .legs import LEG_NAMES, differences
 from .linear import typical
-from .result import Candidate, Cause, Detectability, Diagnosis, Trace
+from .result import Candidate, Cause, Detectability, Diagnosis, Doubted, Trace
 from .screening import angles
 from .search import ENOUGH, WORTH, Found, Refit, Step, rivals_of, search
 from .separate import Suggestion, suggest
@@ -100,48 +100,59 @@ def _diagnose(
     test = [found.held.evenly(trial) for trial in test] if found.held else test
     hooks.on_phase("measuring the gain")
     traces, brought = set_aside(bench, found, test)
-    sizes = estimates(bench, found.final)
-    gain = held_out(bench, found, test)
     before = leftover(bench, found.base)
-    left = leftover(bench, found.final) if found.causes or found.finer_step else before
     differing = None
     if choice is not None and not hooks.stop():
         hooks.on_phase("comparing the voyages")
         differing = differences(bench, found.final, choice.voyages)
     hooks.on_phase("gathering the evidence")
-    theta, retuned = (_targets_of(bench, point) for point in (found.final, found.base))
     coverage = Coverage.of(bench.trials, profile.L_pp)
-    result = Diagnosis(
-        profile=profile,
-        options=options,
-        causes=tuple(_causes(bench, found, sizes, test)),
-        traces=tuple(_trace(bench, one) for one in traces),
-        contributions=tuple((h.tag, one) for h, one in zip(found.causes, brought, strict=True)),
-        groups=(),
-        candidates=tuple(_candidates(bench, found, test)),
-        detectability=tuple(_detectability(bench, found.steps[0], known)) if found.steps else (),
-        suggestion=None,
-        gain=gain,
-        leftover=left,
-        explained_share=_explained(found, before, left),
-        theta=theta,
-        retuned=retuned,
-        coverage=coverage,
-        warnings=tuple(coverage_notes(bench.model, bench.targets, coverage)),
-        noise=_noise(bench),
-        chi2=(
-            _first(found).chi2 / max(1, bench.problem.n_residuals),
-            found.final.chi2 / max(1, bench.problem.n_residuals),
-        ),
-        evidence=_evidence(bench, found, before, left),
-        provenance=provenance,
-        choice=choice,
-        differing=differing or (),
-        wall_s=time.perf_counter() - began,
-        interrupted=hooks.stop(),
-    )
+
+    def judged(found: Found, brought: Sequence[Contribution], doubted: Doubted | None = None) -> Diagnosis:
+        sizes = estimates(bench, found.final)
+        left = leftover(bench, found.final) if found.causes or found.finer_step else before
+        theta, retuned = (_targets_of(bench, point) for point in (found.final, found.base))
+        return Diagnosis(
+            profile=profile,
+            options=options,
+            causes=tuple(_causes(bench, found, sizes, test)),
+            traces=tuple(_trace(bench, one) for one in traces),
+            contributions=tuple((h.tag, one) for h, one in zip(found.causes, brought, strict=True)),
+            groups=(),
+            candidates=tuple(_candidates(bench, found, test)),
+            detectability=tuple(_detectability(bench, found.steps[0], known)) if found.steps else (),
+            suggestion=None,
+            gain=held_out(bench, found, test),
+            leftover=left,
+            explained_share=_explained(found, before, left),
+            theta=theta,
+            retuned=retuned,
+            coverage=coverage,
+            warnings=tuple(coverage_notes(bench.model, bench.targets, coverage)),
+            noise=_noise(bench),
+            chi2=(
+                _first(found).chi2 / max(1, bench.problem.n_residuals),
+                found.final.chi2 / max(1, bench.problem.n_residuals),
+            ),
+            evidence=_evidence(bench, found, before, left),
+            provenance=provenance,
+            choice=choice,
+            differing=differing or (),
+            doubted=doubted,
+            wall_s=time.perf_counter() - began,
+            interrupted=hooks.stop(),
+        )
+
+    result = judged(found, brought)
+    if (
+        result.unclear and not hooks.stop()
+    ):  # a sum that is not believed takes no credit from a cause that would be alone
+        alone = alone_of(bench, found)
+        other = judged(alone, contributions(bench, alone, test), Doubted.of(result))
+        if other.verdict == "found":
+            result, found = other, alone
     if result.verdict == "unexplained":
-        return replace(result, whereabouts=_whereabouts(bench, found, left.offsets))
+        return replace(result, whereabouts=_whereabouts(bench, found, result.leftover.offsets))
     if result.verdict == "interrupted" or not found.causes:
         return result
     hooks.on_phase("comparing the causes with their rivals")
@@ -154,7 +165,7 @@ def _diagnose(
     told = replace(result, groups=groups, suggestion=_suggestion(bench, found, rivals))
     result = replace(told, wall_s=time.perf_counter() - began, interrupted=hooks.stop())
     if result.verdict == "unexplained":
-        return replace(result, whereabouts=_whereabouts(bench, found, left.offsets))
+        return replace(result, whereabouts=_whereabouts(bench, found, result.leftover.offsets))
     return result
 
 
