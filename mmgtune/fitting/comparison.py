@@ -21,7 +21,7 @@ from .problem import FitProblem
 
 @dataclass(frozen=True, eq=False)
 class TrialComparison:
-    """One trial: its records "before" and "after"; ``role`` is "tune", "test" or "other"."""
+    """One trial: its records "before" and "after"; ``role`` is "tune", "test", "other" or "left-out"."""
 
     trial: Trial
     role: str
@@ -65,6 +65,7 @@ class TrialComparison:
         """For JSON; a J that is not finite becomes null."""
         return {
             "id": self.trial.id,
+            "run": self.trial.run,
             "role": self.role,
             "manoeuvre": self.trial.manoeuvre,
             "source": self.trial.source,
