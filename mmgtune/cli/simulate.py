@@ -130,7 +130,7 @@ def _indices(result: dict[str, Any]) -> list[tuple[str, ...]]:
         return "" if value is None else f"{value:.4g} L"
 
     measured, bands = result["measured"] or {}, result.get("bands", {})
-    found = []
+    found: list[tuple[str, ...]] = []
     for name in filter(is_index, result["indices"]):
         value, true = number(result["indices"][name]), number(measured.get(name))
         words, unit = index_words(name)
