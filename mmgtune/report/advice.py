@@ -249,8 +249,9 @@ def after_models(data: Mapping[str, Any]) -> Advice:
     reason = "Compare advance, diameters and overshoots of all models with those measured"
     items.append((reason, f"mmgtune validate {every} {trials} --manoeuvres"))
     longer = 2.0 * (number(data["window_s"]) or 100.0)
+    only = "".join(f" --only {shlex.quote(clean(word))}" for word in (data.get("options") or {}).get("only") or ())
     reason = "See whether the order of the models is the same over windows of twice the length"
-    items.append((reason, f"mmgtune compare {every} {trials} --restart {longer:g}"))
+    items.append((reason, f"mmgtune compare {every} {trials} --restart {longer:g}{only}"))
     if (data.get("provenance") or {}).get("command"):
         items.append(("Repeat this comparison", again(data["provenance"]["command"])))
     return tuple(items)

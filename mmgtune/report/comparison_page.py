@@ -192,7 +192,13 @@ def _indices(names: tuple[str, str], manoeuvres: Mapping[str, Any]) -> Table:
         a, b = number(row["a"]), number(row["b"])
         moved = percent(100.0 * (b - a) / a) if a and b is not None else NONE
         rows.append(
-            cells(run_words(row["manoeuvre"]), INDEX_WORDS.get(row["index"], row["index"]), shown(a, 4), shown(b, 4), moved)
+            cells(
+                run_words(row["manoeuvre"]),
+                INDEX_WORDS.get(row["index"], row["index"]),
+                shown(a, 4),
+                shown(b, 4),
+                moved,
+            )
         )
     return Table(
         "indices-table",
@@ -238,7 +244,7 @@ def _made(profiles: Sequence[Mapping[str, Any]]) -> Section:
         cells("id", *(clean(one["id"]) for one in profiles)),
         *(cells(clean(kind), *(clean(one["models"].get(kind, NONE)) for one in profiles)) for kind in kinds),
         cells("assumptions", *(str(one["assumptions"]) for one in profiles)),
-        cells("SHA-256", *(clean(one["sha256"]) for one in profiles)),
+        cells("SHA-256", *(f"{clean(one['sha256'])[:16]}…" for one in profiles)),
     ]
     title = "What was compared"
     table = Table("profiles-table", title, ("what", *(clean(one["name"]) for one in profiles)), tuple(rows))
