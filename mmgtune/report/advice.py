@@ -257,6 +257,19 @@ def after_models(data: Mapping[str, Any]) -> Advice:
     return tuple(items)
 
 
+def after_heading_study(data: Mapping[str, Any]) -> Advice:
+    """(reason, command) pairs that follow from a study of gains."""
+    if not data.get("command"):
+        return ()
+    same = again(data["command"])
+    step = number(data["options"].get("gain_step")) or 5.0
+    finer = f"{re.sub(r' --gain-step[ =][^ ]+', '', same)} --gain-step {0.5 * step:g}"
+    return (
+        ("Look closer: gains half as far apart, in the place of this study and about four times as long", finer),
+        ("Repeat this study", same),
+    )
+
+
 def after_fleet(data: Mapping[str, Any]) -> Advice:
     """What failed, the latest change, the largest gain, and sisters."""
     out = clean(data["out"])

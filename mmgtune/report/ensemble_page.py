@@ -79,8 +79,8 @@ def _cards(record: LearningRecord) -> tuple[Card, ...]:
     losses = [one["score"] for one in record.members if number(one["score"]) is not None]
     mean = sum(losses) / len(losses) if losses else None
     return (
-        Card(f"Position error, {where}", f"{shown(position, 3)} m", note="root mean square, mean over members"),
-        Card(f"Heading error, {where}", f"{shown(heading, 3)}°", note="root mean square, mean over members"),
+        Card(f"Off track, {where}", f"{shown(position, 3)} m", note="root mean square, mean over members"),
+        Card(f"Off heading, {where}", f"{shown(heading, 2)}°", note="root mean square, mean over members"),
         Card("Loss", shown(mean, 3), note="3 is as near as the noise lets it be"),
         Card("Learned from", count(len(data["learned_from"]), "trial"), note=count(len(record.members), "member")),
     )
