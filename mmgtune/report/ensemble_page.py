@@ -66,9 +66,9 @@ def _verdict(record: LearningRecord) -> str:
     window = number(record.data["window_s"])
     over = f"over {shown(window, 3)} s" if window else "over whole trials"
     return (
-        f"{over.capitalize()} from a measured state its members are {shown(position, 3)} m and {shown(heading, 3)}° "
-        f"off (root mean square) on {count(len(record.scores['trials']), 'trial')} {ROLES[record.role]}; how far they "
-        "disagree says where the data tell them little."
+        f"{over.capitalize()} from a measured state its members are {shown(position, 3)} m off track and "
+        f"{shown(heading, 2)}° off heading (root mean square) on {count(len(record.scores['trials']), 'trial')} "
+        f"{ROLES[record.role]}; how far they disagree says where the data tell them little."
     )
 
 
