@@ -171,7 +171,7 @@ def misfit_table(compared: Sequence[TrialComparison]) -> list[str]:
         J = " -> ".join(f"{one.J[which]:.4g}" for which in ("before", "after"))
         off = (" -> ".join(rounded(size, digits) for size in pair) for pair, digits in ((places, 3), (headings, 2)))
         rows.append((one.trial.id, one.role, *off, J))
-    head, *rest = c.table(("trial", "role", "off track [m]", "off heading [deg]", "J"), rows, words=(0, 1))
+    head, *rest = c.table(("trial", "role", "off track [m]", "off heading [deg]", "J"), rows, words=(0, 1), spare=(3,))
     return [head, "", *rest]
 
 

@@ -86,7 +86,7 @@ def summary(result: LeftOut, folder: str, report: bool = False) -> str:
             shown.append(" -> ".join("diverged" if value is None else rounded(value, digits) for value in pair))
         rows.append((row["manoeuvre"], str(row["runs"]), *shown, removed, spread))
     head = ("left out", "runs", "off track [m]", "off heading [deg]", "L_MSE", "J", "removed", "95 %")
-    lines = c.table(head, rows, spare=(5, 4)) if rows else []
+    lines = c.table(head, rows, spare=(5, 4, 3)) if rows else []
     if rows:
         more = "; 95 %: with runs drawn anew" if drawn else ""
         lines.append(f"before -> as tuned to the others; root mean square; removed: share of L_MSE{more}")

@@ -110,7 +110,7 @@ def _text(result: dict[str, Any]) -> str:
     lines = [f"{result['id']}  ({order}{result['duration_s']:.0f} s, {result['integrator']}{lost})"]
     rows = _indices(result)
     if rows:
-        lines += c.table(("",) * len(rows[0]), rows, less=2, spare=(2,))[1:]
+        lines += c.table(("",) * len(rows[0]), rows, less=2, spare=(4, 2))[1:]
     for name, value in (result["measures"] or {}).items():
         lines.append(f"{measures.with_unit(name):<9} {value:.4g}")
     for criterion in result["criteria"]:
