@@ -104,6 +104,7 @@ def compare(a: ShipGiven, b: ShipGiven) -> Comparison:
             {
                 "name": name,
                 "id": ship.id,
+                "path": str(ship.path or ""),
                 "title": ship.name,
                 "sha256": ship.sha256,
                 "models": {kind: s.component.tag for kind, s in ship.sections.items()},

@@ -127,10 +127,12 @@ def study_heading_keeping(
         _agrees(one, ship)
     gains = options.gain_step * np.arange(1.0, int(options.gain_most / options.gain_step + 1e-9) + 1.0)
     true = kept(as_predictor(ship), ship, gains, options)[0]
-    judged = tuple(
-        Judged(one.name, one.method, kept(one, ship, gains, options)) for one in (_many(one, options) for one in known)
-    )
-    return HeadingStudy(gains, true, ship.id, judged, options, time.perf_counter() - began)
+    judged: list[Judged] = []
+    for given, simulator in zip(models, (_many(one, options) for one in known), strict=True):
+        taken = simulator.name in {ship.id, *(one.name for one in judged)}  # a tuned ship has the id of the true one
+        name = str(given) if taken and isinstance(given, (str, Path)) else simulator.name
+        judged.append(Judged(name, simulator.method, kept(simulator, ship, gains, options)))
+    return HeadingStudy(gains, true, ship.id, tuple(judged), options, time.perf_counter() - began)
 
 
 def kept(predictor: Predictor, ship: ShipProfile, gains: FloatArray, options: HeadingOptions) -> FloatArray:

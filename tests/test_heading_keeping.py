@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -117,6 +118,9 @@ def test_what_is_left_behind(tmp_path):
     assert document == json.loads((tmp_path / "heading_keeping.json").read_text())
     text = next(path for path in render(tmp_path) if path.suffix == ".html").read_text()
     assert "Heading keeping" in text
+    p, d = best(result.truth, GAINS)
+    assert f"Its best is {result.truth.min():.3g} rad s, at K_P {p:g}, K_D {d:g}." in text
+    assert "--gain-step 20" in re.sub("</?span>", "", text)
     assert "worst member" in text
     said = summary(document)
     assert "2 x 2 gains in esso_osaka_3m" in said

@@ -1,5 +1,8 @@
 """The library as a notebook user meets it."""
 
+import re
+from dataclasses import replace
+
 import pytest
 
 import mmgtune
@@ -21,7 +24,19 @@ def test_from_profile_to_verdict(tmp_path):
     motion = mmgtune.simulate(result.tuned_profile(), [trials.trials["turn_p35"]])[0]
     assert not motion.diverged
     mmgtune.write_run(result, tmp_path / "run")
-    assert mmgtune.render(tmp_path / "run")[0].name == "report.html"
+    report = mmgtune.render(tmp_path / "run")[0]
+    assert report.name == "report.html"
+    off = re.match(
+        r"On 4 trials not used .* is ([\d.]+ m) off track and ([\d.]+°) off heading instead", result.verdict()
+    )
+    assert off is not None  # the sentence begins with what a seaman can picture, and with the numbers of the cards
+    assert all(f"→ {size}" in report.read_text(encoding="utf-8") for size in off.groups())
+    one, *others = result.compared
+    lost = replace(one.records["after"], motion=replace(one.motions["after"], diverged=True))
+    failed = replace(one, role="test", records={**one.records, "after": lost})
+    worse = replace(result, compared=[failed, *others]).verdict()
+    assert "; it diverges on 1 of " in worse  # and not that there were no test trials
+    assert "no test trials" not in worse
 
 
 def test_a_manoeuvre_of_a_bundled_ship_and_its_forces():

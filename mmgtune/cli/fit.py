@@ -18,10 +18,11 @@ from .progress import Progress
 from .stated import stated_table
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from ..fitting import FitResult, Plan
+    from ..fitting.comparison import TrialComparison
 
 
 LONG = 60.0
@@ -160,13 +161,25 @@ def coefficient_table(result: FitResult) -> list[str]:
     return [first, "", *rest]
 
 
+def misfit_table(compared: Sequence[TrialComparison]) -> list[str]:
+    """Lines of a table: how far off each trial is before and after, first as people measure it."""
+    from ..fitting.comparison import rounded
+
+    rows = []
+    for one in compared:
+        places, headings = zip(one.off("before"), one.off("after"), strict=True)
+        J = " -> ".join(f"{one.J[which]:.4g}" for which in ("before", "after"))
+        off = (" -> ".join(rounded(size, digits) for size in pair) for pair, digits in ((places, 3), (headings, 2)))
+        rows.append((one.trial.id, one.role, *off, J))
+    head, *rest = c.table(("trial", "role", "off track [m]", "off heading [deg]", "J"), rows, words=(0, 1), spare=(3,))
+    return [head, "", *rest]
+
+
 def summary(result: FitResult, folder: str, report: bool) -> str:
     """The result as a person wants to read it in a terminal."""
     lines = coefficient_table(result)
     if result.compared:
-        rows = [(one.trial.id, one.role, f"{one.J['before']:.4g}", f"{one.J['after']:.4g}") for one in result.compared]
-        head, *rest = c.table(("trial", "role", "J before", "J after"), rows, words=(0, 1))
-        lines += ["", f"{head}   {result.method}", "", *rest]
+        lines += ["", *misfit_table(result.compared), f"before -> after tuning; root mean square; J by {result.method}"]
     if result.stated:
         lines += ["", *stated_table([one.to_dict(result.profile.L_pp) for one in result.stated])]
     if result.beside:

@@ -153,6 +153,9 @@ def _train(
 
 def hybrid_summary(_: LearnedHybrid, found: dict[str, Any], folder: str, report: bool) -> str:
     """The result as a person wants to read it in a terminal."""
+    from ..fitting.comparison import rounded
+    from ..report.common import rms_errors
+
     lines = []
     if found["gained"]:
         lines += [f"{'runs not learned from':<24}{'runs':>6}{'L_MSE model':>13}{'hybrid':>10}   removed"]
@@ -172,9 +175,18 @@ def hybrid_summary(_: LearnedHybrid, found: dict[str, Any], folder: str, report:
     else:
         lines.append("No gain: no network does better on runs it has not seen. The model is the profile as it is.")
     if found["scores"]:
-        before, after = (found["scores"][which]["L_MSE"] for which in ("before", "after"))
-        shown = ["diverged" if one is None else f"{one:.4g}" for one in (before, after)]
-        lines.append(f"held out: L_MSE {shown[0]} -> {shown[1]}")
+        rows = [found["scores"][which] for which in ("before", "after")]
+        place, heading = zip(*(rms_errors(found, row) for row in rows), strict=True)
+        off = (
+            (place, 3, " m off track"),
+            (heading, 2, " deg off heading"),
+            ([row["L_MSE"] for row in rows], 3, " L_MSE"),
+        )
+        parts = []
+        for pair, digits, unit in off:
+            both = ("diverged" if one is None else rounded(one, digits) for one in pair)
+            parts.append(f"{' -> '.join(both)}{unit}")
+        lines.append(f"held out, without -> with the network (root mean square): {', '.join(parts)}")
     return "\n".join([*lines, "", SCALE, *_ending(found, found["events"], folder, report)])
 
 

@@ -71,6 +71,7 @@ def command(
 
 def summary(result: LeftOut, folder: str, report: bool = False) -> str:
     """The result as a person wants to read it in a terminal."""
+    from ..fitting.comparison import rounded
     from .repeated import table
 
     rows, drawn = [], False
@@ -79,14 +80,16 @@ def summary(result: LeftOut, folder: str, report: bool = False) -> str:
         removed = "-" if row["share_removed"] is None else f"{100 * row['share_removed']:.0f} %"
         drawn = drawn or bool(interval)
         spread = f"{100 * interval[0]:.0f} to {100 * interval[1]:.0f} %" if interval else ""
-        numbers = [row[key] for key in ("L_MSE_before", "L_MSE_after", "J_before", "J_after")]
-        shown = ["diverged" if value is None else f"{value:.4g}" for value in numbers]
+        shown = []
+        for key, digits in (("position_rms_m", 3), ("heading_rms_deg", 2), ("L_MSE", 3), ("J", 4)):
+            pair = (row[f"{key}_{when}"] for when in ("before", "after"))
+            shown.append(" -> ".join("diverged" if value is None else rounded(value, digits) for value in pair))
         rows.append((row["manoeuvre"], str(row["runs"]), *shown, removed, spread))
-    head = ("left out", "runs", "L_MSE before", "after", "J before", "after", "removed", "95 %")
-    lines = c.table(head, rows, spare=(4, 5)) if rows else []
+    head = ("left out", "runs", "off track [m]", "off heading [deg]", "L_MSE", "J", "removed", "95 %")
+    lines = c.table(head, rows, spare=(5, 4, 3)) if rows else []
     if rows:
         more = "; 95 %: with runs drawn anew" if drawn else ""
-        lines.append(f"removed: share of L_MSE{more}")
+        lines.append(f"before -> as tuned to the others; root mean square; removed: share of L_MSE{more}")
     if result.stated:
         told = [one.to_dict(result.L_pp) for one in result.stated]
         off = result.stated_rms()

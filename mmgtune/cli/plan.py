@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from ..errors import OptionError, Problem
 from ..options import PlanOptions
 from . import common as c
 from .compare import FolderOptions
@@ -18,14 +19,15 @@ from .predict import decimals_of
 def command(
     model: Annotated[str, typer.Argument(help="Particles of posterior: a run folder or its particles.parquet.")],
     question: Annotated[
-        str,
+        str | None,
         typer.Option(
             "--question",
             "-q",
             help='Index and manoeuvre: "tactical diameter, turn -35", "1st overshoot, zigzag 10/10".',
             rich_help_panel=c.INPUT,
+            show_default=False,
         ),
-    ],
+    ] = None,
     *,
     options: PlanOptions,
     run: FolderOptions,
@@ -44,7 +46,11 @@ def command(
       mmgtune plan runs/bands --question "1st overshoot, zigzag 20/20" --kind turn --kind zigzag --out runs/plan
     """
     from ..planning import plan_trial, write_plan
+    from ..planning.question import SUCH_AS
 
+    if question is None:
+        why = "a trial is worth as much as it tells of the number that is wanted"
+        raise OptionError(Problem("no question is asked", "question", why, f"add --question; {SUCH_AS}"))
     if run.out is None:
         document = plan_trial(model, question, options).to_dict(c.command_line())
     else:

@@ -265,6 +265,8 @@ def _asked() -> Particulars:
 
 def _side_by_side(found: Comparison) -> str:
     """Coefficients and indices of two profiles in columns."""
+    from ..report.comparison_page import INDEX_WORDS
+    from ..report.wording import run_words
 
     def number(value: float | None) -> str:
         return "-" if value is None else f"{value:.4g}"
@@ -276,5 +278,6 @@ def _side_by_side(found: Comparison) -> str:
             rows.append((row["name"] + unit, number(row["a"]), number(row["b"])))
     rows.append(("", "", ""))
     for row in found.data["manoeuvres"]["indices"]:
-        rows.append((row["manoeuvre"] + " " + row["index"], number(row["a"]), number(row["b"])))
+        words = f"{run_words(row['manoeuvre'])}, {INDEX_WORDS.get(row['index'], row['index'])}"
+        rows.append((words, number(row["a"]), number(row["b"])))
     return "\n".join(c.table(("", *(name[-22:] for name in found.profiles)), rows))

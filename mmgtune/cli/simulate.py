@@ -57,7 +57,7 @@ def command(
     from ..files import refuse_existing
     from ..predictor import Uncertain
     from ..recording import write_simulation
-    from ..report import render
+    from ..report import measures, render
     from ..simulating import files_of, simulate
 
     if forces and out is None:
@@ -78,6 +78,8 @@ def command(
         return
     for row in rows:
         c.show(_text(row))
+    for name, words in measures.about(list(dict.fromkeys(name for row in rows for name in row["measures"] or ()))):
+        c.say(f"{name}: {words}")
     for note in notes:
         c.say(f"note: {note}")
     c.say_doubts(result.ship.doubts() if result.ship else ())
@@ -98,35 +100,51 @@ def _add_bands(rows: list[dict[str, Any]], ship: Uncertain, options: SimulateOpt
 
 
 def _text(result: dict[str, Any]) -> str:
-    from ..measures import UNITS
+    """A run as a person wants to read it: what the report's tables hold, in their words and units."""
+    from ..report import measures
+    from ..report.wording import run_words
 
-    lines = [f"{result['id']}  ({result['status']}, {result['duration_s']:.0f} s, {result['integrator']})"]
-    measured, bands = result["measured"] or {}, result.get("bands", {})
-    for name, value in result["indices"].items():
-        if value is not None and value != []:
-            beside = f"   measured {_value(measured[name])}" if measured.get(name) is not None else ""
-            lines.append(f"  {name:<34}{_value(value)}{beside}{_band(bands, name)}")
+    words = run_words(result["id"])
+    order = "" if words == result["id"] else f"{words}, "
+    lost = "" if result["status"] == "ok" else f", {result['status']}"
+    lines = [f"{result['id']}  ({order}{result['duration_s']:.0f} s, {result['integrator']}{lost})"]
+    rows = _indices(result)
+    if rows:
+        lines += c.table(("",) * len(rows[0]), rows, less=2, spare=(4, 2))[1:]
     for name, value in (result["measures"] or {}).items():
-        lines.append(f"  {name:<34}{value:.4g} {UNITS[name]}")
+        lines.append(f"{measures.with_unit(name):<9} {value:.4g}")
     for criterion in result["criteria"]:
         passed = criterion["passed"]
         word = "not applicable: " + criterion["reason"] if passed is None else "pass" if passed else "FAIL"
         value = "-" if criterion["value"] is None else f"{criterion['value']:.3g}"
-        lines.append(f"  IMO {criterion['name']}: {value} (limit {criterion['limit']:.3g} {criterion['unit']}) {word}")
-    return "\n".join(lines)
+        lines.append(f"IMO {criterion['name']}: {value} (limit {criterion['limit']:.3g} {criterion['unit']}) {word}")
+    return "\n  ".join(lines)
 
 
-def _band(bands: dict[str, Any], name: str) -> str:
-    """The band as it stands beside the value of an index, nothing where there is none."""
-    length = name.removesuffix("_over_L")
-    if name in bands:
-        return f"   {banded(bands[name], bands[name]['unit'])}"
-    if length != name and f"{length}_m" in bands:
-        return f"   {banded(bands[f'{length}_m']['over_L'], 'L')}"
-    return ""
+def _indices(result: dict[str, Any]) -> list[tuple[str, ...]]:
+    """Cells: an index, its value, the same in ship lengths, what was measured, the same in ship lengths, the band."""
+    from ..report.wording import index_words, is_index, number
+
+    def lengths(of: dict[str, Any], name: str) -> str:
+        value = number(of.get(f"{name.removesuffix('_m')}_over_L"))
+        return "" if value is None else f"{value:.4g} L"
+
+    measured, bands = result["measured"] or {}, result.get("bands", {})
+    found: list[tuple[str, ...]] = []
+    for name in filter(is_index, result["indices"]):
+        value, true = number(result["indices"][name]), number(measured.get(name))
+        words, unit = index_words(name)
+        if value is not None:
+            beside = "" if true is None else f"measured {true:>6.4g} {unit:<5}"
+            over = lengths(measured, name) if beside else ""
+            one = (f"{value:.4g} {unit:<5}", lengths(result["indices"], name), beside, over, _band(bands.get(name)))
+            found.append((words, *one))
+    return found
 
 
-def _value(value: Any) -> str:
-    if isinstance(value, float):
-        return f"{value:.4g}"
-    return ", ".join(_value(v) for v in value) if isinstance(value, (list, tuple)) else str(value)
+def _band(row: dict[str, Any] | None) -> str:
+    """The band of an index, also in ship lengths where it has one; nothing where there is none."""
+    if row is None:
+        return ""
+    over = f", {banded(row['over_L'], 'L')}" if row["over_L"] else ""
+    return f"{banded(row, row['unit'])}{over}"

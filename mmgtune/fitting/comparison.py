@@ -21,7 +21,7 @@ from .problem import FitProblem
 
 @dataclass(frozen=True, eq=False)
 class TrialComparison:
-    """One trial: its records "before" and "after"; ``role`` is "tune", "test" or "other"."""
+    """One trial: its records "before" and "after"; ``role`` is "tune", "test", "other" or "left-out"."""
 
     trial: Trial
     role: str
@@ -44,6 +44,11 @@ class TrialComparison:
             name: {which: record.rms.get(name, np.nan) for which, record in self.records.items()} for name in STATES
         }
 
+    def off(self, which: str) -> tuple[float, float]:
+        """Root mean square distance off track [m] and error of heading [deg]; not finite where there is none."""
+        x, y, psi = (self.rms[name][which] for name in ("x", "y", "psi"))
+        return float(np.hypot(x, y)), float(np.degrees(psi))
+
     @property
     def indices(self) -> dict[str, dict[str, Any]]:
         """Manoeuvring indices "measured", "before" and "after"."""
@@ -60,6 +65,7 @@ class TrialComparison:
         """For JSON; a J that is not finite becomes null."""
         return {
             "id": self.trial.id,
+            "run": self.trial.run,
             "role": self.role,
             "manoeuvre": self.trial.manoeuvre,
             "source": self.trial.source,
@@ -103,6 +109,23 @@ def total(compared: Sequence[TrialComparison], role: str, which: str) -> float |
     """J over the trials of one role, None where there are none."""
     values = [c.J[which] for c in compared if c.role == role]
     return float(sum(values)) if values else None
+
+
+def off_by(compared: Sequence[TrialComparison], which: str) -> dict[str, str]:
+    """How far off "track" and "heading" as mean over trials, "1.23 m" and "0.45°"; without what is not known."""
+    found = {}
+    places, headings = zip(*(one.off(which) for one in compared), strict=True)
+    for of, values, digits, unit in (("track", places, 3, " m"), ("heading", headings, 2, "°")):
+        known = [value for value in values if np.isfinite(value)]
+        if known:
+            found[of] = f"{rounded(sum(known) / len(known), digits)}{unit}"
+    return found
+
+
+def rounded(value: float, digits: int) -> str:
+    """A number with significant digits, never as a power of ten where it is large."""
+    text = f"{value:#.{digits}g}"
+    return (f"{float(text):.0f}" if "e+" in text else text).rstrip(".")
 
 
 def finite(value: float | None) -> float | None:

@@ -11,24 +11,28 @@ from typing import Any
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..bands import Pooled
 from ..circumstances import notes_on
 from ..displayed import Displayed
+from ..evaluation import TrialRecord, evaluate
 from ..files import write_text
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
+from ..inputs import INPUTS
 from ..model import Model
 from ..objective import spread
 from ..options import LeaveOutOptions
-from ..predictor import words_of
+from ..predictor import as_predictor, words_of
 from ..profile import ShipProfile
 from ..profile.doubts import Doubt, in_words
 from ..repeating import Repeated, document, repeat
 from ..stated import IndexComparison, compare_stated
 from ..threads import blas_on_one_thread
 from ..trial import Coverage, Trial, TrialSet
-from ..validation import L_MSE, TrialScore, by_manoeuvre, improvement, off_by, score
-from .comparison import finite, finite_values
+from ..validation import L_MSE, TrialScore, by_manoeuvre, improvement, off_by, score_of
+from .comparison import TrialComparison, finite, finite_values
 from .extending import held_words, settled, tune_trials
+from .folder import motions_table, write_table
 from .journal import finished, journalled
 from .least_squares import solve
 from .one_sided import coverage_notes
@@ -101,6 +105,8 @@ class LeftOut(Displayed):
     weight   of what is known beforehand, found with all runs; None where J is all
     warnings what a reader must know first; doubts: which of the profile's numbers may be wrong
     bands    of each part from the other runs, where asked for: ``posterior.leave_out_with_bands``
+    compared each tune trial with the profile's values ("before") and with those fitted without it ("after")
+    inputs   names of what drives the ship
     """
 
     thetas: tuple[dict[str, float], ...]
@@ -121,6 +127,8 @@ class LeftOut(Displayed):
     warnings: tuple[str, ...] = ()
     doubts: tuple[Doubt, ...] = ()
     bands: BandsLeftOut | None = None
+    compared: tuple[TrialComparison, ...] = ()
+    inputs: tuple[str, ...] = ()
 
     @property
     def method(self) -> str:
@@ -172,6 +180,9 @@ class LeftOut(Displayed):
                 {"left_out": list(runs), "theta": finite_values(theta)}
                 for runs, theta in zip(self.parts, self.thetas, strict=True)
             ],
+            "L_pp": self.L_pp,
+            "inputs": [INPUTS[name].to_dict() for name in self.inputs],
+            "trial_results": [one.to_dict() for one in self.compared],
             "wall_s": self.wall_s,
         }
         if self.stated:
@@ -236,7 +247,8 @@ def leave_out(
 
 
 def write_left_out(result: LeftOut, folder: Path) -> dict[str, Any]:
-    """Write the result.  Returns its document."""
+    """Write the result, and the motions of the trials left out.  Returns its document."""
+    write_table(folder / "motions.parquet", motions_table(result.compared, result.inputs))
     document = {**result.to_dict(), "out": str(folder)}
     write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
     if not result.interrupted:
@@ -266,7 +278,12 @@ def _leave_out(
     chosen = [trials.trials[name] for name in trials.tune]
     sigma = spread(chosen) if chosen else {}
     integrator = options.make_integrator()
-    scores: dict[str, TrialScore] = {}
+
+    def simulated(series: Sequence[Trial], theta: FloatArray | None = None) -> dict[str, TrialRecord]:
+        predictor = as_predictor(model, theta=theta, integrator=integrator, backend=options.backend)
+        return {one.trial.id: one for one in evaluate(predictor, series)} if series else {}
+
+    left: dict[str, TrialRecord] = {}
     repeated: dict[str, Repeated] = {}
     stated: dict[str, list[IndexComparison]] = {}
     thetas, parts = [], []
@@ -288,22 +305,20 @@ def _leave_out(
         thetas.append(dict(zip(box.names, box.from_unit(fitted.unit).tolist(), strict=True)))
         parts.append(runs)
         theta = part.theta(fitted.unit[:, None])
-        if series:
-            for one in score(model, series, sigma, theta=theta, integrator=integrator, backend=options.backend):
-                scores[one.id] = one
+        left |= simulated(series, theta)
         both = {"before": model.matrix()[:, 0], "left_out": theta[:, 0]}
         for of in compare_stated(model, both, indices, dict.fromkeys(out, "tune"), options.backend):
             stated.setdefault(of.trial, []).append(of)
         if asked.manoeuvres:
             hooks.on_phase(f"repeating {', '.join(runs)}")
             repeated |= {one.id: one for one in repeat(model, _named(whole, series), theta=theta)}
-    seen = [trial for trial in chosen if trial.id in scores]
-    scored = score(model, seen, sigma, integrator=integrator, backend=options.backend) if seen else []
+    seen = [trial for trial in chosen if trial.id in left]
+    given = simulated(seen)
     return LeftOut(
         tuple(thetas),
         tuple(parts),
-        tuple(scored),
-        tuple(scores[trial.id] for trial in seen),
+        tuple(score_of(given[trial.id], sigma) for trial in seen),
+        tuple(score_of(left[trial.id], sigma) for trial in seen),
         asked,
         sigma,
         provenance,
@@ -317,6 +332,10 @@ def _leave_out(
         model.L_pp,
         tuple(_warnings(model, box.names, whole, asked)),
         tuple(profile.doubts()),
+        compared=tuple(
+            TrialComparison(trial, "left-out", {"before": given[trial.id], "after": left[trial.id]}) for trial in seen
+        ),
+        inputs=tuple(one.name for one in profile.arrangement.inputs),
     )
 
 

@@ -22,7 +22,7 @@ from ..trial import Coverage
 from .box import Box, width_words
 from .certificate import Certificate
 from .cmaes import Generation, Restart
-from .comparison import TrialComparison, finite, finite_values, total
+from .comparison import TrialComparison, finite, finite_values, off_by, total
 from .extending import held_words
 from .identifiability import Identifiability
 from .least_squares import LeastSquaresResult
@@ -164,23 +164,38 @@ class FitResult(Plotted):
 
     def verdict(self) -> str:
         """The result in one sentence."""
-        if self.stated and not self.compared:
-            return self.verdict_of_stated()
-        before, after = self.J_of("test", "before"), self.J_of("test", "after")
         tests = [c for c in self.compared if c.role == "test"]
-        better = sum(c.J["after"] < c.J["before"] for c in tests)
-        if before and after is not None:
-            change = 100.0 * (after / before - 1.0)
-            size = f"falls by {min(-change, 99.9):.1f} %" if change < 0 else f"rises by {change:.1f} %"
-            return (
-                f"On {len(tests)} trials not used for tuning, J ({self.method}) of the tuned {self.profile.name} "
-                f"{size}, from {before:.4g} to {after:.4g}; {better} of {len(tests)} of these trials improve."
-            )
-        return (
-            f"On the {sum(c.role == 'tune' for c in self.compared)} trials it was tuned to, "
-            f"the tuned {self.profile.name} has J ({self.method}) {self.J:.4g} instead of {self.J_before:.4g}; "
-            "there are no test trials to confirm it."
-        )
+        chosen = tests or [c for c in self.compared if c.role == "tune"]
+        if not chosen:
+            return self.verdict_of_stated()
+        trials = f"{len(chosen)} trial{'s' * (len(chosen) > 1)}"
+        said = [f"On {trials} not used for tuning" if tests else f"On the {trials} it was tuned to"]
+        said[0] += f", the tuned {self.profile.name}"
+        after, before = (off_by(chosen, which) for which in ("after", "before"))
+        if after:
+            sizes = " and ".join(f"{size} off {of}" for of, size in after.items())
+            instead = f" instead of {' and '.join(before.values())}" if list(before) == list(after) else ""
+            said[0] += f" is {sizes}{instead} (root mean square)"
+        lost = sum(c.motions["after"].diverged for c in chosen)
+        if lost:
+            said.append(f"it diverges on {lost} of {trials}")
+        else:
+            said.append(f"J ({self.method}) {self._J_words('test' if tests else 'tune')}")
+        if tests:
+            better = sum(c.J["after"] < c.J["before"] for c in tests)
+            said.append(f"{better} of {len(tests)} of these trials improve")
+        else:
+            said.append("there are no test trials to confirm it")
+        return f"{'; '.join(said)}."
+
+    def _J_words(self, role: str) -> str:
+        """What becomes of J over the trials of a role."""
+        before, after = self.J_of(role, "before"), self.J_of(role, "after")
+        if not before or after is None:  # diverged before, or is without error
+            return f"is {after:.4g}" if after is not None else "has no value"
+        change = 100.0 * (after / before - 1.0)
+        size = f"falls by {min(-change, 99.9):.1f} %" if change < 0 else f"rises by {change:.1f} %"
+        return f"{size}, from {before:.4g} to {after:.4g}"
 
     def verdict_of_stated(self) -> str:
         """What became of the stated indices, in one sentence."""

@@ -130,7 +130,7 @@ def _sentence(one: Series, size: float, error: float, between: tuple[str, str]) 
     unit = f" {one.unit}" if one.unit else ""
     verb = "rises" if size > 0.0 else "falls"
     words = one.words if one.words == one.name else one.words[0].upper() + one.words[1:]
-    return f"{words} {verb} by {abs(size):.3g}{unit} (+- {error:.2g}) between {between[0]} and {between[1]}"
+    return f"{words} {verb} by {abs(size):.3g}{unit} (± {error:.2g}) between {between[0]} and {between[1]}"
 
 
 def _trends(every: Sequence[Series], found: Mapping[tuple[str, str, str], Course]) -> list[dict[str, Any]]:

@@ -62,7 +62,9 @@ class FleetRun(Displayed):
     def __repr__(self) -> str:
         """In a line."""
         ships, dates, of = self.document["ships"], self.document["dates"], self.document["jobs"]
-        return f"FleetRun({len(ships)} ships, {len(dates)} dates: {of['total']} jobs, {of['failed']} failed)"
+        words = ((len(ships), "ship"), (len(dates), "date"), (of["total"], "job"))
+        several = [f"{n} {noun}{'s' * (n != 1)}" for n, noun in words]
+        return f"FleetRun({several[0]}, {several[1]}: {several[2]}, {of['failed']} failed)"
 
 
 @dataclass(frozen=True)

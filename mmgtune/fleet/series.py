@@ -81,7 +81,7 @@ def _series(ship: str, job: str, name: str, told: Sequence[tuple[str, float, flo
 def called(name: str) -> tuple[str, str, str, float]:
     """Effect, words, unit and factor to it of a quantity."""
     if name == OFF_TRACK:
-        return "", "error of the model as given, off track", "m", 1.0
+        return "", "distance off track of the model as given", "m", 1.0
     section, _, symbol = name.rpartition(".")
     if not section.startswith("effects."):
         return "", name, "", 1.0

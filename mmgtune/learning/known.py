@@ -32,6 +32,9 @@ DIRECTIONS = 12
 LARGEST = 3.0
 """Largest factor on the force of a value to which it is not proportional."""
 
+VALUE = "{value}"
+"""What stands for the value of a term in its words."""
+
 SAME = 0.9999
 """Cosine between two forces from which they are one and the same."""
 
@@ -41,6 +44,7 @@ class Candidate:
     """A term with the force of one value.
 
     family    of candidates of which one at most is chosen
+    told      the title with a place for the value, ``VALUE``
     settings  parameters {name: value in SI units} that give the force, the first the one that is told
     linear    whether the force is proportional to the value; else it may be larger or smaller, not reversed
     null      value without force, from which a linear one counts
@@ -51,6 +55,7 @@ class Candidate:
     name: str
     family: str
     title: str
+    told: str
     unit: str
     settings: dict[str, float]
     linear: bool
@@ -105,6 +110,7 @@ def _coefficients(followed: Followed, mass: FloatArray) -> Iterator[Candidate]:
             name,
             name,
             f"a change of {name}",
+            f"a change of {name} by {VALUE}",
             field.unit,
             {name: 1.0},
             True,
@@ -137,10 +143,10 @@ def _effect(
 
     for names in _alone(effect):
         parameter = effect.parameters[names[0]]
-        title = _title(effect, names[0])
+        title, told = _told(effect, names[0])
         low, high = parameter.bounds(ship)
         most = max(abs(low - parameter.null), abs(high - parameter.null))
-        made = (f"{effect.tag}.{names[0]}", f"{effect.tag}.{names[0]}", title, parameter.unit)
+        made = (f"{effect.tag}.{names[0]}", f"{effect.tag}.{names[0]}", title, told, parameter.unit)
         if len(names) == 1 and parameter.chart == "linear":
             typical = parameter.typical(ship)
             whole = force({names[0]: parameter.null + typical})
@@ -180,7 +186,11 @@ def _values(names: Sequence[str], effect: Effect, ship: Scale) -> Iterator[dict[
                 yield {names[0]: 1.0 / value if parameter.chart == "reciprocal" else value}
 
 
-def _title(effect: Effect, name: str) -> str:
+def _told(effect: Effect, name: str) -> tuple[str, str]:
+    """What the term of a parameter is called, without and with its value."""
     if effect.tag == "hull-term":
-        return symbol(name)
-    return effect.title if len(effect.parameters) == 1 else f"{effect.title} ({name.replace('_', ' ')})"
+        return symbol(name), f"a hull term {symbol(name)} = {VALUE}"
+    if len(effect.parameters) == 1:
+        return effect.title, f"{effect.title} ({VALUE})"
+    words = name.replace("_", " ")
+    return f"{effect.title} ({words})", f"{effect.title} ({words} {VALUE})"

@@ -17,7 +17,7 @@ from ..physics.rigid_body import accelerations
 from ..trial import Trial
 from ..units import DEG
 from .following import Followed, added_by, follow, own_force
-from .known import Candidate, candidates
+from .known import VALUE, Candidate, candidates
 from .refitting import tuned_names
 from .selecting import Chosen, select
 
@@ -95,6 +95,7 @@ class Term:
 
     name     section.symbol of a coefficient, tag.parameter of an effect
     title    what it is, in words
+    told     the same with a place for the value
     value    of an effect its parameter; of a coefficient what is added to the profile's [unit]
     unit     SI
     factor   its force is that many times what the value gives; 1 where force is proportional to value
@@ -107,6 +108,7 @@ class Term:
 
     name: str
     title: str
+    told: str
     value: float
     unit: str
     factor: float
@@ -116,14 +118,23 @@ class Term:
     rivals: tuple[Rival, ...]
 
     @property
-    def written(self) -> str:
+    def sized(self) -> str:
         """The value with its unit, angles in degrees."""
         value, unit = self.value, self.unit
         if unit in ("rad", "rad/s"):
             value, unit = value / DEG, unit.replace("rad", "deg")
-        number = f"{value:.3g}"
-        size = "" if self.factor == 1.0 else f", {self.factor:.2g} times"
-        return f"{number}{'' if unit in ('-', 'prime') else ' ' + unit}{size}"
+        return f"{value:.3g}{'' if unit in ('-', 'prime') else ' ' + unit}"
+
+    @property
+    def written(self) -> str:
+        """The value, and how many times its force it is that is meant."""
+        return self.sized if self.factor == 1.0 else f"{self.sized}, {self.factor:.2g} times"
+
+    @property
+    def cause(self) -> str:
+        """The term with its value, as it stands in a sentence."""
+        times = "" if self.factor == 1.0 else f", at {self.factor:.2g} times its force"
+        return self.told.replace(VALUE, self.sized) + times
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
@@ -164,27 +175,31 @@ class Reading:
         """In words."""
         if not any(one.size > 0.0 for one in self.shares):
             return ("The network adds no force.",)
-        sizes = ", ".join(
-            f"{_plain(one.size)} {UNITS[one.component]} in {DIRECTIONS[one.component]} ({_percent(one.share)})"
-            for one in self.shares
-        )
-        said = [f"The network adds {sizes}: root mean square, and its share of the model's own force."]
+        sizes = [f"{_force(one.size, UNITS[one.component])} in {DIRECTIONS[one.component]}" for one in self.shares]
+        parts = [_percent(one.share) for one in self.shares]
+        said = [
+            f"The network adds {_listed(sizes)} (root mean square), which is {_listed(parts)} of the model's own force."
+        ]
         if self.classes:
-            where = " and ".join(
-                f"{one.words} ({_percent(one.time)} of the time, {_percent(one.force)} of the force)"
-                for one in self.classes
+            where = _listed(
+                [
+                    f"{one.words} ({_percent(one.force)} of it in {_percent(one.time)} of the time)"
+                    for one in self.classes
+                ]
             )
-            said.append(f"Most of it acts at {where}.")
+            said.append(f"It acts most at {where}.")
         if self.tuned > LITTLE:
-            said.append(f"Other values of the tuned coefficients would give {_percent(self.tuned)} of it.")
+            said.append(
+                f"{_percent(self.tuned)} of it could as well come from other values of the coefficients that were "
+                "tuned: this part says nothing of what the model lacks."
+            )
         named = [one for one in self.terms if max(one.share, *one.shares.values()) > LITTLE]
         left = self.tuned > LITTLE
         for one in named:
             said.append(_sentence(one, left))
             left = True
         if not named:
-            rest = "what is left of it" if left else "what the network adds"
-            said.append(f"No known term explains more than {_percent(LITTLE)} of {rest}.")
+            said.append(f"No known cause gives more than {_percent(LITTLE)} of {'the rest' if left else 'it'}.")
         return tuple(said)
 
     def to_dict(self) -> dict[str, Any]:
@@ -252,17 +267,17 @@ def _term(one: Chosen, library: Sequence[Candidate]) -> Term:
     shares = dict(zip(COMPONENTS, map(float, one.shares), strict=True))
     rivals = tuple(Rival(library[k].name, library[k].title, share) for k, share in one.alike)
     factor = 1.0 if of.linear else one.factor
-    return Term(of.name, of.title, value, of.unit, factor, one.spread, one.share, shares, rivals)
+    return Term(of.name, of.title, of.told, value, of.unit, factor, one.spread, one.share, shares, rivals)
 
 
 def _sentence(one: Term, left: bool) -> str:
     """How much of the force, or of what is left of it, a term gives; of one direction where it gives little beside."""
-    of = "what is left of the force the network adds" if left else "the force the network adds"
+    of = "the rest" if left else "it"
     best = max(one.shares, key=lambda name: one.shares[name])
     share = one.share
     if max(value for name, value in one.shares.items() if name != best) < 0.5 * one.shares[best]:
         of, share = f"{of} in {DIRECTIONS[best]}", one.shares[best]
-    return f"Of {of}, {_percent(share)} is what {one.title} of {one.written} would give."
+    return f"{_percent(share)} of {of} looks like {one.cause}."
 
 
 def _classes(followed: Followed, squares: FloatArray) -> Iterator[Class]:
@@ -274,7 +289,7 @@ def _classes(followed: Followed, squares: FloatArray) -> Iterator[Class]:
     low, high = np.quantile(speed, [1.0 / 3.0, 2.0 / 3.0])
     yield from _cut("speed", speed, (low, high), "m/s", squares)
     yield from _cut("drift angle", np.abs(water.beta) / DEG, (5.0, 15.0, 30.0, 90.0), "deg", squares)
-    yield from _cut("r'", np.abs(water.r_), (0.2, 0.5, 1.0), "", squares)
+    yield from _cut("yaw rate r' = r L/U", np.abs(water.r_), (0.2, 0.5, 1.0), "", squares)
     for name, values in zip(model.inputs, followed.at(followed.control), strict=True):
         role, label = INPUTS[name].role, INPUTS[name].words
         if role == "rudder":
@@ -310,9 +325,17 @@ def _rms(values: FloatArray) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
 
-def _plain(value: float) -> str:
-    """Three digits, without powers of ten."""
-    return f"{float(f'{value:.3g}'):.0f}" if value >= 100.0 else f"{value:.3g}"
+def _force(value: float, unit: str) -> str:
+    """Three digits with the prefix that suits them, as in 12.8 kN."""
+    for size, prefix in ((1e6, "M"), (1e3, "k")):
+        if value >= size:
+            return f"{value / size:.3g} {prefix}{unit}"
+    return f"{value:.3g} {unit}"
+
+
+def _listed(parts: Sequence[str]) -> str:
+    """Parts as a phrase."""
+    return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"
 
 
 def _percent(share: float) -> str:

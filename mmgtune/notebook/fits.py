@@ -96,6 +96,8 @@ def left_out(result: LeftOut) -> View:
         {
             "manoeuvre": row["manoeuvre"],
             "runs": row["runs"],
+            "off track before [m]": row["position_rms_m_before"],
+            "off track left out [m]": row["position_rms_m_after"],
             "L_MSE before": row["L_MSE_before"],
             "L_MSE left out": row["L_MSE_after"],
             "share removed": row["share_removed"],

@@ -20,11 +20,22 @@ def run(result: FleetRun) -> View:
             "job": cell["name"],
             "answer": cell["answer"],
             "off track [m]": cell["off_track"],
+            "off heading [deg]": cell.get("off_heading"),
             "re-tuned [m]": cell["tuned_track"],
             "causes": ", ".join(cell["causes"]),
         }
         for cell in document["cells"]
     ]
-    changed = [f"{one['ship']}: {one['sentence']}." for one in document["changes"]]
-    failed = [f"{one['ship']}, {one['date']}, {one['name']} failed." for one in document["failures"]]
-    return View(repr(result), changed or ["Nothing changed."], rows, failed, spare=("causes", "job"))
+    changed = [f"{one['ship']}: {_within(one['sentence'])}." for one in document["changes"]]
+    failed = []
+    for one in document["failures"]:
+        why = "; ".join(problem["what"] for problem in one["problems"])
+        failed.append(f"{one['ship']}, {one['date']}, {one['name']} failed{': ' * bool(why)}{why}.")
+    return View(
+        repr(result), changed or ["Nothing changed."], rows, failed, spare=("off heading [deg]", "causes", "job")
+    )
+
+
+def _within(sentence: str) -> str:
+    """A sentence as it goes on behind a colon; names of coefficients are small already."""
+    return f"{sentence[:1].lower()}{sentence[1:]}"

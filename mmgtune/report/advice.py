@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 from collections.abc import Mapping
 from pathlib import Path
@@ -12,6 +13,9 @@ from ..effects import find_effect
 from .wording import clean, count, number, shown
 
 Advice = tuple[tuple[str, str], ...]
+
+_TOLD_APART = re.compile(r" \(\d+\)$")
+"""What stands behind the name of a model that was given twice."""
 
 
 def _inputs(data: Mapping[str, Any]) -> tuple[str, str]:
@@ -206,6 +210,64 @@ def after_voyages(data: Mapping[str, Any]) -> Advice:
         reason = "See how the first model turns and stops in calm water, against the IMO criteria"
         items.append((reason, f"mmgtune simulate -p {shlex.quote(paths[0])} --turn 35 --turn -35 --zigzag 10/10"))
     return tuple(items)
+
+
+def after_comparison(data: Mapping[str, Any]) -> Advice:
+    """(reason, command) pairs that follow from two profiles side by side."""
+    profiles = data["profiles"]
+    paths = [shlex.quote(shortest(one.get("path") or one["name"], "ship_profiles")) for one in profiles]
+    items = []
+    trials = next((id for one in profiles if (id := clean(one["id"])) in resources.trial_set_names()), "")
+    if trials:
+        reason = "Which of them is nearer to trials: score both on those that come with the program"
+        items.append((reason, f"mmgtune validate {' '.join(paths)} {shlex.quote(trials)} --manoeuvres"))
+    for one, path in zip(profiles, paths, strict=True):
+        if data["manoeuvres"]["indices"]:
+            reason = f"See whether {clean(one['name'])} meets the IMO criteria of turning and of course keeping"
+            items.append((reason, f"mmgtune simulate -p {path} --turn 35 --turn -35 --zigzag 10/10 --zigzag 20/20"))
+        if one.get("doubts"):
+            reason = f"See which numbers of {clean(one['name'])} may be wrong, and why"
+            items.append((reason, f"mmgtune profile validate {path}"))
+    return tuple(items)
+
+
+def after_models(data: Mapping[str, Any]) -> Advice:
+    """(reason, command) pairs that follow from models held against each other."""
+    trials = shlex.quote(shortest(data["trials"]["name"], "trials"))
+    called = {
+        one["name"]: shlex.quote(shortest(_TOLD_APART.sub("", one["name"]), "ship_profiles")) for one in data["models"]
+    }
+    every = " ".join(called.values())
+    items = []
+    best = next((one for one in data["models"] if one["name"] == data["columns"][0]["best"]["windows"]), None)
+    if best is not None and best.get("sha256"):
+        reason = f"{clean(best['name'])} errs least: see what it still gets wrong on these trials, and why"
+        items.append((reason, f"mmgtune diagnose -p {called[best['name']]} -t {trials}"))
+    elif best is not None:
+        reason = f"{clean(best['name'])} errs least: see each trial as it makes it, beside what was measured"
+        items.append((reason, f"mmgtune simulate -p {called[best['name']]} --trials {trials}"))
+    reason = "Compare advance, diameters and overshoots of all models with those measured"
+    items.append((reason, f"mmgtune validate {every} {trials} --manoeuvres"))
+    longer = 2.0 * (number(data["window_s"]) or 100.0)
+    only = "".join(f" --only {shlex.quote(clean(word))}" for word in (data.get("options") or {}).get("only") or ())
+    reason = "See whether the order of the models is the same over windows of twice the length"
+    items.append((reason, f"mmgtune compare {every} {trials} --restart {longer:g}{only}"))
+    if (data.get("provenance") or {}).get("command"):
+        items.append(("Repeat this comparison", again(data["provenance"]["command"])))
+    return tuple(items)
+
+
+def after_heading_study(data: Mapping[str, Any]) -> Advice:
+    """(reason, command) pairs that follow from a study of gains."""
+    if not data.get("command"):
+        return ()
+    same = again(data["command"])
+    step = number(data["options"].get("gain_step")) or 5.0
+    finer = f"{re.sub(r' --gain-step[ =][^ ]+', '', same)} --gain-step {0.5 * step:g}"
+    return (
+        ("Look closer: gains half as far apart, in the place of this study and about four times as long", finer),
+        ("Repeat this study", same),
+    )
 
 
 def after_fleet(data: Mapping[str, Any]) -> Advice:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from . import motion_block, motions
-from .blocks import Block, Card, Cell, Fold, Page, Prose, Section, Table, cells
+from . import advice, motion_block, motions
+from .blocks import Block, Card, Cell, Commands, Fold, Page, Prose, Section, Table, cells
 from .common import doubts, picture
 from .load import Kind
 from .plot import Axis, Figure, Line, Look, Mark, Panel
@@ -29,7 +29,7 @@ _FORCES = (
         ("X", "Y", "N"),
     ),
 )
-_WORDS = {
+INDEX_WORDS = {
     "advance_over_L": "advance [L_pp]",
     "transfer_over_L": "transfer [L_pp]",
     "tactical_diameter_over_L": "tactical diameter [L_pp]",
@@ -76,6 +76,7 @@ def build(record: ComparisonRecord) -> Page:
     if isinstance(differ, Table) and len(differ.rows) > LONG:
         differ = Fold(f"All {len(differ.rows)} coefficients that differ", (differ,))
     sections.append(Section("coefficients", "Coefficients", (differ,)))
+    sections.append(Section("next", "What to do next", (Commands(advice.after_comparison(data)),)))
     sections.append(_made(data["profiles"]))
     titles = [clean(one["title"]) for one in data["profiles"]]
     return Page(
@@ -191,7 +192,13 @@ def _indices(names: tuple[str, str], manoeuvres: Mapping[str, Any]) -> Table:
         a, b = number(row["a"]), number(row["b"])
         moved = percent(100.0 * (b - a) / a) if a and b is not None else NONE
         rows.append(
-            cells(run_words(row["manoeuvre"]), _WORDS.get(row["index"], row["index"]), shown(a, 4), shown(b, 4), moved)
+            cells(
+                run_words(row["manoeuvre"]),
+                INDEX_WORDS.get(row["index"], row["index"]),
+                shown(a, 4),
+                shown(b, 4),
+                moved,
+            )
         )
     return Table(
         "indices-table",
@@ -237,7 +244,7 @@ def _made(profiles: Sequence[Mapping[str, Any]]) -> Section:
         cells("id", *(clean(one["id"]) for one in profiles)),
         *(cells(clean(kind), *(clean(one["models"].get(kind, NONE)) for one in profiles)) for kind in kinds),
         cells("assumptions", *(str(one["assumptions"]) for one in profiles)),
-        cells("SHA-256", *(clean(one["sha256"]) for one in profiles)),
+        cells("SHA-256", *(f"{clean(one['sha256'])[:16]}…" for one in profiles)),
     ]
     title = "What was compared"
     table = Table("profiles-table", title, ("what", *(clean(one["name"]) for one in profiles)), tuple(rows))

@@ -66,9 +66,9 @@ def _verdict(record: LearningRecord) -> str:
     window = number(record.data["window_s"])
     over = f"over {shown(window, 3)} s" if window else "over whole trials"
     return (
-        f"{over.capitalize()} from a measured state its members are {shown(position, 3)} m and {shown(heading, 3)}° "
-        f"off (root mean square) on {count(len(record.scores['trials']), 'trial')} {ROLES[record.role]}; how far they "
-        "disagree says where the data tell them little."
+        f"{over.capitalize()} from a measured state its members are {shown(position, 3)} m off track and "
+        f"{shown(heading, 2)}° off heading (root mean square) on {count(len(record.scores['trials']), 'trial')} "
+        f"{ROLES[record.role]}; how far they disagree says where the data tell them little."
     )
 
 
@@ -79,8 +79,8 @@ def _cards(record: LearningRecord) -> tuple[Card, ...]:
     losses = [one["score"] for one in record.members if number(one["score"]) is not None]
     mean = sum(losses) / len(losses) if losses else None
     return (
-        Card(f"Position error, {where}", f"{shown(position, 3)} m", note="root mean square, mean over members"),
-        Card(f"Heading error, {where}", f"{shown(heading, 3)}°", note="root mean square, mean over members"),
+        Card(f"Off track, {where}", f"{shown(position, 3)} m", note="root mean square, mean over members"),
+        Card(f"Off heading, {where}", f"{shown(heading, 2)}°", note="root mean square, mean over members"),
         Card("Loss", shown(mean, 3), note="3 is as near as the noise lets it be"),
         Card("Learned from", count(len(data["learned_from"]), "trial"), note=count(len(record.members), "member")),
     )

@@ -41,7 +41,8 @@ def ships_over_time(
         density = PALE + (FULL - PALE) * min(max(share, 0.0), 1.0)
         k, row = columns[date], rows[ship]
         marks.append(Bar((k - 0.47, k + 0.47), (row - 0.44, row + 0.44), "before", round(density, 3)))
-    for places, look in ((failed, FAILED), (changed, CHANGED)):
+    # Dark under the diamonds: they stand on squares of every density, in light and dark.
+    for places, look in ((failed, FAILED), (changed, UNDER), (changed, CHANGED)):
         at = [(columns[date], rows[ship]) for ship, date in places if ship in rows and date in columns]
         if at:
             marks.append(Dots([x for x, _ in at], [y for _, y in at], look))
@@ -66,6 +67,7 @@ def ships_over_time(
     return Figure("ships", "Error of the model as given, a square for each ship and date", (panel,), tuple(legend))
 
 
+UNDER = Look("#111111", 0.0, marker="D", size=10.0)  # type: ignore[arg-type]
 CHANGED = Look("flag", 0.0, marker="D", size=6.0)
 FAILED = Look("ink", 0.0, marker="x", size=6.0)
 
@@ -100,5 +102,6 @@ def _course(one: Mapping[str, Any]) -> Panel:
     every = max(1, math.ceil(len(dates) / 4))
     ticks = tuple((float(k), clean(date)) for k, date in enumerate(dates) if k % every == 0)
     unit = f" [{clean(one['unit'])}]" if one["unit"] else ""
-    title = f"{clean(one['ship'])}: {clean(one['words'])}{unit}"
+    words = "off track, as given" if one["name"] == "off_track" else clean(one["words"])  # a title has little room
+    title = f"{clean(one['ship'])}: {words}{unit}"
     return Panel(tuple(marks), Axis("", -0.7, len(dates) - 0.3, ticks=ticks, grid=False), Axis(""), title)

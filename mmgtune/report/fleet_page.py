@@ -86,7 +86,8 @@ def _warnings(jobs: Mapping[str, Any]) -> tuple[str, ...]:
     if jobs["failed"]:
         said.append(f"{count(jobs['failed'], 'job')} could not run; their errors stand below.")
     if jobs["missing"]:
-        said.append(f"{count(jobs['missing'], 'job')} of the table are not run yet.")
+        verb = "is" if jobs["missing"] == 1 else "are"
+        said.append(f"{count(jobs['missing'], 'job')} of the table {verb} not run yet.")
     return tuple(said)
 
 
@@ -217,7 +218,7 @@ def _changes(data: Mapping[str, Any]) -> Section:
         ("by chance", "probability of such a change anywhere in the series where there is none"),
     )
     head = ("ship", "first seen", "between", "what", "change", "±", "by chance")
-    table = Table("changes-table", "Changes in their order in time", head, rows, (4, 5, 6), about)
+    table = Table("changes-table", "Changes in their order in time", head, rows, (4, 5, 6), about, cards=True)
     places = {(one["ship"], one["job"], one["name"]) for one in changes}
     drawn = [one for one in data["series"] if (one["ship"], one["job"], one["name"]) in places and one["course"]]
     shown_ones = drawn[:PANELS]
@@ -303,7 +304,7 @@ def _classes(data: Mapping[str, Any]) -> Section | None:
         )
         head = ("coefficient", "before", "mean", "±", "spread", "known before to")
         title = f"Class {clean(one['name'])}: {count(one['ships'], 'ship')}"
-        tables.append(Table(f"class-{place}-table", title, head, rows, (1, 2, 3, 4, 5)))
+        tables.append(Table(f"class-{place}-table", title, head, rows, (1, 2, 3, 4, 5), cards=True))
     said = (
         "Mean and spread of each coefficient among sister ships, one standard deviation.",
         "What was known before any trial is the scatter of its formula, or a quarter of its box.",

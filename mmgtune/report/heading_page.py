@@ -10,12 +10,13 @@ from pathlib import Path
 from typing import Any
 
 from ..heading_keeping import shares_of
-from .blocks import Card, Fold, Page, Prose, Section, Table, cells
+from . import advice
+from .blocks import Card, Commands, Fold, Page, Prose, Section, Table, cells
 from .common import picture
 from .load import Kind
 from .plot import Axis, Bar, Dots, Figure, Look, Mark, Panel
 from .tables import pairs
-from .wording import NONE, clean, count, shown
+from .wording import NONE, clean, count, fixed, shown
 
 _WORDS = {"single": "one member", "mean": "mean of members", "worst": "worst member"}
 _SHADES = (
@@ -28,8 +29,8 @@ _PROMISE = (
     "there disappoints at sea. Clearly means by more than 5 %."
 )
 _SCORES = (
-    "Scores are integrals of the absolute errors of heading and of yaw rate (eq. 33), lower is better; a gain of 60 "
-    "orders 60 deg of rudder for 1 rad of error, or for 1 rad/s."
+    "Scores are integrals of the absolute errors of heading and of yaw rate (Wakita, Akimoto and Maki, eq. 33), lower "
+    "is better; a gain of 60 orders 60 deg of rudder for 1 rad of error, or for 1 rad/s."
 )
 
 
@@ -62,24 +63,42 @@ def build(record: HeadingRecord) -> Page:
     return Page(
         title="Heading keeping",
         eyebrow=f"{n} × {n} gains · true system {clean(data['truth']['name'])}",
-        verdict=_verdict(data["models"]),
+        verdict=_verdict(record),
         cards=_cards(data["models"]),
         sections=(
             Section(
                 "maps", "Scores of the gains", (picture(_figure(record), "Gains", caption), Prose((_PROMISE, _SCORES)))
             ),
             Section("shares", "How often more is promised than is true", (shares,)),
+            Section("next", "What to do next", (Commands(advice.after_heading_study(data)),)),
             _made(data),
         ),
     )
 
 
-def _verdict(models: Sequence[Mapping[str, Any]]) -> str:
+def _verdict(record: HeadingRecord) -> str:
+    """What the gains that each simulator takes for best are worth, its members read by the worst of them."""
+    gains, truth = record.data["gains"], record.maps[0][1]
     said = []
-    for model in models:
-        rows = [f"{words} {shown(100 * share, 2)} %" for words, share, _ in shares_of(model)]
-        said.append(f"{clean(model['name'])} promises more than is true at: {', '.join(rows)} of the gains")
-    return "; ".join(said) + "."
+    for model in record.data["models"]:
+        view = list(model["views"])[-1]
+        rows = [[math.inf if v is None else v for v in row] for row in model["views"][view]["scores"]]
+        p, d = _least(rows)
+        words = clean(model["name"]) + (f" ({_WORDS[view]})" if model["members"] > 1 else "")
+        promised, true = (shown(of[p][d], 3) if math.isfinite(of[p][d]) else "no score" for of in (rows, truth))
+        said.append(
+            f"{words} takes K_P {shown(gains[p], 3)}, K_D {shown(gains[d], 3)} for best and promises {promised} rad s; "
+            f"the true system gives {true}"
+        )
+    p, d = _least(truth)
+    best = f"Its best is {shown(truth[p][d], 3)} rad s, at K_P {shown(gains[p], 3)}, K_D {shown(gains[d], 3)}"
+    return f"{'; '.join(said)}. {best}." if math.isfinite(truth[p][d]) else f"{'; '.join(said)}."
+
+
+def _least(rows: Sequence[Sequence[float]]) -> tuple[int, int]:
+    """Place of the least score."""
+    _, p, d = min((value, p, d) for p, row in enumerate(rows) for d, value in enumerate(row))
+    return p, d
 
 
 def _cards(models: Sequence[Mapping[str, Any]]) -> tuple[Card, ...]:
@@ -92,12 +111,12 @@ def _cards(models: Sequence[Mapping[str, Any]]) -> tuple[Card, ...]:
 
 def _shares(models: Sequence[Mapping[str, Any]]) -> Table:
     rows = [
-        cells(clean(model["name"]), count(model["members"], "member"), words, shown(100 * a, 3), shown(100 * b, 3))
+        cells(clean(model["name"]), count(model["members"], "member"), words, fixed(100 * a, 1), fixed(100 * b, 1))
         for model in models
         for words, a, b in shares_of(model)
     ]
     headings = ("simulator", "members", "read by", "promises more [% of gains]", "clearly more [% of gains]")
-    return Table("shares-table", "Share of the gains", headings, tuple(rows), numeric=(3, 4))
+    return Table("shares-table", "Share of the gains", headings, tuple(rows), numeric=(3, 4), cards=True)
 
 
 def _figure(record: HeadingRecord) -> Figure:
@@ -109,21 +128,22 @@ def _figure(record: HeadingRecord) -> Figure:
     panels = []
     for title, rows in maps:
         marks: list[Mark] = [bar for k, row in enumerate(rows) for bar in _row(row, edges, k, low, high)]
-        over = [
-            (d, p)
-            for p, own, true in zip(gains, rows, maps[0][1], strict=True)
-            for d, a, b in zip(gains, own, true, strict=True)
-            if a < b
-        ]
-        if over:
-            marks.append(Dots([d for d, _ in over], [p for _, p in over], Look("flag", marker="x", size=4.0)))
+        over: dict[str, list[tuple[float, float]]] = {"#111111": [], "#ffffff": []}
+        for p, own, true in zip(gains, rows, maps[0][1], strict=True):
+            for d, a, b in zip(gains, own, true, strict=True):
+                if a < b:
+                    over["#111111" if _shade(a, low, high) < len(_SHADES) // 2 else "#ffffff"].append((d, p))
+        for color, places in over.items():
+            if places:
+                look = Look(color, marker="x", size=4.0)  # type: ignore[arg-type]
+                marks.append(Dots([d for d, _ in places], [p for _, p in places], look))
         x, y = Axis("K_D [deg s/rad]", edges[0], edges[-1], grid=False), Axis("K_P [deg/rad]", edges[0], edges[-1])
         panels.append(Panel(tuple(marks), x, y, title, 0.9))
     legend: list[tuple[str, Look | tuple[str, float]]] = [
         (f"{shown(low + share * (high - low), 3)} rad s", (_SHADES[round(share * (len(_SHADES) - 1))], 1.0))
         for share in (0.0, 0.25, 0.5, 0.75, 1.0)
     ]
-    legend.append(("promises more than is true", Look("flag", 0.0, marker="x", size=6.0)))
+    legend.append(("promises more than is true", Look("ink", 0.0, marker="x", size=6.0)))
     alt = "Scores of gains in the true system and in simulators"
     return Figure("gains", alt, tuple(panels), tuple(legend))  # type: ignore[arg-type]
 
@@ -134,13 +154,18 @@ def _row(row: Sequence[float], edges: Sequence[float], k: int, low: float, high:
     for j, value in enumerate(row):
         if not math.isfinite(value):
             continue
-        shade = _SHADES[round((value - low) / ((high - low) or 1.0) * (len(_SHADES) - 1))]
+        shade = _SHADES[_shade(value, low, high)]
         last = found[-1] if found else None
         if last is not None and last.color == shade and last.x[1] == edges[j]:
             found[-1] = Bar((last.x[0], edges[j + 1]), last.y, shade)
         else:
             found.append(Bar((edges[j], edges[j + 1]), (edges[k], edges[k + 1]), shade))
     return found
+
+
+def _shade(value: float, low: float, high: float) -> int:
+    """Place of a score in the map of colours."""
+    return round((value - low) / ((high - low) or 1.0) * (len(_SHADES) - 1))
 
 
 def _made(data: Mapping[str, Any]) -> Section:

@@ -67,20 +67,30 @@ def _verdict(data: Mapping[str, Any]) -> str:
         f"{share(row['share_removed'])} in {clean(row['manoeuvre']) or 'all'} ({count(row['runs'], 'run')})"
         for row in data["gains"]
     ]
-    return f"On runs it has not seen the network removes part of the model's error (L_MSE): {', '.join(parts)}."
+    removed = f"removes part of the model's error L_MSE: {', '.join(parts)}."
+    if not data["scores"]:
+        return f"On runs it has not seen the network {removed}"
+    (place, heading), (first, first_heading) = (rms_errors(data, data["scores"][k]) for k in ("after", "before"))
+    if place is None:
+        return f"The hybrid diverges on held-out runs; on runs kept back in training the network {removed}"
+    instead = "" if first is None else f" instead of {shown(first, 3)} m and {shown(first_heading, 2)}°"
+    return (
+        f"On held-out runs the hybrid is {shown(place, 3)} m off track and {shown(heading, 2)}° off heading{instead} "
+        f"(root mean square); on runs kept back in training the network {removed}"
+    )
 
 
 def _cards(data: Mapping[str, Any]) -> tuple[Card, ...]:
     shown_cards = []
     scores = data["scores"]
     if scores:
-        for k, label, unit in ((0, "Position error, held out", " m"), (1, "Heading error, held out", "°")):
+        for k, label, unit, digits in ((0, "Off track, held out", " m", 3), (1, "Off heading, held out", "°", 2)):
             before, after = (rms_errors(data, scores[which])[k] for which in ("before", "after"))
             moved = 100.0 * (after - before) / before if before and after is not None else None
             shown_cards.append(
                 Card(
                     label,
-                    f"{shown(before, 3)} → {shown(after, 3)}{unit}",
+                    f"{shown(before, digits)} → {shown(after, digits)}{unit}",
                     percent(moved),
                     "root mean square",
                     tone(moved),
@@ -123,7 +133,7 @@ def _reading(found: Mapping[str, Any]) -> Section:
     """What the network says in known terms."""
     words = Prose(tuple(clean(one) for one in found["sentences"]))
     if not found["terms"]:
-        return Section("reading", "What it says", (words,))
+        return Section("reading", "What the network adds", (words,))
     rows = [
         cells(
             clean(one["title"]),
@@ -136,14 +146,14 @@ def _reading(found: Mapping[str, Any]) -> Section:
     ]
     table = Table(
         "terms-table",
-        "Known terms that would give part of the force the network adds, each the share of what those before it leave, "
-        "on runs its value was not found from",
-        ("term", "name", "value", "share", "surge", "sway", "yaw"),
+        "Known causes with a force like the one the network adds; share: of what the causes above leave, on runs that "
+        "the value was not found from",
+        ("cause", "name", "value", "share", "surge", "sway", "yaw"),
         tuple(rows),
         numeric=(2, 3, 4, 5, 6),
         cards=True,
     )
-    return Section("reading", "What it says", (words, table))
+    return Section("reading", "What the network adds", (words, table))
 
 
 def _curves(curves: Figure | None, data: Mapping[str, Any]) -> tuple[Block, ...]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ..inputs import INPUTS
 from . import learned_motions
 from .advice import shortest
 from .blocks import Card, Commands, Fold, Page, Prose, Section, Table, cells
@@ -77,8 +78,8 @@ def _verdict(record: LearningRecord) -> str:
     window = number(record.data["window_s"])
     over = f"over {shown(window, 3)} s" if window else "over whole trials"
     return (
-        f"{over.capitalize()} from a measured state the networks are {shown(position, 3)} m and {shown(heading, 3)}° "
-        f"off (root mean square) on {count(len(record.scores['trials']), 'trial')} "
+        f"{over.capitalize()} from a measured state the networks are {shown(position, 3)} m off track and "
+        f"{shown(heading, 2)}° off heading (root mean square) on {count(len(record.scores['trials']), 'trial')} "
         f"{'that played no part' if record.role == 'test' else 'that chose among their weights'}."
     )
 
@@ -89,8 +90,8 @@ def _cards(record: LearningRecord) -> tuple[Card, ...]:
     where = ROLES[record.role]
     best = [one["score"] for one in record.members if number(one["score"]) is not None]
     return (
-        Card(f"Position error, {where}", f"{shown(position, 3)} m", note="root mean square"),
-        Card(f"Heading error, {where}", f"{shown(heading, 3)}°", note="root mean square"),
+        Card(f"Off track, {where}", f"{shown(position, 3)} m", note="root mean square"),
+        Card(f"Off heading, {where}", f"{shown(heading, 2)}°", note="root mean square"),
         Card(f"L_MSE, {where}", shown(record.scores["L_MSE"], 3), note=f"mean over {count(len(best), 'seed')}"),
         Card(
             "Learned from",
@@ -142,14 +143,15 @@ def scores_table(record: LearningRecord) -> Table:
             position, heading = rms_errors(record.data, row)
             name = clean(kind) or "not stated"
             rows.append(
-                cells(words, name, str(row["runs"]), shown(position, 3), shown(heading, 3), shown(row["L_MSE"], 3))
+                cells(words, name, str(row["runs"]), shown(position, 3), shown(heading, 2), shown(row["L_MSE"], 3))
             )
     return Table(
         "scores-table",
         "Root mean square errors and L_MSE, means over the networks",
-        ("trials", "manoeuvre", "runs", "position [m]", "heading [°]", "L_MSE [–]"),
+        ("trials", "manoeuvre", "runs", "off track [m]", "off heading [°]", "L_MSE [–]"),
         tuple(rows),
         numeric=(2, 3, 4, 5),
+        cards=True,
     )
 
 
@@ -203,7 +205,7 @@ def made_section(data: Mapping[str, Any], more: Sequence[tuple[str, str]]) -> Se
 def _more(data: Mapping[str, Any]) -> list[tuple[str, str]]:
     return [
         ("chosen by", listing([clean(one) for one in data["chosen_by"]], 40)),
-        ("inputs", ", ".join(clean(one) for one in data["inputs"])),
+        ("inputs", ", ".join(INPUTS[one].words if one in INPUTS else clean(one) for one in data["inputs"])),
         ("memory", "runs on" if data["memory"] is None else f"{data['memory']} samples"),
         ("units of a layer", str(data["width"])),
     ]

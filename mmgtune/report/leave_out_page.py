@@ -3,23 +3,52 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from . import advice, measures, tables
+from . import advice, findings, measures, motion_block, tables, tables_of_motion
 from .band_scores import SCORE_HEADS, score_cells
-from .blocks import Card, Commands, Fold, Nothing, Page, Prose, Section, Table, cells
+from .blocks import Card, Commands, Fold, Nothing, Page, Picture, Prose, Section, Table, cells
 from .common import assumptions, doubts, generated_banner, picture, provenance, warnings
-from .load import Kind
+from .forces import Ship
+from .load import Kind, inputs_of, motions_in
 from .plot import Axis, Dots, Figure, Line, Look, Mark, Panel
 from .tables import tone
-from .wording import NONE, change, clean, coefficient_text, count, number, percent, share, short, shown, span
+from .wording import NONE, Channel, change, clean, coefficient_text, count, number, percent, share, short, shown, span
+
+if TYPE_CHECKING:
+    from .load import Motion
 
 
-def build(data: Mapping[str, Any]) -> Page:
+WORDS = {"measured": "measured", "before": "before tuning", "after": "tuned to the others"}
+
+MOST = 24
+"""Runs that the picture has room for."""
+
+
+@dataclass(frozen=True)
+class LeaveOutRecord:
+    """What leaving out left in its folder: leave_out.json, and motions of the trials left out, trial -> which."""
+
+    data: Mapping[str, Any]
+    motions: Mapping[str, Mapping[str, Motion]]
+    inputs: tuple[Channel, ...] = ()
+
+    @property
+    def results(self) -> list[Mapping[str, Any]]:
+        """The trials left out; records of older versions have none."""
+        return list(self.data.get("trial_results") or ())
+
+
+def build(record: LeaveOutRecord) -> Page:
     """Everything the report of leaving trials out says."""
+    data = record.data
     ship = clean(data["profile"].get("name") or data["profile"].get("id") or "the ship")
     sections = [
-        _scores(data),
+        _motions(record),
+        _scores(record),
+        _indices(record),
         _bands(data),
         _stated(data),
         _coefficients(data),
@@ -50,11 +79,20 @@ def _verdict(data: Mapping[str, Any]) -> str:
     removed = number(row["share_removed"])
     if removed is None:
         return "The model diverged on a trial that was left out."
+    place, heading = (number(row.get(f"{key}_after")) for key in ("position_rms_m", "heading_rms_deg"))
+    off = ""
+    if place is not None:
+        first, first_heading = (number(row.get(f"{key}_before")) for key in ("position_rms_m", "heading_rms_deg"))
+        both = heading is not None and first_heading is not None
+        off = f"On trials it has not seen, a tuned model is {shown(place, 3)} m off track"
+        off += f" and {shown(heading, 2)}° off heading" if both else ""
+        off += f" instead of {shown(first, 3)} m" + (f" and {shown(first_heading, 2)}°" if both else "")
     if removed <= 0.0:
-        return "Tuning does not help on trials it has not seen: the error there does not fall."
+        return f"{off or 'On trials it has not seen, tuning does not help'}: the error L_MSE there does not fall."
     interval = row["share_removed_ci95"]
     sure = f" (95 % interval {span(*interval)}, runs drawn anew)" if interval else ""
-    return f"On trials it has not seen, tuning removes {share(removed)} of the error{sure}."
+    told = f"tuning removes {share(removed)} of the error L_MSE{sure}."
+    return f"{off}: {told}" if off else f"On trials it has not seen, {told}"
 
 
 def _cards(data: Mapping[str, Any]) -> tuple[Card, ...]:
@@ -82,56 +120,109 @@ def _kinds(rows: Sequence[Any]) -> Sequence[Any]:
     return rows[1:] if len(rows) == 2 else rows
 
 
-def _scores(data: Mapping[str, Any]) -> Section:
-    rows = _kinds(data["scores"])
+def _motions(record: LeaveOutRecord) -> Section | None:
+    """Tracks of the trials left out, the worst of them first, and which is the worst and which is as most are."""
+    results = record.results
+    known = sorted(
+        ((off, row) for row in results if (off := findings.off_track(row, "after")) is not None), key=lambda one: one[0]
+    )
+    said = "Each trial is simulated with the coefficients that were tuned without it."
+    if len(known) > 2:
+        worst, typical = known[-1][1], known[(len(known) - 1) // 2][1]
+        said += (
+            f" The worst is {clean(worst['id'])}, {findings.off_track_words(worst, 'after')}; half of them are no "
+            f"worse than {clean(typical['id'])}, {findings.off_track_words(typical, 'after')}."
+        )
+    first = str(known[-1][1]["id"]) if known else ""
+    block = motion_block.of_trials(
+        results, record.motions, record.inputs, said, words=WORDS, ship=Ship(number(record.data.get("L_pp"))),
+        first=first, data=motion_block.numbers(results, record.motions, WORDS),
+    )  # fmt: skip
+    return None if block is None else Section("motions", "Tracks of the trials left out", (block,))
+
+
+def _indices(record: LeaveOutRecord) -> Section | None:
+    table = tables_of_motion.index_errors(record.results)
+    return None if table is None else Section("indices", "Manoeuvring indices of the trials left out", (table,))
+
+
+def _by_run(results: Sequence[Mapping[str, Any]]) -> list[tuple[str, str, float, float]]:
+    """Runs with their manoeuvre and how far off track they are before and after [m], the worst first."""
+    runs: dict[str, list[Mapping[str, Any]]] = {}
+    for row in results:
+        runs.setdefault(str(row.get("run") or row["id"]), []).append(row)
+    found = []
+    for run, rows in runs.items():
+        before, after = (findings.mean_off_track(rows, which) for which in ("before", "after"))
+        if before is not None and after is not None:
+            found.append((clean(run), clean(rows[0].get("manoeuvre") or ""), before, after))
+    return sorted(found, key=lambda one: -one[3])
+
+
+def _runs(results: Sequence[Mapping[str, Any]]) -> Picture | None:
+    """How far off track every run is when it is left out; None where that is not known."""
+    rows = _by_run(results)
     if not rows:
-        return Section("scores", "Trials left out", (Nothing("There is no time series to score."),))
-    places = tuple((float(k), f"{clean(row['manoeuvre'])}\n{row['runs']}") for k, row in enumerate(rows))
+        return None
     before, after = Look("before", 0.0, marker="^", size=8), Look("after", 0.0, marker="s", size=7)
     marks: list[Mark] = []
-    for k, row in enumerate(rows):
-        a, b = number(row["L_MSE_before"]), number(row["L_MSE_after"])
-        if a is not None and b is not None and a > 0.0 and b > 0.0:
-            marks += [Line((k, k), (a, b), Look("muted", 1.2)), Dots((k,), (a,), before), Dots((k,), (b,), after)]
+    for k, (_, _, a, b) in enumerate(rows[:MOST]):
+        marks += [Line((a, b), (k, k), Look("muted", 1.2)), Dots((a,), (k,), before), Dots((b,), (k,), after)]
+    log = min(min(a, b) for _, _, a, b in rows[:MOST]) > 0.0
+    names = tuple((float(k), row[0]) for k, row in enumerate(rows[:MOST]))
     panel = Panel(
         tuple(marks),
-        Axis("kind of manoeuvre, number of runs", -0.6, len(rows) - 0.4, ticks=places, grid=False),
-        Axis("L_MSE [–]", log=bool(marks), room=0.1),
-        shape=0.42,
+        Axis("off track [m]", low=None if log else 0.0, log=log, room=0.06),
+        Axis(low=len(names) - 0.4, high=-0.6, ticks=names, grid=False),
+        shape=-(26.0 * len(names) + 60.0),
     )
-    figure = Figure("scores", "Error of trials left out, before and after tuning to the others", (panel,),
-                    (("before tuning", before), ("tuned to the others", after)))  # fmt: skip
+    figure = Figure("scores", "Distance off track of each run left out, before tuning and as tuned to the others",
+                    (panel,), ((WORDS["before"], before), (WORDS["after"], after)))  # fmt: skip
+    closer = sum(b < a for _, _, a, b in rows)
+    caption = f"Root mean square, the worst run first; {closer} of {count(len(rows), 'run')} come closer."
+    caption += f" Shown are the {MOST} worst." if len(rows) > MOST else ""
+    data = Table("runs-table", "Off track by run left out [m]", ("run", "manoeuvre", WORDS["before"], WORDS["after"]),
+                 tuple(cells(run, kind, shown(a, 3), shown(b, 3)) for run, kind, a, b in rows), (2, 3))  # fmt: skip
+    return picture(figure, "Runs left out", caption, data)
+
+
+def _scores(record: LeaveOutRecord) -> Section:
+    rows = _kinds(record.data["scores"])
+    if not rows:
+        return Section("scores", "Trials left out", (Nothing("There is no time series to score."),))
     lines = []
     for row in rows:
-        moved = change(row["L_MSE_before"], row["L_MSE_after"])
         interval = row["share_removed_ci95"]
+
+        def both(key: str, digits: int, row: Mapping[str, Any] = row) -> str:
+            return f"{shown(row.get(f'{key}_before'), digits)} → {shown(row.get(f'{key}_after'), digits)}"
+
         lines.append(
             cells(
                 clean(row["manoeuvre"]),
                 str(row["runs"]),
-                shown(row["L_MSE_before"]),
-                shown(row["L_MSE_after"]),
-                percent(moved),
+                both("position_rms_m", 3),
+                both("heading_rms_deg", 2),
+                both("L_MSE", 3),
                 share(row["share_removed"]),
                 span(*interval) if interval else NONE,
-                shown(row["J_before"]),
-                shown(row["J_after"]),
+                both("J", 4),
             )
         )
     table = Table(
         "scores-table",
-        "Scores of trials left out, with the coefficients before tuning and as tuned to the others",
-        ("manoeuvre", "runs", "L_MSE before", "after", "change", "removed", "95 % interval", "J before", "after"),
+        "Scores of trials left out, with the coefficients before tuning → as tuned to the others",
+        ("manoeuvre", "runs", "off track [m]", "off heading [deg]", "L_MSE", "removed", "95 % interval", "J"),
         tuple(lines),
-        range(1, 9),
+        range(1, 8),
         (
             ("L_MSE [–]", measures.L_MSE),
             ("removed", "share of L_MSE that tuning takes away; its interval by drawing runs anew"),
             ("J [–]", measures.J),
         ),
     )
-    caption = "Each trial is scored by the fit that has not seen it; lower is better."
-    return Section("scores", "Trials left out", (picture(figure, "Scores", caption), table))
+    drawn = _runs(record.results)
+    return Section("scores", "How far off, by run and by kind of manoeuvre", (*((drawn,) if drawn else ()), table))
 
 
 def _bands(data: Mapping[str, Any]) -> Section | None:
@@ -200,4 +291,10 @@ def _coefficients(data: Mapping[str, Any]) -> Section | None:
     return Section("coefficients", "Coefficients of the fits", (table, folded))
 
 
-KIND = Kind("leave-out", ("profile", "trials", "scores", "parts"), lambda _, data: data, build)
+def _read(folder: Path, data: Mapping[str, Any]) -> LeaveOutRecord:
+    inputs = inputs_of(folder, data)
+    kept = motions_in(folder, inputs) if data.get("trial_results") else {}
+    return LeaveOutRecord(data, kept, inputs)
+
+
+KIND = Kind("leave-out", ("profile", "trials", "scores", "parts"), _read, build)

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import fans, motion_block, motions
+from . import advice, fans, motion_block, motions
 from .band_scores import MEANING, SCORE_HEADS, score_cells
-from .blocks import Block, Card, Cell, Fold, Page, Prose, Section, Table, cells
+from .blocks import Block, Card, Cell, Commands, Fold, Page, Prose, Section, Table, cells
 from .common import picture
 from .load import Kind, inputs_of, motions_in
 from .plot import LOOKS, Axis, Dots, Figure, Line, Look, Mark, Panel, model_look
@@ -88,7 +88,7 @@ def build(record: ModelsRecord) -> Page:
         banners=(banner,) if data["trials"]["sources"] == ["generated"] else (),
         warnings=tuple(clean(text) for text in data.get("notes") or ()),
         cards=_cards(record),
-        sections=(*sections, _made(record)),
+        sections=(*sections, Section("next", "What to do next", (Commands(advice.after_models(data)),)), _made(record)),
     )
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from .blocks import Cell, Table, cells
-from .findings import off_track
+from .findings import off_heading, off_track
 from .tracks import ROLES
 from .wording import (
     CHANNELS,
@@ -49,6 +49,7 @@ def trials(record: RunRecord) -> Table:
                 clean(row.get("source") or "not stated"),
                 shown(row.get("n_samples"), 9),
                 f"{shown(off_track(row, 'before'), 3)} → {shown(off_track(row, 'after'), 3)}",
+                f"{shown(off_heading(row, 'before'), 2)} → {shown(off_heading(row, 'after'), 2)}",
                 shown(row.get("J_before")),
                 Cell("diverged", "bad") if ended != "ok" else Cell(shown(row.get("J_after"))),
                 Cell(percent(moved), tone(moved)) if ended == "ok" else Cell(NONE),
@@ -56,10 +57,21 @@ def trials(record: RunRecord) -> Table:
         )
     return Table(
         "trials-table",
-        "Misfit J of each trial with the pre-determined and with the tuned coefficients",
-        ("trial", "manoeuvre", "role", "data", "samples", "off track [m]", "J before", "J after", "change"),
+        "How far off each trial is, and its misfit J, with the pre-determined and with the tuned coefficients",
+        (
+            "trial",
+            "manoeuvre",
+            "role",
+            "data",
+            "samples",
+            "off track [m]",
+            "off heading [deg]",
+            "J before",
+            "J after",
+            "change of J",
+        ),
         tuple(rows),
-        numeric=range(4, 9),
+        numeric=range(4, 10),
     )
 
 

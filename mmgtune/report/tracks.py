@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     Motion = Mapping[str, FloatArray]
 
 WORDS = {"measured": "measured", "before": "before tuning", "after": "after tuning"}
-ROLES = {"tune": "tuned on", "test": "test", "other": "not used"}
+ROLES = {"tune": "tuned on", "test": "test", "other": "not used", "left-out": "left out"}
 PANELS = 12
 LONGEST = 38
 """Letters of a title of a panel."""

@@ -1,5 +1,6 @@
 """The other commands, help, and the ways out."""
 
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -110,6 +111,18 @@ def test_simulate_trials_beside_the_measured_indices(tmp_path):
     assert runs["zigzag_20"]["indices"]["order"] == runs["zigzag_20"]["measured"]["order"] == "20/20"
     assert runs["turn_m10"]["measures"]["MED"] > runs["turn_p40"]["measures"]["MED"] > 10.0
     assert set(runs["turn_m10"]["measures"]) == {"MMD", "MED", "ASD", "MSD", "PMD", "PED", "cVDM"}
+
+
+def test_simulate_says_indices_in_words_with_units(tmp_path):
+    ended = run("simulate", "--turn", "35", "--zigzag", "10/10", cwd=tmp_path)
+    assert re.search(r"^turn_p35  \(turn 35° to starboard, \d+ s, rk4\)\n  advance +[\d.]+ m +[\d.]+ L\n", ended.out)
+    assert re.search(r"^  steady yaw rate +[\d.]+ deg/s$", ended.out, re.M)
+    assert re.search(r"^  overshoot 1 +[\d.]+ deg$", ended.out, re.M)
+    assert "_" not in ended.out.replace("turn_p35", "").replace("zigzag_p10_10", "")
+    ended = run("simulate", "--trials", "suzaku", cwd=tmp_path)
+    assert re.search(r"^  advance +[\d.]+ m +[\d.]+ L +measured +[\d.]+ m +[\d.]+ L$", ended.out, re.M)
+    assert re.search(r"^  MED \[m\] +[\d.]+$", ended.out, re.M)
+    assert ended.err.count("MED: mean distance off the measured place") == 1
 
 
 def test_trials_check_and_inspect(tmp_path):

@@ -95,7 +95,7 @@ def test_an_output_that_exists_is_found_before_the_work(tmp_path, monkeypatch):
 def test_two_profiles_compared(tmp_path):
     ended = run("profile", "compare", "suzaku", "suzaku_fam", "--out", "both", cwd=tmp_path)
     assert ended.code == 0, ended.err
-    assert "turn_p35 tactical_diameter_over_L" in ended.out
+    assert "turn 35° to starboard, tactical diameter [L_pp]" in ended.out
     assert (tmp_path / "both" / "report.html").is_file()
     again = run("profile", "compare", "suzaku", "suzaku_fam", "--out", "both", cwd=tmp_path)
     assert again.code == 2

@@ -56,6 +56,7 @@ def test_tables_fit_sixty_columns(tmp_path):
         ("fit", *quick, "f"),
         ("sweep", "--ar", "0.3,0.4,0.5", *quick, "s"),
         ("validate", "suzaku", "suzaku"),
+        ("simulate", "--trials", "suzaku"),
     ):
         said = run(*command, cwd=tmp_path, env=env)
         assert said.code == 0, said.err

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -92,8 +93,10 @@ def test_the_piece_is_named_first_with_its_value(reading):
     assert first.value == pytest.approx(PIECE, rel=0.1)
     assert first.shares["N"] > 0.9
     assert first.unit == "prime"
-    assert "Of the force the network adds in yaw" in reading.sentences[2]
-    assert "N_r|r| of -0.0" in reading.sentences[2]
+    assert re.fullmatch(r"\d+ % of it in yaw looks like a hull term N_r\|r\| = -0\.0\d+\.", reading.sentences[2])
+    assert re.match(
+        r"The network adds \S+ k?N in surge, \S+ k?N in sway and [\d.]+ k?N m in yaw ", reading.sentences[0]
+    )
 
 
 def test_sizes_are_those_of_the_force_itself(lacking, reading, trials):
@@ -156,7 +159,7 @@ def test_tuned_coefficients_count_before_any_term(trials):
     found = read_network(imitating(other, between(profile, changed), trials), trials)
     assert found.tuned > 0.85
     assert name not in [term.name for term in found.terms]
-    assert "Other values of the tuned coefficients" in " ".join(found.sentences)
+    assert "could as well come from other values of the coefficients that were tuned" in " ".join(found.sentences)
 
 
 def test_a_silent_network_says_nothing(trials, lacking):

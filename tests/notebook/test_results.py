@@ -107,13 +107,17 @@ def test_a_fleet_in_a_notebook(tmp_path):
          "causes": ["current"]}
         for ship in ("aa", HOSTILE)
     ]  # fmt: skip
-    said = "hull.R_0 rises by 0.003 (+- 0.0003) between 2026-03 and 2026-04"
-    document = {"ships": ["aa", HOSTILE], "dates": ["2026-01"], "jobs": {"total": 2, "failed": 0}, "cells": cells,
-                "changes": [{"ship": "aa", "sentence": said}], "failures": []}  # fmt: skip
+    failure = {"ship": "bb", "date": "2026-02", "name": "state", "problems": [{"what": "no trials"}]}
+    said = "hull.R_0 rises by 0.003 (± 0.0003) between 2026-03 and 2026-04"
+    document = {"ships": ["aa", HOSTILE], "dates": ["2026-01"], "jobs": {"total": 2, "failed": 1}, "cells": cells,
+                "changes": [{"ship": "aa", "sentence": f"H{said[1:]}"}],
+                "failures": [failure]}  # fmt: skip
     run = FleetRun((), {}, 0, 1.0, 1, document)
-    assert repr(run) == "FleetRun(2 ships, 1 dates: 2 jobs, 0 failed)"
+    assert repr(run) == "FleetRun(2 ships, 1 date: 2 jobs, 1 failed)"
     assert Tags(run._repr_html_()).tags.isdisjoint({"img", "script"})
-    assert f"aa: {said}." in " ".join(run.summary().split())
+    told = " ".join(run.summary().split())
+    assert f"aa: {said}." in told
+    assert "bb, 2026-02, state failed: no trials." in told
     assert run.to_frame()["off track [m]"].tolist() == [158.2, 158.2]
 
 

@@ -213,6 +213,7 @@ def test_a_plan_with_a_folder_has_a_report(desk):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
+        (("bands",), 'add --question; write it as "tactical diameter, turn -35"'),
         (("bands", "--question", "tactical diametre, turn -35"), "did you mean 'tactical diameter'"),
         (("bands", "--question", QUESTION, "--kind", "spirals"), "'spiral'"),
         (("bands", "--question", QUESTION, "--kind", "stop"), "no trial"),

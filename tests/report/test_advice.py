@@ -28,7 +28,7 @@ PLANNED = ("fit", "sweep", "leave-out", "diagnose")
 """Commands that say with --dry-run what they would do, and refuse what they would refuse."""
 
 
-QUICK = (*PLANNED, "validate", "simulate", "trials", "check", "plan", "predict")
+QUICK = (*PLANNED, "validate", "compare", "simulate", "trials", "check", "plan", "predict")
 """Commands that can be run here, if need be with --dry-run."""
 
 
@@ -100,6 +100,23 @@ def test_commands_of_a_sweep_work_when_pasted(tmp_path: Path, monkeypatch: pytes
     assert {shlex.split(one)[1] for one in commands} >= {"sweep", "simulate"}
     for command in commands:
         paste(command, tmp_path, tmp_path, ("simulate",))
+
+
+def test_commands_of_a_comparison_of_profiles_work_when_pasted(more: dict[str, Path], tmp_path: Path) -> None:
+    commands = commands_of(more["comparison"])
+    assert [shlex.split(one)[1] for one in commands] == ["validate", "simulate", "simulate"]
+    for command in commands:
+        paste(command, ROOT, tmp_path)
+
+
+def test_commands_of_a_comparison_of_models_work_when_pasted(tmp_path: Path) -> None:
+    asked = ("compare", "suzaku_fam", "suzaku", "suzaku", "suzaku", "--only", "turning", "--out", "a run")
+    assert run(*asked, cwd=tmp_path).code == 0
+    commands = commands_of(tmp_path / "a run")
+    assert [shlex.split(one)[1] for one in commands] == ["diagnose", "validate", "compare", "compare"]
+    assert "--force" in commands[-1]
+    for command in commands:
+        paste(command, tmp_path, tmp_path)
 
 
 def test_a_command_can_be_given_again() -> None:

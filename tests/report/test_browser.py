@@ -203,7 +203,7 @@ def test_tables_sort_and_filter(browser: Any, fit_folder: Path) -> None:
     with Visit(browser, fit_folder / "report.html") as visit:
         button = visit.page.locator("#trials-table thead button", has_text="J after")
         button.click()
-        column = visit.page.locator("#trials-table tbody td:nth-child(8)")
+        column = visit.page.locator("#trials-table tbody td:nth-child(9)")
         found = [float(text.replace("\u202f", "")) for text in column.all_text_contents()]
         assert found == sorted(found)
         button.click()

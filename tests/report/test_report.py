@@ -15,9 +15,10 @@ from pathlib import Path
 import pytest
 
 from mmgtune.errors import OptionError
-from mmgtune.report import kinds, render
+from mmgtune.report import findings, kinds, render
 from mmgtune.report.blocks import Page, Prose, Section
 from mmgtune.report.load import Kind
+from mmgtune.report.wording import shown
 
 from . import fake_run
 from .conftest import read
@@ -226,3 +227,23 @@ def test_a_page_is_one_entry(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     empty.mkdir()
     with pytest.raises(OptionError, match=r"sea_voyage\.json, diagnosis\.json, sweep\.json, fit\.json"):
         render(empty)
+
+
+def test_left_out_trials_are_drawn_and_the_worst_is_named(more: dict[str, Path], tmp_path: Path) -> None:
+    folder = more["leave-out"]
+    data = json.loads((folder / "leave_out.json").read_text(encoding="utf-8"))
+    off = {row["id"]: findings.off_track(row, "after") for row in data["trial_results"]}
+    worst, *_, best = sorted(off, key=lambda id: -(off[id] or 0.0))
+    said = read(folder)
+    assert f"The worst is {worst}, " in said
+    assert f"than {best}, " not in said
+    whole = data["scores"][0]
+    first = f"On trials it has not seen, a tuned model is {shown(whole['position_rms_m_after'], 3)} m off track"
+    assert first in said
+    marks = (folder / "figures" / "scores.svg").read_text(encoding="utf-8")
+    assert all(id in marks for id in off)
+    old = tmp_path / "old"  # by a version that kept neither
+    old.mkdir()
+    del data["trial_results"]
+    (old / "leave_out.json").write_text(json.dumps(data), encoding="utf-8")
+    assert first in render(old)[0].read_text(encoding="utf-8")
