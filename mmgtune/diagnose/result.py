@@ -15,7 +15,7 @@ from ..profile import ShipProfile, tuned, with_effects
 from ..trial import Coverage
 from .by_run import ByRun
 from .contributions import Contribution
-from .gain import Gain
+from .gain import MOST, Gain
 from .intervals import Estimate
 from .leftover import Leftover, in_words
 from .legs import Difference
@@ -130,7 +130,8 @@ class Doubted:
 
     @property
     def sentence(self) -> str:
-        return f"More would be removed by {' + '.join(self.effects)}, but {self.why}, so the rest has no name."
+        sum_ = " + ".join(dict.fromkeys(self.effects))
+        return f"More would be removed by {sum_}, but {self.why}, so the rest has no name."
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
@@ -307,6 +308,11 @@ class Diagnosis(Plotted):
         return ""
 
     @property
+    def explains_nearly_all(self) -> bool:
+        """Whether the causes remove nearly all of the error beyond noise, on held-out trials too."""
+        return self.explained_share >= MOSTLY and self.gain.share_removed[0] >= MOST
+
+    @property
     def _mostly_left(self) -> bool:
         """Whether what is left has a shape and is too much beside what the causes explain."""
         bent = any(cause.runs for cause in self.causes) and self.leftover.excess > BENT
@@ -371,11 +377,15 @@ class Diagnosis(Plotted):
             )
             offsets = " ".join(f"{in_words(*one)}." for one in self.leftover.offsets.items())
             return f"Something is wrong that this program does not know: {left}, and {told}. {offsets}".rstrip()
-        parts = [cause.sentence for cause in self.causes]
-        text = ". ".join(parts) + "."
+        unsure = {tag for group in self.groups for tag in group}
+        text, doubtful = (
+            " ".join(f"{cause.sentence}." for cause in self.causes if (cause.tag in unsure) == asked)
+            for asked in (False, True)
+        )
         if self.groups:
             groups = "; ".join(" or ".join(group) for group in self.groups)
-            text = f"These trials cannot tell which it was: {groups}. If the first: {text}"
+            which = "what else there was" if text else "which it was"
+            text = f"{text} These trials cannot tell {which}: {groups}. If the first: {doubtful}".lstrip()
         if all(cause.effect is None for cause in self.causes):
             before, after = self.chi2
             return (

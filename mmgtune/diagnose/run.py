@@ -139,34 +139,32 @@ def _diagnose(
             choice=choice,
             differing=differing or (),
             doubted=doubted,
-            wall_s=time.perf_counter() - began,
+            wall_s=0.0,
             interrupted=hooks.stop(),
         )
 
-    result = judged(found, brought)
-    if (
-        result.unclear and not hooks.stop()
-    ):  # a sum that is not believed takes no credit from a cause that would be alone
+    def compared(result: Diagnosis, found: Found) -> Diagnosis:
+        """With what these trials cannot tell from the causes, where these are believed."""
+        if result.verdict in ("unexplained", "interrupted") or not found.causes:
+            return result
+        hooks.on_phase("comparing the causes with their rivals")
+        rivals = [rivals_of(bench, found, cause) for cause in found.causes]
+        groups = tuple(
+            (cause.tag, *(rival.hypothesis.tag for rival in of))
+            for cause, of in zip(found.causes, rivals, strict=True)
+            if of
+        )
+        return replace(result, groups=groups, suggestion=_suggestion(bench, found, rivals), interrupted=hooks.stop())
+
+    result = compared(judged(found, brought), found)
+    if result.unclear and not hooks.stop():  # perhaps the first of them would have been believed alone
         alone = alone_of(bench, found)
-        other = judged(alone, contributions(bench, alone, test), Doubted.of(result))
-        if other.verdict == "found":
+        other = compared(judged(alone, contributions(bench, alone, test), Doubted.of(result)), alone)
+        if other.verdict in ("found", "not-separable") and other.explains_nearly_all:
             result, found = other, alone
     if result.verdict == "unexplained":
-        return replace(result, whereabouts=_whereabouts(bench, found, result.leftover.offsets))
-    if result.verdict == "interrupted" or not found.causes:
-        return result
-    hooks.on_phase("comparing the causes with their rivals")
-    rivals = [rivals_of(bench, found, cause) for cause in found.causes]
-    groups = tuple(
-        (cause.tag, *(rival.hypothesis.tag for rival in of))
-        for cause, of in zip(found.causes, rivals, strict=True)
-        if of
-    )
-    told = replace(result, groups=groups, suggestion=_suggestion(bench, found, rivals))
-    result = replace(told, wall_s=time.perf_counter() - began, interrupted=hooks.stop())
-    if result.verdict == "unexplained":
-        return replace(result, whereabouts=_whereabouts(bench, found, result.leftover.offsets))
-    return result
+        result = replace(result, whereabouts=_whereabouts(bench, found, result.leftover.offsets))
+    return replace(result, wall_s=time.perf_counter() - began)
 
 
 def _first(found: Found) -> Point:

@@ -25,6 +25,7 @@ from tests.command import run
 from tests.hidden.cases import Case, null, pair, single
 from tests.hidden.plant import AUTOCORRELATED, simulate, write
 from tests.hidden.study import covered, outcome
+from tests.hidden.suzaku import PROFILE
 
 pytestmark = pytest.mark.slow(15)
 
@@ -144,6 +145,23 @@ def test_two_effects_are_both_found(tmp_path):
     case = pair(1)
     document = said_of(case, tmp_path).to_dict()
     assert outcome(case.effects, document) in ("right", "grouped")
+
+
+@pytest.mark.slow(25)
+def test_a_cause_that_would_be_believed_alone_is_named_though_a_hull_unlike_the_profile_s_adds_terms(tmp_path):
+    case = single("rudder-offset", 3, seed=1)
+    rng = np.random.default_rng(1)
+    derivatives = [name for name in load_profile("suzaku").sections["hull"].coefficients if name[0] in "YN"]
+    hull = {f"hull.{name}": PROFILE[f"hull.{name}"] * rng.uniform(0.93, 1.07) for name in derivatives}
+    write(simulate({**case.ship, **hull}, case.effects, case.seed, case.noise), tmp_path)
+    options = DiagnoseOptions(effects=("rudder-offset", "hull-term", "rpm-scale", "heading-filter"))
+    result = diagnose(load_profile("suzaku"), load_trials(tmp_path), options)
+    assert (result.verdict, [cause.tag for cause in result.causes]) == ("found", ["rudder-offset"])
+    assert result.doubted.effects[0] == "rudder-offset"
+    assert len(result.doubted.effects) > 3
+    assert "the rest has no name" in result.sentence()
+    angle = result.to_dict()["causes"][0]["parameters"]["angle"]["value"]
+    assert angle == pytest.approx(case.effects["rudder-offset"]["angle"], abs=0.002)
 
 
 def test_the_extended_profile_is_a_profile_like_any_other(tmp_path):
