@@ -34,6 +34,7 @@ from .intervals import Estimate, estimates
 from .leftover import Leftover, leftover, residuals_of
 from .legs import LEG_NAMES, differences
 from .linear import typical
+from .narrow import narrow_box
 from .result import Candidate, Cause, Detectability, Diagnosis, Doubted, Trace
 from .screening import angles
 from .search import ENOUGH, WORTH, Found, Refit, Step, rivals_of, search
@@ -164,7 +165,8 @@ def _diagnose(
             result, found = other, alone
     if result.verdict == "unexplained":
         result = replace(result, whereabouts=_whereabouts(bench, found, result.leftover.offsets))
-    return replace(result, wall_s=time.perf_counter() - began)
+    warnings = (*result.warnings, *narrow_box(bench, found)) if not hooks.stop() else result.warnings
+    return replace(result, warnings=warnings, wall_s=time.perf_counter() - began)
 
 
 def _first(found: Found) -> Point:

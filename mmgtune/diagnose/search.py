@@ -93,6 +93,10 @@ another hypothesis by as much to be told from it; in units of the noise along it
 BETTER = 5.0
 """It must also fit that much better: that it has fewer parameters does not rule a rival out."""
 
+AS_MUCH, AS_LITTLE = 0.97, 0.9
+"""Share of the fall of chi-squared, and of what is left, within which one value of an effect for all runs is a rival of
+values of another that differ between runs: these bend to an effect whose form is a little off."""
+
 WORTH = 0.1
 """Smallest size worth speaking of where another effect would do as well, as a share of the typical one."""
 
@@ -143,9 +147,15 @@ class Refit:
         One value for all runs need not fit better than values of each run do: these are charged for what they could
         have been, not by their number.
         """
+        if self.hypothesis is not None and self.hypothesis.by and not other.hypothesis.by and self._hardly_above(other):
+            return False
         better = (self.gain - other.gain) / max(self.score.inflation, other.score.inflation)
         simpler = self.hypothesis is not None and other.hypothesis.by and not self.hypothesis.by
         return (better >= BETTER or bool(simpler)) and better - self.cost + other.cost >= ENOUGH
+
+    def _hardly_above(self, other: Refit) -> bool:
+        """Whether another explains hardly less and leaves hardly more."""
+        return other.gain >= AS_MUCH * self.gain and other.point.chi2 <= self.point.chi2 / AS_LITTLE
 
 
 @dataclass(frozen=True, eq=False)

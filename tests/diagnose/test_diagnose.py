@@ -101,6 +101,22 @@ def test_a_rival_that_fits_as_well_stays_whatever_its_parameters(gain, of_rival,
     assert best.beats(rival) == beaten
 
 
+@pytest.mark.parametrize(
+    ("of_one", "left", "beaten"),
+    [(980.0, 1020.0, False), (980.0, 1500.0, True), (900.0, 1020.0, True)],
+    ids=["hardly less explained", "much more left", "less explained"],
+)
+def test_values_by_run_do_not_beat_one_value_of_another_effect_that_hardly_leaves_more(of_one, left, beaten):
+    """A lag that is longer out than home looks like a clock that was late by another time in each run."""
+    score = SimpleNamespace(inflation=1.0)
+    kinds = (SimpleNamespace(by="trial"), 1000.0, 1000.0), (SimpleNamespace(by=""), of_one, left)
+    by_run, one = (
+        Refit(hypothesis, score, SimpleNamespace(chi2=chi2), gain, 5.0, 0.0, 1.0, 0.0)
+        for hypothesis, gain, chi2 in kinds
+    )
+    assert by_run.beats(one) == beaten
+
+
 def test_water_driven_by_measured_wind_is_named(suzaku, tmp_path):
     """Made with the program's own simulator: the plant logs no wind."""
     trials = load_trials(files(null(3), tmp_path))

@@ -1,0 +1,37 @@
+"""A ship further from her profile than the box of the targets lets them go."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mmgtune.backends import STATES, Integrator
+from mmgtune.diagnose import DiagnoseOptions
+from mmgtune.diagnose.narrow import narrow_box
+from mmgtune.diagnose.search import Found, base_fit
+from mmgtune.diagnose.workbench import make_workbench
+from mmgtune.profile import tuned
+from mmgtune.simulation import simulate
+from mmgtune.trial import load_trials
+
+
+@pytest.mark.slow(5)
+@pytest.mark.parametrize(("times", "said"), [(1.8, True), (1.3, False)], ids=["beyond the box", "inside"])
+def test_a_resistance_beyond_the_box_is_said(suzaku, times, said):
+    profile = suzaku.profile
+    fouled = tuned(profile, {"hull.R_0": times * profile.value("hull.R_0")}, {}, {}, "made")
+    rng = np.random.default_rng(1)
+    trials = [load_trials("suzaku").trials[name] for name in ("turn_p35", "turn_m20", "zigzag_20")]
+    made = []
+    for trial, motion in zip(trials, simulate(fouled, trials, integrator=Integrator("rk4")), strict=True):
+        noisy = motion.states + rng.standard_normal(motion.states.shape) * [0.4, 0.4, 0.003, 0.02, 0.02, 0.0005]
+        made.append(replace(trial, **dict(zip(STATES, noisy.T, strict=True))))
+    bench = make_workbench(profile, made, DiagnoseOptions())
+    base = base_fit(bench)
+    explained = replace(base, chi2=min(base.chi2, float(bench.problem.n_residuals)) - 30.0)  # as causes would
+    warnings = narrow_box(bench, Found(base, explained))
+    assert len(warnings) == said
+    if said:
+        assert "hull.R_0 at +8" in warnings[0]
+        assert "--ar" in warnings[0]
+    assert narrow_box(bench, Found(base, base)) == []
