@@ -109,11 +109,8 @@ def test_a_rival_that_fits_as_well_stays_whatever_its_parameters(gain, of_rival,
 def test_values_by_run_do_not_beat_one_value_of_another_effect_that_hardly_leaves_more(of_one, left, beaten):
     """A lag that is longer out than home looks like a clock that was late by another time in each run."""
     score = SimpleNamespace(inflation=1.0)
-    kinds = (SimpleNamespace(by="trial"), 1000.0, 1000.0), (SimpleNamespace(by=""), of_one, left)
-    by_run, one = (
-        Refit(hypothesis, score, SimpleNamespace(chi2=chi2), gain, 5.0, 0.0, 1.0, 0.0)
-        for hypothesis, gain, chi2 in kinds
-    )
+    by_run = Refit(SimpleNamespace(by="trial"), score, SimpleNamespace(chi2=1000.0), 1000.0, 5.0, 0.0, 1.0, 0.0)
+    one = Refit(SimpleNamespace(by=""), score, SimpleNamespace(chi2=left), of_one, 5.0, 0.0, 1.0, 0.0)
     assert by_run.beats(one) == beaten
 
 
