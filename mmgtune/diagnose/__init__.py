@@ -12,7 +12,7 @@ intervals, leftover, separate         sizes, what is left, the trial that would 
 runs, hierarchy, by_run, elsewhere    what differs from run to run: groups, evidence, words, runs held out
 voyages, legs     windows of logs of hours; what differs from voyage to voyage
 evidence          residual forces and short horizons, before any cause
-whereabouts       where an error lives that nothing explains
+whereabouts       where an error lives that nothing explains; narrow: whether the box of the targets is in the way
 """
 
 import sys

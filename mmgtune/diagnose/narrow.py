@@ -17,6 +17,10 @@ AS_MUCH = 0.5
 """Share of the fall of chi-squared by all that was found from which a wider box that brings it is spoken of."""
 
 
+STEPS = 20
+"""Steps of that fit: it only has to show whether there is something to gain."""
+
+
 def narrow_box(bench: Workbench, found: Found) -> list[str]:
     """Warnings of a diagnosis whose re-tuned model, any cause apart, would fit about as well in a wider box.
 
@@ -30,17 +34,21 @@ def narrow_box(bench: Workbench, found: Found) -> list[str]:
     wide = _let_go(bench, at_end)
     values = bench.sub_box(base.names).from_unit(base.unit[:, None])[:, 0]
     start = np.clip(wide.sub_box(base.names).to_unit(values), 0.0, 1.0)
-    other = wide.refit(base.names, start[:, None], base.offsets, integrator=base.integrator)
+    start = start[:, None]
+    other = wide.refit(base.names, start, base.offsets, integrator=base.integrator, max_iterations=STEPS)
     gained = base.chi2 - other.chi2
-    if gained < AS_MUCH * explained:
-        return []
     box = wide.sub_box(base.names)
-    ends = dict(zip(base.names, box.from_unit(other.unit[:, None])[:, 0], strict=True))
-    moved = [name for k, name in enumerate(base.names) if name in at_end and _beyond(values[k], ends[name], box.pre[k])]
-    sizes = ", ".join(f"{name} at {ends[name] / p - 1.0:+.0%}" for name, p in _pre(box.names, box.pre) if name in moved)
+    ends = box.from_unit(other.unit[:, None])[:, 0]
+    gone = [
+        f"{name} {abs(ends[k] / box.pre[k] - 1.0):.0%} {'above' if abs(ends[k]) > abs(box.pre[k]) else 'below'}"
+        for k, name in enumerate(base.names)
+        if name in at_end and box.pre[k] != 0.0 and _beyond(values[k], ends[k], box.pre[k])
+    ]
+    if not gone or gained < AS_MUCH * explained:
+        return []
     share = f"{min(gained / explained, 1.0):.0%}"
     what = (
-        f"with {sizes} of the profile's value, beyond it, the model explains {share} of what the causes do without them"
+        f"with {', '.join(gone)} the profile's value, outside, the model alone explains {share} of what the causes do"
     )
     way = "if the ship may differ so much, as by fouling, look again with a larger --ar"
     return [f"the box of the targets may be too narrow: {what}; {way}"]
@@ -49,10 +57,6 @@ def narrow_box(bench: Workbench, found: Found) -> list[str]:
 def _beyond(was: float, now: float, pre: float) -> bool:
     """Whether a value left the end of its box by a twentieth of its distance from there to what was pre-determined."""
     return abs(now - pre) > 1.05 * abs(was - pre)
-
-
-def _pre(names: Sequence[str], values: np.ndarray) -> list[tuple[str, float]]:
-    return [(name, float(value)) for name, value in zip(names, values, strict=True) if value != 0.0]
 
 
 def _let_go(bench: Workbench, names: Sequence[str]) -> Workbench:

@@ -32,6 +32,7 @@ def test_a_resistance_beyond_the_box_is_said(suzaku, times, said):
     warnings = narrow_box(bench, Found(base, explained))
     assert len(warnings) == said
     if said:
-        assert "hull.R_0 at +8" in warnings[0]
+        assert "hull.R_0 8" in warnings[0]
+        assert "% above the profile's value" in warnings[0]
         assert "--ar" in warnings[0]
     assert narrow_box(bench, Found(base, base)) == []
