@@ -176,9 +176,9 @@ def summary(result: Diagnosis, folder: str, report: bool) -> str:
     if result.suggestion:
         lines.append(f"A trial that would tell: {result.suggestion.manoeuvre}.")
     if result.coverage and result.coverage.to_dict():
-        lines += ["", result.coverage.sentence, *(f"Note: {words}" for words in result.warnings)]
-    doubts = in_words(result.profile.doubts())
-    lines += ["", *(f"Note: {words}." for words in doubts)] if doubts else []
+        lines += ["", result.coverage.sentence]
+    notes = [*result.warnings, *(f"{words}." for words in in_words(result.profile.doubts()))]
+    lines += ["", *(f"Note: {words}" for words in notes)] if notes else []
     lines += ["", f"{'Stopped after' if result.interrupted else 'Finished in'} {result.wall_s:.1f} s."]
     lines.append(f"Report: {folder}/report.html" if report else f"Results: {folder}")
     return "\n".join(lines)
