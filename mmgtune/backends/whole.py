@@ -36,8 +36,9 @@ class Whole:
 
 @lru_cache(maxsize=64)
 def whole_of(model: Model) -> Whole | None:
-    """The model among all effects; None where it has all of them."""
+    """The model among all effects; None where it has all of them, or one of its own that no registry holds."""
     whole = Model(with_all_effects(model.profile), model.ties)
-    if len(whole.effects) == len(model.effects):
+    known = {id(effect) for effect in whole.effects}
+    if len(known) == len(model.effects) or any(id(effect) not in known for effect in model.effects):
         return None
     return Whole(whole, np.array([whole.rows[name] for name in model.rows]))

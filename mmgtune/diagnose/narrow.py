@@ -47,9 +47,7 @@ def narrow_box(bench: Workbench, found: Found) -> list[str]:
     if not gone or gained < AS_MUCH * explained:
         return []
     share = f"{min(gained / explained, 1.0):.0%}"
-    what = (
-        f"with {', '.join(gone)} the profile's value, outside, the model alone explains {share} of what the causes do"
-    )
+    what = f"with {', '.join(gone)} the profile's value, outside, the model explains {share} of what the causes do"
     way = "if the ship may differ so much, as by fouling, look again with a larger --ar"
     return [f"the box of the targets may be too narrow: {what}; {way}"]
 
