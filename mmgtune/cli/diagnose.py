@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..errors import OptionError, Problem, closest
-from ..options import DiagnoseOptions
+from ..options import DiagnoseOptions, in_flags
 from ..units import in_time
 from . import common as c
 from . import completing
@@ -177,7 +177,7 @@ def summary(result: Diagnosis, folder: str, report: bool) -> str:
         lines.append(f"A trial that would tell: {result.suggestion.manoeuvre}.")
     if result.coverage and result.coverage.to_dict():
         lines += ["", result.coverage.sentence]
-    notes = [*result.warnings, *(f"{words}." for words in in_words(result.profile.doubts()))]
+    notes = [*map(in_flags, result.warnings), *(f"{words}." for words in in_words(result.profile.doubts()))]
     lines += ["", *(f"Note: {words}" for words in notes)] if notes else []
     lines += ["", f"{'Stopped after' if result.interrupted else 'Finished in'} {result.wall_s:.1f} s."]
     lines.append(f"Report: {folder}/report.html" if report else f"Results: {folder}")

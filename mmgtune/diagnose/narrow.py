@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..fitting.box import A_R
 from .search import ENOUGH, Found
 from .workbench import Workbench
 
@@ -48,7 +49,8 @@ def narrow_box(bench: Workbench, found: Found) -> list[str]:
         return []
     share = f"{min(gained / explained, 1.0):.0%}"
     what = f"with {', '.join(gone)} the profile's value, outside, the model explains {share} of what the causes do"
-    way = "if the ship may differ so much, as by fouling, look again with a larger --ar"
+    room = WIDER * (A_R if bench.options.a_r is None else bench.options.a_r)
+    way = f"if the ship may differ so much, as by fouling, look again with a_r={room:g}"
     return [f"the box of the targets may be too narrow: {what}; {way}"]
 
 
