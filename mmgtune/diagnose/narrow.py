@@ -17,7 +17,6 @@ WIDER = 2.0
 AS_MUCH = 0.5
 """Share of the fall of chi-squared by all that was found from which a wider box that brings it is spoken of."""
 
-
 STEPS = 20
 """Steps of that fit: it only has to show whether there is something to gain."""
 
@@ -33,12 +32,11 @@ def narrow_box(bench: Workbench, found: Found) -> list[str]:
     if not at_end or explained < ENOUGH:
         return []
     wide = _let_go(bench, at_end)
+    box = wide.sub_box(base.names)
     values = bench.sub_box(base.names).from_unit(base.unit[:, None])[:, 0]
-    start = np.clip(wide.sub_box(base.names).to_unit(values), 0.0, 1.0)
-    start = start[:, None]
+    start = np.clip(box.to_unit(values), 0.0, 1.0)[:, None]
     other = wide.refit(base.names, start, base.offsets, integrator=base.integrator, max_iterations=STEPS)
     gained = base.chi2 - other.chi2
-    box = wide.sub_box(base.names)
     ends = box.from_unit(other.unit[:, None])[:, 0]
     gone = [
         f"{name} {abs(ends[k] / box.pre[k] - 1.0):.0%} {'above' if abs(ends[k]) > abs(box.pre[k]) else 'below'}"

@@ -147,10 +147,10 @@ class Refit:
         One value for all runs need not fit better than values of each run do: these are charged for what they could
         have been, not by their number.
         """
-        if self.hypothesis is not None and self.hypothesis.by and not other.hypothesis.by and self._hardly_above(other):
+        if self.hypothesis.by and not other.hypothesis.by and self._hardly_above(other):
             return False
         better = (self.gain - other.gain) / max(self.score.inflation, other.score.inflation)
-        simpler = self.hypothesis is not None and other.hypothesis.by and not self.hypothesis.by
+        simpler = other.hypothesis.by and not self.hypothesis.by
         return (better >= BETTER or bool(simpler)) and better - self.cost + other.cost >= ENOUGH
 
     def _hardly_above(self, other: Refit) -> bool:

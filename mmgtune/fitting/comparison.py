@@ -111,7 +111,7 @@ def total(compared: Sequence[TrialComparison], role: str, which: str) -> float |
     return float(sum(values)) if values else None
 
 
-def off_by(compared: Sequence[TrialComparison], which: str) -> dict[str, str]:
+def off_in_words(compared: Sequence[TrialComparison], which: str) -> dict[str, str]:
     """How far off "track" and "heading" as mean over trials, "1.23 m" and "0.45°"; without what is not known."""
     found = {}
     places, headings = zip(*(one.off(which) for one in compared), strict=True)

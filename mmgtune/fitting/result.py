@@ -22,7 +22,7 @@ from ..trial import Coverage
 from .box import Box, width_words
 from .certificate import Certificate
 from .cmaes import Generation, Restart
-from .comparison import TrialComparison, finite, finite_values, off_by, total
+from .comparison import TrialComparison, finite, finite_values, off_in_words, total
 from .extending import held_words
 from .identifiability import Identifiability
 from .least_squares import LeastSquaresResult
@@ -171,7 +171,7 @@ class FitResult(Plotted):
         trials = f"{len(chosen)} trial{'s' * (len(chosen) > 1)}"
         said = [f"On {trials} not used for tuning" if tests else f"On the {trials} it was tuned to"]
         said[0] += f", the tuned {self.profile.name}"
-        after, before = (off_by(chosen, which) for which in ("after", "before"))
+        after, before = (off_in_words(chosen, which) for which in ("after", "before"))
         if after:
             sizes = " and ".join(f"{size} off {of}" for of, size in after.items())
             instead = f" instead of {' and '.join(before.values())}" if list(before) == list(after) else ""

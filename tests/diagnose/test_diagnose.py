@@ -90,14 +90,19 @@ def test_what_the_log_leaves_open_is_not_called_unexplained(tmp_path):
     assert result.chi2[1] > 1.1  # more than the noise of the sensors it is
 
 
+def rivalling(gain, cost, inflation=1.0, by="", left=0.0):
+    """A refit as far as its rivals ask."""
+    known = (SimpleNamespace(by=by), SimpleNamespace(inflation=inflation), SimpleNamespace(chi2=left))
+    return Refit(*known, gain, cost, 0.0, 1.0, 0.0)
+
+
 @pytest.mark.parametrize(
     ("gain", "of_rival", "beaten"),
     [(100.0, 60.0, True), (100.0, 97.0, False), (100.0, 82.0, False)],
     ids=["far better", "fewer parameters only", "not enough for its correlated noise"],
 )
 def test_a_rival_that_fits_as_well_stays_whatever_its_parameters(gain, of_rival, beaten):
-    score = SimpleNamespace(inflation=4.0)
-    best, rival = (Refit(None, score, None, g, cost, 0.0, 1.0, 0.0) for g, cost in ((gain, 10.0), (of_rival, 40.0)))
+    best, rival = (rivalling(g, cost, inflation=4.0) for g, cost in ((gain, 10.0), (of_rival, 40.0)))
     assert best.beats(rival) == beaten
 
 
@@ -108,9 +113,7 @@ def test_a_rival_that_fits_as_well_stays_whatever_its_parameters(gain, of_rival,
 )
 def test_values_by_run_do_not_beat_one_value_of_another_effect_that_hardly_leaves_more(of_one, left, beaten):
     """A lag that is longer out than home looks like a clock that was late by another time in each run."""
-    score = SimpleNamespace(inflation=1.0)
-    by_run = Refit(SimpleNamespace(by="trial"), score, SimpleNamespace(chi2=1000.0), 1000.0, 5.0, 0.0, 1.0, 0.0)
-    one = Refit(SimpleNamespace(by=""), score, SimpleNamespace(chi2=left), of_one, 5.0, 0.0, 1.0, 0.0)
+    by_run, one = rivalling(1000.0, 5.0, by="trial", left=1000.0), rivalling(of_one, 5.0, left=left)
     assert by_run.beats(one) == beaten
 
 
