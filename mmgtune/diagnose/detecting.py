@@ -1,0 +1,61 @@
+"""What the trials could tell of each hypothesis, before looking at what they do tell."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..fitting.box import parameter_of
+from .hypotheses import Hypothesis
+from .linear import typical
+from .result import Detectability
+from .screening import angles
+from .search import ENOUGH, WORTH, Step
+from .workbench import Workbench
+
+TWINS = 3
+"""Most similar effects listed for each."""
+
+
+def detectability(bench: Workbench, step: Step, known: Sequence[Hypothesis]) -> list[Detectability]:
+    """The table for every named hypothesis, from the first look."""
+    named = [s for s in step.scores if not s.hypothesis.effect.one_of_many and not s.hypothesis.by]
+    cosine = angles(step.linear, [s.hypothesis for s in named])
+    found = []
+    for i, score in enumerate(named):
+        h = score.hypothesis
+        needed = ENOUGH + len(h.names) * math.log(bench.problem.n_residuals)
+        sizes = math.sqrt(needed * score.inflation) / score.power if score.power > 0.0 else math.inf
+        sizes = max(sizes, WORTH)
+        order = [j for j in np.argsort(-cosine[i]) if named[j].hypothesis.tag != h.tag][:TWINS]
+        found.append(
+            Detectability(
+                h.tag,
+                tuple(h.variant),
+                score.share,
+                score.power,
+                {name.rpartition(".")[2]: _limit(bench, name, sizes) for name in h.names},
+                {name: h.effect.parameters[name].unit for name in h.variant},
+                tuple((named[j].hypothesis.tag, math.degrees(math.acos(min(1.0, cosine[i, j])))) for j in order),
+            )
+        )
+    return found
+
+
+def _limit(bench: Workbench, name: str, sizes: float) -> float | None:
+    """Value of a parameter that many typical sizes from its null; None where no value of its range is enough."""
+    parameter = parameter_of(bench.model, name)
+    assert parameter is not None  # asked of parameters of effects only
+    i = bench.box.names.index(name)
+    if any(i == direction for _, direction in bench.box.polar):
+        return None
+    step = sizes * typical(bench, name) * float(bench.box.width[i])
+    if any(i == size for size, _ in bench.box.polar):
+        return step if step <= bench.box.high[i] else None
+    null = 0.0 if parameter.chart == "reciprocal" else parameter.null
+    value = null + step
+    if parameter.chart == "reciprocal":
+        return 1.0 / value if bench.box.low[i] < value <= bench.box.high[i] else None
+    return value if value <= bench.box.high[i] else None

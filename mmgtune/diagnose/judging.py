@@ -1,0 +1,223 @@
+"""What is made of what a search found: the answer with its causes, their rivals and what they gain."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ..backends import STATES
+from ..fitting.one_sided import coverage_notes, followers
+from ..fitting.run import Hooks
+from ..options import DiagnoseOptions
+from ..profile import ShipProfile
+from ..trial import Coverage, Trial
+from .by_run import ByRun
+from .contributions import Aside, Contribution, alone_of, contributions
+from .detecting import detectability
+from .gain import J_of, held_out
+from .gathering import error_of, evidence
+from .hypotheses import INPUTS_HELD, INTEGRATION_STEP, Hypothesis
+from .intervals import Estimate, estimates
+from .leftover import Leftover, leftover
+from .legs import Difference
+from .result import Candidate, Cause, Diagnosis, Doubted, Trace
+from .search import Found, Refit, Step, rivals_of
+from .separate import Suggestion, suggest
+from .voyages import Choice
+from .workbench import Point, Workbench
+
+
+@dataclass(frozen=True, eq=False)
+class Judge:
+    """What every answer of one diagnosis shares.
+
+    profile, options, provenance  as given
+    known     hypotheses that were looked for
+    test      trials kept for testing
+    before    what the model without any cause leaves
+    traces    what was set aside
+    choice    windows of voyages, None for trials; differing: what differs between the voyages
+    """
+
+    bench: Workbench
+    profile: ShipProfile
+    options: DiagnoseOptions
+    provenance: Mapping[str, Any]
+    hooks: Hooks
+    known: Sequence[Hypothesis]
+    test: Sequence[Trial]
+    before: Leftover
+    traces: Sequence[Aside]
+    choice: Choice | None
+    differing: Sequence[Difference]
+
+    def answer(self, found: Found, brought: Sequence[Contribution]) -> tuple[Diagnosis, Found]:
+        """The answer, and the causes it is about: those found, or the first of them where these are not believed and
+        it alone is.
+
+        brought  what each cause contributes
+        """
+        result = self._compared(self._judged(found, brought), found)
+        if result.unclear and not self.hooks.stop():  # perhaps the first of them would have been believed alone
+            alone = alone_of(self.bench, found)
+            brought = contributions(self.bench, alone, self.test)
+            other = self._compared(self._judged(alone, brought, Doubted.of(result)), alone)
+            if other.verdict in ("found", "not-separable") and other.explains_nearly_all:
+                result, found = other, alone
+        if result.verdict == "unexplained":
+            result = replace(result, whereabouts=error_of(self.bench, found, result.leftover.offsets))
+        return result, found
+
+    def _judged(self, found: Found, brought: Sequence[Contribution], doubted: Doubted | None = None) -> Diagnosis:
+        """The answer before its causes are compared with their rivals."""
+        bench = self.bench
+        sizes = estimates(bench, found.final)
+        left = leftover(bench, found.final) if found.causes or found.finer_step else self.before
+        theta, retuned = (_targets_of(bench, point) for point in (found.final, found.base))
+        coverage = Coverage.of(bench.trials, self.profile.L_pp)
+        return Diagnosis(
+            profile=self.profile,
+            options=self.options,
+            causes=tuple(_causes(bench, found, sizes, self.test)),
+            traces=tuple(_trace(bench, one) for one in self.traces),
+            contributions=tuple((h.tag, one) for h, one in zip(found.causes, brought, strict=True)),
+            groups=(),
+            candidates=tuple(_candidates(bench, found, self.test)),
+            detectability=tuple(detectability(bench, found.steps[0], self.known)) if found.steps else (),
+            suggestion=None,
+            gain=held_out(bench, found, self.test),
+            leftover=left,
+            explained_share=_explained(found, self.before, left),
+            theta=theta,
+            retuned=retuned,
+            coverage=coverage,
+            warnings=tuple(coverage_notes(bench.model, bench.targets, coverage)),
+            noise=_noise(bench),
+            chi2=(
+                _first(found).chi2 / max(1, bench.problem.n_residuals),
+                found.final.chi2 / max(1, bench.problem.n_residuals),
+            ),
+            evidence=evidence(bench, found, self.before, left),
+            provenance=self.provenance,
+            choice=self.choice,
+            differing=tuple(self.differing),
+            doubted=doubted,
+            wall_s=0.0,
+            interrupted=self.hooks.stop(),
+        )
+
+    def _compared(self, result: Diagnosis, found: Found) -> Diagnosis:
+        """With what these trials cannot tell from the causes, where these are believed."""
+        if result.verdict in ("unexplained", "interrupted") or not found.causes:
+            return result
+        self.hooks.on_phase("comparing the causes with their rivals")
+        rivals = [rivals_of(self.bench, found, cause) for cause in found.causes]
+        groups = tuple(
+            (cause.tag, *(rival.hypothesis.tag for rival in of))
+            for cause, of in zip(found.causes, rivals, strict=True)
+            if of
+        )
+        suggestion = _suggestion(self.bench, found, rivals)
+        return replace(result, groups=groups, suggestion=suggestion, interrupted=self.hooks.stop())
+
+
+def _first(found: Found) -> Point:
+    """The model re-tuned before anything was put right."""
+    as_given = found.held is None and found.finer_step is None
+    return found.base if as_given else found.steps[0].base
+
+
+def _targets_of(bench: Workbench, point: Point) -> dict[str, float]:
+    """Targets at a point, with what is tied to them."""
+    values = bench.values(point)
+    own = {name: values[name] for name in bench.targets}
+    return own | followers(bench.model.ties, own)
+
+
+def _causes(bench: Workbench, found: Found, sizes: Mapping[str, Estimate], test: Sequence[Trial]) -> list[Cause]:
+    """Causes by tag, those of several parameters together."""
+    causes: list[Cause] = []
+    if found.finer_step is not None:
+        causes.append(Cause(INTEGRATION_STEP, None, {}, 0.0, None))
+    if found.held is not None:
+        causes.append(Cause(INPUTS_HELD, None, {}, 0.0, None, words=found.held.sentence))
+    J_before = J_of(bench, found.base, test)
+    for tag, by in dict.fromkeys((h.tag, h.by) for h in found.causes):
+        own = [h for h in found.causes if (h.tag, h.by) == (tag, by)]
+        names = [name for h in own for name in h.names]
+        steps = [s for s in found.steps if s.refits and s.refits[0].hypothesis in own]
+        J_after = J_of(bench, steps[0].refits[0].point, test) if steps else None
+        gain = 1.0 - J_after / J_before if J_before and J_after is not None else None
+        p_value = max((s.refits[0].p_value for s in steps), default=0.0)
+        estimated = {name: sizes[name] for name in names}
+        effect, variant = own[0].effect, tuple(dict.fromkeys(name for h in own for name in h.variant))
+        runs = ByRun.of(effect, variant, by, own[0].groups, bench.trials, estimated) if by else None
+        causes.append(Cause(tag, effect, {} if by else estimated, p_value, gain, runs))
+    return causes
+
+
+def _trace(bench: Workbench, aside: Aside) -> Trace:
+    one = aside.hypothesis
+    runs = ByRun.of(one.effect, one.variant, one.by, one.groups, bench.trials, aside.estimates) if one.by else None
+    cause = Cause(one.tag, one.effect, {} if one.by else aside.estimates, aside.p_value, None, runs)
+    return Trace(cause, aside.contribution)
+
+
+def _candidates(bench: Workbench, found: Found, test: Sequence[Trial]) -> list[Candidate]:
+    """Every hypothesis of the first look that was refitted, best first; then scores of the others."""
+    if not found.steps:
+        return []
+    first = found.steps[0]
+    listed = [
+        Candidate(
+            r.hypothesis.tag,
+            tuple(r.hypothesis.variant),
+            r.score.score,
+            r.gain,
+            r.p_value,
+            J_of(bench, r.point, test) if _promising(r, first) else None,
+            r.unvisited if _promising(r, first) else "",
+            by=r.hypothesis.by,
+        )
+        for r in first.refits
+    ]
+    refitted = [r.hypothesis for r in first.refits]
+    others = sorted((s for s in first.scores if s.hypothesis not in refitted), key=lambda s: -s.score)
+    return listed + [
+        Candidate(s.hypothesis.tag, s.hypothesis.variant, s.score, 0.0, 1.0, None, by=s.hypothesis.by) for s in others
+    ]
+
+
+def _promising(refit: Refit, step: Step) -> bool:
+    return refit.gain >= 0.05 * step.refits[0].gain
+
+
+def _explained(found: Found, before: Leftover, left: Leftover) -> float:
+    """Share of the error above white noise on the trials looked at that the causes remove."""
+    if not found.causes:
+        return 0.0
+    return 1.0 - max(left.excess, 0.0) / before.excess if before.excess > 0.0 else 0.0
+
+
+def _suggestion(bench: Workbench, found: Found, rivals: Sequence[Sequence[Refit]]) -> Suggestion | None:
+    """The trial that would separate the first cause that has rivals."""
+    for cause, of in zip(found.causes, rivals, strict=True):
+        if of:
+            best = [(cause.tag, found.final), *((r.hypothesis.tag, r.point) for r in of[:3])]
+            return suggest(bench, best)
+    return None
+
+
+def _noise(bench: Workbench) -> dict[str, dict[str, float]]:
+    """Noise by channel in SI units: white part, fading part and its autocorrelation."""
+    return {
+        name: {
+            "white": float(bench.sigma[STATES.index(name)] * np.sqrt(noise.white)),
+            "fading": float(bench.sigma[STATES.index(name)] * np.sqrt(noise.fading)),
+            "autocorrelation": noise.phi,
+        }
+        for name, noise in bench.noise.channels.items()
+    }
