@@ -130,6 +130,17 @@ class Model:
             )
         )
 
+    def logged_in_time(self, theta: FloatArray) -> FloatArray:
+        """Coefficients (n_rows, ...) without what makes a log late, for runs of which none is given.
+
+        Dead times of the ship stay.
+        """
+        theta = np.array(theta)
+        for clock in self.clocks:
+            if clock.late == "log":
+                theta[self.fields(clock)[0]] = 0.0
+        return theta
+
     def coefficients(self, theta: FloatArray) -> Any:
         """The arrangement's tuple of the tuples the equations take, with lanes of shape (n_candidates,) out of a matrix
         (n_rows, n_candidates)."""

@@ -116,7 +116,7 @@ class ModelLanes:
     """
 
     def __init__(self, model: Model, theta: FloatArray, backend: Backend):
-        self.model, self.theta, self.backend = model, _on_time(model, theta), backend
+        self.model, self.theta, self.backend = model, model.logged_in_time(theta), backend
         self.L_pp, self.inputs = model.L_pp, model.inputs
         self.actuators = [model.profile.actuator(name) for name in model.inputs]
 
@@ -268,12 +268,3 @@ def _cases(h: FloatArray, length: IntArray, controls: FloatArray, speed: FloatAr
         target=nothing,
         weight=nothing,
     )
-
-
-def _on_time(model: Model, theta: FloatArray) -> FloatArray:
-    """The coefficients without what makes a log late: nothing is logged here.  Dead times of the ship stay."""
-    theta = np.array(theta)
-    for clock in model.clocks:
-        if clock.late == "log":
-            theta[model.fields(clock)[0]] = 0.0
-    return theta

@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 
 from ..errors import OptionError, Problem, closest
+from ..model import Model
 from ..physics.quantities import STATES
 from .cases import Backend, Cases, Integrator, LaneResult, pad
 from .compiled import Compiled
@@ -23,6 +24,7 @@ __all__ = [
     "LaneModel",
     "LaneResult",
     "get_backend",
+    "get_ready_backend",
     "pad",
 ]
 
@@ -39,3 +41,9 @@ def get_backend(name: str = "compiled") -> Backend:
 
         return JaxLanes()
     raise OptionError(Problem(f"unknown back end '{name}'", "backend", fix=closest(name, BACKENDS)))
+
+
+def get_ready_backend(model: Model) -> Backend | None:
+    """The compiled back end where it can run a model at once; None where it would have to be compiled first."""
+    compiled = get_backend("compiled")
+    return compiled if isinstance(compiled, Compiled) and compiled.is_ready(model) else None

@@ -156,6 +156,13 @@ class Compiled:
             self._kernels[text] = load_kernel(text, functions_of(model))
         return self._kernels[text]
 
+    def is_ready(self, model: Model) -> bool:
+        """Whether a short run of a model needs nothing compiled: its own simulator, or that of all effects, is kept."""
+        if self._is_there(model):
+            return True
+        whole = whole_of(model)
+        return whole is not None and self._is_there(whole.model)
+
     def _among_all(self, model: Model, work: float) -> Whole | None:
         """The model among all effects, where that has a kernel already and the model itself has none worth waiting for.
 

@@ -1,0 +1,138 @@
+"""Helmsmen: they turn time and heading into rudder orders."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+from ..errors import OptionError, Problem
+
+RUDDER_MOST, HEADING_MOST = 1.6, 2.0 * math.pi
+"""Rudder angle and check heading [rad] beyond which degrees are meant."""
+
+
+def in_radians(angle: float, name: str, most: float) -> None:
+    """Raises OptionError where an angle [rad] is so large that it must be in degrees."""
+    if not abs(angle) <= most:
+        fix = f"write math.radians({angle:g}) if {angle:g} deg is meant"
+        raise OptionError(Problem(f"the {name} is {angle:g} rad", "", "orders are in radians", fix))
+
+
+class Helmsman(Protocol):
+    """Turns time and heading into rudder orders; may remember what it has seen."""
+
+    def order(self, t: float, heading: float) -> float:
+        """Rudder ordered [rad] at time t [s] and heading off the approach course [rad]."""
+        ...
+
+    def finished(self, heading: float) -> bool:
+        """Whether the manoeuvre is complete."""
+        ...
+
+
+@dataclass
+class TurningOrder:
+    """One rudder angle [rad], starboard positive, from time ``at`` [s] until the heading changed by ``until`` [rad]."""
+
+    angle: float
+    at: float = 20.0
+    until: float = math.radians(540.0)
+
+    def __post_init__(self) -> None:
+        """Raises OptionError for an angle that must be degrees."""
+        in_radians(self.angle, "rudder angle", RUDDER_MOST)
+
+    def order(self, t: float, heading: float) -> float:
+        """See ``Helmsman``."""
+        return self.angle if t >= self.at else 0.0
+
+    def finished(self, heading: float) -> bool:
+        """See ``Helmsman``."""
+        return abs(heading) >= self.until
+
+
+@dataclass
+class ZigzagOrder:
+    """Rudder [rad] put over to the other side whenever the heading passes ``heading`` [rad]; ``legs`` orders in all."""
+
+    rudder: float
+    heading: float
+    at: float = 20.0
+    legs: int = 5
+    _side: float = 0.0
+    _given: int = 0
+
+    def __post_init__(self) -> None:
+        """Raises OptionError for angles that must be degrees."""
+        in_radians(self.rudder, "rudder angle", RUDDER_MOST)
+        in_radians(self.heading, "check heading", HEADING_MOST)
+
+    def order(self, t: float, heading: float) -> float:
+        """See ``Helmsman``."""
+        if self._given == 0 and t >= self.at:
+            self._side, self._given = 1.0, 1
+        elif self._given and heading * self._side * math.copysign(1.0, self.rudder) >= abs(self.heading):
+            self._side, self._given = -self._side, self._given + 1
+        return self._side * self.rudder
+
+    def finished(self, heading: float) -> bool:
+        """See ``Helmsman``."""
+        return self._given > self.legs
+
+
+@dataclass
+class SpiralOrder:
+    """Dieudonne's spiral: rudder from one side to the other in ``steps``, each kept for ``hold`` [s].
+
+    rudder  of the first and, to the other side, of the last step [rad]
+    """
+
+    rudder: float
+    hold: float
+    steps: int = 9
+    at: float = 20.0
+    _t: float = 0.0
+
+    def order(self, t: float, heading: float) -> float:
+        """See ``Helmsman``."""
+        self._t = t
+        k = min(math.floor((t - self.at) / self.hold), self.steps - 1)
+        return 0.0 if t < self.at else self.rudder * (1.0 - 2.0 * k / (self.steps - 1))
+
+    def finished(self, heading: float) -> bool:
+        """See ``Helmsman``."""
+        return self._t >= self.at + self.steps * self.hold
+
+
+@dataclass
+class Weave:
+    """Rudder orders of changing size and sign every ``hold`` seconds: excites everything a little."""
+
+    hold: float
+
+    def order(self, t: float, heading: float) -> float:
+        """See ``Helmsman``."""
+        k = int(t // self.hold)
+        return math.radians(25.0) * math.sin(2.4 * k) * (0.4 + 0.6 * math.cos(1.1 * k) ** 2)
+
+    def finished(self, heading: float) -> bool:
+        """See ``Helmsman``."""
+        return False
+
+
+@dataclass
+class Straight:
+    """Rudder amidships."""
+
+    def order(self, t: float, heading: float) -> float:
+        """See ``Helmsman``."""
+        return 0.0
+
+    def finished(self, heading: float) -> bool:
+        """See ``Helmsman``."""
+        return False
+
+
+OF_FEW_ORDERS = (TurningOrder, ZigzagOrder, SpiralOrder, Weave, Straight)
+"""Helmsmen who leave the rudder alone for many steps at a time."""

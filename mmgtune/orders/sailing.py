@@ -1,0 +1,118 @@
+"""A manoeuvre to be simulated, and the watch that is kept on it: orders step by step, and the log."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..errors import OptionError, Problem
+from ..inputs import Role
+from ..model import Model
+from ..profile import ShipProfile
+from ..simulation import Motion
+from .helmsmen import Helmsman
+
+FINE = 0.01
+"""Step of the integration, fourth-order Runge-Kutta, as a share of the time the ship takes for its own length."""
+
+LONGEST_STEP = 0.25
+"""Longest step [s]; it is also how often the helmsman looks at the compass."""
+
+ROLES: tuple[Role, ...] = ("rudder", "propeller", "thruster")
+"""What orders are given to, in the order in which a watch gives them."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sailing:
+    """A manoeuvre to be simulated: who steers, from what approach, and for how long.
+
+    speed    approach speed [m/s], the profile's where None
+    n        propeller revolutions [1/s], the profile's where None
+    heading  approach heading [rad]
+    longest  time [s] after which the run ends in any case
+    sample   time [s] between samples
+    step     longest step of the integration and of the helmsman [s]; chosen from length and speed where None
+    engine   revolutions as a share of ``n`` from the share of the approach speed left; constant where None
+    """
+
+    helmsman: Helmsman
+    id: str = "run"
+    speed: float | None = None
+    n: float | None = None
+    heading: float = 0.0
+    longest: float = 1800.0
+    sample: float = 1.0
+    step: float | None = None
+    engine: Callable[[float], float] | None = None
+
+    def approach(self, profile: ShipProfile) -> tuple[float, float]:
+        """Speed [m/s] and revolutions [1/s] of the approach.  Raises OptionError where they are not known."""
+        if (self.speed is None or self.n is None) and profile.approach is None:
+            raise OptionError(
+                Problem(
+                    "the approach condition is not known",
+                    str(profile.path or profile.id),
+                    "the profile has no [approach] section",
+                    "add one, or give speed and rpm",
+                )
+            )
+        U_0 = self.speed if self.speed is not None else profile.approach.speed  # type: ignore[union-attr]
+        n_0 = self.n if self.n is not None else profile.approach.n  # type: ignore[union-attr]
+        if not (U_0 > 0.0 and math.isfinite(U_0)):
+            raise OptionError(Problem(f"the approach speed is {U_0:g} m/s", "speed", fix="give a speed above 0"))
+        return U_0, n_0
+
+
+class Watch:
+    """One manoeuvre on its way: orders given step by step, and the log."""
+
+    def __init__(self, sailing: Sailing, model: Model):
+        self.sailing = sailing
+        self.U_0, self.n_0 = sailing.approach(model.profile)
+        longest = sailing.step or min(LONGEST_STEP, FINE * model.L_pp / self.U_0)
+        self.steps = max(1, math.ceil(sailing.sample / longest - 1e-9))
+        self.h = sailing.sample / self.steps
+        self.samples = round(sailing.longest / sailing.sample)
+        self.over = self.samples < 1
+        self.diverged = False
+        self.late: list[float | None] = []  # how late the log of each input is [s]
+        self.states: list[FloatArray] = []
+        self.controls: list[FloatArray] = []
+
+    def orders(self, step: int, shown: FloatArray, state: FloatArray) -> tuple[float, ...]:
+        """What is ordered at a step, by ``ROLES``; nothing new once the manoeuvre is over."""
+        sailing = self.sailing
+        if self.over:
+            return 0.0, self.n_0, 0.0
+        sample, k = divmod(step, self.steps)
+        rudder = sailing.helmsman.order(sample * sailing.sample + k * self.h, float(shown[2]) - sailing.heading)
+        share = 1.0 if sailing.engine is None else sailing.engine(math.hypot(state[3], state[4]) / self.U_0)
+        return rudder, self.n_0 * share, 0.0
+
+    def due(self, step: int) -> bool:
+        """Whether a sample is to be taken after so many steps."""
+        return not self.over and step % self.steps == 0
+
+    def log(self, shown: FloatArray, driven: FloatArray) -> None:
+        """Take a sample."""
+        self.states.append(shown)
+        self.controls.append(driven.copy())
+
+    def look(self, sound: bool) -> None:
+        """Whether the manoeuvre is over with this sample."""
+        self.diverged = not sound
+        done = self.sailing.helmsman.finished(float(self.states[-1][2] - self.sailing.heading))
+        self.over = self.diverged or done or len(self.states) > self.samples
+
+    def motion(self, model: Model) -> Motion:
+        """What was logged."""
+        times: FloatArray = self.sailing.sample * np.arange(len(self.states), dtype=np.float64)
+        logged = np.array(self.controls)
+        for k, late in enumerate(self.late):
+            if late is not None:
+                logged[:, k] = np.interp(times - late, times, logged[:, k])
+        return Motion(self.sailing.id, times, np.vstack(self.states), logged, self.diverged, model.inputs)
