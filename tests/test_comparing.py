@@ -4,7 +4,7 @@ import functools
 
 import pytest
 
-from mmgtune import compare, load_profile
+from mmgtune import ValidateOptions, compare, load_profile, load_trials, validate
 from mmgtune.profile import tuned
 from mmgtune.report import render
 
@@ -12,6 +12,12 @@ pytestmark = [pytest.mark.xdist_group("compared"), pytest.mark.slow(6)]
 
 known = functools.cache(compare)
 """Of bundled names, once for all tests."""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _compiled() -> None:
+    """Manoeuvres of a model that was never run are stepped, which takes ten times as long."""
+    validate(["suzaku", "suzaku_fam"], load_trials("suzaku"), ValidateOptions())
 
 
 def test_a_profile_against_itself_differs_in_nothing():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..fitting.box import width_words
 from ..fitting.extending import with_width
-from ..fitting.planning import Plan, evaluation_seconds, whole
+from ..fitting.planning import Plan, can_be_tried, evaluation_seconds, whole
 from ..fitting.run import in_pieces
 from ..given import ShipGiven, TrialsGiven, ship_of
 from ..options import DiagnoseOptions
@@ -41,6 +41,5 @@ def plan_diagnosis(profile: ShipGiven, trials: TrialsGiven | VoyageSet, options:
     each = evaluation_seconds(bench.problem)
     free = len(bench.targets) + 7
     low, high = (len(known) * n * free * each for n in EVALUATIONS)
-    return Plan(
-        lines, (low, high), ("diagnosis.json", "profile.toml", "motions.parquet", "report.html and .md", "figures")
-    )
+    files = ("diagnosis.json", "profile.toml", "motions.parquet", "report.html and .md", "figures")
+    return Plan(lines, (low, high), files, can_be_tried(bench.problem))

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..backends import WIDTH
+from ..backends import WIDTH, get_ready_backend
+from ..backends.compiled import cores
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..options import FitOptions, LeaveOutOptions, SweepOptions
 from ..profile import ShipProfile
@@ -29,18 +30,30 @@ ITERATIONS = (15, 60)
 FIT_FILES = ("fit.json", "profile.toml", "history.parquet", "motions.parquet", "report.html and .md", "figures")
 
 
+ROUGHLY = 2e-8
+"""Time [s] a stage of a lane-step takes on a core, where it cannot be tried yet."""
+
+
 @dataclass(frozen=True)
 class Plan:
-    """What would be done, in lines, about how long it takes [s] from and to, and the files it would write."""
+    """What would be done.
+
+    lines    in words
+    seconds  about how long it takes, from and to
+    writes   the files it would write
+    tried    whether evaluations were timed here; not where their simulator would have to be compiled first
+    """
 
     lines: tuple[str, ...]
     seconds: tuple[float, float]
     writes: tuple[str, ...]
+    tried: bool = True
 
     def __str__(self) -> str:
         """The lines, and the time."""
         low, high = (in_time(seconds) for seconds in self.seconds)
-        return "\n".join([*self.lines, f"time      about {low} to {high} on this machine"])
+        first = "" if self.tried else ", once its simulator is compiled: 5 to 40 s, at the first run of such a model"
+        return "\n".join([*self.lines, f"time      about {low} to {high} on this machine{first}"])
 
 
 def plan_fit(profile: ShipGiven, trials: TrialsGiven, options: FitOptions) -> Plan:
@@ -51,7 +64,7 @@ def plan_fit(profile: ShipGiven, trials: TrialsGiven, options: FitOptions) -> Pl
     problem = make_problem(profile, pieces, options)
     search = f"{options.method}, seed {options.seed}, {options.starts} least-squares starts"
     lines = [*whole(profile, pieces, search, options), *_problem(problem, options)]
-    return Plan(tuple(lines), fit_seconds(problem, options), FIT_FILES)
+    return Plan(tuple(lines), fit_seconds(problem, options), FIT_FILES, can_be_tried(problem))
 
 
 def plan_sweep(profile: ShipGiven, trials: TrialsGiven, options: SweepOptions) -> Plan:
@@ -64,7 +77,8 @@ def plan_sweep(profile: ShipGiven, trials: TrialsGiven, options: SweepOptions) -
     one = plan_fit(profile, pieces, options.at(widths[0]))
     low, high = fit_seconds(problems[0], options.at(widths[0]))
     lines = (f"sweep     over a_r = {', '.join(f'{a_r:g}' for a_r in widths)}; the first:", *one.lines)
-    return Plan(lines, (len(widths) * low, len(widths) * high), ("sweep.json", "a folder for each a_r", *FIT_FILES[4:]))
+    files = ("sweep.json", "a folder for each a_r", *FIT_FILES[4:])
+    return Plan(lines, (len(widths) * low, len(widths) * high), files, one.tried)
 
 
 def plan_leave_out(profile: ShipGiven, trials: TrialsGiven, options: LeaveOutOptions) -> Plan:
@@ -79,7 +93,7 @@ def plan_leave_out(profile: ShipGiven, trials: TrialsGiven, options: LeaveOutOpt
     lines = [*whole(profile, pieces, search, own), *_problem(problem, own)]
     low, high = fit_seconds(problem, own)
     share = 1.0 + parts / own.starts
-    return Plan(tuple(lines), (share * low, share * high), ("leave_out.json",))
+    return Plan(tuple(lines), (share * low, share * high), ("leave_out.json",), can_be_tried(problem))
 
 
 def whole(profile: ShipProfile, trials: TrialSet, search: str, options: FitOptions) -> list[str]:
@@ -126,10 +140,18 @@ def fit_seconds(problem: FitProblem, options: FitOptions) -> tuple[float, float]
     return work[0] * each, work[1] * each
 
 
+def can_be_tried(problem: FitProblem) -> bool:
+    """Whether an evaluation needs nothing compiled first."""
+    return problem.backend.name != "compiled" or get_ready_backend(problem.model) is not None
+
+
 def evaluation_seconds(problem: FitProblem, candidates: int = 8 * WIDTH) -> float:
-    """How long one evaluation of all trials takes [s], among many at once."""
+    """How long one evaluation of all trials takes [s], among many at once; roughly where it cannot be tried."""
+    if not can_be_tried(problem):
+        stages = problem.cases.steps * len(problem.integrator.tableau[0]) * problem.integrator.substeps
+        return ROUGHLY * stages / cores()
     middle = np.repeat(problem.box.to_unit(problem.box.pre)[:, None], candidates, axis=1)
-    problem.costs(middle[:, :1])  # compiled now, if it was not
+    problem.costs(middle[:, :1])  # read before it is timed
     began = time.perf_counter()
     problem.costs(middle)
     return (time.perf_counter() - began) / candidates

@@ -101,6 +101,14 @@ def test_dry_run_writes_nothing(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize("command", ["fit", "diagnose"])
+def test_dry_run_compiles_nothing(command, tmp_path):
+    ended = run(command, "--dry-run", cwd=tmp_path, env={"MMGTUNE_CACHE": str(tmp_path / "cache")}, fresh=True)
+    assert ended.code == 0
+    assert "once its simulator is compiled" in ended.out
+    assert list(tmp_path.rglob("*.nbc")) == []
+
+
 def test_kill_9_and_resume_gives_the_same_result(tmp_path):
     search = ("fit", *FEW, "--no-report", "--quiet", "--starts", "2", "--seed", "5")
     whole = run(*search, "--json", "--out", "whole", cwd=tmp_path)
