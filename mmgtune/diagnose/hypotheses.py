@@ -49,6 +49,11 @@ class Hypothesis:
         """Parameters, whatever runs they are of."""
         return tuple(f"{self.effect.kind}.{name}" for name in self.variant)
 
+    @property
+    def instead(self) -> tuple[str, ...]:
+        """Coefficients of the profile that do the same; where they are targets, this takes their place."""
+        return tuple(self.effect.absorbed[name] for name in self.variant if name in self.effect.absorbed)
+
     def holds(self, other: Hypothesis) -> bool:
         """Whether the other is a special case of this: fewer parameters, or the same for more runs."""
         finer = self.by == "trial" or self.by == other.by or not other.by
@@ -61,16 +66,24 @@ class Hypothesis:
         return f"{label}, one for each {IN_WORDS[self.by]}" if self.by else label
 
 
-def known_causes(profile: ShipProfile, trials: Sequence[Trial], options: DiagnoseOptions) -> list[Hypothesis]:
-    """What a diagnosis of a profile on these trials looks for."""
+def known_causes(
+    profile: ShipProfile, trials: Sequence[Trial], options: DiagnoseOptions, *, in_place: bool = False
+) -> list[Hypothesis]:
+    """What a diagnosis of a profile on these trials looks for; ``in_place`` as for ``hypotheses``."""
     present = [f"{effect.kind}.{name}" for effect in Model(profile).effects for name in effect.parameters]
     measured = frozenset[str]().union(*(measured_around(trial) for trial in trials))
     whole = Model(with_all_effects(profile))
-    return hypotheses(whole, options.targets or profile.targets, options.effects, measured, present)
+    return hypotheses(whole, options.targets or profile.targets, options.effects, measured, present, in_place=in_place)
 
 
 def hypotheses(
-    model: Model, targets: Sequence[str], tags: Sequence[str], measured: Collection[str], present: Sequence[str]
+    model: Model,
+    targets: Sequence[str],
+    tags: Sequence[str],
+    measured: Collection[str],
+    present: Sequence[str],
+    *,
+    in_place: bool = False,
 ) -> list[Hypothesis]:
     """Hypotheses for a model that holds every effect that applies.
 
@@ -79,6 +92,7 @@ def hypotheses(
     measured       what any trial has of wind, current and so on; only then do parameters act that take it from there,
                    and those that stand in for it do not
     present        parameters that the profile itself has already
+    in_place       those that do the same as a target instead, and so would take its place; none out of many
     """
     found = []
     for effect in model.effects:
@@ -86,6 +100,8 @@ def hypotheses(
             continue
         for variant in effect.variants:
             taken = any(effect.absorbed.get(name) in targets for name in variant)
+            if in_place:
+                taken = not taken or effect.one_of_many
             of_log = bool(set(variant) & set(effect.of_measured))
             idle = of_log != bool(set(effect.of_measured.values()) & set(measured)) if effect.of_measured else False
             hypothesis = Hypothesis(effect, variant)

@@ -29,7 +29,7 @@ def narrow_box(bench: Workbench, found: Found) -> list[str]:
     base = found.base
     at_end = [name for name, z in zip(base.names, base.unit, strict=True) if z <= 0.0 or z >= 1.0]
     explained = base.chi2 - found.final.chi2
-    if not at_end or explained < ENOUGH:
+    if not at_end or explained < ENOUGH or any(cause.instead for cause in found.causes):
         return []
     wide = _let_go(bench, at_end)
     box = wide.sub_box(base.names)

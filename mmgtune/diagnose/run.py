@@ -74,12 +74,13 @@ def _diagnose(
     seen = _in_order([trial for name, trial in trials.trials.items() if name not in trials.test])
     test = _in_order([trials.trials[name] for name in trials.test])
     known = known_causes(profile, seen, options)
-    names = [name for h in known for name in h.names]
+    in_place = known_causes(profile, seen, options, in_place=True) if choice is None else []
+    names = [name for h in (*known, *in_place) for name in h.names]
     bench = make_workbench(profile, seen, options, [*names, *(_legs(profile, names) if choice else ())])
     known = [h for h in known if not set(h.names) & set(bench.targets)]
     known = [h for h in known if not {h.effect.absorbed.get(v) for v in h.variant} & set(bench.targets)]
-    differing_by_run = of_runs(known, seen) if choice is None else []
-    found = search(bench, [*known, *differing_by_run], hooks.on_phase, hooks.stop)
+    differing_by_run = of_runs([*known, *in_place], seen) if choice is None else []
+    found = search(bench, [*known, *differing_by_run], in_place, hooks.on_phase, hooks.stop)
     test = [found.held.evenly(trial) for trial in test] if found.held else test
     hooks.on_phase("measuring the gain")
     traces, brought = set_aside(bench, found, test)

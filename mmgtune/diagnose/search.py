@@ -253,12 +253,18 @@ def _unnoticed(bench: Workbench, chi2: float, least: float = TOLERANCE) -> float
 def search(
     bench: Workbench,
     hypotheses: Sequence[Hypothesis],
+    in_place: Sequence[Hypothesis] = (),
     say: Callable[[str], None] = lambda _: None,
     stop: Stop = lambda: False,
 ) -> Found:
-    """Forward search with a backward look after each addition; where it is stopped, what was accepted by then."""
+    """Forward search with a backward look after each addition; where it is stopped, what was accepted by then.
+
+    in_place  hypotheses that do the same as targets; looked at where these end at a bound of their box
+    """
     say("re-tuning the model without any cause")
     base = base_fit(bench)
+    at_end = {name for name, z in zip(base.names, base.unit, strict=True) if z <= 0.0 or z >= 1.0}
+    hypotheses = [*hypotheses, *(one for one in in_place if set(one.instead) <= at_end)]
     found = Found(base, base)
     left = list(hypotheses)
     dropped: list[Hypothesis] = []
@@ -541,14 +547,24 @@ def _starts(bench: Workbench, point: Point, score: Score, strong: bool) -> Float
 
 
 def _kept(point: Point, hypothesis: Hypothesis) -> list[int]:
-    """What stays free beside a hypothesis: all but the parameters it has itself, for all runs or for fewer."""
-    return [i for i, name in enumerate(point.names) if base_of(name) not in hypothesis.bases]
+    """What stays free beside a hypothesis: all but the parameters it has itself, for all runs or for fewer, and the
+    targets it takes the place of."""
+    gone = {*hypothesis.bases, *hypothesis.instead}
+    return [i for i, name in enumerate(point.names) if base_of(name) not in gone]
 
 
 def origin(bench: Workbench, point: Point, names: Sequence[str]) -> FloatArray:
-    """(n_names,) where parameters stand in a point: their own value, that of all runs, or their null."""
+    """(n_names,) where parameters stand in a point: their own value, that of all runs, or their null; of a factor, what
+    the target whose place it takes has become."""
     unit = dict(zip(point.names, point.unit, strict=True))
     null = bench.null(names)
+    for k, name in enumerate(names):
+        target = bench.factors.get(base_of(name))
+        if target in unit:
+            low, pre = bench.box.low, bench.box.pre
+            factor = bench.values(point)[target] / pre[bench.box.names.index(target)]
+            i = bench.box.names.index(base_of(name))
+            null[k] = np.clip((factor - low[i]) / bench.box.width[i], 0.0, 1.0)
     return np.array([unit.get(name, unit.get(base_of(name), z)) for name, z in zip(names, null, strict=True)])
 
 
@@ -673,7 +689,9 @@ def without(bench: Workbench, point: Point, hypothesis: Hypothesis) -> Point:
     """The point refitted without one of its hypotheses."""
     kept = [i for i, name in enumerate(point.names) if name not in hypothesis.names]
     names = [point.names[i] for i in kept]
-    return bench.refit(names, point.unit[kept][:, None], point.offsets, spreads=point.spreads)
+    back = [name for name in hypothesis.instead if name in bench.targets and name not in names]
+    start = np.concatenate([point.unit[kept], bench.null(back)])
+    return bench.refit((*names, *back), start[:, None], point.offsets, spreads=point.spreads)
 
 
 def _drop_superfluous(bench: Workbench, found: Found, asked: Sequence[Hypothesis]) -> None:
@@ -729,9 +747,10 @@ def rivals_of(bench: Workbench, found: Found, cause: Hypothesis) -> list[Refit]:
         if set(rival.hypothesis.bases) & {base_of(name) for name in fewer.names}:
             continue
         start = rival.point.unit[-len(rival.hypothesis.names) :]
+        kept = _kept(fewer, rival.hypothesis)
         other = bench.refit(
-            (*fewer.names, *rival.hypothesis.names),
-            np.concatenate([fewer.unit, start])[:, None],
+            (*(fewer.names[i] for i in kept), *rival.hypothesis.names),
+            np.concatenate([fewer.unit[kept], start])[:, None],
             fewer.offsets,
             spreads={**fewer.spreads, **rival.point.spreads},
         )

@@ -93,6 +93,16 @@ class Workbench:
         """What the trials visit."""
         return visited_by(self.trials, self.model.L_pp)
 
+    @cached_property
+    def factors(self) -> dict[str, str]:
+        """Parameters of effects that are factors on a coefficient of the profile, and that coefficient."""
+        return {
+            f"{effect.kind}.{name}": coefficient
+            for effect in self.model.effects
+            for name, coefficient in effect.absorbed.items()
+            if effect.nulls[name] == 1.0
+        }
+
     @property
     def channels(self) -> tuple[str, ...]:
         """Motion channels that count."""

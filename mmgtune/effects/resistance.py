@@ -75,6 +75,7 @@ EFFECT = ForceEffect(
         "pivot": Parameter("speed at which the factor holds, whatever the slope", "m/s", low=-1e-12),
     },
     pivots={"pivot": lambda ship: ship.U},
+    varies=("factor",),
     variants=(("factor",), ("slope",)),
     unvisited=unvisited,
     absorbed={"factor": "hull.R_0"},

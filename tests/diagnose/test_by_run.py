@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -104,6 +105,20 @@ def test_a_rudder_zero_that_differs(tmp_path):
     assert (cause.tag, cause.runs.by) == ("rudder-offset", "trial")
     assert np.abs(misses(cause.runs, case, "rudder-offset")).max() < 3.5
     assert "The zero of the rudder differed from run to run" in result.sentence()
+
+
+def test_a_resistance_that_differs_though_it_is_a_target_too(tmp_path):
+    """As between runs before and after docking: no one value of R_0 will do, and in no box."""
+    case = of_runs("rudder-offset", 0, seed=1)
+    fouled = {
+        name: {"resistance": {"factor": factor}} for name, factor in zip(sorted(TUNING), (1, 1, 2, 2, 2), strict=True)
+    }
+    case = replace(case, of_trial=fouled)
+    result = said_of(case, tmp_path, ("resistance", "hull-term", "rpm-scale"))
+    (cause,) = result.causes
+    assert (result.verdict, cause.tag, cause.runs.by) == ("found", "resistance", "trial"), result.sentence()
+    sizes = [one.value for values in cause.runs.values for one in values.values()]
+    assert sizes == pytest.approx([1, 1, 2, 2, 2], rel=0.05)
 
 
 def test_a_current_that_changes_within_the_runs(tmp_path):

@@ -163,6 +163,20 @@ def test_two_effects_are_both_found(tmp_path):
     assert outcome(case.effects, document) in ("right", "grouped")
 
 
+def test_a_resistance_beyond_the_box_of_its_target_is_a_cause(tmp_path):
+    case = null(1)
+    fouled = {**case.ship, "hull.R_0": 2.2 * PROFILE["hull.R_0"]}  # the box ends at 1.5 times
+    write(simulate(fouled, {}, case.seed, case.noise), tmp_path)
+    options = DiagnoseOptions(effects=("resistance", "hull-term", "wave-drift", "rpm-scale"))
+    result = diagnose(load_profile("suzaku"), load_trials(tmp_path), options)
+    assert (result.verdict, [cause.tag for cause in result.causes]) == ("found", ["resistance"]), result.sentence()
+    factor = result.to_dict()["causes"][0]["parameters"]["factor"]["value"]
+    assert factor == pytest.approx(2.2, rel=0.02)
+    extended = parse_profile(result.extended_text())  # one of the two moved, and it is the one the sentence names
+    assert extended.value("hull.R_0") == PROFILE["hull.R_0"]
+    assert extended.value("effects.resistance.factor") == pytest.approx(2.2, rel=0.02)
+
+
 @pytest.mark.slow(25)
 def test_a_cause_that_would_be_believed_alone_is_named_though_a_hull_unlike_the_profile_s_adds_terms(tmp_path):
     case = single("rudder-offset", 3, seed=1)
