@@ -21,7 +21,7 @@ from .predictor import PhysicsPredictor, Predictor, as_predictor, particles_of, 
 from .profile.doubts import Doubt
 from .repeating import Repeated, document, repeat
 from .stated import IndexComparison, compare_stated, model_of, possible
-from .trial import Trial, TrialSet
+from .trial import Trial, TrialSet, oddities
 from .validation import L_MSE, TrialScore, score, summary, window_scores
 
 Scorable = ShipGiven | Model | Predictor
@@ -80,6 +80,7 @@ class Validation(Plotted):
     trials, sigma_from  what the trials, and those whose spread is counted in, were called
     sigma   what L_MSE divides differences of each state by [SI]
     pieces  the trials, or windows of them, that were scored
+    oddities  what is odd about the trials, in sentences
     """
 
     profiles: tuple[Scored, ...]
@@ -88,6 +89,7 @@ class Validation(Plotted):
     sigma_from: str
     options: ValidateOptions = field(default_factory=ValidateOptions)
     pieces: tuple[Trial, ...] = ()
+    oddities: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         """In a line."""
@@ -117,6 +119,7 @@ class Validation(Plotted):
             "substeps": self.options.substeps,
             "options": self.options.to_dict(),
             "profiles": rows,
+            "warnings": list(self.oddities),
         }
 
 
@@ -139,6 +142,7 @@ def validate(
     sigma = sigma_of(data, options.sigma_from, called)
     whole = list(data.trials.values())
     pieces = list((data.in_windows(options.restart) if options.restart else data).trials.values())
+    odd = oddities(data.trials, next(iter(several.values())).L_pp)
     scored = []
     for name, predictor in several.items():
         repeated = tuple(repeat(predictor, whole)) if options.manoeuvres else ()
@@ -150,7 +154,7 @@ def validate(
         stated = _stated(predictor, data, options.backend)
         bands = bands_of(predictor, pieces, sigma) if pieces else {}
         scored.append(Scored(name, predictor, scores, repeated, stated, tuple(notes), bands))
-    return Validation(tuple(scored), called, sigma, options.sigma_from or called, options, tuple(pieces))
+    return Validation(tuple(scored), called, sigma, options.sigma_from or called, options, tuple(pieces), tuple(odd))
 
 
 def sigma_of(data: TrialSet, sigma_from: str | None, called: str) -> dict[str, float]:

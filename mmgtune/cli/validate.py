@@ -89,6 +89,8 @@ def command(
         c.print_json(result.to_dict())
     else:
         c.show(summary(result))
+        for warning in result.oddities:
+            c.say(f"Note: {warning}")
         for note in dict.fromkeys(note for one in result.profiles for note in one.notes):
             c.say(f"note: {note}")
         for one in result.profiles:

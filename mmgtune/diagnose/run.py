@@ -16,7 +16,7 @@ from ..model import Model
 from ..options import DiagnoseOptions
 from ..profile import ShipProfile, with_all_effects
 from ..threads import blas_on_one_thread
-from ..trial import Trial, TrialSet, VoyageSet
+from ..trial import Trial, TrialSet, VoyageSet, oddities
 from .contributions import set_aside
 from .hypotheses import known_causes, of_runs
 from .judging import Judge
@@ -70,6 +70,7 @@ def _diagnose(
     provenance: dict[str, Any],
 ) -> Diagnosis:
     began = time.perf_counter()
+    odd = oddities(trials.trials, profile.L_pp) if choice is None else []
     trials = in_pieces(trials, options.fit_options())
     seen = _in_order([trial for name, trial in trials.trials.items() if name not in trials.test])
     test = _in_order([trials.trials[name] for name in trials.test])
@@ -92,7 +93,7 @@ def _diagnose(
     hooks.on_phase("gathering the evidence")
     judge = Judge(bench, profile, options, provenance, hooks, known, test, before, traces, choice, differing)
     result, found = judge.answer(found, brought)
-    warnings = (*result.warnings, *narrow_box(bench, found)) if not hooks.stop() else result.warnings
+    warnings = (*odd, *result.warnings, *(narrow_box(bench, found) if not hooks.stop() else ()))
     return replace(result, warnings=warnings, wall_s=time.perf_counter() - began)
 
 

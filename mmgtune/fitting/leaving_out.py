@@ -28,7 +28,7 @@ from ..profile.doubts import Doubt, in_words
 from ..repeating import Repeated, document, repeat
 from ..stated import IndexComparison, compare_stated
 from ..threads import blas_on_one_thread
-from ..trial import Coverage, Trial, TrialSet
+from ..trial import Coverage, Trial, TrialSet, oddities
 from ..validation import L_MSE, TrialScore, by_manoeuvre, improvement, off_by, score_of
 from .comparison import TrialComparison, finite, finite_values
 from .extending import held_words, settled, tune_trials
@@ -352,6 +352,7 @@ def _warnings(model: Model, targets: Sequence[str], trials: TrialSet, options: L
     ]
     around = notes_on(model, tuned, free=targets)
     return [
+        *oddities({trial.id: trial for trial in tuned}, model.L_pp),
         *(f"{words}." for words in in_words(model.profile.doubts())),
         *(f"{note[0].upper()}{note[1:]}." for note in around),
         *coverage_notes(model, targets, Coverage.of(tuned, model.L_pp)),

@@ -105,6 +105,7 @@ class FitResult(Plotted):
     channels: tuple[str, ...]
     provenance: Mapping[str, Any]
     interrupted: bool = False
+    oddities: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         """In a line."""
@@ -216,6 +217,7 @@ class FitResult(Plotted):
             found.append("The fit was interrupted; these are the best values so far, not an optimum.")
         if self.diverged:
             found.append(f"{self.diverged} candidates diverged during the search and were given up.")
+        found += self.oddities
         found += [f"{words}." for words in in_words(self.profile.doubts())]
         generated = sorted({c.trial.id for c in self.compared if c.trial.source == "generated"})
         if generated:

@@ -21,7 +21,7 @@ from ..profile import ShipProfile
 from ..provenance import made_by as made_by
 from ..stated import IndexComparison, compare_stated, possible
 from ..threads import blas_on_one_thread
-from ..trial import Coverage, TrialSet
+from ..trial import Coverage, TrialSet, oddities
 from .box import Box, choose_targets, make_box
 from .certificate import certify
 from .checkpoint import EVERY, Checkpoint
@@ -220,6 +220,7 @@ def _fit(
     provenance: dict[str, Any],
 ) -> FitResult:
     began = time.perf_counter()
+    odd = oddities(trials.trials, profile.L_pp)
     trials = in_pieces(trials, options)
     setting = make_setting(profile, trials, options)
     problem = setting.problem()
@@ -302,6 +303,7 @@ def _fit(
         channels=setting.objective.channels,
         provenance=provenance,
         interrupted=hooks.stop(),
+        oddities=tuple(odd),
     )
 
 

@@ -64,7 +64,11 @@ def build(record: ValidationRecord) -> Page:
         eyebrow=f"{names} on {clean(data['trials'])}",
         verdict=_verdict(record),
         banners=generated_banner({"source": data.get("sources") or {}}),
-        warnings=(*notes, *(f"{one['called']}: {text}" for one in record.models for text in doubts(one))),
+        warnings=(
+            *map(clean, data.get("warnings", ())),
+            *notes,
+            *(f"{one['called']}: {text}" for one in record.models for text in doubts(one)),
+        ),
         cards=_cards(record),
         sections=tuple(section for section in sections if section is not None),
     )

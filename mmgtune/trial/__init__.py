@@ -26,7 +26,7 @@ from .index_trial import IndexTrial
 from .model import Trial
 from .parquet import read_trial, write_trial
 from .pieces import windows
-from .set_checks import check_trials
+from .set_checks import check_trials, oddities
 from .surroundings import measured_around, surroundings
 from .voyage import Voyage, open_voyage
 from .voyage_set import VoyageSet, holds_voyages, load_voyages
@@ -51,6 +51,7 @@ __all__ = [
     "load_voyages",
     "measured_around",
     "measured_wind",
+    "oddities",
     "open_voyage",
     "read_trial",
     "surroundings",

@@ -12,6 +12,7 @@ from .finding import Finding
 from .kinematics import middle
 from .model import Trial
 from .motion_checks import spikes
+from .position_jumps import jump_findings
 
 FASTEST = {
     "x": (100.0, "m/s"), "y": (100.0, "m/s"), "psi": (3.0, "rad/s"), "u": (5.0, "m/s^2"), "v": (5.0, "m/s^2"),
@@ -32,9 +33,12 @@ def cross_findings(trial: Trial, where: str, L_pp: float | None, contradicted: b
     L_pp          of the ship [m], None where it is not known: what needs it is left out then
     contradicted  whether positions and velocities have been found to differ as a whole
     """
-    found = [*_changes(trial, where), *_speed(trial, where, L_pp), *_revolutions(trial, where, L_pp)]
+    changes = _changes(trial, where)
+    found = [*changes, *_speed(trial, where, L_pp), *_revolutions(trial, where, L_pp)]
     if not contradicted:
         found += way_by_axis(trial, where)
+        if not any(one.what.startswith(("'x' ", "'y' ")) for one in changes):
+            found += jump_findings(trial, where)
     return [*found, *_rudder(trial, where)]
 
 

@@ -15,6 +15,7 @@ from .schema import LARGEST_YAW_RATE, MOTION
 
 NO_YAW_RATE = "the yaw rate does not integrate to the heading"
 CONTRADICTED = "u, v and heading do not integrate to the positions"
+HAS_GAPS = "has gaps: "
 
 
 def motion_findings(trial: Trial, where: str) -> list[Finding]:
@@ -41,7 +42,7 @@ def _gaps(trial: Trial, where: str) -> list[Finding]:
             found.append(
                 Finding(
                     "warning",
-                    f"'{name}' has gaps: {missing.sum()} of {len(values)} samples; "
+                    f"'{name}' {HAS_GAPS}{missing.sum()} of {len(values)} samples; "
                     f"the longest has {ends[k] - begins[k]} samples, {lasts:.3g} s",
                     f"{where}, column '{name}', row {begins[k]}",
                     "samples in gaps count in no comparison",

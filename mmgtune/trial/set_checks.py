@@ -10,6 +10,7 @@ from ..units import DEG
 from .checks import check_trial
 from .finding import SEVERITIES, Finding
 from .model import Trial
+from .motion_checks import HAS_GAPS
 
 AMIDSHIPS = 3.0 * DEG
 """Rudder angle below which a ship goes about straight on."""
@@ -17,6 +18,8 @@ FEWEST = 5
 """Samples of an approach that say anything."""
 STEADY = 0.1
 """Spread of the way per turn within an approach, as a share, beyond which the ship gathers or loses speed."""
+NAMED = 3
+"""Trials named where a result says that some are odd."""
 APART = 1.3
 """Factor between trials that neither currents nor the weather make, but wrong units do."""
 
@@ -30,6 +33,25 @@ def check_trials(trials: Mapping[str, Trial], L_pp: float | None = None) -> dict
     for name, finding in _ways(trials).items():
         found[name] = sorted([*found[name], finding], key=lambda one: SEVERITIES.index(one.severity))
     return found
+
+
+def oddities(trials: Mapping[str, Trial], L_pp: float | None = None) -> list[str]:
+    """A sentence for results, where trials they are made of have something odd that ``check_trials`` warns of.
+
+    Gaps are not odd: what falls into them counts in no comparison, and results say that themselves.
+    """
+    worst = {
+        name: odd[0].what
+        for name, findings in check_trials(trials, L_pp).items()
+        if (odd := [one for one in findings if one.severity == "warning" and HAS_GAPS not in one.what])
+    }
+    if not worst:
+        return []
+    told = "; ".join(f"{what} ({name})" for name, what in list(worst.items())[:NAMED])
+    more = f"; and {len(worst) - NAMED} more" if len(worst) > NAMED else ""
+    return [
+        f"Something is odd in {len(worst)} of {len(trials)} trials: {told}{more}. 'mmgtune trials check' says more."
+    ]
 
 
 def way_per_turn(trial: Trial) -> float | None:

@@ -11,9 +11,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mmgtune import DiagnoseOptions, FitOptions, LeaveOutOptions, diagnose, fit, leave_out, validate
 from mmgtune.importing import import_logs, load_map
 from mmgtune.profile import load_profile
-from mmgtune.trial import Trial, check_trial, check_trials, load_trials
+from mmgtune.trial import Trial, check_trial, check_trials, load_trials, oddities
 
 from .made import DEG, made, said
 
@@ -150,11 +151,72 @@ def test_nothing_is_said_of_what_was_measured(folder: str, preset: str, ship: st
     if not logs:
         pytest.skip(f"no measured data at {DATA / folder}; MMGTUNE_DATA names their folder")
     L_pp = load_profile(ship).L_pp
-    # Real logs have gaps and spikes, and what is logged as the rudder of this model are orders.
-    known = ("has gaps", "spikes", "rudder moves at up to")
+    # Real logs have gaps and spikes, and what is logged as the rudder of this model are orders.  In two runs the
+    # position stands for a second or two and then jumps to where the ship is.
+    known = ("has gaps", "spikes", "rudder moves at up to", "the position jumps once, by")
     trials = import_logs(logs, load_map(preset, preset=True), ".", step, dry_run=True).trials
     assert not any("on her approach" in one for one in warnings_of_set({trial.id: trial for trial in trials}))
     for trial in trials:
         for length in (L_pp, None):
             odd = [one for one in warnings_of(trial, length) if not any(word in one for word in known)]
             assert not odd, (trial.id, odd)
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize(("by", "lasting"), [(20.0, 40), (20.0, 400), (8.0, 15)])
+def test_positions_that_jump(seed: int, by: float, lasting: int) -> None:
+    rng = np.random.default_rng(seed)
+    trial = made(zigzag=bool(seed % 2), seed=seed)
+    begin, towards = int(rng.integers(60, 400)), rng.uniform(0.0, 2.0 * np.pi)
+    away = ((trial.t >= begin) & (trial.t < begin + lasting)).astype(float)
+    jumped = replace(trial, x=trial.x + by * np.cos(towards) * away, y=trial.y + by * np.sin(towards) * away)
+    (warning,) = [one for one in warnings_of(jumped) if "position jumps" in one]
+    back = begin + lasting < 480
+    assert warning.startswith("the position jumps 2 times, by up to" if back else "the position jumps once, by")
+    size = float(re.search(r"([\d.]+) m:", warning).group(1))
+    assert size == pytest.approx(by, abs=2.5)
+    (finding,) = [f for f in check_trial(jumped, L_PP) if "position jumps" in f.what]
+    row = int(finding.where.split()[-1])
+    assert min(abs(row - begin), abs(row - begin - lasting)) <= 1
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_positions_that_only_seem_to_jump(seed: int) -> None:
+    """A spike, a receiver once in five seconds, velocities through water, an antenna at the bow, a gap."""
+    trial = made(zigzag=bool(seed % 2), seed=seed)
+    spiked = trial.x.copy()
+    spiked[200] += 60.0
+    held = 5 * (np.arange(trial.n_samples) // 5)
+    psi = trial.psi
+    gap = np.where((trial.t > 200) & (trial.t < 230), np.nan, trial.x)
+    for other in (
+        replace(trial, x=spiked),
+        replace(trial, x=trial.x[held], y=trial.y[held]),
+        replace(trial, x=trial.x + 0.7 * trial.t, y=trial.y - 0.5 * trial.t),
+        replace(trial, x=trial.x + 40.0 * np.cos(psi), y=trial.y + 40.0 * np.sin(psi)),
+        replace(trial, x=gap),
+        replace(trial, u=trial.u[0] + 0.0 * trial.u),
+    ):
+        assert not [one for one in warnings_of(other) if "position jumps" in one]
+
+
+def test_results_say_what_is_odd_about_their_trials() -> None:
+    assert oddities(SUZAKU, L_PP) == []
+    gap = replace(SUZAKU["turn_p35"], y=np.where(SUZAKU["turn_p35"].t > 400.0, np.nan, SUZAKU["turn_p35"].y))
+    assert oddities(SUZAKU | {"turn_p35": gap}, L_PP) == []
+    wrong = {name: replace(trial, r=-trial.r) for name, trial in list(SUZAKU.items())[:4]}
+    (sentence,) = oddities(SUZAKU | wrong, L_PP)
+    assert sentence.startswith(
+        "Something is odd in 4 of 10 trials: the yaw rate does not integrate to the heading (turn_"
+    )
+    assert "; and 1 more. 'mmgtune trials check' says more." in sentence
+    jumped = replace(SUZAKU["turn_m20"], x=SUZAKU["turn_m20"].x + 25.0 * (SUZAKU["turn_m20"].t > 300.0))
+    trials = replace(load_trials("suzaku"), trials=SUZAKU | {"turn_m20": jumped})
+    said = "Something is odd in 1 of 10 trials: the position jumps once, by 2"
+    result = fit("suzaku", trials, FitOptions(method="least-squares", starts=1, fixed=("hull.*", "rudder.*")))
+    assert [one for one in result.to_dict()["warnings"] if one.startswith(said)]
+    assert validate("suzaku", trials).to_dict()["warnings"][0].startswith(said)
+    diagnosis = diagnose("suzaku", trials, DiagnoseOptions(effects=("current",), targets=("hull.R_0", "wake.w_P0")))
+    assert diagnosis.to_dict()["warnings"][0].startswith(said)
+    without = leave_out("suzaku", trials, LeaveOutOptions(folds=2, starts=1, targets=("hull.R_0",)))
+    assert without.to_dict()["warnings"][0].startswith(said.replace("10", "4"))  # those left out in turn

@@ -1,0 +1,99 @@
+"""Steps of the logged position that the logged velocities do not make, as a satellite receiver has them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..physics.frame import to_earth
+from .finding import Finding
+from .kinematics import middle
+from .model import Trial
+from .motion_checks import spikes
+
+SPAN = 8.0
+"""Time [s] on each side of a step over which the track has to lie on one line and then on another."""
+FEWEST, MOST = 5, 100
+"""Samples of such a line."""
+BEYOND = 12.0
+"""How many times the usual misfit of two neighbouring lines a step exceeds."""
+WAY = 1.0
+"""Way [s] at the ship's speed that a step exceeds: what is smaller hardly matters."""
+
+
+def position_jumps(trial: Trial) -> list[tuple[int, float]]:
+    """Rows after a step of the position, and by how far [m] it goes.
+
+    The way the velocities make is taken off the track; lines fitted to what is left before and after each moment must
+    meet there.  Drifts, currents and biases of the velocities are lines themselves and pass.
+    """
+    dt = np.diff(trial.t)
+    turned = np.abs(np.diff(trial.psi)) > 3.0
+    psi = np.where(turned, trial.psi[1:], middle(trial.psi))
+    made = to_earth(psi, middle(trial.u), middle(trial.v_m))
+    n = int(np.clip(np.ceil(SPAN / np.median(dt)), FEWEST, MOST))
+    if trial.n_samples < 6 * n:
+        return []
+    left = [
+        _without_spikes(position) - np.concatenate([[0.0], np.cumsum(np.where(np.isfinite(way), way * dt, 0.0))])
+        for position, way in zip((trial.x, trial.y), made, strict=True)
+    ]
+    ahead = line_end(n)
+    # Rows k + n: what lies before predicts the middle of the step to row k + n, and so does what lies after.
+    steps = [
+        np.lib.stride_tricks.sliding_window_view(one[n:], n) @ ahead[::-1]
+        - np.lib.stride_tricks.sliding_window_view(one[:-n], n) @ ahead
+        for one in left
+    ]
+    size = np.hypot(*steps)
+    # A position that stands for several samples, as of a slow receiver, makes lines of steps; its way in them is usual.
+    usual = float(np.nanmedian(size)) if np.isfinite(size).any() else np.inf
+    speed = np.hypot(trial.u, trial.v_m)
+    least = max(BEYOND * usual, WAY * float(np.nanpercentile(speed, 90.0)))
+    return [(k + n, float(size[k])) for k in _peaks(np.nan_to_num(size), least, n)]
+
+
+def _without_spikes(values: FloatArray) -> FloatArray:
+    """A channel with single samples off the others put between their neighbours: they are told of as spikes."""
+    rows = spikes(values, share=0.02)
+    smooth = values.copy()
+    smooth[rows] = 0.5 * (values[rows - 1] + values[rows + 1])
+    return smooth
+
+
+def line_end(n: int) -> FloatArray:
+    """(n,) weights that give the end, half a sample ahead, of the line through n equidistant samples."""
+    k = np.arange(n) - 0.5 * (n - 1)
+    return np.asarray(1.0 / n + 0.5 * n * k / float(k @ k))
+
+
+def _peaks(size: FloatArray, least: float, apart: int) -> list[int]:
+    """Largest values beyond ``least``, none within ``apart`` of a larger one, in the order of the record."""
+    left = size.copy()
+    found: list[int] = []
+    while len(left) and left.max() > least:
+        k = int(np.argmax(left))
+        found.append(k)
+        left[max(0, k - apart) : k + apart + 1] = 0.0
+    return sorted(found)
+
+
+def jump_findings(trial: Trial, where: str) -> list[Finding]:
+    """A warning where the position jumps, with the largest step."""
+    found = position_jumps(trial)
+    if not found:
+        return []
+    row, size = max(found, key=lambda one: one[1])
+    times = "once" if len(found) == 1 else f"{len(found)} times"
+    went = float(np.hypot(trial.u[row], trial.v_m[row]) * (trial.t[row] - trial.t[row - 1]))
+    return [
+        Finding(
+            "warning",
+            f"the position jumps {times}, by {'' if len(found) == 1 else 'up to '}{size:.3g} m",
+            f"{where}, columns 'x' and 'y', row {row}",
+            f"'u', 'v' and 'psi' make {went:.2g} m there"
+            if np.isfinite(went)
+            else "'u', 'v' and 'psi' make none there",
+            "mark the positions that are wrong as NaN, or cut the trial there",
+        )
+    ]
