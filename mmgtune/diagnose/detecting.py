@@ -10,9 +10,10 @@ import numpy as np
 from ..fitting.box import parameter_of
 from .hypotheses import Hypothesis
 from .linear import typical
+from .refit import ENOUGH, WORTH
 from .result import Detectability
 from .screening import angles
-from .search import ENOUGH, WORTH, Step
+from .search import Step
 from .workbench import Workbench
 
 TWINS = 3

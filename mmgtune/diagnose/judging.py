@@ -23,8 +23,9 @@ from .hypotheses import INPUTS_HELD, INTEGRATION_STEP, Hypothesis
 from .intervals import Estimate, estimates
 from .leftover import Leftover, leftover
 from .legs import Difference
+from .refit import Refit
 from .result import Candidate, Cause, Diagnosis, Doubted, Trace
-from .search import Found, Refit, Step, rivals_of
+from .search import Found, Step, rivals_of
 from .separate import Suggestion, suggest
 from .voyages import Choice
 from .workbench import Point, Workbench

@@ -22,7 +22,7 @@ from ..fitting.least_squares import flat_where_lost
 from . import noise as noises
 from .intervals import NORMAL
 from .linear import STEP, basis, blocks_of, offset_derivatives
-from .search import ENOUGH
+from .refit import ENOUGH
 from .wording import quantity
 from .workbench import Point, Workbench
 

@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from ..fitting.box import A_R
-from .search import ENOUGH, Found
+from .refit import ENOUGH
+from .search import Found
 from .workbench import Workbench
 
 WIDER = 2.0

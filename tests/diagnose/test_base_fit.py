@@ -7,7 +7,7 @@ import pytest
 
 from mmgtune.backends import STATES, Integrator
 from mmgtune.diagnose import DiagnoseOptions
-from mmgtune.diagnose.search import base_fit
+from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.workbench import make_workbench
 from mmgtune.profile import tuned
 from mmgtune.simulation import simulate

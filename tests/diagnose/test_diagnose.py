@@ -14,7 +14,7 @@ from mmgtune.backends import STATES, Integrator
 from mmgtune.diagnose import VERDICTS, DiagnoseOptions, diagnose
 from mmgtune.diagnose.intervals import Estimate
 from mmgtune.diagnose.noise import NoiseModel, estimate
-from mmgtune.diagnose.search import Refit
+from mmgtune.diagnose.refit import Refit
 from mmgtune.diagnose.wording import parameters_in_words
 from mmgtune.effects import find_effect
 from mmgtune.errors import OptionError

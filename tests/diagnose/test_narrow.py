@@ -7,8 +7,9 @@ import pytest
 
 from mmgtune.backends import STATES, Integrator
 from mmgtune.diagnose import DiagnoseOptions
+from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.narrow import narrow_box
-from mmgtune.diagnose.search import Found, base_fit
+from mmgtune.diagnose.search import Found
 from mmgtune.diagnose.workbench import make_workbench
 from mmgtune.profile import tuned
 from mmgtune.simulation import simulate

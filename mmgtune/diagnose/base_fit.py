@@ -1,0 +1,61 @@
+"""The targets re-tuned without any cause: what everything else is held against."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..backends import Integrator
+from ..fitting.least_squares import solve
+from .workbench import TOLERANCE, Point, Workbench
+
+STARTS = 6
+"""Starts of the base fit."""
+
+QUICK = 20
+"""Steps from each."""
+
+BEST = 3
+"""Ends of these that are gone on from, where they differ."""
+
+SAME = 1e-3
+"""Relative difference of what is made small within which two of them are one."""
+
+ROUGHLY = 20.0
+"""Fall of chi-squared that counts as none there."""
+
+AGAIN = 8
+"""Times the base fit may begin again where it ended."""
+
+PRECISE = 0.02
+"""Fall of chi-squared that counts as none where parameters are reported."""
+
+OF_EXCESS = 1e-4
+"""The same as a share of what is left beyond the noise: where much is, its last digits choose nothing."""
+
+
+def base_fit(bench: Workbench) -> Point:
+    """The targets re-tuned without any effect: from several starts, in larger steps of the integration at first.
+
+    Initial states are estimated from the first: on long runs those that were measured, noise and all, lead astray.
+    """
+    names = bench.targets
+    rng = np.random.default_rng(bench.options.seed)
+    starts = np.column_stack([bench.null(names), *rng.uniform(size=(STARTS - 1, len(names)))])
+    quick = bench.problem_of(names, Integrator("euler"))  # a quarter of the work, and only a start
+    ends = sorted(solve(quick, starts, max_iterations=QUICK, tolerance=ROUGHLY, trusting=True), key=lambda end: end.J)
+    apart = [end for k, end in enumerate(ends) if k == 0 or end.J > (1.0 + SAME) * ends[k - 1].J][:BEST]
+    starts = np.column_stack([end.unit for end in apart])
+    point = bench.refit(names, starts, ends[0].offsets, tolerance=unnoticed(bench, ends[0].J))
+    for _ in range(AGAIN):  # initial states at the end of their range make a bad start; from there it is a new one
+        tolerance = unnoticed(bench, point.chi2, PRECISE)
+        again = bench.refit(names, point.unit[:, None], point.offsets, tolerance=tolerance)
+        better = point.chi2 - again.chi2
+        point = min(again, point, key=lambda one: one.chi2)
+        if better < 1e-3 * point.chi2:
+            break
+    return point
+
+
+def unnoticed(bench: Workbench, chi2: float, least: float = TOLERANCE) -> float:
+    """Fall of chi-squared that counts as none where it is as large as this."""
+    return max(least, OF_EXCESS * (chi2 - bench.problem.n_residuals))

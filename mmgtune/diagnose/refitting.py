@@ -1,0 +1,335 @@
+"""Which hypotheses are refitted in a look, from where, and how far."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..fitting.box import base_of
+from .base_fit import unnoticed
+from .hypotheses import Hypothesis
+from .linear import Linear, inwards, typical
+from .refit import ENOUGH, Refit
+from .runs import spread_key
+from .screening import ChanceScores, Score, evidence, told_by
+from .workbench import TOLERANCE, Point, Workbench
+
+STRONG = 1.2
+"""Chi-squared per residual beyond which every named hypothesis makes a step before the best are refitted."""
+
+REFITTED, TERMS_REFITTED = 9, 4
+"""Hypotheses that are refitted each time, named ones and terms out of many: those of the best scores."""
+
+LIKELY = 9
+"""Hypotheses of the best first steps that are refitted where scores alone cannot choose."""
+
+HOPELESS = 10.0
+"""Where much is left, values of runs that leave so many times what the best of them leave are not refitted further."""
+
+RUNS_REFITTED = 6
+"""Hypotheses of values that differ between runs that are refitted each time, at most."""
+
+FAR_LESS = 1.0 / 3.0
+"""Share of the error left by the best value for all that such values may leave, where much is left."""
+
+LEAST_SPREAD = 0.01
+"""Smallest spread of such values in a refit, in typical sizes."""
+
+ROUGH = 4
+"""Steps of a refit before it is compared with the others."""
+
+MOST_STEPS, ALL_STEPS = 10, 30
+"""Further steps of a refit where much is left, and of the best few."""
+
+STARTS_KEPT = 2
+"""Starts of a hypothesis that go on after a first step from each."""
+
+SIZES = (1.0, 0.5, 2.0)
+"""Sizes of effects with one side only at which refits start, in typical sizes."""
+
+WORTH_GOING_ON = 0.5
+"""Share of the best gain from which a refit is continued to its end, besides those of the best few."""
+
+FEW = 4
+"""The best few."""
+
+
+Stop = Callable[[], bool]
+"""Asked often; True ends the search with what it has."""
+
+
+class Stopped(Exception):
+    """A look that was not finished, of which nothing can be told."""
+
+
+@dataclass(eq=False)
+class Known:
+    """Refits there are within a look, by the names of the hypothesis.
+
+    ends   finished ones
+    good   whether their noise is the one in use; else they are places to go on from
+    begun  a first step from each start
+    """
+
+    ends: dict[tuple[str, ...], Point] = field(default_factory=dict)
+    good: bool = True
+    begun: dict[tuple[str, ...], list[Point]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class Refitting:
+    """What a look refits hypotheses from.
+
+    bench   the trials, and the model with every effect
+    point   what is known so far
+    linear  what the signatures of hypotheses are there
+    known   refits there are within the look
+    """
+
+    bench: Workbench
+    point: Point
+    linear: Linear
+    known: Known
+    stop: Stop = lambda: False
+
+    @property
+    def strong(self) -> bool:
+        """Whether so much is left that a linear score cannot choose."""
+        return self.point.chi2 > STRONG * self.bench.problem.n_residuals
+
+    def best(self, ranked: Sequence[Score], *, quick: bool) -> list[Refit]:
+        """The most promising hypotheses refitted, best first; what is found is known from then on.
+
+        Raises Stopped where it is not to go on.
+        """
+        order = sorted(ranked, key=lambda score: -score.score)
+        named = [s for s in order if not s.hypothesis.effect.one_of_many and not s.hypothesis.by]
+        terms = [s for s in order if s.hypothesis.effect.one_of_many]
+        if quick:
+            chosen = named[:3] + terms[:1]
+        else:
+            chosen = self._likely(named) if self.strong else named[:REFITTED]
+            chosen += terms[: (2 if self.strong else 1) * TERMS_REFITTED]
+        fitted = self._fitted([s for s in chosen if s.power > 0.0])
+        fitted += self._fitted(self._of_runs_worth(order, [end for _, end in fitted], quick=quick))
+        self.known.ends.update((score.hypothesis.names, end) for score, end in fitted)
+        asked = [s.hypothesis for s in ranked]
+        chance = None if quick else ChanceScores(self.linear, asked, self.bench.options.seed)
+        return self._ordered([self._judged(score, end, chance, max(1, len(terms))) for score, end in fitted])
+
+    def _go_on(self) -> None:
+        if self.stop():
+            raise Stopped
+
+    def _likely(self, named: Sequence[Score]) -> list[Score]:
+        """Of named hypotheses, best scores first, those whose first step from any start explains most, and a few of
+        the best scores."""
+        chi2 = []
+        for score in named:
+            self._go_on()
+            names = score.hypothesis.names
+            if names in self.known.ends:
+                chi2.append(-np.inf)
+            elif score.power > 0.0:
+                self.known.begun[names] = self._steps(self.point, score, self._starts(score), 1)
+                chi2.append(min(end.chi2 for end in self.known.begun[names]))
+            else:
+                chi2.append(np.inf)
+        kept = {*np.argsort(chi2)[:LIKELY].tolist(), *range(REFITTED // 2)}
+        return [score for k, score in enumerate(named) if k in kept]
+
+    def _fitted(self, chosen: Sequence[Score]) -> list[tuple[Score, Point]]:
+        """Hypotheses refitted, those that promise much to the end."""
+        rough = []
+        for score in chosen:
+            self._go_on()
+            rough.append(self._rough(score))
+        n = self.bench.problem.n_residuals
+        gains = sorted((self.point.chi2 - end.chi2 for end in rough), reverse=True)
+        enough = min([WORTH_GOING_ON * gains[0], *gains[FEW - 1 : FEW]]) if gains else 0.0
+        left = min((end.chi2 for end in rough), default=self.point.chi2) - n
+        ends = []
+        for score, end in zip(chosen, rough, strict=True):
+            self._go_on()
+            gain = self.point.chi2 - end.chi2
+            hopeless = score.hypothesis.by and self.strong and end.chi2 - n > HOPELESS * max(left, 0.0)
+            if not hopeless and gain >= enough and gain > 0.5 * ENOUGH * score.inflation:
+                end = self._on(score, end, MOST_STEPS if self.strong else ALL_STEPS)
+            ends.append(end)
+        best = sorted(range(len(ends)), key=lambda k: ends[k].chi2)[:FEW] if self.strong else []
+        for k in best:  # where little is known the others may take for ever, and are out of the question
+            self._go_on()
+            ends[k] = self._on(chosen[k], ends[k], ALL_STEPS)
+        return list(zip(chosen, ends, strict=True))
+
+    def _of_runs_worth(self, order: Sequence[Score], fitted: Sequence[Point], *, quick: bool) -> list[Score]:
+        """Hypotheses of values that differ between runs that are worth a refit beside those of one value for all.
+
+        Where one value for all leaves little more than noise, that it differs is seen once it is in place.
+        """
+        differing = [s for s in order if s.hypothesis.by and s.spread > 0.0]
+        n = self.bench.problem.n_residuals
+        left = min((end.chi2 for end in fitted), default=self.point.chi2)
+        price = math.log(n)
+        earned = [s for s in differing if s.score - self._new(s.hypothesis) * price > 0.5 * ENOUGH]
+        if left > STRONG * n:
+            return earned[: 1 if quick else RUNS_REFITTED]
+        alike = max((s.score / s.inflation - len(s.step) * price for s in order if not s.hypothesis.by), default=0.0)
+        return [s for s in earned if s.score - self._new(s.hypothesis) * price > alike][: 1 if quick else 2]
+
+    def _ordered(self, refits: Sequence[Refit]) -> list[Refit]:
+        """The best first: one value for all before values that differ between runs, unless these explain far more."""
+        found = sorted(refits, key=lambda refit: refit.cost - refit.gain)
+        alike = next((refit for refit in found if not refit.hypothesis.by), None)
+        if alike is None or not found[0].hypothesis.by:
+            return found
+        n = self.bench.problem.n_residuals
+        left = [max(refit.point.chi2 - n, math.sqrt(2.0 * n)) for refit in (found[0], alike)]
+        inflation = max(found[0].score.inflation, alike.score.inflation)
+        better = (found[0].gain - alike.gain) / inflation - found[0].cost + alike.cost
+        none = alike.evidence < ENOUGH
+        if (better >= ENOUGH or none) and (not self.strong or left[0] <= FAR_LESS * left[1]):
+            return found
+        return [alike, *(refit for refit in found if refit is not alike)]
+
+    def _rough(self, score: Score) -> Point:
+        """A few steps towards the best fit with a hypothesis, on from what is known of it."""
+        names = score.hypothesis.names
+        if names in self.known.ends:
+            end = self.known.ends[names]
+            ends = [end] if self.known.good else self._steps(end, score, end.unit[:, None], ROUGH)
+        elif names in self.known.begun:
+            null = origin(self.bench, self.point, names)
+            begun = sorted(self.known.begun[names], key=lambda end: end.chi2)
+            away = [end for end in begun if np.any(end.unit[-len(null) :] != null)]  # at the null there is no way on
+            best = (away or begun)[:STARTS_KEPT]
+            starts = np.column_stack([end.unit for end in best])
+            ends = [*begun, *self._steps(replace(self.point, offsets=best[0].offsets), score, starts, ROUGH - 1)]
+        else:
+            ends = self._steps(self.point, score, self._starts(score), ROUGH)
+        return min(ends, key=lambda end: end.chi2)
+
+    def _starts(self, score: Score) -> FloatArray:
+        """Where the refit of a hypothesis starts, (n_names, n_starts): where its score says, and for an effect with one
+        side only, whose slope at the null misleads, at sizes around the typical."""
+        names = score.hypothesis.names
+        null = origin(self.bench, self.point, names)
+        size = self._typical(score.hypothesis)
+        places = [null + np.clip(score.step, -4.0, 4.0) * size]
+        away = inwards(self.bench.null(names))
+        if away.any():
+            places += [null + away * size * factor for factor in (SIZES if self.strong else SIZES[:1])]
+        kept = self.point.unit[kept_free(self.point, score.hypothesis)]
+        return np.column_stack([np.concatenate([kept, np.clip(place, 0.0, 1.0)]) for place in places])
+
+    def _steps(self, point: Point, score: Score, starts: FloatArray, iterations: int) -> list[Point]:
+        """So many steps of fits with a hypothesis, from starts at a point, offsets beginning there."""
+        hypothesis = score.hypothesis
+        excess = max(point.chi2 - self.bench.problem.n_residuals, 0.0)
+        return self.bench.refits(
+            (*(point.names[i] for i in kept_free(point, hypothesis)), *hypothesis.names),
+            starts,
+            point.offsets,
+            max_iterations=iterations,
+            tolerance=max(TOLERANCE, 1e-3 * excess),
+            spreads=self._spreads(point, hypothesis, max(score.spread, 1.0 if self.strong else LEAST_SPREAD)),
+        )
+
+    def _on(self, score: Score, end: Point, steps: int) -> Point:
+        """A refit gone on with, for so many steps."""
+        spread = 0.0
+        if score.hypothesis.by:
+            spread = max(told_by(self.linear, score.hypothesis, self._moved(score.hypothesis, end))[0], LEAST_SPREAD)
+        return self.bench.refit(
+            end.names,
+            end.unit[:, None],
+            end.offsets,
+            spreads=self._spreads(self.point, score.hypothesis, spread),
+            max_iterations=steps,
+            tolerance=unnoticed(self.bench, end.chi2),
+        )
+
+    def _judged(self, score: Score, end: Point, chance: ChanceScores | None, n_terms: int) -> Refit:
+        """A refit with what chance would bring; n_terms  of those there are to choose from."""
+        bench, point, hypothesis = self.bench, self.point, score.hypothesis
+        null = bench.null(hypothesis.names)
+        if end.chi2 > point.chi2:  # a wind of nearly nothing is not quite nothing; the null itself is always open
+            kept = point.unit[kept_free(point, hypothesis)]
+            unit = np.concatenate([kept, origin(bench, point, hypothesis.names)])
+            end = Point(end.names, unit, point.offsets, point.chi2, point.integrator, end.spreads)
+        gain = point.chi2 - end.chi2
+        assert gain >= 0.0, "a nested refit ended above the model it extends"
+        volume = told_by(self.linear, hypothesis, self._moved(hypothesis, end))[1] if hypothesis.by else 0.0
+        k = self._new(hypothesis)
+        cost = k * np.log(bench.problem.n_residuals) + (2.0 * np.log(n_terms) if hypothesis.effect.one_of_many else 0.0)
+        cost += volume
+        return Refit(
+            hypothesis,
+            score,
+            end,
+            gain,
+            cost,
+            gain / score.inflation - cost,
+            float(np.max(np.abs(end.unit[-len(null) :] - null) / self._typical(hypothesis))),
+            chance.p_value(evidence(max(gain / score.inflation - volume, 0.0), k)) if chance else 1.0,
+            _unvisited(bench, end, hypothesis),
+        )
+
+    def _new(self, hypothesis: Hypothesis) -> int:
+        """Numbers that a hypothesis adds to the point: means that are not free there, and a spread."""
+        there = {base_of(name) for name in self.point.names}
+        return sum(base not in there for base in hypothesis.bases) + bool(hypothesis.by)
+
+    def _spreads(self, point: Point, hypothesis: Hypothesis, spread: float) -> dict[str, float]:
+        """Spreads at a point and of a hypothesis, the latter in typical sizes."""
+        names = hypothesis.names if hypothesis.by else ()
+        return {
+            **point.spreads,
+            **self.bench.spreads,
+            **{spread_key(n): spread * typical(self.bench, n) for n in names},
+        }
+
+    def _moved(self, hypothesis: Hypothesis, end: Point) -> FloatArray:
+        """(n_names,) how far the parameters of a hypothesis moved from where they stood, in typical sizes."""
+        names = hypothesis.names
+        moved = end.unit[-len(names) :] - origin(self.bench, self.point, names)
+        return np.asarray(moved / self._typical(hypothesis))
+
+    def _typical(self, hypothesis: Hypothesis) -> FloatArray:
+        """(n_names,) typical sizes of the parameters of a hypothesis in the unit cube."""
+        return np.array([typical(self.bench, name) for name in hypothesis.names])
+
+
+def _unvisited(bench: Workbench, end: Point, hypothesis: Hypothesis) -> str:
+    """What the trials would have to visit for a fitted hypothesis to be believed; "" where they do."""
+    if hypothesis.effect.unvisited is None:
+        return ""
+    values = bench.values(end)
+    found = {name.rpartition(".")[2]: values[name] for name in hypothesis.names}
+    return hypothesis.effect.unvisited(found, bench.visited)
+
+
+def kept_free(point: Point, hypothesis: Hypothesis) -> list[int]:
+    """What stays free beside a hypothesis: all but the parameters it has itself, for all runs or for fewer, and the
+    targets it takes the place of."""
+    gone = {*hypothesis.bases, *hypothesis.instead}
+    return [i for i, name in enumerate(point.names) if base_of(name) not in gone]
+
+
+def origin(bench: Workbench, point: Point, names: Sequence[str]) -> FloatArray:
+    """(n_names,) where parameters stand in a point: their own value, that of all runs, or their null; of a factor, what
+    the target whose place it takes has become."""
+    unit = dict(zip(point.names, point.unit, strict=True))
+    null = bench.null(names)
+    for k, name in enumerate(names):
+        target = bench.factors.get(base_of(name))
+        if target in unit:
+            low, pre = bench.box.low, bench.box.pre
+            factor = bench.values(point)[target] / pre[bench.box.names.index(target)]
+            i = bench.box.names.index(base_of(name))
+            null[k] = np.clip((factor - low[i]) / bench.box.width[i], 0.0, 1.0)
+    return np.array([unit.get(name, unit.get(base_of(name), z)) for name, z in zip(names, null, strict=True)])
