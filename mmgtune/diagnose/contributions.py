@@ -58,9 +58,11 @@ class Contribution:
 
     @property
     def unnoticed(self) -> bool:
-        """Whether a user would notice nothing without it."""
+        """Whether a user would notice nothing without it, or find held-out trials told better."""
         if self.channels is None or self.indices is None:
             return False
+        if self.share < -SHARE:
+            return True
         moved = all(
             change < (OF_ANGLE if name.endswith("_deg") else OF_LENGTH) for name, change in self.indices.items()
         )
@@ -141,7 +143,8 @@ def _of(bench: Workbench, found: Found, cause: Hypothesis, test: Sequence[Trial]
         for k, name in enumerate(STATES)
         if counts[k] and (noise := bench.noise.channels.get(name))
     }
-    return Contribution(seen, float(removed[1] / removed[0]) if removed[0] > 0.0 else 1.0, channels, changes)
+    scale = max(float(removed[0]), abs(float(removed[1])))  # where all together remove nothing, the cause is beside itself
+    return Contribution(seen, float(removed[1]) / scale if scale > 0.0 else 1.0, channels, changes)
 
 
 def _errors(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -18,6 +18,7 @@ from ..fitting.problem import FitProblem
 from ..objective import make_objective
 from ..trial import Trial
 from .elsewhere import FIRST, estimated_there, first_part
+from .intervals import covariance
 from .search import Found
 from .unseen import Beside, held_out_fits, problem_on
 from .workbench import Point, Workbench
@@ -27,6 +28,12 @@ RESAMPLES = 2000
 
 RELEVANT = 0.05
 """Error beyond noise that is worth speaking of, as a share of the noise."""
+
+BAND = 3.0
+"""How many times what is expected of uncertain coefficients these may bring: few directions count."""
+
+DRAWS = 16
+"""Sets of coefficients that show what to expect."""
 
 MOST = 0.9
 """Share of the error above noise on held-out trials that the right causes remove at least."""
@@ -53,6 +60,8 @@ class Gain(Brief):
     floor       chi-squared that noise brings to all of them
     chance      deviation of that
     first_part  share of each run that what differs between runs was estimated on; ``excess`` counts what follows alone
+    unsure      chi-squared to be expected beyond noise because coefficients are known no better than they are; 0 where
+                it was not asked for, as nothing remains
     """
 
     held_out: HeldOut
@@ -61,12 +70,13 @@ class Gain(Brief):
     floor: float
     chance: float
     first_part: float = 0.0
+    unsure: float = 0.0
 
     @property
     def remains(self) -> bool:
         """Whether the causes leave on held-out trials more than noise, and not much less than there was."""
         after = float(self.excess[:, 1].sum())
-        left = after > RELEVANT * self.floor + 3.0 * self.chance
+        left = after > RELEVANT * self.floor + 3.0 * self.chance + BAND * self.unsure
         return left and self.share_removed[0] < MOST
 
     @property
@@ -157,6 +167,36 @@ def held_out(bench: Workbench, found: Found, test: Sequence[Trial]) -> Gain:
 
     Windows of one trial are left out together.
     """
+    gain = _gain(bench, found, test)
+    if not gain.remains or gain.held_out == "only":
+        return gain
+    n = len({trial.run for trial in bench.trials})
+    scale = 1.0 if test else n / (n - 1.0)  # fitted without one of the runs
+    return replace(gain, unsure=scale * expected(bench, found, test or bench.trials))
+
+
+def expected(bench: Workbench, found: Found, trials: Sequence[Trial]) -> float:
+    """Chi-squared beyond noise on trials that a point was not fitted to, as its coefficients are known no better.
+
+    The mean of draws from their covariance, initial states re-estimated to first order.
+    """
+    names, spread = covariance(bench, found.final)
+    beside = Beside.of(bench, (found.base, found.final), trials)
+    at = beside.units[-1]
+    offsets = fit_offsets(beside.scaled, at)
+    drawn = np.random.default_rng(0).multivariate_normal(np.zeros(len(names)), spread, DRAWS, method="eigh")
+    columns = np.repeat(at[:, None], 1 + DRAWS, axis=1)
+    rows = [beside.wide.names.index(name) for name in names]
+    columns[rows, 1:] = np.clip(at[rows][:, None] + drawn.T, 0.0, 1.0)
+    problem = beside.judged
+    runs = problem.residuals(columns, np.repeat(offsets[:, None], 1 + DRAWS, axis=1)).T
+    runs = runs[:, np.isfinite(runs).all(axis=0)]
+    by_offset = problem.offset_slopes(at, offsets)[1]
+    moved = problem.without_offsets(runs[:, 1:] - runs[:, :1], by_offset, problem.prior)
+    return float(np.sum(moved**2)) / max(moved.shape[1], 1)
+
+
+def _gain(bench: Workbench, found: Found, test: Sequence[Trial]) -> Gain:
     if test:
         compared, excess = _on(bench, found.base, found.final, test)
         return Gain("test", tuple(compared), excess, *_chance(bench, test, found.final), _share_used(found.final, test))

@@ -8,12 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray
+from ..fitting.box import group_of, parameter_of
 from .linear import linearise, typical
 from .runs import between
 from .workbench import Point, Workbench
 
 NORMAL = 1.96
 """Deviations either side of a 95 % interval."""
+
+OF_BOX = 1.0 / 12.0
+"""Variance of what may be anywhere in a box, over the square of its width."""
 
 
 @dataclass(frozen=True)
@@ -36,13 +40,8 @@ def estimates(bench: Workbench, point: Point) -> dict[str, Estimate]:
     names = tuple(name for name in point.names if name.startswith("effects."))
     if not names:
         return {}
-    linear = linearise(bench, point, apart=names)
-    Q, R = np.linalg.qr(linear.columns(names))
-    by_block, by_trial = linear.chance(Q)
-    memory = max(1.0, float(np.sum(by_block**2)) / len(names))
-    noise = memory * np.eye(len(names)) + np.einsum("cdk,cdl->kl", by_trial, by_trial) / by_trial.shape[1]
+    R, noise, size = _told(bench, point, names)
     back = np.linalg.pinv(R, rcond=1e-10)
-    size = np.array([typical(bench, name) for name in names])
     covariance = back @ noise @ back.T
     believed = between(names, point.spreads)
     if believed is not None:  # what other runs say of a run that says little itself
@@ -51,6 +50,31 @@ def estimates(bench: Workbench, point: Point) -> dict[str, Estimate]:
         covariance = np.linalg.pinv(told + alike.T @ alike, rcond=1e-12, hermitian=True)
     covariance = covariance * np.outer(size, size)
     return _in_units(bench, point, names, covariance)
+
+
+def covariance(bench: Workbench, point: Point) -> tuple[tuple[str, ...], FloatArray]:
+    """What is free inside its bounds and the same for all runs, and how well it is known: (n, n) in the unit cube.
+
+    Directions that no trial tells end at the box, everywhere in which is equally likely beforehand.
+    """
+    inside = [name for name, z in zip(point.names, point.unit, strict=True) if 0.0 < z < 1.0 and not group_of(name)]
+    if not inside:
+        return (), np.zeros((0, 0))
+    R, noise, size = _told(bench, point, tuple(inside))
+    told = R.T @ np.linalg.solve(noise, R) + np.diag(size**2 / OF_BOX)
+    return tuple(inside), np.linalg.inv(told) * np.outer(size, size)
+
+
+def _told(bench: Workbench, point: Point, names: tuple[str, ...]) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """What residuals tell of what is free, all else re-tuned: the triangle of its columns, what noise has along these,
+    and a step of each column in the unit cube."""
+    linear = linearise(bench, point, apart=names)
+    Q, R = np.linalg.qr(linear.columns(names))
+    by_block, by_trial = linear.chance(Q)
+    memory = max(1.0, float(np.sum(by_block**2)) / len(names))
+    noise = memory * np.eye(len(names)) + np.einsum("cdk,cdl->kl", by_trial, by_trial) / by_trial.shape[1]
+    size = np.array([1.0 if parameter_of(bench.model, name) is None else typical(bench, name) for name in names])
+    return R, noise, size
 
 
 def _in_units(bench: Workbench, point: Point, names: Sequence[str], covariance: FloatArray) -> dict[str, Estimate]:

@@ -197,10 +197,11 @@ def _promising(refit: Refit, step: Step) -> bool:
 
 
 def _explained(found: Found, before: Leftover, left: Leftover) -> float:
-    """Share of the error above white noise on the trials looked at that the causes remove."""
+    """Share of the error above the noise of the sensors on the trials looked at that the causes remove."""
     if not found.causes:
         return 0.0
-    return 1.0 - max(left.excess, 0.0) / before.excess if before.excess > 0.0 else 0.0
+    whole = before.excess - (left.excess - left.unknown)
+    return 1.0 - max(left.unknown, 0.0) / whole if whole > 0.0 else 0.0
 
 
 def _suggestion(bench: Workbench, found: Found, rivals: Sequence[Sequence[Refit]]) -> Suggestion | None:

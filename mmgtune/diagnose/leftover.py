@@ -70,6 +70,8 @@ class Leftover(Brief):
     explained  by channel, the largest share one quantity explains, and which
     offsets    by channel, what its log shows more than the model in every run alike [rad, m/s or rad/s]
     left_open  variance beyond that noise that what the logged inputs leave open accounts for, as a share of it
+    slow       variance that the noise as estimated has in a part that fades slowly, as a share of the white one: part
+               of ``excess``, and noise of the sensors where what is left has no structure
     """
 
     excess: float
@@ -79,16 +81,22 @@ class Leftover(Brief):
     explained: dict[str, tuple[str, float]]
     offsets: dict[str, float]
     left_open: float = 0.0
+    slow: float = 0.0
+
+    @property
+    def unknown(self) -> float:
+        """Variance of the residuals that no noise of the sensors accounts for, as a share of their white noise."""
+        return self.excess if self.structured else self.excess - self.slow
 
     @property
     def noticed(self) -> bool:
         """Whether there is anything left to speak of."""
-        return self.excess >= NOTICED
+        return self.unknown >= NOTICED
 
     @property
     def structured(self) -> bool:
         """Whether more is left than noise of the sensors could be."""
-        if not self.noticed:
+        if self.excess < NOTICED:
             return False
         strong = [share for name, (_, share) in self.explained.items() if self.channels[name] > NOTICED]
         return max(strong, default=0.0) > ALIKE or max(self.certainty.values(), default=0.0) > CERTAIN
@@ -116,7 +124,16 @@ def leftover(bench: Workbench, point: Point) -> Leftover:
         explained=_explained(bench, residuals, [name for name, value in excess.items() if value > NOTICED]),
         offsets=offsets_of(residuals, level),
         left_open=float(np.mean(list(excused.values()))),
+        slow=float(np.mean([_slow(bench, name, level[STATES.index(name)], value) for name, value in excess.items()])),
     )
+
+
+def _slow(bench: Workbench, name: str, level: float, excess: float) -> float:
+    """Variance of the fading part of the noise of a channel over that of its white noise, no more than it has."""
+    noise = bench.noise.channels.get(name)
+    if noise is None:
+        return 0.0
+    return float(np.clip(noise.fading * (bench.sigma[STATES.index(name)] / level) ** 2, 0.0, max(excess, 0.0)))
 
 
 def residuals_of(bench: Workbench, point: Point) -> list[FloatArray]:

@@ -369,7 +369,7 @@ class Diagnosis(Plotted):
                     f"{_percent(self.explained_share)} of the error it was found on, but {self.unclear}: it stands for "
                     "something else, or for more than these trials can tell apart."
                 )
-            excess = self.leftover.excess
+            excess = self.leftover.unknown
             left = (
                 f"{excess:.0%} beyond the noise of the measurements is left"
                 if excess < LARGE
