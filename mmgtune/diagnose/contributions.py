@@ -35,8 +35,15 @@ OF_LENGTH = 0.01
 OF_ANGLE = 0.5
 """Change of overshoots [deg] that is not noticed."""
 
-WORTH_ASKING = 0.05
-"""Share of the fall of chi-squared on the trials looked at from which a cause is no trace without asking further."""
+WORSE = 0.1
+"""Share by which causes may make the error on held-out trials larger by chance."""
+
+SMALL, WORTH_ASKING = 0.05, 0.3
+"""Share of the fall of chi-squared on the trials looked at up to which a cause may be a trace, and up to which held-out
+trials are asked whether it does any good."""
+
+FORM = 0.003
+"""Share of the error that a cause leaves whose form is 5 % off."""
 
 
 @dataclass(frozen=True)
@@ -58,15 +65,18 @@ class Contribution:
 
     @property
     def unnoticed(self) -> bool:
-        """Whether a user would notice nothing without it, or find held-out trials told better."""
+        """Whether a user would notice nothing without it, or find held-out trials told no worse.
+
+        Nor is it more than a trace where the others, a little off in their form, would leave as much.
+        """
         if self.channels is None or self.indices is None:
             return False
-        if self.share < -SHARE:
+        if self.share <= 0.0 or max(self.share, self.seen) < FORM:
             return True
         moved = all(
             change < (OF_ANGLE if name.endswith("_deg") else OF_LENGTH) for name, change in self.indices.items()
         )
-        return self.share < SHARE and max(self.channels.values()) < OF_NOISE and moved
+        return self.seen < SMALL and self.share < SHARE and max(self.channels.values()) < OF_NOISE and moved
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
@@ -105,15 +115,20 @@ def set_aside(bench: Workbench, found: Found, test: Sequence[Trial]) -> tuple[li
     brought = contributions(bench, found, test)
     while any(one.unnoticed for one in brought):
         k = min((i for i, one in enumerate(brought) if one.unnoticed), key=lambda i: brought[i].seen)
-        cause = found.causes[k]
-        sizes = estimates(bench, found.final)
-        steps = [s for s in found.steps if s.refits and s.refits[0].hypothesis == cause]
-        p_value = steps[0].refits[0].p_value if steps else 0.0
-        traces.append(Aside(cause, {name: sizes[name] for name in cause.names}, p_value, brought[k]))
-        found.final = without(bench, found.final, cause)
-        del found.causes[k]
+        traces.append(put_aside(bench, found, k, brought[k]))
         brought = contributions(bench, found, test)
     return traces, brought
+
+
+def put_aside(bench: Workbench, found: Found, k: int, brought: Contribution) -> Aside:
+    """Take cause k out of what was found, and refit the rest."""
+    cause = found.causes[k]
+    sizes = estimates(bench, found.final)
+    steps = [s for s in found.steps if s.refits and s.refits[0].hypothesis == cause]
+    p_value = steps[0].refits[0].p_value if steps else 0.0
+    found.final = without(bench, found.final, cause)
+    del found.causes[k]
+    return Aside(cause, {name: sizes[name] for name in cause.names}, p_value, brought)
 
 
 def alone_of(bench: Workbench, found: Found) -> Found:
@@ -143,7 +158,7 @@ def _of(bench: Workbench, found: Found, cause: Hypothesis, test: Sequence[Trial]
         for k, name in enumerate(STATES)
         if counts[k] and (noise := bench.noise.channels.get(name))
     }
-    scale = max(float(removed[0]), abs(float(removed[1])))  # where all together remove nothing, the cause is beside itself
+    scale = max(float(removed[0]), abs(float(removed[1])))  # all together may remove less than one, or nothing
     return Contribution(seen, float(removed[1]) / scale if scale > 0.0 else 1.0, channels, changes)
 
 

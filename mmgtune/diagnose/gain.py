@@ -193,7 +193,7 @@ def expected(bench: Workbench, found: Found, trials: Sequence[Trial]) -> float:
     runs = runs[:, np.isfinite(runs).all(axis=0)]
     by_offset = problem.offset_slopes(at, offsets)[1]
     moved = problem.without_offsets(runs[:, 1:] - runs[:, :1], by_offset, problem.prior)
-    return float(np.sum(moved**2)) / max(moved.shape[1], 1)
+    return float(np.sum(moved**2)) / max(int(moved.shape[1]), 1)
 
 
 def _gain(bench: Workbench, found: Found, test: Sequence[Trial]) -> Gain:

@@ -27,6 +27,9 @@ from .workbench import Point, Workbench
 NOTICED = 0.05
 """Variance beyond the white noise of the sensors, as a share of it, that is worth speaking of."""
 
+SLACK = 0.25
+"""Share by which slow noise may have been estimated too small: records hold few of its time constants."""
+
 ALIKE = 0.5
 """Share explained by the ship's state from which what is left is an error of the model."""
 
@@ -86,7 +89,7 @@ class Leftover(Brief):
     @property
     def unknown(self) -> float:
         """Variance of the residuals that no noise of the sensors accounts for, as a share of their white noise."""
-        return self.excess if self.structured else self.excess - self.slow
+        return self.excess if self.structured else self.excess - min((1.0 + SLACK) * self.slow, max(self.excess, 0.0))
 
     @property
     def noticed(self) -> bool:

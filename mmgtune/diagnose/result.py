@@ -14,7 +14,7 @@ from ..options import DiagnoseOptions
 from ..profile import ShipProfile, tuned, with_effects
 from ..trial import Coverage
 from .by_run import ByRun
-from .contributions import Contribution
+from .contributions import WORSE, Contribution
 from .gain import MOST, Gain
 from .intervals import Estimate
 from .leftover import Leftover, in_words
@@ -44,9 +44,6 @@ OPEN = 0.3
 BENT = 1.0
 """Variance beyond noise, as a share of it, that a cause with values of each run may leave where it has a shape: such
 values bend to what is elsewhere, or at another hour, and not of the run at all."""
-
-WORSE = 0.1
-"""Share by which causes may make the error on test trials larger by chance."""
 
 TOO_MANY = 4
 """Terms of a sum of causes from which it is not believed."""
@@ -303,8 +300,6 @@ class Diagnosis(Plotted):
             return "each of them can be left out with little loss"
         if self.leftover.structured:
             return "what they leave is no noise"
-        if any(one.share <= 0.0 for one in brought):
-            return "one of them makes trials that were held out no better"
         return ""
 
     @property
@@ -368,6 +363,14 @@ class Diagnosis(Plotted):
                     f"Something is wrong that this program cannot name. The best partial explanation, {tags}, removes "
                     f"{_percent(self.explained_share)} of the error it was found on, but {self.unclear}: it stands for "
                     "something else, or for more than these trials can tell apart."
+                )
+            if self.causes and not self.leftover.noticed:
+                tags = " + ".join(dict.fromkeys(cause.tag for cause in self.causes))
+                them = "it was" if len(self.causes) == 1 else "they were"
+                return (
+                    f"Something is wrong that this program cannot name. The best of what is known, {tags}, would "
+                    f"remove {_percent(self.explained_share)} of the error {them} found on, but the model with it errs "
+                    f"more {where}."
                 )
             excess = self.leftover.unknown
             left = (
@@ -490,7 +493,8 @@ class Diagnosis(Plotted):
             "unexplained": {
                 "structured": self.leftover.structured,
                 "unclear": self.unclear,
-                "share_of_noise_variance": self.leftover.excess,
+                "share_of_noise_variance": self.leftover.unknown,
+                "slow_noise": self.leftover.slow,
                 "left_open_by_inputs": self.leftover.left_open,
                 "by_channel": self.leftover.channels,
                 "share_explained_by_causes": self.explained_share,
