@@ -55,7 +55,19 @@ def _has_one_of_its_module(item: pytest.Item) -> bool:
     return any(one.scope == "module" for found in fixtures.values() for one in found)
 
 
-@pytest.fixture(params=profile_names())
+def _profiles() -> list[object]:
+    """Bundled profiles; one built of the same components as another before it has nothing new for most tests."""
+    found: dict[tuple[str, ...], list[str]] = {}
+    for name in profile_names():
+        found.setdefault(Model(load_profile(name)).tags, []).append(name)
+    return [
+        name if name == alike[0] else pytest.param(name, marks=pytest.mark.long)
+        for alike in found.values()
+        for name in alike
+    ]
+
+
+@pytest.fixture(params=_profiles())
 def any_model(request: pytest.FixtureRequest) -> Model:
     """The model of each bundled profile in turn."""
     return Model(load_profile(request.param))
