@@ -165,7 +165,9 @@ def _understand(arguments: list[str]) -> None:
             one.encode()
         except UnicodeEncodeError:
             what = f"the argument {one!a} is not UTF-8 text"
-            raise OptionError(Problem(what, "command line", fix="rename the file or folder")) from None
+            raise OptionError(
+                Problem(what, "command line", "no file of results could name it", "rename the file or folder")
+            ) from None
 
 
 def _in_its_lines(problem: Problem) -> Problem:
