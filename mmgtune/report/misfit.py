@@ -98,7 +98,7 @@ def off_figure(record: SweepRecord, best: float | None) -> Figure | None:
             panels.append(
                 Panel(tuple(marks), _across(ranges, best, "range a_r"), Axis(f"{words} [{unit}]", log=True, room=0.12))
             )
-    legend = tuple((HELD[role], _LOOKS[role]) for role in HELD if role in roles)
+    legend = tuple((HELD[role], _LOOKS[role]) for role in _LOOKS if role in roles)
     alt = "Metres off track and degrees off heading against the range a_r"
     return Figure("off", alt, tuple(panels), legend) if panels else None
 
@@ -152,7 +152,7 @@ def figure(record: SweepRecord, best: float | None) -> Figure:
         marks.append(Rule(best, Look("before", 1.2, "dot")))
     panel = Panel(
         tuple(marks),
-        _across(ranges, best, "range a_r: coefficients within ± a_r of their start"),
+        _across(ranges, best, "range a_r, a share of each value"),
         Axis("J [–]", log=True, room=0.12),
         shape=0.5,
     )
