@@ -104,6 +104,8 @@ def test_simulators_with_the_id_of_the_true_ship_go_by_the_name_they_were_given(
     said = summary(result.to_dict())
     assert str(copy) in said
     assert f"gains in {SHIP.id}" in said
+    turned = study_heading_keeping([SHIP.id], copy, replace(FEW, duration=2.0))  # the truth is the tuned ship
+    assert (turned.true_ship, [one.name for one in turned.models]) == (str(copy), [SHIP.id])
     (one,) = study_heading_keeping([as_predictor(SHIP)], SHIP, replace(FEW, duration=2.0)).models
     assert one.name == SHIP.id  # an object was given by no name
 
