@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import Problem
-from .choice import Options, choice
+from .choice import OUTPUT, Options, choice
 
 WHERE = "Where"
 """Panel of the help."""
@@ -32,6 +32,12 @@ class FleetOptions(Options):
     tls_cert: Path | None = choice(None, "Own certificate for tls://.", panel=WHERE)
     tls_key: Path | None = choice(None, "Key of that certificate.", panel=WHERE)
     retry: bool = choice(False, "Run jobs that failed before once more.")
+    job_reports: bool = choice(
+        True,
+        "Do not render the report of each job, which takes time; mmgtune report FOLDER makes one when it is wanted.",
+        flag="--no-job-reports",
+        panel=OUTPUT,
+    )
 
     @property
     def tls(self) -> dict[str, Path]:
