@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 
@@ -65,15 +66,37 @@ class OutputError(MmgtuneError):
     """A result cannot be written."""
 
 
-def closest(name: str, known: list[str] | tuple[str, ...]) -> str:
+FEW = 12
+"""Names that are listed where one of them is meant; of more it is said how many there are."""
+
+
+def among(name: str, known: Sequence[str]) -> dict[str, str]:
+    """Why a name is not understood and what to do, by the names there are: ``Problem(what, where, **among(...))``."""
+    if not known:
+        return {"why": "there is nothing here that it could mean", "fix": "leave it out"}
+    near = near_to(name, known)
+    if not near:
+        return {"why": f"it is like none of the names that are {_listed(known)}", "fix": "write one of these"}
+    few = f"the only names {_listed(known)}"
+    return {"why": few if len(known) <= FEW else f"it is none of the {len(known)} names known here", "fix": near}
+
+
+def closest(name: str, known: Sequence[str]) -> str:
     """A sentence naming the nearest known names, or what is known if nothing is near."""
+    return near_to(name, known) or _listed(known)
+
+
+def near_to(name: str, known: Sequence[str]) -> str:
+    """A question naming the nearest known names, "" where none is near."""
     import difflib
 
     # Names may come from files: comparing grows with the product of lengths.
     short = [other for other in known[:1000] if len(other) <= 80]
     near = difflib.get_close_matches(name[:80], short, n=3, cutoff=0.5)
-    if near:
-        return "did you mean " + " or ".join(f"'{other}'" for other in near) + "?"
+    return "did you mean " + " or ".join(f"'{other}'" for other in near) + "?" if near else ""
+
+
+def _listed(known: Sequence[str]) -> str:
     more = f" and {len(known) - 40} more" if len(known) > 40 else ""
     return "known here: " + ", ".join(other if len(other) <= 80 else f"{other[:80]}..." for other in known[:40]) + more
 

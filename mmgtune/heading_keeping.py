@@ -132,7 +132,10 @@ def study_heading_keeping(
         taken = simulator.name in {ship.id, *(one.name for one in judged)}  # a tuned ship has the id of the true one
         name = str(given) if taken and isinstance(given, (str, Path)) else simulator.name
         judged.append(Judged(name, simulator.method, kept(simulator, ship, gains, options)))
-    return HeadingStudy(gains, true, ship.id, tuple(judged), options, time.perf_counter() - began)
+    called = ship.id
+    if isinstance(truth, (str, Path)) and ship.id in {one.name for one in judged}:  # it is not that simulator
+        called = str(truth)
+    return HeadingStudy(gains, true, called, tuple(judged), options, time.perf_counter() - began)
 
 
 def kept(predictor: Predictor, ship: ShipProfile, gains: FloatArray, options: HeadingOptions) -> FloatArray:

@@ -13,7 +13,7 @@ import numpy as np
 
 from .arrays import FloatArray
 from .backends import STATES, Cases
-from .errors import OptionError, Problem, closest
+from .errors import OptionError, Problem, among
 from .physics.constants import GRAVITY
 from .predictor import cases_from
 from .trial import Trial
@@ -95,7 +95,7 @@ def make_objective(
         name, _, written = entry.partition(":")
         name = "v_m" if name == "v" else name
         if name not in STATES:
-            raise OptionError(Problem(f"unknown channel '{name}'", "channels", fix=closest(name, STATES)))
+            raise OptionError(Problem(f"unknown channel '{name}'", "channels", **among(name, STATES)))
         try:
             weights[name] = float(written) if written else 1.0
         except ValueError:
@@ -105,7 +105,8 @@ def make_objective(
                 Problem(
                     f"weight '{written}' of channel '{name}' is not a positive number",
                     "channels",
-                    fix=f"write {name}:1",
+                    "after the colon stands how much a channel counts beside the others",
+                    f"write {name}:1",
                 )
             )
     if window is not None and not window[0] < window[1]:
@@ -113,7 +114,8 @@ def make_objective(
             Problem(
                 f"the time window {window[0]:g}..{window[1]:g} s is empty",
                 "window",
-                fix="write window=FIRST:LAST in seconds",
+                "its end is not after its beginning, so no sample would count",
+                "write window=FIRST:LAST in seconds",
             )
         )
     return Objective(scales=scales or default_scales(L_pp), weights=weights, window=window, every=every)

@@ -32,6 +32,16 @@ def taken(name: str | Path, there: bool, bundled: Path) -> Path | None:
     return path
 
 
+def looked_for(name: str | Path, kind: str = "") -> str:
+    """Why a path or bundled name means nothing: where it was looked for.
+
+    kind  of what is bundled, "profile" or "data set"; "" where nothing is
+    """
+    path = Path(name)
+    there = f"there is no {path}" if path.is_absolute() else f"there is no '{name}' in {Path.cwd()}"
+    return there if len(path.parts) > 1 or not kind else f"{there}, and no bundled {kind} of that name"
+
+
 def profile_names() -> list[str]:
     """Names of the bundled profiles."""
     return sorted(path.stem for path in folder("ship_profiles").glob("*.toml"))

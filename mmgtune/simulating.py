@@ -167,7 +167,12 @@ def simulate(
         return Simulated(predictor, ordered, (), options, tuple(_beyond(profile_of(predictor), ordered)))
     if options.turn or options.zigzag or options.speed or options.rpm:
         raise OptionError(
-            Problem("trials have their own inputs", "trials", fix="leave out turn, zigzag, speed and rpm")
+            Problem(
+                "trials have their own inputs",
+                "trials",
+                "rudder and propeller follow what was measured, not orders",
+                "leave out turn, zigzag, speed and rpm",
+            )
         )
     several = list_of(trials)
     records = evaluate(predictor, several)
@@ -234,8 +239,9 @@ def rudder_angle(text: str) -> float:
         raise OptionError(Problem(f"a rudder angle of {text} looks like radians", "turn", "turn is in degrees", fix))
     angle = written * DEG if written is not None else _quantity(text, "turn", "rad", '35 or "0.61 rad"')
     if not 0.0 < abs(angle) <= 0.5 * math.pi:
+        why = "no ship turns by that" if angle == 0.0 else "no rudder goes beyond 90 deg"
         fix = "give an angle between -90 and 90 deg, not 0"
-        raise OptionError(Problem(f"rudder angle {angle / DEG:g} deg", "turn", fix=fix))
+        raise OptionError(Problem(f"rudder angle {angle / DEG:g} deg", "turn", why, fix))
     return angle
 
 
@@ -252,7 +258,9 @@ def revolutions(text: str) -> float:
         raise OptionError(Problem(f"{text} revolutions look like 1/s", "rpm", "rpm is in 1/min", fix))
     n = written / 60.0 if written is not None else _quantity(text, "rpm", "1/s", '106 or "1.77 1/s"')
     if not (n > 0.0 and math.isfinite(n)):
-        raise OptionError(Problem(f"the revolutions are {text}", "rpm", fix="give a number above 0"))
+        raise OptionError(
+            Problem(f"the revolutions are {text}", "rpm", "manoeuvres begin ahead", "give a number above 0")
+        )
     return n
 
 
@@ -263,8 +271,9 @@ def zigzag_angles(text: str) -> tuple[float, float]:
         if not (0.0 < abs(rudder) <= 90.0 and 0.0 < heading <= 180.0):
             raise ValueError
     except ValueError:
+        why = "it is not a rudder angle to 90 deg and a change of heading to 180 deg with a stroke between"
         fix = "write RUDDER/HEADING in degrees, such as 20/20"
-        raise OptionError(Problem(f"'{text}' is not a zigzag", "zigzag", fix=fix)) from None
+        raise OptionError(Problem(f"'{text}' is not a zigzag", "zigzag", why, fix)) from None
     if abs(rudder) < RADIANS or heading < RADIANS:
         fix = "write RUDDER/HEADING in degrees, such as 20/20"
         raise OptionError(Problem(f"a zigzag {text} looks like radians", "zigzag", "zigzag is in degrees", fix))
@@ -283,7 +292,8 @@ def _quantity(text: str, name: str, unit: str, such_as: str) -> float:
     try:
         return parse(text, unit)[0]
     except ValueError as error:
-        raise OptionError(Problem(str(error), name, fix=f"write {name}={such_as}")) from None
+        what = f"'{text[:80]}' cannot be read"
+        raise OptionError(Problem(what, name, str(error), f"write {name}={such_as}")) from None
 
 
 def _signed(angle: float) -> str:

@@ -8,7 +8,7 @@ import tomllib
 from typing import Any
 
 from . import units
-from .errors import MmgtuneError, Problem, brief, closest
+from .errors import MmgtuneError, Problem, among, brief
 from .limits import NESTING
 
 
@@ -99,7 +99,7 @@ class TomlReader:
         """Note keys of a table that are not among those known."""
         for key in table:
             if key not in known:
-                self.problem(f"unknown key '{named(name, key)}'", name, key, fix=closest(key, known))
+                self.problem(f"unknown key '{named(name, key)}'", name, key, **among(key, known))
 
     def text_of(self, name: str, table: dict[str, Any], key: str) -> str:
         """A text, "" where there is none."""

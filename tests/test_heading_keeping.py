@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from dataclasses import replace
 
 import numpy as np
@@ -18,6 +19,7 @@ from mmgtune.physics.actuation import actuated
 from mmgtune.predictor import as_predictor, stepper_of
 from mmgtune.profile import load_profile
 from mmgtune.report import render
+from mmgtune.resources import folder
 
 from .networks.made import ensemble, network
 from .networks.test_hybrid import HybridPredictor, a_hybrid
@@ -91,6 +93,21 @@ def test_the_worst_member_promises_least():
     said = one.to_dict(result.truth)["overrated_by_single_members"]
     assert (said["least"], said["most"]) == (min(shares), max(shares))
     assert said["mean"] == pytest.approx(np.mean(shares))
+
+
+def test_simulators_with_the_id_of_the_true_ship_go_by_the_name_they_were_given(tmp_path):
+    copy = tmp_path / "tuned.toml"
+    shutil.copy(folder("ship_profiles") / f"{SHIP.id}.toml", copy)
+    result = study_heading_keeping([str(copy), "suzaku"], SHIP, replace(FEW, duration=2.0))
+    assert [one.name for one in result.models] == [str(copy), "suzaku"]
+    assert result.true_ship == SHIP.id
+    said = summary(result.to_dict())
+    assert str(copy) in said
+    assert f"gains in {SHIP.id}" in said
+    turned = study_heading_keeping([SHIP.id], copy, replace(FEW, duration=2.0))  # the truth is the tuned ship
+    assert (turned.true_ship, [one.name for one in turned.models]) == (str(copy), [SHIP.id])
+    (one,) = study_heading_keeping([as_predictor(SHIP)], SHIP, replace(FEW, duration=2.0)).models
+    assert one.name == SHIP.id  # an object was given by no name
 
 
 def test_runs_that_diverge_promise_nothing():

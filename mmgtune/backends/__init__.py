@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from ..errors import OptionError, Problem, closest
+from ..errors import OptionError, Problem, among
 from ..model import Model
 from ..physics.quantities import STATES
 from .cases import Backend, Cases, Integrator, LaneResult, pad
@@ -40,7 +40,7 @@ def get_backend(name: str = "compiled") -> Backend:
         from .differentiable import JaxLanes
 
         return JaxLanes()
-    raise OptionError(Problem(f"unknown back end '{name}'", "backend", fix=closest(name, BACKENDS)))
+    raise OptionError(Problem(f"unknown back end '{name}'", "backend", **among(name, BACKENDS)))
 
 
 def get_ready_backend(model: Model) -> Backend | None:

@@ -11,10 +11,11 @@ from typing import Any
 
 from .. import limits
 from ..backends import Integrator
-from ..errors import OptionError, Problem, closest
+from ..errors import OptionError, Problem, among
 from ..files import write_text
 from ..metrics import METRICS
 from ..options import SimulationOptions
+from ..resources import looked_for
 from .measuring import Values
 
 SCHEMA = 1
@@ -101,7 +102,7 @@ def read_baseline(path: Path) -> Baseline:
         data = json.loads(limits.text(path, limits.RECORD_BYTES, OptionError))
     except FileNotFoundError:
         fix = "write one with update_baseline=True, and commit it"
-        raise OptionError(Problem("there is no baseline", str(path), fix=fix)) from None
+        raise OptionError(Problem("there is no baseline", str(path), looked_for(path), fix)) from None
     except (OSError, ValueError, RecursionError) as error:
         raise OptionError(Problem("the baseline cannot be read", str(path), str(error), again)) from None
     if not isinstance(data, dict) or data.get("kind") != KIND:
@@ -150,7 +151,7 @@ def _wrong(baseline: Baseline, where: str) -> list[Problem]:
     for name, of in baseline.tolerances.items():
         trial, _, metric = name.rpartition("/")
         if metric not in METRICS:
-            problems.append(Problem(f"unknown metric '{metric}'", where, fix=closest(metric, tuple(METRICS))))
+            problems.append(Problem(f"unknown metric '{metric}'", where, **among(metric, tuple(METRICS))))
         elif trial and (trial not in baseline.trials or metric not in baseline.tolerances):
             problems.append(Problem(f"tolerance '{name}' is for nothing that is compared", where))
         for key, value in of.items():

@@ -9,7 +9,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from ..backends import Integrator
-from ..errors import OptionError, Problem, closest
+from ..errors import OptionError, Problem, among
 from ..given import ShipGiven, TrialsGiven, trials_of
 from ..metrics import METRICS
 from ..predictor import Predictor
@@ -212,7 +212,7 @@ def made_by() -> str:
 def _known(metrics: Sequence[str]) -> list[str]:
     for name in metrics:
         if name not in METRICS:
-            raise OptionError(Problem(f"unknown metric '{name}'", "metrics", fix=closest(name, tuple(METRICS))))
+            raise OptionError(Problem(f"unknown metric '{name}'", "metrics", **among(name, tuple(METRICS))))
     return [name for name in METRICS if name in metrics]
 
 

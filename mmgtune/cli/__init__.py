@@ -26,6 +26,7 @@ from . import (
     interrupts,
     learn,
     leave_out,
+    mistyped,
     plan,
     posterior,
     predict,
@@ -49,16 +50,33 @@ EPILOG = (
 
 
 class Commands(TyperGroup):
-    """The commands; what Click would take for a user's answer at a prompt is none here."""
+    """The commands; what Click would take for a user's answer at a prompt is none here, and mistyped command lines are
+    problems like all others.
+    """
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Read what stands before the name of the command."""
+        try:
+            return super().parse_args(ctx, args)
+        except mistyped.Mistyped as error:
+            raise _as_ours(error) from error
 
     def invoke(self, ctx: Any) -> Any:
         """Run a command."""
         try:
             return super().invoke(ctx)
+        except mistyped.Mistyped as error:
+            raise _as_ours(error) from error
         except EOFError as error:
             raise RuntimeError(f"the end of a file came too early: {error}") from error
         except BrokenPipeError as error:  # of a file: those of the streams are ReaderGone
             raise OutputError(Problem(cannot_write_reason(error))) from error
+
+
+def _as_ours(error: Exception) -> Exception:
+    """What a mistyped command line is answered with; the help where that was asked for."""
+    problem = mistyped.problem_of(error)
+    return error if problem is None else OptionError(problem)
 
 
 app = typer.Typer(
@@ -165,7 +183,9 @@ def _understand(arguments: list[str]) -> None:
             one.encode()
         except UnicodeEncodeError:
             what = f"the argument {one!a} is not UTF-8 text"
-            raise OptionError(Problem(what, "command line", fix="rename the file or folder")) from None
+            raise OptionError(
+                Problem(what, "command line", "no file of results could name it", "rename the file or folder")
+            ) from None
 
 
 def _in_its_lines(problem: Problem) -> Problem:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..errors import MmgtuneError, OptionError, Problem, closest
+from ..errors import MmgtuneError, OptionError, Problem, among
 from ..options import FORMATS, CheckOptions
 from . import common as c
 from . import completing
@@ -111,10 +111,14 @@ def command(
 
     chosen = "json" if json else format
     if chosen is not None and chosen not in FORMATS:
-        raise OptionError(Problem(f"no format '{chosen}'", "format", fix=closest(chosen, FORMATS)))
+        raise OptionError(Problem(f"no format '{chosen}'", "format", **among(chosen, FORMATS)))
     if baseline is None and (update_baseline or sensitivity is not None):
         name = "update_baseline" if update_baseline else "sensitivity"
-        raise OptionError(Problem(f"{name}=True needs a baseline", name, fix="name its file with baseline=FILE"))
+        raise OptionError(
+            Problem(
+                f"{name}=True needs a baseline", name, "the file of what is good was not named", "add baseline=FILE"
+            )
+        )
     if sensitivity is not None:
         _sensitivity(profile, trials, baseline, options, sensitivity, json)
         return

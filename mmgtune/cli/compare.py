@@ -26,8 +26,8 @@ class FolderOptions(Options):
     def problems(self) -> list[Problem]:
         """Only a folder can be replaced."""
         lost = self.force and self.out is None
-        what = "force=True replaces results, and none are written"
-        return super().problems() + ([Problem(what, "force", fix="add out=FOLDER")] if lost else [])
+        what, why = "force=True has nothing to replace", "results are only written with out=FOLDER"
+        return super().problems() + ([Problem(what, "force", why, "add out=FOLDER")] if lost else [])
 
 
 @takes(options=CompareModelsOptions, run=FolderOptions)
@@ -63,8 +63,9 @@ def command(
     from ..report import render
 
     if len(names) < 2:
-        fix = "write mmgtune compare MODEL... TRIALS"
-        raise OptionError(Problem("a model or the trials are missing", "MODEL... TRIALS", fix=fix))
+        why = f"only '{names[0]}' was given, and trials stand last"
+        fix = "write mmgtune compare MODEL... TRIALS, such as mmgtune compare suzaku suzaku_fam suzaku"
+        raise OptionError(Problem("a model or the trials are missing", "MODEL... TRIALS", why, fix))
     if run.out is None:
         document = compare_models(names[:-1], names[-1], options).to_dict(c.command_line())
     else:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..errors import OptionError, Problem, closest
+from ..errors import OptionError, Problem, among
 from ..options import DiagnoseOptions, in_flags
 from ..units import in_time
 from . import common as c
@@ -91,7 +91,7 @@ def command(
     unknown = [word for word in failing if word not in VERDICTS]
     if unknown:
         raise OptionError(
-            *(Problem(f"unknown verdict '{word}'", "fail_on", fix=closest(word, VERDICTS)) for word in unknown)
+            *(Problem(f"unknown verdict '{word}'", "fail_on", **among(word, VERDICTS)) for word in unknown)
         )
     ship, data = c.load_with_voyages(profile, trials)
     folder = run.out or c.default_out(ship)

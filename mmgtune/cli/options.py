@@ -54,10 +54,12 @@ def _of_resuming(out: Path | None, force: bool, resume: bool) -> list[Problem]:
     """A run to continue needs its folder, and is not replaced."""
     found = []
     if resume and out is None:
-        found.append(Problem("resume=True needs the folder of the interrupted run", "resume", fix="add out=FOLDER"))
+        what, why = "resume=True needs the folder of the interrupted run", "a run goes on from what it left there"
+        found.append(Problem(what, "resume", why, "add out=FOLDER"))
     if resume and force:
-        what = "resume=True goes on with what is there, force=True replaces it"
-        found.append(Problem(what, "resume", fix="leave one out"))
+        what = "resume=True and force=True do not go together"
+        why = "resume=True goes on with what is there, force=True replaces it"
+        found.append(Problem(what, "resume", why, "leave one out"))
     return found
 
 
@@ -224,7 +226,9 @@ def numbers_of(text: str, name: str) -> tuple[float, ...]:
         return tuple(float(part) for part in text.split(",") if part.strip())
     except ValueError:
         fix = f"write {name}=0.2,0.3,0.4,0.5,0.6"
-        raise OptionError(Problem(f"'{text}' is not a list of numbers", name, fix=fix)) from None
+        raise OptionError(
+            Problem(f"'{text}' is not a list of numbers", name, "a part between commas is no number", fix)
+        ) from None
 
 
 def interval_of(text: str | None, name: str) -> tuple[float, float] | None:
@@ -238,7 +242,9 @@ def interval_of(text: str | None, name: str) -> tuple[float, float] | None:
         return (float(first) if first else float("-inf"), float(last) if last else float("inf"))
     except ValueError:
         fix = f"write {name}=FIRST:LAST in seconds, such as 0:300"
-        raise OptionError(Problem(f"'{text}' is not a time {name}", name, fix=fix)) from None
+        raise OptionError(
+            Problem(f"'{text}' is not a time {name}", name, "it is not two times with a colon between", fix)
+        ) from None
 
 
 def problems_in_flags(error: MmgtuneError) -> list[Problem]:

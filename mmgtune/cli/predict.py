@@ -54,7 +54,9 @@ def command(
 
     if run.out is None and (keep_particles or no_report):
         asked = "keep_particles" if keep_particles else "no_report"
-        raise OptionError(Problem("nothing is written", asked, fix="add out=FOLDER"))
+        raise OptionError(
+            Problem("nothing is written", asked, "files are only written with out=FOLDER", "add out=FOLDER")
+        )
     if run.out is None:
         document = predict(model, orders, trials, options).to_dict(c.command_line())
     else:

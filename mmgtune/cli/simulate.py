@@ -61,7 +61,9 @@ def command(
     from ..simulating import files_of, simulate
 
     if forces and out is None:
-        raise OptionError(Problem("forces need a folder to write to", "forces", fix="add out=FOLDER"))
+        raise OptionError(
+            Problem("forces need a folder to write to", "forces", "they are files, one a manoeuvre", "add out=FOLDER")
+        )
     if out is not None and not force:
         refuse_existing(files_of(out, trials, options))
     result = simulate(profile, trials, options)

@@ -56,8 +56,16 @@ def command(
     progress.leave()
 
 
+def off(result: SweepResult, role: str, of: str) -> list[str]:
+    """How far off "track" [m] or "heading" [deg] the trials of a role are with every width; "" where not known."""
+    from ..fitting.comparison import mean_off, rounded
+
+    sizes = [mean_off(held, "after") if (held := result.compared(i, role)) else {} for i in range(len(result.runs))]
+    return [rounded(size[of], 3 if of == "track" else 2) if of in size else "" for size in sizes]
+
+
 def summary(result: SweepResult, folder: str, report: bool) -> str:
-    """The paper's Table 7 for this data, J on both sets, and the recommendation."""
+    """The paper's Table 7 for this data, how far off trials are and J on both sets, and the recommendation."""
     names = list(result.runs[0].theta)
     digits = 4 if c.width() >= 30 + 11 * len(result.runs) else 3
 
@@ -71,6 +79,12 @@ def summary(result: SweepResult, folder: str, report: bool) -> str:
         )
         for name in names
     ]
+    rows.append(("",) * (1 + len(result.runs)))
+    for role in ("test", "left-out", "tune"):
+        for of, unit in (("track", "m"), ("heading", "deg")):
+            sizes = off(result, role, of)
+            if any(sizes):
+                rows.append((f"off {of} {role} [{unit}]", *(f"{size} " for size in sizes)))
     rows.append(("",) * (1 + len(result.runs)))
     before = {}
     for label, role in (("J tune", "tune"), ("J test", "test")):

@@ -91,8 +91,8 @@ def inspect(
     name = profile or data.ship
     if profile is None and name not in profile_names():
         what = f"the trials are of '{name}'" if name else "the trials do not say which ship they are of"
-        fix = "name the ship's profile with --profile: indices are counted in ship lengths"
-        raise OptionError(Problem(what + ", which is no bundled profile" * bool(name), trials, fix=fix))
+        why, fix = "indices are counted in ship lengths", "name the ship's profile with --profile"
+        raise OptionError(Problem(what + ", which is no bundled profile" * bool(name), trials, why, fix))
     ship = load_profile(name)
     c.warn_of_another_ship(ship, data)
     L_pp = ship.L_pp
@@ -207,17 +207,21 @@ def import_(
 
     if (map_ is None) == (preset is None):
         fix = "--map FILE.toml; mmgtune trials map LOG... -o FILE.toml writes one for these logs"
-        raise OptionError(Problem("give either --map or --preset", "--map, --preset", fix=fix))
+        why = "what the columns of a log mean is said by one of them" if map_ is None else "each says it all"
+        raise OptionError(Problem("give either --map or --preset", "--map, --preset", why, fix))
     if out is None and not dry_run:
-        raise OptionError(Problem("no folder is given for the trials", "--out", fix="add -o FOLDER, or --dry-run"))
+        why = "a trial file is written for each log"
+        raise OptionError(Problem("no folder is given for the trials", "--out", why, "add -o FOLDER, or --dry-run"))
     seconds = None
     if step is not None:
         try:
             (seconds,) = units.parse(step, "s")
         except ValueError as error:
-            raise OptionError(Problem(str(error), "--step")) from error
+            raise OptionError(Problem(f"the step is {step}", "--step", str(error), "write --step 0.5")) from error
         if not 0.0 < seconds < float("inf"):
-            raise OptionError(Problem(f"the step is {step}", "--step", fix="give a time above 0 s"))
+            raise OptionError(
+                Problem(f"the step is {step}", "--step", "samples follow one another", "give a time above 0 s")
+            )
     log_map = load_map(map_) if map_ is not None else load_map(str(preset), preset=True)
     imported = import_logs(logs, log_map, out or ".", seconds, force, dry_run)
     if json:

@@ -69,7 +69,12 @@ def command(
         )
     if len(names) < 2:
         raise OptionError(
-            Problem("a profile or the trials are missing", "PROFILE... TRIALS", fix="write mmgtune validate suzaku DIR")
+            Problem(
+                "a profile or the trials are missing",
+                "PROFILE... TRIALS",
+                f"only '{names[0]}' was given, and trials stand last",
+                "write mmgtune validate PROFILE... TRIALS, such as mmgtune validate suzaku suzaku",
+            )
         )
     if holds_voyages(names[-1]):
         from .voyages import on_voyages

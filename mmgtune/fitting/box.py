@@ -287,7 +287,8 @@ def choose_targets(model: Model, patterns: Sequence[str], fixed: Sequence[str] =
                 Problem(
                     f"no coefficient is called '{pattern}'",
                     option,
-                    fix=closest(pattern, [*names, *(split_name(n)[1] for n in names)]),
+                    f"of the {len(names)} coefficients that the profile lets be tuned none fits that",
+                    closest(pattern, [*names, *(split_name(n)[1] for n in names)]),
                 )
             )
         return found

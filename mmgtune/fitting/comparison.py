@@ -113,13 +113,28 @@ def total(compared: Sequence[TrialComparison], role: str, which: str) -> float |
 
 def off_in_words(compared: Sequence[TrialComparison], which: str) -> dict[str, str]:
     """How far off "track" and "heading" as mean over trials, "1.23 m" and "0.45°"; without what is not known."""
+    ways = {"track": (3, " m"), "heading": (2, "°")}
+    return {of: f"{rounded(size, ways[of][0])}{ways[of][1]}" for of, size in mean_off(compared, which).items()}
+
+
+def mean_off(compared: Sequence[TrialComparison], which: str) -> dict[str, float]:
+    """How far off "track" [m] and "heading" [deg] as mean over trials; without what is not known."""
     found = {}
-    places, headings = zip(*(one.off(which) for one in compared), strict=True)
-    for of, values, digits, unit in (("track", places, 3, " m"), ("heading", headings, 2, "°")):
+    for of, values in zip(("track", "heading"), zip(*(one.off(which) for one in compared), strict=True), strict=False):
         known = [value for value in values if np.isfinite(value)]
         if known:
-            found[of] = f"{rounded(sum(known) / len(known), digits)}{unit}"
+            found[of] = sum(known) / len(known)
     return found
+
+
+def off_document(compared: Sequence[TrialComparison]) -> dict[str, Any]:
+    """For JSON: the number of trials, and before and after how far off track and heading they are as mean."""
+    before, after = (mean_off(compared, which) for which in ("before", "after"))
+    return {
+        "trials": len(compared),
+        "track_m": {"before": before.get("track"), "after": after.get("track")},
+        "heading_deg": {"before": before.get("heading"), "after": after.get("heading")},
+    }
 
 
 def rounded(value: float, digits: int) -> str:

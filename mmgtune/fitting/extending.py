@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from ..circumstances import unmeasured
 from ..effects import effect_tags, find_effect
-from ..errors import OptionError, Problem, closest
+from ..errors import OptionError, Problem, among
 from ..model import Model
 from ..options import DiagnoseOptions, FitOptions, LeaveOutOptions, Options, TuningOptions
 from ..profile import ShipProfile, missing_for
@@ -76,7 +76,7 @@ def with_effects(profile: ShipProfile, options: T) -> tuple[ShipProfile, T]:
     for tag in options.with_effects:
         effect = find_effect(tag)
         if effect is None:
-            raise OptionError(Problem(f"unknown effect '{tag}'", "with_effects", fix=closest(tag, effect_tags())))
+            raise OptionError(Problem(f"unknown effect '{tag}'", "with_effects", **among(tag, effect_tags())))
         missing = missing_for(effect, profile)
         if missing:
             raise OptionError(

@@ -70,7 +70,11 @@ def refuse_taken(folder: Path, *, force: bool = False, resume: bool = False) -> 
     Raises OutputError where it holds results already (unless ``force`` or ``resume``), or is a file.
     """
     if folder.exists() and not folder.is_dir():
-        raise OutputError(Problem("the output is a file, not a folder", str(folder), fix="choose another folder"))
+        raise OutputError(
+            Problem(
+                "the output is a file, not a folder", str(folder), "results are several files", "choose another folder"
+            )
+        )
     taken = folder.is_dir() and any(not is_left_over(one) for one in folder.iterdir())
     if taken and not (force or resume):
         raise OutputError(exists(folder))

@@ -17,7 +17,7 @@ from ..options import SweepOptions
 from ..profile import ShipProfile
 from ..trial import TrialSet
 from .box import A_R
-from .comparison import finite_values
+from .comparison import TrialComparison, compare, finite_values, off_document, off_in_words
 from .extending import settled
 from .folder import write_run
 from .journal import finished, journalled
@@ -25,7 +25,7 @@ from .least_squares import fit_offsets, solve
 from .leaving_out import leaving_out
 from .result import FitResult
 from .robust import weigh_down
-from .run import Hooks, edge_ridge, fit, identity_of, in_pieces, make_problem, make_provenance
+from .run import Hooks, edge_ridge, fit, identity_of, in_pieces, make_problem, make_provenance, make_setting
 
 RESULT = "sweep.json"
 
@@ -35,12 +35,14 @@ class SweepResult(Plotted):
     """Fits by rising a_r; of one that was stopped those finished, and the best so far of the one it was at.
 
     leave_one_out  J over trials left out one at a time, per a_r; None where there are test trials to judge by
+    left_out       these trials against what was fitted without them, per a_r
     """
 
     runs: tuple[FitResult, ...]
     leave_one_out: tuple[float, ...] | None
     wall_s: float
     interrupted: bool = False
+    left_out: tuple[tuple[TrialComparison, ...], ...] = ()
 
     def __repr__(self) -> str:
         """In a line."""
@@ -57,6 +59,16 @@ class SweepResult(Plotted):
         if self.leave_one_out is not None:
             return list(self.leave_one_out)
         return [np.inf if (J := run.J_of("test", "after")) is None else J for run in self.runs]
+
+    def compared(self, i: int, role: str) -> list[TrialComparison]:
+        """The trials of a role, "tune", "test" or "left-out", with the fit of one a_r."""
+        if role == "left-out":
+            return list(self.left_out[i]) if self.left_out else []
+        return [one for one in self.runs[i].compared if one.role == role]
+
+    def held_out(self, i: int) -> list[TrialComparison]:
+        """The trials that the fit of one a_r is judged by."""
+        return self.compared(i, "test" if self.leave_one_out is None else "left-out")
 
     @property
     def best(self) -> int:
@@ -78,15 +90,30 @@ class SweepResult(Plotted):
                 "by": by,
                 "sentence": "No a_r can be recommended: every simulation of the judging trials diverged.",
             }
-        how = "trials left out one at a time" if self.leave_one_out is not None else "the test trials"
         edge = (
             " It is the widest tried; a wider box may do better." if best == len(judged) - 1 and len(judged) > 1 else ""
         )
         return {
             "a_r": a_r,
             "by": by,
-            "sentence": f"Use a_r = {a_r:g}: it has the least J on {how} ({judged[best]:.4g}).{edge}",
+            "sentence": f"{self._off(best)}{edge}",
         }
+
+    def _off(self, i: int) -> str:
+        """What the fit of the recommended a_r is worth on trials held out: metres and degrees first, J after."""
+        held, run = self.held_out(i), self.runs[i]
+        after, before = (off_in_words(held, which) if held else {} for which in ("after", "before"))
+        J = f"J is least with this width ({run.method}: {self.judged()[i]:.4g})"
+        if not after:
+            return f"Use a_r = {self.widths[i]:g}: on trials not used for tuning {J}."
+        trials = f"{len(held)} trial{'s' * (len(held) > 1)}"
+        where = f"{trials} not used for tuning" if self.leave_one_out is None else f"{trials}, each left out in turn"
+        sizes = " and ".join(f"{size} off {of}" for of, size in after.items())
+        instead = f" instead of {' and '.join(before.values())}" if list(before) == list(after) else ""
+        return (
+            f"On {where}, {run.profile.name} tuned with a_r = {self.widths[i]:g} is {sizes}{instead} "
+            f"(root mean square); {J}."
+        )
 
     def warnings(self) -> list[str]:
         """What a reader must know first: of the best fit, or of the last where the sweep was stopped."""
@@ -111,11 +138,19 @@ class SweepResult(Plotted):
         return {
             "found": True,
             "sentence": (
-                f"Over-fitting from a_r = {self.widths[worse[0]]:g}: "
-                f"at a_r = {self.widths[i]:g} J falls to {self.runs[i].J:.4g} "
-                f"on the tune trials but rises to {judged[i]:.4g} on trials not used, from {judged[best]:.4g}."
+                f"Over-fitting from a_r = {self.widths[worse[0]]:g}: at a_r = {self.widths[i]:g} "
+                f"{self._further_off(i)}J falls to {self.runs[i].J:.4g} on the tune trials "
+                f"but rises to {judged[i]:.4g} on trials not used, from {judged[best]:.4g}."
             ),
         }
+
+    def _further_off(self, i: int) -> str:
+        """How far off trials held out are at an a_r, and at the recommended one."""
+        there, best = (off_in_words(held, "after") if (held := self.held_out(k)) else {} for k in (i, self.best))
+        if not there or list(there) != list(best):
+            return ""
+        sizes = " and ".join(f"{size} off {of}" for of, size in there.items())
+        return f"trials not used are {sizes}, with a_r = {self.widths[self.best]:g} {' and '.join(best.values())}; "
 
     def to_dict(self) -> dict[str, Any]:
         """The document of ``sweep.json``, schema 1 (docs/formats.md)."""
@@ -136,6 +171,11 @@ class SweepResult(Plotted):
                     "out": folder_name(a_r),
                     "J_tune": run.J_of("tune", "after"),
                     "J_test": run.J_of("test", "after"),
+                    "off": {
+                        role: off_document(of)
+                        for role in ("tune", "test", "left-out")
+                        if (of := self.compared(i, role))
+                    },
                     "J_tune_cmaes": run.certificate.J_cmaes,
                     "agreement": run.certificate.agreement(),
                     "theta": finite_values(run.theta),
@@ -145,7 +185,7 @@ class SweepResult(Plotted):
                     "evaluations": run.evaluations,
                     "wall_s": run.wall_s,
                 }
-                for a_r, run in zip(self.widths, self.runs, strict=True)
+                for i, (a_r, run) in enumerate(zip(self.widths, self.runs, strict=True))
             ],
             "recommended": self.recommended(),
             "leave_one_out": None
@@ -228,12 +268,18 @@ def _sweep(
             write_run(result, own)
         if hooks.stop():
             break
-    left_out = None
+    left_out: list[tuple[float, tuple[TrialComparison, ...]]] = []
     if not trials.test and len({trials.trials[name].run for name in trials.tune}) > 1 and not hooks.stop():
         hooks.on_phase("leaving out one trial at a time")
-        judged = [_leave_one_out(profile, trials, run, hooks) for run in runs]
-        left_out = None if hooks.stop() else tuple(judged)
-    return SweepResult(tuple(runs), left_out, time.perf_counter() - began, interrupted=hooks.stop())
+        left_out = [_leave_one_out(profile, trials, run, hooks) for run in runs]
+    stopped = hooks.stop()
+    return SweepResult(
+        tuple(runs),
+        tuple(J for J, _ in left_out) if left_out and not stopped else None,
+        time.perf_counter() - began,
+        interrupted=stopped,
+        left_out=() if stopped else tuple(of for _, of in left_out),
+    )
 
 
 def _named(hooks: Hooks, a_r: float) -> Hooks:
@@ -241,24 +287,32 @@ def _named(hooks: Hooks, a_r: float) -> Hooks:
     return replace(hooks, on_phase=lambda words: hooks.on_phase(f"a_r = {a_r:g}, {words}"))
 
 
-def _leave_one_out(profile: ShipProfile, trials: TrialSet, run: FitResult, hooks: Hooks) -> float:
-    """J summed over the tune trials, each simulated with coefficients fitted to the others as the run was to all.
+def _leave_one_out(
+    profile: ShipProfile, trials: TrialSet, run: FitResult, hooks: Hooks
+) -> tuple[float, tuple[TrialComparison, ...]]:
+    """J summed over the tune trials, each simulated with coefficients fitted to the others as the run was to all, and
+    those of them that are time series.
 
     NaN where stopped.
     """
-    total = 0.0
+    total, compared = 0.0, list[TrialComparison]()
     start, before = run.unit[:, None], run.box.to_unit(run.box.pre)
-    whole = make_problem(profile, trials, run.options)
+    setting = make_setting(profile, trials, run.options)
+    whole = setting.problem(())
     ridge = edge_ridge(whole.with_weight(run.beside.weight.s2) if run.beside else whole, run.options, before)
     for left_out, others in leaving_out(trials):
         if hooks.stop():
-            return float("nan")
-        part = make_problem(profile, trials, run.options, others)
+            return float("nan"), ()
+        part = setting.problem(others)
         part = part.with_weight(run.beside.weight.s2) if run.beside else part
         fitted = solve(part, start, ridge=ridge, anchor=before, stop=hooks.stop)[0]
         if run.options.loss == "huber" and not hooks.stop():
             _, fitted = weigh_down(part, fitted, ridge, before)
-        alone = make_problem(profile, trials, run.options, left_out)
+        alone = setting.problem(left_out)
         offsets = None if alone.sigma is None else fit_offsets(alone, fitted.unit)[:, None]
         total += float(alone.misfit(fitted.unit[:, None], offsets)[0])
-    return total
+        series = [trials.trials[name] for name in left_out if name in trials.trials]
+        if len(series) == len(left_out):
+            roles = dict.fromkeys(left_out, "left-out")
+            compared += compare(alone, series, setting.objective, roles, before, fitted.unit)
+    return total, tuple(compared)

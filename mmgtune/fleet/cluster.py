@@ -83,7 +83,9 @@ def _security(of: Any, options: FleetOptions) -> Any:
     )
 
 
-def run_there(jobs: Sequence[Job], out: str, client: Client, seconds_a_job: float) -> Iterator[Ran]:
+def run_there(
+    jobs: Sequence[Job], out: str, client: Client, seconds_a_job: float, report: bool = True
+) -> Iterator[Ran]:
     """Jobs as they end, on the workers of a client, which all must see ``out``.
 
     A killed worker's tasks are given to others by the scheduler, as often as its ``allowed-failures`` says.
@@ -103,7 +105,7 @@ def run_there(jobs: Sequence[Job], out: str, client: Client, seconds_a_job: floa
         batch = next(batches, None)
         if batch is None:
             return None
-        future = client.submit(_work, [job.to_dict() for job in batch], out, pure=False)
+        future = client.submit(_work, [job.to_dict() for job in batch], out, report, pure=False)
         by_task[future.key] = batch
         return future
 
@@ -126,8 +128,8 @@ def run_there(jobs: Sequence[Job], out: str, client: Client, seconds_a_job: floa
             ending.add(more)
 
 
-def _work(documents: Sequence[Mapping[str, Any]], out: str) -> list[tuple[str, str, float]]:
+def _work(documents: Sequence[Mapping[str, Any]], out: str, report: bool) -> list[tuple[str, str, float]]:
     """A task on a worker."""
     if os.environ.get("MMGTUNE_THREADS") != "1":
         one_thread()
-    return run_jobs(documents, out)
+    return run_jobs(documents, out, report)

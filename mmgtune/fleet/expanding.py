@@ -95,7 +95,10 @@ def _job(entry: Entry, base: Path, place: str, ship: str, date: str, profiles: d
             profiles[path] = load_profile(path).text
         except ProfileError as error:
             whose = f"it is that of ship '{ship}'"
-            told = [Problem(one.what, one.where, one.why or whose, one.fix) for one in error.problems]
+            told = [
+                Problem(one.what, one.where, f"{whose}; {one.why}" if one.why else whose, one.fix)
+                for one in error.problems
+            ]
             raise ProfileError(*told) from error
     baseline = None
     if entry.baseline:

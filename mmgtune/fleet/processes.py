@@ -31,12 +31,16 @@ def cores() -> int:
 
 
 def run_here(
-    jobs: Sequence[Job], out: str, workers: int, on_killed: Callable[[int], None] = lambda _: None
+    jobs: Sequence[Job],
+    out: str,
+    workers: int,
+    on_killed: Callable[[int], None] = lambda _: None,
+    report: bool = True,
 ) -> Iterator[Ran]:
     """Jobs as they end, on ``workers`` processes.
 
     A killed worker breaks its pool: what was done is done, the jobs that were at work are run again on a new pool.
-    ``on_killed`` is told how many of them there are.
+    ``on_killed`` is told how many of them there are; ``report`` is whether each job's report is rendered.
     """
     left, tries = deque(jobs), dict.fromkeys((job.key for job in jobs), 0)
     while left:
@@ -46,7 +50,7 @@ def run_here(
             while not broken and (pending or (left and life)):
                 try:
                     while left and life and len(pending) < workers:  # so that it is known which were at work
-                        pending[pool.submit(run_job, left[0].to_dict(), out)] = left[0]
+                        pending[pool.submit(run_job, left[0].to_dict(), out, report)] = left[0]
                         left.popleft()
                         life -= 1
                 except BrokenProcessPool:

@@ -44,7 +44,7 @@ def write_record(out: Path, made: Mapping[str, Any]) -> dict[str, Any]:
         "ships": sorted({row["ship"] for row in rows}),
         "dates": sorted({row["date"] for row in rows}),
         "generated": any(row["generated"] for row in rows),
-        "cells": [{**{key: row[key] for key in CELL}, "run": row["run"] if row["record"] else ""} for row in rows],
+        "cells": [_cell(out, row) for row in rows],
         "failures": [_failure(row) for row in rows if row["answer"] == "failed"],
         "rules": {"level": LEVEL, "interval": SURE, "fewest_dates": FEWEST},
         **_over_time(rows),
@@ -67,10 +67,23 @@ def made_before(out: Path) -> dict[str, Any]:
 
 
 def _listed(out: Path) -> set[str]:
+    return {one["key"] for one in _jobs_of(out)}
+
+
+def _jobs_of(out: Path) -> list[dict[str, Any]]:
     try:
-        return {one["key"] for one in json.loads((out / JOBS).read_text(encoding="utf-8"))["jobs"]}
+        jobs = json.loads((out / JOBS).read_text(encoding="utf-8"))["jobs"]
+        return [{**one, "key": one["key"]} for one in jobs]
     except (OSError, ValueError, KeyError, TypeError) as error:
-        raise OptionError(Problem("the list of jobs cannot be read", str(out / JOBS), str(error))) from error
+        fix = "remove that file and run the fleet again with resume=True: it is written anew"
+        raise OptionError(Problem("the list of jobs cannot be read", str(out / JOBS), str(error), fix)) from error
+
+
+def listed_places(out: Path) -> set[str]:
+    """The places of the jobs that are listed in a folder; none where it has no list."""
+    if not (out / JOBS).is_file():
+        return set()
+    return {str(one["place"]) for one in _jobs_of(out) if "place" in one}
 
 
 def _counts(rows: Sequence[Mapping[str, Any]], listed: set[str]) -> dict[str, Any]:
@@ -78,7 +91,17 @@ def _counts(rows: Sequence[Mapping[str, Any]], listed: set[str]) -> dict[str, An
     missing = len(listed - {row["key"] for row in rows})
     seconds = sum(row["seconds"] for row in rows)
     counts = {answer: answers[answer] for answer in result_rows.ANSWERS}
-    return {"total": len(rows) + missing, **counts, "missing": missing, "seconds": seconds}
+    others = sum(row["key"] not in listed for row in rows)
+    return {"total": len(rows) + missing, **counts, "missing": missing, "others": others, "seconds": seconds}
+
+
+def _cell(out: Path, row: Mapping[str, Any]) -> dict[str, Any]:
+    run = row["run"] if row["record"] else ""
+    return {
+        **{key: row[key] for key in CELL},
+        "run": run,
+        "report": bool(run) and (out / run / "report.html").is_file(),
+    }
 
 
 def _failure(row: Mapping[str, Any]) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from typing import Any
 
 from ..errors import OptionError, Problem
 from ..files import atomic
+from ..resources import looked_for
 from .commands import Facts
 from .job import Job
 
@@ -116,8 +117,9 @@ def read(out: Path) -> list[dict[str, Any]]:
     folder = out / FOLDER
     files = [str(path) for path, _ in _files(out)]
     if not files:
+        why = "no job has ended there" if out.is_dir() else looked_for(out)
         fix = "give the folder that --out of mmgtune fleet run named"
-        raise OptionError(Problem("there are no results of a fleet", str(folder), fix=fix))
+        raise OptionError(Problem("there are no results of a fleet", str(folder), why, fix))
     keys = pa.schema([("ship", pa.string()), ("date", pa.string())])
     whole = pa.unify_schemas([schema(), keys])
     parts = ds.partitioning(keys, flavor="hive")

@@ -20,7 +20,7 @@ from .expanding import expand
 from .job import Job
 from .processes import Ran, cores, run_here
 from .reckoning import Reckoned, reckon
-from .record import JOBS, RECORD, made_before, write_record
+from .record import JOBS, RECORD, listed_places, made_before, write_record
 from .table import FleetTable, read_table
 from .work import remove_attempts
 
@@ -100,7 +100,7 @@ def run_fleet(
     out = Path(out).absolute()
     read = read_table(table) if isinstance(table, (str, Path)) else table
     jobs = expand(read)
-    _prepare(out, resume)
+    _prepare(out, resume, jobs)
     with alone_in(out):
         remove_attempts(out)
         for folder in out.glob("results/*"):
@@ -113,8 +113,10 @@ def run_fleet(
         return FleetRun(tuple(jobs), ran, killed, time.perf_counter() - began, workers, document)
 
 
-def _prepare(out: Path, resume: bool) -> None:
-    """Raises OutputError for a folder that holds something else, or results that were not asked for."""
+def _prepare(out: Path, resume: bool, jobs: Sequence[Job]) -> None:
+    """Raises OutputError for a folder that holds something else, another fleet among it, or results that were not asked
+    for.
+    """
     try:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -124,7 +126,12 @@ def _prepare(out: Path, resume: bool) -> None:
         fix = "add resume=True to run what is not done there yet, or choose another folder"
         raise OutputError(Problem(problem.what, problem.where, problem.why, fix))
     if any(out.iterdir()) and not (out / JOBS).is_file() and not (out / RECORD).is_file():
-        raise OutputError(Problem("the folder is not that of a fleet", str(out), fix="choose another folder"))
+        why = f"it has files, and neither {JOBS} nor {RECORD} is among them"
+        raise OutputError(Problem("the folder is not that of a fleet", str(out), why, "choose another folder"))
+    held = listed_places(out)
+    if held and not held & {job.place for job in jobs}:
+        why = f"of its {len(held)} jobs, such as {min(held)}, none is in this table; results of the two would be mixed"
+        raise OutputError(Problem("the folder is that of another fleet", str(out), why, "choose another folder"))
 
 
 def _listed(jobs: Sequence[Job]) -> dict[str, Any]:
@@ -172,13 +179,13 @@ def _ran(
     if options.scheduler is None:
         workers = min(options.workers or cores(), len(left))
         reckon(left[:1])  # compiles once what all workers need
-        followed(run_here(left, str(out), workers, on_killed))
+        followed(run_here(left, str(out), workers, on_killed, options.job_reports))
         return ran, killed[0], workers
     from .cluster import connected, run_there
 
     with connected(options) as client:
         workers = sum(client.nthreads().values())
-        followed(run_there(left, str(out), client, reckon(left).a_job))
+        followed(run_there(left, str(out), client, reckon(left).a_job, options.job_reports))
     return ran, killed[0], workers
 
 

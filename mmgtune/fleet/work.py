@@ -39,9 +39,10 @@ def one_thread() -> None:
     threadpool_limits(limits=1, user_api="blas")
 
 
-def run_job(document: Mapping[str, Any], out: str) -> tuple[str, str, float]:
+def run_job(document: Mapping[str, Any], out: str, report: bool = True) -> tuple[str, str, float]:
     """Run a job, write its run folder and then its row; what is there already is not run again.
 
+    report  whether its report is rendered too
     -> key, answer, and the time it took [s].  Never raises for what is wrong with the job itself: its row says it.
     """
     job, folder = Job.from_dict(document), Path(out)
@@ -49,7 +50,7 @@ def run_job(document: Mapping[str, Any], out: str) -> tuple[str, str, float]:
         return job.key, "there", 0.0
     began = time.perf_counter()
     try:
-        record, facts = attempted(job, folder)
+        record, facts = attempted(job, folder, report)
         row = rows.made(job, facts, record, time.perf_counter() - began)
     except MmgtuneError as error:
         row = rows.failed(job, error.problems, time.perf_counter() - began)
@@ -64,22 +65,23 @@ def run_job(document: Mapping[str, Any], out: str) -> tuple[str, str, float]:
     return job.key, str(row["answer"]), float(row["seconds"])
 
 
-def run_jobs(documents: Sequence[Mapping[str, Any]], out: str) -> list[tuple[str, str, float]]:
+def run_jobs(documents: Sequence[Mapping[str, Any]], out: str, report: bool = True) -> list[tuple[str, str, float]]:
     """Several jobs one after the other, each with its row as soon as it is done."""
-    return [run_job(document, out) for document in documents]
+    return [run_job(document, out, report) for document in documents]
 
 
-def attempted(job: Job, out: Path) -> tuple[str, Facts]:
+def attempted(job: Job, out: Path, report: bool = True) -> tuple[str, Facts]:
     """The job run in a folder of its own, which becomes its run folder when all of it is there."""
-    from ..report import render
-
     final = out / job.place
     final.parent.mkdir(parents=True, exist_ok=True)
     here = Path(tempfile.mkdtemp(prefix=f"{ATTEMPT}{job.name}-", dir=final.parent))
     try:
         os.chmod(here, 0o755)
         record, facts = in_folder(job, here)
-        render(here)
+        if report:
+            from ..report import render
+
+            render(here)
         _says(here / record, str(final))
         write_text(here / DOCUMENT, json.dumps(job.to_dict(), indent=1, ensure_ascii=False) + "\n")
         _replace(here, final)

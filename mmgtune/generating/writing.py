@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray
-from ..errors import OptionError, Problem, closest
+from ..errors import OptionError, Problem, among
 from ..files import refuse_existing, write_text
 from ..inputs import INPUTS
 from ..model import Model
@@ -70,8 +70,7 @@ def make_trials(ship: str, out: Path | str, options: MakeOptions = MakeOptions()
     other sets are made.  Raises OptionError for an unknown ship, OutputError where there are such files already.
     """
     if ship not in SHIPS:
-        fix = closest(ship, tuple(SHIPS))
-        raise OptionError(Problem(f"no trials can be made of '{ship}'", "ship", fix=fix))
+        raise OptionError(Problem(f"no trials can be made of '{ship}'", "ship", **among(ship, tuple(SHIPS))))
     model = Model(load_profile(SHIPS[ship]))
     scale = LENGTH / model.L_pp if options.scale == "full" else 1.0
     profile = model.profile

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import LogError, Problem, closest
+from ..errors import LogError, Problem, among
 from ..limits import LOG_COLUMNS, MATLAB_BYTES, content
 from .cells import table_of
 from .mapping import LogMap
@@ -73,9 +73,7 @@ def _columns(path: Path, held: dict[str, Any], variable: str) -> Columns:
     if variable:
         if variable not in held:
             place = f"{path}, [log] variable of the map"
-            raise LogError(
-                Problem(f"the file has no variable '{variable[:80]}'", place, fix=closest(variable, [*held]))
-            )
+            raise LogError(Problem(f"the file has no variable '{variable[:80]}'", place, **among(variable, [*held])))
         found = _spread({variable: held[variable]})
     else:
         found = _spread(held)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from .. import limits, units
-from ..errors import LogError, Problem, brief, closest
+from ..errors import LogError, Problem, among, brief, closest
 from ..resources import import_map_names, import_maps
 from ..toml_reading import TomlReader, finite, named, toml_of
 from ..trial.schema import COLUMNS, SOURCES, impossible, known_column
@@ -35,7 +35,7 @@ def load_map(name: str | Path, preset: bool = False) -> LogMap:
     """
     path = import_maps() / f"{name}.toml" if preset else Path(name)
     if preset and str(name) not in import_map_names():
-        raise LogError(Problem(f"no preset is called '{name}'", "--preset", fix=closest(str(name), import_map_names())))
+        raise LogError(Problem(f"no preset is called '{name}'", "--preset", **among(str(name), import_map_names())))
     try:
         text = limits.content(path, limits.MAP_BYTES, LogError).decode("utf-8-sig")
     except (OSError, ValueError) as error:
@@ -98,7 +98,7 @@ def _part(
     known = tuple(name for name in TABLES if name)
     for key in [key for key, value in own.items() if key not in known or not isinstance(value, dict)]:
         what = f"'logs.{key}' is not a table" if key in known else f"unknown key 'logs.{key}'"
-        problems.append(Problem(what, where, fix=closest(key, ("name", *known))))
+        problems.append(Problem(what, where, **among(key, ("name", *known))))
         del own[key]
     if not own:
         problems.append(Problem("the entry changes nothing", where, fix="say what is different, or remove it"))
@@ -424,7 +424,7 @@ class _Reader(TomlReader):
         for name, written in noise.items():
             column = known_column(name)
             if column is None:
-                self.problem(f"noise of unknown column '{name}'", "trial", "noise", fix=closest(name, tuple(COLUMNS)))
+                self.problem(f"noise of unknown column '{name}'", "trial", "noise", **among(name, tuple(COLUMNS)))
                 continue
             value = self.parsed("trial", f"noise.{name}", written, column.unit, least=0.0)
             if value is not None:

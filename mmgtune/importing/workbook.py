@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..errors import LogError, Problem, brief, closest
+from ..errors import LogError, Problem, among, brief
 from ..limits import LOG_COLUMNS, SHEET_BYTES, SHEET_CELLS
 from .cells import table_of
 from .mapping import LogMap
@@ -77,8 +77,8 @@ def sheet_of(path: Path, wanted: str) -> Sheet:
     with _opened(path) as book:
         names = tuple(one.title for one in book.worksheets)
         if wanted and wanted not in names:
-            place, fix = f"{path}, [log] sheet of the map", closest(wanted, names)
-            raise LogError(Problem(f"the workbook has no sheet '{wanted[:80]}'", place, fix=fix))
+            place = f"{path}, [log] sheet of the map"
+            raise LogError(Problem(f"the workbook has no sheet '{wanted[:80]}'", place, **among(wanted, names)))
         found = None
         for one in book.worksheets:
             if wanted in ("", one.title):

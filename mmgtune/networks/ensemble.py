@@ -11,7 +11,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..backends import Cases
-from ..errors import OptionError, Problem, closest
+from ..errors import OptionError, Problem, among
 from ..options.particles import SAMPLINGS
 from ..predictor import Prediction, Predictor, Sampling
 from ..threads import blas_on_one_thread
@@ -260,9 +260,7 @@ class EnsemblePredictor:
     def drawn(self, n: int, seed: int, sampling: Sampling = "TS-infinity") -> Predictor:
         """See ``Uncertain``.  Raises OptionError for another sampling, and for less than one particle."""
         if sampling not in SAMPLINGS:
-            raise OptionError(
-                Problem(f"unknown sampling '{sampling}'", "sampling", fix=closest(str(sampling), SAMPLINGS))
-            )
+            raise OptionError(Problem(f"unknown sampling '{sampling}'", "sampling", **among(str(sampling), SAMPLINGS)))
         if n < 1:
             raise OptionError(Problem(f"{n} particles", "particles", fix="write 1 or more"))
         return ParticlePredictor(self.ensemble, n, seed, sampling)

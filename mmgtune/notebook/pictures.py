@@ -10,7 +10,7 @@ import numpy as np
 
 from ..columns import cut
 from ..displayed import inert
-from ..errors import OptionError, Problem, closest
+from ..errors import OptionError, Problem, among
 from ..inputs import INPUTS
 from ..report.svg import FILE_COLORS
 from ..report.wording import CHANNELS, Channel, input_channel
@@ -153,7 +153,7 @@ def _named(motions: Mapping[str, Any], trials: Sequence[str]) -> list[str]:
     """Ids that are there.  Raises OptionError for one that is not."""
     unknown = [name for name in trials if name not in motions]
     if unknown:
-        raise OptionError(Problem(f"there is no trial '{unknown[0]}'", "plot", fix=closest(unknown[0], [*motions])))
+        raise OptionError(Problem(f"there is no trial '{unknown[0]}'", "plot", **among(unknown[0], [*motions])))
     return list(trials)
 
 
@@ -239,7 +239,7 @@ def _channel(name: str, lines: Sequence[Line]) -> Channel:
     known = list(dict.fromkeys(one for line in lines for one in line.columns))
     name = {"v": "v_m"}.get(name, name)
     if name not in known:
-        raise OptionError(Problem(f"there is no channel '{name}'", "channels", fix=closest(name, known)))
+        raise OptionError(Problem(f"there is no channel '{name}'", "channels", **among(name, known)))
     if name in CHANNELS:
         return CHANNELS[name]
     return input_channel(name, INPUTS[name].words, INPUTS[name].unit)

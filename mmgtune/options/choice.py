@@ -12,7 +12,7 @@ from pathlib import Path
 from types import NoneType, UnionType
 from typing import Any, get_args, get_type_hints
 
-from ..errors import OptionError, Problem, closest
+from ..errors import OptionError, Problem, among
 
 INPUT, SEARCH, OUTPUT, REPRODUCE = "Input", "Search", "Output", "Reproducibility"
 """Panels of the help, in its order."""
@@ -58,11 +58,11 @@ class Choice:
         if self.values:
             if value in self.values:
                 return []
-            return [Problem(f"unknown {self.called or name} '{value}'", name, fix=closest(str(value), self.values))]
+            return [Problem(f"unknown {self.called or name} '{value}'", name, **among(str(value), self.values))]
         if self._limits and not self.allows(value):
             unit = f" {self.unit}" if self.unit else ""
             shown = f"{value:g}" if isinstance(value, float) else _short(value)
-            return [Problem(f"{name} is {shown}{unit}", name, fix=self._fix(name, value))]
+            return [Problem(f"{name} is {shown}{unit}", name, f"it sets this: {self.help}", self._fix(name, value))]
         return []
 
     def allows(self, value: Any) -> bool:

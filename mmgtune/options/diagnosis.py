@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..errors import Problem, closest
+from ..errors import Problem, among, closest
 from .choice import again, choice, effects
 from .scoring import VOYAGES, WINDOW
 from .simulation import SimulationOptions
@@ -43,7 +43,7 @@ class DiagnoseOptions(SimulationOptions):
 
             known = effect_tags()
             found += [
-                Problem(f"unknown effect '{tag}'", "effects", fix=closest(tag, known))
+                Problem(f"unknown effect '{tag}'", "effects", **among(tag, known))
                 for tag in self.effects
                 if tag not in known
             ]

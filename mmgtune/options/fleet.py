@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import Problem
-from .choice import Options, choice
+from .choice import OUTPUT, Options, choice
 
 WHERE = "Where"
 """Panel of the help."""
@@ -32,6 +32,12 @@ class FleetOptions(Options):
     tls_cert: Path | None = choice(None, "Own certificate for tls://.", panel=WHERE)
     tls_key: Path | None = choice(None, "Key of that certificate.", panel=WHERE)
     retry: bool = choice(False, "Run jobs that failed before once more.")
+    job_reports: bool = choice(
+        True,
+        "Do not render the report of each job, which takes time; mmgtune report FOLDER makes one when it is wanted.",
+        flag="--no-job-reports",
+        panel=OUTPUT,
+    )
 
     @property
     def tls(self) -> dict[str, Path]:
@@ -49,10 +55,24 @@ class FleetOptions(Options):
             found.append(Problem("certificates without a scheduler that asks for them", next(iter(self.tls)), why))
         if secure and lacking:
             fix = f"add {', '.join(f'{name}=FILE' for name in lacking)}"
-            found.append(Problem("a scheduler at tls:// wants certificates", "scheduler", fix=fix))
+            found.append(
+                Problem(
+                    "a scheduler at tls:// wants certificates",
+                    "scheduler",
+                    "it lets in who has certificates alone",
+                    fix,
+                )
+            )
         if self.scheduler not in (None, LOCAL) and "://" not in str(self.scheduler):
             fix = f"write tcp://{self.scheduler}, or tls://{self.scheduler} where it wants certificates"
-            found.append(Problem(f"'{self.scheduler}' is no address of a scheduler", "scheduler", fix=fix))
+            found.append(
+                Problem(
+                    f"'{self.scheduler}' is no address of a scheduler",
+                    "scheduler",
+                    "it does not say how to speak to it",
+                    fix,
+                )
+            )
         if self.workers is not None and self.scheduler not in (None, LOCAL):
             why = "a scheduler has the workers that were started for it"
             found.append(Problem("workers of this machine and a scheduler do not go together", "workers", why))

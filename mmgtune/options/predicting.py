@@ -35,7 +35,7 @@ class PredictOptions(SimulateOptions, ParticleOptions):
         found = super().problems()
         if self.astern is not None and not self.stop:
             what = "revolutions astern are ordered in a crash stop"
-            found.append(Problem(what, "astern", fix="add stop=True, or leave it out"))
+            found.append(Problem(what, "astern", "no stop is asked for", "add stop=True, or leave it out"))
         return found
 
     def given(self, names: tuple[str, ...]) -> list[str]:

@@ -85,7 +85,14 @@ class VoyageOptions(ValidateOptions):
         if len(self.classes) != 2 or not self.classes[0] < self.classes[1]:
             shown = ",".join(f"{limit:g}" for limit in self.classes)
             fix = "write classes=1.3,4.1"
-            found.append(Problem(f"classes {shown} are not two limits in order", "classes", fix=fix))
+            found.append(
+                Problem(
+                    f"classes {shown} are not two limits in order",
+                    "classes",
+                    "between them lies the middle of three classes, the larger limit behind",
+                    fix,
+                )
+            )
         return found
 
 

@@ -114,7 +114,14 @@ class FitOptions(SearchOptions):
         """What makes no sense; sisters are a prior."""
         found = super().problems()
         if self.sisters is not None and not self.prior:
-            found.append(Problem("a prior of sister ships, and none", "sisters", fix="leave prior=False out"))
+            found.append(
+                Problem(
+                    "a prior of sister ships, and none",
+                    "sisters",
+                    "prior=False turns every prior off, that of the sisters too",
+                    "leave prior=False out",
+                )
+            )
         return found
 
     def posterior_options(self) -> PosteriorOptions:
@@ -135,7 +142,8 @@ class SweepOptions(SearchOptions):
         found = super().problems()
         if not self.widths or len(set(self.widths)) < len(self.widths):
             what = "a half width is given twice" if self.widths else "no half width to sweep over"
-            found.append(Problem(what, "widths", fix="write widths=0.2,0.3,0.4,0.5,0.6"))
+            why = "each width is a fit of its own, in a folder named after it"
+            found.append(Problem(what, "widths", why, "write widths=0.2,0.3,0.4,0.5,0.6"))
         return found
 
     def at(self, a_r: float) -> FitOptions:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from ..errors import OptionError, Problem, closest
+from ..errors import OptionError, Problem, among
 from ..options import PredictOptions
 from ..predicting.asked import Approach, Asked, asked
 from ..predicting.reading import KNOWN, Known
@@ -39,7 +39,11 @@ def read_question(text: str, predictor: Predictor, approach: Approach) -> Questi
     """A question as people write it.  Raises OptionError where it is none, with what is near."""
     words, comma, manoeuvre = text.partition(",")
     if not comma:
-        raise OptionError(Problem(f"'{text[:80]}' names no index and manoeuvre", "question", fix=SUCH_AS))
+        raise OptionError(
+            Problem(
+                f"'{text[:80]}' names no index and manoeuvre", "question", "there is no comma between the two", SUCH_AS
+            )
+        )
     name = _index(words)
     kind, rest = _manoeuvre(manoeuvre)
     options = {
@@ -49,9 +53,7 @@ def read_question(text: str, predictor: Predictor, approach: Approach) -> Questi
     }[kind]()
     if _OF[kind] not in _shown_by(name):
         fitting = tuple(one.words for other, one in KNOWN.items() if _OF[kind] in _shown_by(other))
-        raise OptionError(
-            Problem(f"a {kind} has no {KNOWN[name].words}", "question", fix=closest(words.strip(), fitting))
-        )
+        raise OptionError(Problem(f"a {kind} has no {KNOWN[name].words}", "question", **among(words.strip(), fitting)))
     (one,) = asked(predictor, options, approach)
     return Question(text, f"{kind} {rest}".strip(), KNOWN[name], one)
 
@@ -65,7 +67,7 @@ def _index(words: str) -> str:
     plain = " ".join(words.lower().split())
     if plain not in _BY_WORDS:
         known = tuple(dict.fromkeys(one.words.lower() for one in KNOWN.values()))
-        raise OptionError(Problem(f"unknown index '{plain[:60]}'", "question", fix=closest(plain, known)))
+        raise OptionError(Problem(f"unknown index '{plain[:60]}'", "question", **among(plain, known)))
     return _BY_WORDS[plain]
 
 
@@ -73,7 +75,7 @@ def _manoeuvre(words: str) -> tuple[str, str]:
     """Kind and angles; "turn 35 deg to port" is "turn", "-35"."""
     kind, _, rest = " ".join(words.lower().split()).partition(" ")
     if kind not in MANOEUVRES:
-        raise OptionError(Problem(f"unknown manoeuvre '{kind[:60]}'", "question", fix=closest(kind, MANOEUVRES)))
+        raise OptionError(Problem(f"unknown manoeuvre '{kind[:60]}'", "question", **among(kind, MANOEUVRES)))
     side = re.search(r"\s*(?:to )?(port|starboard)(?: first)?$", f" {rest}")
     if side:
         rest = f" {rest}"[: side.start()].strip().lstrip("+-")
@@ -81,5 +83,6 @@ def _manoeuvre(words: str) -> tuple[str, str]:
     rest = rest.removesuffix(" deg")
     if (kind == "stop") == bool(rest):
         what = "a stop has no angle" if rest else f"the {kind} has no angle"
-        raise OptionError(Problem(f"{what}: '{words.strip()[:60]}'", "question", fix=SUCH_AS))
+        why = "only turns and zigzags are ordered by angles"
+        raise OptionError(Problem(f"{what}: '{words.strip()[:60]}'", "question", why, SUCH_AS))
     return kind, rest

@@ -63,7 +63,9 @@ def approach_of(predictor: Predictor, options: PredictOptions) -> Approach:
         fix = 'give speed="12 kn" and rpm="106"'
         raise OptionError(Problem(f"where '{predictor.name}' begins is not known", lacking[0], why, fix))
     if not speed > 0.0:
-        raise OptionError(Problem(f"the approach speed is {speed:g} m/s", "speed", fix="give a speed above 0"))
+        raise OptionError(
+            Problem(f"the approach speed is {speed:g} m/s", "speed", "manoeuvres begin ahead", "give a speed above 0")
+        )
     return Approach(speed, n)
 
 

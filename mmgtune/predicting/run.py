@@ -89,11 +89,12 @@ def _agree(orders: object, trials: object, options: PredictOptions) -> None:
     if trials is not None and (orders is not None or ordered):
         where = "trials"
         fix = "leave out the orders" if orders is not None else f"leave out {', '.join(ordered)}"
-        raise OptionError(Problem("trials have their own inputs", where, fix=fix))
+        raise OptionError(Problem("trials have their own inputs", where, "they are what was measured, not orders", fix))
     manoeuvres = [name for name in ordered if name not in ("speed", "rpm")]
     if orders is not None and manoeuvres:
         fix = f"leave out the list, or {', '.join(manoeuvres)}"
-        raise OptionError(Problem("a list of orders is no standard manoeuvre", manoeuvres[0], fix=fix))
+        why = "each says what rudder and propeller do"
+        raise OptionError(Problem("a list of orders is no standard manoeuvre", manoeuvres[0], why, fix))
     lost = options.given(OF_TRIALS)
     if trials is None and lost:
         why = "windows and spreads are of trials"

@@ -12,11 +12,11 @@ from typing import Any, TypeVar
 from .. import limits, units
 from ..components import ARRANGEMENTS, KINDS, UNTAGGED, Arrangement, Component, Field, find, find_arrangement, tags
 from ..effects import Effect, Parameter, effect_tags, find_effect
-from ..errors import Problem, ProfileError, brief, closest
+from ..errors import Problem, ProfileError, among, brief, near_to
 from ..inputs import Input
 from ..metrics import METRICS
 from ..physics.regressions.fujiwara1998 import wind_harmonics
-from ..resources import folder, network_names, profile_names, taken
+from ..resources import folder, looked_for, network_names, profile_names, taken
 from ..toml_reading import TomlReader, toml_of
 from .changing import missing_for
 from .model import ABSENT, Actuator, Approach, Coefficient, Section, ShipProfile, SteeringGear
@@ -38,15 +38,20 @@ def find_profile(name: str | Path) -> Path:
     path = Path(name)
     if found := taken(name, path.is_file(), folder("ship_profiles") / f"{name}.toml"):
         return found
-    fix = f"give a path to a TOML file, or a bundled name: {', '.join(profile_names())}"
+    names = profile_names()
+    fix = f"give a path to a TOML file, or a bundled name: {', '.join(names)}"
     if path.is_dir():
         there = sorted(one.name for one in path.glob("*.toml"))[:3]
         fix = f"name one of its files ({', '.join(there)}), or " * bool(there) + fix
-        why = "it is no run folder with a model in it" if not there else ""
+        why = "a ship is one file" if there else "it is no run folder with a model in it"
         raise ProfileError(Problem("the profile is a folder, not a file", str(name), why, fix=fix))
     trained = network_names()
     fix += f"; where trained models do: {', '.join(trained)}" if trained else ""
-    why = "it is a trained model, which only simulation, scoring and prediction take" if name in trained else ""
+    why = looked_for(name, "profile")
+    if name in trained:
+        why = "it is a trained model, which only simulation, scoring and prediction take"
+    elif near := near_to(str(name), [*names, *trained]):
+        fix = f"{near} Else give a path to a TOML file"
     raise ProfileError(Problem("no such ship profile", str(name), why, fix))
 
 
@@ -81,7 +86,7 @@ class _Reader(TomlReader):
     def read(self, path: Path | None) -> ShipProfile:
         for name in self.data:
             if name not in SECTIONS:
-                self.problem(f"unknown section [{name}]", name, fix=closest(name, SECTIONS))
+                self.problem(f"unknown section [{name}]", name, **among(name, SECTIONS))
         self.schema(SCHEMA)
         ship = self.table("ship")
         self.unknown("ship", ship, ("name", "id", "source", "licence", "citation"))
@@ -126,7 +131,7 @@ class _Reader(TomlReader):
         found = find_arrangement(model) if isinstance(model, str) else None
         if found is None:
             known = tuple(one.tag for one in ARRANGEMENTS)
-            self.problem(f"unknown arrangement {brief(model)}", "arrangement", "model", fix=closest(str(model), known))
+            self.problem(f"unknown arrangement {brief(model)}", "arrangement", "model", **among(str(model), known))
         return found or ARRANGEMENTS[0]
 
     def actuators(self, arrangement: Arrangement) -> dict[str, Actuator]:
@@ -140,7 +145,7 @@ class _Reader(TomlReader):
         for name in tables:
             section = f"actuators.{name}"
             if name not in inputs:
-                self.problem(f"nothing drives this ship that is called '{name}'", section, fix=closest(name, [*inputs]))
+                self.problem(f"nothing drives this ship that is called '{name}'", section, **among(name, [*inputs]))
                 continue
             limits = self.plain(section, actuator_fields(inputs[name]))
             if limits and limits["low"] >= limits["high"]:
@@ -157,7 +162,7 @@ class _Reader(TomlReader):
             return []
         for tag in tables:
             if find_effect(tag) is None:
-                self.problem(f"unknown effect '{tag}'", f"effects.{tag}", fix=closest(tag, effect_tags()))
+                self.problem(f"unknown effect '{tag}'", f"effects.{tag}", **among(tag, effect_tags()))
         return [f"effects.{tag}" for tag in effect_tags() if tag in tables]
 
     def table(self, name: str) -> dict[str, Any]:
@@ -285,7 +290,7 @@ class _Reader(TomlReader):
     def unknown_value_keys(self, kind: str, symbol: str, written: dict[str, Any]) -> None:
         for key in written:
             if key not in VALUE_KEYS:
-                self.problem(f"unknown key '{key}' of '{kind}.{symbol}'", kind, symbol, fix=closest(key, VALUE_KEYS))
+                self.problem(f"unknown key '{key}' of '{kind}.{symbol}'", kind, symbol, **among(key, VALUE_KEYS))
 
     def bounds(self, kind: str, symbol: str, field: Field, written: Any) -> tuple[float, float] | None:
         if isinstance(written, list) and len(written) == 2:
@@ -367,7 +372,7 @@ class _Reader(TomlReader):
             return ()
         for name in targets:
             if name not in known:
-                self.problem(f"unknown target '{name}'", "tuning", "targets", fix=closest(name, known))
+                self.problem(f"unknown target '{name}'", "tuning", "targets", **among(name, known))
         return tuple(targets)
 
     def limits(self) -> dict[str, float]:

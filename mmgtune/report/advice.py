@@ -292,6 +292,10 @@ def after_fleet(data: Mapping[str, Any]) -> Advice:
             tuned = shlex.quote(f"{out}/{clean(best['run'])}/profile.toml")
             reason = f"See what the recalibrated {clean(best['ship'])} does better"
             items.append((reason, f"mmgtune validate {ship} {tuned} {trials} --manoeuvres"))
+    for cell in [one for one in data["cells"] if one["run"] and not one.get("report", True)][-1:]:
+        reason = f"Make the report of a job, here of {clean(cell['ship'])} at {clean(cell['date'])}"
+        folder = shlex.quote(f"{out}/{clean(cell['run'])}")
+        items.append((reason, f"mmgtune report {folder}"))
     if data["classes"]:
         reason = "Calibrate a ship with few trials by what her sisters say"
         items.append((reason, f"mmgtune fit -p SHIP.toml -t TRIALS --prior {shlex.quote(out)}"))

@@ -49,15 +49,31 @@ def score_cells(scores: Mapping[str, Any]) -> list[str]:
     ]
 
 
+def known_scores(rows: Sequence[Sequence[Any]], first: int) -> tuple[tuple[str, ...], list[list[Any]]]:
+    """Heads and rows of cells without the scores that no row has: of models of one member there is no band.
+
+    first  cells before the scores
+    """
+    keep = [k for k in range(len(SCORE_HEADS)) if any(_text(row[first + k]) != NONE for row in rows)]
+    heads = tuple(SCORE_HEADS[k] for k in keep)
+    return heads, [[*row[:first], *(row[first + k] for k in keep)] for row in rows]
+
+
+def _text(cell: Any) -> str:
+    return str(getattr(cell, "text", cell))
+
+
 def bands_section(models: Sequence[Mapping[str, Any]], of: str) -> Section | None:
     """How well the bands of the models that have some hold what was measured; None where none has.
 
     models  rows with "profile", and "bands" where there are any
     of      on what, as the end of the table's caption
     """
-    rows = tuple(cells(clean(one["profile"]), *score_cells(one["bands"])) for one in models if one.get("bands"))
-    if not rows:
+    found = [[clean(one["profile"]), *score_cells(one["bands"])] for one in models if one.get("bands")]
+    if not found:
         return None
+    heads, kept = known_scores(found, 1)
+    rows = tuple(cells(*row) for row in kept)
     caption = f"Whether the bands held what was measured, on {of}"
-    table = Table("bands-table", caption, ("model", *SCORE_HEADS), rows, range(1, 1 + len(SCORE_HEADS)))
+    table = Table("bands-table", caption, ("model", *heads), rows, range(1, 1 + len(heads)))
     return Section("bands", "Bands", (table, Prose((MEANING,))))

@@ -60,17 +60,9 @@ def cards_of_misfit(data: Mapping[str, Any], results: Sequence[Mapping[str, Any]
     held = [row for row in results if row.get("role") == "test"]
     rows = held if held and not where else list(results)
     where = where or ("test trials" if held else "trials tuned on")
-    note = f"root mean square, mean of {count(len(rows), 'trial')}"
-    cards = []
-    for label, mean, unit, digits in (
-        ("Off track", findings.mean_off_track, " m", 3),
-        ("Off heading", findings.mean_off_heading, "°", 2),
-    ):
-        before, after = mean(rows, "before"), mean(rows, "after")
-        if before is not None and after is not None:
-            moved = change(before, after)
-            value = f"{shown(before, digits)} → {shown(after, digits)}{unit}"
-            cards.append(Card(f"{label}, {where}", value, percent(moved), note, tone(moved)))
+    means = {"track_m": findings.mean_off_track, "heading_deg": findings.mean_off_heading}
+    off = {key: {which: mean(rows, which) for which in ("before", "after")} for key, mean in means.items()}
+    cards = list(off_cards({"trials": len(rows), **off}, where))
     tuned = change(data.get("J_tune_before"), data.get("J_tune"))
     if held and number(data.get("J_test")) is not None:
         moved = change(data.get("J_test_before"), data["J_test"])
@@ -81,6 +73,22 @@ def cards_of_misfit(data: Mapping[str, Any], results: Sequence[Mapping[str, Any]
         none = "no test set: nothing shows yet how this does on other trials"
         values = f"{shown(data.get('J_tune_before'))} → {shown(data['J_tune'])}"
         cards.append(Card("Misfit J, trials tuned on", values, percent(tuned), none, tone(tuned)))
+    return tuple(cards)
+
+
+def off_cards(off: Mapping[str, Any], where: str) -> tuple[Card, ...]:
+    """How far off track [m] and heading [deg] trials are before and after tuning, as ``sweep.json`` says it.
+
+    where  what the trials are
+    """
+    note = f"root mean square, mean of {count(off['trials'], 'trial')}"
+    cards = []
+    for key, label, unit, digits in (("track_m", "Off track", " m", 3), ("heading_deg", "Off heading", "°", 2)):
+        before, after = (number(off[key].get(which)) for which in ("before", "after"))
+        if before is not None and after is not None:
+            moved = change(before, after)
+            value = f"{shown(before, digits)} → {shown(after, digits)}{unit}"
+            cards.append(Card(f"{label}, {where}", value, percent(moved), note, tone(moved)))
     return tuple(cards)
 
 

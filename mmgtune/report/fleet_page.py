@@ -88,6 +88,9 @@ def _warnings(jobs: Mapping[str, Any]) -> tuple[str, ...]:
     if jobs["missing"]:
         verb = "is" if jobs["missing"] == 1 else "are"
         said.append(f"{count(jobs['missing'], 'job')} of the table {verb} not run yet.")
+    if others := jobs.get("others"):
+        verb = "is" if others == 1 else "are"
+        said.append(f"{count(others, 'result')} {verb} of jobs that the table does not have, or has with other data.")
     return tuple(said)
 
 
@@ -172,7 +175,10 @@ def _table(
 ) -> Table:
     by = {(one["ship"], one["date"]): one for one in rows}
     made = tuple(cells(clean(ship), *(_cell(by.get((ship, date))) for date in dates)) for ship in ships)
-    caption = f"{clean(name)}: metres off track, or what was found; each opens the report of its job"
+    caption = f"{clean(name)}: metres off track, or what was found"
+    caption += "; each opens the report of its job" if any(map(_page_of, rows)) else ""
+    lacking = any(one["run"] and not _page_of(one) for one in rows)
+    caption += "; mmgtune report FOLDER makes the report of a job that has none yet" if lacking else ""
     return Table(f"ships-{place}-table", caption, ("ship", *map(clean, dates)), made, range(1, 1 + len(dates)))
 
 
@@ -184,7 +190,17 @@ def _cell(one: Mapping[str, Any] | None) -> Cell:
     said += [clean(tag) for tag in one["causes"]]
     if one["answer"] == "failed":
         said = ["failed"]
-    return Cell(", ".join(said) or clean(one["answer"]), _TONES.get(one["answer"], ""), link_of(one["run"]))
+    return Cell(", ".join(said) or clean(one["answer"]), _TONES.get(one["answer"], ""), _page_of(one))
+
+
+def _page_of(one: Mapping[str, Any]) -> str:
+    """The report of a cell's job, "" where none was rendered; older records do not say, and all have one."""
+    return link_of(one["run"]) if one.get("report", True) else ""
+
+
+def _pages(data: Mapping[str, Any]) -> dict[str, str]:
+    """The reports of jobs by run folder, of those that have one."""
+    return {one["run"]: page for one in data["cells"] if (page := _page_of(one))}
 
 
 def link_of(run: Any) -> str:
@@ -200,9 +216,10 @@ def _changes(data: Mapping[str, Any]) -> Section:
         more = f"{count(looked, 'series', 'series')} of {fewest} dates or more were looked at."
         return Section("changes", "What changed, and when", (Nothing("No change shows.", more),))
     runs = {(one["ship"], one["date"], one["name"]): one["run"] for one in data["cells"]}
+    pages = _pages(data)
     rows = tuple(
         cells(
-            Cell(clean(one["ship"]), link=link_of(runs.get((one["ship"], one["month"], one["job"])))),
+            Cell(clean(one["ship"]), link=pages.get(runs.get((one["ship"], one["month"], one["job"]), ""), "")),
             clean(one["month"]),
             f"{clean(one['after'])} to {clean(one['by'])}",
             clean(one["words"]),
@@ -268,12 +285,12 @@ def _causes(data: Mapping[str, Any]) -> Section | None:
 
 
 def _gains(data: Mapping[str, Any]) -> Section | None:
-    ranking = data["ranking"]
+    ranking, pages = data["ranking"], _pages(data)
     if not ranking:
         return None
     rows = tuple(
         cells(
-            Cell(clean(one["ship"]), link=link_of(one["run"])),
+            Cell(clean(one["ship"]), link=pages.get(one["run"], "")),
             clean(one["date"]),
             shown(one["off_track"], 3),
             shown(one["tuned_track"], 3),

@@ -103,10 +103,11 @@ def _cards(record: LearningRecord) -> tuple[Card, ...]:
 
 def tracks_words(record: LearningRecord) -> str:
     """What the figure of tracks shows."""
+    n = len(record.members)
+    several = f"{count(n, 'network')} predict{'s' * (n == 1)}"
     return (
         f"Of each kind of manoeuvre the window of median error among the trials {ROLES[record.role]}: measured, and "
-        f"as {count(len(record.members), 'network')} predict it from the first state and the "
-        "inputs."
+        f"as {several} it from the first state and the inputs."
     )
 
 

@@ -87,6 +87,7 @@ def _verdict(data: Mapping[str, Any]) -> str:
         off = f"On trials it has not seen, a tuned model is {shown(place, 3)} m off track"
         off += f" and {shown(heading, 2)}° off heading" if both else ""
         off += f" instead of {shown(first, 3)} m" + (f" and {shown(first_heading, 2)}°" if both else "")
+        off += " (root mean square)"
     if removed <= 0.0:
         return f"{off or 'On trials it has not seen, tuning does not help'}: the error L_MSE there does not fall."
     interval = row["share_removed_ci95"]
@@ -99,7 +100,7 @@ def _cards(data: Mapping[str, Any]) -> tuple[Card, ...]:
     row = _whole(data)
     if row is None:
         return ()
-    note = f"trials left out in turn, {count(row['runs'], 'run')}"
+    note = f"trials left out in turn, all samples of {count(row['runs'], 'run')}"
     cards = []
     for key, label, unit, digits in (
         ("position_rms_m", "Off track", " m", 3),
@@ -136,7 +137,7 @@ def _motions(record: LeaveOutRecord) -> Section | None:
     first = str(known[-1][1]["id"]) if known else ""
     block = motion_block.of_trials(
         results, record.motions, record.inputs, said, words=WORDS, ship=Ship(number(record.data.get("L_pp"))),
-        first=first, data=motion_block.numbers(results, record.motions, WORDS),
+        first=first, data=motion_block.numbers(results, record.motions, WORDS), finding=said,
     )  # fmt: skip
     return None if block is None else Section("motions", "Tracks of the trials left out", (block,))
 

@@ -16,6 +16,7 @@ from ..arrays import FloatArray
 from ..errors import OptionError, Problem
 from ..inputs import INPUTS, Role
 from ..physics.quantities import STATES
+from ..resources import looked_for
 from .forces import NO_SHIP, Ship
 from .wording import Channel, clean, input_channel
 
@@ -118,7 +119,9 @@ def find(folder: Path, kinds: Iterable[Kind]) -> tuple[Kind, Any]:
     Raises OptionError for a folder that is missing, unreadable, not a run folder, or from a newer program.
     """
     if not folder.is_dir():
-        raise _problem("there is no such run folder", folder, "", "give the folder that --out of a run named")
+        raise _problem(
+            "there is no such run folder", folder, looked_for(folder), "give the folder that --out of a run named"
+        )
     for kind in kinds:
         path = folder / kind.file
         if path.is_file():

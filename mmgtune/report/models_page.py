@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import advice, fans, motion_block, motions
-from .band_scores import MEANING, SCORE_HEADS, score_cells
+from .band_scores import MEANING, SCORE_HEADS, known_scores, score_cells
 from .blocks import Block, Card, Cell, Commands, Fold, Page, Prose, Section, Table, cells
 from .common import picture
 from .load import Kind, inputs_of, motions_in
 from .plot import LOOKS, Axis, Dots, Figure, Line, Look, Mark, Panel, model_look
 from .tables import pairs
-from .wording import NONE, Channel, clean, count, listing, model_names, number, shown
+from .wording import CHANNELS, NONE, Channel, clean, count, listing, model_names, number, shown
 
 if TYPE_CHECKING:
     from ..arrays import FloatArray
@@ -171,13 +171,22 @@ def _bands(record: ModelsRecord) -> Section:
                 texts: list[str | Cell] = [clean(column["name"]), str(of["particles"]), *score_cells(of)]
                 at = 2 + SCORE_HEADS.index("CRPS")
                 texts[at] = Cell(f"{texts[at]} *", "good") if best else texts[at]
-                rows.append(cells(model["called"], *texts))
-        heads = ("model", "manoeuvre", "particles", *SCORE_HEADS)
+                rows.append([model["called"], *texts])
+        scores, kept = known_scores(rows, 3)
+        heads = ("model", "manoeuvre", "particles", *scores)
         caption = f"Bands, {words}; * the least CRPS"
         numeric = range(2, len(heads))
-        blocks.append(Table(f"{key}-bands-table", caption, heads, tuple(rows), numeric=numeric))
+        blocks.append(Table(f"{key}-bands-table", caption, heads, tuple(cells(*row) for row in kept), numeric=numeric))
     blocks.append(Prose((MEANING,)))
     return Section("bands", "Bands", tuple(blocks))
+
+
+def spread_words(name: str, value: Any) -> tuple[str, str]:
+    """What errors of a state are counted in, as people read it."""
+    of, size = CHANNELS.get(name), number(value)
+    if of is None or size is None:
+        return f"spread of {name}", f"{shown(value, 4)} (SI)"
+    return f"spread of {of.words}", f"{shown(size * of.factor, 4)} {of.unit}"
 
 
 def _mean(cell: Mapping[str, Any], members: int) -> str:
@@ -269,7 +278,7 @@ def _made(record: ModelsRecord) -> Section:
         ("licence of the trials", clean(trials.get("licence") or NONE)),
         ("cite for them", clean(trials.get("citation") or NONE)),
         ("spread counted in", clean(data["sigma_from"])),
-        *((f"sigma of {clean(name)}", f"{shown(value, 4)} (SI)") for name, value in data["sigma"].items()),
+        *(spread_words(clean(name), value) for name, value in data["sigma"].items()),
         ("command", clean(made["command"] or NONE)),
         ("made by", f"mmgtune {clean(made['mmgtune'])}, {clean(made['created'])}"),
         ("time", f"{shown(data['wall_s'], 3)} s"),

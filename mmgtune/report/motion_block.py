@@ -31,6 +31,7 @@ def of_trials(
     ship: Ship = NO_SHIP,
     first: str = "",
     data: Sequence[Table] = (),
+    finding: str = "",
 ) -> Motions | None:
     """Measured and simulated motions of trials, None where there is nothing to draw.
 
@@ -38,6 +39,7 @@ def of_trials(
     found    trial -> "measured", "before" or "after" -> columns
     words    of those that are shown; the last of them is the ship's own model
     first    the trial shown first; where it is empty, the one that fits worst
+    finding  what the tracks show on paper; where it is empty, what tuning made of them as mean over trials
     """
     rows = [row for row in results if str(row["id"]) in found]
     if not rows:
@@ -54,7 +56,7 @@ def of_trials(
     chosen = {id(row) for row in tracks.chosen(rows, model)}
     drawn = [one for one, row in zip(manoeuvres, rows, strict=True) if id(row) in chosen]
     runs = tracks.runs_of(words)
-    said = findings.tracks(rows, words["after"]) if "after" in words else caption
+    said = finding or (findings.tracks(rows, words["after"]) if "after" in words else caption)
     closer = findings.distances(rows) if "after" in words else "The same over time."
     distances = (picture(tracks.distances(drawn, runs), "Distance off track", closer),)
     return of_manoeuvres(

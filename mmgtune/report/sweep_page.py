@@ -12,7 +12,16 @@ from .. import limits
 from ..errors import OptionError
 from . import advice, figures, misfit
 from .blocks import Card, Cell, Commands, Page, Prose, Section, Table, cells
-from .common import assumptions, cards_of_misfit, generated_banner, misfit_card, picture, provenance, warnings
+from .common import (
+    assumptions,
+    cards_of_misfit,
+    generated_banner,
+    misfit_card,
+    off_cards,
+    picture,
+    provenance,
+    warnings,
+)
 from .load import Kind, SweepRecord
 from .tables import described
 from .wording import NONE, clean, coefficient_text, listing, number, short
@@ -25,11 +34,13 @@ def build(record: SweepRecord) -> Page:
     data, runs = record.data, record.runs
     recommended = data.get("recommended") or {}
     best = number(recommended.get("a_r"))
+    off = misfit.off_figure(record, best)
     sections = [
         Section(
             "ranges",
             "Which range?",
             (
+                *((picture(off, "Metres and degrees off", misfit.off_finding(record)),) if off else ()),
                 picture(misfit.figure(record, best), "Misfit", misfit.finding(record)),
                 *_overfitting(data),
                 misfit.table(record),
@@ -78,15 +89,16 @@ def _cards(record: SweepRecord, best: float | None) -> tuple[Card, ...]:
     notes += [f"chosen by {_JUDGES.get(by, by)}"] if by else []
     shown_cards = [Card("Recommended range", f"a_r = {best:g}" if best is not None else NONE, note=", ".join(notes))]
     run = next((run for run in runs if best is not None and number(run["a_r"]) == best), None)
-    if run is not None:
-        shown_cards = [*_off(record, run)[:1], *shown_cards]
+    found = (data.get("overfitting") or {}).get("found")
+    off = _off(record, run) if run is not None else ()
+    shown_cards = [*off, *shown_cards]
+    if run is not None and (len(off) < 2 or found is None):  # four cards at most: J stands in the headline too
         none = "no test set: each trial was left out in turn" if data.get("leave_one_out") else "no test set"
         if number(run.get("J_test")) is not None:
             shown_cards.append(misfit_card("Misfit J, test trials", data.get("J_test_before"), run.get("J_test"), none))
         else:
             card = misfit_card("Misfit J, trials tuned on", data.get("J_tune_before"), run.get("J_tune"), "")
             shown_cards.append(replace(card, note=none))
-    found = (data.get("overfitting") or {}).get("found")
     if found is not None:
         shown_cards.append(
             Card(
@@ -96,11 +108,16 @@ def _cards(record: SweepRecord, best: float | None) -> tuple[Card, ...]:
                 note="wider ranges do worse on trials not tuned on" if found else "in these ranges",
             )
         )
-    return tuple(shown_cards)
+    return tuple(shown_cards)[:4]
 
 
 def _off(record: SweepRecord, run: Mapping[str, Any]) -> tuple[Card, ...]:
-    """How far off the fit of a range is, in metres and degrees; nothing where its folder is not there."""
+    """How far off the fit of a range is, in metres and degrees, on trials held out where there are any; of records
+    without that from the range's own folder, nothing where that is not there.
+    """
+    role = next((one for one in misfit.HELD if one in (run.get("off") or {})), None)
+    if role is not None:
+        return off_cards(run["off"][role], misfit.HELD[role])
     folder = misfit.run_folder(run)
     path = record.folder / (folder or "") / "fit.json"
     if folder is None or not path.is_file():

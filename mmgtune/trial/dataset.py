@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Self
 
 from ..displayed import Plotted, inert
-from ..errors import Problem, TrialError, closest
-from ..resources import folder, profile_names, taken, trial_set_names
+from ..errors import Problem, TrialError, among, closest
+from ..resources import folder, looked_for, profile_names, taken, trial_set_names
 from .index_trial import IndexTrial, has_index_trials, read_index_trials
 from .model import Trial
 from .parquet import id_in, read_trial
@@ -64,7 +64,7 @@ class TrialSet(Plotted):
         found = self.trials.get(name) or self.stated.get(name)
         if found is None:
             known = [*self.trials, *self.stated]
-            raise TrialError(Problem(f"no trial '{name}'", str(self.path or ""), fix=closest(str(name), known)))
+            raise TrialError(Problem(f"no trial '{name}'", str(self.path or ""), **among(str(name), known)))
         return found
 
     @property
@@ -124,7 +124,9 @@ def load_trials(name: str | Path) -> TrialSet:
         if logs := logs_instead(path):
             raise TrialError(logs)
         fix = "put *.parquet files there, one a trial, or a *.toml file of stated indices"
-        raise TrialError(Problem("the folder has no trial files", str(path), fix=fix))
+        raise TrialError(
+            Problem("the folder has no trial files", str(path), "it has neither *.parquet nor stated indices", fix)
+        )
     trials: dict[str, Trial] = {}
     problems = list(wrong_there)
     ids: list[str | None] = []
@@ -209,7 +211,9 @@ def find_trials(name: str | Path) -> Path:
         return found
     names = trial_set_names()
     fix = f"give a folder or a Parquet file, or a bundled name; {closest(str(name), names) if names else 'none here'}"
-    why = "that is a ship profile; trials are given last" if str(name) in profile_names() else ""
+    why = looked_for(name, "data set")
+    if str(name) in profile_names():
+        why = "that is a ship profile; trials are given last"
     raise TrialError(Problem("no such trials", str(name), why, fix))
 
 

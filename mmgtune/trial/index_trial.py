@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import limits, units
-from ..errors import Problem, TrialError, brief, closest
+from ..errors import Problem, TrialError, among, brief, closest
 from ..limits import NAME
 from ..toml_reading import TomlReader, finite, toml_of
 from ..units import DEG
@@ -227,7 +227,7 @@ class _Table:
         before = len(reader.problems)
         for key in table:
             if key not in KEYS:
-                self.wrong(f"unknown key '{key}'", key, fix=closest(key, KEYS))
+                self.wrong(f"unknown key '{key}'", key, **among(key, KEYS))
         texts = {key: reader.text_of("trial", table, key) for key in ("id", "ship", "order", "note")}
         self._id(texts["id"])
         source = reader.choice("trial", table, "source", ("", *SOURCES)) or ""

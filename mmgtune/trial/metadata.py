@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from ..errors import Problem, brief, closest
+from ..errors import Problem, among, brief
 from ..limits import FACTS_BYTES, NAME, NESTING
 from ..toml_reading import depth, finite
 from .schema import COLUMNS, METADATA, SCHEMA, SOURCES
@@ -34,7 +34,7 @@ def facts_of(raw: bytes | None, path: Path, columns: Sequence[str]) -> tuple[dic
         fix = 'write an object such as {"schema": 1, "ship": "...", "id": "..."}, or leave the metadata out'
         return {}, [Problem("the metadata is not a JSON object", where, str(error), fix)]
     problems = [
-        Problem(f"unknown key {brief(key)}", where, fix=closest(key, METADATA)) for key in facts if key not in METADATA
+        Problem(f"unknown key {brief(key)}", where, **among(key, METADATA)) for key in facts if key not in METADATA
     ]
     if facts.get("schema", SCHEMA) != SCHEMA:
         fix = "update mmgtune, or write the file again"
@@ -68,7 +68,7 @@ def _noise(noise: object, where: str, columns: Sequence[str]) -> list[Problem]:
     known = list(dict.fromkeys([*COLUMNS, *columns]))
     for name, value in noise.items():
         if name not in known:
-            problems.append(Problem(f"noise of unknown column {brief(name)}", where, fix=closest(name, known)))
+            problems.append(Problem(f"noise of unknown column {brief(name)}", where, **among(name, known)))
         number = finite(value)
         if number is None or number < 0.0:
             what = f"noise of {brief(name)} is {brief(value)}, not a standard deviation"

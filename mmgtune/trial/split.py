@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .. import limits
-from ..errors import Problem, TrialError, closest
+from ..errors import Problem, TrialError, among
 from ..toml_reading import TomlReader, toml_of
 
 SPLIT = "split.toml"
@@ -74,9 +74,7 @@ def _ids(key: str, ids: list[str], known: Iterable[str] | None, path: Path, text
             why = "it would count that many times"
             problems.append(Problem(f"trial '{name}' is named {count} times in '{key}'", place, why, "name it once"))
         if there is not None and name not in there:
-            problems.append(
-                Problem(f"'{key}' names trial '{name}', which is not there", place, "", closest(name, there))
-            )
+            problems.append(Problem(f"'{key}' names trial '{name}', which is not there", place, **among(name, there)))
     return problems
 
 

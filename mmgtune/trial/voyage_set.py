@@ -94,7 +94,11 @@ def load_voyages(name: str | Path) -> VoyageSet:
     if not voyages and (logs := logs_instead(path)):
         raise TrialError(logs)
     if not voyages and not problems:
-        problems.append(Problem("the folder has no voyages", str(path), fix="put *.parquet files there, one a voyage"))
+        problems.append(
+            Problem(
+                "the folder has no voyages", str(path), "it holds no *.parquet", "put such files there, one a voyage"
+            )
+        )
     if problems:
         raise TrialError(*problems)
     return VoyageSet(tuple(voyages), said.ship or _ship(voyages), path, said.licence, said.citation)

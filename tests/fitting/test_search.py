@@ -1,10 +1,12 @@
 """Search: bounds reached exactly, seeds, replay, certificate, sweep."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from mmgtune.cli.sweep import summary
 from mmgtune.errors import OptionError
 from mmgtune.fitting import FitOptions, Hooks, LeaveOutOptions, SweepOptions, fit, leave_out, make_problem, sweep
 from mmgtune.fitting.box import make_box
@@ -173,12 +175,29 @@ def test_recommendation_is_the_least_test_cost(swept):
     assert swept.recommended()["by"] == "test set"
 
 
+def test_a_sweep_is_told_by_metres_and_degrees_the_same_everywhere(swept):
+    best = swept.to_dict()["runs"][swept.best]["off"]["test"]
+    held = [one.off("after") for one in swept.runs[swept.best].compared if one.role == "test"]
+    track, heading = np.mean(held, axis=0)
+    assert best["trials"] == len(held)
+    assert best["track_m"]["after"] == pytest.approx(track)
+    assert best["heading_deg"]["after"] == pytest.approx(heading)
+    said = f"is {track:#.3g} m off track and {heading:#.2g}° off heading instead of "
+    assert swept.recommended()["sentence"].index(said) < swept.recommended()["sentence"].index("J is least")
+    rows = dict(re.findall(r"^(off \w+ test \[\w+\]) .* (\S+) *$", summary(swept, "x", report=False), re.MULTILINE))
+    assert swept.best == len(swept.runs) - 1
+    assert rows == {"off track test [m]": f"{track:#.3g}", "off heading test [deg]": f"{heading:#.2g}"}
+
+
 def test_without_test_trials_one_trial_is_left_out_at_a_time(suzaku):
     trials = make_set(suzaku, noise=1.0, test=False)
     swept = sweep(suzaku.profile, trials, SweepOptions(widths=(0.2, 0.4), method="least-squares", starts=2))
     assert swept.recommended()["by"] == "leave-one-trial-out"
     assert len(swept.leave_one_out) == 2
     assert swept.recommended()["a_r"] == 0.4  # the truth lies beyond 0.2
+    assert f"{len(trials.tune)} trials, each left out in turn" in swept.recommended()["sentence"]
+    off = swept.to_dict()["runs"][1]["off"]
+    assert off["left-out"]["track_m"]["after"] < off["left-out"]["track_m"]["before"]
 
 
 @pytest.mark.parametrize("choice", [{"regularise": 0.5}, {"loss": "huber"}])
@@ -202,6 +221,7 @@ def test_over_fitting_is_named(swept):
 
     doctored = Doctored(swept.runs, None, 1.0)
     assert doctored.overfitting()["found"]
+    assert re.search(r"trials not used are \S+ m off track .*, with a_r = 0.2 ", doctored.overfitting()["sentence"])
     assert "a_r = 0.4" in doctored.overfitting()["sentence"]
     assert doctored.recommended()["a_r"] == 0.2
 

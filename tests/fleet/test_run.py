@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import json
 import os
+import re
+import shlex
+import shutil
 import signal
 import subprocess
 import sys
@@ -54,7 +57,7 @@ def test_all_jobs_each_once_whatever_fails(fleet: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     first = run_fleet(fleet, out, FleetOptions(workers=2))
     assert first.document["jobs"] | {"seconds": 0} == {
-        "total": 6, "good": 5, "no": 0, "failed": 1, "missing": 0, "seconds": 0
+        "total": 6, "good": 5, "no": 0, "failed": 1, "missing": 0, "others": 0, "seconds": 0
     }  # fmt: skip
     (failure,) = first.document["failures"]
     assert (failure["ship"], failure["date"]) == ("a2", "2025-01")
@@ -97,6 +100,48 @@ def test_the_command_says_jobs_and_time_and_writes_nothing(tmp_path: Path) -> No
     assert not (tmp_path / "out").exists()
     wrong = command("fleet", "run", "fleet.toml", "--scheduler", "tls://x:1", cwd=tmp_path)
     assert (wrong.code, "--tls-ca" in wrong.err) == (2, True)
+
+
+@pytest.mark.slow(6)
+def test_reports_of_jobs_can_be_left_out_and_made_later(tmp_path: Path) -> None:
+    make_logs(tmp_path, ("a1",), ("2025-01",))
+    (tmp_path / "fleet.toml").write_text(QUICK, encoding="utf-8")
+    ended = command("fleet", "run", "fleet.toml", "--out", "out", "--no-job-reports", "--workers", "1", cwd=tmp_path)
+    assert ended.code == 0, ended.err
+    (folder,) = (tmp_path / "out" / "runs").glob("*/*/*")
+    assert (folder / "job.json").is_file()
+    assert not (folder / "report.html").exists()
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "/report.html" not in page
+    made = shlex.join(["mmgtune", "report", str(folder)])
+    assert made in re.sub("</?span>", "", page)
+    assert command(*shlex.split(made)[1:], cwd=tmp_path).code == 0
+    assert command("fleet", "report", "out", cwd=tmp_path).code == 0
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert f'{folder.relative_to(tmp_path / "out")}/report.html"' in page
+
+
+@pytest.mark.slow(4)
+def test_two_fleets_do_not_mix_in_one_folder(tmp_path: Path) -> None:
+    for of in "ab":
+        make_logs(tmp_path / of, (f"{of}1",), ("2025-01",))
+        (tmp_path / of / "fleet.toml").write_text(QUICK, encoding="utf-8")
+    one, other = (tmp_path / of / "fleet.toml" for of in "ab")
+    options, out = FleetOptions(workers=1, job_reports=False), tmp_path / "out"
+    run_fleet(one, out, options)
+    before = (out / "jobs.json").read_bytes()
+    with pytest.raises(OutputError, match="that of another fleet"):
+        run_fleet(other, out, options, resume=True)
+    assert (out / "jobs.json").read_bytes() == before
+    shutil.copytree(tmp_path / "b" / "logs" / "b1", tmp_path / "a" / "logs" / "a2")  # one more ship of the same fleet
+    more = run_fleet(one, out, options, resume=True)
+    assert [job.ship for job in more.jobs if job.key in more.ran] == ["a2"]
+    assert more.document["jobs"]["others"] == 0
+    shutil.rmtree(tmp_path / "a" / "logs" / "a1")  # and one that is sold: what is known of her is said to be hers
+    fewer = run_fleet(one, out, options, resume=True)
+    assert fewer.document["jobs"]["others"] == 1
+    assert command("fleet", "report", out, cwd=tmp_path).code == 0
+    assert "1 result is of jobs that the table does not have" in (out / "report.html").read_text(encoding="utf-8")
 
 
 @pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="needs /proc to find the workers")

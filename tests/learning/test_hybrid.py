@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -20,6 +21,10 @@ from mmgtune.model import Model
 from mmgtune.networks import HybridPredictor, load_network
 from mmgtune.options.learning import HybridOptions
 from mmgtune.profile import load_profile
+from mmgtune.report import render
+from mmgtune.report.common import rms_errors
+from mmgtune.report.hybrid_page import HybridRecord, build
+from mmgtune.report.wording import shown
 from mmgtune.trial import load_trials
 from mmgtune.validation import L_MSE
 
@@ -64,6 +69,28 @@ def test_what_is_kept_is_a_predictor_from_its_file(trained, tmp_path):
     assert document["provenance"]["trials"]["sources"] == ["generated"]
     found = HybridPredictor(load_network(tmp_path / "model.safetensors"))
     assert found.inputs == ("n", "delta")
+
+
+def test_its_page_begins_with_metres_and_degrees(trained, tmp_path):
+    document = write_learned(trained, tmp_path)
+    first, last = (rms_errors(document, document["scores"][which]) for which in ("before", "after"))
+    off = f"{shown(last[0], 3)} m off track and {shown(last[1], 2)}° off heading"
+    instead = f"{shown(first[0], 3)} m and {shown(first[1], 2)}°"
+    page = next(path for path in render(tmp_path) if path.suffix == ".html").read_text(encoding="utf-8")
+    (headline,) = re.findall("<h1>(.*?)</h1>", page)
+    assert headline.startswith(f"On held-out runs the hybrid is {off} instead of {instead} (root mean square); ")
+    for pair, unit in (((first[0], last[0]), " m"), ((first[1], last[1]), "°")):  # the same figures on the cards
+        digits = 3 if unit == " m" else 2
+        assert f"{shown(pair[0], digits)} → {shown(pair[1], digits)}{unit}" in page
+    scores = {**document["scores"], "after": {**document["scores"]["after"], "L_MSE_by_state": {}}}
+    for changed, said in (
+        ({"scores": scores}, "The hybrid diverges on held-out runs; "),
+        ({"scores": {}}, "On runs it has not seen the network removes "),
+        ({"gained": False}, "No gain: "),
+        ({"gained": False, "interrupted": True}, "Stopped before a network was chosen"),
+    ):
+        built = build(HybridRecord(tmp_path, {**document, **changed}))
+        assert built.verdict.startswith(said)
 
 
 @pytest.mark.slow(6)

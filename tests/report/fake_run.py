@@ -221,8 +221,11 @@ def make_sweep(folder: Path, test: bool = True, runs: bool = True) -> Path:
     entries, base = [], fit_data()[0]
     for a_r, j_tune, j_test in zip(ranges, (910, 610, 420, 312, 270), (1400, 1000, 700, 520, 1650), strict=True):
         rows = coefficients(a_r)
+        held = {"trials": 2, "track_m": {"before": 31.4, "after": j_test / 100.0},
+                "heading_deg": {"before": 12.0, "after": j_test / 400.0}}  # fmt: skip
         entries.append({
-            "a_r": a_r, "out": f"ar_{a_r}", "J_tune": float(j_tune), "J_test": float(j_test) if test else None,
+            "a_r": a_r, "out": f"ar_{a_r}", "off": {"test" if test else "left-out": held},
+            "J_tune": float(j_tune), "J_test": float(j_test) if test else None,
             "theta": {row["name"]: row["value"] for row in rows}, "coefficients": rows,
             "at_bound": [row["name"] for row in rows if row["at_bound"]], "undetermined": ["rudder.kappa"],
         })  # fmt: skip
@@ -234,7 +237,8 @@ def make_sweep(folder: Path, test: bool = True, runs: bool = True) -> Path:
         "a_r": list(ranges), "J_tune_before": base["J_tune_before"],
         "J_test_before": base["J_test_before"] if test else None, "runs": entries,
         "recommended": {"a_r": 0.5, "by": "test set" if test else "leave-one-trial-out",
-                        "sentence": "Use a_r = 0.5: it has the least J on trials that were not tuned on."},
+                        "sentence": "On 2 trials not used for tuning, M.V. SUZAKU tuned with a_r = 0.5 is 5.20 m off "
+                        "track and 1.3° off heading instead of 31.4 m and 12° (root mean square); J is least there."},
         "leave_one_out": None if test else [{"a_r": a_r, "J": 200.0 / a_r} for a_r in ranges],
         "overfitting": {"found": test, "sentence": "From a_r = 0.5 to 0.6, J falls on the tuning trials but rises from "
                         "520 to 1650 on the test trials: the wider range fits the noise."},

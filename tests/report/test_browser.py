@@ -235,6 +235,23 @@ def test_without_script(browser: Any, fit_folder: Path) -> None:
         assert visit.page.locator("noscript p").is_visible()
 
 
+@pytest.mark.parametrize("width", [390, 1400])
+def test_the_buttons_over_a_track_hide_none_of_it(browser: Any, fit_folder: Path, width: int) -> None:
+    dark = """() => {
+      const canvas = document.querySelector(".track > canvas"), box = canvas.getBoundingClientRect();
+      const at = document.querySelector(".track .zoom").getBoundingClientRect(), k = canvas.width / box.width;
+      const pen = canvas.getContext("2d");
+      const all = pen.getImageData((at.x - box.x) * k, (at.y - box.y) * k, at.width * k, at.height * k);
+      let n = 0;
+      for (let i = 0; i < all.data.length; i += 4)
+        n += all.data[i + 3] > 100 && Math.min(all.data[i], all.data[i + 1], all.data[i + 2]) < 120;
+      return n;
+    }"""
+    with Visit(browser, fit_folder / "report.html", viewport={"width": width, "height": 900}) as visit:
+        assert visit.ink(".track > canvas") > 5_000
+        assert visit.page.evaluate(dark) == 0
+
+
 @pytest.mark.parametrize("width", [360, 768, 1280])
 def test_no_sideways_scrolling(browser: Any, fit_folder: Path, sweep_folder: Path, width: int) -> None:
     for folder in (fit_folder, sweep_folder):

@@ -11,10 +11,12 @@ import pytest
 
 from mmgtune.report import (
     advice,
+    band_scores,
     check_page,
     confidence,
     diagnosis_page,
     html,
+    models_page,
     motion_block,
     motions,
     svg,
@@ -268,3 +270,19 @@ def test_ticks_stay_inside_and_stagger() -> None:
 
 def test_worst_trial_is_the_diverged_one() -> None:
     assert motion_block.misfit_of({"J_after": None}) == math.inf
+
+
+def test_scores_of_bands_that_no_model_has_are_left_out() -> None:
+    one = {"windows": 5, "windows_lost": 0, "L_fit": 3.0, "L_Eucl": 0.01, "L_Maha": None, "correlation": None,
+           "CRPS": 0.1, "coverage_50": None, "coverage_90": None, "sharpness": None}  # fmt: skip
+    several = {**one, "L_Maha": 3.1, "coverage_90": 0.9, "sharpness": 0.2}
+    (heads, _) = band_scores.known_scores([["a", *band_scores.score_cells(one)]], 1)
+    assert heads == ("windows", "L_fit", "L_Eucl", "CRPS")
+    heads, rows = band_scores.known_scores([["a", *band_scores.score_cells(of)] for of in (one, several)], 1)
+    assert heads == ("windows", "L_fit", "L_Eucl", "L_Maha", "CRPS", "90 % holds", "width of 90 %")
+    assert rows[0] == ["a", "5", "3", "0.01", "–", "0.1", "–", "–"]
+
+
+def test_spreads_have_units_that_people_read() -> None:
+    assert models_page.spread_words("psi", math.radians(30.0)) == ("spread of heading", "30.00 deg")
+    assert models_page.spread_words("x", 211.6) == ("spread of position north", "211.6 m")

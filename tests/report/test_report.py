@@ -178,16 +178,19 @@ def test_hostile_folder_of_a_run_is_no_link(tmp_path: Path) -> None:
 
 def test_sweep(sweep_folder: Path) -> None:
     page = read(sweep_folder)
-    assert "<h1>Use a_r = 0.5" in page
+    assert re.search("<h1>On 2 trials not used for tuning, .* is 5.20 m off track and 1.3° off heading", page)
+    for value in ("31.4 → 5.2 m", "12 → 1.3°"):  # the same figure on the card
+        assert value in page
+    assert "Test trials: least off track at a_r = 0.5 (5.2 m) and least off heading at a_r = 0.5 (1.3°)" in page
     assert "Over-fitting: From a_r = 0.5 to 0.6" in page
     assert 'href="./ar_0.5/report.html"' in page
     assert (sweep_folder / "ar_0.5" / "report.html").is_file()
     assert "w_P0, C_w" in page
     assert "generated, not measured" in page
     assert {path.name for path in (sweep_folder / "figures").iterdir()} == {
-        "misfit.svg", "positions.svg"
+        "misfit.svg", "off.svg", "positions.svg"
     }  # fmt: skip
-    assert "# Use a\\_r = 0.5" in (sweep_folder / "report.md").read_text(encoding="utf-8")
+    assert "tuned with a\\_r = 0.5 is 5.20 m off track" in (sweep_folder / "report.md").read_text(encoding="utf-8")
 
 
 def test_sweep_without_test_set(tmp_path: Path) -> None:
@@ -196,6 +199,7 @@ def test_sweep_without_test_set(tmp_path: Path) -> None:
     page = read(folder)
     assert "leaving each trial out in turn" in page
     assert "left out in turn J is least" in page
+    assert "Off track, trials left out in turn" in page
 
 
 def test_importing_costs_nothing() -> None:

@@ -245,6 +245,9 @@ const Motions = (() => {
       pen.setLineDash(run.dash ? run.dash.split(" ").map(Number) : []);
     }
 
+    /* Pixels at the top that the buttons over the track take, where it would run below them. */
+    get above() { return 36; }
+
     /* What of the water is seen: middle and metres to a pixel. */
     view(width, height) {
       if (this.frame) return this.frame;
@@ -257,12 +260,12 @@ const Motions = (() => {
         }
       }
       if (!Number.isFinite(west)) [west, east, south, north] = [0, 1, 0, 1];
-      const room = 1.12 * Math.max((east - west) / (width - 60), (north - south) / (height - 46), (this.plan.L || 0) / 150, 1e-6);
+      const room = 1.12 * Math.max((east - west) / (width - 60), (north - south) / (height - 46 - this.above), (this.plan.L || 0) / 150, 1e-6);
       return { x: 0.5 * (south + north), y: 0.5 * (west + east), scale: room };
     }
 
     places(width, height) {
-      const view = this.view(width, height), midX = 30 + width / 2, midY = (height - 22) / 2;
+      const view = this.view(width, height), midX = 30 + width / 2, midY = (height - 22 + this.above) / 2;
       return {
         view,
         across: (east) => midX + (east - view.y) / view.scale,

@@ -1,0 +1,79 @@
+"""Command lines that Typer cannot make sense of, as problems of ours: what, where, why, and a fix with an example."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from typing import Any
+
+import typer
+
+from ..errors import Problem, among, near_to
+
+Mistyped: type[Exception] = next(one for one in typer.BadParameter.__mro__ if one.__name__ == "UsageError")
+"""What Typer raises; releases keep it at different places."""
+
+_NUMBERS = {"int": "a whole number", "float": "a number"}
+"""What to give, by the word for it in what Typer says."""
+
+
+def problem_of(error: Any) -> Problem | None:
+    """The problem behind what Typer raised; None where it only shows the help."""
+    kind, ctx = type(error).__name__, error.ctx
+    if kind == "NoArgsIsHelpError":
+        return None
+    if kind == "BadOptionUsage":
+        why = "the command line ends, or goes on with another option, where its value belongs"
+        return Problem(f"{error.option_name} has no value", error.option_name, why, "give one, or leave the option out")
+    if ctx is None:
+        return Problem(error.format_message(), "command line", "it cannot be read", "mmgtune --help says what there is")
+    path, message = path_of(ctx), error.format_message().rstrip(".")
+    example = _example(ctx) or f"{path} --help"
+    if kind == "MissingParameter" and error.param is not None:
+        return Problem(
+            f"{_named(error.param)} is missing", path, f"it is needed: {_help(error.param)}", f"write {example}"
+        )
+    if kind == "NoSuchOption":
+        name, known = error.option_name, [flag for one in ctx.command.params for flag in one.opts if flag[:2] == "--"]
+        why, near = f"{path} has {len(known)} options, and none is called that", near_to(name, known)
+        return Problem(f"unknown option {name}", path, why, near or f"{path} --help lists them")
+    if kind == "BadParameter" and error.param is not None:
+        takes = next((words for kind, words in _NUMBERS.items() if f"valid {kind}" in message), "")
+        fix = f"give {takes}" if takes else f"write {example}"
+        what = f"the value is not {takes}" if takes else error.message.rstrip(".")
+        return Problem(what, _named(error.param), f"it sets this: {_help(error.param)}", fix)
+    if message.startswith("No such command") and (name := re.search("'(.*?)'", message)):
+        return Problem(f"unknown command '{name[1]}'", path, **among(name[1], [*ctx.command.commands]))
+    if extra := re.search(r"extra arguments?(?:\(s\))? \((.*)\)", message):
+        takes = ", ".join(_named(one) for one in ctx.command.params if one.param_type_name == "argument")
+        why = f"{path} takes {takes or 'options alone'}"
+        return Problem(f"'{extra[1]}' is one word too many", path, why, f"write {example}")
+    return Problem(
+        message[:1].lower() + message[1:], path, "the command line ends or goes on elsewhere", f"write {example}"
+    )
+
+
+def path_of(ctx: Any) -> str:
+    """The command as it is typed: "mmgtune trials map"."""
+    names: list[str] = []
+    while ctx.parent is not None:
+        names.insert(0, ctx.info_name)
+        ctx = ctx.parent
+    return " ".join(["mmgtune", *names])
+
+
+def _named(parameter: Any) -> str:
+    """A parameter as people know it: "argument MODEL", or its flag."""
+    if parameter.param_type_name == "argument":
+        return f"argument {parameter.metavar or parameter.name.upper()}"
+    return str(max(parameter.opts, key=len))
+
+
+def _help(parameter: Any) -> str:
+    return str(getattr(parameter, "help", None) or "see --help").rstrip(".")
+
+
+def _example(ctx: Any) -> str:
+    """The first example of the command's help."""
+    lines = [line.strip() for line in inspect.cleandoc(ctx.command.help or "").splitlines()]
+    return next((line for line in lines if line.startswith(f"{path_of(ctx)} ")), "")

@@ -1,0 +1,91 @@
+"""What the command line says when it cannot go on: always what, where, why and the fix, in a line each."""
+
+import pytest
+import typer
+
+from mmgtune.cli import app
+from tests.command import typed
+
+pytestmark = pytest.mark.slow(1)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("fit", "-p", "suzuku"), ("no such ship profile (suzuku)", "no bundled profile", "did you mean 'suzaku' or")),
+        (("fit", "-t", "nowhere"), ("no such trials (nowhere)", "no bundled data set", "give a folder")),
+        (
+            ("fit", "-t", "mine/trials"),
+            ("no such trials (mine/trials)", "there is no 'mine/trials' in ", "give a folder"),
+        ),
+        (("fit", "--targets", "hull.R0"), ("'hull.R0' (--targets)", "coefficients", "did you mean 'hull.R_0'")),
+        (("fit", "--method", "cmaess"), ("(--method)", "the only names known here: ", "did you mean 'cma-es'?")),
+        (("fit", "--ar", "-1"), ("a_r is -1 (--ar)", "Half width of the box", "above 0")),
+        (("fit", "--channels", "speed"), ("(--channels)", "known here: x, y", "write one of these")),
+        (("fit", "--window", "9:3"), ("is empty (--window)", "its end is not after", "--window FIRST:LAST")),
+        (("diagnose", "--effects", "curent"), ("(--effects)", "names known here", "did you mean 'current'")),
+        (("diagnose", "--fail-on", "certain"), ("(--fail-on)", "known here: ", "write one of these")),
+        (
+            ("check", "suzaku", "suzaku", "-b", "no.json"),
+            ("no baseline (no.json)", "there is no 'no.json' in", "--update"),
+        ),
+        (("check", "suzaku", "suzaku", "--format", "jsn"), ("(--format)", "the only names", "did you mean 'json'")),
+        (("compare", "suzaku"), ("(MODEL... TRIALS)", "only 'suzaku' was given", "such as mmgtune compare")),
+        (("validate", "suzaku"), ("(PROFILE... TRIALS)", "only 'suzaku' was given", "such as mmgtune validate")),
+        (("simulate", "--turn", "hard"), ("'hard' cannot be read (--turn)", "not a number with a unit", "--turn 35")),
+        (("simulate", "--zigzag", "20"), ("is not a zigzag (--zigzag)", "with a stroke between", "such as 20/20")),
+        (("report", "nowhere"), ("no such run folder (nowhere)", "there is no 'nowhere' in ", "give the folder")),
+        (("trials", "import", "a.csv"), ("(--map, --preset)", "what the columns of a log mean", "mmgtune trials map")),
+        (("trials", "make", "suzuku", "-o", "x"), ("'suzuku' (ship)", "known here", "")),
+        (("plan",), ("argument MODEL is missing (mmgtune plan)", "Particles of posterior", "mmgtune plan runs/bands")),
+        (("trials", "make", "suzaku"), ("--out is missing (mmgtune trials make)", "Folder for", "mmgtune trials make")),
+        (("fit", "--metod", "x"), ("unknown option --metod (mmgtune fit)", "none is called that", "'--method'")),
+        (("--zzz",), ("unknown option --zzz (mmgtune)", "options", "mmgtune --help lists them")),
+        (("fit", "more"), ("'more' is one word too many (mmgtune fit)", "takes options alone", "write mmgtune fit ")),
+        (("report", "a", "b"), ("'b' is one word too many", "takes argument RUN", "write mmgtune report ")),
+        (
+            ("fit", "--starts", "many"),
+            ("the value is not a whole number (--starts)", "it sets this: ", "give a whole number"),
+        ),
+        (("fit", "--starts"), ("--starts has no value (--starts)", "where its value belongs", "or leave")),
+        (("fitt",), ("unknown command 'fitt' (mmgtune)", "names known here", "did you mean 'fit'")),
+        (("learn", "foo"), ("unknown command 'foo' (mmgtune learn)", "known here: ", "write one of these")),
+    ],
+    ids=lambda value: "-".join(value) if " " not in value[-1] else "",
+)
+def test_a_refusal_says_what_where_why_and_the_fix(tmp_path, monkeypatch, arguments, words):
+    monkeypatch.chdir(tmp_path)
+    ended = typed(*arguments)
+    what, why, fix = ended.err.splitlines()
+    assert ended.code == 2
+    assert (what[:7], why[:7], fix[:7]) == ("error: ", "  why: ", "  fix: ")
+    assert all(part in line for part, line in zip(words, (what, why, fix), strict=True)), ended.err
+    assert not [*tmp_path.iterdir()]
+
+
+def test_every_command_that_needs_an_argument_has_an_example_to_show(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for names, command in commands(typer.main.get_command(app)):
+        if any(one.required for one in command.params):
+            what, why, fix = typed(*names).err.splitlines()
+            path = " ".join(("mmgtune", *names))
+            assert f"is missing ({path})" in what
+            assert "it is needed: " in why
+            assert fix.startswith(f"  fix: write {path} ")
+
+
+def commands(group, names=()):
+    """All commands with what is typed for them."""
+    for name, one in group.commands.items():
+        if hasattr(one, "commands"):
+            yield from commands(one, (*names, name))
+        else:
+            yield (*names, name), one
+
+
+def test_a_group_without_a_command_shows_its_help(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name in ("fleet", "learn", "trials", "profile", "study"):
+        shown = typed(name)
+        assert shown.code == 2
+        assert "Usage: " in shown.out + shown.err
