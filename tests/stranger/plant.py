@@ -131,6 +131,7 @@ class Hidden(NamedTuple):
     east_rate: float = 0.0
     wind: float = 0.0  # mean speed at the height of the ship [m/s]
     wind_from: float = 0.0
+    wind_arm: float = 1.0  # how far off midship it acts, times that of the form
     gust: float = 0.06  # share of the mean
     gust_phase: float = 0.0
     wind_begins: float = -1e9  # a squall has a beginning and an end [s]
@@ -240,12 +241,12 @@ def _wind_force(s, speed, angle):
 
 @njit(cache=True)
 def _water(h, t, x, y):
-    """Velocity of the water over ground, north and east."""
+    """Velocity of the water over ground, north and east; x and y from where the log begins."""
     now = max(t, 0.0)
     north, east = h.north + h.north_rate * now, h.east + h.east_rate * now
     if h.eddy != 0.0:
         a, b = (x - h.eddy_x) / h.eddy_size, (y - h.eddy_y) / h.eddy_size
-        turn = h.eddy * math.exp(0.5 * (1.0 - a * a - b * b))
+        turn = h.eddy * math.exp(0.5 * (1.0 - a * a - b * b)) * (1.0 - math.exp(-now / 10.0))
         north, east = north - turn * b, east + turn * a
     return north, east
 
@@ -350,7 +351,7 @@ def _rates(state, t, blade, n, s, h, out):
         an, ae = speed * math.cos(of) + on, speed * math.sin(of) + oe
         WX, WY, WN = _wind_force(s, math.hypot(an, ae), math.atan2(ae, an) - psi)
         X0, Y0, N0 = _wind_force(s, math.hypot(on, oe), math.atan2(oe, on) - psi)
-        X, Y, N = X + WX - X0, Y + WY - Y0, N + WN - N0
+        X, Y, N = X + WX - X0, Y + WY - Y0, N + h.wind_arm * (WN - N0)
     if h.drift != 0.0:
         # mean second-order force: strongest on the beam, weaker ahead, with some moment on the quarters
         m = h.drift_from - psi
@@ -397,6 +398,7 @@ def _sail(s, h, helm, orders, hold, before, first_speed):
     dt = STEP
     total = int((before + helm.lasts) / dt + 0.5)
     begin = int((before - MARGIN) / dt + 0.5)
+    start = int(before / dt + 0.5)
     rows = np.empty((total - begin + 1, 9))
     state = np.zeros(10)
     k1, k2, k3, k4 = np.zeros(10), np.zeros(10), np.zeros(10), np.zeros(10)
@@ -409,6 +411,13 @@ def _sail(s, h, helm, orders, hold, before, first_speed):
     sign = 1.0
     for i in range(total + 1):
         t = i * dt - before
+        if i == start:
+            # the place a log begins at is its origin, of what is where as well
+            x0, y0 = state[0], state[1]
+            state[0], state[1] = 0.0, 0.0
+            for k in range(i - begin):
+                rows[k, 1] -= x0
+                rows[k, 2] -= y0
         psi, u, r = state[2], state[3], state[5]
         if i >= begin:
             v = state[4] - s.xG * r

@@ -129,6 +129,8 @@ def main() -> None:
     parser.add_argument("--minutes", type=float, default=1e9, help="begin no further set after so long")
     chosen = parser.parse_args()
     rows = [json.loads(line) for line in chosen.out.read_text().splitlines()] if chosen.out.exists() else []
+    for row in rows:  # as the score is now
+        row["outcome"] = score(CASES[row["name"]], row["verdict"], set(row["named"]), map(set, row["grouped"]))
     wanted = chosen.only.split(",")
     cases = [case for case in CASES.values() if any(text in case.name or text == case.group for text in wanted)]
     # In no order of groups, so that what a short time allows is a sample of all; slow ships last.
