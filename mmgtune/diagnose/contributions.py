@@ -35,9 +35,6 @@ OF_LENGTH = 0.01
 OF_ANGLE = 0.5
 """Change of overshoots [deg] that is not noticed."""
 
-WORSE = 0.1
-"""Share by which causes may make the error on held-out trials larger by chance."""
-
 SMALL, WORTH_ASKING = 0.05, 0.3
 """Share of the fall of chi-squared on the trials looked at up to which a cause may be a trace, and up to which held-out
 trials are asked whether it does any good."""

@@ -35,6 +35,9 @@ BAND = 3.0
 DRAWS = 16
 """Sets of coefficients that show what to expect."""
 
+WORSE = 0.1
+"""Share by which causes may make the error on test trials larger by chance."""
+
 MOST = 0.9
 """Share of the error above noise on held-out trials that the right causes remove at least."""
 
@@ -78,6 +81,14 @@ class Gain(Brief):
         after = float(self.excess[:, 1].sum())
         left = after > RELEVANT * self.floor + 3.0 * self.chance + BAND * self.unsure
         return left and self.share_removed[0] < MOST
+
+    @property
+    def worse(self) -> bool:
+        """Whether test trials are told worse with the causes.
+
+        Held-out error alone does not tell where each run is left out: the targets themselves are known too badly then.
+        """
+        return self.held_out == "test" and self.share_removed[0] < -WORSE
 
     @property
     def J(self) -> tuple[float | None, float | None]:

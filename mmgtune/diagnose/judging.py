@@ -15,7 +15,7 @@ from ..options import DiagnoseOptions
 from ..profile import ShipProfile
 from ..trial import Coverage, Trial
 from .by_run import ByRun
-from .contributions import WORSE, Aside, Contribution, alone_of, contributions, put_aside
+from .contributions import Aside, Contribution, alone_of, contributions, put_aside
 from .detecting import detectability
 from .gain import J_of, held_out
 from .gathering import error_of, evidence
@@ -57,12 +57,12 @@ class Judge:
 
     def answer(self, found: Found, brought: Sequence[Contribution]) -> tuple[Diagnosis, Found]:
         """The answer, and the causes it is about: those found, or the first of them where these are not believed and
-        it alone is.  A cause that is alone and makes held-out trials worse is set aside.
+        it alone is.  A cause that is alone and makes test trials worse is set aside.
 
         brought  what each cause contributes
         """
         judged = self._judged(found, brought)
-        if len(found.causes) == 1 and not found.held and judged.gain.share_removed[0] < -WORSE:
+        if len(found.causes) == 1 and not found.held and judged.gain.worse:
             self.traces.append(put_aside(self.bench, found, 0, brought[0]))
             judged = self._judged(found, [])
         result = self._compared(judged, found)

@@ -14,7 +14,7 @@ from ..options import DiagnoseOptions
 from ..profile import ShipProfile, tuned, with_effects
 from ..trial import Coverage
 from .by_run import ByRun
-from .contributions import WORSE, Contribution
+from .contributions import Contribution
 from .gain import MOST, Gain
 from .intervals import Estimate
 from .leftover import Leftover, in_words
@@ -256,9 +256,7 @@ class Diagnosis(Plotted):
         """One of ``VERDICTS``."""
         if self.interrupted:
             return "interrupted"
-        # Held-out error alone does not tell: with few trials the targets themselves are known too badly for that.
-        worse = self.gain.held_out == "test" and self.gain.share_removed[0] < -WORSE
-        fails = self.gain.remains and (self.leftover.noticed or worse)
+        fails = self.gain.remains and (self.leftover.noticed or self.gain.worse)
         fails = fails or bool(self.unclear)
         shaped = self.leftover.structured or bool(self.leftover.offsets)
         if shaped if not self.causes else fails or self._mostly_left:
