@@ -222,14 +222,16 @@ def solve(
 def fit_offsets(problem: FitProblem, unit: FloatArray, max_iterations: int = 12) -> FloatArray:
     """Offsets (n_cases, 6) of the initial states that fit best with the targets held at ``unit`` (n_targets,).
 
-    A case keeps the best offsets met, beginning with none, so J and prior together never rise.
+    A case keeps the best offsets met, beginning with none, so J and prior together never rise; one that diverges keeps
+    none.
     """
     point = unit[:, None]
     best = np.zeros((len(problem.cases), 6))
     value = problem.costs_by_case(point, best[:, None])[:, 0]
     for _ in range(max_iterations):
         residuals, slopes = problem.offset_slopes(unit, best)
-        linear = _Linear(problem, best, residuals, np.empty((len(residuals), 0)), flat_where_lost(slopes))
+        residuals, slopes = flat_where_lost(residuals), flat_where_lost(slopes)
+        linear = _Linear(problem, best, residuals, np.empty((len(residuals), 0)), slopes)
         tried = linear.offsets(np.empty(0))
         found = problem.costs_by_case(point, tried[:, None])[:, 0] + np.sum(problem.prior * tried**2, axis=1)
         better = found < value * (1.0 - 1e-9)

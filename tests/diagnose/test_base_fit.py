@@ -9,9 +9,10 @@ from mmgtune.backends import STATES, Integrator
 from mmgtune.diagnose import DiagnoseOptions
 from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.workbench import make_workbench
+from mmgtune.fitting.least_squares import fit_offsets
 from mmgtune.profile import tuned
 from mmgtune.simulation import simulate
-from mmgtune.trial import Trial
+from mmgtune.trial import Trial, load_trials
 
 NOISE = 0.03 * np.array([0.4, 0.4, 0.003, 0.02, 0.02, 0.0005])
 """Sensors thirty times as good as those of most ships."""
@@ -47,3 +48,15 @@ def runs(profile, seed, turn, weave):
 def test_long_precise_runs_are_fitted(suzaku, seed, turn, weave, most):
     bench = make_workbench(suzaku.profile, runs(suzaku.profile, seed, turn, weave), DiagnoseOptions())
     assert base_fit(bench).chi2 / bench.problem.n_residuals < most
+
+
+def test_initial_states_of_a_case_that_diverges_stay_as_measured(suzaku):
+    wild = tuned(suzaku.profile, {"hull.X_vvvv": 500.0}, {}, {}, "made")
+    trials = [load_trials("suzaku").trials[name] for name in ("turn_p35", "zigzag_10")]
+    bench = make_workbench(wild, trials, DiagnoseOptions(targets=("wake.w_P0",)))
+    problem, unit = bench.problem_of(bench.targets), np.array([0.5])
+    offsets = fit_offsets(problem, unit)  # a warning would be an error here
+    costs = problem.costs_by_case(unit[:, None], offsets[:, None])[:, 0]
+    assert np.isinf(costs[0])
+    assert np.isfinite(costs[1])
+    assert np.all(offsets[0] == 0.0)
