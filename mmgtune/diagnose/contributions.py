@@ -112,20 +112,15 @@ def set_aside(bench: Workbench, found: Found, test: Sequence[Trial]) -> tuple[li
     brought = contributions(bench, found, test)
     while any(one.unnoticed for one in brought):
         k = min((i for i, one in enumerate(brought) if one.unnoticed), key=lambda i: brought[i].seen)
-        traces.append(put_aside(bench, found, k, brought[k]))
+        cause = found.causes[k]
+        sizes = estimates(bench, found.final)
+        steps = [s for s in found.steps if s.refits and s.refits[0].hypothesis == cause]
+        p_value = steps[0].refits[0].p_value if steps else 0.0
+        traces.append(Aside(cause, {name: sizes[name] for name in cause.names}, p_value, brought[k]))
+        found.final = without(bench, found.final, cause)
+        del found.causes[k]
         brought = contributions(bench, found, test)
     return traces, brought
-
-
-def put_aside(bench: Workbench, found: Found, k: int, brought: Contribution) -> Aside:
-    """Take cause k out of what was found, and refit the rest."""
-    cause = found.causes[k]
-    sizes = estimates(bench, found.final)
-    steps = [s for s in found.steps if s.refits and s.refits[0].hypothesis == cause]
-    p_value = steps[0].refits[0].p_value if steps else 0.0
-    found.final = without(bench, found.final, cause)
-    del found.causes[k]
-    return Aside(cause, {name: sizes[name] for name in cause.names}, p_value, brought)
 
 
 def alone_of(bench: Workbench, found: Found) -> Found:

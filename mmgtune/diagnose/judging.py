@@ -15,7 +15,7 @@ from ..options import DiagnoseOptions
 from ..profile import ShipProfile
 from ..trial import Coverage, Trial
 from .by_run import ByRun
-from .contributions import Aside, Contribution, alone_of, contributions, put_aside
+from .contributions import Aside, Contribution, alone_of, contributions
 from .detecting import detectability
 from .gain import J_of, held_out
 from .gathering import error_of, evidence
@@ -51,21 +51,17 @@ class Judge:
     known: Sequence[Hypothesis]
     test: Sequence[Trial]
     before: Leftover
-    traces: list[Aside]
+    traces: Sequence[Aside]
     choice: Choice | None
     differing: Sequence[Difference]
 
     def answer(self, found: Found, brought: Sequence[Contribution]) -> tuple[Diagnosis, Found]:
         """The answer, and the causes it is about: those found, or the first of them where these are not believed and
-        it alone is.  A cause that is alone and makes test trials worse is set aside.
+        it alone is.
 
         brought  what each cause contributes
         """
-        judged = self._judged(found, brought)
-        if len(found.causes) == 1 and not found.held and judged.gain.worse:
-            self.traces.append(put_aside(self.bench, found, 0, brought[0]))
-            judged = self._judged(found, [])
-        result = self._compared(judged, found)
+        result = self._compared(self._judged(found, brought), found)
         if result.unclear and not self.hooks.stop():  # perhaps the first of them would have been believed alone
             alone = alone_of(self.bench, found)
             brought = contributions(self.bench, alone, self.test)
