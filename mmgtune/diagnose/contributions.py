@@ -39,8 +39,8 @@ SMALL, WORTH_ASKING = 0.05, 0.3
 """Share of the fall of chi-squared on the trials looked at up to which a cause may be a trace, and up to which held-out
 trials are asked whether it does any good."""
 
-FORM = 0.003
-"""Share of the error that a cause leaves whose form is 5 % off."""
+FORM = 0.0005
+"""Share of the error that a cause leaves whose form is 2 % off."""
 
 
 @dataclass(frozen=True)

@@ -68,6 +68,7 @@ def test_a_typical_effect_is_named(tag, tmp_path):
         assert low is None or low <= value["value"] <= (np.inf if high is None else high), name
 
 
+@pytest.mark.long
 def test_a_cause_is_named_on_windows_too(tmp_path):
     case = single("current", 3, seed=1)
     trials = load_trials(files(case, tmp_path)).trials.values()
@@ -77,6 +78,7 @@ def test_a_cause_is_named_on_windows_too(tmp_path):
     assert len(result.gain.compared) > 10  # windows of the trials held out
 
 
+@pytest.mark.long
 def test_a_small_effect_with_one_side_is_not_taken_for_another(tmp_path):
     case = single("shallow-water", 1, seed=1)  # 200 m: what it changes is unlike what 12 m would
     assert outcome(case.effects, said_of(case, tmp_path).to_dict()) == "right"
@@ -157,6 +159,7 @@ def test_nothing_hidden_nothing_found(noise, tmp_path):
     assert result.to_dict()["suggested_trial"] is None
 
 
+@pytest.mark.long
 def test_two_effects_are_both_found(tmp_path):
     case = pair(1)
     document = said_of(case, tmp_path).to_dict()
