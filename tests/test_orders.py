@@ -22,7 +22,7 @@ from mmgtune.orders.ordering import order_by_order, serves
 from mmgtune.orders.sailing import Watch
 from mmgtune.orders.stepping import step_by_step
 from mmgtune.profile import load_profile, with_effects
-from tests.effects.test_effects import STRONG
+from tests.effects.test_effects import TOGETHER
 
 ORDERS = (
     lambda: TurningOrder(math.radians(35.0), 10.0),
@@ -44,7 +44,7 @@ def _on_compiled(model, theta, watches):
 
 @pytest.mark.slow(20)
 @pytest.mark.parametrize("way", [step_by_step, _on_compiled])
-@pytest.mark.parametrize("effects", [{}, STRONG], ids=["plain", "every effect"])
+@pytest.mark.parametrize("effects", [{}, TOGETHER], ids=["plain", "every effect"])
 def test_lanes_side_by_side_are_those_alone(effects, way):
     """With steps and lengths of their own; the second is left behind, and one goes on alone in the end."""
     model = Model(with_effects(load_profile("suzaku"), effects, "test"))
@@ -85,7 +85,7 @@ HELMSMEN = (
 
 
 @pytest.mark.slow(20)
-@pytest.mark.parametrize("effects", [{}, STRONG], ids=["plain", "every effect"])
+@pytest.mark.parametrize("effects", [{}, TOGETHER], ids=["plain", "every effect"])
 def test_order_by_order_is_step_by_step(effects):
     """On the compiled simulator the inputs and motions are those of stepping, whatever steps and lengths they have."""
     model = Model(with_effects(load_profile("suzaku"), effects, "test"))

@@ -15,7 +15,7 @@ from mmgtune.fitting.box import make_box
 from mmgtune.model import Model
 from mmgtune.orders import TurningOrder, run_manoeuvre
 from mmgtune.physics.quantities import UNKNOWN, State, Surroundings
-from mmgtune.profile import load_profile, missing_for, parse_profile, with_effects
+from mmgtune.profile import load_profile, missing_for, parse_profile, with_all_effects, with_effects
 from tests.backends.test_agree import zigzag_like
 from tests.runs import measured, states, turn
 
@@ -55,10 +55,8 @@ STRONG = {
 }
 TAGS = [effect.tag for effect in effects()]
 
-
-def with_every_effect(ship):
-    """The profile with all effects that apply to it, also those that are no cause; new ones at their null."""
-    return with_effects(ship, {e.tag: {} for e in effects() if not missing_for(e, ship)}, "test")
+TOGETHER = {tag: values for tag, values in STRONG.items() if tag != "discrepancy"}
+"""Those of the kernel that diagnoses run on; what is no cause has one of its own."""
 
 
 @pytest.fixture(scope="module")
@@ -107,11 +105,12 @@ def test_null_is_the_base_run_bit_for_bit_on_numpy(ship, base, tag):
 @pytest.mark.parametrize("integrator", [Integrator("euler"), Integrator("rk4"), Integrator("rk4", 3)])
 def test_null_is_the_base_run_bit_for_bit_compiled(ship, integrator):
     cases = blown(Model(ship))
-    models = [Model(ship), Model(with_every_effect(ship))]
+    models = [Model(one) for one in (ship, with_all_effects(ship), with_effects(ship, {"discrepancy": {}}, "test"))]
     for model in models:
         get_backend("compiled").kernel(model)  # its own, not one of more effects
-    base, null = (states(model, cases, integrator=integrator) for model in models)
-    assert np.array_equal(base, null)
+    base, *nulls = (states(model, cases, integrator=integrator) for model in models)
+    for null in nulls:
+        assert np.array_equal(base, null)
 
 
 def test_among_all_effects_a_run_is_that_of_its_own_kernel_bit_for_bit(ship, monkeypatch):
@@ -141,8 +140,8 @@ def test_among_all_effects_a_run_is_that_of_its_own_kernel_bit_for_bit(ship, mon
 @pytest.mark.parametrize("backend", ["numpy", "compiled"])
 def test_null_beside_lanes_with_every_effect_is_the_base_run_bit_for_bit(ship, backend):
     """Simulators pass by what no lane has; where one has it, the equations themselves must leave the others alone."""
-    strong = Model(with_effects(ship, STRONG, "test"))
-    model = Model(with_every_effect(ship))
+    strong = Model(with_effects(ship, TOGETHER, "test"))
+    model = Model(with_all_effects(ship))
     theta = np.column_stack([strong.matrix()[:, 0], model.matrix()[:, 0], strong.matrix()[:, 0]])
     cases = blown(Model(ship), 300)
     base, beside = states(Model(ship), cases, backend=backend), states(model, cases, theta, backend=backend)
@@ -165,15 +164,16 @@ def test_each_changes_the_run_and_can_be_written_and_read(ship, base, tag):
 
 @pytest.mark.slow(8)
 @pytest.mark.parametrize("integrator", [Integrator("euler"), Integrator("rk4", 2)])  # every stage, every substep
-def test_back_ends_agree_with_every_effect_at_once(ship, integrator):
-    model = Model(with_effects(ship, STRONG, "test"))
+@pytest.mark.parametrize("strong", [TOGETHER, {"discrepancy": STRONG["discrepancy"]}], ids=["causes", "no cause"])
+def test_back_ends_agree_with_every_effect_at_once(ship, integrator, strong):
+    model = Model(with_effects(ship, strong, "test"))
     cases = blown(model, 900 if integrator.name == "euler" else 300)
     compiled, reference = (states(model, cases, backend=name, integrator=integrator) for name in ("compiled", "numpy"))
     assert np.max(np.abs(compiled - reference) / (1.0 + np.abs(reference))) < 1e-9
 
 
 def test_lanes_with_different_effects_do_not_touch_each_other(ship):
-    model = Model(with_every_effect(ship))
+    model = Model(with_all_effects(ship))
     names = ["effects.current.north", "effects.memory.time_constant", "effects.clock-offset.seconds"]
     values = np.array([[0.0, 0.3, 0.0, 0.0], [0.0, 0.0, 7.0, 0.0], [0.0, 0.0, 0.0, -2.0]])
     cases = zigzag_like(model, 300)
@@ -299,7 +299,7 @@ def test_one_lane_of_numbers_is_bit_equal_to_an_array_of_one(ship):
 
 
 def test_parameters_are_targets_with_boxes_of_their_own(ship):
-    model = Model(with_every_effect(ship))
+    model = Model(with_all_effects(ship))
     names = ("effects.current.north", "effects.shallow-water.depth", "effects.wind.speed", "effects.wind.direction")
     box = make_box(model, names, 0.5)
     rng = np.random.default_rng(1)
@@ -340,10 +340,11 @@ def test_what_a_profile_gets_wrong_is_said(ship):
         parse_profile(plain.text + '\n[effects.wind]\nspeed = "8 m/s"\ndirection = "10 deg"\n')
 
 
-def test_costs_of_all_lanes_stay_finite_at_the_corners_of_every_box(ship):
+@pytest.mark.parametrize("tags", [tuple(TOGETHER), ("discrepancy",)], ids=["causes", "no cause"])
+def test_costs_of_all_lanes_stay_finite_at_the_corners_of_every_box(ship, tags):
     """No value a search may try makes the simulator fail."""
-    model = Model(with_every_effect(ship))
-    names = [f"effects.{e.tag}.{name}" for e in effects() for name in e.parameters]
+    model = Model(with_effects(ship, dict.fromkeys(tags, {}), "test"))
+    names = [f"effects.{tag}.{name}" for tag in tags for name in find_effect(tag).parameters]
     box = make_box(model, names, 0.5)
     corners = np.repeat(box.to_unit(box.pre)[:, None], 2 * len(names), axis=1)
     for k in range(len(names)):
