@@ -343,7 +343,7 @@ def test_what_a_profile_gets_wrong_is_said(ship):
 @pytest.mark.parametrize("tags", [tuple(TOGETHER), ("discrepancy",)], ids=["causes", "no cause"])
 def test_costs_of_all_lanes_stay_finite_at_the_corners_of_every_box(ship, tags):
     """No value a search may try makes the simulator fail."""
-    model = Model(with_effects(ship, dict.fromkeys(tags, {}), "test"))
+    model = Model(with_effects(ship, {tag: {} for tag in tags}, "test"))
     names = [f"effects.{tag}.{name}" for tag in tags for name in find_effect(tag).parameters]
     box = make_box(model, names, 0.5)
     corners = np.repeat(box.to_unit(box.pre)[:, None], 2 * len(names), axis=1)

@@ -90,7 +90,7 @@ def test_the_map_of_a_measured_set_is_the_preset(name):
 
 
 @needs("kvlcc2-marin")
-@pytest.mark.slow(6)
+@pytest.mark.long
 def test_columns_of_marin_in_another_language(tmp_path):
     """Columns renamed, speeds in knots, dates with the day first: one command, and nothing asked."""
     from mmgtune.importing.importer import _records

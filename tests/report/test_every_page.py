@@ -29,6 +29,8 @@ SCREENS = {
 }
 PAGES = ("fit", "sweep", "leave-out", "diagnosis", "nothing", "unexplained", "validate", "voyages", "predict",
          "comparison", "model-comparison", "simulate", "trials", "check", "learning", "plan", "fleet")  # fmt: skip
+OF_EVERY_BLOCK = ("fit", "diagnosis", "nothing", "unexplained", "validate", "trials")
+"""Pages that have all blocks between them."""
 
 
 @pytest.fixture(scope="module")
@@ -83,7 +85,7 @@ def _has_axe() -> bool:
     return True
 
 
-@pytest.mark.parametrize("name", ["fit", "diagnosis", "nothing", "unexplained", "validate", "trials"])
+@pytest.mark.parametrize("name", OF_EVERY_BLOCK)
 def test_paper(browser: Any, runs: dict[str, Path], name: str) -> None:
     with Visit(browser, runs[name] / "report.html") as visit:
         paper = visit.page.pdf(format="A4")
@@ -97,7 +99,9 @@ def test_paper(browser: Any, runs: dict[str, Path], name: str) -> None:
         assert visit.page.evaluate(empty) == 0  # no heading stands alone
 
 
-@pytest.mark.parametrize("name", PAGES)
+@pytest.mark.parametrize(
+    "name", [one if one in OF_EVERY_BLOCK else pytest.param(one, marks=pytest.mark.long) for one in PAGES]
+)
 def test_the_keyboard_reaches_everything(browser: Any, runs: dict[str, Path], name: str) -> None:
     with Visit(browser, runs[name] / "report.html", viewport={"width": 390, "height": 844}) as visit:
         wanted = visit.page.evaluate(
