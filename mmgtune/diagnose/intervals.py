@@ -42,14 +42,14 @@ def estimates(bench: Workbench, point: Point) -> dict[str, Estimate]:
         return {}
     R, noise, size = _told(bench, point, names)
     back = np.linalg.pinv(R, rcond=1e-10)
-    covariance = back @ noise @ back.T
+    spread = back @ noise @ back.T
     believed = between(names, point.spreads)
     if believed is not None:  # what other runs say of a run that says little itself
         alike = believed * size
         told = R.T @ np.linalg.solve(noise, R)
-        covariance = np.linalg.pinv(told + alike.T @ alike, rcond=1e-12, hermitian=True)
-    covariance = covariance * np.outer(size, size)
-    return _in_units(bench, point, names, covariance)
+        spread = np.linalg.pinv(told + alike.T @ alike, rcond=1e-12, hermitian=True)
+    spread = spread * np.outer(size, size)
+    return _in_units(bench, point, names, spread)
 
 
 def covariance(bench: Workbench, point: Point) -> tuple[tuple[str, ...], FloatArray]:
