@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from ..effects import Effect
 from ..fitting.box import AT
+from ..fitting.one_sided import LOPSIDED_HULL
 from ..model import Model
 from ..options import DiagnoseOptions
 from ..profile import ShipProfile, with_all_effects
@@ -53,6 +54,11 @@ class Hypothesis:
     def instead(self) -> tuple[str, ...]:
         """Coefficients of the profile that do the same; where they are targets, this takes their place."""
         return tuple(self.effect.absorbed[name] for name in self.variant if name in self.effect.absorbed)
+
+    @property
+    def lopsided(self) -> bool:
+        """Whether it makes a hull of two like sides push to one of them."""
+        return any(LOPSIDED_HULL.fullmatch(name) for name in self.bases)
 
     def holds(self, other: Hypothesis) -> bool:
         """Whether the other is a special case of this: fewer parameters, or the same for more runs."""

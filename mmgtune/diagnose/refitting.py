@@ -45,6 +45,10 @@ ROUGH = 4
 MOST_STEPS, ALL_STEPS = 10, 30
 """Further steps of a refit where much is left, and of the best few."""
 
+UNLIKE_SIDES = 5.0
+"""What a term that only a hull of two unlike sides has must explain besides: on turns to one side it is like the term
+that both sides have."""
+
 STARTS_KEPT = 2
 """Starts of a hypothesis that go on after a first step from each."""
 
@@ -266,7 +270,7 @@ class Refitting:
         volume = told_by(self.linear, hypothesis, self._moved(hypothesis, end))[1] if hypothesis.by else 0.0
         k = self._new(hypothesis)
         cost = k * np.log(bench.problem.n_residuals) + (2.0 * np.log(n_terms) if hypothesis.effect.one_of_many else 0.0)
-        cost += volume
+        cost += volume + (UNLIKE_SIDES if hypothesis.lopsided else 0.0)
         return Refit(
             hypothesis,
             score,

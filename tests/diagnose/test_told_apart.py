@@ -63,3 +63,14 @@ def test_no_trial_is_suggested_that_was_sailed():
     ]
     slower = [replace(trial, n=0.6 * trial.n) for trial in trials]
     assert not any(holds(slower, one, ship.approach.n) for one in menu(ship.L_pp / ship.approach.speed))
+
+
+def test_of_terms_alike_on_one_side_that_of_a_hull_of_two_like_sides_is_named(tmp_path):
+    case = Case("one-sided", null(4).ship, {"hull-term": {"Y_vabsv": -0.3}}, 4, WHITE)
+    write(simulate(case.ship, case.effects, case.seed, case.noise), tmp_path)
+    trials = load_trials(tmp_path)
+    trials = replace(trials, tune=("turn_p10", "turn_p35", "turn_p20"), test=("turn_m20", "zigzag_20"))
+    kept = {name: trials.trials[name] for name in (*trials.tune, *trials.test)}
+    result = diagnose(load_profile("suzaku"), replace(trials, trials=kept), DiagnoseOptions(effects=("hull-term",)))
+    assert result.verdict in ("found", "not-separable"), result.sentence()
+    assert list(result.to_dict()["causes"][0]["parameters"]) == ["Y_vabsv"]
