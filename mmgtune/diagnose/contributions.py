@@ -39,8 +39,11 @@ SMALL, WORTH_ASKING = 0.05, 0.3
 """Share of the fall of chi-squared on the trials looked at up to which a cause may be a trace, and up to which held-out
 trials are asked whether it does any good."""
 
-FORM = 0.0005
-"""Share of the error that a cause leaves whose form is 2 % off."""
+FORM, FORM_OF_HULL = 0.0005, 0.003
+"""Share of the error that a cause leaves whose form is 2 % off, and one whose hull is 5 % off besides."""
+
+LIKE_A_HULL = ("hull-term", "loading", "memory")
+"""Effects that stand for a hull of another form, too."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +53,7 @@ class Contribution:
     seen     share of the fall of chi-squared by all causes, on the trials looked at, that is lost without it
     share    the same of the error on held-out trials
     channels by channel, the error on held-out trials that it removes over the variance of the noise
+    form     such shares that the form of others may leave
     indices  by manoeuvring index, the largest change on held-out trials: of lengths as a share, of angles [deg]
 
     Where ``seen`` is enough to tell that it is no trace, the others are not asked for: NaN and empty.
@@ -59,6 +63,7 @@ class Contribution:
     share: float = float("nan")
     channels: Mapping[str, float] | None = None
     indices: Mapping[str, float] | None = None
+    form: float = FORM
 
     @property
     def unnoticed(self) -> bool:
@@ -68,7 +73,7 @@ class Contribution:
         """
         if self.channels is None or self.indices is None:
             return False
-        if self.share <= 0.0 or max(self.share, self.seen) < FORM:
+        if self.share <= 0.0 or max(self.share, self.seen) < self.form:
             return True
         moved = all(
             change < (OF_ANGLE if name.endswith("_deg") else OF_LENGTH) for name, change in self.indices.items()
@@ -151,7 +156,8 @@ def _of(bench: Workbench, found: Found, cause: Hypothesis, test: Sequence[Trial]
         if counts[k] and (noise := bench.noise.channels.get(name))
     }
     scale = max(float(removed[0]), abs(float(removed[1])))  # all together may remove less than one, or nothing
-    return Contribution(seen, float(removed[1]) / scale if scale > 0.0 else 1.0, channels, changes)
+    form = FORM_OF_HULL if cause.tag in LIKE_A_HULL else FORM
+    return Contribution(seen, float(removed[1]) / scale if scale > 0.0 else 1.0, channels, changes, form)
 
 
 def _errors(

@@ -58,6 +58,7 @@ def test_a_trace_is_small_in_every_respect(share, channels, indices, trace):
 def test_a_cause_beside_larger_ones_has_to_help_where_nobody_looked(seen, share, trace):
     large = {"x": 40.0}, {"overshoot_1_deg": 3.0}
     assert Contribution(seen, share, *large).unnoticed == trace
+    assert Contribution(seen, share, *large, form=0.03).unnoticed == (trace or share < 0.03)  # as of a hull
 
 
 @pytest.mark.parametrize(
