@@ -332,8 +332,7 @@ def origin(bench: Workbench, point: Point, names: Sequence[str]) -> FloatArray:
     for k, name in enumerate(names):
         target = bench.factors.get(base_of(name))
         if target in unit:
-            low, pre = bench.box.low, bench.box.pre
-            factor = bench.values(point)[target] / pre[bench.box.names.index(target)]
-            i = bench.box.names.index(base_of(name))
-            null[k] = np.clip((factor - low[i]) / bench.box.width[i], 0.0, 1.0)
+            factor = bench.values(point)[target] / bench.model.numbers()[target]
+            (place,) = bench.sub_box([base_of(name)]).to_unit([factor])
+            null[k] = np.clip(place, 0.0, 1.0)
     return np.array([unit.get(name, unit.get(base_of(name), z)) for name, z in zip(names, null, strict=True)])

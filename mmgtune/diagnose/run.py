@@ -79,7 +79,7 @@ def _diagnose(
     names = [name for h in (*known, *in_place) for name in h.names]
     bench = make_workbench(profile, seen, options, [*names, *(_legs(profile, names) if choice else ())])
     known = [h for h in known if not set(h.names) & set(bench.targets)]
-    known = [h for h in known if not {h.effect.absorbed.get(v) for v in h.variant} & set(bench.targets)]
+    known = [h for h in known if not set(h.instead) & set(bench.targets)]
     differing_by_run = of_runs([*known, *in_place], seen) if choice is None else []
     found = search(bench, [*known, *differing_by_run], in_place, hooks.on_phase, hooks.stop)
     test = [found.held.evenly(trial) for trial in test] if found.held else test

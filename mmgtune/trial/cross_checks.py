@@ -9,7 +9,7 @@ from ..physics.constants import GRAVITY
 from ..physics.frame import to_earth
 from ..units import DEG
 from .finding import Finding
-from .kinematics import middle
+from .kinematics import halfway, middle
 from .model import Trial
 from .motion_checks import spikes
 from .position_jumps import jump_findings
@@ -138,9 +138,7 @@ def axis_factors(trial: Trial) -> dict[str, tuple[float, float]]:
     Only axes along which the ship makes enough way to tell.
     """
     dt = np.diff(trial.t)
-    psi = middle(trial.psi)
-    psi = np.where(np.abs(np.diff(trial.psi)) > 3.0, trial.psi[1:], psi)
-    ways = to_earth(psi, middle(trial.u), middle(trial.v_m))
+    ways = to_earth(halfway(trial.psi), middle(trial.u), middle(trial.v_m))
     found = {}
     for name, way, position in zip(("x", "y"), ways, (trial.x, trial.y), strict=True):
         logged, moved = way * dt, np.diff(position)

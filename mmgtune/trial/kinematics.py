@@ -78,6 +78,11 @@ def turning(columns: Mapping[str, FloatArray]) -> Turning:
     return Turning(_summed(heading[both]), _summed(yaw[both]))
 
 
+def halfway(psi: FloatArray) -> FloatArray:
+    """(n_intervals,) headings halfway between samples [rad]; between two a full turn apart it is the later one."""
+    return np.where(np.abs(np.diff(psi)) > 3.0, psi[1:], middle(psi))
+
+
 def position_misfits(columns: Mapping[str, FloatArray]) -> dict[str, float]:
     """How badly the velocities explain the positions, by the way they are read: 0 perfectly, 1 not at all.
 
@@ -87,9 +92,7 @@ def position_misfits(columns: Mapping[str, FloatArray]) -> dict[str, float]:
     """
     dt = np.diff(columns["t"])
     moved = np.column_stack([np.diff(columns["x"]), np.diff(columns["y"])])
-    psi, u, v = (middle(columns[name]) for name in ("psi", "u", "v"))
-    # Halfway between two samples a wrapped heading is not between them.
-    psi = np.where(np.abs(np.diff(columns["psi"])) > 3.0, columns["psi"][1:], psi)
+    psi, u, v = halfway(columns["psi"]), middle(columns["u"]), middle(columns["v"])
     usable = np.isfinite(moved).all(axis=1) & np.isfinite(psi) & np.isfinite(u) & np.isfinite(v)
     if usable.sum() < 10:
         return {}

@@ -7,7 +7,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..physics.frame import to_earth
 from .finding import Finding
-from .kinematics import middle
+from .kinematics import halfway, middle
 from .model import Trial
 from .motion_checks import spikes
 
@@ -28,17 +28,15 @@ def position_jumps(trial: Trial) -> list[tuple[int, float]]:
     meet there.  Drifts, currents and biases of the velocities are lines themselves and pass.
     """
     dt = np.diff(trial.t)
-    turned = np.abs(np.diff(trial.psi)) > 3.0
-    psi = np.where(turned, trial.psi[1:], middle(trial.psi))
-    made = to_earth(psi, middle(trial.u), middle(trial.v_m))
     n = int(np.clip(np.ceil(SPAN / np.median(dt)), FEWEST, MOST))
     if trial.n_samples < 6 * n:
         return []
+    made = to_earth(halfway(trial.psi), middle(trial.u), middle(trial.v_m))
     left = [
         _without_spikes(position) - np.concatenate([[0.0], np.cumsum(np.where(np.isfinite(way), way * dt, 0.0))])
         for position, way in zip((trial.x, trial.y), made, strict=True)
     ]
-    ahead = line_end(n)
+    ahead = _line_end(n)
     # Rows k + n: what lies before predicts the middle of the step to row k + n, and so does what lies after.
     steps = [
         np.lib.stride_tricks.sliding_window_view(one[n:], n) @ ahead[::-1]
@@ -61,7 +59,7 @@ def _without_spikes(values: FloatArray) -> FloatArray:
     return smooth
 
 
-def line_end(n: int) -> FloatArray:
+def _line_end(n: int) -> FloatArray:
     """(n,) weights that give the end, half a sample ahead, of the line through n equidistant samples."""
     k = np.arange(n) - 0.5 * (n - 1)
     return np.asarray(1.0 / n + 0.5 * n * k / float(k @ k))
