@@ -12,6 +12,7 @@ import tempfile
 import time
 import zlib
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -85,6 +86,7 @@ def judge(case: Case) -> dict[str, Any]:
     ]
     return {
         "name": case.name,
+        "draw": case.draw,
         "group": case.group,
         "outcome": score(case, found["verdict"], named, grouped),
         "truth": dict(case.causes),
@@ -126,18 +128,20 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m tests.stranger.run", description=__doc__)
     parser.add_argument("--only", default="", help="names or groups that contain one of these, with commas between")
     parser.add_argument("--out", type=Path, default=Path("stranger.jsonl"), help="lines are added to it")
+    parser.add_argument("--draw", type=int, default=0, help="other hulls, headings, helmsmen and noise, same causes")
     parser.add_argument("--minutes", type=float, default=1e9, help="begin no further set after so long")
     chosen = parser.parse_args()
     rows = [json.loads(line) for line in chosen.out.read_text().splitlines()] if chosen.out.exists() else []
     for row in rows:  # as the score is now
         row["outcome"] = score(CASES[row["name"]], row["verdict"], set(row["named"]), map(set, row["grouped"]))
     wanted = chosen.only.split(",")
-    cases = [case for case in CASES.values() if any(text in case.name or text == case.group for text in wanted)]
+    known = (replace(case, draw=chosen.draw) for case in CASES.values())
+    cases = [case for case in known if any(text in case.name or text == case.group for text in wanted)]
     # In no order of groups, so that what a short time allows is a sample of all; slow ships last.
     cases.sort(key=lambda case: (case.ship != "suzaku", zlib.crc32(case.name.encode())))
     began = time.monotonic()
     for case in cases:
-        if any(row["name"] == case.name for row in rows):
+        if any((row["name"], row.get("draw", 0)) == (case.name, case.draw) for row in rows):
             continue
         if time.monotonic() - began > 60.0 * chosen.minutes:
             break
@@ -147,7 +151,7 @@ def main() -> None:
             out.write(json.dumps(row) + "\n")
         print(f"{row['outcome']:12}{row['seconds']:6.0f} s  {case.name}: {row['sentence']}", flush=True)
     names = {case.name for case in cases}
-    print(table(row for row in rows if row["name"] in names))
+    print(table(row for row in rows if row["name"] in names and row.get("draw", 0) == chosen.draw))
 
 
 if __name__ == "__main__":

@@ -61,6 +61,7 @@ class Case:
     hidden     fields of ``Hidden``; sensors: of ``Instruments``; by_run: either's, one a run, taken in turn
     off        coefficients differ by 3 % to so much
     absorbed   the targets that are tuned can take it: that nothing is named is right as well
+    draw       another number draws other hulls, headings, helmsmen and noise, the causes being the same
     """
 
     name: str
@@ -76,6 +77,7 @@ class Case:
     absorbed: bool = False
     akin: tuple[str, ...] = ()
     wind_logged: bool = False
+    draw: int = 0
 
 
 _LATE = ("dead-time", "clock-offset")
@@ -91,7 +93,7 @@ def ship_of(case: Case) -> Ship:
     ship = SHIPS[case.ship]
     if case.off <= 0.0:
         return ship
-    rng = _drawn(case.name, "hull")
+    rng = _drawn(case, "hull")
     changed = {}
     for name in _HULL[ship.full].split():
         size, sign, chosen = rng.uniform(0.03, case.off), rng.choice((-1.0, 1.0)), rng.random() < 0.6
@@ -100,7 +102,8 @@ def ship_of(case: Case) -> Ship:
     return ship._replace(**changed)
 
 
-def _drawn(*names: str) -> np.random.Generator:
+def _drawn(case: Case, what: str) -> np.random.Generator:
+    names = (case.name, what) if case.draw == 0 else (case.name, what, str(case.draw))
     return np.random.default_rng(zlib.crc32("/".join(names).encode()))
 
 
@@ -146,7 +149,7 @@ def make(case: Case) -> dict[str, Trial]:
     trials = {}
     for i, (kind, angle, second) in enumerate(PLANS[case.plan]):
         name = f"{i + 1:02d}_{kind}_{'p' if angle > 0 else 'm'}{abs(angle):.0f}"
-        rng = _drawn(case.name, name)
+        rng = _drawn(case, name)
         helm, orders, hold = _helm(ship, kind, angle, second, rng)
         own = dict(case.by_run[i % len(case.by_run)]) if case.by_run else {}
         of_ship = {key: value for key, value in {**case.hidden, **own}.items() if key in Hidden._fields}
