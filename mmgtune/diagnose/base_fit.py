@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..backends import Integrator
@@ -46,6 +48,8 @@ def base_fit(bench: Workbench) -> Point:
     apart = [end for k, end in enumerate(ends) if k == 0 or end.J > (1.0 + SAME) * ends[k - 1].J][:BEST]
     starts = np.column_stack([end.unit for end in apart])
     point = bench.refit(names, starts, ends[0].offsets, tolerance=unnoticed(bench, ends[0].J))
+    names = bench.tuned_alone
+    point = replace(point, unit=np.concatenate([point.unit, bench.null(list(bench.leeway))]))
     for _ in range(AGAIN):  # initial states at the end of their range make a bad start; from there it is a new one
         tolerance = unnoticed(bench, point.chi2, PRECISE)
         again = bench.refit(names, point.unit[:, None], point.offsets, tolerance=tolerance)

@@ -10,7 +10,6 @@ import numpy as np
 from ..arrays import FloatArray
 from ..fitting.box import group_of, parameter_of
 from .linear import linearise, typical
-from .runs import between
 from .workbench import Point, Workbench
 
 NORMAL = 1.96
@@ -43,9 +42,9 @@ def estimates(bench: Workbench, point: Point) -> dict[str, Estimate]:
     R, noise, size = _told(bench, point, names)
     back = np.linalg.pinv(R, rcond=1e-10)
     spread = back @ noise @ back.T
-    believed = between(names, point.spreads)
+    believed = bench.beliefs(names, point.spreads)
     if believed is not None:  # what other runs say of a run that says little itself
-        alike = believed * size
+        alike = believed[0] * size
         told = R.T @ np.linalg.solve(noise, R)
         spread = np.linalg.pinv(told + alike.T @ alike, rcond=1e-12, hermitian=True)
     spread = spread * np.outer(size, size)
@@ -61,7 +60,8 @@ def covariance(bench: Workbench, point: Point) -> tuple[tuple[str, ...], FloatAr
     if not inside:
         return (), np.zeros((0, 0))
     R, noise, size = _told(bench, point, tuple(inside))
-    told = R.T @ np.linalg.solve(noise, R) + np.diag(size**2 / OF_BOX)
+    before = np.array([bench.leeway.get(name, np.sqrt(OF_BOX)) for name in inside])
+    told = R.T @ np.linalg.solve(noise, R) + np.diag((size / before) ** 2)
     return tuple(inside), np.linalg.inv(told) * np.outer(size, size)
 
 

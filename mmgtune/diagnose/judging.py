@@ -134,7 +134,7 @@ def _first(found: Found) -> Point:
 def _targets_of(bench: Workbench, point: Point) -> dict[str, float]:
     """Targets at a point, with what is tied to them; the profile's own value where a cause takes the place of one."""
     values = bench.values(point)
-    own = {name: values[name] if name in values else bench.model.numbers()[name] for name in bench.targets}
+    own = {name: values[name] if name in values else bench.model.numbers()[name] for name in bench.tuned_alone}
     return own | followers(bench.model.ties, own)
 
 

@@ -36,6 +36,34 @@ SAME = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
+class Tuned:
+    """What re-tuning takes out of columns: all that free coefficients can change, and so much of what coefficients with
+    leeway can change as these are expected to.
+
+    free   (n_rows, n) orthonormal basis of what free coefficients can change
+    loose  (n_rows, k) directions of what coefficients with leeway change besides
+    left   (k,) share of a column along each that is left
+    """
+
+    free: FloatArray
+    loose: FloatArray
+    left: FloatArray
+
+    @classmethod
+    def by(cls, free: FloatArray, loose: FloatArray) -> Tuned:
+        """From what each free coefficient changes (n_rows, n), and each with leeway over its standard deviation."""
+        Q = basis(free)
+        directions, sizes, _ = np.linalg.svd(loose - Q @ (Q.T @ loose), full_matrices=False)
+        return cls(Q, directions, 1.0 / np.sqrt(1.0 + sizes**2))
+
+    def out_of(self, columns: FloatArray) -> FloatArray:
+        """Columns (n_rows, k) without that; independent noise of variance 1 and what has leeway together have variance
+        1 in what is left."""
+        rest = columns - self.free @ (self.free.T @ columns)
+        return np.asarray(rest - self.loose @ ((1.0 - self.left)[:, None] * (self.loose.T @ rest)))
+
+
+@dataclass(frozen=True, eq=False)
 class Linear:
     """The problem made linear at a point.  Rows: whitened residuals of each trial, then its six initial offsets.
 
@@ -49,7 +77,7 @@ class Linear:
     wander      (n_rows, DRAWS) what other noise of the logged inputs would change
     blocks      first rows of pieces of about a minute of one trial
     cases       first rows of the trials
-    tuned       (n_rows, n_free) orthonormal basis of what free coefficients can change
+    tuned       what re-tuning takes out of columns
     plain       signatures (n_rows,) of what may differ between runs, by name, coefficients not taken out
     groups      of each trial
     fitted      what fits leave of whitened residuals (n_residuals, k): (n_rows, k) free of all ``noise`` is free of
@@ -66,7 +94,7 @@ class Linear:
     wander: FloatArray
     blocks: IntArray
     cases: IntArray
-    tuned: FloatArray
+    tuned: Tuned
     plain: Mapping[str, FloatArray]
     groups: tuple[frozenset[str], ...]
     fitted: Callable[[FloatArray], FloatArray]
@@ -98,7 +126,7 @@ class Linear:
                     if group in own:
                         found[first:end, k] = self.plain[base][first:end]
                 k += 1
-        return np.asarray(found - self.tuned @ (self.tuned.T @ found))
+        return self.tuned.out_of(found)
 
     def absent(self, names: Sequence[str]) -> list[str]:
         """Those of some parameters that are not free already."""
@@ -204,13 +232,18 @@ def linearise(
 
     columns = np.column_stack([values[:, 0], slopes, wander(bench, point)])
     left = problem.without_offsets(columns, by_offset, problem.prior, point.offsets)
-    free = np.array([name not in apart and 0.0 < z < 1.0 for name, z in zip(point.names, point.unit, strict=True)])
+    inside = np.array([name not in apart and 0.0 < z < 1.0 for name, z in zip(point.names, point.unit, strict=True)])
+    loose = inside & np.array([name in bench.leeway for name in point.names])
+    own = [name for name, is_loose in zip(point.names, loose, strict=True) if is_loose]
+    moved_by = left[:, 1 : 1 + n_free][:, loose]
+    left[:, 0] -= moved_by @ (point.unit[loose] - bench.null(own))  # where nothing with leeway has moved
     plain = {
         base: np.sum(left[:, [1 + i for i, name in enumerate(names) if base_of(name) == base]], axis=1)
         for base in dict.fromkeys(varying)
     }
-    Q = basis(left[:, 1 : 1 + n_free][:, free])
-    left -= Q @ (Q.T @ left)
+    deviation = np.array([bench.leeway[name] for name in own])
+    tuned = Tuned.by(left[:, 1 : 1 + n_free][:, inside & ~loose], moved_by * deviation)
+    left = tuned.out_of(left)
     chosen = (*apart, *wanted)
     at_chosen = [1 + names.index(name) for name in chosen]
     signature, small = left[:, at_chosen], left[:, 1 + len(names) : 1 + n_moved]
@@ -220,7 +253,7 @@ def linearise(
 
     def fitted(columns: FloatArray) -> FloatArray:
         left = problem.without_offsets(columns, by_offset, problem.prior)
-        left -= Q @ (Q.T @ left)
+        left = tuned.out_of(left)
         return np.asarray(left - every @ (every.T @ left))
 
     return Linear(
@@ -234,7 +267,7 @@ def linearise(
         wander=left[:, 1 + n_moved :],
         blocks=blocks,
         cases=first,
-        tuned=Q,
+        tuned=tuned,
         plain=plain,
         groups=problem.groups,
         fitted=fitted,

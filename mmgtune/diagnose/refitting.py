@@ -18,7 +18,7 @@ from .runs import spread_key
 from .screening import ChanceScores, Score, evidence, told_by
 from .workbench import TOLERANCE, Point, Workbench
 
-STRONG = 1.2
+STRONG = 1.05
 """Chi-squared per residual beyond which every named hypothesis makes a step before the best are refitted."""
 
 REFITTED, TERMS_REFITTED = 9, 4
@@ -52,7 +52,7 @@ that both sides have."""
 STARTS_KEPT = 2
 """Starts of a hypothesis that go on after a first step from each."""
 
-SIZES = (1.0, 0.5, 2.0)
+SIZES = (1.0, 0.5, 2.0, 0.25)
 """Sizes of effects with one side only at which refits start, in typical sizes."""
 
 WORTH_GOING_ON = 0.5

@@ -32,9 +32,9 @@ def held_out_fits(
     coverage = Coverage.of(bench.trials, bench.model.L_pp)  # what is left may turn to one side alone
     for run in runs:
         others = [trial for trial in bench.trials if trial.run != run]
-        names = [name for name in bench.box.names if name not in bench.targets]
+        names = [name for name in bench.box.names if name not in bench.tuned_alone]
         rest = make_workbench(bench.model.profile, others, bench.options, names, coverage)
-        rest.targets = bench.targets
+        rest.targets, rest.leeway = bench.targets, bench.leeway
         rest.know(replace(bench.noise, cases=rest.problem.cases))
         keep = [i for i, trial in enumerate(bench.trials) if trial.run != run]
         refitted = [_refit_without(rest, point, keep) for point in points]

@@ -23,6 +23,7 @@ from ..options import DiagnoseOptions
 from ..profile import ShipProfile, with_all_effects
 from ..trial import Coverage, Held, Trial, visited_by
 from ..trial.kinematics import white_noise
+from .leeway import deviations, let_go
 from .noise import NoiseModel, white
 from .runs import between, labels_of
 
@@ -69,7 +70,8 @@ class Workbench:
     model     with every effect at its null or at the profile's own value
     sigma     (6,) white noise of each channel, from the trials' own columns
     targets   coefficients that may be re-tuned
-    box       of the targets and of every parameter of every hypothesis
+    leeway    coefficients beside the targets that may move a little: their standard deviations in the unit cube
+    box       of both and of every parameter of every hypothesis
     noise     as known so far
     spreads   of values that groups of runs have of their own, by ``runs.spread_key``, in the unit cube
     held      inputs whose log looks held between updates, None where none does
@@ -87,6 +89,27 @@ class Workbench:
     spreads: dict[str, float] = field(default_factory=dict)
     held: Held | None = None
     updates: list[list[IntArray]] | None = None
+    leeway: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def tuned_alone(self) -> tuple[str, ...]:
+        """What is re-tuned without any cause: the targets, and what has leeway."""
+        return (*self.targets, *self.leeway)
+
+    def beliefs(self, names: Sequence[str], spreads: Mapping[str, float]) -> tuple[FloatArray, FloatArray] | None:
+        """What is believed of what is free before any trial is looked at; None for nothing.
+
+        -> (k, n_names) matrix A and (n_names,) centre: |A (unit - centre)|^2 is part of chi-squared
+        """
+        rows = [] if (apart := between(names, spreads)) is None else [apart]
+        loose = [k for k, name in enumerate(names) if name in self.leeway]
+        if loose:
+            rows.append(np.eye(len(names))[loose] / np.array([self.leeway[names[k]] for k in loose])[:, None])
+        if not rows:
+            return None
+        centre = np.zeros(len(names))
+        centre[loose] = self.null([names[k] for k in loose])
+        return np.concatenate(rows), centre
 
     @cached_property
     def visited(self) -> Visited:
@@ -149,23 +172,23 @@ class Workbench:
         problem = self.problem_of(names, integrator).with_offsets(offsets)
         whiten = self.noise.apply if self.noise_known else None
         spreads = self.spreads if spreads is None else spreads
-        apart = between(names, spreads)
+        beliefs = self.beliefs(names, spreads)
         ends = solve(
             problem,
             starts,
             max_iterations=max_iterations,
             whiten=whiten,
             tolerance=tolerance,
-            beliefs=None if apart is None else (apart, np.zeros(len(names))),
+            beliefs=beliefs,
             trusting=True,
         )
         return [
-            Point(tuple(names), end.unit, end.offsets, self._total(end, apart), problem.integrator, spreads)
+            Point(tuple(names), end.unit, end.offsets, self._total(end, beliefs), problem.integrator, spreads)
             for end in ends
         ]
 
-    def _total(self, end: LeastSquaresResult, apart: FloatArray | None) -> float:
-        unlike = 0.0 if apart is None else float(np.sum((apart @ end.unit) ** 2))
+    def _total(self, end: LeastSquaresResult, beliefs: tuple[FloatArray, FloatArray] | None) -> float:
+        unlike = 0.0 if beliefs is None else float(np.sum((beliefs[0] @ (end.unit - beliefs[1])) ** 2))
         return float(end.J + np.sum(self.problem.prior * end.offsets**2) + unlike)
 
     @property
@@ -253,7 +276,9 @@ def make_workbench(
     channels = [c for c in STATES if not options.channels or c in {"v_m" if o == "v" else o for o in options.channels}]
     objective = _in_noise(sigma, channels)
     cases = cases_of(list(trials), objective, model.inputs, model.draught)
-    box = make_box(model, (*targets, *(name for name in names if name not in targets)), options.a_r)
+    loose = let_go(own, targets, options.fixed) if options.leeway else ()
+    free = (*targets, *loose)
+    box = make_box(model, (*free, *(name for name in names if name not in free)), options.a_r)
     problem = FitProblem.of(
         model=model,
         cases=cases,
@@ -263,4 +288,5 @@ def make_workbench(
         sigma=np.repeat(LOOSE * sigma[None], len(trials), axis=0),
     ).with_groups([labels_of(trial) for trial in trials])
     held = Held.of(trials)
-    return Workbench(model, list(trials), options, sigma, targets, box, problem, white(cases), held=held)
+    leeway = deviations(box, loose, options.leeway)
+    return Workbench(model, list(trials), options, sigma, targets, box, problem, white(cases), held=held, leeway=leeway)

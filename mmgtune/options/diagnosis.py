@@ -23,6 +23,13 @@ class DiagnoseOptions(SimulationOptions):
     )
     channels: tuple[str, ...] = again(FitOptions, "channels", but="All in a diagnosis.")
     restart: float | None = again(FitOptions, "restart")
+    leeway: float = choice(
+        0.05,
+        "How well coefficients of the hull that are not targets are known, as a share of their values: the standard "
+        "deviation they are let go by. 0 holds them, as for voyages.",
+        least=0.0,
+        most=0.5,
+    )
     most: int = choice(4, "Largest number of causes looked for.", least=1, most=8)
     level: float = choice(0.01, "Largest probability of a false alarm over the search.", above=0, below=0.5)
     seed: int = again(FitOptions, "seed")

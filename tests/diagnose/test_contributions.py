@@ -170,7 +170,9 @@ def test_ten_degree_zigzags_name_no_stall(tmp_path, monkeypatch):
     case = Case("early", single("rudder-stall", 3, seed=1).ship, {"rudder-stall": {"angle": 6.0 * DEG}}, 1, plant.WHITE)
     monkeypatch.setattr(plant, "sail", partial(plant.sail, names=[name for name, *_ in plant.TRIALS]))
     write(simulate(case.ship, case.effects, case.seed, case.noise), tmp_path)
-    result = diagnose(load_profile("suzaku"), load_trials(tmp_path), DiagnoseOptions(effects=("rudder-stall", "flap")))
+    result = diagnose(
+        load_profile("suzaku"), load_trials(tmp_path), DiagnoseOptions(effects=("rudder-stall", "flap"), leeway=0.0)
+    )
     assert result.causes == ()
     assert all("rudder angles beyond" in one.unvisited for one in result.candidates if one.gain > 10.0)
     assert result.candidates[0].p_value < 1e-6  # but for that it would have been

@@ -1,0 +1,36 @@
+"""Coefficients that are not tuned, let go a little: those of captive tests and formulas are right to some per cent.
+
+A hull that is held exactly at its profile's values leaves an error that is no cause, and that some effect of about the
+same form would be named for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..errors import OptionError
+from ..fitting.box import Box, choose_targets
+from ..model import Model
+
+PATTERNS = ("hull.*", "particulars.m_x_", "particulars.m_y_", "particulars.k_zz_")
+"""What has leeway: forces of the hull, and mass and inertia with what moves along of the water."""
+
+
+def let_go(model: Model, targets: Sequence[str], fixed: Sequence[str]) -> tuple[str, ...]:
+    """Coefficients of a model beside the targets that are known no better than to some per cent."""
+    found: list[str] = []
+    for pattern in PATTERNS:
+        try:
+            found += choose_targets(model, [pattern], ())
+        except OptionError:  # an arrangement without such a coefficient
+            continue
+    held = set(choose_targets(model, [*found], fixed)) if found else set()
+    return tuple(name for name in found if name in held and name not in targets and model.profile.value(name) != 0.0)
+
+
+def deviations(box: Box, names: Sequence[str], share: float) -> dict[str, float]:
+    """Standard deviations of coefficients in the unit cube of a box, as a share of their values in the profile."""
+    at = [box.names.index(name) for name in names]
+    return dict(zip(names, (share * np.abs(box.pre[at]) / box.width[at]).tolist(), strict=True))

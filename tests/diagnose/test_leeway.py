@@ -1,0 +1,89 @@
+"""Coefficients of the hull that are not tuned, and are a few per cent off: no cause, and nothing that hides one."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mmgtune.backends import STATES, Integrator
+from mmgtune.diagnose import DiagnoseOptions
+from mmgtune.diagnose.base_fit import base_fit
+from mmgtune.diagnose.leeway import let_go
+from mmgtune.diagnose.linear import Tuned, linearise
+from mmgtune.diagnose.workbench import make_workbench
+from mmgtune.model import Model
+from mmgtune.profile import load_profile, tuned
+from mmgtune.simulation import simulate
+from mmgtune.trial import load_trials
+
+NOISE = np.array([0.4, 0.4, 0.003, 0.02, 0.02, 0.0005])
+
+
+@pytest.fixture(scope="module")
+def sailed():
+    """Runs of a ship whose hull is not quite the profile's: each coefficient off by 4 % or so."""
+    profile = load_profile("suzaku")
+    rng = np.random.default_rng(5)
+    names = let_go(Model(profile), profile.targets, ())
+    off = {name: profile.value(name) * (1.0 + 0.04 * rng.standard_normal()) for name in names}
+    trials = [load_trials("suzaku").trials[name] for name in ("turn_p35", "turn_m20", "zigzag_20")]
+    made = []
+    for trial, motion in zip(trials, simulate(tuned(profile, off, {}, {}, "made"), trials), strict=True):
+        noisy = motion.states + NOISE * rng.standard_normal(motion.states.shape)
+        made.append(replace(trial, **dict(zip(STATES, noisy.T, strict=True))))
+    return profile, made
+
+
+def test_a_hull_a_little_off_is_no_error_beyond_noise(sailed):
+    profile, trials = sailed
+    left = {}
+    for leeway in (0.0, 0.05):
+        bench = make_workbench(profile, trials, DiagnoseOptions(leeway=leeway))
+        bench.integrate(Integrator("rk4"))
+        point = base_fit(bench)
+        left[leeway] = point.chi2 / bench.problem.n_residuals
+    assert left[0.0] > 1.05
+    assert left[0.05] < 1.04  # what is believed of coefficients counted in
+    moved = np.array([bench.values(point)[name] / profile.value(name) - 1.0 for name in bench.leeway])
+    assert 0.005 < np.sqrt(np.mean(moved**2)) < 0.1
+
+
+def test_a_problem_made_linear_knows_what_fits_know(sailed):
+    """A fall of chi-squared that it promises for a cause is that of the fit, coefficients with leeway re-tuned."""
+    profile, trials = sailed
+    bench = make_workbench(profile, trials, DiagnoseOptions(), ["effects.rudder-offset.angle"])
+    point = base_fit(bench)
+    linear = linearise(bench, point, ["effects.rudder-offset.angle"])
+    assert np.sum(linear.residual**2) == pytest.approx(point.chi2, rel=2e-3)
+    (direction,) = (linear.signature / np.linalg.norm(linear.signature, axis=0)).T
+    promised = float(direction @ linear.residual) ** 2
+    start = np.append(point.unit, bench.null(["effects.rudder-offset.angle"]))[:, None]
+    end = bench.refit((*point.names, "effects.rudder-offset.angle"), start, point.offsets, tolerance=0.01)
+    assert point.chi2 - end.chi2 == pytest.approx(promised, rel=0.2, abs=0.3)
+
+
+def test_what_is_left_of_noise_and_leeway_together_has_variance_one():
+    rng = np.random.default_rng(0)
+    free, loose = rng.standard_normal((40, 3)), rng.standard_normal((40, 5)) * [0.01, 0.3, 1.0, 5.0, 200.0]
+    taken = Tuned.by(free, loose)
+    left = taken.out_of(np.eye(40))
+    spread = left @ (np.eye(40) + loose @ loose.T) @ left.T
+    Q = taken.free
+    np.testing.assert_allclose(spread, np.eye(40) - Q @ Q.T, atol=1e-8)
+
+
+@pytest.mark.parametrize("name", ["suzaku", "esso_osaka", "esso_osaka_3m", "vectwin_3m"])
+def test_nothing_that_is_tuned_or_held_has_leeway(name):
+    profile = load_profile(name)
+    loose = let_go(Model(profile), profile.targets, ("N_v",))
+    assert not set(loose) & {*profile.targets, "hull.N_v"}
+    assert all(profile.value(one) != 0.0 for one in loose)
+    kinds = {one.partition(".")[0] for one in loose}
+    assert kinds <= {"hull", "particulars"}
+
+
+def test_no_leeway_is_nothing_beside_the_targets(suzaku):
+    trials = [load_trials("suzaku").trials["zigzag_10"]]
+    bench = make_workbench(suzaku.profile, trials, DiagnoseOptions(leeway=0.0))
+    assert bench.tuned_alone == bench.targets
+    assert bench.beliefs(bench.targets, {}) is None
