@@ -59,6 +59,7 @@ LOG_BYTES = Limit(4 << 30, "bytes", "a text log", "split it, a file a day or les
 LOG_LINE = Limit(128 << 10, "bytes", "a line", "give a log with a row a line: this one is damaged, or of another kind")
 LOG_COLUMNS = Limit(4096, "columns", "a log", "write only those that are needed")
 SHEET_BYTES = Limit(1 << 28, "bytes", "a workbook, unpacked,", "save the sheet as CSV, or split it")
+SHEET_ROWS = Limit(1 << 20, "rows", "a sheet", "save it again with a spreadsheet program: none has more rows")
 SHEET_CELLS = Limit(20_000_000, "cells", "a sheet", "save it as CSV, or split it")
 MATLAB_BYTES = Limit(1 << 29, "bytes", "a MATLAB file", "save only the columns that are needed, or split it")
 LOG_PARTS = Limit(200, "parts", "a record", "correct the clock's stamps in the log, or split it")
