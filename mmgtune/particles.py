@@ -19,7 +19,7 @@ from .backends import Integrator
 from .components import split_name
 from .effects import FilterEffect, FlowEffect, SensorEffect
 from .errors import OptionError, Problem, ProfileError
-from .files import atomic
+from .files import atomic, hold_regular
 from .model import Model
 from .predictor import PhysicsPredictor, Sampling
 from .profile import ShipProfile, parse_profile, with_effects
@@ -144,6 +144,7 @@ def load_particles(path: Path | str) -> Particles:
 
     path = Path(path)
     try:
+        hold_regular(path)
         table = pq.read_table(path, page_checksum_verification=True)
         raw = (table.schema.metadata or {})[KEY]
         facts = json.loads(raw)

@@ -16,7 +16,7 @@ import numpy as np
 from .. import limits
 from ..arrays import FloatArray
 from ..errors import Problem, TrialError
-from ..files import atomic
+from ..files import atomic, hold_regular
 from ..units import canonical, factors
 from .digest import DIGEST_KEY, digest
 from .footer import rows_of
@@ -113,6 +113,7 @@ def id_in(path: Path) -> str | None:
     import pyarrow.parquet as pq
 
     try:
+        hold_regular(path)
         raw = pq.ParquetFile(path, pre_buffer=False).schema_arrow.metadata or {}
     except (OSError, ValueError, pa.ArrowException):
         return None

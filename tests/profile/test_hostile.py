@@ -23,6 +23,7 @@ TUNING = TEXT[TEXT.index("[tuning]") : TEXT.index("]", TEXT.index("targets = [")
     ("text", "words"),
     [
         (changed(TUNING, "").replace("schema = 1", "schema = 1\ntuning = 3", 1), "'tuning' is not a table"),
+        (changed("schema = 1", "schema = 1\nprovenance = 3"), "'provenance' is not a table"),
         (changed(TUNING, "[tuning]\ntargets = [3]"), "not a list of names"),
         (changed(TUNING, "[tuning]\ntargets = [[]]"), "not a list of names"),
         (changed(TUNING, "[tuning]\ntargets = 3"), "not a list of names"),
