@@ -69,8 +69,8 @@ def is_left_over(path: Path) -> bool:
 
 
 def remove_left_overs(folder: Path) -> None:
-    """Remove halves of files from a folder and the folders in it; nobody else may be writing there."""
-    for path in (*folder.glob(".*.part"), *folder.glob("*/.*.part")):
+    """Remove halves of files from a run folder, the runs and figures in it; nobody else may be writing there."""
+    for path in (*folder.glob(".*.part"), *folder.glob("*/.*.part"), *folder.glob("*/*/.*.part")):
         if is_left_over(path):
             with contextlib.suppress(OSError):
                 path.unlink()

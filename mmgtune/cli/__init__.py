@@ -169,6 +169,9 @@ def _run() -> int:
     except ReaderGone:
         say_no_more()
         return ExitCode.GOOD
+    except OSError:  # what went wrong cannot be said: stderr has no room either
+        say_no_more()
+        return ExitCode.COULD_NOT_RUN
     return ExitCode.GOOD
 
 

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+from pathlib import Path
+
 import pytest
 
 from tests.command import run
@@ -36,3 +40,12 @@ def test_the_help_whatever_the_width(value, tmp_path):
     ended = run("--help", cwd=tmp_path, env={"COLUMNS": value}, fresh=True)
     assert ended.code == 0, ended.err
     assert max(map(len, ended.out.splitlines())) <= 1000
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+@pytest.mark.parametrize("line", ["--version", "validate suzaku suzaku --json", "fit -t nowhere"])
+def test_no_room_for_what_went_wrong_either(line, tmp_path):
+    """Exit code 1 would mean that the answer is no."""
+    with open("/dev/full", "w") as full:
+        command = [sys.executable, "-m", "mmgtune", *line.split()]
+        assert subprocess.run(command, cwd=tmp_path, stdout=full, stderr=full, timeout=60).returncode == 2
