@@ -15,7 +15,8 @@ from pathlib import Path
 import numpy as np
 
 from .backends import BACKENDS, get_backend
-from .errors import MmgtuneError
+from .backends.compiled import cores
+from .errors import MmgtuneError, OptionError
 from .model import Model
 from .objective import cases_of, make_objective
 from .profile import load_profile
@@ -75,8 +76,10 @@ def _installed(name: str) -> bool:
 
 
 def _cores() -> Finding:
-    here = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    return Finding("cores", f"{here} of {os.cpu_count()}")
+    try:
+        return Finding("cores", f"{cores()} of {os.cpu_count()}")
+    except OptionError as error:
+        return Finding("cores", error.problems[0].what, ok=False, fix=error.problems[0].fix)
 
 
 def _backends() -> list[Finding]:

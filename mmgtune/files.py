@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import re
+import stat
 import sys
 import tempfile
 from collections.abc import Iterable, Iterator
@@ -68,11 +69,21 @@ def is_left_over(path: Path) -> bool:
 
 
 def remove_left_overs(folder: Path) -> None:
-    """Remove halves of files from a folder and the folders in it; nobody else may be writing there."""
-    for path in (*folder.glob(".*.part"), *folder.glob("*/.*.part")):
+    """Remove halves of files from a run folder, the runs and figures in it; nobody else may be writing there."""
+    for path in (*folder.glob(".*.part"), *folder.glob("*/.*.part"), *folder.glob("*/*/.*.part")):
         if is_left_over(path):
             with contextlib.suppress(OSError):
                 path.unlink()
+
+
+def hold_regular(path: Path) -> None:
+    """Raises OSError where a path leads to a pipe, a socket or a device: to open one may wait for ever.
+
+    For what is read more than once, or not from its beginning to its end.
+    """
+    mode = path.stat().st_mode
+    if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
+        raise OSError("it is a pipe, a socket or a device, not a file")
 
 
 def true_path(path: Path) -> Path:

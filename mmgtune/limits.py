@@ -6,6 +6,8 @@ no file and no option fills the machine.
 
 from __future__ import annotations
 
+import os
+import stat
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -59,6 +61,7 @@ LOG_BYTES = Limit(4 << 30, "bytes", "a text log", "split it, a file a day or les
 LOG_LINE = Limit(128 << 10, "bytes", "a line", "give a log with a row a line: this one is damaged, or of another kind")
 LOG_COLUMNS = Limit(4096, "columns", "a log", "write only those that are needed")
 SHEET_BYTES = Limit(1 << 28, "bytes", "a workbook, unpacked,", "save the sheet as CSV, or split it")
+SHEET_ROWS = Limit(1 << 20, "rows", "a sheet", "save it again with a spreadsheet program: none has more rows")
 SHEET_CELLS = Limit(20_000_000, "cells", "a sheet", "save it as CSV, or split it")
 MATLAB_BYTES = Limit(1 << 29, "bytes", "a MATLAB file", "save only the columns that are needed, or split it")
 LOG_PARTS = Limit(200, "parts", "a record", "correct the clock's stamps in the log, or split it")
@@ -91,11 +94,30 @@ def text(path: Path, limit: Limit, error: type[MmgtuneError]) -> str:
 
 def content(path: Path, limit: Limit, error: type[MmgtuneError]) -> bytes:
     """A file's bytes, never more than the limit.  Raises ``error`` beyond it, and OSError."""
-    # Block by block: one read would take all of the limit at once, and not everything that is opened has a size.
-    found = bytearray()
-    with path.open("rb") as file:
-        while len(found) <= limit.most and (block := file.read(1 << 20)):
-            found += block
+    found = _start_of(path, limit.most)
     if len(found) > limit.most:
         raise error(Problem(f"{limit.of} of more than {limit.most} bytes", str(path), "that is the limit", limit.fix))
     return bytes(found)
+
+
+def _start_of(path: Path, most: int) -> bytearray:
+    """The first bytes of a file, more than ``most`` where it has more; a pipe that is written into is waited for.
+
+    Raises OSError, also for a pipe that nobody writes into.
+    """
+    # One read would take the room for ``most`` at once, and not everything that is opened has a size.
+    with open(path, "rb", buffering=0, opener=_without_waiting) as file:
+        block: bytes | None = file.read(1 << 20)  # None of a pipe whose writer has written nothing yet
+        if block == b"" and stat.S_ISFIFO(os.fstat(file.fileno()).st_mode):
+            raise OSError("it is a pipe that nobody writes into")
+        if os.name == "posix":
+            os.set_blocking(file.fileno(), True)
+        found = bytearray(block or b"")
+        while block != b"" and len(found) <= most:
+            block = file.read(1 << 20)
+            found += block
+    return found
+
+
+def _without_waiting(path: str, flags: int) -> int:
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))

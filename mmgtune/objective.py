@@ -22,6 +22,12 @@ from .trial.pieces import counting
 PAPER_CHANNELS = ("x", "y", "psi")
 """Position and heading: the channels of Suyama et al. 2023, eq. 39-40."""
 
+SAME = 1e-12
+"""Share of a state within which it does not vary: what is left is the rounding of whoever wrote it."""
+
+DIVIDES = "L_MSE divides by the spread of each state"
+"""Why each state of trials has to vary."""
+
 
 def default_scales(L_pp: float) -> dict[str, float]:
     """What differences are divided by: L_pp [m], L_pp [m], pi/4 [rad] as in Suyama et al. 2023, eq. 40.
@@ -55,7 +61,10 @@ class Objective:
 
     def weight(self, trial: Trial) -> FloatArray:
         """(n_samples, 6) weight of each squared difference: 0 outside the window, in gaps and at the first sample."""
-        per_channel = np.array([self.weights.get(name, 0.0) / self.scales[name] ** 2 for name in STATES])
+        count = self.channels
+        per_channel = np.array(
+            [self.weights[name] / self.scales[name] ** 2 if name in count else 0.0 for name in STATES]
+        )
         weight = np.where(np.isnan(trial.motion), 0.0, per_channel)
         weight[0] = 0.0
         if self.window is not None:
@@ -69,11 +78,27 @@ class Objective:
 def spread(trials: Sequence[Trial]) -> dict[str, float]:
     """Standard deviation of each state over all samples of the trials [SI]; the heading wrapped to one turn.
 
-    What the standardised error of Wakita et al. 2022, eq. 26, divides differences by.
+    What the standardised error of Wakita et al. 2022, eq. 26, divides differences by.  NaN of a state that does not
+    vary or was never measured: the rounding of a mean is no spread.
     """
     motion = np.concatenate([trial.motion for trial in trials])
     motion[:, 2] = np.arctan2(np.sin(motion[:, 2]), np.cos(motion[:, 2]))
-    return dict(zip(STATES, np.nanstd(motion, axis=0).tolist(), strict=True))
+    sigma = np.full(len(STATES), np.nan)
+    for k in np.flatnonzero(~np.isnan(motion).all(axis=0)):
+        least, most = np.nanmin(motion[:, k]), np.nanmax(motion[:, k])
+        if most - least > SAME * max(abs(least), abs(most)):
+            sigma[k] = np.nanstd(motion[:, k : k + 1], axis=0)[0]
+    return dict(zip(STATES, sigma.tolist(), strict=True))
+
+
+def varying(
+    sigma: Mapping[str, float], where: str, fix: str, channels: Sequence[str] = STATES, why: str = DIVIDES
+) -> dict[str, float]:
+    """The spread of trials as it is.  Raises OptionError where one of these channels has none."""
+    still = [name for name in channels if not sigma[name] > 0.0]
+    if still:
+        raise OptionError(Problem(f"these trials do not vary in {', '.join(still)}", where, why, fix))
+    return dict(sigma)
 
 
 def make_objective(
@@ -86,9 +111,11 @@ def make_objective(
 ) -> Objective:
     """The paper's objective, or one over other channels: "x", "y", ... or "u:2" for a weight of 2.
 
-    scales  other than the paper's; all six channels count then unless ``channels`` says otherwise
+    scales  other than the paper's, as ``spread`` gives them; all six channels count then unless ``channels`` says
+            otherwise
     every   time between samples that count [s]
-    Raises OptionError for an unknown channel, a weight that is not positive, or an empty window.
+    Raises OptionError for an unknown channel, a weight that is not positive, a channel that counts and has no spread,
+    or an empty window.
     """
     weights: dict[str, float] = {}
     for entry in channels or (PAPER_CHANNELS if scales is None else STATES):
@@ -118,7 +145,12 @@ def make_objective(
                 "write window=FIRST:LAST in seconds",
             )
         )
-    return Objective(scales=scales or default_scales(L_pp), weights=weights, window=window, every=every)
+    usual = default_scales(L_pp)
+    if scales is not None:
+        why = "the standardised objective divides by the spread of each channel"
+        varying(scales, "objective", "leave them out of channels, or choose objective=paper", tuple(weights), why)
+        usual |= {name: scale for name, scale in scales.items() if scale > 0.0}
+    return Objective(scales=usual, weights=weights, window=window, every=every)
 
 
 def cases_of(trials: Sequence[Trial], objective: Objective, inputs: Sequence[str], draught: float | None) -> Cases:

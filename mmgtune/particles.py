@@ -19,7 +19,7 @@ from .backends import Integrator
 from .components import split_name
 from .effects import FilterEffect, FlowEffect, SensorEffect
 from .errors import OptionError, Problem, ProfileError
-from .files import atomic
+from .files import atomic, hold_regular
 from .model import Model
 from .predictor import PhysicsPredictor, Sampling
 from .profile import ShipProfile, parse_profile, with_effects
@@ -29,6 +29,9 @@ FILE = "particles.parquet"
 
 KEY = b"mmgtune_particles"
 SCHEMA = 1
+
+LARGEST = 1e12
+"""Size of a number, in the units of profiles, that is damage whichever coefficient it is of."""
 
 AIR_AND_WAVES = ("wind", "waves", "wave-drift")
 """Effects of what was around the ship that are forces."""
@@ -141,21 +144,19 @@ def load_particles(path: Path | str) -> Particles:
 
     path = Path(path)
     try:
+        hold_regular(path)
         table = pq.read_table(path, page_checksum_verification=True)
         raw = (table.schema.metadata or {})[KEY]
         facts = json.loads(raw)
         text, known, schema = facts["profile"], facts["facts"], facts["schema"]
     except (OSError, pa.ArrowException) as error:
-        raise ProfileError(Problem("particles cannot be read", str(path), str(error).splitlines()[0])) from error
+        raise _unusable("particles cannot be read", path, (str(error).splitlines() or [""])[0]) from error
     except (KeyError, TypeError, ValueError, RecursionError) as error:
-        fix = "make them with mmgtune posterior"
-        raise ProfileError(Problem("the file holds no particles", str(path), fix=fix)) from error
+        raise _unusable("the file holds no particles", path, "its metadata say of none") from error
     if schema != SCHEMA:
-        raise ProfileError(
-            Problem(f"particles of schema {schema!r:.20}", str(path), f"this program reads schema {SCHEMA}")
-        )
+        raise _unusable(f"particles of schema {schema!r:.20}", path, f"this program reads schema {SCHEMA}")
     if not isinstance(text, str) or not isinstance(known, dict):
-        raise ProfileError(Problem("what the particles say of themselves is damaged", str(path)))
+        raise _unusable("what the particles say of themselves is damaged", path, "it is no profile, or no facts")
     profile = parse_profile(text, path)
     names = tuple(table.column_names)
     there = Model(profile).rows
@@ -164,7 +165,15 @@ def load_particles(path: Path | str) -> Particles:
     values = np.array([column.to_numpy() for column in table.columns], dtype=float) if numbers else np.empty((0, 0))
     if unknown or not names or len(set(names)) < len(names):
         what = f"particles of '{unknown[0][:60]}', which their profile does not have" if unknown else "no particles"
-        raise ProfileError(Problem(what, str(path)))
+        raise _unusable(what, path, "the file has no columns, or others than were written")
     if not numbers or not values.size or not np.isfinite(values).all():
-        raise ProfileError(Problem("particles that are no finite numbers", str(path)))
+        raise _unusable("particles that are no finite numbers", path, "each column holds floating-point numbers")
+    beyond = np.abs(values).max(axis=1) > LARGEST
+    if beyond.any():
+        name = names[int(np.flatnonzero(beyond)[0])]
+        raise _unusable(f"particles of '{name}' beyond {LARGEST:g}", path, "no ship has such a number")
     return Particles(profile, names, values, known)
+
+
+def _unusable(what: str, path: Path, why: str) -> ProfileError:
+    return ProfileError(Problem(what, str(path), why, "copy the file again, or make it anew with mmgtune posterior"))

@@ -15,7 +15,7 @@ from .errors import OptionError, Problem
 from .given import ShipGiven, TrialsGiven, trials_of
 from .model import Model
 from .networks import named_ship
-from .objective import spread
+from .objective import spread, varying
 from .options import ParticleOptions, SimulationOptions, ValidateOptions
 from .predictor import PhysicsPredictor, Predictor, as_predictor, particles_of, profile_of, words_of
 from .profile.doubts import Doubt
@@ -164,18 +164,10 @@ def sigma_of(data: TrialSet, sigma_from: str | None, called: str) -> dict[str, f
     Raises OptionError where a state does not vary.
     """
     measured = list((trials_of(sigma_from) if sigma_from else data).trials.values())
-    sigma = spread(measured) if measured else {}
-    still = [name for name, value in sigma.items() if not value > 0.0]
-    if still:
-        raise OptionError(
-            Problem(
-                f"these trials do not vary in {', '.join(still)}",
-                "sigma_from" if sigma_from else called,
-                "L_MSE divides by the spread of each state",
-                "name trials that do with sigma_from=TRIALS",
-            )
-        )
-    return sigma
+    if not measured:
+        return {}
+    where = "sigma_from" if sigma_from else called
+    return varying(spread(measured), where, "name trials that do with sigma_from=TRIALS")
 
 
 def predictors_of(

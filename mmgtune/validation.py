@@ -16,7 +16,7 @@ from .evaluation import TrialRecord, records
 from .given import ShipGiven, TrialsGiven, list_of
 from .model import Model
 from .networks import named_ship
-from .objective import spread
+from .objective import spread, varying
 from .predictor import Predictor, as_predictor, cases_from, draught_of, portions
 from .trial import Trial
 
@@ -134,7 +134,7 @@ def score(
     """
     predictor = as_predictor(named_ship(ship, integrator), theta=theta, integrator=integrator, backend=backend)
     several = list_of(trials)
-    sigma = spread(several) if sigma is None else sigma
+    sigma = varying(spread(several), "trials", "give sigma") if sigma is None else sigma
     return [score_of(record, sigma) for record in records(predictor, several)]
 
 

@@ -96,13 +96,15 @@ def rewritten(path, change):
         (lambda t, f: (t.slice(0, 0), f), "finite"),
         (lambda t, f: (t.set_column(0, "hull.R_0", pa.array(["a"] * 30)), f), "finite"),
         (lambda t, f: (t.set_column(0, "hull.R_0", pa.array([np.nan] * 30)), f), "finite"),
+        (lambda t, f: (t.set_column(0, "hull.R_0", pa.array([0.01] * 29 + [1e300])), f), "beyond 1e.12"),
     ],
 )
 def test_a_damaged_file_says_what_is_wrong(particles, tmp_path, change, words):
     path = save_particles(particles, tmp_path / "particles.parquet")
     rewritten(path, change)
-    with pytest.raises(ProfileError, match=words):
+    with pytest.raises(ProfileError, match=words) as raised:
         load_particles(path)
+    assert all(problem.fix for problem in raised.value.problems)
 
 
 @pytest.mark.parametrize("bytes_", [b"", b"PAR1", b"PAR1" + bytes(200) + b"PAR1"])

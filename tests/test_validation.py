@@ -120,3 +120,40 @@ def test_wrong_arguments(arguments, said, tmp_path):
     assert ended.code == 2
     assert said in ended.err
     assert "Traceback" not in ended.err
+
+
+@pytest.fixture
+def eastward(tmp_path, suzaku):
+    """Turns whose northward positions are all the same number, the mean of which is not quite that number."""
+    for trial in make_set(suzaku, noise=1.0).trials.values():
+        write_trial(replace(trial, x=np.full(trial.n_samples, 0.1)), tmp_path / "log" / f"{trial.id}.parquet")
+    return tmp_path
+
+
+ONE_TARGET = ("--targets", "hull.R_0", "--starts", "1", "--quiet")
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("validate", "suzaku", "log"),
+        ("compare", "suzaku", "suzaku", "log"),
+        ("predict", "suzaku", "--trials", "log"),
+        ("fit", "--trials", "log", "--objective", "standardised", "--method", "least-squares", *ONE_TARGET),
+    ],
+)
+def test_a_state_that_does_not_vary(arguments, eastward):
+    ended = run(*arguments, cwd=eastward)
+    assert ended.code == 2, ended.err
+    assert "do not vary in x" in ended.err
+    assert "fix: " in ended.err
+
+
+def test_what_is_not_divided_by_the_spread_works_all_the_same(eastward):
+    line = ("fit", "--trials", "log", "--objective", "standardised", "--channels", "u,v,r", "--initial", "estimated")
+    fitted = run(*line, *ONE_TARGET, "--method", "least-squares", "--no-report", "--json", cwd=eastward)
+    assert fitted.code == 0, fitted.err
+    left_out = run("leave-out", "--trials", "log", "--folds", "2", *ONE_TARGET, "--json", cwd=eastward)
+    assert left_out.code == 0, left_out.err
+    assert left_out.json()["sigma"]["x"] is None
+    assert "encountered" not in left_out.err

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
+from types import ModuleType
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..effects import Effect, LagEffect
+from ..errors import OptionError, Problem, brief
 from ..model import Model
 from ..physics.quantities import State
 from .cases import Cases, Integrator, LaneResult, finish, lanes_of
@@ -44,10 +47,37 @@ if hasattr(os, "register_at_fork"):  # threads stay behind in the parent
 
 @lru_cache(maxsize=1)
 def cores() -> int:
-    """Cores this process may use: MMGTUNE_THREADS of them where that is set, for many processes side by side."""
+    """Cores this process may use: MMGTUNE_THREADS of them where that is set, for many processes side by side.
+
+    Raises OptionError where that is no number of cores.
+    """
     allowed = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    told = os.environ.get("MMGTUNE_THREADS", "")
-    return max(1, min(allowed, int(told))) if told.isdigit() else allowed
+    told = os.environ.get("MMGTUNE_THREADS", "").strip()
+    if not told:
+        return allowed
+    if not re.fullmatch("0*[1-9][0-9]{0,8}", told):
+        what, fix = f"MMGTUNE_THREADS is {brief(told)}, not a number of cores", "set it to 1 or more, or unset it"
+        raise OptionError(Problem(what, "environment", "it says how many cores this process may use", fix))
+    return min(allowed, int(told))
+
+
+def _compiling() -> ModuleType:
+    """The module that compiles; it is imported where something is to run, since numba takes long to import.
+
+    Raises OptionError where the environment keeps numba from compiling.
+    """
+    fix = "unset what begins with NUMBA_ in the environment, or choose backend=numpy"
+    try:
+        import numba
+
+        from . import compiling
+    except ValueError as error:
+        what = "numba does not take its settings"
+        raise OptionError(Problem(what, "environment", str(error), fix)) from error
+    if numba.config.DISABLE_JIT:
+        what, why = "numba is told not to compile", "the compiled back end is nothing without it"
+        raise OptionError(Problem(what, "environment, NUMBA_DISABLE_JIT", why, fix))
+    return compiling
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,9 +181,7 @@ class Compiled:
         """The compiled simulator for the components of ``model``."""
         text = kernel_source(model)
         if text not in self._kernels:
-            from .compiling import load_kernel
-
-            self._kernels[text] = load_kernel(text, functions_of(model))
+            self._kernels[text] = _compiling().load_kernel(text, functions_of(model))
         return self._kernels[text]
 
     def is_ready(self, model: Model) -> bool:
@@ -184,9 +212,10 @@ class Compiled:
         text = kernel_source(model)
         if text in self._kernels:
             return True
-        from .compiling import is_kept
-
-        return is_kept(text, functions_of(model))
+        try:
+            return bool(_compiling().is_kept(text, functions_of(model)))
+        except OptionError:  # said where something is to be compiled
+            return False
 
     def run(
         self,

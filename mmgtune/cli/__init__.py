@@ -40,7 +40,7 @@ from . import (
 )
 from .exitcodes import ExitCode
 from .options import Command, problems_in_flags
-from .output import say, show
+from .output import limit_width, say, show
 from .pipes import Piped, ReaderGone, say_no_more
 
 EPILOG = (
@@ -131,6 +131,7 @@ app.add_typer(profiles.app, name="profile", epilog=EPILOG)
 def main() -> None:
     """Run the command line; every way out has its exit code."""
     interrupts.handle(interrupts.stop_at_once("nothing was left half-written"))
+    limit_width()
     streams = sys.stdout, sys.stderr
     sys.stdout, sys.stderr = Piped(sys.stdout), Piped(sys.stderr)
     try:
@@ -168,6 +169,9 @@ def _run() -> int:
     except ReaderGone:
         say_no_more()
         return ExitCode.GOOD
+    except OSError:  # what went wrong cannot be said: stderr has no room either
+        say_no_more()
+        return ExitCode.COULD_NOT_RUN
     return ExitCode.GOOD
 
 

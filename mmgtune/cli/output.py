@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import shutil
 import sys
@@ -43,6 +44,13 @@ def say(text: str) -> None:
 def width() -> int:
     """Letters in a line of the terminal; more where stdout goes elsewhere."""
     return shutil.get_terminal_size((WIDE, 24)).columns
+
+
+def limit_width() -> None:
+    """Have no line longer than ``WIDE`` because COLUMNS says so: the help is filled up to it with spaces."""
+    told = os.environ.get("COLUMNS", "")
+    if told.isdecimal() and len(told) >= len(str(WIDE)):
+        os.environ["COLUMNS"] = str(WIDE)
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]], *, less: int = 0, **how: Any) -> list[str]:

@@ -105,7 +105,7 @@ def _recalled(noted: dict[str, Any]) -> Search:
     )
 
 
-@remembered(_asked, _noted, _recalled)
+@remembered(_asked, _noted, _recalled, lambda problem, *_given, **_named: problem.counter)
 def search(
     problem: FitProblem,
     seed: int,
@@ -142,6 +142,8 @@ def search(
             fresh = costs is None
             if costs is None:
                 costs = problem.costs(unit)
+            else:
+                problem.counter.evaluations += population  # when they were made
             found.costs.append(costs)
             failed = ~np.isfinite(costs)
             found.diverged += int(failed.sum())

@@ -15,8 +15,9 @@ import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Generic, ParamSpec, TypeVar
+from typing import Any, Generic, ParamSpec, Protocol, TypeVar
 
 import numpy as np
 
@@ -154,15 +155,35 @@ def finished(folder: Path) -> None:
         (folder / name).unlink(missing_ok=True)
 
 
+class Counts(Protocol):
+    """Something that counts evaluations."""
+
+    evaluations: int
+
+
+@dataclass
+class Uncounted:
+    """Where nobody looks at how many there were."""
+
+    evaluations: int = 0
+
+
 class remembered(Generic[R]):
     """Decorator of a function whose results a journal keeps.
 
     asked         of its arguments: numbers and texts that say what is to be done
     note, recall  a result as JSON, and back
+    counter       of its arguments: what counts evaluations; those of a recalled result count as when they were made
     """
 
-    def __init__(self, asked: Callable[..., list[Any]], note: Callable[[R], Any], recall: Callable[[Any], R]):
-        self.asked, self.note, self.recall = asked, note, recall
+    def __init__(
+        self,
+        asked: Callable[..., list[Any]],
+        note: Callable[[R], Any],
+        recall: Callable[[Any], R],
+        counter: Callable[..., Counts] | None = None,
+    ):
+        self.asked, self.note, self.recall, self.counter = asked, note, recall, counter
 
     def __call__(self, do: Callable[P, R]) -> Callable[P, R]:
         """The function, remembering where a journal is kept."""
@@ -173,7 +194,17 @@ class remembered(Generic[R]):
             if journal is None:
                 return do(*given, **named)
             asked = _hash(self.asked(*given, **named))
-            result: R = journal.remember(do.__name__, asked, lambda: do(*given, **named), self.note, self.recall)
+            counter = self.counter(*given, **named) if self.counter else Uncounted()
+            before = counter.evaluations
+
+            def note(result: R) -> Any:
+                return {"evaluations": counter.evaluations - before, "result": self.note(result)}
+
+            def recall(noted: Any) -> R:
+                counter.evaluations += noted["evaluations"]
+                return self.recall(noted["result"])
+
+            result: R = journal.remember(do.__name__, asked, lambda: do(*given, **named), note, recall)
             return result
 
         return through

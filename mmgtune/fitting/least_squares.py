@@ -73,7 +73,7 @@ def _recalled(noted: list[Any]) -> list[LeastSquaresResult]:
     ]
 
 
-@remembered(_asked, _noted, _recalled)
+@remembered(_asked, _noted, _recalled, lambda problem, *_given, **_named: problem.counter)
 def solve(
     problem: FitProblem,
     starts: FloatArray,

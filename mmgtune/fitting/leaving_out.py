@@ -173,7 +173,7 @@ class LeftOut(Displayed):
             "warnings": list(self.warnings),
             "doubts": [one.to_dict() for one in self.doubts],
             "options": self.options.to_dict(),
-            "sigma": self.sigma,
+            "sigma": finite_values(self.sigma),
             "integrator": self.method,
             "scores": self.rows(),
             "parts": [

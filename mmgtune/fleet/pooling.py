@@ -7,6 +7,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from .. import limits
+from ..errors import OptionError, Problem
 from ..files import write_text
 from ..fitting import CLASSES, FEWEST, Information, SisterClass
 from .commands import INFORMATION
@@ -23,11 +25,21 @@ def classes_of(out: Path, rows: Sequence[Mapping[str, Any]]) -> list[SisterClass
         path = out / row["run"] / INFORMATION
         if not row["sisters"] or row["command"] != "fit" or row["answer"] == "failed" or not path.is_file():
             continue
-        one = Information.from_dict(json.loads(path.read_text(encoding="utf-8")))
+        one = _told(path)
         one = one.apart_from([name for name in one.names if name.startswith("effects.")])
         ships = told.setdefault(row["sisters"], {})
         ships[row["ship"]] = ships[row["ship"]].and_of(one) if row["ship"] in ships else one
     return [SisterClass(name, ships) for name, ships in sorted(told.items()) if len(ships) >= FEWEST]
+
+
+def _told(path: Path) -> Information:
+    """What the trials of a job say.  Raises OptionError where the file does not hold that."""
+    try:
+        return Information.from_dict(json.loads(limits.text(path, limits.RECORD_BYTES, OptionError)))
+    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
+        fix = "remove the row of the job from results and run the fleet again with resume=True: the job is run anew"
+        what = "the file does not hold what trials say of coefficients"
+        raise OptionError(Problem(what, str(path), str(error), fix)) from error
 
 
 def write_classes(out: Path, classes: Sequence[SisterClass]) -> list[dict[str, Any]]:

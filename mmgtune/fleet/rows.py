@@ -6,6 +6,7 @@ file is there.  So nothing is lost with whoever dies, and nothing stands there t
 
 from __future__ import annotations
 
+import math
 import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -22,6 +23,12 @@ from .job import Job
 FOLDER = "results"
 ANSWERS = ("good", "no", "failed")
 """What a row says of its job: nothing found wrong, something found wrong, could not run."""
+
+UNKNOWN = ("off_track", "off_heading", "tuned_track", "tuned_heading")
+"""Numbers that a row may not have: of what was not simulated, or diverged."""
+
+_FROM = "__filename"
+"""What Arrow calls the column that says which file a row is from."""
 
 _FILE = re.compile(r"(?P<name>.+)-(?P<key>[0-9a-f]{16})\.parquet")
 
@@ -115,8 +122,8 @@ def read(out: Path) -> list[dict[str, Any]]:
     import pyarrow.dataset as ds
 
     folder = out / FOLDER
-    files = [str(path) for path, _ in _files(out)]
-    if not files:
+    keys_of = {str(path): match["key"] for path, match in _files(out)}
+    if not keys_of:
         why = "no job has ended there" if out.is_dir() else looked_for(out)
         fix = "give the folder that --out of mmgtune fleet run named"
         raise OptionError(Problem("there are no results of a fleet", str(folder), why, fix))
@@ -124,10 +131,53 @@ def read(out: Path) -> list[dict[str, Any]]:
     whole = pa.unify_schemas([schema(), keys])
     parts = ds.partitioning(keys, flavor="hive")
     try:
-        found = ds.dataset(files, schema=whole, format="parquet", partitioning=parts, partition_base_dir=str(folder))
-        rows: list[dict[str, Any]] = found.to_table().to_pylist()
-    except (OSError, pa.ArrowException) as error:
+        found = ds.dataset(
+            list(keys_of), schema=whole, format="parquet", partitioning=parts, partition_base_dir=str(folder)
+        )
+        rows: list[dict[str, Any]] = found.to_table(columns=[*whole.names, _FROM]).to_pylist()
+    except (OSError, ValueError, pa.ArrowException) as error:
         raise OptionError(
             Problem("the results cannot be read", str(folder), str(error), "run the fleet again with resume=True")
         ) from error
+    of_file: dict[str, list[dict[str, Any]]] = {path: [] for path in keys_of}
+    for row in rows:
+        of_file[str(row.pop(_FROM))].append(row)
+    damaged = [(path, why) for path, several in of_file.items() if (why := _unsound(several, keys_of[path]))]
+    if damaged:
+        what = "the row of a job does not hold what such rows hold"
+        fix = "remove that file and run the fleet again with resume=True: the job is run anew"
+        raise OptionError(*(Problem(what, path, why, fix) for path, why in damaged))
     return sorted(rows, key=lambda row: (row["ship"], row["date"], row["name"]))
+
+
+def _unsound(several: Sequence[Mapping[str, Any]], key: str) -> str:
+    """Why the rows of a file are not the one that ``write`` wrote there; "" where they are."""
+    if len(several) != 1:
+        return f"it has {len(several)} rows, not one"
+    (row,) = several
+    written = schema()
+    lost = [one.name for one in written if row[one.name] is None and one.name not in UNKNOWN]
+    if lost:
+        return f"nothing in {', '.join(lost)}"
+    if row["key"] != key or row["answer"] not in ANSWERS:
+        return f"it is of another job than its name says, or its answer is none of {', '.join(ANSWERS)}"
+    if Path(row["run"]).is_absolute() or ".." in Path(row["run"]).parts:
+        return "its run folder is outside the fleet's"
+    if len({len(row[name]) for name in ("names", "values", "before", "errors")}) > 1:
+        return "not as many values and errors as names of coefficients"
+    if None in (*row["causes"], *row["sentences"], *row["names"], *row["problems"]):
+        return "names or sentences are missing"
+    numbers = (row[one.name] for one in written if _holds_numbers(one.type))
+    if not all(math.isfinite(value) for one in numbers for value in _as_list(one) if value is not None):
+        return "numbers that are not finite"
+    return ""
+
+
+def _holds_numbers(kind: Any) -> bool:
+    import pyarrow as pa
+
+    return kind in (pa.float64(), pa.list_(pa.float64()))
+
+
+def _as_list(value: Any) -> Sequence[float | None]:
+    return value if isinstance(value, list) else [value]

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import LogError, Problem, closest
+from ..files import hold_regular
 from ..limits import LOG_BYTES, LOG_COLUMNS, LOG_LINE
 from .clock import Stamps
 from .headers import find_column
@@ -166,6 +167,7 @@ def look(path: Path, log_map: LogMap) -> Layout:
 def start_of(path: Path) -> bytes:
     """The first bytes of a log.  Raises LogError where it cannot be opened, is empty or binary."""
     try:
+        hold_regular(path)  # it is read more than once
         with path.open("rb") as file:
             content = file.read(PEEK)
     except OSError as error:

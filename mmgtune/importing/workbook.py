@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import LogError, Problem, among, brief
-from ..limits import LOG_COLUMNS, SHEET_BYTES, SHEET_CELLS
+from ..limits import LOG_COLUMNS, SHEET_BYTES, SHEET_CELLS, SHEET_ROWS
 from .cells import table_of
 from .mapping import LogMap
 from .table import Table
@@ -152,6 +152,7 @@ def _rows(sheet: Any, path: Path) -> list[tuple[Any, ...]]:
     for row in sheet.iter_rows(values_only=True):
         cells += len(row) + 1
         LOG_COLUMNS.hold(len(row), f"{path}, row {len(rows) + 1}", LogError)
+        SHEET_ROWS.hold(len(rows) + 1, str(path), LogError)
         SHEET_CELLS.hold(cells, str(path), LogError)
         rows.append(row)
     while rows and all(cell is None for cell in rows[-1]):

@@ -17,7 +17,7 @@ from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..model import Model
 from ..networks.hybrid import Hybrid, HybridPredictor
 from ..networks.residual import Ranges, ResidualWeights
-from ..objective import spread
+from ..objective import spread, varying
 from ..options.learning import HybridOptions
 from ..predictor import as_predictor
 from ..profile import ShipProfile
@@ -109,7 +109,7 @@ def learn_hybrid(
     test = tuple(data.trials[id] for id in data.test)
     splits = splits_of(tune, options)
     step, lag = times_of(profile, tune, options)
-    sigma = spread(tune)
+    sigma = varying(spread(tune), "trials", "give trials that do")
     identity = {
         "profile": profile.sha256,
         "trials": data.hashes(),

@@ -23,7 +23,7 @@ from ..networks import (
     save_network,
 )
 from ..networks.hybrid import Hybrid, silent
-from ..objective import spread
+from ..objective import spread, varying
 from ..options.learning import MixtureOptions
 from ..predictor import Predictor
 from ..profile import ShipProfile
@@ -156,7 +156,7 @@ def _tried(
         raise OptionError(
             Problem("no trial chooses the share", str(data.path or "trials"), "none of them tunes", "give a split")
         )
-    sigma, pieces = spread(chosen), pieces_of(chosen, options.restart)
+    sigma, pieces = varying(spread(chosen), "trials", "give trials that do"), pieces_of(chosen, options.restart)
     found: list[Tried] = []
     for share, predictor in several:
         scores = score(predictor, pieces, sigma)

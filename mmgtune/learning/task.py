@@ -9,7 +9,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import OptionError, Problem
-from ..objective import spread
+from ..objective import spread, varying
 from ..options.learning import MOST_MEMBERS, EnsembleOptions, LearnOptions, TrainingOptions
 from ..profile import ShipProfile
 from ..trial import Trial, TrialSet
@@ -87,7 +87,7 @@ def material_of(
                 "write a smaller horizon, or give longer trials",
             )
         )
-    sigma = spread([*split.learn, *split.choose])
+    sigma = varying(spread([*split.learn, *split.choose]), "trials", "give trials that do")
     test = tuple(data.trials[id] for id in data.test)
     return Material(profile, data, options, inputs, split, samples, sigma, test)
 

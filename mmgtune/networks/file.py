@@ -11,7 +11,7 @@ import numpy as np
 
 from .. import limits
 from ..errors import NetworkError, Problem, brief
-from ..files import atomic
+from ..files import atomic, hold_regular
 from ..profile import parse_profile
 from ..resources import folder, taken
 from .ensemble import Ensemble, Part
@@ -92,6 +92,7 @@ def load_network(path: str | Path) -> Trained:
     path = taken(path, Path(path).exists(), folder("ship_profiles") / f"{path}{SUFFIX}") or Path(path)
     where = str(path)
     try:
+        hold_regular(path)
         limits.NETWORK_BYTES.hold(path.stat().st_size, where, NetworkError)
         with safe_open(path, framework="numpy") as file:
             header = _header(file.metadata() or {}, where)

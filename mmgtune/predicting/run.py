@@ -13,7 +13,6 @@ from ..errors import OptionError, Problem
 from ..given import ShipGiven, TrialsGiven, list_of
 from ..model import Model
 from ..networks import named_ship
-from ..objective import spread
 from ..options import PredictOptions
 from ..options.predicting import OF_TRIALS, ORDERS
 from ..predictor import PhysicsPredictor, Predictor, Sampling, Uncertain, as_predictor, particles_of
@@ -102,8 +101,6 @@ def _agree(orders: object, trials: object, options: PredictOptions) -> None:
 
 
 def _sigma(trials: Sequence[Trial], options: PredictOptions) -> dict[str, float]:
-    if options.sigma_from is None:
-        return spread(trials)
     data = TrialSet({one.id: one for one in trials}, (), ())
     return sigma_of(data, options.sigma_from, "trials")
 

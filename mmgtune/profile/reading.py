@@ -109,7 +109,7 @@ class _Reader(TomlReader):
             approach=Approach(**approach) if approach else None,
             targets=self.targets(sections) if complete else (),
             limits=self.limits(),
-            provenance=self.data.get("provenance", {}),
+            provenance=self.provenance(),
             licence=self.word("ship", ship, "licence") if "licence" in ship else "",
             citation=self.word("ship", ship, "citation") if "citation" in ship else "",
             path=path,
@@ -374,6 +374,14 @@ class _Reader(TomlReader):
             if name not in known:
                 self.problem(f"unknown target '{name}'", "tuning", "targets", **among(name, known))
         return tuple(targets)
+
+    def provenance(self) -> dict[str, Any]:
+        """What whoever tuned it says of that."""
+        table = self.data.get("provenance", {})
+        if not isinstance(table, dict):
+            self.problem("'provenance' is not a table", "", "provenance", fix="write [provenance] and keys below it")
+            return {}
+        return table
 
     def limits(self) -> dict[str, float]:
         """What metrics of a trial may be at most, each in its own unit."""

@@ -7,10 +7,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ..errors import Problem, among, brief
 from ..limits import FACTS_BYTES, NAME, NESTING
 from ..toml_reading import depth, finite
-from .schema import COLUMNS, METADATA, SCHEMA, SOURCES
+from .schema import COLUMNS, LARGEST, METADATA, SCHEMA, SOURCES, impossible, known_column
 
 
 def facts_of(raw: bytes | None, path: Path, columns: Sequence[str]) -> tuple[dict[str, Any], list[Problem]]:
@@ -73,6 +75,10 @@ def _noise(noise: object, where: str, columns: Sequence[str]) -> list[Problem]:
         if number is None or number < 0.0:
             what = f"noise of {brief(name)} is {brief(value)}, not a standard deviation"
             problems.append(Problem(what, where, fix="write a number, zero or more, in the column's unit"))
+        elif (column := known_column(name)) and impossible(np.array([number]), column.unit).any():
+            what = f"noise of {brief(name)} is {brief(value)} {column.unit}"
+            why = f"nothing about a ship is beyond {LARGEST[column.unit]:g} {column.unit}"
+            problems.append(Problem(what, where, why, "write the sensor's standard deviation, or leave it out"))
     return problems
 
 

@@ -16,7 +16,8 @@ import numpy as np
 from .. import limits
 from ..arrays import FloatArray
 from ..errors import Problem, TrialError
-from ..files import atomic
+from ..files import atomic, hold_regular
+from ..units import canonical, factors
 from .digest import DIGEST_KEY, digest
 from .footer import rows_of
 from .metadata import facts_of
@@ -112,6 +113,7 @@ def id_in(path: Path) -> str | None:
     import pyarrow.parquet as pq
 
     try:
+        hold_regular(path)
         raw = pq.ParquetFile(path, pre_buffer=False).schema_arrow.metadata or {}
     except (OSError, ValueError, pa.ArrowException):
         return None
@@ -217,9 +219,24 @@ def layout_of(schema: Any, where: str) -> Layout:
         if known and name not in numeric:
             fix = f"write it as float64, in {known.unit}"
             problems.append(Problem(f"column '{name}' holds {str(kind)[:80]}, not numbers", where, fix=fix))
+    problems += [problem for one in schema if (problem := _another_unit(one, where))]
     wanted = [name for name in numeric if name not in twice]
     ignored = tuple(name for name in names if name not in numeric and known_column(name) is None)
     return Layout(names, wanted, len(numeric), ignored, problems)
+
+
+def _another_unit(column: Any, where: str) -> Problem | None:
+    """The problem of a column (``pyarrow.Field``) whose own metadata says a unit that trials are not in."""
+    known, raw = known_column(column.name), (column.metadata or {}).get(b"unit", b"")
+    said = canonical(raw.decode("utf-8", "replace"))
+    if known is None or factors(known.unit).get(said, 1.0) == 1.0:
+        return None
+    return Problem(
+        f"column '{column.name}' says that it is in {said}",
+        where,
+        f"trial files are in SI units: read in {known.unit}, every number of it would be wrong",
+        f"convert it to {known.unit}, or import the file with a map (mmgtune trials import)",
+    )
 
 
 def unreadable(begins: bytes, where: str, error: Exception) -> TrialError:

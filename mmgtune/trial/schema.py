@@ -129,6 +129,9 @@ def impossible(values: FloatArray, unit: str) -> BoolArray:
     return np.asarray(np.abs(values) > LARGEST.get(unit, np.inf))
 
 
+SHORTEST_STEP = 1e-7
+"""Time [s] between samples below which stamps cannot be seconds."""
+
 LARGEST_RUDDER = 2.0
 """Rudder angle [rad] beyond which a column must be in degrees."""
 

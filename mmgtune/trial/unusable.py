@@ -9,7 +9,18 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import Problem, closest
 from .kinematics import FITS, IN_DEGREES, position_misfits, turning
-from .schema import COLUMNS, LARGEST, LARGEST_RUDDER, MAIN_INPUTS, MOTION, REQUIRED, RUDDERS, impossible, known_column
+from .schema import (
+    COLUMNS,
+    LARGEST,
+    LARGEST_RUDDER,
+    MAIN_INPUTS,
+    MOTION,
+    REQUIRED,
+    RUDDERS,
+    SHORTEST_STEP,
+    impossible,
+    known_column,
+)
 
 
 def unusable(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
@@ -65,8 +76,10 @@ def missing_columns(columns: Mapping[str, object], where: str) -> list[Problem]:
 
 def _time(columns: Mapping[str, FloatArray], where: str, before: float = -np.inf, first_row: int = 0) -> list[Problem]:
     t = columns.get("t")
-    if t is None or (increasing(t) and (not len(t) or t[0] > before)):
+    if t is None:
         return []
+    if increasing(t) and (not len(t) or t[0] > before):
+        return _steps(t, where, before, first_row)
     if not np.isfinite(t).all():
         bad = ~np.isfinite(t)
         place = f"{where}, row {first_row + _first(bad)}"
@@ -81,6 +94,23 @@ def _time(columns: Mapping[str, FloatArray], where: str, before: float = -np.inf
             f"{where}, row {first_row + row}: t = {t[row]:.10g} s after {earlier[row]:.10g} s{more}",
             "each step of the simulation goes from one sample to the next",
             "sort the rows by time and drop repeated ones",
+        )
+    ]
+
+
+def _steps(t: FloatArray, where: str, before: float, first_row: int) -> list[Problem]:
+    """Of time that grows, whether it hardly does."""
+    steps = np.diff(t, prepend=before)
+    bad = steps < SHORTEST_STEP
+    if not bad.any():
+        return []
+    row = _first(bad)
+    return [
+        Problem(
+            f"time goes on by less than {SHORTEST_STEP:g} s in {bad.sum()} rows",
+            f"{where}, row {first_row + row}: {steps[row]:.3g} s after the row before",
+            "nothing about a ship is logged so fast: the unit of time is wrong, or stamps are there twice",
+            "write 't' in s, and one row for each time",
         )
     ]
 

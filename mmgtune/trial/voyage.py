@@ -13,6 +13,7 @@ import numpy as np
 from .. import limits
 from ..arrays import FloatArray
 from ..errors import Problem, TrialError
+from ..files import hold_regular
 from .digest import DIGEST_KEY, digest_of
 from .footer import rows_of
 from .metadata import facts_of
@@ -190,6 +191,7 @@ def _opened(path: Path) -> Any:
     import pyarrow.parquet as pq
 
     try:
+        hold_regular(path)
         with path.open("rb") as file:
             begins = file.read(4)
     except OSError as error:

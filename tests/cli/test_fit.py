@@ -3,6 +3,7 @@
 import json
 import signal
 
+import numpy as np
 import pytest
 
 from mmgtune.fitting import FitOptions, make_problem
@@ -17,7 +18,7 @@ PROMISED = {
     "restarts", "agreement", "wall_s", "out",
 }  # fmt: skip
 # What may differ between two runs of the same fit.
-CLOCK = {"created", "wall_s", "evaluations", "command", "out"}
+CLOCK = {"created", "wall_s", "command", "out"}
 
 FEW = ("--integrator", "euler", "--targets", "R_0,w_P0,kappa,N_r,Y_v")
 """A search of seconds."""
@@ -116,6 +117,8 @@ def test_kill_9_and_resume_gives_the_same_result(tmp_path):
     killed = run_until(checkpoint.exists, signal.SIGKILL, *search, "--out", "cut", cwd=tmp_path)
     assert killed.code == -signal.SIGKILL
     assert not (tmp_path / "cut" / "fit.json").exists()
+    with np.load(checkpoint) as costs:
+        assert len(costs["sizes"])
     assert run(*search, "--out", "cut", cwd=tmp_path).code == 2  # the half-finished run is not overwritten either
     other = run("fit", "--no-report", "--seed", "6", "--resume", "--out", "cut", cwd=tmp_path)
     assert other.code == 2
@@ -125,7 +128,6 @@ def test_kill_9_and_resume_gives_the_same_result(tmp_path):
     assert resumed.code == 0
     a, b = whole.json(), resumed.json()
     assert {k: v for k, v in a.items() if k not in CLOCK} == {k: v for k, v in b.items() if k not in CLOCK}
-    assert b["evaluations"] < a["evaluations"]
     assert not checkpoint.exists()
 
 

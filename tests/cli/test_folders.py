@@ -11,7 +11,7 @@ import pytest
 
 from mmgtune.errors import OutputError, ProfileError
 from mmgtune.estimating import read_particulars
-from mmgtune.files import atomic
+from mmgtune.files import atomic, remove_left_overs
 from mmgtune.fitting import claimed, prepare
 from mmgtune.fitting.sweeping import folder_name
 from mmgtune.profile import load_profile, parse_profile
@@ -150,3 +150,13 @@ def test_files_that_hide_bundled_profiles_and_particulars(tmp_path, monkeypatch)
 def test_the_bundled_folder_itself_hides_nothing(monkeypatch):
     monkeypatch.chdir(folder("trials"))
     assert "turn_p35" in load_trials("suzaku").trials  # a warning would be an error
+
+
+def test_halves_of_files_are_removed_from_runs_in_a_run_too(tmp_path):
+    left = [tmp_path / folder / f".{name}.abcd1234.part" for folder, name in ((".", "a"), ("b", "c"), ("b/d", "e.svg"))]
+    kept = tmp_path / "b" / "d" / ".mine.part"
+    for path in (*left, kept):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.touch()
+    remove_left_overs(tmp_path)
+    assert [path for path in (*left, kept) if path.exists()] == [kept]

@@ -21,7 +21,7 @@ from tests.command import run, run_until
 
 pytestmark = pytest.mark.slow(8)
 
-CLOCK = {"created", "wall_s", "evaluations", "command", "out"}
+CLOCK = {"created", "wall_s", "command", "out"}
 FEW = ("hull.R_0", "wake.w_P0", "rudder.kappa")
 
 

@@ -236,14 +236,25 @@ def test_hostile_workbooks(tmp_path, columns, monkeypatch):
         assert words in said or "no rows" in said, (words, said)
 
 
-def test_a_sheet_that_says_it_is_huge(tmp_path, columns, plain):
-    whole = book(as_rows(columns))
+def rewritten(whole, old_text, new_text):
+    """A workbook with a text in its parts replaced."""
     out = io.BytesIO()
     with zipfile.ZipFile(io.BytesIO(whole)) as old, zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as new:
         for one in old.namelist():
-            new.writestr(one, old.read(one).replace(b'ref="A1:I401"', b'ref="A1:XFD1048576"'))
-    (tmp_path / "log.xlsx").write_bytes(out.getvalue())
+            new.writestr(one, old.read(one).replace(old_text, new_text))
+    return out.getvalue()
+
+
+def test_a_sheet_that_says_it_is_huge(tmp_path, columns, plain):
+    whole = book(as_rows(columns))
+    (tmp_path / "log.xlsx").write_bytes(rewritten(whole, b'ref="A1:I401"', b'ref="A1:XFD1048576"'))
     close(imported(tmp_path / "log.xlsx"), plain)
+
+
+def test_a_row_beyond_those_that_sheets_have(tmp_path, columns):
+    whole = book(as_rows(columns))
+    (tmp_path / "log.xlsx").write_bytes(rewritten(whole, b'<row r="9"', b'<row r="99999999999"'))
+    assert "a sheet of 1048577 rows" in refusal(lambda: imported(tmp_path / "log.xlsx"))
 
 
 # MATLAB files

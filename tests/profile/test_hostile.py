@@ -23,6 +23,7 @@ TUNING = TEXT[TEXT.index("[tuning]") : TEXT.index("]", TEXT.index("targets = [")
     ("text", "words"),
     [
         (changed(TUNING, "").replace("schema = 1", "schema = 1\ntuning = 3", 1), "'tuning' is not a table"),
+        (changed("schema = 1", "schema = 1\nprovenance = 3"), "'provenance' is not a table"),
         (changed(TUNING, "[tuning]\ntargets = [3]"), "not a list of names"),
         (changed(TUNING, "[tuning]\ntargets = [[]]"), "not a list of names"),
         (changed(TUNING, "[tuning]\ntargets = 3"), "not a list of names"),
@@ -38,7 +39,7 @@ TUNING = TEXT[TEXT.index("[tuning]") : TEXT.index("]", TEXT.index("targets = [")
         (changed("t_P = 0.080", "t_P = { value = 0.08, note = [1] }"), "note of 'propeller.t_P' is [1], not text"),
         (changed("t_P = 0.080", "t_P = { value = 0.08, assumption = 'no' }"), "is 'no', not true or false"),
     ],
-    ids=range(15),
+    ids=range(16),
 )
 def test_refused(text, words):
     with pytest.raises(ProfileError) as error:

@@ -78,7 +78,7 @@ def trials(draw: st.DrawFn) -> Trial:
         n=column(-LARGEST["1/s"], LARGEST["1/s"]),
         delta=column(-1.5, 1.5),
         extra={name: column(-1e300, 1e300, gaps=True) for name in extra},
-        noise=draw(st.dictionaries(st.sampled_from(["x", "psi", "v"]), st.floats(0.0, 1e9))),
+        noise=draw(st.dictionaries(st.sampled_from(["x", "psi", "v"]), st.floats(0.0, 1e4))),
         note=draw(st.text(max_size=20)),
     )
 
@@ -186,6 +186,7 @@ def test_reading_leaves_no_threads_that_could_abort_a_quick_exit(tmp_path: Path)
         (b'{"source": []}', "'source' is [], not text"),
         (b'{"noise": [1]}', "not an object of standard deviations"),
         (b'{"noise": {"x": -1}}', "noise of 'x' is -1"),
+        (b'{"noise": {"x": 1e308}}', "noise of 'x' is 1e+308 m"),
         (b'{"noise": {"x": NaN}}', "noise of 'x' is nan"),
         (b'{"noise": {"v_m": 0.1}}', "noise of unknown column 'v_m'"),
         (b'{"id": "../../etc"}', "cannot be the name of a file"),
@@ -194,6 +195,27 @@ def test_reading_leaves_no_threads_that_could_abort_a_quick_exit(tmp_path: Path)
 def test_metadata_that_makes_no_sense(tmp_path: Path, metadata: bytes, expected: str) -> None:
     (problem,) = problems_of(write_raw(tmp_path / "a.parquet", made().columns, metadata))
     assert expected in problem
+
+
+def _saying(path: Path, units: dict[str, bytes]) -> Path:
+    """A trial whose columns say these units in their own metadata."""
+    table = pq.read_table(write_raw(path, made().columns))
+    fields = [
+        one.with_metadata({"unit": units[one.name]}) if one.name in units else one.remove_metadata()
+        for one in table.schema
+    ]
+    pq.write_table(table.cast(pa.schema(fields, metadata=table.schema.metadata)), path)
+    return path
+
+
+def test_columns_that_say_another_unit(tmp_path: Path) -> None:
+    said = {"u": b"Knots", "psi": b"deg", "r": "°/min".encode(), "x": b"m", "y": b"\xff", "v": b"m/s", "n": b"turns"}
+    problems = problems_of(_saying(tmp_path / "a.parquet", said))
+    assert [problem.splitlines()[0] for problem in problems] == [
+        f"column '{name}' says that it is in {unit} ({tmp_path / 'a.parquet'})"
+        for name, unit in (("psi", "deg"), ("u", "kn"), ("r", "deg/min"))
+    ]
+    read_trial(_saying(tmp_path / "b.parquet", {"n": b"rps", "t": b"seconds", "x": b"metres"}))
 
 
 def test_all_problems_at_once(tmp_path: Path) -> None:

@@ -44,6 +44,7 @@ ATTRIBUTES_OF = ("t", "x", "y", "psi", "u", "v_m", "r", "n", "delta")
     ("trial", "expected"),
     [
         (with_value(made(), "t", 7, 3.0), "time goes back (T, row 7: t = 3 s after 6 s"),
+        (with_value(made(), "t", 7, 6.0 + 1e-9), "time goes on by less than 1e-07 s in 1 rows (T, row 7: 1e-09 s"),
         (with_value(made(), "t", 7, 6.0), "time repeats (T, row 7: t = 6 s after 6 s"),
         (with_value(made(), "t", 7, np.nan), "time is no number in 1 rows (T, row 7"),
         (with_value(made(), "n", [5, 8], np.nan), "'n' is no number in 2 rows (T, column 'n', row 5"),

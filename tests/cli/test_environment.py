@@ -1,0 +1,51 @@
+"""What the environment may say: numbers that are none, and settings of libraries, are said and never guessed at."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.command import run
+
+COMPILED = ("simulate", "--trials", "suzaku", "--no-report", "--out", "out")
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("NUMBA_DISABLE_JIT", "1"), ("NUMBA_NUM_THREADS", "0"), ("NUMBA_NUM_THREADS", "-1")],
+)
+def test_settings_that_numba_cannot_work_with(name, value, tmp_path):
+    ended = run(*COMPILED, cwd=tmp_path, env={name: value}, fresh=True)
+    assert ended.code == 2, ended.err
+    assert "NUMBA_" in ended.err
+    assert "--backend numpy" in ended.err
+    assert run(*COMPILED, "--backend", "numpy", "--force", cwd=tmp_path, env={name: value}, fresh=True).code == 0
+
+
+@pytest.mark.parametrize("value", ["abc", "0", "-1", "1.5", "²", "9" * 30])
+def test_cores_that_are_no_number(value, tmp_path):
+    few = ("--method", "least-squares", "--starts", "1", "--targets", "hull.R_0", "--no-report", "--quiet")
+    fitted = run("fit", *few, cwd=tmp_path, env={"MMGTUNE_THREADS": value}, fresh=True)
+    assert (fitted.code, "MMGTUNE_THREADS is" in fitted.err) == (2, True), fitted.err
+    assert "unset it" in fitted.err
+    doctor = run("doctor", cwd=tmp_path, env={"MMGTUNE_THREADS": value}, fresh=True)
+    assert "MMGTUNE_THREADS is" in doctor.out
+
+
+@pytest.mark.parametrize("value", ["99999999", "9" * 30, "1", "0", "-5", "abc"])
+def test_the_help_whatever_the_width(value, tmp_path):
+    ended = run("--help", cwd=tmp_path, env={"COLUMNS": value}, fresh=True)
+    assert ended.code == 0, ended.err
+    assert max(map(len, ended.out.splitlines())) <= 1000
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+@pytest.mark.parametrize("line", ["--version", "validate suzaku suzaku --json", "fit -t nowhere"])
+def test_no_room_for_what_went_wrong_either(line, tmp_path):
+    """Exit code 1 would mean that the answer is no."""
+    with open("/dev/full", "w") as full:
+        command = [sys.executable, "-m", "mmgtune", *line.split()]
+        assert subprocess.run(command, cwd=tmp_path, stdout=full, stderr=full, timeout=60).returncode == 2
