@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -18,7 +18,7 @@ from .runs import spread_key
 from .screening import ChanceScores, Score, evidence, told_by
 from .workbench import TOLERANCE, Point, Workbench
 
-STRONG = 1.05
+STRONG = 1.2
 """Chi-squared per residual beyond which every named hypothesis makes a step before the best are refitted."""
 
 REFITTED, TERMS_REFITTED = 9, 4
@@ -49,6 +49,9 @@ UNLIKE_SIDES = 5.0
 """What a term that only a hull of two unlike sides has must explain besides: on turns to one side it is like the term
 that both sides have."""
 
+FIRST = 4
+"""First steps of an effect with one side only, from each start: in the first of them the targets only follow."""
+
 STARTS_KEPT = 2
 """Starts of a hypothesis that go on after a first step from each."""
 
@@ -76,12 +79,24 @@ class Known:
 
     ends   finished ones
     good   whether their noise is the one in use; else they are places to go on from
-    begun  a first step from each start
+    begun  first steps from each start
     """
 
     ends: dict[tuple[str, ...], Point] = field(default_factory=dict)
     good: bool = True
     begun: dict[tuple[str, ...], list[Point]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class Given:
+    """Where a look begins with what has leeway at the profile's values: there it has taken nothing of any cause.
+
+    point  what is known so far, fitted so
+    steps  of hypotheses by name, in typical sizes, as their scores there promise; the best scores first
+    """
+
+    point: Point
+    steps: Mapping[tuple[str, ...], FloatArray]
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,12 +107,14 @@ class Refitting:
     point   what is known so far
     linear  what the signatures of hypotheses are there
     known   refits there are within the look
+    given   what is known so far without leeway, None where nothing has any or little is left without it either
     """
 
     bench: Workbench
     point: Point
     linear: Linear
     known: Known
+    given: Given | None = None
     stop: Stop = lambda: False
 
     @property
@@ -116,7 +133,7 @@ class Refitting:
         if quick:
             chosen = named[:3] + terms[:1]
         else:
-            chosen = self._likely(named) if self.strong else named[:REFITTED]
+            chosen = self._likely(named) if self.strong or self.given else named[:REFITTED]
             chosen += terms[: (2 if self.strong else 1) * TERMS_REFITTED]
         fitted = self._fitted([s for s in chosen if s.power > 0.0])
         fitted += self._fitted(self._of_runs_worth(order, [end for _, end in fitted], quick=quick))
@@ -130,8 +147,12 @@ class Refitting:
             raise Stopped
 
     def _likely(self, named: Sequence[Score]) -> list[Score]:
-        """Of named hypotheses, best scores first, those whose first step from any start explains most, and a few of
-        the best scores."""
+        """Of named hypotheses, best scores first, those whose first steps from any start explain most, and a few of
+        the best scores; without leeway where that is told."""
+        point = self.given.point if self.given else self.point
+        if self.given:
+            place = {names: k for k, names in enumerate(self.given.steps)}
+            named = sorted(named, key=lambda score: place[score.hypothesis.names])
         chi2 = []
         for score in named:
             self._go_on()
@@ -139,7 +160,8 @@ class Refitting:
             if names in self.known.ends:
                 chi2.append(-np.inf)
             elif score.power > 0.0:
-                self.known.begun[names] = self._steps(self.point, score, self._starts(score), 1)
+                starts = self._starts(point, score, SIZES)
+                self.known.begun[names] = self._steps(point, score, starts, FIRST if starts.shape[1] > 1 else 1)
                 chi2.append(min(end.chi2 for end in self.known.begun[names]))
             else:
                 chi2.append(np.inf)
@@ -207,27 +229,43 @@ class Refitting:
             end = self.known.ends[names]
             ends = [end] if self.known.good else self._steps(end, score, end.unit[:, None], ROUGH)
         elif names in self.known.begun:
-            null = origin(self.bench, self.point, names)
+            before = self.given.point if self.given else self.point
+            null = origin(self.bench, before, names)
             begun = sorted(self.known.begun[names], key=lambda end: end.chi2)
             away = [end for end in begun if np.any(end.unit[-len(null) :] != null)]  # at the null there is no way on
             best = (away or begun)[:STARTS_KEPT]
             starts = np.column_stack([end.unit for end in best])
-            ends = [*begun, *self._steps(replace(self.point, offsets=best[0].offsets), score, starts, ROUGH - 1)]
+            ends = [*begun, *self._steps(replace(before, offsets=best[0].offsets), score, starts, ROUGH - 1)]
+            if self.given is not None:
+                ends = self._released(score, min(ends, key=lambda end: end.chi2))
         else:
-            ends = self._steps(self.point, score, self._starts(score), ROUGH)
+            ends = self._steps(self.point, score, self._starts(self.point, score, SIZES[:1]), ROUGH)
         return min(ends, key=lambda end: end.chi2)
 
-    def _starts(self, score: Score) -> FloatArray:
-        """Where the refit of a hypothesis starts, (n_names, n_starts): where its score says, and for an effect with one
-        side only, whose slope at the null misleads, at sizes around the typical."""
+    def _released(self, score: Score, end: Point) -> list[Point]:
+        """A few steps with leeway, on from a refit without any, and from where the score says."""
+        names = [self.point.names[i] for i in kept_free(self.point, score.hypothesis)]
+        there = dict(zip(end.names, end.unit, strict=True))
+        own = [there.get(name, z) for name, z in zip(names, self.bench.null(names), strict=True)]
+        by_score = self._starts(self.point, score, ())[:, 0]
+        on = np.array([*own, *(there[name] for name in score.hypothesis.names)])
+        found = []
+        for offsets, start in ((end.offsets, on), (self.point.offsets, by_score)):
+            found += self._steps(replace(self.point, offsets=offsets), score, start[:, None], ROUGH)
+        return found
+
+    def _starts(self, point: Point, score: Score, sizes: Sequence[float]) -> FloatArray:
+        """Where the refit of a hypothesis starts from a point, (n_names, n_starts): where its score says, and for an
+        effect with one side only, whose slope at the null misleads, at sizes around the typical."""
         names = score.hypothesis.names
-        null = origin(self.bench, self.point, names)
+        null = origin(self.bench, point, names)
         size = self._typical(score.hypothesis)
-        places = [null + np.clip(score.step, -4.0, 4.0) * size]
+        step = self.given.steps[names] if self.given and point is self.given.point else score.step
+        places = [null + np.clip(step, -4.0, 4.0) * size]
         away = inwards(self.bench.null(names))
         if away.any():
-            places += [null + away * size * factor for factor in (SIZES if self.strong else SIZES[:1])]
-        kept = self.point.unit[kept_free(self.point, score.hypothesis)]
+            places += [null + away * size * factor for factor in sizes]
+        kept = point.unit[kept_free(point, score.hypothesis)]
         return np.column_stack([np.concatenate([kept, np.clip(place, 0.0, 1.0)]) for place in places])
 
     def _steps(self, point: Point, score: Score, starts: FloatArray, iterations: int) -> list[Point]:

@@ -20,7 +20,7 @@ from .base_fit import PRECISE, base_fit, unnoticed
 from .hypotheses import Hypothesis
 from .linear import Linear, linearise
 from .refit import ENOUGH, Refit, believable_first, decide, rivals_among
-from .refitting import STRONG, Known, Refitting, Stop, Stopped, kept_free
+from .refitting import STRONG, Given, Known, Refitting, Stop, Stopped, kept_free
 from .screening import Score, scores
 from .workbench import Point, Workbench
 
@@ -178,7 +178,8 @@ def look(
     linear = linearise(bench, point, names, varying=varying)
     ranked = scores(linear, hypotheses)
     known = Known()
-    best = Refitting(bench, point, linear, known, stop).best(ranked, quick=True)
+    given = _as_given(bench, point, hypotheses)
+    best = Refitting(bench, point, linear, known, given, stop).best(ranked, quick=True)
     richest = best[0].point if best and best[0].gain > 2.0 * ENOUGH else point
     at_best = linear if richest is point else linearise(bench, richest, names)
     noise = _noise_at(bench, at_best)
@@ -188,7 +189,8 @@ def look(
         linear = linearise(bench, point, names, varying=varying)
         ranked = scores(linear, hypotheses)
         known.good = False
-    refits = believable_first(Refitting(bench, point, linear, known, stop).best(ranked, quick=False))
+        given = _as_given(bench, point, hypotheses)
+    refits = believable_first(Refitting(bench, point, linear, known, given, stop).best(ranked, quick=False))
     finer_gain = None
     if first:
         tolerance = unnoticed(bench, point.chi2)
@@ -203,6 +205,28 @@ def look(
     rivals = rivals_among(refits) if refits else []
     accepted, reason = decide(bench, refits, rivals)
     return Step(point, linear, ranked, refits, rivals, accepted, reason, finer_gain, evenly)
+
+
+def _as_given(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis]) -> Given | None:
+    """The point refitted with what has leeway at the profile's values, where that leaves much."""
+    kept = [i for i, name in enumerate(point.names) if name not in bench.leeway]
+    if len(kept) == len(point.names):
+        return None
+    names, start = [point.names[i] for i in kept], point.unit[kept][:, None]
+    there = bench.refit(
+        names,
+        start,
+        point.offsets,
+        integrator=point.integrator,
+        tolerance=unnoticed(bench, point.chi2),
+        spreads=point.spreads,
+    )
+    if there.chi2 < STRONG * bench.problem.n_residuals:
+        return None
+    alike = [h for h in hypotheses if not h.by]
+    ranked = scores(linearise(bench, there, [name for h in alike for name in h.bases]), alike)
+    ranked.sort(key=lambda score: -score.score)
+    return Given(there, {score.hypothesis.names: score.step for score in ranked})
 
 
 def _noise_at(bench: Workbench, linear: Linear) -> noises.NoiseModel:
