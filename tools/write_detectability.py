@@ -20,7 +20,8 @@ Written by `tools/write_detectability.py`: the table every diagnosis has in its 
 trials of SUZAKU (four turns and two zigzags; the four turns of the test set are kept out). Before any cause is looked
 for, it says of each effect
 
-- **share**: how much of what the effect changes survives when the twelve targets and the initial states are re-tuned;
+- **share**: how much of what the effect changes survives when the twelve targets, the initial states and, within
+  5 %, the hull are re-tuned;
 - **found from**: the size from which it would be named, by noise of sensors and of the logged inputs, in the sense of
   the search (the criterion of information by Bayes plus 10, and at least a tenth of a typical size);
 - **closest**: the effects whose surviving signatures point most nearly the same way, with the angle between. Below

@@ -189,7 +189,7 @@ def held_out(bench: Workbench, found: Found, test: Sequence[Trial]) -> Gain:
 def expected(bench: Workbench, found: Found, trials: Sequence[Trial]) -> float:
     """Chi-squared beyond noise on trials that a point was not fitted to, as its coefficients are known no better.
 
-    The mean of draws from their covariance, initial states re-estimated to first order.
+    The median of draws from their covariance, initial states re-estimated to first order.
     """
     names, spread = covariance(bench, found.final)
     beside = Beside.of(bench, (found.base, found.final), trials)
@@ -204,7 +204,7 @@ def expected(bench: Workbench, found: Found, trials: Sequence[Trial]) -> float:
     runs = runs[:, np.isfinite(runs).all(axis=0)]
     by_offset = problem.offset_slopes(at, offsets)[1]
     moved = problem.without_offsets(runs[:, 1:] - runs[:, :1], by_offset, problem.prior)
-    return float(np.sum(moved**2)) / max(int(moved.shape[1]), 1)
+    return float(np.median(np.sum(moved**2, axis=0))) if moved.shape[1] else 0.0
 
 
 def _gain(bench: Workbench, found: Found, test: Sequence[Trial]) -> Gain:

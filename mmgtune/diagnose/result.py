@@ -30,6 +30,9 @@ SCHEMA = 1
 VERDICTS = ("none", "found", "not-separable", "unexplained", "interrupted")
 """Codes; people read ``Diagnosis.sentence``."""
 
+IMITATED = 0.5
+"""Share of the error removed below which it is said that a hull a little off is part of what it is counted from."""
+
 LARGE = 10.0
 """Variance beyond noise from which it is told as a multiple of the noise."""
 
@@ -394,7 +397,9 @@ class Diagnosis(Plotted):
                 f"{math.sqrt(before):.2g} to {math.sqrt(after):.2g} times the noise of the measurements."
             )
         them = "it" if len(self.causes) == 1 else "them"
-        gained = f"{text} Adding {them} removes {_percent(share)} of the error {where}."
+        imitated = share < IMITATED and self.options.leeway > 0.0 and self.choice is None
+        of = f"what a hull that is {self.options.leeway:.0%} off would leave of the error" if imitated else "the error"
+        gained = f"{text} Adding {them} removes {_percent(share)} of {of} {where}."
         if self.doubted:
             gained = f"{gained} {self.doubted.sentence}"
         if not any(cause.runs for cause in self.causes):

@@ -87,7 +87,7 @@ def test_what_uncertain_coefficients_bring_is_expected_of_held_out_trials(suzaku
         foreseen.append(expected(bench, found, made[2:]))
         brought.append(held_out(bench, found, made[2:]).excess[:, 1].sum())
     assert all(one > 0.0 for one in foreseen)
-    assert 0.2 < np.mean(brought) / np.mean(foreseen) < 5.0
+    assert 0.2 < np.median(brought) / np.median(foreseen) < 5.0
     assert np.mean(np.array(brought) < BAND * np.array(foreseen)) >= 0.6
 
 

@@ -58,7 +58,7 @@ def test_a_typical_effect_is_named(tag, tmp_path):
     document = result.to_dict()
     json.dumps(document, allow_nan=False)
     assert outcome(case.effects, document) == "right", (result.verdict, document["causes"])
-    assert document["gain"]["J_test_after"] < 0.1 * document["gain"]["J_test_before"]
+    assert document["gain"]["J_test_after"] < 0.2 * document["gain"]["J_test_before"]
     assert document["gain"]["share_above_noise_removed"] > 0.95
     first = document["causes"][0]
     assert first["p_value"] < 0.01
@@ -87,7 +87,7 @@ def test_a_small_effect_with_one_side_is_not_taken_for_another(tmp_path):
 def test_what_the_log_leaves_open_is_not_called_unexplained(tmp_path):
     case = single("steering-lag", 1, seed=2)  # orders logged once a second, the moment in between is not
     assert "rate_limit" in case.effects["steering-lag"]
-    result = said_of(case, tmp_path)
+    result = said_of(case, tmp_path, leeway=0.0)
     assert result.verdict == "none"
     assert result.chi2[1] > 1.1  # more than the noise of the sensors it is
 
@@ -187,7 +187,7 @@ def test_a_cause_that_would_be_believed_alone_is_named_though_a_hull_unlike_the_
     derivatives = [name for name in load_profile("suzaku").sections["hull"].coefficients if name[0] in "YN"]
     hull = {f"hull.{name}": PROFILE[f"hull.{name}"] * rng.uniform(0.93, 1.07) for name in derivatives}
     write(simulate({**case.ship, **hull}, case.effects, case.seed, case.noise), tmp_path)
-    options = DiagnoseOptions(effects=("rudder-offset", "hull-term", "rpm-scale", "heading-filter"))
+    options = DiagnoseOptions(effects=("rudder-offset", "hull-term", "rpm-scale", "heading-filter"), leeway=0.0)
     result = diagnose(load_profile("suzaku"), load_trials(tmp_path), options)
     assert (result.verdict, [cause.tag for cause in result.causes]) == ("found", ["rudder-offset"])
     assert result.doubted.effects[0] == "rudder-offset"

@@ -22,7 +22,7 @@ def test_inputs_logged_now_and_then_are_named(besides, tmp_path):
     assert [cause.tag for cause in result.causes] == ["inputs-held", *besides]
     assert "rudder angle every 6 s" in result.sentence()
     assert result.verdict == "found"
-    assert result.chi2[0] > 1.5
+    assert result.chi2[0] > 1.1
     assert result.chi2[1] < 1.1
     for tag, own in besides.items():
         sizes = next(one for one in result.to_dict()["causes"] if one["effect"] == tag)["parameters"]
