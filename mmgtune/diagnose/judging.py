@@ -132,7 +132,10 @@ def _first(found: Found) -> Point:
 
 
 def _targets_of(bench: Workbench, point: Point) -> dict[str, float]:
-    """Targets at a point, with what is tied to them; the profile's own value where a cause takes the place of one."""
+    """Targets at a point, with what is tied to them, and what had leeway.
+
+    The profile's own value where a cause takes the place of a target.
+    """
     values = bench.values(point)
     own = {name: values[name] if name in values else bench.model.numbers()[name] for name in bench.tuned_alone}
     return own | followers(bench.model.ties, own)

@@ -210,7 +210,7 @@ class Detectability(Brief):
 class Diagnosis(Plotted):
     """A finished diagnosis.
 
-    theta     tuned targets with all causes in place; retuned: without any
+    theta     tuned targets, and what had leeway, with all causes in place; retuned: without any
     traces    what is statistically there besides and changes nothing that a user would notice; in no profile
     contributions  of the causes, by tag in their order, the others in place
     groups    causes that cannot be told apart, each a list of tags
