@@ -27,7 +27,7 @@ from .checkpoint import NAME as CHECKPOINT
 from .checkpoint import differing
 
 NAME = "journal.jsonl"
-SCHEMA = 1
+SCHEMA = 2
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -58,10 +58,10 @@ class Journal:
         if resume:
             lines = self._lines()
             head = _parsed(lines[0]) if lines else None
-            if head is None or not isinstance(head.get("identity"), dict):
-                raise OptionError(
-                    Problem("the journal cannot be read", str(self.path), "", "delete it, or run without resume=True")
-                )
+            if head is None or head.get("schema") != SCHEMA or not isinstance(head.get("identity"), dict):
+                why = "it is damaged, or of another version of this program"
+                fix = "delete it, or run without resume=True"
+                raise OptionError(Problem("the journal cannot be read", str(self.path), why, fix))
             differing(head["identity"], self.identity, self.path)
             entries = [_entry(line) for line in lines[1:]]
             whole = entries.index(None) if None in entries else len(entries)  # up to half a line, or a damaged one

@@ -129,6 +129,16 @@ def test_half_a_line_at_the_end_is_done_again(tmp_path, in_three):
     assert same(resumed.to_dict()) == in_three[0]
 
 
+def test_a_journal_of_an_earlier_form_is_refused(tmp_path, in_three):
+    """Its results hold no counts: read on, they ended in a TypeError."""
+    head, _, rest = in_three[1].partition(b"\n")
+    earlier = head.replace(b'"schema": 2', b'"schema": 1')
+    assert earlier != head
+    (tmp_path / NAME).write_bytes(earlier + b"\n" + rest)
+    with pytest.raises(OptionError, match="another version of this program"):
+        leave_out("suzaku", "suzaku", IN_THREE, folder=tmp_path, resume=True)
+
+
 def test_a_changed_line_is_done_again_and_so_is_what_follows(tmp_path, in_three):
     """A digit changed in a result, as by a bad disk, went into the numbers of the run without a word."""
     whole, kept = in_three
