@@ -10,7 +10,7 @@ from ..given import ShipGiven, TrialsGiven, ship_of
 from ..options import DiagnoseOptions
 from ..trial import VoyageSet
 from .hypotheses import known_causes
-from .voyages import looked_at
+from .voyages import looked_at, with_hull_held
 from .workbench import make_workbench
 
 EVALUATIONS = (15, 200)
@@ -26,7 +26,7 @@ def plan_diagnosis(profile: ShipGiven, trials: TrialsGiven | VoyageSet, options:
     pieces = in_pieces(data, own)
     seen = [trial for name, trial in pieces.trials.items() if name not in pieces.test]
     known = known_causes(ship, seen, options)
-    bench = make_workbench(ship, seen, options)
+    bench = make_workbench(ship, seen, with_hull_held(options) if choice else options)
     tags = list(dict.fromkeys(h.tag for h in known))
     search = (
         f"{len(known)} hypotheses, {options.most} causes at most, false alarm {options.level:g}, seed {options.seed}"
@@ -37,9 +37,14 @@ def plan_diagnosis(profile: ShipGiven, trials: TrialsGiven | VoyageSet, options:
         f"effects   {', '.join(tags)}",
         f"compares  {bench.problem.n_residuals} differences of {', '.join(bench.channels)}; back end {options.backend}",
         f"targets   within {width_words(options.a_r)} of their values: {', '.join(bench.targets)}",
+        *(
+            (f"leeway    {100.0 * options.leeway:.3g} % of their values: {', '.join(bench.leeway)}",)
+            if bench.leeway
+            else ()
+        ),
     )
     each = evaluation_seconds(bench.problem)
-    free = len(bench.targets) + 7
+    free = len(bench.tuned_alone) + 7
     low, high = (len(known) * n * free * each for n in EVALUATIONS)
     files = ("diagnosis.json", "profile.toml", "motions.parquet", "report.html and .md", "figures")
     return Plan(lines, (low, high), files, can_be_tried(bench.problem))

@@ -398,7 +398,8 @@ class Diagnosis(Plotted):
             )
         them = "it" if len(self.causes) == 1 else "them"
         imitated = share < IMITATED and self.options.leeway > 0.0 and self.choice is None
-        of = f"what a hull that is {self.options.leeway:.0%} off would leave of the error" if imitated else "the error"
+        hull = f"what a hull that is {100.0 * self.options.leeway:.3g} % off would leave of the error"
+        of = hull if imitated else "the error"
         gained = f"{text} Adding {them} removes {_percent(share)} of {of} {where}."
         if self.doubted:
             gained = f"{gained} {self.doubted.sentence}"

@@ -25,7 +25,7 @@ from .legs import LEG_NAMES, Difference, differences
 from .narrow import narrow_box
 from .result import Diagnosis
 from .search import search
-from .voyages import Choice, looked_at
+from .voyages import Choice, looked_at, with_hull_held
 from .workbench import make_workbench
 
 
@@ -77,8 +77,7 @@ def _diagnose(
     known = known_causes(profile, seen, options)
     in_place = known_causes(profile, seen, options, in_place=True) if choice is None else []
     names = [name for h in (*known, *in_place) for name in h.names]
-    if choice is not None:  # legs at a steady course tell little of single coefficients of the hull
-        options = replace(options, leeway=0.0)
+    options = with_hull_held(options) if choice else options
     bench = make_workbench(profile, seen, options, [*names, *(_legs(profile, names) if choice else ())])
     known = [h for h in known if not set(h.names) & set(bench.targets)]
     known = [h for h in known if not set(h.instead) & set(bench.targets)]

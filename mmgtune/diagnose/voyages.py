@@ -78,6 +78,11 @@ def looked_at(
     return trials_of(given).series_only("a diagnosis"), None
 
 
+def with_hull_held(options: DiagnoseOptions) -> DiagnoseOptions:
+    """The choices for voyages: at steady courses single coefficients of the hull tell little, and have no leeway."""
+    return replace(options, leeway=0.0)
+
+
 def choose_windows(profile: ShipProfile, voyages: VoyageSet, options: DiagnoseOptions) -> Choice:
     """Windows of voyages, as many from each, that differ from each other as much as they can.
 

@@ -30,3 +30,12 @@ def test_effects_are_those_looked_for(suzaku):
     assert ("wind", ("measured",)) not in [(h.tag, h.variant) for h in known_causes(plain, [halves], DiagnoseOptions())]
     assert "current" in lines_of(plain, trials)["effects"]
     assert "current" not in lines_of(has, trials)["effects"]
+
+
+def test_what_has_leeway_is_said(suzaku):
+    shown = lines_of(suzaku.profile, load_trials("suzaku"))
+    assert shown["leeway"].startswith("5 % of their values: hull.X_vv, ")
+    assert "particulars.m_y_" in shown["leeway"]
+    assert "hull.R_0" not in shown["leeway"]
+    lines = plan_diagnosis(suzaku.profile, load_trials("suzaku"), DiagnoseOptions(leeway=0.0)).lines
+    assert not any(line.startswith("leeway") for line in lines)
