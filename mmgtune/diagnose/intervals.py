@@ -10,6 +10,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..fitting.box import group_of, parameter_of
 from .linear import linearise, typical
+from .runs import between
 from .workbench import Point, Workbench
 
 NORMAL = 1.96
@@ -42,9 +43,9 @@ def estimates(bench: Workbench, point: Point) -> dict[str, Estimate]:
     R, noise, size = _told(bench, point, names)
     back = np.linalg.pinv(R, rcond=1e-10)
     spread = back @ noise @ back.T
-    believed = bench.beliefs(names, point.spreads)
+    believed = between(names, point.spreads)
     if believed is not None:  # what other runs say of a run that says little itself
-        alike = believed[0] * size
+        alike = believed * size
         told = R.T @ np.linalg.solve(noise, R)
         spread = np.linalg.pinv(told + alike.T @ alike, rcond=1e-12, hermitian=True)
     spread = spread * np.outer(size, size)

@@ -7,10 +7,10 @@ same form would be named for.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from fnmatch import fnmatchcase
 
 import numpy as np
 
-from ..errors import OptionError
 from ..fitting.box import Box, choose_targets
 from ..model import Model
 
@@ -20,14 +20,9 @@ PATTERNS = ("hull.*", "particulars.m_x_", "particulars.m_y_", "particulars.k_zz_
 
 def let_go(model: Model, targets: Sequence[str], fixed: Sequence[str]) -> tuple[str, ...]:
     """Coefficients of a model beside the targets that are known no better than to some per cent."""
-    found: list[str] = []
-    for pattern in PATTERNS:
-        try:
-            found += choose_targets(model, [pattern], ())
-        except OptionError:  # an arrangement without such a coefficient
-            continue
-    held = set(choose_targets(model, [*found], fixed)) if found else set()
-    return tuple(name for name in found if name in held and name not in targets and model.profile.value(name) != 0.0)
+    there = [pattern for pattern in PATTERNS if any(fnmatchcase(name, pattern) for name in model.profile.names())]
+    free = choose_targets(model, there, fixed)
+    return tuple(name for name in free if name not in targets and model.profile.value(name) != 0.0)
 
 
 def deviations(box: Box, names: Sequence[str], share: float) -> dict[str, float]:

@@ -122,6 +122,11 @@ class Refitting:
         """Whether so much is left that a linear score cannot choose."""
         return self.point.chi2 > STRONG * self.bench.problem.n_residuals
 
+    @property
+    def _before(self) -> Point:
+        """Where named hypotheses are first looked for from: with nothing yet taken by what has leeway."""
+        return self.given.point if self.given else self.point
+
     def best(self, ranked: Sequence[Score], *, quick: bool) -> list[Refit]:
         """The most promising hypotheses refitted, best first; what is found is known from then on.
 
@@ -149,7 +154,7 @@ class Refitting:
     def _likely(self, named: Sequence[Score]) -> list[Score]:
         """Of named hypotheses, best scores first, those whose first steps from any start explain most, and a few of
         the best scores; without leeway where that is told."""
-        point = self.given.point if self.given else self.point
+        point = self._before
         if self.given:
             place = {names: k for k, names in enumerate(self.given.steps)}
             named = sorted(named, key=lambda score: place[score.hypothesis.names])
@@ -229,7 +234,7 @@ class Refitting:
             end = self.known.ends[names]
             ends = [end] if self.known.good else self._steps(end, score, end.unit[:, None], ROUGH)
         elif names in self.known.begun:
-            before = self.given.point if self.given else self.point
+            before = self._before
             null = origin(self.bench, before, names)
             begun = sorted(self.known.begun[names], key=lambda end: end.chi2)
             away = [end for end in begun if np.any(end.unit[-len(null) :] != null)]  # at the null there is no way on

@@ -178,8 +178,7 @@ def look(
     linear = linearise(bench, point, names, varying=varying)
     ranked = scores(linear, hypotheses)
     known = Known()
-    given = _as_given(bench, point, hypotheses)
-    best = Refitting(bench, point, linear, known, given, stop).best(ranked, quick=True)
+    best = Refitting(bench, point, linear, known, stop=stop).best(ranked, quick=True)
     richest = best[0].point if best and best[0].gain > 2.0 * ENOUGH else point
     at_best = linear if richest is point else linearise(bench, richest, names)
     noise = _noise_at(bench, at_best)
@@ -189,7 +188,7 @@ def look(
         linear = linearise(bench, point, names, varying=varying)
         ranked = scores(linear, hypotheses)
         known.good = False
-        given = _as_given(bench, point, hypotheses)
+    given = _as_given(bench, point, hypotheses)
     refits = believable_first(Refitting(bench, point, linear, known, given, stop).best(ranked, quick=False))
     finer_gain = None
     if first:
