@@ -21,12 +21,6 @@ def without_spikes(record: Record) -> Record:
         around = surrounding(name)
         if around is None or not around.gusty:
             rows = spikes(values, share=0.2 if name in INPUTS else 0.02)
-            if len(rows):
-                # Where few digits are printed, one step of the last of them looks like a spike.
-                steps = np.abs(np.diff(values[np.isfinite(values)]))
-                usual = float(np.median(steps[steps > 0.0]))
-                off = np.minimum(np.abs(values[rows] - values[rows - 1]), np.abs(values[rows] - values[rows + 1]))
-                rows = rows[off > 3.0 * usual]
             values[rows] = np.nan
             if len(rows):
                 counts[name] = counts.get(name, 0) + len(rows)

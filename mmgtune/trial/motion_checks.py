@@ -17,6 +17,9 @@ NO_YAW_RATE = "the yaw rate does not integrate to the heading"
 CONTRADICTED = "u, v and heading do not integrate to the positions"
 HAS_GAPS = "has gaps: "
 
+REPEATED = 0.05
+"""Share of samples that repeat the one before, and that do not, from which a channel is taken for one of few digits."""
+
 
 def motion_findings(trial: Trial, where: str) -> list[Finding]:
     """Findings on the motion channels of a trial that can be used."""
@@ -96,7 +99,7 @@ def spikes(values: FloatArray, share: float) -> npt.NDArray[np.intp]:
     """Rows of single samples that continue neither what comes before nor what comes after.
 
     A spike is off both by ten times the usual and by ``share`` of the channel's range; a step or a corner fits one
-    side.  The first and last two rows cannot be told.
+    side.  Where few digits are logged a step of the last of them is none.  The first and last two rows cannot be told.
     """
     if len(values) < 10 or np.isfinite(values).sum() < 10:
         return np.zeros(0, dtype=np.intp)
@@ -109,7 +112,16 @@ def spikes(values: FloatArray, share: float) -> npt.NDArray[np.intp]:
     least = max(14.8 * np.nanmedian(off), share * (high - low), 0.02 * (np.nanmax(values) - np.nanmin(values)))
     # A sample between its neighbours is on the way from one to the other, however fast.
     beyond = (here - values[1:-3]) * (here - values[3:-1]) > 0.0
-    return np.flatnonzero((off > least) & beyond) + 2
+    apart = np.minimum(np.abs(here - values[1:-3]), np.abs(here - values[3:-1]))
+    return np.flatnonzero((off > least) & beyond & (apart > 3.0 * _digit(values))) + 2
+
+
+def _digit(values: FloatArray) -> float:
+    """The usual step of a channel that often repeats its value, because few digits are logged; 0 for any other."""
+    steps = np.abs(np.diff(values[np.isfinite(values)]))
+    moving = steps[steps > 0.0]
+    few = REPEATED * len(steps) < len(moving) < (1.0 - REPEATED) * len(steps)  # one that rests but for spikes is none
+    return float(np.median(moving)) if few else 0.0
 
 
 def _yaw(trial: Trial, where: str) -> list[Finding]:

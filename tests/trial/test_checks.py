@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from mmgtune.arrays import FloatArray
 from mmgtune.resources import trial_set_names
 from mmgtune.trial import Trial, check_trial, load_trials, measured_around
 from mmgtune.trial.schema import known_column
@@ -114,6 +115,17 @@ def test_spikes(seed: int | None, name: str, value: float) -> None:
     assert f"'{name}' has 1 spikes" in warnings
     assert f"column '{name}', row 300" in warnings
     assert "orders" not in warnings
+
+
+@pytest.mark.parametrize(("name", "step"), [("x", 2.0), ("psi", 1.0 * DEG), ("u", 0.1), ("r", 0.2 * DEG), ("n", 0.02)])
+def test_the_last_of_few_digits_is_no_spike(name: str, step: float) -> None:
+    def printed(values: FloatArray) -> FloatArray:
+        noisy = values + 0.4 * step * np.random.default_rng(1).normal(size=len(values))
+        return np.asarray(np.round(noisy / step) * step)
+
+    coarse = changed(made(seed=1), name, printed)
+    assert "spikes" not in said(coarse)
+    assert f"'{name}' has 1 spikes" in said(with_value(coarse, name, 300, 60.0 * step + 900.0 * (name == "x")))
 
 
 def test_directions_in_degrees() -> None:
