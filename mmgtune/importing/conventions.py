@@ -98,10 +98,11 @@ def settle(t: FloatArray, columns: dict[str, FloatArray], log_map: LogMap, measu
         # Both the other way round is a mirror image, which no motion can tell from the ship herself.
         said.append(f"{' and '.join(assumed)}, as the map says nothing else")
     said += _yaw(t, columns, log_map, measured, where, problems)
+    refusal = NoYawRate if problems else LogError
     if {"u", "v"} <= measured:
         said += _axes(t, columns, log_map, where, problems)
     if problems:
-        raise (NoYawRate if "yaw rate" in problems[0].what else LogError)(*problems)
+        raise refusal(*problems)
     return said
 
 

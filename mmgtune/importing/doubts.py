@@ -160,11 +160,8 @@ def one_axis(trial: Trial, where: str, log_map: LogMap) -> list[Finding]:
         else:
             what = f"velocities seem to be of a point {best.ahead:.3g} m forward of that of the positions"
             fix = f"say {point} in [velocity], or where the antenna is in [antenna]"
-        return [
-            Finding(
-                "warning", what, where, f"{said}; such a lever explains {100.0 * (1.0 - best.left):.0f} % of it", fix
-            )
-        ]
+        why = f"{said}; such a lever explains {100.0 * (1.0 - best.left):.0f} % of it"
+        return [Finding("warning", what, where, why, fix, "shifted" if best.shifted else "")]
     if max(sizes) > APART * min(sizes) and max(sizes) > 2e-3 * way:
         why = f"{said}; no lever arm explains it, nor does rounding"
         fix = f"check the column of '{large}' and of the velocity along it, and [velocity] axes and point"
@@ -229,22 +226,22 @@ def by_hand(trial: Trial, where: str, log_map: LogMap) -> list[Finding]:
     usual = float(np.sqrt(np.nanmean(trial.u[ordered] ** 2 + trial.v_m[ordered] ** 2)))
     usual_rate = float(np.nanpercentile(np.abs(trial.r[ordered]), 95.0))
     found = []
-    for words, key, rows in (
-        ("before the first order", 'from = "first-order"', slice(0, int(ordered[0]))),
-        ("after the last order", 'to = "last-order"', slice(int(ordered[-1]) + 1, None)),
+    for words, key, value, rows in (
+        ("before the first order", "from", "first-order", slice(0, int(ordered[0]))),
+        ("after the last order", "to", "last-order", slice(int(ordered[-1]) + 1, None)),
     ):
         speed, rate, psi = (one[rows] for one in (np.hypot(trial.u, trial.v_m), np.abs(trial.r), trial.psi))
         if np.isfinite(speed).sum() < FEWEST:
             continue
         # A ship whose engine is stopped loses way and turn; one that gains either is pushed.
         gained, turned = _rise(speed), _rise(rate)
-        swung = float(np.nanmax(psi) - np.nanmin(psi)) if key.startswith("from") and np.isfinite(psi).any() else 0.0
+        swung = float(np.nanmax(psi) - np.nanmin(psi)) if key == "from" and np.isfinite(psi).any() else 0.0
         if gained < HANDLED * usual and turned < HANDLED * usual_rate and swung < HANDLED:
             continue
         span = float(np.ptp(trial.t[rows]))
         said = f"propeller and rudder stand at zero for {span:.3g} s {words}, and the ship is moved"
         why = f"she gains {gained:.2g} m/s and {turned / DEG:.2g} deg/s of turn meanwhile: people handle her"
-        found.append(Finding("warning", said, where, why, f"say {key} in [cut]"))
+        found.append(Finding("warning", said, where, why, f'say {key} = "{value}" in [cut]', f"handled-{key}"))
     return found
 
 

@@ -169,14 +169,14 @@ def _tried(proposal: Proposal, finder: Finder) -> Proposal:
 def _with_findings(proposal: Proposal, finder: Finder, found: Imported) -> tuple[Proposal, Imported]:
     """The proposal with what only the trials show: a lever undone the wrong way, and a ship handled by people."""
     warnings = [one for quality in found.quality for one in quality["findings"] if one["severity"] == "warning"]
-    fixes = [str(one["fix"]) for one in warnings]
+    codes = [one["code"] for one in warnings]
     before = found
     for key, value in (("from", "first-order"), ("to", "last-order")):
-        if (many := sum(f'{key} = "{value}" in [cut]' in one for one in fixes)) > 0:
+        if (many := codes.count(f"handled-{key}")) > 0:
             finder.tables.setdefault("cut", {})[key] = value
             finder.comments["cut"] = f"likely: in {many} of {len(found.trials)} trials people handle the ship meanwhile"
     levers = [one for one in map(shifted_lever, found.trials) if one is not None]
-    if levers and len(levers) > 0.2 * len(found.trials) and any('shifted = "earth-axes"' in one for one in fixes):
+    if levers and len(levers) > 0.2 * len(found.trials) and "shifted" in codes:
         best = min(levers, key=lambda one: one.left)
         point = {"x": f"{best.ahead:.3g} m", "y": f"{best.across:.3g} m"}
         finder.tables.setdefault("velocity", {}).update({"point": point, "shifted": "earth-axes"})

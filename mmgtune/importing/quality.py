@@ -19,7 +19,6 @@ from ..trial import Trial, check_trial
 from ..trial.control_checks import fastest_change, looks_ordered
 from ..trial.finding import Finding
 from ..trial.kinematics import IN_EARTH_AXES, position_misfits, turning
-from ..trial.motion_checks import NO_YAW_RATE
 from ..units import DEG, KNOT, shown_in
 from .conventions import rudder_evidence
 from .doubts import doubts, in_map
@@ -152,7 +151,7 @@ def quality_text(quality: dict[str, Any], common: Set[str] = frozenset(), told: 
 
 def _named(finding: Finding, record: Record, log_map: LogMap) -> Finding:
     """A warning of a yaw rate that is none, with the column that is one where the log has it."""
-    elsewhere = yaw_rate_elsewhere(record.path, log_map) if finding.what == NO_YAW_RATE else None
+    elsewhere = yaw_rate_elsewhere(record.path, log_map) if finding.code == "yaw-rate" else None
     if elsewhere is None:
         return finding
     return replace(finding, why=f"{finding.why}; {elsewhere[0]}", fix=elsewhere[1])

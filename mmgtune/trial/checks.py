@@ -10,7 +10,7 @@ from .control_checks import control_findings
 from .cross_checks import cross_findings
 from .finding import SEVERITIES, Finding
 from .model import Trial
-from .motion_checks import CONTRADICTED, motion_findings
+from .motion_checks import motion_findings
 from .schema import OPTIONAL, known_column
 from .surroundings_checks import surroundings_findings
 from .unusable import unusable
@@ -32,7 +32,7 @@ def check_trial(trial: Trial, L_pp: float | None = None) -> list[Finding]:
         return [Finding("error", problem.what, problem.where, problem.why, problem.fix) for problem in errors]
     with np.errstate(all="ignore"):
         motion = motion_findings(trial, where)
-        contradicted = any(one.what == CONTRADICTED for one in motion)
+        contradicted = any(one.code == "contradicted" for one in motion)
         found = [
             *motion,
             *control_findings(trial, where),

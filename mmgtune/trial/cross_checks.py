@@ -34,10 +34,10 @@ def cross_findings(trial: Trial, where: str, L_pp: float | None, contradicted: b
     contradicted  whether positions and velocities have been found to differ as a whole
     """
     changes = _changes(trial, where)
-    found = [*changes, *_speed(trial, where, L_pp), *_revolutions(trial, where, L_pp)]
+    found = [*changes.values(), *_speed(trial, where, L_pp), *_revolutions(trial, where, L_pp)]
     if not contradicted:
         found += way_by_axis(trial, where)
-        if not any(one.what.startswith(("'x' ", "'y' ")) for one in changes):
+        if not {"x", "y"} & changes.keys():
             found += jump_findings(trial, where)
     return [*found, *_rudder(trial, where)]
 
@@ -46,9 +46,10 @@ def _warning(what: str, where: str, why: str, fix: str) -> Finding:
     return Finding("warning", what, where, why, fix)
 
 
-def _changes(trial: Trial, where: str) -> list[Finding]:
-    """Steps that no ship makes; single samples inside a record are spikes, and full turns are jumps of the heading."""
-    found = []
+def _changes(trial: Trial, where: str) -> dict[str, Finding]:
+    """Steps that no ship makes, by channel; single samples inside a record are spikes, and full turns are jumps of the
+    heading."""
+    found = {}
     for name, (most, unit) in FASTEST.items():
         values = trial.columns[name]
         kept = np.isfinite(values)
@@ -64,13 +65,11 @@ def _changes(trial: Trial, where: str) -> list[Finding]:
         odd = (rate > most) & (rate > 20.0 * np.median(rate))
         if odd.any():
             k = int(np.argmax(np.where(odd, rate, 0.0)))
-            found.append(
-                _warning(
-                    f"'{name}' changes by {abs(step[k]):.3g} within {np.diff(trial.t[rows])[k]:.3g} s",
-                    f"{where}, column '{name}', row {rows[k + 1]}",
-                    f"that is {rate[k]:.3g} {unit}, and no ship makes more than {most:g}: damage, or records joined",
-                    "mark wrong samples as NaN, or cut the trial there",
-                )
+            found[name] = _warning(
+                f"'{name}' changes by {abs(step[k]):.3g} within {np.diff(trial.t[rows])[k]:.3g} s",
+                f"{where}, column '{name}', row {rows[k + 1]}",
+                f"that is {rate[k]:.3g} {unit}, and no ship makes more than {most:g}: damage, or records joined",
+                "mark wrong samples as NaN, or cut the trial there",
             )
     return found
 

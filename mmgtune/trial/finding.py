@@ -17,6 +17,7 @@ class Finding:
     where     file and column or row
     why       why it matters, or what speaks for it
     fix       what to do about it
+    code      which finding it is, where something goes on from it ("gaps", "yaw-rate", ...), else ""
     """
 
     severity: str
@@ -24,3 +25,4 @@ class Finding:
     where: str
     why: str = ""
     fix: str = ""
+    code: str = ""

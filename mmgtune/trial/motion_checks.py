@@ -13,10 +13,6 @@ from .kinematics import FITS, IN_DEGREES, IN_EARTH_AXES, position_misfits, turni
 from .model import Trial
 from .schema import LARGEST_YAW_RATE, MOTION
 
-NO_YAW_RATE = "the yaw rate does not integrate to the heading"
-CONTRADICTED = "u, v and heading do not integrate to the positions"
-HAS_GAPS = "has gaps: "
-
 REPEATED = 0.05
 """Share of samples that repeat the one before, and that do not, from which a channel is taken for one of few digits."""
 
@@ -45,10 +41,11 @@ def _gaps(trial: Trial, where: str) -> list[Finding]:
             found.append(
                 Finding(
                     "warning",
-                    f"'{name}' {HAS_GAPS}{missing.sum()} of {len(values)} samples; "
+                    f"'{name}' has gaps: {missing.sum()} of {len(values)} samples; "
                     f"the longest has {ends[k] - begins[k]} samples, {lasts:.3g} s",
                     f"{where}, column '{name}', row {begins[k]}",
                     "samples in gaps count in no comparison",
+                    code="gaps",
                 )
             )
     return found
@@ -131,11 +128,12 @@ def _yaw(trial: Trial, where: str) -> list[Finding]:
         return [
             Finding(
                 "warning",
-                NO_YAW_RATE,
+                "the yaw rate does not integrate to the heading",
                 place,
                 f"they come apart by {turned.miss / DEG:.3g} deg; the heading turns {turned.ratio:.3g} times as far, "
                 f"correlation {turned.correlation:.2f}",
                 "check sign, scale and bias of 'r' against 'psi'",
+                "yaw-rate",
             )
         ]
     yaw = np.abs(trial.r[np.isfinite(trial.r)])
@@ -168,9 +166,10 @@ def _positions(trial: Trial, where: str) -> list[Finding]:
     return [
         Finding(
             "warning",
-            CONTRADICTED,
+            "u, v and heading do not integrate to the positions",
             f"{where}, columns 'x', 'y', 'psi', 'u' and 'v'",
             f"read in ship axes they miss by {100 * asked:.0f} % of the distance; {fits}",
             "give velocities over ground (not through the water), in ship axes, at midship, in m/s",
+            "contradicted",
         )
     ]

@@ -44,13 +44,7 @@ def read_trial(path: Path | str) -> Trial:
     problems = problems + held.problems
     if not problems:
         problems = _unsealed(columns, held.metadata, path)
-    # A column that holds no numbers has been reported; that it is missing as well would be the same news twice.
-    reported = [name for name in REQUIRED if name in held.names and name not in columns]
-    problems += [
-        problem
-        for problem in unusable(columns, str(path))
-        if not any(problem.what == f"column '{name}' is missing" for name in reported)
-    ]
+    problems += unusable(columns, str(path), reported=held.names)
     if problems:
         raise TrialError(*problems)
     motion: dict[str, Any] = {attribute: columns[name] for name, attribute in ATTRIBUTES.items()}

@@ -10,7 +10,6 @@ from ..units import DEG
 from .checks import check_trial
 from .finding import SEVERITIES, Finding
 from .model import Trial
-from .motion_checks import HAS_GAPS
 
 AMIDSHIPS = 3.0 * DEG
 """Rudder angle below which a ship goes about straight on."""
@@ -43,7 +42,7 @@ def oddities(trials: Mapping[str, Trial], L_pp: float | None = None) -> list[str
     worst = {
         name: odd[0].what
         for name, findings in check_trials(trials, L_pp).items()
-        if (odd := [one for one in findings if one.severity == "warning" and HAS_GAPS not in one.what])
+        if (odd := [one for one in findings if one.severity == "warning" and one.code != "gaps"])
     }
     if not worst:
         return []

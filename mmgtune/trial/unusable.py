@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 import numpy as np
 
@@ -23,13 +23,14 @@ from .schema import (
 )
 
 
-def unusable(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
+def unusable(columns: Mapping[str, FloatArray], where: str, reported: Collection[str] = ()) -> list[Problem]:
     """Every reason why a trial cannot be simulated, [] where there is none.
 
     columns  arrays (n_samples,) by their name in the file; required ones may be missing, which is a problem
     where    the file, for messages
+    reported columns of the file that hold no numbers, and of which that has been said
     """
-    problems = missing_columns(columns, where)
+    problems = missing_columns(columns, where, reported)
     samples = max((len(values) for values in columns.values()), default=0)
     if samples < 2:
         what = "the trial has no samples" if samples == 0 else "the trial has one sample"
@@ -59,8 +60,8 @@ def unusable_part(columns: Mapping[str, FloatArray], where: str, before: float, 
         return problems + _rudder(columns, where)
 
 
-def missing_columns(columns: Mapping[str, object], where: str) -> list[Problem]:
-    """Required columns that are not there; ``columns`` by their name in the file."""
+def missing_columns(columns: Collection[str], where: str, reported: Collection[str] = ()) -> list[Problem]:
+    """Required columns that are not there; ``columns`` by their name in the file, ``reported`` as above."""
     others = [name for name in columns if name not in REQUIRED]
     return [
         Problem(
@@ -70,7 +71,7 @@ def missing_columns(columns: Mapping[str, object], where: str) -> list[Problem]:
             closest(name, others) if others else f"add it, in {column.unit}",
         )
         for name, column in REQUIRED.items()
-        if name not in columns
+        if name not in columns and name not in reported
     ]
 
 

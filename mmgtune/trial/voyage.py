@@ -19,7 +19,7 @@ from .footer import rows_of
 from .metadata import facts_of
 from .parquet import another_digest, layout_of, numbers, unreadable
 from .raw_logs import refuse_log
-from .schema import METADATA_KEY, REQUIRED
+from .schema import METADATA_KEY
 from .unusable import missing_columns, unusable_part
 
 VOYAGE = "voyage"
@@ -156,13 +156,7 @@ def open_voyage(path: Path | str) -> Voyage:
     refuse_log(path, layout.names, facts=METADATA_KEY in metadata)
     facts, problems = facts_of(metadata.get(METADATA_KEY), path, layout.names)
     problems = problems + layout.problems
-    held = dict.fromkeys(layout.wanted)
-    unheld = [name for name in REQUIRED if name in layout.names and name not in held]
-    problems += [
-        one
-        for one in missing_columns(held, where)
-        if not any(one.what == f"column '{name}' is missing" for name in unheld)
-    ]
+    problems += missing_columns(layout.wanted, where, reported=layout.names)
     if not problems and n_rows < 2:
         problems.append(Problem("the trial has fewer than two samples", where, "a motion needs two or more"))
     if problems:
