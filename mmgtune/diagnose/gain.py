@@ -18,6 +18,7 @@ from ..fitting.problem import FitProblem
 from ..objective import make_objective
 from ..trial import Trial
 from .elsewhere import FIRST, estimated_there, first_part
+from .inputs import DRAWS, changes
 from .intervals import covariance
 from .search import Found
 from .unseen import Beside, held_out_fits, problem_on
@@ -31,9 +32,6 @@ RELEVANT = 0.05
 
 BAND = 3.0
 """How many times what is expected of uncertain coefficients these may bring: few directions count."""
-
-DRAWS = 16
-"""Sets of coefficients that show what to expect."""
 
 WORSE = 0.1
 """Share by which causes may make the error on test trials larger by chance."""
@@ -63,8 +61,8 @@ class Gain(Brief):
     floor       chi-squared that noise brings to all of them
     chance      deviation of that
     first_part  share of each run that what differs between runs was estimated on; ``excess`` counts what follows alone
-    unsure      chi-squared to be expected beyond noise because coefficients are known no better than they are; 0 where
-                it was not asked for, as nothing remains
+    unsure      chi-squared to be expected beyond noise because coefficients, inputs and gusts are known no better than
+                they are; 0 where it was not asked for, as nothing remains
     """
 
     held_out: HeldOut
@@ -187,9 +185,10 @@ def held_out(bench: Workbench, found: Found, test: Sequence[Trial]) -> Gain:
 
 
 def expected(bench: Workbench, found: Found, trials: Sequence[Trial]) -> float:
-    """Chi-squared beyond noise on trials that a point was not fitted to, as its coefficients are known no better.
+    """Chi-squared beyond noise on trials that a point was not fitted to, as its coefficients are known no better, and
+    inputs and gusts no better than their logs tell.
 
-    The median of draws from their covariance, initial states re-estimated to first order.
+    The median of draws of both, initial states re-estimated to first order.
     """
     names, spread = covariance(bench, found.final)
     beside = Beside.of(bench, (found.base, found.final), trials)
@@ -201,9 +200,9 @@ def expected(bench: Workbench, found: Found, trials: Sequence[Trial]) -> float:
     columns[rows, 1:] = np.clip(at[rows][:, None] + drawn.T, 0.0, 1.0)
     problem = beside.judged
     runs = problem.residuals(columns, np.repeat(offsets[:, None], 1 + DRAWS, axis=1)).T
-    runs = runs[:, np.isfinite(runs).all(axis=0)]
+    moved = runs[:, 1:] - runs[:, :1] + changes(problem, at, offsets, bench.options.seed)
     by_offset = problem.offset_slopes(at, offsets)[1]
-    moved = problem.without_offsets(runs[:, 1:] - runs[:, :1], by_offset, problem.prior)
+    moved = problem.without_offsets(moved[:, np.isfinite(moved).all(axis=0)], by_offset, problem.prior)
     return float(np.median(np.sum(moved**2, axis=0))) if moved.shape[1] else 0.0
 
 

@@ -1,16 +1,20 @@
 """What the logged inputs do not say: a simulation driven by a noisy rudder angle wanders off a little, and for good.
 
-Besides noise, a log of one sample a second does not say when in that second the rudder began to move.
+Besides noise, a log of one sample a second does not say when in that second the rudder began to move.  Nor does a log
+say what gusts there were, where a wind blows.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
+from ..fitting.problem import FitProblem
 from ..trial.kinematics import white_noise
+from .winds import other_winds
 from .workbench import Point, Workbench
 
 DRAWS = 16
@@ -24,32 +28,47 @@ CLEAR = 8.0
 
 
 def wander(bench: Workbench, point: Point) -> FloatArray:
-    """Change of the residuals (n_residuals, DRAWS) by other inputs that the log does not tell from these.
+    """Change of the whitened residuals (n_residuals, DRAWS) by other inputs that the log does not tell from these."""
+    problem = bench.problem_of(point.names, point.integrator)
+    return bench.noise.apply(changes(problem, point.unit, point.offsets, bench.options.seed, bench.updates))
+
+
+def changes(
+    problem: FitProblem,
+    unit: FloatArray,
+    offsets: FloatArray,
+    seed: int,
+    updates: Sequence[Sequence[IntArray]] | None = None,
+) -> FloatArray:
+    """Change of the residuals (n_residuals, DRAWS) at a position (n_targets,) in the box, by inputs alike in the log.
 
     The noise of revolutions and rudder angle is what second differences of the logs show; those far above it are bends.
+    Where a wind blows it comes in gusts besides, and its force is of another shape.
+
+    offsets  (n_cases, 6) of the initial states
+    updates  samples at which each input of each case was updated; None where all of them are
     """
-    rng = np.random.default_rng(bench.options.seed)
-    cases = bench.problem.cases
-    problem = bench.problem_of(point.names, point.integrator)
+    rng = np.random.default_rng(seed)
+    cases = problem.cases
     noise = rng.standard_normal((len(cases), DRAWS, *cases.controls.shape[1:]))
-    for case, trial in enumerate(bench.trials):
+    for case, n_samples in enumerate(cases.n_samples.tolist()):
         for k, logged in enumerate(cases.controls[case].T):
-            known = None if bench.updates is None else bench.updates[case][k]
-            noise[case, :, :, k] = _otherwise(noise[case, :, :, k], logged, trial.n_samples, known)
+            known = None if updates is None else updates[case][k]
+            noise[case, :, :, k] = _otherwise(noise[case, :, :, k], logged, n_samples, known)
     controls = np.concatenate([cases.controls[:, None], cases.controls[:, None] + noise], axis=1)
     copies = DRAWS + 1
+    around, theta = other_winds(problem.model, problem.theta(unit[:, None]), cases, DRAWS, seed)
     many = replace(
         cases,
         t=np.repeat(cases.t, copies, axis=0),
         n_samples=np.repeat(cases.n_samples, copies),
         controls=controls.reshape(-1, *cases.controls.shape[1:]),
-        around=np.repeat(cases.around, copies, axis=0),
-        initial=np.repeat(cases.initial + point.offsets, copies, axis=0),
+        around=around.reshape(-1, *cases.around.shape[1:]),
+        initial=np.repeat(cases.initial + offsets, copies, axis=0),
         target=np.zeros_like(np.repeat(cases.target, copies, axis=0)),
         weight=np.repeat(cases.weight, copies, axis=0),
     )
-    theta = problem.theta(point.unit[:, None])
-    theta = theta if theta.ndim == 2 else np.repeat(theta, copies, axis=1)
+    theta = theta.reshape(len(theta), -1, 1)
     result = problem.backend.run(problem.model, theta, many, integrator=problem.integrator, keep_residuals=True)
     assert result.residuals is not None  # asked for
     changed = np.empty((problem.n_residuals, DRAWS))
@@ -59,7 +78,7 @@ def wander(bench: Workbench, point: Point) -> FloatArray:
         runs = result.residuals[at : at + n * copies, 0].reshape(copies, n)
         changed[rows] = (runs[1:] - runs[0]).T
         at += n * copies
-    return bench.noise.apply(np.where(np.isfinite(changed), changed, 0.0))
+    return np.where(np.isfinite(changed), changed, 0.0)
 
 
 def _otherwise(drawn: FloatArray, logged: FloatArray, n_samples: int, at: IntArray | None) -> FloatArray:

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray
-from ..fitting.box import group_of, parameter_of
-from .linear import linearise, typical
-from .runs import between
+from ..fitting.box import group_of
+from .linear import linearise, unit_of
 from .workbench import Point, Workbench
 
 NORMAL = 1.96
@@ -43,9 +42,9 @@ def estimates(bench: Workbench, point: Point) -> dict[str, Estimate]:
     R, noise, size = _told(bench, point, names)
     back = np.linalg.pinv(R, rcond=1e-10)
     spread = back @ noise @ back.T
-    believed = between(names, point.spreads)
-    if believed is not None:  # what other runs say of a run that says little itself
-        alike = believed * size
+    believed = bench.beliefs(names, point.spreads)
+    if believed is not None:  # what other runs say of a run that says little itself, and what is known of forms
+        alike = believed[0] * size
         told = R.T @ np.linalg.solve(noise, R)
         spread = np.linalg.pinv(told + alike.T @ alike, rcond=1e-12, hermitian=True)
     spread = spread * np.outer(size, size)
@@ -61,7 +60,7 @@ def covariance(bench: Workbench, point: Point) -> tuple[tuple[str, ...], FloatAr
     if not inside:
         return (), np.zeros((0, 0))
     R, noise, size = _told(bench, point, tuple(inside))
-    before = np.array([bench.leeway.get(name, np.sqrt(OF_BOX)) for name in inside])
+    before = np.array([bench.loosely.get(name, np.sqrt(OF_BOX)) for name in inside])
     told = R.T @ np.linalg.solve(noise, R) + np.diag((size / before) ** 2)
     return tuple(inside), np.linalg.inv(told) * np.outer(size, size)
 
@@ -74,7 +73,7 @@ def _told(bench: Workbench, point: Point, names: tuple[str, ...]) -> tuple[Float
     by_block, by_trial = linear.chance(Q)
     memory = max(1.0, float(np.sum(by_block**2)) / len(names))
     noise = memory * np.eye(len(names)) + np.einsum("cdk,cdl->kl", by_trial, by_trial) / by_trial.shape[1]
-    size = np.array([1.0 if parameter_of(bench.model, name) is None else typical(bench, name) for name in names])
+    size = np.array([unit_of(bench, name) for name in names])
     return R, noise, size
 
 

@@ -11,7 +11,8 @@ from fnmatch import fnmatchcase
 
 import numpy as np
 
-from ..fitting.box import Box, choose_targets
+from ..components import split_name
+from ..fitting.box import Box, base_of, choose_targets
 from ..model import Model
 
 PATTERNS = ("hull.*", "particulars.m_x_", "particulars.m_y_", "particulars.k_zz_")
@@ -23,6 +24,17 @@ def let_go(model: Model, targets: Sequence[str], fixed: Sequence[str]) -> tuple[
     there = [pattern for pattern in PATTERNS if any(fnmatchcase(name, pattern) for name in model.profile.names())]
     free = choose_targets(model, there, fixed)
     return tuple(name for name in free if name not in targets and model.profile.value(name) != 0.0)
+
+
+def forms(model: Model, names: Sequence[str]) -> dict[str, float]:
+    """Parameters of the forms of all effects that any of the names is of, with their standard deviations."""
+    asked = {split_name(base_of(name))[0] for name in names}
+    return {
+        f"{effect.kind}.{name}": deviation
+        for effect in model.effects
+        if effect.kind in asked
+        for name, deviation in effect.form.items()
+    }
 
 
 def deviations(box: Box, names: Sequence[str], share: float) -> dict[str, float]:

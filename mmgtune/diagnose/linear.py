@@ -225,23 +225,21 @@ def linearise(
     minus[lost[1 + n_moved :]] = 0.0
     values = bench.noise.apply(runs)
     slopes = (values[:, 1 : 1 + n_moved] - values[:, 1 + n_moved :]) / np.maximum(plus + minus, 1e-300)
-    for k, i in enumerate(moved):
-        if parameter_of(bench.model, names[i]) is not None:
-            slopes[:, k] *= typical(bench, names[i])
+    slopes *= np.array([unit_of(bench, names[i]) for i in moved])
     by_offset = bench.noise.apply(flat_where_lost(offset_derivatives(bench, point)))
 
     columns = np.column_stack([values[:, 0], slopes, wander(bench, point)])
     left = problem.without_offsets(columns, by_offset, problem.prior, point.offsets)
     inside = np.array([name not in apart and 0.0 < z < 1.0 for name, z in zip(point.names, point.unit, strict=True)])
-    loose = inside & np.array([name in bench.leeway for name in point.names])
+    loose = inside & np.array([name in bench.loosely for name in point.names])
     own = [name for name, is_loose in zip(point.names, loose, strict=True) if is_loose]
-    moved_by = left[:, 1 : 1 + n_free][:, loose]
+    moved_by = left[:, 1 : 1 + n_free][:, loose] / np.array([unit_of(bench, name) for name in own])
     left[:, 0] -= moved_by @ (point.unit[loose] - bench.null(own))  # where nothing with leeway has moved
     plain = {
         base: np.sum(left[:, [1 + i for i, name in enumerate(names) if base_of(name) == base]], axis=1)
         for base in dict.fromkeys(varying)
     }
-    deviation = np.array([bench.leeway[name] for name in own])
+    deviation = np.array([bench.loosely[name] for name in own])
     tuned = Tuned.by(left[:, 1 : 1 + n_free][:, inside & ~loose], moved_by * deviation)
     left = tuned.out_of(left)
     chosen = (*apart, *wanted)
@@ -272,6 +270,11 @@ def linearise(
         groups=problem.groups,
         fitted=fitted,
     )
+
+
+def unit_of(bench: Workbench, name: str) -> float:
+    """What a column of something free is over, in the unit cube: of a parameter of an effect a typical size."""
+    return 1.0 if parameter_of(bench.model, name) is None else typical(bench, name)
 
 
 def offset_derivatives(bench: Workbench, point: Point) -> FloatArray:

@@ -240,7 +240,7 @@ class Refitting:
             away = [end for end in begun if np.any(end.unit[-len(null) :] != null)]  # at the null there is no way on
             best = (away or begun)[:STARTS_KEPT]
             starts = np.column_stack([end.unit for end in best])
-            ends = [*begun, *self._steps(replace(before, offsets=best[0].offsets), score, starts, ROUGH - 1)]
+            ends = [*begun, *self._steps(replace(best[0], chi2=before.chi2), score, starts, ROUGH - 1)]
             if self.given is not None:
                 ends = self._released(score, min(ends, key=lambda end: end.chi2))
         else:
@@ -305,9 +305,10 @@ class Refitting:
         bench, point, hypothesis = self.bench, self.point, score.hypothesis
         null = bench.null(hypothesis.names)
         if end.chi2 > point.chi2:  # a wind of nearly nothing is not quite nothing; the null itself is always open
-            kept = point.unit[kept_free(point, hypothesis)]
-            unit = np.concatenate([kept, origin(bench, point, hypothesis.names)])
-            end = Point(end.names, unit, point.offsets, point.chi2, point.integrator, end.spreads)
+            kept = kept_free(point, hypothesis)
+            unit = np.concatenate([point.unit[kept], origin(bench, point, hypothesis.names)])
+            names = (*(point.names[i] for i in kept), *hypothesis.names)
+            end = Point(names, unit, point.offsets, point.chi2, point.integrator, end.spreads)
         gain = point.chi2 - end.chi2
         assert gain >= 0.0, "a nested refit ended above the model it extends"
         volume = told_by(self.linear, hypothesis, self._moved(hypothesis, end))[1] if hypothesis.by else 0.0

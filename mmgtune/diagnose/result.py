@@ -44,6 +44,9 @@ something of a shape is left besides."""
 OPEN = 0.3
 """Variance beyond noise that is spoken of where the log of the inputs leaves it open, as a share of the noise."""
 
+ALL, ALL_HELD_OUT = 0.998, 0.98
+"""The same from which it is all, and that on held-out trials."""
+
 BENT = 1.0
 """Variance beyond noise, as a share of it, that a cause with values of each run may leave where it has a shape: such
 values bend to what is elsewhere, or at another hour, and not of the run at all."""
@@ -299,9 +302,15 @@ class Diagnosis(Plotted):
             return "not all of them can be told from others"
         if sum(one.seen for one in brought) < NEEDED:
             return "each of them can be left out with little loss"
-        if self.leftover.structured:
+        if self.leftover.structured and not self.explains_all:
             return "what they leave is no noise"
         return ""
+
+    @property
+    def explains_all(self) -> bool:
+        """Whether the causes leave so little of the error beyond noise, on held-out trials too, that a cause whose form
+        is a little off would leave as much."""
+        return self.explained_share >= ALL and self.gain.share_removed[0] >= ALL_HELD_OUT
 
     @property
     def explains_nearly_all(self) -> bool:
@@ -311,7 +320,7 @@ class Diagnosis(Plotted):
     @property
     def _mostly_left(self) -> bool:
         """Whether what is left has a shape and is too much beside what the causes explain."""
-        bent = any(cause.runs for cause in self.causes) and self.leftover.excess > BENT
+        bent = any(cause.runs for cause in self.causes) and self.leftover.excess > BENT and not self.explains_all
         return self.leftover.structured and (self.explained_share < MOSTLY or bent)
 
     @property

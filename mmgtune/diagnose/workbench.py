@@ -12,7 +12,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..backends import STATES, Integrator, get_backend
 from ..components import split_name
-from ..effects import Visited
+from ..effects import Effect, Visited
 from ..fitting.box import Box, base_of, choose_targets, group_of, make_box
 from ..fitting.least_squares import LeastSquaresResult, solve
 from ..fitting.one_sided import followers, tied
@@ -23,7 +23,7 @@ from ..options import DiagnoseOptions
 from ..profile import ShipProfile, with_all_effects
 from ..trial import Coverage, Held, Trial, visited_by
 from ..trial.kinematics import white_noise
-from .leeway import deviations, let_go
+from .leeway import deviations, forms, let_go
 from .noise import NoiseModel, white
 from .runs import between, labels_of
 
@@ -71,6 +71,7 @@ class Workbench:
     sigma     (6,) white noise of each channel, from the trials' own columns
     targets   coefficients that may be re-tuned
     leeway    coefficients beside the targets that may move a little: their standard deviations in the unit cube
+    forms     parameters of the forms of effects likewise, which move wherever their effect does
     box       of both and of every parameter of every hypothesis
     noise     as known so far
     spreads   of values that groups of runs have of their own, by ``runs.spread_key``, in the unit cube
@@ -90,11 +91,29 @@ class Workbench:
     held: Held | None = None
     updates: list[list[IntArray]] | None = None
     leeway: Mapping[str, float] = field(default_factory=dict)
+    forms: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def tuned_alone(self) -> tuple[str, ...]:
         """What is re-tuned without any cause: the targets, and what has leeway."""
         return (*self.targets, *self.leeway)
+
+    @property
+    def loosely(self) -> Mapping[str, float]:
+        """All of which something is believed before any trial is looked at: standard deviations in the unit cube."""
+        return {**self.leeway, **self.forms}
+
+    def form_of(self, effect: Effect) -> tuple[str, ...]:
+        """Parameters of the form of an effect that move with it."""
+        return tuple(name for name in self.forms if name.startswith(f"{effect.kind}."))
+
+    def _with_forms(self, names: Sequence[str], starts: FloatArray) -> tuple[tuple[str, ...], FloatArray]:
+        """Names and starts (n_names, n_starts) with the forms of all effects among them, in front, and no others."""
+        moving = {split_name(base_of(name))[0] for name in names if name not in self.forms}
+        asked = [name for name in self.forms if split_name(name)[0] in moving and name not in names]
+        kept = [k for k, name in enumerate(names) if name not in self.forms or split_name(name)[0] in moving]
+        begin = np.repeat(self.null(asked)[:, None], starts.shape[1], axis=1)
+        return (*asked, *(names[k] for k in kept)), np.concatenate([begin, starts[kept]])
 
     def beliefs(self, names: Sequence[str], spreads: Mapping[str, float]) -> tuple[FloatArray, FloatArray] | None:
         """What is believed of what is free before any trial is looked at; None for nothing.
@@ -102,9 +121,9 @@ class Workbench:
         -> (k, n_names) matrix A and (n_names,) centre: |A (unit - centre)|^2 is part of chi-squared
         """
         rows = [] if (apart := between(names, spreads)) is None else [apart]
-        loose = [k for k, name in enumerate(names) if name in self.leeway]
+        loose = [k for k, name in enumerate(names) if name in self.loosely]
         if loose:
-            rows.append(np.eye(len(names))[loose] / np.array([self.leeway[names[k]] for k in loose])[:, None])
+            rows.append(np.eye(len(names))[loose] / np.array([self.loosely[names[k]] for k in loose])[:, None])
         if not rows:
             return None
         centre = np.zeros(len(names))
@@ -167,8 +186,11 @@ class Workbench:
     ) -> list[Point]:
         """Fits of ``names`` from starts (n_names, n_starts), initial states beginning at ``offsets``.
 
+        What is fitted has the forms of its effects besides, before all else.
+
         spreads  of values that groups of runs have of their own, those of the workbench where None
         """
+        names, starts = self._with_forms(names, starts)
         problem = self.problem_of(names, integrator).with_offsets(offsets)
         whiten = self.noise.apply if self.noise_known else None
         spreads = self.spreads if spreads is None else spreads
@@ -183,8 +205,7 @@ class Workbench:
             trusting=True,
         )
         return [
-            Point(tuple(names), end.unit, end.offsets, self._total(end, beliefs), problem.integrator, spreads)
-            for end in ends
+            Point(names, end.unit, end.offsets, self._total(end, beliefs), problem.integrator, spreads) for end in ends
         ]
 
     def _total(self, end: LeastSquaresResult, beliefs: tuple[FloatArray, FloatArray] | None) -> float:
@@ -277,8 +298,8 @@ def make_workbench(
     objective = _in_noise(sigma, channels)
     cases = cases_of(list(trials), objective, model.inputs, model.draught)
     loose = let_go(own, targets, options.fixed) if options.leeway else ()
-    free = (*targets, *loose)
-    box = make_box(model, (*free, *(name for name in names if name not in free)), options.a_r)
+    shapes = forms(model, names) if options.leeway else {}
+    box = make_box(model, tuple(dict.fromkeys((*targets, *loose, *names, *shapes))), options.a_r)
     problem = FitProblem.of(
         model=model,
         cases=cases,
@@ -288,5 +309,16 @@ def make_workbench(
         sigma=np.repeat(LOOSE * sigma[None], len(trials), axis=0),
     ).with_groups([labels_of(trial) for trial in trials])
     held = Held.of(trials)
-    leeway = deviations(box, loose, options.leeway)
-    return Workbench(model, list(trials), options, sigma, targets, box, problem, white(cases), held=held, leeway=leeway)
+    return Workbench(
+        model,
+        list(trials),
+        options,
+        sigma,
+        targets,
+        box,
+        problem,
+        white(cases),
+        held=held,
+        leeway=deviations(box, loose, options.leeway),
+        forms={name: sd / float(box.part([name]).width[0]) for name, sd in shapes.items()},
+    )

@@ -73,6 +73,8 @@ class Effect(Component):
     pivots     parameters about which others are meant, {parameter: its value by ship where the effect is put into a
                profile}; they are never searched for
     besides    parameters that a search looks for, and a fit with the effect tunes only where they are named
+    form       parameters that say how far the force is off its formula, {parameter: one standard deviation about its
+               null}; a search lets them go wherever it fits the effect, a fit tunes them only where they are named
     absorbed   coefficients of the profile that do the same as a parameter, {parameter: section.symbol}: where that one
                is tuned, the parameter is not searched for
     needs      coefficients the effect changes; it does not apply to a profile without them
@@ -97,6 +99,7 @@ class Effect(Component):
     told_as: Mapping[tuple[str, str], tuple[str, str]] = field(default_factory=dict)
     pivots: Mapping[str, Callable[[Scale], float]] = field(default_factory=dict)
     besides: tuple[str, ...] = ()
+    form: Mapping[str, float] = field(default_factory=dict)
     absorbed: Mapping[str, str] = field(default_factory=dict)
     needs: tuple[str, ...] = ()
     of_parts: tuple[str, ...] = ()
@@ -149,8 +152,9 @@ class Effect(Component):
 
     @property
     def plain(self) -> dict[str, Parameter]:
-        """Those that stand for the effect where nothing more is said: all but pivots and those beside."""
-        return {name: one for name, one in self.parameters.items() if name not in {*self.pivots, *self.besides}}
+        """Those that stand for the effect where nothing more is said: all but pivots, those beside, and its form."""
+        more = {*self.pivots, *self.besides, *self.form}
+        return {name: one for name, one in self.parameters.items() if name not in more}
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)

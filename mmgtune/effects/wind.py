@@ -18,7 +18,17 @@ RHO_AIR = 1.225
 SHOWN = ("A_T", "A_L", *HARMONICS)
 """What the ship shows the wind, out of her section above_water."""
 
-Wind = namedtuple("Wind", ("speed", "direction", "measured", *SHOWN))  # type: ignore[misc]
+Wind = namedtuple("Wind", ("speed", "direction", "measured", "ahead", "across", "turning", "arm", *SHOWN))  # type: ignore[misc]
+
+
+def _factor(what: str) -> Parameter:
+    return Parameter(
+        f"factor on the {what} of the formulas",
+        null=1.0,
+        low=-1e-12,
+        bounds=lambda _: (0.25, 2.5),
+        bounds_source="from a quarter to two and a half times",
+    )
 
 
 def wind(state: State, around: Surroundings, found: Forces, components: Any, p: Any, e: Any) -> Force:
@@ -38,7 +48,8 @@ def wind(state: State, around: Surroundings, found: Forces, components: Any, p: 
     U_A = np.sqrt(np.maximum(U_A2, 1e-12))
     C_X, C_Y, C_N = wind_shape(-u_A / U_A, -v_A / U_A, e)
     q = blows * 0.5 * RHO_AIR * U_A2
-    return Force(X=q * e.A_T * C_X, Y=q * e.A_L * C_Y, N=q * e.A_L * p.ship.L_pp * C_N)
+    X, Y = e.ahead * q * e.A_T * C_X, e.across * q * e.A_L * C_Y
+    return Force(X=X, Y=Y, N=(e.across * e.turning * q * e.A_L * C_N + e.arm * Y) * p.ship.L_pp)
 
 
 EFFECT = ForceEffect(
@@ -65,7 +76,23 @@ EFFECT = ForceEffect(
             typical=lambda _: 0.5 * np.pi,
         ),
         "measured": factor_on_measured("the wind", 2.0, 1.0, "from no wind to twice the measured"),
+        "ahead": _factor("force ahead"),
+        "across": _factor("force across"),
+        "turning": Parameter(
+            "factor on the moment of the formulas, beside that on the force across",
+            null=1.0,
+            bounds=lambda _: (-1.0, 5.0),
+            bounds_source="against the formulas to five times them",
+        ),
+        "arm": Parameter(
+            "shift of the force across forward of where the formulas have it, in ship lengths",
+            low=-1.0,
+            high=1.0,
+            bounds=lambda _: (-0.25, 0.25),
+            bounds_source="a quarter of the ship's length",
+        ),
     },
+    form={"ahead": 0.2, "across": 0.2, "turning": 0.5, "arm": 0.05},
     borrowed={name: f"above_water.{name}" for name in SHOWN},
     variants=(("speed", "direction"), ("measured",)),
     sentence=lambda v: (
