@@ -39,11 +39,11 @@ SMALL, WORTH_ASKING = 0.05, 0.3
 """Share of the fall of chi-squared on the trials looked at up to which a cause may be a trace, and up to which held-out
 trials are asked whether it does any good."""
 
-FORM, FORM_OF_HULL = 0.0005, 0.003
-"""Share of the error that a cause leaves whose form is 2 % off, and one whose hull is 5 % off besides."""
+FORM, FORM_IF_ROUGH = 0.0005, 0.003
+"""Share of the error that a cause leaves whose form is 2 % off, and one whose formula is no better than 5 %."""
 
-LIKE_A_HULL = ("hull-term", "loading", "memory")
-"""Effects that stand for a hull of another form, too."""
+HARDLY_SEEN = 0.005
+"""Share of the fall of chi-squared up to which a cause has to remove more than ``FORM`` on held-out trials."""
 
 
 @dataclass(frozen=True)
@@ -74,6 +74,8 @@ class Contribution:
         if self.channels is None or self.indices is None:
             return False
         if self.share <= 0.0 or max(self.share, self.seen) < self.form:
+            return True
+        if self.share < FORM and self.seen < HARDLY_SEEN:
             return True
         moved = all(
             change < (OF_ANGLE if name.endswith("_deg") else OF_LENGTH) for name, change in self.indices.items()
@@ -156,7 +158,7 @@ def _of(bench: Workbench, found: Found, cause: Hypothesis, test: Sequence[Trial]
         if counts[k] and (noise := bench.noise.channels.get(name))
     }
     scale = max(float(removed[0]), abs(float(removed[1])))  # all together may remove less than one, or nothing
-    form = FORM_OF_HULL if cause.tag in LIKE_A_HULL else FORM
+    form = FORM_IF_ROUGH if any(one.effect.rough for one in found.causes) else FORM
     return Contribution(seen, float(removed[1]) / scale if scale > 0.0 else 1.0, channels, changes, form)
 
 

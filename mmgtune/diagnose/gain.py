@@ -15,11 +15,12 @@ from ..fitting.box import group_of
 from ..fitting.comparison import TrialComparison, finite
 from ..fitting.least_squares import fit_offsets
 from ..fitting.problem import FitProblem
+from ..model import Model
 from ..objective import make_objective
 from ..trial import Trial
 from .elsewhere import FIRST, estimated_there, first_part
 from .inputs import DRAWS, changes
-from .intervals import covariance
+from .intervals import OF_BOX, covariance
 from .search import Found
 from .unseen import Beside, held_out_fits, problem_on
 from .workbench import Point, Workbench
@@ -188,22 +189,44 @@ def expected(bench: Workbench, found: Found, trials: Sequence[Trial]) -> float:
     """Chi-squared beyond noise on trials that a point was not fitted to, as its coefficients are known no better, and
     inputs and gusts no better than their logs tell.
 
-    The median of draws of both, initial states re-estimated to first order.
+    The median of draws of all that, initial states re-estimated to first order.  Where trials turn to one side only,
+    coefficients of the other are anywhere in their box.
     """
     names, spread = covariance(bench, found.final)
     beside = Beside.of(bench, (found.base, found.final), trials)
     at = beside.units[-1]
     offsets = fit_offsets(beside.scaled, at)
-    drawn = np.random.default_rng(0).multivariate_normal(np.zeros(len(names)), spread, DRAWS, method="eigh")
-    columns = np.repeat(at[:, None], 1 + DRAWS, axis=1)
+    rng = np.random.default_rng(0)
+    drawn = rng.multivariate_normal(np.zeros(len(names)), spread, DRAWS, method="eigh")
+    columns = np.repeat(at[:, None], DRAWS, axis=1)
     rows = [beside.wide.names.index(name) for name in names]
-    columns[rows, 1:] = np.clip(at[rows][:, None] + drawn.T, 0.0, 1.0)
+    columns[rows] = np.clip(at[rows][:, None] + drawn.T, 0.0, 1.0)
     problem = beside.judged
-    runs = problem.residuals(columns, np.repeat(offsets[:, None], 1 + DRAWS, axis=1)).T
-    moved = runs[:, 1:] - runs[:, :1] + changes(problem, at, offsets, bench.options.seed)
+    base = problem.residuals(at[:, None], offsets[:, None]).T
+    runs = _with_other_ties(problem, columns, np.repeat(offsets[:, None], DRAWS, axis=1), rng)
+    moved = runs - base + changes(problem, at, offsets, bench.options.seed)
     by_offset = problem.offset_slopes(at, offsets)[1]
     moved = problem.without_offsets(moved[:, np.isfinite(moved).all(axis=0)], by_offset, problem.prior)
     return float(np.median(np.sum(moved**2, axis=0))) if moved.shape[1] else 0.0
+
+
+def _with_other_ties(
+    problem: FitProblem, columns: FloatArray, offsets: FloatArray, rng: np.random.Generator
+) -> FloatArray:
+    """Residuals (n_rows, n_candidates) of candidates (n_targets, n_candidates), each with tied coefficients somewhere else
+    in the box of those that they follow."""
+    ties = problem.model.ties
+    if not ties:
+        return problem.residuals(columns, offsets).T
+    leaders = problem.box.part([tie.to for tie in ties])
+    off = np.sqrt(OF_BOX) * leaders.width / np.abs(leaders.pre)
+    found = []
+    for k in range(columns.shape[1]):
+        factors = np.maximum(1.0 + off * rng.standard_normal(len(ties)), 0.0)
+        other = [tie._replace(ratio=tie.ratio * float(by)) for tie, by in zip(ties, factors, strict=True)]
+        drawn = problem.with_targets(Model(problem.model.profile, other), problem.box)
+        found.append(drawn.residuals(columns[:, k : k + 1], offsets[:, k : k + 1])[0])
+    return np.stack(found, axis=1)
 
 
 def _gain(bench: Workbench, found: Found, test: Sequence[Trial]) -> Gain:

@@ -261,7 +261,11 @@ class Refitting:
 
     def _starts(self, point: Point, score: Score, sizes: Sequence[float]) -> FloatArray:
         """Where the refit of a hypothesis starts from a point, (n_names, n_starts): where its score says, and for an
-        effect with one side only, whose slope at the null misleads, at sizes around the typical."""
+        effect with one side only, whose slope at the null misleads, at sizes around the typical.
+
+        Where it takes the place of a target that ended at a bound, the others followed that one astray: it starts from
+        the profile's values of them, too.
+        """
         names = score.hypothesis.names
         null = origin(self.bench, point, names)
         size = self._typical(score.hypothesis)
@@ -270,8 +274,11 @@ class Refitting:
         away = inwards(self.bench.null(names))
         if away.any():
             places += [null + away * size * factor for factor in sizes]
-        kept = point.unit[kept_free(point, score.hypothesis)]
-        return np.column_stack([np.concatenate([kept, np.clip(place, 0.0, 1.0)]) for place in places])
+        kept = kept_free(point, score.hypothesis)
+        others = [point.unit[kept]]
+        if score.hypothesis.instead:
+            others.append(self.bench.null([point.names[i] for i in kept]))
+        return np.column_stack([np.concatenate([z, np.clip(place, 0.0, 1.0)]) for z in others for place in places])
 
     def _steps(self, point: Point, score: Score, starts: FloatArray, iterations: int) -> list[Point]:
         """So many steps of fits with a hypothesis, from starts at a point, offsets beginning there."""

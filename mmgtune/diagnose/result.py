@@ -359,7 +359,6 @@ class Diagnosis(Plotted):
                 "Nothing is wrong beyond the noise of the measurements: the re-tuned model fits these trials, and no "
                 "cause that was looked for shows."
             )
-        share = self.gain.share_removed[0]
         where = "on trials not used" if self.gain.held_out == "test" else f"on {self.gain.words}"
         if self.verdict == "unexplained":
             told = (
@@ -406,10 +405,7 @@ class Diagnosis(Plotted):
                 f"{math.sqrt(before):.2g} to {math.sqrt(after):.2g} times the noise of the measurements."
             )
         them = "it" if len(self.causes) == 1 else "them"
-        imitated = share < IMITATED and self.options.leeway > 0.0 and self.choice is None
-        hull = f"what a hull that is {100.0 * self.options.leeway:.3g} % off would leave of the error"
-        of = hull if imitated else "the error"
-        gained = f"{text} Adding {them} removes {_percent(share)} of {of} {where}."
+        gained = f"{text} {self._gained(them, where)}"
         if self.doubted:
             gained = f"{gained} {self.doubted.sentence}"
         if not any(cause.runs for cause in self.causes):
@@ -420,6 +416,15 @@ class Diagnosis(Plotted):
             f"{gained} What differs between runs was estimated there from the first {100.0 * self.gain.first_part:.0f} "
             "% of each run, and the rest was judged; the extended profile leaves it out."
         )
+
+    def _gained(self, them: str, where: str) -> str:
+        """What adding the causes removes of the error on held-out trials, in a sentence."""
+        share = self.gain.share_removed[0]
+        if share <= 0.0:
+            return f"Adding {them} removes none of the error {where}: what else was left open counts for more there."
+        imitated = share < IMITATED and self.options.leeway > 0.0 and self.choice is None
+        hull = f"what a hull that is {100.0 * self.options.leeway:.3g} % off would leave of the error"
+        return f"Adding {them} removes {_percent(share)} of {hull if imitated else 'the error'} {where}."
 
     def _voyages(self) -> dict[str, Any] | None:
         """What was looked at of voyages, and what differs from one to the next."""

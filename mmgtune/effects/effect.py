@@ -72,6 +72,7 @@ class Effect(Component):
     told_as    pairs of parameters, north and east [SI], told as a size and a direction too: names of these two
     pivots     parameters about which others are meant, {parameter: its value by ship where the effect is put into a
                profile}; they are never searched for
+    rough      whether its formula is right to no more than some per cent of itself, so that what it leaves says little
     besides    parameters that a search looks for, and a fit with the effect tunes only where they are named
     form       parameters that say how far the force is off its formula, {parameter: one standard deviation about its
                null}; a search lets them go wherever it fits the effect, a fit tunes them only where they are named
@@ -98,6 +99,7 @@ class Effect(Component):
     sentence: Callable[[Mapping[str, str]], str] = lambda _: ""
     told_as: Mapping[tuple[str, str], tuple[str, str]] = field(default_factory=dict)
     pivots: Mapping[str, Callable[[Scale], float]] = field(default_factory=dict)
+    rough: bool = False
     besides: tuple[str, ...] = ()
     form: Mapping[str, float] = field(default_factory=dict)
     absorbed: Mapping[str, str] = field(default_factory=dict)

@@ -91,6 +91,7 @@ EFFECT = ForceEffect(
     variants=tuple((term,) for term in TERMS),
     one_of_many=True,
     absorbed={term: f"hull.{term}" for term in TERMS},
+    rough=True,
     sentence=lambda v: (
         "The hull force lacks " + " and ".join(f"a term {symbol(name)} of {value}" for name, value in v.items())
     ),

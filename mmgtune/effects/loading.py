@@ -79,6 +79,7 @@ EFFECT = CoefficientsEffect(
     variants=(("draught",), ("trim",), ("displacement",)),
     varies=("draught", "trim", "displacement"),
     subject="loading",
+    rough=True,
     sentence=lambda v: (
         "The ship was loaded otherwise than the profile says: "
         + ", ".join(_WORDS[name].format(v[name]) for name in _WORDS if name in v)

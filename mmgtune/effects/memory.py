@@ -86,5 +86,6 @@ EFFECT = LagEffect(
     },
     variants=(("time_constant",), ("sway",), ("yaw",)),
     besides=("sway", "yaw"),
+    rough=True,
     sentence=_said,
 )

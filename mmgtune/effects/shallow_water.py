@@ -83,6 +83,7 @@ EFFECT = FactorsEffect(
     borrowed={name: f"particulars.{name}" for name in ("L_pp", "B", "d", "C_b")},
     variants=(("depth",), ("measured",)),
     unvisited=unvisited,
+    rough=True,
     sentence=lambda v: (
         f"The depth measured in the trials acts on the ship, her draught over it times {v['measured']}"
         if "measured" in v

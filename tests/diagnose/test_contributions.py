@@ -52,8 +52,15 @@ def test_a_trace_is_small_in_every_respect(share, channels, indices, trace):
 
 @pytest.mark.parametrize(
     ("seen", "share", "trace"),
-    [(0.0003, 0.0004, True), (0.0003, 0.02, False), (0.02, 0.0003, False), (0.02, -0.01, True), (0.25, 0.0, True)],
-    ids=["the form of the others", "held out", "seen", "does harm", "found on these trials alone"],
+    [
+        (0.0003, 0.0004, True),
+        (0.004, 0.0004, True),
+        (0.0003, 0.02, False),
+        (0.02, 0.0003, False),
+        (0.02, -0.01, True),
+        (0.25, 0.0, True),
+    ],
+    ids=["the form of the others", "hardly seen", "held out", "seen", "does harm", "found on these trials alone"],
 )
 def test_a_cause_beside_larger_ones_has_to_help_where_nobody_looked(seen, share, trace):
     large = {"x": 40.0}, {"overshoot_1_deg": 3.0}

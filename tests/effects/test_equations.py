@@ -47,7 +47,8 @@ def added(suzaku):
         now = lanes(state)
         found = forces(now, lanes(control), suzaku.components, p)
         effect = find_effect(tag)
-        e = effect.params(**{name: np.array([float(value)]) for name, value in values.items()})
+        defaults = {name: one.default for name, one in effect.parameters.items()}
+        e = effect.params(**{name: np.array([float(value)]) for name, value in (defaults | values).items()})
         given = effect.function(now, lanes(air), found, suzaku.components, p, e)
         return np.array([np.ravel(axis)[0] for axis in given]), found
 
@@ -100,6 +101,12 @@ def test_wind(added, suzaku, come_from):
     assert from_starboard[1] < 0.0
     nothing, _ = added("wind", {"speed": 0.0, "direction": 0.0, "measured": 1.0, **shape})
     assert not nothing.any()
+    # A ship whose force is off the formulas.
+    other = {"ahead": 0.8, "across": 1.2, "turning": 2.0, "arm": 0.05}
+    off, _ = added("wind", {"speed": 9.0, "direction": come_from, **shape, **other})
+    L = suzaku.profile.L_pp
+    X, Y, N = steady
+    np.testing.assert_allclose(off, [0.8 * X, 1.2 * Y, 2.4 * N + 0.05 * L * 1.2 * Y], rtol=1e-12)
 
 
 @pytest.mark.parametrize("a", np.linspace(-3.0, 3.0, 7))

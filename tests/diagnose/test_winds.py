@@ -1,0 +1,132 @@
+"""Winds whose force is off the formulas, in gusts: neither hides them, nor passes for something else."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mmgtune.backends import STATES
+from mmgtune.diagnose import DiagnoseOptions
+from mmgtune.diagnose.base_fit import base_fit
+from mmgtune.diagnose.inputs import DRAWS, changes
+from mmgtune.diagnose.leftover import leftover
+from mmgtune.diagnose.linear import linearise
+from mmgtune.diagnose.winds import ALONG, other_winds
+from mmgtune.diagnose.workbench import make_workbench
+from mmgtune.model import Model
+from mmgtune.physics.quantities import Surroundings
+from mmgtune.profile import load_profile, with_effects
+from mmgtune.simulation import simulate
+from mmgtune.trial import load_trials
+from mmgtune.units import DEG
+
+NOISE = np.array([0.4, 0.4, 0.003, 0.02, 0.02, 0.0005])
+WIND = ("effects.wind.speed", "effects.wind.direction")
+OFF = {"ahead": 0.75, "across": 1.3, "turning": 2.2, "arm": 0.04}
+
+
+@pytest.fixture(scope="module")
+def sailed():
+    """Runs in a wind of 8 m/s from 40 deg on a ship whose wind force is not that of the formulas."""
+    profile = load_profile("suzaku")
+    rng = np.random.default_rng(3)
+    windy = with_effects(profile, {"wind": {"speed": 8.0, "direction": 40.0 * DEG, **OFF}}, "made")
+    trials = [load_trials("suzaku").trials[name] for name in ("turn_p35", "turn_m20", "zigzag_20")]
+    made = []
+    for trial, motion in zip(trials, simulate(windy, trials), strict=True):
+        noisy = motion.states + NOISE * rng.standard_normal(motion.states.shape)
+        made.append(replace(trial, **dict(zip(STATES, noisy.T, strict=True))))
+    return profile, made
+
+
+def wind_on(profile, trials, **options):
+    """A workbench, the wind fitted on it together with the targets, and what it is."""
+    bench = make_workbench(profile, trials, DiagnoseOptions(integrator="rk4", **options), WIND)
+    base = base_fit(bench)
+    names = (*base.names, *WIND)
+    start = np.append(base.unit, bench.sub_box(WIND).to_unit(np.array([6.0, 1.0])))
+    point = bench.refit(names, start[:, None], base.offsets)
+    return bench, point, bench.values(point)
+
+
+def test_the_wind_is_found_though_its_force_is_off_the_formulas(sailed):
+    bench, point, found = wind_on(*sailed)
+    assert point.names[:4] == tuple(f"effects.wind.{name}" for name in OFF)
+    assert point.names[-2:] == WIND
+    assert point.chi2 / bench.problem.n_residuals < 1.05
+    assert found["effects.wind.direction"] == pytest.approx(40.0 * DEG, abs=3.0 * DEG)
+    # What counts is force: the speed is as well known as the factors on it are believed.
+    assert found["effects.wind.speed"] ** 2 * found["effects.wind.across"] == pytest.approx(64.0 * 1.3, rel=0.15)
+    assert found["effects.wind.turning"] == pytest.approx(2.2, abs=0.4)
+    held, stiff, _ = wind_on(*sailed, leeway=0.0)
+    assert not held.forms
+    assert stiff.chi2 - point.chi2 > 1000.0
+
+
+def test_a_form_goes_with_its_effect(sailed):
+    bench, point, _ = wind_on(*sailed)
+    kept = [k for k, name in enumerate(point.names) if name not in WIND]
+    names = [point.names[k] for k in kept]
+    without = bench.refit(names, point.unit[kept][:, None], point.offsets, max_iterations=2)
+    assert not set(without.names) & set(bench.forms)
+
+
+def test_a_problem_made_linear_knows_what_is_believed_of_forms(sailed):
+    bench, point, _ = wind_on(*sailed)
+    linear = linearise(bench, point)
+    assert np.sum(linear.residual**2) == pytest.approx(point.chi2, rel=2e-3)
+
+
+def test_nothing_wavers_where_no_wind_blows(sailed):
+    profile, trials = sailed
+    bench = make_workbench(profile, trials, DiagnoseOptions(), WIND)
+    problem = bench.problem_of(bench.targets)
+    theta = problem.theta(bench.null(bench.targets)[:, None])
+    around, each = other_winds(problem.model, theta, problem.cases, 3, seed=0)
+    np.testing.assert_array_equal(around, np.repeat(problem.cases.around[:, None], 4, axis=1))
+    np.testing.assert_array_equal(each, np.broadcast_to(theta[:, None], each.shape))
+
+
+def test_winds_that_may_have_blown_as_well(sailed):
+    """The first is the steady one, simulated as if it had been measured; the others waver about it."""
+    profile, trials = sailed
+    model = Model(with_effects(profile, {"wind": {"speed": 8.0, "direction": 40.0 * DEG}}, "made"))
+    cases = make_workbench(profile, trials, DiagnoseOptions(), WIND).problem.cases
+    around, each = other_winds(model, model.matrix(), cases, 400, seed=1)
+    north, east = (around[..., Surroundings._fields.index(f"wind_{name}")] for name in ("north", "east"))
+    np.testing.assert_allclose(np.hypot(north, east)[:, 0], 8.0)
+    np.testing.assert_allclose(np.arctan2(-east, -north)[:, 0], 40.0 * DEG)
+    along = -north * np.cos(40.0 * DEG) - east * np.sin(40.0 * DEG)
+    assert np.std(along[:, 1:]) == pytest.approx(8.0 * ALONG, rel=0.05)
+    assert np.mean(along[:, 1:]) == pytest.approx(8.0, rel=0.01)
+    lasting = along[:, 1:, : cases.n_samples[0]] - 8.0
+    dt = float(np.diff(cases.t[0])[0])
+    later = round(250.0 / 8.0 / dt)  # they fade to 1/e while 250 m of air pass
+    kept = np.mean(lasting[0, :, later:] * lasting[0, :, :-later]) / np.mean(lasting[0] ** 2)
+    assert kept == pytest.approx(np.exp(-1.0), abs=0.08)
+    shape = each[model.rows["above_water.Y_1"], :, 1:]
+    assert 0.0 < np.std(shape) < 0.3
+    np.testing.assert_array_equal(shape[0], shape[1])  # one ship in all runs
+
+
+def test_gusts_are_no_unknown_cause(sailed):
+    """What they leave is excused, what a calm model leaves is not."""
+    profile, trials = sailed
+    rng = np.random.default_rng(8)
+    windy = with_effects(profile, {"wind": {"measured": 1.0, **OFF}}, "made")
+    made = []
+    for trial in trials:
+        gusts = 1.0 + 0.08 * np.sqrt(2.0) * np.sin(0.04 * trial.t + rng.uniform(0.0, 6.0))
+        air = {"wind_speed": 8.0 * gusts, "wind_dir": np.full(trial.n_samples, 40.0 * DEG)}
+        (motion,) = simulate(windy, [replace(trial, extra=air)])
+        noisy = motion.states + NOISE * rng.standard_normal(motion.states.shape)
+        made.append(replace(trial, **dict(zip(STATES, noisy.T, strict=True))))
+    bench, point, found = wind_on(profile, made)
+    assert found["effects.wind.direction"] == pytest.approx(40.0 * DEG, abs=8.0 * DEG)
+    problem = bench.problem_of(point.names, point.integrator)
+    moved = changes(problem, point.unit, point.offsets, seed=0)
+    assert moved.shape == (bench.problem.n_residuals, DRAWS)
+    left = leftover(bench, point)
+    assert point.chi2 / bench.problem.n_residuals > 1.2
+    assert left.excess < 0.05 < left.left_open
+    assert leftover(bench, base_fit(bench)).excess > 5.0
