@@ -213,8 +213,8 @@ def expected(bench: Workbench, found: Found, trials: Sequence[Trial]) -> float:
 def _with_other_ties(
     problem: FitProblem, columns: FloatArray, offsets: FloatArray, rng: np.random.Generator
 ) -> FloatArray:
-    """Residuals (n_rows, n_candidates) of candidates (n_targets, n_candidates), each with tied coefficients somewhere else
-    in the box of those that they follow."""
+    """Residuals (n_rows, n_candidates) of candidates (n_targets, n_candidates), each with coefficients that are tied
+    somewhere else in the box of those that they follow."""
     ties = problem.model.ties
     if not ties:
         return problem.residuals(columns, offsets).T

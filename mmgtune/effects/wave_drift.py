@@ -4,6 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..physics.elementary import sin
 from ..physics.frame import to_ship
 from ..physics.quantities import Force, Forces, Lanes, State, Surroundings
 from .effect import ForceEffect, Parameter
@@ -14,12 +15,17 @@ class WaveDrift(NamedTuple):
 
     force: Lanes
     direction: Lanes
+    ahead: Lanes
+    turning: Lanes
 
 
 def wave_drift(state: State, around: Surroundings, found: Forces, components: Any, p: Any, e: WaveDrift) -> Force:
-    """Force [N] along one line over ground, at midship, without a moment (assumption: whatever the ship's heading)."""
+    """Force [N] along one line over ground, at midship, whatever the ship's heading: an assumption, from which ``ahead``
+    and ``turning`` say how far it is off.
+    """
     ahead, starboard = to_ship(state.psi - e.direction, -e.force, 0.0)
-    return Force(X=ahead, Y=starboard, N=0.0 * ahead)
+    moment = e.turning * e.force * p.ship.L_pp * sin(2.0 * (state.psi - e.direction))
+    return Force(X=e.ahead * ahead, Y=starboard, N=moment)
 
 
 EFFECT = ForceEffect(
@@ -45,7 +51,20 @@ EFFECT = ForceEffect(
             bounds=lambda _: (0.0, 2.0 * np.pi),
             typical=lambda _: 0.5 * np.pi,
         ),
+        "ahead": Parameter(
+            "factor on the force along the ship",
+            null=1.0,
+            low=-1e-12,
+            bounds=lambda _: (0.0, 2.0),
+            bounds_source="from none to twice that of a force along one line",
+        ),
+        "turning": Parameter(
+            "moment to starboard with waves from 45 deg to port, over force and length",
+            bounds=lambda _: (-0.2, 0.2),
+            bounds_source="a fifth of the force times the length",
+        ),
     },
+    form={"ahead": 0.25, "turning": 0.02},
     variants=(("force", "direction"),),
     varies=("force", "direction"),
     sentence=lambda v: f"A steady force of {v['force']}, as of waves from {v['direction']}, acted on the ship",
