@@ -20,8 +20,9 @@ class WaveDrift(NamedTuple):
 
 
 def wave_drift(state: State, around: Surroundings, found: Forces, components: Any, p: Any, e: WaveDrift) -> Force:
-    """Force [N] along one line over ground, at midship, whatever the ship's heading: an assumption, from which ``ahead``
-    and ``turning`` say how far it is off.
+    """Force [N] along one line over ground, at midship, whatever the ship's heading.
+
+    That is an assumption; ``ahead`` and ``turning`` say how far a ship is off it.
     """
     ahead, starboard = to_ship(state.psi - e.direction, -e.force, 0.0)
     moment = e.turning * e.force * p.ship.L_pp * sin(2.0 * (state.psi - e.direction))

@@ -98,6 +98,22 @@ def test_what_uncertain_coefficients_bring_is_expected_of_held_out_trials(suzaku
     assert np.mean(np.array(brought) < BAND * np.array(foreseen)) >= 0.6
 
 
+def test_the_side_that_no_trial_turned_to_is_expected_to_be_wrong(suzaku):
+    """Her rudder works worse in turns to port than the profile's: runs to starboard tell nothing of it."""
+    profile, trials = suzaku.profile, load_trials("suzaku")
+    rng = np.random.default_rng(4)
+    sailed = [trials.trials[name] for name in ("turn_p35", "turn_p20", "turn_p10", "turn_m20")]
+    off = {"rudder.gamma_Rn": 0.85 * profile.value("rudder.gamma_Rn")}
+    motions = simulate_trials(tuned(profile, off, {}, {}, "made"), sailed, integrator=Integrator("rk4"))
+    *seen, starboard, port = [noisy(trial, motion, rng) for trial, motion in zip(sailed, motions, strict=True)]
+    bench = make_workbench(profile, seen, DiagnoseOptions())
+    assert [tie.name for tie in bench.model.ties] == ["rudder.gamma_Rn"]
+    base = base_fit(bench)
+    found = Found(base, base)
+    assert expected(bench, found, [port]) > 8.0 * expected(bench, found, [starboard])
+    assert not held_out(bench, found, [port]).remains
+
+
 def noisy(trial, motion, rng):
     """A trial as sensors would log a motion."""
     states = motion.states + rng.standard_normal(motion.states.shape) * [0.4, 0.4, 0.003, 0.02, 0.02, 0.0005]
