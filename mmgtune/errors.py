@@ -115,7 +115,14 @@ def brief(value: object) -> str:
     return short.repr(value)
 
 
+def reason(error: BaseException) -> str:
+    """What an exception says, in one short line: of a file, what the system says, without its number and the path."""
+    if isinstance(error, UnicodeDecodeError):
+        return f"byte {error.start} is no {error.encoding} text"
+    said = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+    return (said.strip().splitlines() or [type(error).__name__])[0][:300]
+
+
 def cannot_write_reason(error: OSError) -> str:
-    """One line for an error of the operating system."""
-    reason = error.strerror or str(error)
-    return f"{reason}: {error.filename}" if error.filename else reason
+    """The same of something that was to be written, with the place."""
+    return f"{reason(error)}: {error.filename}" if error.filename else reason(error)

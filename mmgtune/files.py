@@ -11,7 +11,7 @@ import tempfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from .errors import OutputError, Problem
+from .errors import OutputError, Problem, reason
 
 _PARTS: set[Path] = set()
 """Temporary files of this process."""
@@ -164,7 +164,7 @@ def cannot_write(path: Path, error: OSError) -> OutputError:
         Problem(
             what="cannot write the output",
             where=str(path),
-            why=error.strerror or str(error),
+            why=reason(error),
             fix="choose a folder with room that you may write to",
         )
     )

@@ -18,7 +18,7 @@ from .arrays import FloatArray
 from .backends import Integrator
 from .components import split_name
 from .effects import FilterEffect, FlowEffect, SensorEffect
-from .errors import OptionError, Problem, ProfileError
+from .errors import OptionError, Problem, ProfileError, reason
 from .files import atomic, hold_regular
 from .model import Model
 from .predictor import PhysicsPredictor, Sampling
@@ -150,7 +150,7 @@ def load_particles(path: Path | str) -> Particles:
         facts = json.loads(raw)
         text, known, schema = facts["profile"], facts["facts"], facts["schema"]
     except (OSError, pa.ArrowException) as error:
-        raise _unusable("particles cannot be read", path, (str(error).splitlines() or [""])[0]) from error
+        raise _unusable("particles cannot be read", path, reason(error)) from error
     except (KeyError, TypeError, ValueError, RecursionError) as error:
         raise _unusable("the file holds no particles", path, "its metadata say of none") from error
     if schema != SCHEMA:

@@ -11,7 +11,7 @@ from typing import Any, overload
 from .backends import Integrator
 from .circumstances import notes_on
 from .displayed import Plotted, inert
-from .errors import OptionError, Problem
+from .errors import OptionError, Problem, reason
 from .evaluation import TrialRecord, evaluate
 from .files import refuse_existing
 from .given import ShipGiven, TrialsGiven, list_of
@@ -293,7 +293,7 @@ def _quantity(text: str, name: str, unit: str, such_as: str) -> float:
         return parse(text, unit)[0]
     except ValueError as error:
         what = f"'{text[:80]}' cannot be read"
-        raise OptionError(Problem(what, name, str(error), f"write {name}={such_as}")) from None
+        raise OptionError(Problem(what, name, reason(error), f"write {name}={such_as}")) from None
 
 
 def _signed(angle: float) -> str:

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..effects import Effect, LagEffect
-from ..errors import OptionError, Problem, brief
+from ..errors import OptionError, Problem, brief, reason
 from ..model import Model
 from ..physics.quantities import State
 from .cases import Cases, Integrator, LaneResult, finish, lanes_of
@@ -73,7 +73,7 @@ def _compiling() -> ModuleType:
         from . import compiling
     except ValueError as error:
         what = "numba does not take its settings"
-        raise OptionError(Problem(what, "environment", str(error), fix)) from error
+        raise OptionError(Problem(what, "environment", reason(error), fix)) from error
     if numba.config.DISABLE_JIT:
         what, why = "numba is told not to compile", "the compiled back end is nothing without it"
         raise OptionError(Problem(what, "environment, NUMBA_DISABLE_JIT", why, fix))

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from ..errors import OptionError, Problem
+from ..errors import OptionError, Problem, reason
 from ..options import MakeOptions
 from . import common as c
 from . import completing
@@ -217,7 +217,7 @@ def import_(
         try:
             (seconds,) = units.parse(step, "s")
         except ValueError as error:
-            raise OptionError(Problem(f"the step is {step}", "--step", str(error), "write --step 0.5")) from error
+            raise OptionError(Problem(f"the step is {step}", "--step", reason(error), "write --step 0.5")) from error
         if not 0.0 < seconds < float("inf"):
             raise OptionError(
                 Problem(f"the step is {step}", "--step", "samples follow one another", "give a time above 0 s")

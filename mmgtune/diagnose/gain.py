@@ -62,8 +62,8 @@ class Gain(Brief):
     floor       chi-squared that noise brings to all of them
     chance      deviation of that
     first_part  share of each run that what differs between runs was estimated on; ``excess`` counts what follows alone
-    unsure      chi-squared to be expected beyond noise because coefficients, inputs and gusts are known no better than
-                they are; 0 where it was not asked for, as nothing remains
+    unsure      chi-squared to be expected beyond noise because coefficients and winds are known no better; 0 where it
+                was not asked for, as nothing remains
     """
 
     held_out: HeldOut
@@ -186,8 +186,8 @@ def held_out(bench: Workbench, found: Found, test: Sequence[Trial]) -> Gain:
 
 
 def expected(bench: Workbench, found: Found, trials: Sequence[Trial]) -> float:
-    """Chi-squared beyond noise on trials that a point was not fitted to, as its coefficients are known no better, and
-    inputs and gusts no better than their logs tell.
+    """Chi-squared beyond noise on trials that a point was not fitted to, as its coefficients are known no better, nor a
+    wind that blows.
 
     The median of draws of all that, initial states re-estimated to first order.  Where trials turn to one side only,
     coefficients of the other are anywhere in their box.
@@ -204,7 +204,7 @@ def expected(bench: Workbench, found: Found, trials: Sequence[Trial]) -> float:
     problem = beside.judged
     base = problem.residuals(at[:, None], offsets[:, None]).T
     runs = _with_other_ties(problem, columns, np.repeat(offsets[:, None], DRAWS, axis=1), rng)
-    moved = runs - base + changes(problem, at, offsets, bench.options.seed)
+    moved = runs - base + changes(problem, at, offsets, bench.options.seed, logged=False)
     by_offset = problem.offset_slopes(at, offsets)[1]
     moved = problem.without_offsets(moved[:, np.isfinite(moved).all(axis=0)], by_offset, problem.prior)
     return float(np.median(np.sum(moved**2, axis=0))) if moved.shape[1] else 0.0

@@ -39,6 +39,7 @@ def changes(
     offsets: FloatArray,
     seed: int,
     updates: Sequence[Sequence[IntArray]] | None = None,
+    logged: bool = True,
 ) -> FloatArray:
     """Change of the residuals (n_residuals, DRAWS) at a position (n_targets,) in the box, by inputs alike in the log.
 
@@ -47,14 +48,15 @@ def changes(
 
     offsets  (n_cases, 6) of the initial states
     updates  samples at which each input of each case was updated; None where all of them are
+    logged   whether the logged inputs are other ones too, or the wind alone
     """
     rng = np.random.default_rng(seed)
     cases = problem.cases
-    noise = rng.standard_normal((len(cases), DRAWS, *cases.controls.shape[1:]))
+    noise = float(logged) * rng.standard_normal((len(cases), DRAWS, *cases.controls.shape[1:]))
     for case, n_samples in enumerate(cases.n_samples.tolist()):
-        for k, logged in enumerate(cases.controls[case].T):
+        for k, series in enumerate(cases.controls[case].T):
             known = None if updates is None else updates[case][k]
-            noise[case, :, :, k] = _otherwise(noise[case, :, :, k], logged, n_samples, known)
+            noise[case, :, :, k] = _otherwise(noise[case, :, :, k], series, n_samples, known)
     controls = np.concatenate([cases.controls[:, None], cases.controls[:, None] + noise], axis=1)
     copies = DRAWS + 1
     around, theta = other_winds(problem.model, problem.theta(unit[:, None]), cases, DRAWS, seed)

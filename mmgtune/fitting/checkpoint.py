@@ -15,7 +15,7 @@ from zipfile import BadZipFile
 import numpy as np
 
 from ..arrays import FloatArray
-from ..errors import OptionError, Problem
+from ..errors import OptionError, Problem, reason
 from ..files import atomic
 
 NAME = "checkpoint.npz"
@@ -65,7 +65,10 @@ class Checkpoint:
         except (OSError, ValueError, KeyError, EOFError, BadZipFile) as error:
             raise OptionError(
                 Problem(
-                    "the checkpoint cannot be read", str(self.path), str(error), "delete it, or run without resume=True"
+                    "the checkpoint cannot be read",
+                    str(self.path),
+                    reason(error),
+                    "delete it, or run without resume=True",
                 )
             ) from error
         differing(identity, self.identity, self.path)

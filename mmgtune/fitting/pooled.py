@@ -23,7 +23,7 @@ import numpy as np
 
 from .. import limits
 from ..arrays import FloatArray
-from ..errors import OptionError, Problem
+from ..errors import OptionError, Problem, reason
 from .box import Box
 from .information import Information
 from .terms import ScatterPrior
@@ -123,7 +123,7 @@ def pooled(sisters: SisterClass) -> Pooled:
     except np.linalg.LinAlgError as error:
         fix = "run the fleet of the class again; if nothing but mmgtune wrote the file, please report it"
         what = f"what the trials of the class '{sisters.name}' say cannot be put together"
-        raise OptionError(Problem(what, "sisters", str(error), fix)) from error
+        raise OptionError(Problem(what, "sisters", reason(error), fix)) from error
 
 
 def _pooled(sisters: SisterClass) -> Pooled:
@@ -204,7 +204,7 @@ def read_sisters(path: Path, ship: str) -> SisterClass:
         return SisterClass(str(document["name"]), members)
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         fix = "give the folder that mmgtune fleet run wrote, or a file of its folder classes"
-        raise OptionError(Problem("this is no class of sister ships", str(file), str(error), fix)) from error
+        raise OptionError(Problem("this is no class of sister ships", str(file), reason(error), fix)) from error
 
 
 def _chosen(folder: Path, ship: str) -> Path:

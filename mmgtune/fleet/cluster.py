@@ -11,7 +11,7 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from ..errors import OptionError, Problem
+from ..errors import OptionError, Problem, reason
 from ..options.fleet import LOCAL, FleetOptions
 from .job import Job
 from .places import EXTRA
@@ -46,7 +46,7 @@ def connected(options: FleetOptions) -> Iterator[Client]:
     except ImportError as error:
         what = "a scheduler needs Dask, which is not installed"
         fix = f"{EXTRA}, here and on the workers; or leave it out for processes of this machine"
-        raise OptionError(Problem(what, "scheduler", str(error), fix)) from error
+        raise OptionError(Problem(what, "scheduler", reason(error), fix)) from error
     with contextlib.ExitStack() as stack:
         address: Any = options.scheduler
         if address == LOCAL:
@@ -65,7 +65,7 @@ def connected(options: FleetOptions) -> Iterator[Client]:
             client = stack.enter_context(Client(address, timeout=PATIENCE, security=security))
         except (OSError, TimeoutError, ValueError, ImportError) as error:
             fix = "start it with dask scheduler, and see that its port can be reached from here"
-            raise OptionError(Problem("the scheduler does not answer", str(address), str(error), fix)) from error
+            raise OptionError(Problem("the scheduler does not answer", str(address), reason(error), fix)) from error
         yield client
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import limits
-from ..errors import OptionError, Problem
+from ..errors import OptionError, Problem, reason
 from ..files import write_text
 from ..fitting import CLASSES, FEWEST, Information, SisterClass
 from .commands import INFORMATION
@@ -39,7 +39,7 @@ def _told(path: Path) -> Information:
     except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
         fix = "remove the row of the job from results and run the fleet again with resume=True: the job is run anew"
         what = "the file does not hold what trials say of coefficients"
-        raise OptionError(Problem(what, str(path), str(error), fix)) from error
+        raise OptionError(Problem(what, str(path), reason(error), fix)) from error
 
 
 def write_classes(out: Path, classes: Sequence[SisterClass]) -> list[dict[str, Any]]:

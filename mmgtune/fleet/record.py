@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import limits
-from ..errors import OptionError, Problem
+from ..errors import OptionError, Problem, reason
 from ..files import write_text
 from . import rows as result_rows
 from .changes import FEWEST, LEVEL, SURE, Course
@@ -63,7 +63,7 @@ def made_before(out: Path) -> dict[str, Any]:
         return {key: document[key] for key in ("mmgtune", "created", "command", "environment", "table")}
     except (OSError, ValueError, KeyError, TypeError) as error:
         fix = "give the folder that --out of mmgtune fleet run named; one that was stopped goes on with resume=True"
-        raise OptionError(Problem("there is no record of a fleet", str(path), str(error), fix)) from error
+        raise OptionError(Problem("there is no record of a fleet", str(path), reason(error), fix)) from error
 
 
 def _listed(out: Path) -> set[str]:
@@ -76,7 +76,7 @@ def _jobs_of(out: Path) -> list[dict[str, Any]]:
         return [{**one, "key": one["key"]} for one in jobs]
     except (OSError, ValueError, KeyError, TypeError) as error:
         fix = "remove that file and run the fleet again with resume=True: it is written anew"
-        raise OptionError(Problem("the list of jobs cannot be read", str(out / JOBS), str(error), fix)) from error
+        raise OptionError(Problem("the list of jobs cannot be read", str(out / JOBS), reason(error), fix)) from error
 
 
 def listed_places(out: Path) -> set[str]:

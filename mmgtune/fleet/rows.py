@@ -14,7 +14,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from ..errors import OptionError, Problem
+from ..errors import OptionError, Problem, reason
 from ..files import atomic
 from ..resources import looked_for
 from .commands import Facts
@@ -137,7 +137,7 @@ def read(out: Path) -> list[dict[str, Any]]:
         rows: list[dict[str, Any]] = found.to_table(columns=[*whole.names, _FROM]).to_pylist()
     except (OSError, ValueError, pa.ArrowException) as error:
         raise OptionError(
-            Problem("the results cannot be read", str(folder), str(error), "run the fleet again with resume=True")
+            Problem("the results cannot be read", str(folder), reason(error), "run the fleet again with resume=True")
         ) from error
     of_file: dict[str, list[dict[str, Any]]] = {path: [] for path in keys_of}
     for row in rows:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import limits
-from ..errors import OptionError, Problem
+from ..errors import OptionError, Problem, reason
 from ..limits import Limit
 from ..options import Options
 from ..toml_reading import TomlReader, line_index, toml_of
@@ -68,7 +68,7 @@ def read_table(path: Path | str) -> FleetTable:
     try:
         text = limits.text(path, TABLE_BYTES, OptionError)
     except (OSError, ValueError) as error:
-        why = getattr(error, "strerror", None) or str(error)
+        why = reason(error)
         raise OptionError(Problem("the table of jobs cannot be read", str(path), why, "give a TOML file")) from error
     reader = _Reader(toml_of(text, "the table of jobs", str(path), OptionError), text, str(path))
     entries = reader.read()

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import LogError, Problem, among
+from ..errors import LogError, Problem, among, reason
 from ..limits import LOG_COLUMNS, MATLAB_BYTES, content
 from .cells import table_of
 from .mapping import LogMap
@@ -126,7 +126,7 @@ def variables(path: Path) -> dict[str, Any]:
     try:
         return _Reader("<" if mark == b"IM" else ">").variables(data)
     except (_Damaged, struct.error, zlib.error, ValueError) as error:
-        raise LogError(Problem("the MATLAB file cannot be read", str(path), str(error)[:200], fix)) from error
+        raise LogError(Problem("the MATLAB file cannot be read", str(path), reason(error), fix)) from error
 
 
 class _Reader:

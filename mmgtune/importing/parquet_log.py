@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import LogError, Problem
+from ..errors import LogError, Problem, reason
 from ..limits import LOG_COLUMNS
 from ..trial.footer import rows_of
 from .clock import Stamps
@@ -49,7 +49,7 @@ def read_parquet(path: Path, log_map: LogMap) -> Table:
             values = [cells.of(name, block[names[wanted[name]]], rows) for name in order[1:]]
             collector.add(np.column_stack([t, *values]), rows)
     except (OSError, ValueError, pa.ArrowException) as error:
-        why = (str(error).splitlines() or [""])[0]
+        why = reason(error)
         raise LogError(Problem("the Parquet log cannot be read", str(path), why, "copy it again")) from error
     found, numbers = collector.columns()
     t = found.pop(TIME)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from .. import limits, units
-from ..errors import LogError, Problem, among, brief, closest
+from ..errors import LogError, Problem, among, brief, closest, reason
 from ..resources import import_map_names, import_maps
 from ..toml_reading import TomlReader, finite, named, toml_of
 from ..trial.schema import COLUMNS, SOURCES, impossible, known_column
@@ -40,7 +40,7 @@ def load_map(name: str | Path, preset: bool = False) -> LogMap:
         text = limits.content(path, limits.MAP_BYTES, LogError).decode("utf-8-sig")
     except (OSError, ValueError) as error:
         fix = f"give a TOML file in UTF-8, or --preset with one of: {', '.join(import_map_names())}"
-        raise LogError(Problem("cannot read the map", str(path), str(error), fix)) from error
+        raise LogError(Problem("cannot read the map", str(path), reason(error), fix)) from error
     return parse_map(text, path)
 
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import LogError, Problem, closest
+from ..errors import LogError, Problem, closest, reason
 from ..files import hold_regular
 from ..limits import LOG_BYTES, LOG_COLUMNS, LOG_LINE
 from .clock import Stamps
@@ -75,7 +75,7 @@ def read_text(path: Path, log_map: LogMap) -> Table:
         raise _undecodable(path, log_map, error) from error
     except (pd.errors.ParserError, pd.errors.EmptyDataError, csv.Error) as error:
         fix = "say delimiter, skip and header in [log] of the map"
-        raise LogError(Problem("the log cannot be read as a table", str(path), str(error).strip(), fix)) from error
+        raise LogError(Problem("the log cannot be read as a table", str(path), reason(error), fix)) from error
     if not collector.seen:
         raise LogError(Problem("the log has no rows", str(path), "only a header was found", "check 'skip' in [log]"))
     columns, numbers = collector.columns()
@@ -174,7 +174,7 @@ def start_of(path: Path) -> bytes:
         fix = "check the path, and that you may read the file"
         if path.is_dir():
             fix = f"name the logs in it, such as {path}/*.csv"
-        raise LogError(Problem("the log cannot be opened", str(path), error.strerror or str(error), fix)) from error
+        raise LogError(Problem("the log cannot be opened", str(path), reason(error), fix)) from error
     if not content.strip():
         raise LogError(Problem("the log is empty", str(path), fix="copy it again from where it was made"))
     return content
@@ -239,4 +239,4 @@ def _is_number(text: str) -> bool:
 
 def _undecodable(path: Path, log_map: LogMap, error: Exception) -> LogError:
     fix = 'say its encoding in [log], such as encoding = "cp1252" or "utf-16"'
-    return LogError(Problem(f"the log is not {log_map.encoding}", str(path), str(error), fix))
+    return LogError(Problem(f"the log is not {log_map.encoding}", str(path), reason(error), fix))

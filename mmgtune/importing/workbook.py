@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..errors import LogError, Problem, among, brief
+from ..errors import LogError, Problem, among, brief, reason
 from ..limits import LOG_COLUMNS, SHEET_BYTES, SHEET_CELLS, SHEET_ROWS
 from .cells import table_of
 from .mapping import LogMap
@@ -138,7 +138,7 @@ def _opened(path: Path, formulas: bool = False) -> Iterator[Any]:
     except (LogError, MemoryError):
         raise
     except Exception as error:  # the library raises what it comes across where a file is damaged
-        why = f"{type(error).__name__}: {str(error)[:200]}"
+        why = f"{type(error).__name__}: {reason(error)}"
         fix = "save it again as .xlsx with a spreadsheet program, or save the sheet as CSV"
         raise LogError(Problem("the workbook cannot be read", str(path), why, fix)) from error
 

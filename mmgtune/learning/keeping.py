@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..backends.twins import jax_module
-from ..errors import OptionError, Problem
+from ..errors import OptionError, Problem, reason
 from ..files import atomic
 from ..fitting.checkpoint import differing
 from .training import Progressed
@@ -95,7 +95,7 @@ def load(path: Path, like: Progressed, identity: dict[str, Any]) -> Progressed:
             arrays = [np.asarray(file.get_tensor(f"{k:05d}")) for k in range(len(leaves))]
         recorded = numbers["identity"]
     except (OSError, SafetensorError, ValueError, KeyError, TypeError) as error:
-        raise _unreadable(path, str(error)) from error
+        raise _unreadable(path, reason(error)) from error
     differing(recorded, identity, path)
     if any(a.shape != np.shape(b) for a, b in zip(arrays, leaves, strict=True)):
         raise _unreadable(path, "its arrays have other shapes")

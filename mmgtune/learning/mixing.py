@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..errors import OptionError, Problem
+from ..errors import OptionError, Problem, reason
 from ..files import write_text
 from ..fitting.run import made_by
 from ..given import TrialsGiven, trials_of
@@ -116,7 +116,7 @@ def learn_mixture(
         mixtures = [Mixture(hybrid, net, share) for share in options.share]
     except ValueError as error:
         raise OptionError(
-            Problem("the two models do not fit together", "MODEL NETWORK", str(error), "give two models of one ship")
+            Problem("the two models do not fit together", "MODEL NETWORK", reason(error), "give two models of one ship")
         ) from error
     tried: list[Tried] = []
     seen: tuple[str, ...] = ()

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..arrays import IntArray
 from ..backends.twins import jax_module
-from ..errors import OptionError, Problem
+from ..errors import OptionError, Problem, reason
 
 WARM_UP = 0.05
 """Share of the steps over which the rate rises to its largest; it then falls as a cosine."""
@@ -224,7 +224,7 @@ def optax_module() -> Any:
         import optax
     except ImportError as error:
         raise OptionError(
-            Problem("Optax is not installed", "", str(error), "install it with: pip install 'mmgtune[learn]'")
+            Problem("Optax is not installed", "", reason(error), "install it with: pip install 'mmgtune[learn]'")
         ) from error
     return optax
 

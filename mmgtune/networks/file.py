@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .. import limits
-from ..errors import NetworkError, Problem, brief
+from ..errors import NetworkError, Problem, brief, reason
 from ..files import atomic, hold_regular
 from ..profile import parse_profile
 from ..resources import folder, taken
@@ -210,7 +210,7 @@ def _header(metadata: dict[str, str], where: str) -> dict[str, Any]:
     try:
         found = json.loads(metadata.get("network", ""))
     except (ValueError, RecursionError) as error:
-        raise NetworkError(Problem("the header of the network cannot be read", where, str(error), FIX)) from error
+        raise NetworkError(Problem("the header of the network cannot be read", where, reason(error), FIX)) from error
     if not isinstance(found, dict):
         raise NetworkError(Problem("the header of the network is no table", where, brief(found), FIX))
     if not isinstance(found.get("kind"), str) or found["kind"] not in _MADE:

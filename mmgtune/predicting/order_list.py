@@ -20,7 +20,7 @@ import numpy as np
 
 from .. import limits, units
 from ..arrays import FloatArray
-from ..errors import OptionError, Problem, closest
+from ..errors import OptionError, Problem, closest, reason
 from ..inputs import INPUTS
 from ..profile import Actuator
 
@@ -86,7 +86,7 @@ def read_orders(path: Path, inputs: Sequence[str]) -> OrderList:
     try:
         text = limits.text(path, limits.ORDERS_BYTES, OptionError)
     except (OSError, ValueError) as error:
-        why = getattr(error, "strerror", None) or str(error)
+        why = reason(error)
         fix = "name a CSV file, or trials with trials=DIR"
         raise OptionError(Problem("the list of orders cannot be read", str(path), why, fix)) from None
     # (line, cells) of what is not empty and no comment

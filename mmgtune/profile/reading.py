@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 from .. import limits, units
 from ..components import ARRANGEMENTS, KINDS, UNTAGGED, Arrangement, Component, Field, find, find_arrangement, tags
 from ..effects import Effect, Parameter, effect_tags, find_effect
-from ..errors import Problem, ProfileError, among, brief, near_to
+from ..errors import Problem, ProfileError, among, brief, near_to, reason
 from ..inputs import Input
 from ..metrics import METRICS
 from ..physics.regressions.fujiwara1998 import wind_harmonics
@@ -62,7 +62,7 @@ def load_profile(name: str | Path) -> ShipProfile:
         text = limits.text(path, limits.PROFILE_BYTES, ProfileError)
     except (OSError, ValueError) as error:
         raise ProfileError(
-            Problem("cannot read the profile", str(path), str(error), "check the file; it must be UTF-8 text")
+            Problem("cannot read the profile", str(path), reason(error), "check the file; it must be UTF-8 text")
         ) from error
     return parse_profile(text, path)
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from .. import limits
 from ..arrays import FloatArray
-from ..errors import OptionError, Problem
+from ..errors import OptionError, Problem, reason
 from ..inputs import INPUTS, Role
 from ..physics.quantities import STATES
 from ..resources import looked_for
@@ -168,7 +168,7 @@ def _read(path: Path, kind: Kind) -> dict[str, Any]:
     try:
         data = json.loads(limits.text(path, limits.RECORD_BYTES, OptionError))
     except (OSError, ValueError, RecursionError) as error:
-        raise _problem("the run's record cannot be read", path, str(error), again) from error
+        raise _problem("the run's record cannot be read", path, reason(error), again) from error
     if not isinstance(data, dict) or data.get("kind") != kind.name:
         raise _problem(f"this is not the record of a {kind.name}", path, f'it has no "kind": "{kind.name}"', again)
     schema = data.get("schema")
@@ -264,7 +264,7 @@ def _parquet(path: Path) -> dict[str, Any]:
             table = file.read()
         return {name: _column(table.column(name)) for name in table.column_names}
     except Exception as error:
-        raise _problem("the run's data cannot be read", path, str(error), "run the fit again") from error
+        raise _problem("the run's data cannot be read", path, reason(error), "run the fit again") from error
 
 
 def _column(column: Any) -> Any:

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import limits, units
-from ..errors import Problem, TrialError, among, brief, closest
+from ..errors import Problem, TrialError, among, brief, closest, reason
 from ..limits import NAME
 from ..toml_reading import TomlReader, finite, toml_of
 from ..units import DEG
@@ -208,7 +208,7 @@ def _data(path: Path) -> tuple[dict[str, Any], str]:
         text = limits.text(path, limits.SPLIT_BYTES, TrialError)
     except (OSError, ValueError) as error:
         what = "the file of stated indices cannot be read"
-        raise TrialError(Problem(what, str(path), str(error), "it must be UTF-8 text")) from error
+        raise TrialError(Problem(what, str(path), reason(error), "it must be UTF-8 text")) from error
     return toml_of(text, "the file of stated indices", str(path), TrialError), text
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import Problem, among, brief
+from ..errors import Problem, among, brief, reason
 from ..limits import FACTS_BYTES, NAME, NESTING
 from ..toml_reading import depth, finite
 from .schema import COLUMNS, LARGEST, METADATA, SCHEMA, SOURCES, impossible, known_column
@@ -34,7 +34,7 @@ def facts_of(raw: bytes | None, path: Path, columns: Sequence[str]) -> tuple[dic
             raise ValueError(f"it is nested more than {NESTING.most} levels deep")
     except (ValueError, RecursionError) as error:
         fix = 'write an object such as {"schema": 1, "ship": "...", "id": "..."}, or leave the metadata out'
-        return {}, [Problem("the metadata is not a JSON object", where, str(error), fix)]
+        return {}, [Problem("the metadata is not a JSON object", where, reason(error), fix)]
     problems = [
         Problem(f"unknown key {brief(key)}", where, **among(key, METADATA)) for key in facts if key not in METADATA
     ]

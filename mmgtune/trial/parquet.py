@@ -15,7 +15,7 @@ import numpy as np
 
 from .. import limits
 from ..arrays import FloatArray
-from ..errors import Problem, TrialError
+from ..errors import Problem, TrialError, reason
 from ..files import atomic, hold_regular
 from ..units import canonical, factors
 from .digest import DIGEST_KEY, digest
@@ -161,9 +161,7 @@ def _read(path: Path) -> _Held:
         content = limits.content(path, limits.TRIAL_BYTES, TrialError)
     except OSError as error:
         fix = "check the path, and that you may read the file"
-        raise TrialError(
-            Problem("the trial file cannot be opened", where, error.strerror or str(error), fix)
-        ) from error
+        raise TrialError(Problem("the trial file cannot be opened", where, reason(error), fix)) from error
     try:
         # Without worker threads: one still starting when a command fails quickly would abort the process at its exit.
         # ``read_table`` starts one whatever it is told.
@@ -241,7 +239,7 @@ def unreadable(begins: bytes, where: str, error: Exception) -> TrialError:
         what, fix = "the Parquet file is damaged", "copy it again from where it was made: it may be cut off"
     else:
         what, fix = "the file is not Parquet", import_commands(shlex.quote(where))
-    return TrialError(Problem(what, where, (str(error).splitlines() or [""])[0], fix))
+    return TrialError(Problem(what, where, reason(error), fix))
 
 
 def numbers(whole: Any) -> FloatArray:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .. import limits
-from ..errors import Problem, TrialError, among
+from ..errors import Problem, TrialError, among, reason
 from ..toml_reading import TomlReader, toml_of
 
 SPLIT = "split.toml"
@@ -36,7 +36,7 @@ def read_split(path: Path, known: Iterable[str] | None) -> tuple[Split, list[Pro
         text = limits.content(path, limits.SPLIT_BYTES, TrialError).decode("utf-8-sig")
         data = toml_of(text, "the split", str(path), TrialError)
     except (OSError, ValueError) as error:
-        return Split(), [Problem("the split cannot be read", str(path), str(error), "it must be UTF-8 text")]
+        return Split(), [Problem("the split cannot be read", str(path), reason(error), "it must be UTF-8 text")]
     except TrialError as error:
         return Split(), list(error.problems)
     reader = TomlReader(data, text, str(path))

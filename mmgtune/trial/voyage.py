@@ -12,7 +12,7 @@ import numpy as np
 
 from .. import limits
 from ..arrays import FloatArray
-from ..errors import Problem, TrialError
+from ..errors import Problem, TrialError, reason
 from ..files import hold_regular
 from .digest import DIGEST_KEY, digest_of
 from .footer import rows_of
@@ -190,7 +190,7 @@ def _opened(path: Path) -> Any:
             begins = file.read(4)
     except OSError as error:
         fix = "check the path, and that you may read the file"
-        why = error.strerror or str(error)
+        why = reason(error)
         raise TrialError(Problem("the trial file cannot be opened", str(path), why, fix)) from error
     try:
         return pq.ParquetFile(path, pre_buffer=False, page_checksum_verification=True, buffer_size=_BUFFER)

@@ -80,7 +80,7 @@ def test_slow_noise_of_sensors_is_nothing_unknown(certainty, left):
 def test_what_uncertain_coefficients_bring_is_expected_of_held_out_trials(suzaku):
     """Ships that differ in their targets, tuned on two runs and looked at on the others."""
     profile, trials = suzaku.profile, load_trials("suzaku")
-    tune, test = ("turn_p35", "zigzag_10"), ("turn_p10", "turn_m40", "zigzag_20")
+    tune, test = ("turn_p35", "zigzag_20"), ("turn_p10", "turn_m40", "zigzag_10")
     brought, foreseen = [], []
     for seed in range(5):
         rng = np.random.default_rng(seed)
@@ -202,12 +202,13 @@ def test_ten_degree_zigzags_name_no_stall(tmp_path, monkeypatch):
     assert result.verdict in ("unexplained", "none")
 
 
-def sum_of(*brought, groups=(), structured=False):
+def sum_of(*brought, groups=(), structured=False, explains_all=False):
     """What ``Diagnosis.unclear`` sees of a sum of causes."""
     return SimpleNamespace(
         contributions=[("tag", one) for one in brought],
         groups=groups,
         leftover=SimpleNamespace(structured=structured),
+        explains_all=explains_all,
     )
 
 
@@ -228,6 +229,7 @@ GROUP = (("a", "b"),)
         (sum_of(SMALL_BUT_CLEAR, SMALL_BUT_CLEAR), "left out"),
         (sum_of(CLEAR, SMALL_BUT_CLEAR, structured=True), "no noise"),
         (sum_of(CLEAR, structured=True), ""),
+        (sum_of(CLEAR, SMALL_BUT_CLEAR, structured=True, explains_all=True), ""),
     ],
 )
 def test_a_sum_is_believed_where_each_of_it_is_clear(one, said):
@@ -276,5 +278,16 @@ def test_values_of_runs_that_leave_a_shape_are_not_believed(runs, excess, struct
         causes=[SimpleNamespace(runs=runs or None)],
         leftover=SimpleNamespace(excess=excess, structured=structured),
         explained_share=0.99,
+        explains_all=False,
     )
     assert Diagnosis._mostly_left.fget(seen) is not believed
+    seen.explains_all = True
+    assert not Diagnosis._mostly_left.fget(seen)
+
+
+@pytest.mark.parametrize(
+    ("explained", "held_out", "all_of_it"), [(0.999, 0.985, True), (0.997, 0.99, False), (0.999, 0.97, False)]
+)
+def test_what_a_cause_of_slightly_another_form_would_leave_is_all(explained, held_out, all_of_it):
+    seen = SimpleNamespace(explained_share=explained, gain=SimpleNamespace(share_removed=(held_out, 0.9, 1.0)))
+    assert Diagnosis.explains_all.fget(seen) is all_of_it

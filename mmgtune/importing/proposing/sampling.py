@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ...arrays import FloatArray
-from ...errors import LogError, Problem
+from ...errors import LogError, Problem, reason
 from ...limits import LOG_BYTES, LOG_COLUMNS, LOG_LINE
 from ..clock import CLOCK
 from ..degrees import degrees
@@ -153,7 +153,7 @@ def _of_text(path: Path) -> Sample:
             )
         except (ValueError, pd.errors.ParserError, UnicodeError, OverflowError) as error:
             fix = "write the map by hand, with delimiter, skip and header in [log]"
-            raise LogError(Problem("the log cannot be read as a table", str(path), str(error)[:200], fix)) from error
+            raise LogError(Problem("the log cannot be read as a table", str(path), reason(error), fix)) from error
     return _made(path, layout, names, units, [frame[k] for k in range(len(names))])
 
 
@@ -181,7 +181,7 @@ def _of_parquet(path: Path) -> Sample:
         batch = next(file.iter_batches(ROWS, columns=columns, use_threads=False), None)
         texts = [] if batch is None else [_plain(shortened(batch.column(k)).to_pandas()) for k in range(len(flat))]
     except (OSError, ValueError, pa.ArrowException) as error:
-        why = (str(error).splitlines() or [""])[0]
+        why = reason(error)
         raise LogError(Problem("the Parquet log cannot be read", str(path), why, "copy it again")) from error
     return _made(path, {"format": "parquet"}, [names[k] for k in flat], [""] * len(flat), texts)
 
