@@ -215,15 +215,16 @@ def _with_other_ties(
 ) -> FloatArray:
     """Residuals (n_rows, n_candidates) of candidates (n_targets, n_candidates), each with coefficients that are tied
     somewhere else in the box of those that they follow."""
-    ties = problem.model.ties
+    ties = [tie for tie in problem.model.ties if tie.to in problem.box.names]
     if not ties:
         return problem.residuals(columns, offsets).T
+    held = [tie for tie in problem.model.ties if tie not in ties]
     leaders = problem.box.part([tie.to for tie in ties])
     off = np.sqrt(OF_BOX) * leaders.width / np.abs(leaders.pre)
     found = []
     for k in range(columns.shape[1]):
         factors = np.maximum(1.0 + off * rng.standard_normal(len(ties)), 0.0)
-        other = [tie._replace(ratio=tie.ratio * float(by)) for tie, by in zip(ties, factors, strict=True)]
+        other = [tie._replace(ratio=tie.ratio * float(by)) for tie, by in zip(ties, factors, strict=True)] + held
         drawn = problem.with_targets(Model(problem.model.profile, other), problem.box)
         found.append(drawn.residuals(columns[:, k : k + 1], offsets[:, k : k + 1])[0])
     return np.stack(found, axis=1)
