@@ -12,6 +12,7 @@ from fnmatch import fnmatchcase
 import numpy as np
 
 from ..components import split_name
+from ..effects import Effect
 from ..fitting.box import Box, base_of, choose_targets
 from ..model import Model
 
@@ -41,3 +42,24 @@ def deviations(box: Box, names: Sequence[str], share: float) -> dict[str, float]
     """Standard deviations of coefficients in the unit cube of a box, as a share of their values in the profile."""
     at = [box.names.index(name) for name in names]
     return dict(zip(names, (share * np.abs(box.pre[at]) / box.width[at]).tolist(), strict=True))
+
+
+def in_words(share: float, effects: Sequence[Effect]) -> list[dict[str, str]]:
+    """What is believed with a leeway of so much, and beside effects that were found: name, value and note of each."""
+    if share <= 0.0:
+        return []
+    hull = {
+        "name": ", ".join(PATTERNS),
+        "value": f"the profile's, beside the targets, with a standard deviation of {100.0 * share:.3g} %",
+        "note": "how well tests and formulas are expected to tell the hull",
+    }
+    off = [
+        {
+            "name": f"{effect.kind}.{name}",
+            "value": f"{effect.parameters[name].null:g} with a standard deviation of {deviation:g}",
+            "note": f"{effect.parameters[name].label}: how far ships are expected to be off",
+        }
+        for effect in effects
+        for name, deviation in effect.form.items()
+    ]
+    return [hull, *off]

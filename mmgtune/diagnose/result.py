@@ -13,6 +13,7 @@ from ..fitting.comparison import finite, finite_values
 from ..options import DiagnoseOptions
 from ..profile import ShipProfile, tuned, with_effects
 from ..trial import Coverage
+from . import leeway, winds
 from .by_run import ByRun
 from .contributions import Contribution
 from .gain import MOST, Gain
@@ -426,6 +427,16 @@ class Diagnosis(Plotted):
         hull = f"what a hull that is {100.0 * self.options.leeway:.3g} % off would leave of the error"
         return f"Adding {them} removes {_percent(share)} of {hull if imitated else 'the error'} {where}."
 
+    def _assumptions(self) -> list[dict[str, Any]]:
+        """What the profile assumes, and what the search believed beforehand."""
+        of_profile = [
+            {"name": name, "value": self.profile.written(name), "note": coefficient.note}
+            for name, coefficient in self.profile.assumptions()
+        ]
+        effects = [cause.effect for cause in self.causes if cause.effect is not None]
+        held = 0.0 if self.choice is not None else self.options.leeway
+        return [*of_profile, *leeway.in_words(held, effects), *winds.in_words(effects)]
+
     def _voyages(self) -> dict[str, Any] | None:
         """What was looked at of voyages, and what differs from one to the next."""
         if self.choice is None:
@@ -532,10 +543,7 @@ class Diagnosis(Plotted):
             "theta": finite_values(self.kept),
             "inputs": [one.to_dict() for one in self.profile.arrangement.inputs],
             "trial_results": [one.to_dict() for one in self.gain.compared],
-            "assumptions": [
-                {"name": name, "value": self.profile.written(name), "note": coefficient.note}
-                for name, coefficient in self.profile.assumptions()
-            ],
+            "assumptions": self._assumptions(),
             "citations": self.citations(),
             "options": self.options.to_dict(),
             "evidence": dict(self.evidence),

@@ -7,10 +7,13 @@ drawn about the formulas, which ships lie about by a fifth and more.
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 import numpy as np
 
 from ..arrays import FloatArray
 from ..backends import Cases
+from ..effects import Effect
 from ..effects.wind import EFFECT
 from ..model import Model
 from ..physics.quantities import HARMONICS, Surroundings
@@ -23,6 +26,14 @@ LENGTH = 250.0
 
 OFF = {"X": 0.2, "Y": 0.1, "N": 0.2}
 """Deviation of each harmonic of a force, as a share of all of that force."""
+
+
+def in_words(effects: Collection[Effect]) -> list[dict[str, str]]:
+    """What is assumed where a wind is among effects that were found: name, value and note."""
+    if EFFECT not in effects:
+        return []
+    size = f"{100.0 * ALONG:.3g} % of the mean wind along it and {100.0 * ACROSS:.3g} % across it, {LENGTH:g} m long"
+    return [{"name": "gusts", "value": size, "note": "as usual over open sea: what they leave is no unknown cause"}]
 
 
 def other_winds(

@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 from mmgtune.backends import STATES
-from mmgtune.diagnose import DiagnoseOptions
+from mmgtune.diagnose import DiagnoseOptions, leeway, winds
 from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.inputs import DRAWS, changes
 from mmgtune.diagnose.leftover import leftover
 from mmgtune.diagnose.linear import linearise
 from mmgtune.diagnose.winds import ALONG, other_winds
 from mmgtune.diagnose.workbench import make_workbench
+from mmgtune.effects import find_effect
 from mmgtune.model import Model
 from mmgtune.physics.quantities import Surroundings
 from mmgtune.profile import load_profile, with_effects
@@ -130,3 +131,14 @@ def test_gusts_are_no_unknown_cause(sailed):
     assert point.chi2 / bench.problem.n_residuals > 1.2
     assert left.excess < 0.05 < left.left_open
     assert leftover(bench, base_fit(bench)).excess > 5.0
+
+
+def test_what_is_believed_beforehand_is_told():
+    wind, lag = find_effect("wind"), find_effect("steering-lag")
+    told = {one["name"]: one["value"] for one in (*leeway.in_words(0.05, [wind, lag]), *winds.in_words([wind, lag]))}
+    assert told["hull.*, particulars.m_x_, particulars.m_y_, particulars.k_zz_"].endswith("5 %")
+    assert told["effects.wind.turning"] == "1 with a standard deviation of 0.5"
+    assert told["effects.wind.arm"] == "0 with a standard deviation of 0.05"
+    assert "12 %" in told["gusts"]
+    assert len(told) == 1 + len(wind.form) + 1
+    assert leeway.in_words(0.0, [wind]) == winds.in_words([lag]) == []
