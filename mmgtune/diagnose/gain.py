@@ -83,11 +83,17 @@ class Gain(Brief):
 
     @property
     def worse(self) -> bool:
-        """Whether test trials are told worse with the causes.
+        """Whether test trials are told worse with the causes, all together and most of them.
 
         Held-out error alone does not tell where each run is left out: the targets themselves are known too badly then.
         """
-        return self.held_out == "test" and self.share_removed[0] < -WORSE
+        most = float(np.mean(self.excess[:, 1] > self.excess[:, 0])) > 0.5
+        return self.held_out == "test" and self.share_removed[0] < -WORSE and most
+
+    @property
+    def mostly_remains(self) -> bool:
+        """Whether the causes leave more than half of the error on test trials, and that is more than was to expect."""
+        return self.held_out == "test" and self.remains and self.share_removed[0] < 0.5
 
     @property
     def J(self) -> tuple[float | None, float | None]:
@@ -204,9 +210,11 @@ def expected(bench: Workbench, found: Found, trials: Sequence[Trial]) -> float:
     problem = beside.judged
     base = problem.residuals(at[:, None], offsets[:, None]).T
     runs = _with_other_ties(problem, columns, np.repeat(offsets[:, None], DRAWS, axis=1), rng)
-    moved = runs - base + changes(problem, at, offsets, bench.options.seed, logged=False)
+    runs = runs[:, np.isfinite(runs).all(axis=0)]
+    winds = changes(problem, at, offsets, bench.options.seed, logged=False)[:, : runs.shape[1]]
+    moved = runs - base + winds
     by_offset = problem.offset_slopes(at, offsets)[1]
-    moved = problem.without_offsets(moved[:, np.isfinite(moved).all(axis=0)], by_offset, problem.prior)
+    moved = problem.without_offsets(moved, by_offset, problem.prior)
     return float(np.median(np.sum(moved**2, axis=0))) if moved.shape[1] else 0.0
 
 

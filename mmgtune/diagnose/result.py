@@ -303,6 +303,8 @@ class Diagnosis(Plotted):
             return "not all of them can be told from others"
         if sum(one.seen for one in brought) < NEEDED:
             return "each of them can be left out with little loss"
+        if self.gain.mostly_remains:
+            return "they leave most of the error on test trials"
         if self.leftover.structured and not self.explains_all:
             return "what they leave is no noise"
         return ""

@@ -202,13 +202,14 @@ def test_ten_degree_zigzags_name_no_stall(tmp_path, monkeypatch):
     assert result.verdict in ("unexplained", "none")
 
 
-def sum_of(*brought, groups=(), structured=False, explains_all=False):
+def sum_of(*brought, groups=(), structured=False, explains_all=False, remains=False):
     """What ``Diagnosis.unclear`` sees of a sum of causes."""
     return SimpleNamespace(
         contributions=[("tag", one) for one in brought],
         groups=groups,
         leftover=SimpleNamespace(structured=structured),
         explains_all=explains_all,
+        gain=SimpleNamespace(mostly_remains=remains),
     )
 
 
@@ -228,6 +229,8 @@ GROUP = (("a", "b"),)
         (sum_of(CLEAR, CLEAR, CLEAR, groups=GROUP), "told from others"),
         (sum_of(SMALL_BUT_CLEAR, SMALL_BUT_CLEAR), "left out"),
         (sum_of(CLEAR, SMALL_BUT_CLEAR, structured=True), "no noise"),
+        (sum_of(CLEAR, SMALL_BUT_CLEAR, remains=True), "on test trials"),
+        (sum_of(CLEAR, remains=True), ""),
         (sum_of(CLEAR, structured=True), ""),
         (sum_of(CLEAR, SMALL_BUT_CLEAR, structured=True, explains_all=True), ""),
     ],

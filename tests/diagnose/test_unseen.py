@@ -1,9 +1,11 @@
 """Fitted points on trials that they were not fitted to."""
 
 import numpy as np
+import pytest
 
 from mmgtune.backends import Integrator
 from mmgtune.diagnose import DiagnoseOptions
+from mmgtune.diagnose.gain import Gain
 from mmgtune.diagnose.unseen import Beside
 from mmgtune.diagnose.workbench import Point, make_workbench
 from mmgtune.profile import load_profile
@@ -33,3 +35,17 @@ def test_values_of_runs_are_estimated_in_runs_held_out_and_each_run_is_compared_
             assert abs(values[f"{name}@trial:{trial.whole}"] - truth[name.rpartition(".")[2]]) < 0.03
         assert compared.trial is trial
         assert compared.J["after"] < 0.1 * compared.J["before"]
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "worse"),
+    [((800, 700), (900, 820), True), ((16_000, 8_000), (1_700, 40_000), False), ((800, 700), (810, 705), False)],
+    ids=["every run", "one of two", "hardly"],
+)
+def test_causes_are_told_worse_by_most_test_trials_or_not_at_all(before, after, worse):
+    excess = np.column_stack([before, after]).astype(float)
+    gain = Gain("test", (), excess, floor=100.0, chance=5.0)
+    assert gain.worse is worse
+    assert gain.mostly_remains  # in all of these
+    assert not Gain("test", (), excess, floor=100.0, chance=5.0, unsure=1e5).mostly_remains
+    assert not Gain("each", (), excess, floor=100.0, chance=5.0).worse
