@@ -125,6 +125,16 @@ def test_waves_push_where_they_go(added):
     np.testing.assert_allclose(force, [4000.0 * math.cos(towards), 4000.0 * math.sin(towards), 0.0], atol=1e-9)
 
 
+def test_waves_turn_a_ship_away_from_them_and_drift_her_less_ahead(added, suzaku):
+    """Waves from 45 deg to port push her to starboard and astern, and turn her to starboard."""
+    from_port = {"force": 4000.0, "direction": MOVING.psi - math.radians(45.0), "ahead": 0.5, "turning": 0.02}
+    force, _ = added("wave-drift", from_port)
+    side = 4000.0 * math.sqrt(0.5)
+    np.testing.assert_allclose(force, [-0.5 * side, side, 0.02 * 4000.0 * suzaku.profile.L_pp], rtol=1e-12)
+    from_starboard, _ = added("wave-drift", {**from_port, "direction": MOVING.psi + math.radians(45.0)})
+    np.testing.assert_allclose(from_starboard, force * [1.0, -1.0, -1.0], rtol=1e-12)
+
+
 def test_resistance(added, suzaku):
     force, found = added("resistance", {"factor": 1.2, "slope": 2.0, "pivot": 1.5})
     U = found.flow.U[0]
