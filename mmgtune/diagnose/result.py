@@ -41,12 +41,11 @@ MOSTLY = 0.95
 """Share of the error above noise on the trials it was found on that a cause must remove to be named alone, where
 something of a shape is left besides."""
 
+ALL, ALL_HELD_OUT = 0.998, 0.98
+"""The same from which it is all, and that on held-out trials."""
 
 OPEN = 0.3
 """Variance beyond noise that is spoken of where the log of the inputs leaves it open, as a share of the noise."""
-
-ALL, ALL_HELD_OUT = 0.998, 0.98
-"""The same from which it is all, and that on held-out trials."""
 
 BENT = 1.0
 """Variance beyond noise, as a share of it, that a cause with values of each run may leave where it has a shape: such

@@ -1,11 +1,9 @@
 """The fit that a diagnosis begins with: on long precise runs it must not end where it cannot go on."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from mmgtune.backends import STATES, Integrator
+from mmgtune.backends import Integrator
 from mmgtune.diagnose import DiagnoseOptions
 from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.workbench import make_workbench
@@ -13,8 +11,9 @@ from mmgtune.fitting.least_squares import fit_offsets
 from mmgtune.profile import tuned
 from mmgtune.simulation import simulate
 from mmgtune.trial import Trial, load_trials
+from tests.diagnose.sensors import NOISE, logged
 
-NOISE = 0.03 * np.array([0.4, 0.4, 0.003, 0.02, 0.02, 0.0005])
+GOOD = 0.03 * NOISE
 """Sensors thirty times as good as those of most ships."""
 
 
@@ -35,8 +34,7 @@ def runs(profile, seed, turn, weave):
         start = {"x": zero, "y": zero, "psi": zero + k, "u": zero + 3.0, "v_m": zero, "r": zero}
         trial = Trial(f"run_{k}", "suzaku", "", "generated", t, **start, n=zero + 1.7, delta=np.radians(delta))
         (motion,) = simulate(ship, [trial], integrator=Integrator("rk4"))
-        noisy = motion.states + NOISE * rng.standard_normal(motion.states.shape)
-        found.append(replace(trial, **dict(zip(STATES, noisy.T, strict=True))))
+        found.append(logged(trial, motion, rng, GOOD))
     return found
 
 

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mmgtune.backends import STATES, Integrator
+from mmgtune.backends import Integrator
 from mmgtune.diagnose import DiagnoseOptions, Diagnosis, diagnose
 from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.contributions import Contribution
@@ -23,6 +23,7 @@ from mmgtune.profile import load_profile, tuned
 from mmgtune.simulation import simulate as simulate_trials
 from mmgtune.trial import load_trials, visited_by
 from mmgtune.units import DEG
+from tests.diagnose.sensors import logged
 from tests.hidden import plant
 from tests.hidden.cases import Case, single
 from tests.hidden.plant import simulate, write
@@ -87,7 +88,7 @@ def test_what_uncertain_coefficients_bring_is_expected_of_held_out_trials(suzaku
         off = {name: profile.value(name) * (1.0 + rng.uniform(-0.3, 0.3)) for name in profile.targets}
         sailed = [trials.trials[name] for name in (*tune, *test)]
         motions = simulate_trials(tuned(profile, off, {}, {}, "made"), sailed, integrator=Integrator("rk4"))
-        made = [noisy(trial, motion, rng) for trial, motion in zip(sailed, motions, strict=True)]
+        made = [logged(trial, motion, rng) for trial, motion in zip(sailed, motions, strict=True)]
         bench = make_workbench(profile, made[:2], DiagnoseOptions())
         base = base_fit(bench)
         found = Found(base, base)
@@ -105,19 +106,13 @@ def test_the_side_that_no_trial_turned_to_is_expected_to_be_wrong(suzaku):
     sailed = [trials.trials[name] for name in ("turn_p35", "turn_p20", "turn_p10", "turn_m20")]
     off = {"rudder.gamma_Rn": 0.85 * profile.value("rudder.gamma_Rn")}
     motions = simulate_trials(tuned(profile, off, {}, {}, "made"), sailed, integrator=Integrator("rk4"))
-    *seen, starboard, port = [noisy(trial, motion, rng) for trial, motion in zip(sailed, motions, strict=True)]
+    *seen, starboard, port = [logged(trial, motion, rng) for trial, motion in zip(sailed, motions, strict=True)]
     bench = make_workbench(profile, seen, DiagnoseOptions())
     assert [tie.name for tie in bench.model.ties] == ["rudder.gamma_Rn"]
     base = base_fit(bench)
     found = Found(base, base)
     assert expected(bench, found, [port]) > 8.0 * expected(bench, found, [starboard])
     assert not held_out(bench, found, [port]).remains
-
-
-def noisy(trial, motion, rng):
-    """A trial as sensors would log a motion."""
-    states = motion.states + rng.standard_normal(motion.states.shape) * [0.4, 0.4, 0.003, 0.02, 0.02, 0.0005]
-    return replace(trial, **dict(zip(STATES, states.T, strict=True)))
 
 
 def test_what_was_not_asked_for_is_no_trace():

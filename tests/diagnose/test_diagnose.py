@@ -10,7 +10,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from mmgtune.backends import STATES, Integrator
+from mmgtune.backends import Integrator
 from mmgtune.diagnose import VERDICTS, DiagnoseOptions, diagnose
 from mmgtune.diagnose.intervals import Estimate
 from mmgtune.diagnose.noise import NoiseModel, estimate
@@ -22,6 +22,7 @@ from mmgtune.profile import load_profile, parse_profile, with_effects
 from mmgtune.simulation import simulate as simulate_trials
 from mmgtune.trial import load_trials
 from tests.command import run
+from tests.diagnose.sensors import logged
 from tests.hidden.cases import Case, null, pair, single
 from tests.hidden.plant import AUTOCORRELATED, simulate, write
 from tests.hidden.study import covered, outcome
@@ -129,8 +130,7 @@ def test_water_driven_by_measured_wind_is_named(suzaku, tmp_path):
         speed, towards = 8.0 + 2.0 * np.sin(trial.t / 90.0), 0.9 * k + 0.3 * np.cos(trial.t / 150.0)
         blown = replace(trial, extra={"wind_speed": speed, "wind_dir": towards % (2.0 * np.pi)})
         (motion,) = simulate_trials(driven, [blown], integrator=Integrator("rk4"))
-        noisy = motion.states + rng.standard_normal(motion.states.shape) * [0.4, 0.4, 0.003, 0.02, 0.02, 0.0005]
-        made[trial.id] = replace(blown, **dict(zip(STATES, noisy.T, strict=True)))
+        made[trial.id] = logged(blown, motion, rng)
     options = DiagnoseOptions(effects=("wind-drift", "wind", "current", "wave-drift"))
     result = diagnose(suzaku.profile, replace(trials, trials=made), options)
     assert [cause.tag for cause in result.causes] == ["wind-drift"], result.sentence()

@@ -1,11 +1,9 @@
 """Coefficients of the hull that are not tuned, and are a few per cent off: no cause, and nothing that hides one."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from mmgtune.backends import STATES, Integrator
+from mmgtune.backends import Integrator
 from mmgtune.diagnose import DiagnoseOptions
 from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.leeway import let_go
@@ -15,8 +13,7 @@ from mmgtune.model import Model
 from mmgtune.profile import load_profile, tuned
 from mmgtune.simulation import simulate
 from mmgtune.trial import load_trials
-
-NOISE = np.array([0.4, 0.4, 0.003, 0.02, 0.02, 0.0005])
+from tests.diagnose.sensors import logged
 
 
 @pytest.fixture(scope="module")
@@ -29,8 +26,7 @@ def sailed():
     trials = [load_trials("suzaku").trials[name] for name in ("turn_p35", "turn_m20", "zigzag_20")]
     made = []
     for trial, motion in zip(trials, simulate(tuned(profile, off, {}, {}, "made"), trials), strict=True):
-        noisy = motion.states + NOISE * rng.standard_normal(motion.states.shape)
-        made.append(replace(trial, **dict(zip(STATES, noisy.T, strict=True))))
+        made.append(logged(trial, motion, rng))
     return profile, made
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmgtune.backends import STATES, Integrator
+from mmgtune.backends import Integrator
 from mmgtune.diagnose import DiagnoseOptions
 from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.narrow import narrow_box
@@ -14,6 +14,7 @@ from mmgtune.diagnose.workbench import make_workbench
 from mmgtune.profile import tuned
 from mmgtune.simulation import simulate
 from mmgtune.trial import load_trials
+from tests.diagnose.sensors import logged
 
 
 @pytest.mark.slow(5)
@@ -25,8 +26,7 @@ def test_a_resistance_beyond_the_box_is_said(suzaku, times, said):
     trials = [load_trials("suzaku").trials[name] for name in ("turn_p35", "turn_m20", "zigzag_20")]
     made = []
     for trial, motion in zip(trials, simulate(fouled, trials, integrator=Integrator("rk4")), strict=True):
-        noisy = motion.states + rng.standard_normal(motion.states.shape) * [0.4, 0.4, 0.003, 0.02, 0.02, 0.0005]
-        made.append(replace(trial, **dict(zip(STATES, noisy.T, strict=True))))
+        made.append(logged(trial, motion, rng))
     bench = make_workbench(profile, made, DiagnoseOptions())
     base = base_fit(bench)
     explained = replace(base, chi2=min(base.chi2, float(bench.problem.n_residuals)) - 30.0)  # as causes would

@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmgtune.backends import STATES
 from mmgtune.diagnose import DiagnoseOptions, leeway, winds
 from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.inputs import DRAWS, changes
@@ -20,8 +19,8 @@ from mmgtune.profile import load_profile, with_effects
 from mmgtune.simulation import simulate
 from mmgtune.trial import load_trials
 from mmgtune.units import DEG
+from tests.diagnose.sensors import logged
 
-NOISE = np.array([0.4, 0.4, 0.003, 0.02, 0.02, 0.0005])
 WIND = ("effects.wind.speed", "effects.wind.direction")
 OFF = {"ahead": 0.75, "across": 1.3, "turning": 2.2, "arm": 0.04}
 
@@ -35,8 +34,7 @@ def sailed():
     trials = [load_trials("suzaku").trials[name] for name in ("turn_p35", "turn_m20", "zigzag_20")]
     made = []
     for trial, motion in zip(trials, simulate(windy, trials), strict=True):
-        noisy = motion.states + NOISE * rng.standard_normal(motion.states.shape)
-        made.append(replace(trial, **dict(zip(STATES, noisy.T, strict=True))))
+        made.append(logged(trial, motion, rng))
     return profile, made
 
 
@@ -120,8 +118,7 @@ def test_gusts_are_no_unknown_cause(sailed):
         gusts = 1.0 + 0.08 * np.sqrt(2.0) * np.sin(0.04 * trial.t + rng.uniform(0.0, 6.0))
         air = {"wind_speed": 8.0 * gusts, "wind_dir": np.full(trial.n_samples, 40.0 * DEG)}
         (motion,) = simulate(windy, [replace(trial, extra=air)])
-        noisy = motion.states + NOISE * rng.standard_normal(motion.states.shape)
-        made.append(replace(trial, **dict(zip(STATES, noisy.T, strict=True))))
+        made.append(logged(trial, motion, rng))
     bench, point, found = wind_on(profile, made)
     assert found["effects.wind.direction"] == pytest.approx(40.0 * DEG, abs=8.0 * DEG)
     problem = bench.problem_of(point.names, point.integrator)
