@@ -14,14 +14,11 @@ from mmgtune.diagnose import DiagnoseOptions, diagnose, write_diagnosis
 from mmgtune.profile import load_profile, parse_profile
 from mmgtune.report import render
 from mmgtune.trial import load_trials
+from tests.diagnose.targets import FEW
 from tests.hidden.cases import Case, of_one_run, of_runs, tide
 from tests.hidden.plant import TUNING, simulate, write
 
 pytestmark = [pytest.mark.xdist_group("by run"), pytest.mark.slow(25)]
-
-FEW = ("hull.R_0", "wake.w_P0", "rudder.eps", "rudder.gamma_Rp", "rudder.gamma_Rn")
-"""Targets: the ship is the profile's own but for what is hidden, and a test has to end."""
-
 
 def said_of(case: Case, folder, effects):
     """The diagnosis of the profile's ship with what differs between the runs of a case, from her files."""

@@ -23,6 +23,7 @@ from mmgtune.simulation import simulate as simulate_trials
 from mmgtune.trial import load_trials
 from tests.command import run
 from tests.diagnose.sensors import logged
+from tests.diagnose.targets import FEW
 from tests.hidden.cases import Case, null, pair, single
 from tests.hidden.plant import AUTOCORRELATED, simulate, write
 from tests.hidden.study import covered, outcome
@@ -131,7 +132,7 @@ def test_water_driven_by_measured_wind_is_named(suzaku, tmp_path):
         blown = replace(trial, extra={"wind_speed": speed, "wind_dir": towards % (2.0 * np.pi)})
         (motion,) = simulate_trials(driven, [blown], integrator=Integrator("rk4"))
         made[trial.id] = logged(blown, motion, rng)
-    options = DiagnoseOptions(effects=("wind-drift", "wind", "current", "wave-drift"))
+    options = DiagnoseOptions(effects=("wind-drift", "wind", "current", "wave-drift"), targets=FEW)
     result = diagnose(suzaku.profile, replace(trials, trials=made), options)
     assert [cause.tag for cause in result.causes] == ["wind-drift"], result.sentence()
     sizes = result.to_dict()["causes"][0]["parameters"]
@@ -168,9 +169,9 @@ def test_two_effects_are_both_found(tmp_path):
 
 def test_a_resistance_beyond_the_box_of_its_target_is_a_cause(tmp_path):
     case = null(1)
-    fouled = {**case.ship, "hull.R_0": 2.2 * PROFILE["hull.R_0"]}  # the box ends at 1.5 times
+    fouled = {"hull.R_0": 2.2 * PROFILE["hull.R_0"]}  # the box ends at 1.5 times
     write(simulate(fouled, {}, case.seed, case.noise), tmp_path)
-    options = DiagnoseOptions(effects=("resistance", "hull-term", "wave-drift", "rpm-scale"))
+    options = DiagnoseOptions(effects=("resistance", "hull-term", "wave-drift", "rpm-scale"), targets=FEW)
     result = diagnose(load_profile("suzaku"), load_trials(tmp_path), options)
     assert (result.verdict, [cause.tag for cause in result.causes]) == ("found", ["resistance"]), result.sentence()
     factor = result.to_dict()["causes"][0]["parameters"]["factor"]["value"]
@@ -197,9 +198,16 @@ def test_a_cause_that_would_be_believed_alone_is_named_though_a_hull_unlike_the_
     assert angle == pytest.approx(case.effects["rudder-offset"]["angle"], abs=0.002)
 
 
-def test_the_extended_profile_is_a_profile_like_any_other(tmp_path):
+@pytest.fixture(scope="module")
+def drifted(tmp_path_factory):
+    """A case of a current, its folder and its diagnosis among causes like it."""
     case = single("current", 3, seed=2)
-    result = said_of(case, tmp_path, effects=LIKE_IT)
+    folder = tmp_path_factory.mktemp("drifted")
+    return case, folder, said_of(case, folder, effects=LIKE_IT)
+
+
+def test_the_extended_profile_is_a_profile_like_any_other(drifted):
+    case, folder, result = drifted
     assert outcome(case.effects, result.to_dict()) == "right"
     extended = parse_profile(result.extended_text())
     truth = case.effects["current"]
@@ -207,7 +215,7 @@ def test_the_extended_profile_is_a_profile_like_any_other(tmp_path):
         coefficient = extended.coefficient(f"effects.current.{name}")
         assert coefficient.value == pytest.approx(truth[name], abs=0.01)
         assert coefficient.stderr > 0.0
-    again = diagnose(extended, load_trials(tmp_path), DiagnoseOptions(effects=LIKE_IT))
+    again = diagnose(extended, load_trials(folder), DiagnoseOptions(effects=LIKE_IT))
     assert again.verdict == "none", [cause.tag for cause in again.causes]
     doubted = replace(result, interrupted=True)
     profile = parse_profile(doubted.extended_text())
@@ -217,20 +225,16 @@ def test_the_extended_profile_is_a_profile_like_any_other(tmp_path):
     assert profile.provenance["not_believed"] == ["current"]
 
 
-def test_names_order_and_metadata_of_the_files_do_not_matter(tmp_path):
-    (tmp_path / "told").mkdir()
-    case = single("heading-bias", 3, seed=3)
-    told = said_of(case, tmp_path / "told", effects=LIKE_IT)
-    bare = tmp_path / "bare"
-    bare.mkdir()
-    names = {path.stem: f"log_{k:02d}" for k, path in enumerate(sorted((tmp_path / "told").glob("*.parquet"))[::-1])}
+def test_names_order_and_metadata_of_the_files_do_not_matter(drifted, tmp_path):
+    _, folder, told = drifted
+    names = {path.stem: f"log_{k:02d}" for k, path in enumerate(sorted(folder.glob("*.parquet"))[::-1])}
     for old, new in names.items():
-        table = pq.ParquetFile(tmp_path / "told" / f"{old}.parquet", pre_buffer=False).read(use_threads=False)
-        pq.write_table(pa.Table.from_arrays(table.columns, names=table.column_names), bare / f"{new}.parquet")
-    split = load_trials(tmp_path / "told")
+        table = pq.ParquetFile(folder / f"{old}.parquet", pre_buffer=False).read(use_threads=False)
+        pq.write_table(pa.Table.from_arrays(table.columns, names=table.column_names), tmp_path / f"{new}.parquet")
+    split = load_trials(folder)
     lists = {role: json.dumps([names[name] for name in getattr(split, role)]) for role in ("tune", "test")}
-    (bare / "split.toml").write_text("".join(f"{role} = {text}\n" for role, text in lists.items()))
-    untold = diagnose(load_profile("suzaku"), load_trials(bare), DiagnoseOptions(effects=LIKE_IT))
+    (tmp_path / "split.toml").write_text("".join(f"{role} = {text}\n" for role, text in lists.items()))
+    untold = diagnose(load_profile("suzaku"), load_trials(tmp_path), DiagnoseOptions(effects=LIKE_IT))
     a, b = told.to_dict(), untold.to_dict()
     assert a["verdict"] == b["verdict"] == "found"
     assert a["causes"] == b["causes"]

@@ -232,7 +232,7 @@ def test_impossible_widths_are_refused_before_any_work(suzaku, noisy, widths):
         sweep(suzaku.profile, noisy, SweepOptions(widths=widths, method="least-squares"))
 
 
-@pytest.mark.parametrize("a_r", [0.2, 0.4, 0.6])  # from most bounds met to fewest
+@pytest.mark.parametrize("a_r", [0.2, 0.4, pytest.param(0.6, marks=pytest.mark.long)])  # from most bounds met to fewest
 def test_cma_es_and_least_squares_agree_on_the_bundled_trials(suzaku, a_r):
     problem = make_problem(suzaku.profile, load_trials("suzaku"), FitOptions(a_r=a_r))
     start = problem.box.to_unit(problem.box.pre)
