@@ -21,6 +21,9 @@ AS_MUCH = 0.5
 STEPS = 20
 """Steps of that fit: it only has to show whether there is something to gain."""
 
+HARDLY = 0.01
+"""Share of what the causes explain that counts as none in it."""
+
 
 def narrow_box(bench: Workbench, found: Found) -> list[str]:
     """Warnings of a diagnosis whose re-tuned model, any cause apart, would fit about as well in a wider box.
@@ -36,7 +39,14 @@ def narrow_box(bench: Workbench, found: Found) -> list[str]:
     box = wide.sub_box(base.names)
     values = bench.sub_box(base.names).from_unit(base.unit[:, None])[:, 0]
     start = np.clip(box.to_unit(values), 0.0, 1.0)[:, None]
-    other = wide.refit(base.names, start, base.offsets, integrator=base.integrator, max_iterations=STEPS)
+    other = wide.refit(
+        base.names,
+        start,
+        base.offsets,
+        integrator=base.integrator,
+        max_iterations=STEPS,
+        tolerance=HARDLY * explained,
+    )
     gained = base.chi2 - other.chi2
     ends = box.from_unit(other.unit[:, None])[:, 0]
     gone = [

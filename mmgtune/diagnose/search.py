@@ -143,7 +143,8 @@ def search(
             break
     if found.steps:
         first = found.steps[0].base
-        found.base = bench.refit(first.names, first.unit[:, None], first.offsets)
+        tolerance = unnoticed(bench, first.chi2)
+        found.base = bench.refit(first.names, first.unit[:, None], first.offsets, tolerance=tolerance)
         found.final = bench.refit(found.final.names, found.final.unit[:, None], found.final.offsets, tolerance=PRECISE)
     if len(found.causes) > 1 and not stop():
         _drop_superfluous(bench, found, found.causes[:-1])
@@ -184,7 +185,9 @@ def look(
     noise = _noise_at(bench, at_best)
     if _differs(bench.noise, noise):
         bench.know(noise)
-        point = bench.refit(point.names, point.unit[:, None], point.offsets)
+        left = bench.refit(point.names, point.unit[:, None], point.offsets, max_iterations=0).chi2
+        tolerance = unnoticed(bench, left)
+        point = bench.refit(point.names, point.unit[:, None], point.offsets, tolerance=tolerance)
         linear = linearise(bench, point, names, varying=varying)
         ranked = scores(linear, hypotheses)
         known.good = False

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -308,6 +308,31 @@ def _accelerate(
                 moved[:, i, 1, k] = at.limited(moved[:, i, 0, k] + 0.5 * bend_shift)
 
 
+class _Case(NamedTuple):
+    """What the quadratic model of a case is made of, wherever its offsets may go: halves of derivatives.
+
+    at         (6,) the offsets where it was made
+    slopes     (n_rows, 6) derivatives of the residuals by the offsets
+    curvature  (6, 6) of what is minimised by these, the prior among them
+    cross      (6, n_targets) the same by these and the targets
+    slope      (6,) its first derivatives by the offsets
+    """
+
+    at: FloatArray
+    slopes: FloatArray
+    curvature: FloatArray
+    cross: FloatArray
+    slope: FloatArray
+
+    @classmethod
+    def of(
+        cls, at: FloatArray, slopes: FloatArray, residuals: FloatArray, jacobian: FloatArray, prior: FloatArray
+    ) -> _Case:
+        """Of residuals (n_rows,), their jacobian (n_rows, n_targets), and a prior (6,) of the offsets."""
+        by_row = slopes.T
+        return cls(at, slopes, by_row @ slopes + np.diag(prior), by_row @ jacobian, by_row @ residuals + prior * at)
+
+
 @dataclass(frozen=True, eq=False)
 class _Offsets:
     """The offsets of a case's initial state in the quadratic model, those that would leave their range held at its end.
@@ -334,27 +359,15 @@ class _Offsets:
     promised: float
 
     @classmethod
-    def of(
-        cls,
-        slopes: FloatArray,
-        residuals: FloatArray,
-        jacobian: FloatArray,
-        prior: FloatArray,
-        at: FloatArray,
-        limit: FloatArray | None,
-        damping: float,
-        step: FloatArray | None,
-    ) -> _Offsets:
-        """slopes (n_rows, 6), residuals (n_rows,), jacobian (n_rows, n_targets); prior, place and limit (6,).
+    def of(cls, case: _Case, limit: FloatArray | None, damping: float, step: FloatArray | None) -> _Offsets:
+        """How they move with the targets.
 
-        limit  None where none is held
-        step   (n_targets,) of the targets that says which would leave their range; None for none
+        limit  (6,) the end of their range, None where none is held
+        step   (n_targets,) of the targets that says which would leave it; None for none
         """
-        whole = slopes.T @ slopes + np.diag(prior)
+        at, cross, slope, whole = case.at, case.cross, case.slope, case.curvature
         if damping:
-            whole += damping * np.diag(np.diag(whole))
-        cross = slopes.T @ jacobian
-        slope = slopes.T @ residuals + prior * at
+            whole = whole + damping * np.diag(np.diag(whole))
         free, to_end = np.ones(6, dtype=bool), np.zeros(6)
         solved = np.linalg.solve(whole, np.column_stack([slope, cross]))
         end = at - solved[:, 0] - (0.0 if step is None else solved[:, 1:] @ step)
@@ -371,7 +384,7 @@ class _Offsets:
         return cls(
             free,
             to_end,
-            slopes[:, free],
+            case.slopes[:, free],
             whole[np.ix_(free, free)],
             cross[free],
             cross.T @ to_end,
@@ -404,28 +417,32 @@ class _Linear:
         holding: bool = False,
         damping: float = 0.0,
         step: FloatArray | None = None,
-        plain: tuple[FloatArray, FloatArray] | None = None,
+        plain: tuple[FloatArray, FloatArray, list[_Case]] | None = None,
     ):
-        self.residuals = residuals
-        self._plain = plain or (jacobian.T @ jacobian, jacobian.T @ residuals)
-        self._holding, self._damping = holding, damping
+        self.residuals, self._d = residuals, d
         self._problem, self._jacobian, self._by_offset = problem, jacobian, by_offset
         self._rows = problem.rows_of_cases
+        self._limit = None if problem.sigma is None else LARGEST * problem.sigma
+        self._holding, self._damping = holding, damping
+        self._plain = plain or (jacobian.T @ jacobian, jacobian.T @ residuals, self._cases())
         self.hessian, self.gradient = self._plain[0].copy(), self._plain[1].copy()
         self._own: list[_Offsets] = []
-        self._d = d
-        self._limit = None if problem.sigma is None else LARGEST * problem.sigma
         self.settling = 0.0
-        if self._limit is None:
-            return
-        for case, rows in enumerate(self._rows):
-            limit = self._limit[case] if holding else None
-            parts = by_offset[rows], residuals[rows], jacobian[rows], problem.prior[case], d[case]
-            own = _Offsets.of(*parts, limit, damping, step)
+        for k, case in enumerate(self._plain[2]):
+            own = _Offsets.of(case, self._limit[k] if holding and self._limit is not None else None, damping, step)
             self.hessian -= own.cross.T @ own.by_target
             self.gradient += own.by_held - own.cross.T @ own.alone
             self.settling += own.promised
             self._own.append(own)
+
+    def _cases(self) -> list[_Case]:
+        """Those whose offsets are free."""
+        if self._limit is None:
+            return []
+        return [
+            _Case.of(at, self._by_offset[rows], self.residuals[rows], self._jacobian[rows], prior)
+            for rows, prior, at in zip(self._rows, self._problem.prior, self._d, strict=True)
+        ]
 
     def damped(self, damping: float) -> _Linear:
         """The same with steps of the offsets damped."""

@@ -13,7 +13,11 @@ pytestmark = pytest.mark.slow(15)
 LATE = ("clock-offset", "dead-time", "steering-lag")
 
 
-@pytest.mark.parametrize("besides", [{}, {"clock-offset": {"seconds": 4.0}}], ids=["alone", "and a late clock"])
+@pytest.mark.parametrize(
+    "besides",
+    [pytest.param({}, marks=pytest.mark.long), {"clock-offset": {"seconds": 4.0}}],
+    ids=["alone", "and a late clock"],
+)
 def test_inputs_logged_now_and_then_are_named(besides, tmp_path):
     case = null(4)
     hidden = {"unknown-controls-held": {"magnitude": 6.0}, **besides}
