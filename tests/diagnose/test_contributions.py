@@ -184,10 +184,10 @@ def test_the_bundled_trials_visit_what_every_effect_is_about():
 def test_ten_degree_zigzags_name_no_stall(tmp_path, monkeypatch):
     """Hidden is a force that grows no more beyond 6 deg: a stall fits that perfectly, and no rudder stalls there."""
     monkeypatch.setattr(plant, "TRIALS", tuple((f"zigzag_{k}", 10.0, 500.0) for k in range(3)))
-    monkeypatch.setattr(plant, "SPLIT", 'ship = "suzaku"\ntune = ["zigzag_0", "zigzag_1", "zigzag_2"]\ntest = []\n')
     case = Case("early", single("rudder-stall", 3, seed=1).ship, {"rudder-stall": {"angle": 6.0 * DEG}}, 1, plant.WHITE)
-    monkeypatch.setattr(plant, "sail", partial(plant.sail, names=[name for name, *_ in plant.TRIALS]))
-    write(simulate(case.ship, case.effects, case.seed, case.noise), tmp_path)
+    names = [name for name, *_ in plant.TRIALS]
+    monkeypatch.setattr(plant, "sail", partial(plant.sail, names=names))
+    write(simulate(case.ship, case.effects, case.seed, case.noise), tmp_path, names)
     result = diagnose(
         load_profile("suzaku"), load_trials(tmp_path), DiagnoseOptions(effects=("rudder-stall", "flap"), leeway=0.0)
     )

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import zlib
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .plant import NAMES, TUNING, WHITE, Noise, sail
 from .suzaku import HULL_TERMS, PROFILE, TARGETS
 from .unknown import UNKNOWN
+
+if TYPE_CHECKING:
+    from mmgtune.trial import Trial
 
 Draw = Callable[[int, np.random.Generator], dict[str, float]]
 """Parameters of an effect at a level 0 to 4; signs and directions are drawn."""
@@ -28,6 +32,37 @@ TYPICAL = 3
 Sizes = tuple[float, float, float, float, float]
 
 
+FOUR = ("turn_p35", "turn_m35", "zigzag_10", "zigzag_20")
+"""Trials of a small programme: two turns and two zigzags."""
+
+
+@dataclass(frozen=True)
+class Programme:
+    """Which trials are sailed, which of them causes are looked for on, and what of their log is kept.
+
+    every  of the samples of once a second, one in so many is logged
+    told   whether the log states the noise of its sensors
+    """
+
+    trials: tuple[str, ...] = NAMES
+    tuning: tuple[str, ...] = TUNING
+    every: int = 1
+    told: bool = True
+
+    def kept(self, trials: Sequence[Trial]) -> list[Trial]:
+        """What is there of ten trials."""
+        columns = ("t", "x", "y", "psi", "u", "v_m", "r", "n", "delta")
+        return [
+            replace(
+                one,
+                **{name: getattr(one, name)[:: self.every] for name in columns},
+                noise=one.noise if self.told else {},
+            )
+            for one in trials
+            if one.id in self.trials
+        ]
+
+
 @dataclass(frozen=True)
 class Case:
     """One ship, what is hidden in her, and how she is measured: the arguments of ``plant.simulate`` with a name."""
@@ -38,6 +73,7 @@ class Case:
     seed: int
     noise: Noise
     of_trial: dict[str, dict[str, dict[str, float]]] = field(default_factory=dict)
+    programme: Programme = Programme()
 
     @property
     def hidden(self) -> dict[str, dict[str, float]]:
@@ -212,6 +248,36 @@ def pair(seed: int, noise: Noise = WHITE) -> Case:
     tags = [str(tag) for tag in rng.choice(list(LADDER), size=2, replace=False)]
     hidden = {tag: LADDER[tag](TYPICAL, rng) for tag in tags}
     return Case(f"pair-{'-and-'.join(tags)}-{seed}", _ship(seed), hidden, seed, noise)
+
+
+def triple(seed: int, noise: Noise = WHITE) -> Case:
+    """Three different effects, each at the typical level."""
+    rng = _rng("triple", seed)
+    tags = [str(tag) for tag in rng.choice(list(LADDER), size=3, replace=False)]
+    hidden = {tag: LADDER[tag](TYPICAL, rng) for tag in tags}
+    return Case(f"triple-{'-and-'.join(tags)}-{seed}", _ship(seed), hidden, seed, noise)
+
+
+PROGRAMMES = (
+    Programme(),
+    Programme(tuning=NAMES),
+    Programme(FOUR, FOUR),
+)
+"""Ten trials, half of them held out, or none; four with none held out."""
+
+
+def otherwise(tag: str, seed: int) -> Case:
+    """One effect at the typical level on a ship with noise of her own, measured by other people: fewer trials, samples
+    every 1, 5 or 10 s, a third of the noise or three times as much, with a memory or without, told or not."""
+    own = zlib.crc32(tag.encode()) % 100_000 * 100 + seed
+    rng = _rng("otherwise", own)
+    loudness = float(rng.choice((1.0 / 3.0, 1.0, 3.0)))
+    scaled = {name: loudness * getattr(WHITE, name) for name in ("x", "y", "psi", "u", "v", "r", "n", "delta")}
+    noise = Noise(**scaled, time_constant=float(rng.choice((0.0, 0.0, 30.0))))
+    some = PROGRAMMES[int(rng.integers(len(PROGRAMMES)))]
+    programme = replace(some, every=int(rng.choice((1, 5, 10))), told=bool(rng.integers(2)))
+    hidden = {tag: LADDER[tag](TYPICAL, rng)}
+    return Case(f"otherwise-{tag}-{seed}", _ship(own), hidden, own, noise, programme=programme)
 
 
 RUNS: dict[str, Draw] = {

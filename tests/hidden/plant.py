@@ -7,6 +7,7 @@ also in a current that changes, since a body afloat is carried along with its wa
 
 from __future__ import annotations
 
+import json
 from collections.abc import Collection, Mapping
 from dataclasses import astuple, dataclass
 from pathlib import Path
@@ -67,11 +68,6 @@ NAMES = tuple(name for name, *_ in TRIALS)
 
 TUNING = ("turn_p10", "turn_m20", "turn_p35", "turn_m40", "zigzag_10")
 """Trials that causes are looked for on; the others are held out."""
-
-SPLIT = """ship = "suzaku"
-tune = ["turn_p10", "turn_m20", "turn_p35", "turn_m40", "zigzag_10"]
-test = ["turn_m10", "turn_p20", "turn_m35", "turn_p40", "zigzag_20"]
-"""
 
 
 @dataclass(frozen=True)
@@ -511,11 +507,13 @@ def simulate(
     return trials
 
 
-def write(trials: list[Trial], folder: Path) -> None:
+def write(trials: list[Trial], folder: Path, tuning: Collection[str] = TUNING) -> None:
     """Write the trials and their split to ``folder``, replacing what is there."""
     from mmgtune.files import write_text
     from mmgtune.trial import write_trial
 
     for trial in trials:
         write_trial(trial, folder / f"{trial.id}.parquet", overwrite=True)
-    write_text(folder / "split.toml", SPLIT)
+    roles = {role: [one.id for one in trials if (one.id in tuning) == (role == "tune")] for role in ("tune", "test")}
+    lists = "".join(f"{role} = {json.dumps(names)}\n" for role, names in roles.items())
+    write_text(folder / "split.toml", f'ship = "suzaku"\n{lists}')

@@ -17,6 +17,7 @@ import tempfile
 import time
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import replace
 from functools import cache
 from multiprocessing.sharedctypes import Synchronized
 from pathlib import Path
@@ -25,42 +26,59 @@ from typing import Any
 import mmgtune
 from mmgtune.effects import find_effect
 
-from .cases import LADDER, RUNS, Case, null, of_one_run, of_runs, pair, single, tide, unknown
+from .cases import (
+    LADDER,
+    RUNS,
+    Case,
+    null,
+    of_one_run,
+    of_runs,
+    otherwise,
+    pair,
+    single,
+    tide,
+    triple,
+    unknown,
+)
 from .plant import AUTOCORRELATED, simulate, write
 from .unknown import UNKNOWN
 
-SEEDS = 10
-NULLS, COLOURED_NULLS, PAIRS = 80, 20, 50
+SEEDS = 4
+NULLS, COLOURED_NULLS, PAIRS, TRIPLES = 80, 20, 48, 20
 
 ASIDE = ("checking", "cli", "importing", "report")
 """Parts of the package whose source no diagnosis depends on."""
 
 
 def cases() -> Iterator[tuple[str, Case]]:
-    """Every case with the set it belongs to; early seeds of every set come first."""
+    """Every case with the set it belongs to, those of a seed in an order of chance: a study that was stopped is a fair
+    sample of the whole."""
     for seed in range(1, SEEDS + 1):
-        for tag in LADDER:
-            for level in range(5):
-                yield f"{tag}:{level}", single(tag, level, seed)
-        for k in range(NULLS // SEEDS):
-            yield "null", null(1000 + k * SEEDS + seed)
-        for k in range(COLOURED_NULLS // SEEDS):
-            case = null(2000 + k * SEEDS + seed, AUTOCORRELATED)
-            yield "null-autocorrelated", Case(f"{case.name}-autocorrelated", *_rest(case))
-        for k in range(PAIRS // SEEDS):
-            yield "pair", pair(3000 + k * SEEDS + seed)
-        for tag in RUNS:
-            for level in (2, 3):
-                yield "of-runs", of_runs(tag, level, seed)
-        yield "of-runs", of_one_run(seed)
-        yield "of-runs", tide(seed)
-        if seed == 1:
-            for k in range(len(UNKNOWN)):
-                yield "unknown", unknown(k, seed)
+        yield from sorted(_of_seed(seed), key=lambda one: hashlib.sha256(one[1].name.encode()).digest())
 
 
-def _rest(case: Case) -> tuple[Any, ...]:
-    return case.ship, case.effects, case.seed, case.noise, case.of_trial
+def _of_seed(seed: int) -> Iterator[tuple[str, Case]]:
+    for tag in LADDER:
+        for level in range(5):
+            yield f"{tag}:{level}", single(tag, level, seed)
+        yield "otherwise", otherwise(tag, seed)
+    for k in range(NULLS // SEEDS):
+        yield "null", null(1000 + k * SEEDS + seed)
+    for k in range(COLOURED_NULLS // SEEDS):
+        case = null(2000 + k * SEEDS + seed, AUTOCORRELATED)
+        yield "null-autocorrelated", replace(case, name=f"{case.name}-autocorrelated")
+    for k in range(PAIRS // SEEDS):
+        yield "pair", pair(3000 + k * SEEDS + seed)
+    for k in range(TRIPLES // SEEDS):
+        yield "triple", triple(4000 + k * SEEDS + seed)
+    for tag in RUNS:
+        for level in (2, 3):
+            yield "of-runs", of_runs(tag, level, seed)
+    yield "of-runs", of_one_run(seed)
+    yield "of-runs", tide(seed)
+    if seed == 1:
+        for k in range(len(UNKNOWN)):
+            yield "unknown", unknown(k, seed)
 
 
 def diagnosed(case: Case) -> dict[str, Any]:
@@ -70,7 +88,8 @@ def diagnosed(case: Case) -> dict[str, Any]:
     from mmgtune.trial import load_trials
 
     with tempfile.TemporaryDirectory() as folder:
-        write(simulate(case.ship, case.effects, case.seed, case.noise, case.of_trial), Path(folder))
+        trials = simulate(case.ship, case.effects, case.seed, case.noise, case.of_trial)
+        write(case.programme.kept(trials), Path(folder), case.programme.tuning)
         began = time.perf_counter()
         document = diagnose(load_profile("suzaku"), load_trials(folder)).to_dict()
     return {**document, "seconds": time.perf_counter() - began}

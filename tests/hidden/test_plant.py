@@ -258,3 +258,22 @@ def test_cases_are_drawn_again_the_same():
     for name, value in cases.null(3).ship.items():
         assert name in TARGETS
         assert abs(value / PROFILE[name] - 1.0) <= cases.SPREAD
+
+
+def test_cases_measured_otherwise_vary_in_programme_sampling_and_noise(tmp_path):
+    drawn = [
+        cases.otherwise(tag, seed) for tag in ("current", "flap", "antenna", "memory", "wind") for seed in (1, 2, 3)
+    ]
+    assert len({case.seed for case in drawn}) == len(drawn)  # a noise of its own each
+    assert {case.programme.every for case in drawn} == {1, 5, 10}
+    assert {case.programme.told for case in drawn} == {True, False}
+    assert {len(case.programme.tuning) for case in drawn} == {4, 5, 10}
+    assert len({round(case.noise.x, 3) for case in drawn}) == 3
+    case = next(case for case in drawn if case.programme.trials == cases.FOUR)
+    kept = case.programme.kept(plant.simulate(case.ship, case.effects, case.seed, case.noise))
+    plant.write(kept, tmp_path, case.programme.tuning)
+    read = load_trials(tmp_path)
+    assert (set(read.tune), read.test) == (set(cases.FOUR), ())
+    for trial in read.trials.values():
+        assert np.diff(trial.t) == pytest.approx(float(case.programme.every), abs=0.02)
+        assert bool(trial.noise) == case.programme.told
