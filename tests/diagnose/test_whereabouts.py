@@ -1,14 +1,16 @@
 """Where an error lives: residual forces made by hand, which follow what they are told to."""
 
 import json
+import warnings
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.stats import ttest_1samp
 
 from mmgtune.diagnose.evidence import ResidualForces
 from mmgtune.diagnose.evidence.forces import time_since_order
-from mmgtune.diagnose.leftover import offsets_of
+from mmgtune.diagnose.leftover import by_chance, offsets_of
 from mmgtune.diagnose.whereabouts import PHASES, REPEAT, TELLS, Whereabouts, phases_of, whereabouts
 from mmgtune.trial import load_trials
 from mmgtune.units import DEG
@@ -166,3 +168,11 @@ def test_an_offset_of_a_log_is_one_number_in_every_run(by_run, found):
         said = whereabouts([], {}, {}, offsets).sentences()
         assert "sway velocity is off by +0.0" in said[0]
         assert said[-1] == "What would tell: the sway velocity from a second sensor in the same runs."
+
+
+@pytest.mark.parametrize("values", [[0.4, 0.5, 0.45], [0.1, -0.3, 0.2, 0.05], [1.0, 1.0]])
+def test_the_chance_of_a_mean_is_that_of_student_s_test(values):
+    with np.errstate(divide="ignore"), warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # SciPy speaks of values that are all the same
+        expected = ttest_1samp(values, 0.0).pvalue
+    assert by_chance(np.array(values)) == pytest.approx(expected)
