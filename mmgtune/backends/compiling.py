@@ -35,7 +35,7 @@ from .kernel_folder import Entry, alone, kernel_folder
 from .tuples import inner
 from .vector_math import OPTIONS, select, vector_arctan2, vector_cos, vector_exp, vector_log, vector_sin
 
-__all__ = ["carray", "lane", "load_kernel", "logged_control", "njit", "stack"]
+__all__ = ["carray", "lane", "load_kernel", "logged_control", "njit", "stack", "whole_vectors"]
 
 
 @intrinsic(prefer_literal=True)
@@ -48,6 +48,21 @@ def stack(context: Any, size: Any) -> Any:
         return builder.bitcast(room, ir.DoubleType().as_pointer())
 
     return types.CPointer(types.float64)(size), generate
+
+
+@intrinsic
+def whole_vectors(_context: Any) -> Any:
+    """Let a function use vectors as wide as the processor has: all lanes of a block in one, with AVX-512.
+
+    LLVM halves them for most processors that have it, to spare the clock of a program that needs them now and then; a
+    kernel that does little else is half as fast again with whole ones.
+    """
+
+    def generate(_context: Any, builder: Any, _signature: Any, _args: Any) -> None:
+        # llvmlite knows no attributes with values and refuses them; to a set they are a text like any other.
+        set.add(builder.function.attributes, '"prefer-vector-width"="512"')
+
+    return types.void(), generate
 
 
 def lane(of: type, rows: Sequence[Any], width: int) -> Any:
