@@ -28,6 +28,13 @@ STEP = 1e-5
 SMALL = 0.1
 """A small size of an effect, as a share of the typical one."""
 
+TINY = 1e-3
+"""The same so small that nothing bends."""
+
+ACTS = 0.5
+"""Share of the change at a small size, in proportion, from which an effect acts at a tiny one: a lag within the step of
+the log does not."""
+
 BLOCK = 60.0
 """Length [s] of the pieces noise is resampled in."""
 
@@ -72,6 +79,7 @@ class Linear:
     signature   (n_rows, n_names) likewise, for one typical size of each
     one_sided   those of them whose null is an end of their range
     small       (n_rows, n_one_sided) signatures of those over a small size, as if grown to a typical one
+    tiny        the same over one so small that nothing bends, if the effect acts there
     share       (n_names,) of the signature's length that re-tuning leaves
     noise       (n_rows,) the residual less all signatures: hardly anything but noise
     wander      (n_rows, DRAWS) what other noise of the logged inputs would change
@@ -89,6 +97,7 @@ class Linear:
     signature: FloatArray
     one_sided: tuple[str, ...]
     small: FloatArray
+    tiny: FloatArray
     share: FloatArray
     noise: FloatArray
     wander: FloatArray
@@ -136,14 +145,19 @@ class Linear:
         """What some parameters may look like, each (n_rows, n_parameters): at a typical size and, where it differs, at
         a small one."""
         names = self.absent(names)
-        typical = self.columns(names)
-        if not set(names) & set(self.one_sided):
-            return [typical]
-        small = typical.copy()
+        return [self.columns(names), *([self._over(self.small, names)] if set(names) & set(self.one_sided) else [])]
+
+    def slopes(self, names: Sequence[str]) -> FloatArray:
+        """(n_rows, n_parameters) what some parameters look like at sizes at which nothing bends."""
+        return self._over(self.tiny, self.absent(names))
+
+    def _over(self, sizes: FloatArray, names: Sequence[str]) -> FloatArray:
+        """Signatures of some parameters, those with one side only over other sizes, (n_rows, n_one_sided)."""
+        found = self.columns(names)
         for i, name in enumerate(names):
             if name in self.one_sided:
-                small[:, i] = self.small[:, self.one_sided.index(name)]
-        return [typical, small]
+                found[:, i] = sizes[:, self.one_sided.index(name)]
+        return found
 
     def chance(self, Q: FloatArray, own: bool = False) -> tuple[FloatArray, FloatArray]:
         """What noise has along orthonormal directions Q (n_rows, k): by block (n_blocks, k), by trial and draw of the
@@ -208,8 +222,8 @@ def linearise(
     n_free = len(point.names)
     size = np.array([typical(bench, name) for name in wanted])
     ends = np.flatnonzero(inwards(null))
-    moved = np.concatenate([np.arange(len(names)), n_free + ends])  # which name each difference is taken over
-    plus = np.concatenate([np.full(n_free, STEP), size, SMALL * size[ends]])
+    moved = np.concatenate([np.arange(len(names)), n_free + ends, n_free + ends])  # names differences are taken over
+    plus = np.concatenate([np.full(n_free, STEP), size, SMALL * size[ends], TINY * size[ends]])
     minus = plus.copy()
     beyond = moved >= n_free  # derivatives may look over a bound, sizes of effects may not
     plus[beyond & (at[moved] + plus > 1.0)] = 0.0
@@ -244,7 +258,10 @@ def linearise(
     left = tuned.out_of(left)
     chosen = (*apart, *wanted)
     at_chosen = [1 + names.index(name) for name in chosen]
-    signature, small = left[:, at_chosen], left[:, 1 + len(names) : 1 + n_moved]
+    signature = left[:, at_chosen]
+    small, tiny = np.split(left[:, 1 + len(names) : 1 + n_moved], 2, axis=1)
+    of_small, of_tiny = np.split(np.linalg.norm(slopes[:, len(names) :], axis=0), 2)
+    tiny = np.where(of_tiny > ACTS * of_small, tiny, small)
     length = np.linalg.norm(slopes[:, [i - 1 for i in at_chosen]], axis=0)
     every = basis(np.column_stack([signature, small]))
     first, blocks = blocks_of(problem)
@@ -260,6 +277,7 @@ def linearise(
         signature=signature,
         one_sided=tuple(wanted[i] for i in ends),
         small=small,
+        tiny=tiny,
         share=np.linalg.norm(signature, axis=0) / np.maximum(length, 1e-300),
         noise=left[:, 0] - every @ (every.T @ left[:, 0]),
         wander=left[:, 1 + n_moved :],

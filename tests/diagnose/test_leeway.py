@@ -6,6 +6,7 @@ import pytest
 from mmgtune.backends import Integrator
 from mmgtune.diagnose import DiagnoseOptions
 from mmgtune.diagnose.base_fit import base_fit
+from mmgtune.diagnose.detecting import told_apart
 from mmgtune.diagnose.leeway import let_go
 from mmgtune.diagnose.linear import Tuned, linearise
 from mmgtune.diagnose.workbench import make_workbench
@@ -83,3 +84,18 @@ def test_no_leeway_is_nothing_beside_the_targets(suzaku):
     bench = make_workbench(suzaku.profile, trials, DiagnoseOptions(leeway=0.0))
     assert bench.tuned_alone == bench.targets
     assert bench.beliefs(bench.targets, {}) is None
+
+
+def test_limits_of_detection_are_those_of_a_hull_that_follows(sailed):
+    """Shallow water changes coefficients that have leeway: it shows only where they would have to go far."""
+    profile, trials = sailed
+    depth = "effects.shallow-water.depth"
+    apart = {}
+    for leeway in (0.0, 0.05):
+        bench = make_workbench(profile, trials, DiagnoseOptions(leeway=leeway), [depth])
+        bench.integrate(Integrator("rk4"))
+        linear = linearise(bench, base_fit(bench), [depth])
+        apart[leeway] = told_apart(linear, [depth])
+        typical, _ = (np.linalg.norm(look) for look in linear.looks([depth]))
+    assert apart[0.05] < 0.5 * typical  # what is left of a large change because it bends does not count
+    assert apart[0.05] < 0.1 * apart[0.0]
