@@ -46,6 +46,8 @@ from .unknown import UNKNOWN
 SEEDS = 4
 NULLS, COLOURED_NULLS, PAIRS, TRIPLES = 80, 20, 48, 20
 
+N_CASES = SEEDS * (6 * len(LADDER) + 2 * len(RUNS) + 2) + NULLS + COLOURED_NULLS + PAIRS + TRIPLES + len(UNKNOWN)
+
 ASIDE = ("checking", "cli", "importing", "report")
 """Parts of the package whose source no diagnosis depends on."""
 

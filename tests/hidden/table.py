@@ -18,17 +18,15 @@ from mmgtune.effects import find_effect
 from mmgtune.files import write_text
 
 from .cases import LADDER
+from .study import N_CASES, SEEDS
 from .unknown import UNKNOWN
 
 COLOURS = {"right": "#1b7837", "grouped": "#a6dba0", "missed": "#d9d9d9", "unexplained": "#92c5de", "wrong": "#b2182b"}
 """Outcomes of a single hidden effect."""
 
-N_CASES = 940
-"""Cases of the whole study, see ``study.cases``."""
-
 Row = dict[str, Any]
 
-HEAD = """# Hidden effects: what was found of what was there
+HEAD = f"""# Hidden effects: what was found of what was there
 
 Written by `python -m tests.hidden.table` from the results of `make hidden`. Each case is a ship drawn at random (twelve
 coefficients within ±22 %), sailed by a plant of its own with something hidden in it, measured with noise (0.4 m, 0.17°,
@@ -36,10 +34,10 @@ coefficients within ±22 %), sailed by a plant of its own with something hidden 
 no measured ship is in this table.**
 
 The single effects by size of one seed share ship, headings, revolutions and noise, and differ in what is hidden alone:
-sizes of an effect compare directly, but there are four independent draws of noise, not six hundred. What is *measured
-otherwise* has noise of its own each: ten trials, half of them held out or none, or two turns and two zigzags with none
-held out; a sample every 1, 5 or 10 s; a third of that noise, as much, or three times as much, with a memory of 30 s or
-without, stated in the log or not.
+sizes of an effect compare directly, but of noise there are {SEEDS} independent draws, not {5 * SEEDS * len(LADDER)}.
+What is *measured otherwise* has noise of its own each: ten trials, half of them held out or none, or two turns and two
+zigzags with none held out; a sample every 1, 5 or 10 s; a third of that noise, as much, or three times as much, with a
+memory of 30 s or without, stated in the log or not.
 
 """
 
