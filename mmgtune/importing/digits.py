@@ -51,7 +51,7 @@ def within_digits(t: FloatArray, values: FloatArray) -> tuple[FloatArray, int, F
         middle = 0.5 * (low + high)
         try:
             curve = smoothed(10.0**middle)
-        except LinAlgError:  # samples that all but coincide, and so smooth a curve: told no more in double precision
+        except (LinAlgError, ValueError):  # samples that all but coincide: double precision tells no curve so smooth
             high = middle
             continue
         if np.mean(np.abs(curve - values[known]) <= 0.5 * step * (1.0 + 1e-9)) > 0.995:
@@ -73,6 +73,7 @@ class _Smoothing:
     t, values, variance  (n_samples,)
     """
 
+    @np.errstate(over="ignore", invalid="ignore")
     def __init__(self, t: FloatArray, values: FloatArray, variance: FloatArray):
         gap = np.diff(t)
         self._values, self._variance = values, variance
@@ -89,7 +90,7 @@ class _Smoothing:
         self._bent = before * values[:-2] + at * values[1:-1] + after * values[2:]
 
     def __call__(self, lam: float) -> FloatArray:
-        """The curve (n_samples,) at the times."""
+        """The curve (n_samples,) at the times.  Raises LinAlgError or ValueError where these lie too close for one."""
         curvature = solveh_banded(self._rough + self._smooth / lam, self._bent, lower=True)
         before, at, after = self._second * curvature
         pull = np.zeros_like(self._values)

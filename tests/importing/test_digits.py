@@ -27,8 +27,9 @@ def test_a_curve_comes_back_from_its_rounded_values_however_often_it_was_logged(
     assert np.std(found - true) < 0.7 * np.std(np.round(true, 2) - true)
 
 
-def test_samples_that_all_but_coincide_are_smoothed_as_far_as_that_can_be_told():
-    t = np.cumsum(np.where(np.arange(2000) % 2, 1e-9, 1.0))
+@pytest.mark.parametrize("gap", [1e-9, 1e-200])
+def test_samples_that_all_but_coincide_are_smoothed_as_far_as_that_can_be_told(gap):
+    t = np.cumsum(np.concatenate([[0.0, gap], np.where(np.arange(2000) % 2, max(gap, 1e-9), 1.0)]))
     printed = np.round(5.3 + 3.0 * np.sin(t / 40.0), 2)
     found, _, _ = within_digits(t, printed)
     assert np.mean(np.abs(found - printed) <= 0.005 + 1e-9) > 0.99
