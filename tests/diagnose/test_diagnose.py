@@ -23,7 +23,6 @@ from mmgtune.simulation import simulate as simulate_trials
 from mmgtune.trial import load_trials
 from tests.command import run
 from tests.diagnose.sensors import logged
-from tests.diagnose.targets import FEW
 from tests.hidden.cases import Case, null, pair, single
 from tests.hidden.plant import AUTOCORRELATED, simulate, write
 from tests.hidden.study import covered, outcome
@@ -132,7 +131,7 @@ def test_water_driven_by_measured_wind_is_named(suzaku, tmp_path):
         blown = replace(trial, extra={"wind_speed": speed, "wind_dir": towards % (2.0 * np.pi)})
         (motion,) = simulate_trials(driven, [blown], integrator=Integrator("rk4"))
         made[trial.id] = logged(blown, motion, rng)
-    options = DiagnoseOptions(effects=("wind-drift", "wind", "current", "wave-drift"), targets=FEW)
+    options = DiagnoseOptions(effects=("wind-drift", "wind", "current", "wave-drift"))
     result = diagnose(suzaku.profile, replace(trials, trials=made), options)
     assert [cause.tag for cause in result.causes] == ["wind-drift"], result.sentence()
     sizes = result.to_dict()["causes"][0]["parameters"]
@@ -169,9 +168,9 @@ def test_two_effects_are_both_found(tmp_path):
 
 def test_a_resistance_beyond_the_box_of_its_target_is_a_cause(tmp_path):
     case = null(1)
-    fouled = {"hull.R_0": 2.2 * PROFILE["hull.R_0"]}  # the box ends at 1.5 times
+    fouled = {**case.ship, "hull.R_0": 2.2 * PROFILE["hull.R_0"]}  # the box ends at 1.5 times
     write(simulate(fouled, {}, case.seed, case.noise), tmp_path)
-    options = DiagnoseOptions(effects=("resistance", "hull-term", "wave-drift", "rpm-scale"), targets=FEW)
+    options = DiagnoseOptions(effects=("resistance", "hull-term", "wave-drift", "rpm-scale"))
     result = diagnose(load_profile("suzaku"), load_trials(tmp_path), options)
     assert (result.verdict, [cause.tag for cause in result.causes]) == ("found", ["resistance"]), result.sentence()
     factor = result.to_dict()["causes"][0]["parameters"]["factor"]["value"]
@@ -243,7 +242,7 @@ def test_names_order_and_metadata_of_the_files_do_not_matter(drifted, tmp_path):
 
 def test_a_coarse_integration_step_is_a_cause(tmp_path):
     case = null(3)
-    result = said_of(case, tmp_path, integrator="euler", effects=("current", "heading-bias"))
+    result = said_of(case, tmp_path, integrator="euler", effects=LIKE_IT)
     assert [cause.tag for cause in result.causes] == ["integration-step"]
     assert "integration step" in result.sentence()
 

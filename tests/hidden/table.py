@@ -88,6 +88,8 @@ def _summary(sets: dict[str, list[Row]]) -> list[str]:
             by_seed.setdefault(row["case"].rpartition("-")[2], []).extend(row["covered"])
     inside = [held for seed in by_seed.values() for held in seed]
     shares = [100.0 * sum(seed) / len(seed) for seed in by_seed.values() if seed]
+    some, threes = sets.get("otherwise", []), sets.get("triple", [])
+    of_runs = [row for row in sets.get("of-runs", []) if row["of_runs"]]
     seconds = [row["seconds"] for rows in sets.values() for row in rows]
     coverage = f"{sum(inside)} of {len(inside)} ({100.0 * sum(inside) / len(inside):.1f} %)" if inside else "-"
     if shares:
@@ -106,24 +108,17 @@ def _summary(sets: dict[str, list[Row]]) -> list[str]:
         ("smaller, or no limit stated: named wrong", _share(below, "wrong"), "-"),
         ("95 % intervals of named effects that hold the truth", coverage, "90-98 %"),
         ("two effects of typical size, both found", _share(sets.get("pair", []), "right", "grouped"), "80 %"),
+        ("measured otherwise, typical size: named, or in the group", _share(some, "right", "grouped"), "-"),
+        ("measured otherwise, typical size: named wrong", _share(some, "wrong"), "-"),
+        ("three effects of typical size, all found", _share(threes, "right", "grouped"), "60 %"),
+        ("three effects of typical size, a wrong name", _share(threes, "wrong"), "at most 5 %"),
+        ("another value in each run: named as such", _share(of_runs, "right", "grouped"), "-"),
         ("effects in no registry, no wrong name", _share(sets.get("unknown", []), "right", "missed"), "90 %"),
         ("seconds a diagnosis, median, one core of a busy machine", f"{statistics.median(seconds):.0f}", "-"),
     ]
     done = sum(len(rows) for rows in sets.values())
     codes = Counter(row.get("code", "earlier") for rows in sets.values() for row in rows)
     told = ", ".join(f"{n} by {code}" for code, n in codes.most_common())
-    some = sets.get("otherwise", [])
-    threes = sets.get("triple", [])
-    lines[9:9] = [
-        ("measured otherwise, typical size: named, or in the group", _share(some, "right", "grouped"), "-"),
-        ("measured otherwise, typical size: named wrong", _share(some, "wrong"), "-"),
-        ("three effects of typical size, all found", _share(threes, "right", "grouped"), "60 %"),
-        ("three effects of typical size, a wrong name", _share(threes, "wrong"), "at most 5 %"),
-    ]
-    runs = sets.get("of-runs", [])
-    if runs:
-        of_runs = [row for row in runs if row["of_runs"]]
-        lines.insert(13, ("another value in each run: named as such", _share(of_runs, "right", "grouped"), "-"))
     head = f"{done} of the {N_CASES} cases of the study have been run so far; `make hidden` runs the rest.\n\n"
     table = ["| | result | aim |\n|---|---|---|\n", *(f"| {what} | {share} | {aim} |\n" for what, share, aim in lines)]
     by_code = f"\nCases by fingerprint of the source that diagnosed them: {told}.\n" if len(codes) > 1 else ""
