@@ -32,6 +32,9 @@ FIRM = 10.0
 HARDLY = 1e-9
 """Damping of the step whose promise is asked for, as a share of the curvature."""
 
+MOST_CHANGES = 12
+"""Rounds in which small problems choose anew what is held at a bound, before they are solved one by one."""
+
 AHEAD = 0.1
 """Share of a step at which its second derivative is taken."""
 
@@ -296,61 +299,53 @@ def _accelerate(
     near = (z[:, :, None] + AHEAD * step).reshape(len(z), -1)
     runs = residuals_of(near, (d[:, :, None] + AHEAD * shift).reshape(len(d), near.shape[1], 6))
     runs = runs.reshape(len(runs), *step.shape[1:])
+    tried[:, :, 1], moved[:, :, 1] = tried[:, :, 0], moved[:, :, 0]
     for i, at in enumerate(linear):
+        with np.errstate(invalid="ignore"):
+            ahead = (runs[:, i] - at.residuals[:, None]) / AHEAD
+            curved = (2.0 / AHEAD) * (ahead - at.slope(step[:, i], shift[:, i]))
         for k, factor in enumerate(DAMPINGS):
-            tried[:, i, 1, k], moved[:, i, 1, k] = tried[:, i, 0, k], moved[:, i, 0, k]
             if not np.isfinite(runs[:, i, k]).all():
                 continue
-            curved = (2.0 / AHEAD) * ((runs[:, i, k] - at.residuals) / AHEAD - at.slope(step[:, i, k], shift[:, i, k]))
-            bend, bend_shift = at.bend(curved, damping[i] * factor, step[:, i, k] != 0.0)
+            bend, bend_shift = at.bend(curved[:, k], damping[i] * factor, step[:, i, k] != 0.0)
             if np.linalg.norm(bend * at.scale) <= np.linalg.norm(2.0 * step[:, i, k] * at.scale):
                 tried[:, i, 1, k] = np.clip(tried[:, i, 0, k] + 0.5 * bend, 0.0, 1.0)
                 moved[:, i, 1, k] = at.limited(moved[:, i, 0, k] + 0.5 * bend_shift)
 
 
-class _Case(NamedTuple):
-    """What the quadratic model of a case is made of, wherever its offsets may go: halves of derivatives.
+class _Cases(NamedTuple):
+    """What the quadratic model of the cases is made of, wherever their offsets may go: halves of derivatives.
 
-    at         (6,) the offsets where it was made
-    slopes     (n_rows, 6) derivatives of the residuals by the offsets
-    curvature  (6, 6) of what is minimised by these, the prior among them
-    cross      (6, n_targets) the same by these and the targets
-    slope      (6,) its first derivatives by the offsets
+    at         (n_cases, 6) the offsets where it was made
+    curvature  (n_cases, 6, 6) of what is minimised by these, the prior among them
+    cross      (n_cases, 6, n_targets) the same by these and the targets
+    slope      (n_cases, 6) its first derivatives by the offsets
     """
 
     at: FloatArray
-    slopes: FloatArray
     curvature: FloatArray
     cross: FloatArray
     slope: FloatArray
 
-    @classmethod
-    def of(
-        cls, at: FloatArray, slopes: FloatArray, residuals: FloatArray, jacobian: FloatArray, prior: FloatArray
-    ) -> _Case:
-        """Of residuals (n_rows,), their jacobian (n_rows, n_targets), and a prior (6,) of the offsets."""
-        by_row = slopes.T
-        return cls(at, slopes, by_row @ slopes + np.diag(prior), by_row @ jacobian, by_row @ residuals + prior * at)
-
 
 @dataclass(frozen=True, eq=False)
 class _Offsets:
-    """The offsets of a case's initial state in the quadratic model, those that would leave their range held at its end.
+    """The offsets of initial states in the quadratic model, those that would leave their range held at its end.
 
-    free       which of the six are not held
-    to_end     (6,) how far those that are held move
-    slopes     (n_rows, n_free) derivatives of the residuals by the others
-    curvature  (n_free, n_free) halves of second derivatives by these
-    cross      (n_free, n_targets) the same by these and the targets
+    What is of a held one is zero, but for 1 on the diagonal of the curvature.
+
+    free       (n_cases, 6) which are not held
+    to_end     (n_cases, 6) how far those that are held move
+    curvature  (n_cases, 6, 6) halves of second derivatives
+    cross      (6 n_cases, n_targets) the same by these and the targets
     by_held    (n_targets,) half of what the held ones add to the derivatives by the targets
-    alone      (n_free,) best step against their slopes where the targets stand
-    by_target  (n_free, n_targets) the same for a unit step of each target
+    alone      (6 n_cases,) best step against their slopes where the targets stand
+    by_target  (6 n_cases, n_targets) the same for a unit step of each target
     promised   fall of what is minimised by the offsets alone
     """
 
     free: BoolArray
     to_end: FloatArray
-    slopes: FloatArray
     curvature: FloatArray
     cross: FloatArray
     by_held: FloatArray
@@ -359,45 +354,59 @@ class _Offsets:
     promised: float
 
     @classmethod
-    def of(cls, case: _Case, limit: FloatArray | None, damping: float, step: FloatArray | None) -> _Offsets:
+    def of(cls, cases: _Cases, limit: FloatArray | None, damping: float, step: FloatArray | None) -> _Offsets:
         """How they move with the targets.
 
-        limit  (6,) the end of their range, None where none is held
+        limit  (n_cases, 6) the ends of their ranges, None where none is held
         step   (n_targets,) of the targets that says which would leave it; None for none
         """
-        at, cross, slope, whole = case.at, case.cross, case.slope, case.curvature
+        at, whole, cross, slope = cases
         if damping:
-            whole = whole + damping * np.diag(np.diag(whole))
-        free, to_end = np.ones(6, dtype=bool), np.zeros(6)
-        solved = np.linalg.solve(whole, np.column_stack([slope, cross]))
-        end = at - solved[:, 0] - (0.0 if step is None else solved[:, 1:] @ step)
-        if limit is not None and np.any(np.abs(end) > limit):
-            width = 2.0 * limit
-            there = slope if step is None else slope + cross @ step
-            unit = bounded_step(whole * np.outer(width, width), there * width, np.clip(at / width + 0.5, 0.0, 1.0))
-            free = (unit > 0.0) & (unit < 1.0)
-            to_end[~free] = (unit[~free] - 0.5) * width[~free] - at[~free]
-            pull = slope[free] + whole[np.ix_(free, ~free)] @ to_end[~free]
-            solved = np.linalg.solve(whole[np.ix_(free, free)], np.column_stack([pull, cross[free]]))
-        alone = to_end.copy()
-        alone[free] = -solved[:, 0]
+            whole = whole + damping * whole * np.eye(6)
+        there = slope if step is None else slope + cross @ step
+        free, to_end = np.ones(at.shape, dtype=bool), np.zeros(at.shape)
+        curvature, pull = whole, slope
+        solved = np.linalg.solve(whole, np.concatenate([slope[..., None], cross], axis=2))
+        if limit is not None:
+            end = at - solved[..., 0] - (0.0 if step is None else solved[..., 1:] @ step)
+            leaving = np.flatnonzero(np.any(np.abs(end) > limit, axis=1))
+            if len(leaving):
+                width = 2.0 * limit[leaving]
+                unit = bounded_steps(
+                    whole[leaving] * width[:, :, None] * width[:, None],
+                    there[leaving] * width,
+                    np.clip(at[leaving] / width + 0.5, 0.0, 1.0),
+                )
+                free[leaving] = (unit > 0.0) & (unit < 1.0)
+                to_end[leaving] = np.where(free[leaving], 0.0, (unit - 0.5) * width - at[leaving])
+                curvature = np.where(free[:, :, None] & free[:, None], whole, np.eye(6) * ~free[:, None])
+                pull = np.where(free, slope + (whole @ to_end[..., None])[..., 0], 0.0)
+                cross = np.where(free[..., None], cross, 0.0)
+                solved = np.linalg.solve(curvature, np.concatenate([pull[..., None], cross], axis=2))
+        moved = to_end - solved[..., 0]
+        shape = (6 * len(at), cross.shape[2])
         return cls(
             free,
             to_end,
-            case.slopes[:, free],
-            whole[np.ix_(free, free)],
-            cross[free],
-            cross.T @ to_end,
-            np.asarray(solved[:, 0]),
-            np.asarray(solved[:, 1:]),
-            -float(2.0 * slope @ alone + alone @ whole @ alone),
+            curvature,
+            cross.reshape(shape),
+            to_end.reshape(-1) @ cases.cross.reshape(shape),
+            solved[..., 0].reshape(-1),
+            solved[..., 1:].reshape(shape),
+            -float(np.sum(moved * (2.0 * slope + (whole @ moved[..., None])[..., 0]))),
         )
 
     def move(self, step: FloatArray) -> FloatArray:
-        """(6,) how far the offsets move beside a step (n_targets,) of the targets."""
-        moved = self.to_end.copy()
-        moved[self.free] = -self.alone - self.by_target @ step
-        return moved
+        """(n_cases, 6) how far the offsets move beside a step (n_targets,) of the targets."""
+        return self.to_end - (self.alone + self.by_target @ step).reshape(-1, 6)
+
+
+class _Plain(NamedTuple):
+    """What a quadratic model is made of, whatever of it is held: halves of derivatives by targets, and of the cases."""
+
+    hessian: FloatArray
+    gradient: FloatArray
+    cases: _Cases | None
 
 
 class _Linear:
@@ -417,46 +426,44 @@ class _Linear:
         holding: bool = False,
         damping: float = 0.0,
         step: FloatArray | None = None,
-        plain: tuple[FloatArray, FloatArray, list[_Case]] | None = None,
+        plain: _Plain | None = None,
     ):
         self.residuals, self._d = residuals, d
         self._problem, self._jacobian, self._by_offset = problem, jacobian, by_offset
         self._rows = problem.rows_of_cases
         self._limit = None if problem.sigma is None else LARGEST * problem.sigma
         self._holding, self._damping = holding, damping
-        self._plain = plain or (jacobian.T @ jacobian, jacobian.T @ residuals, self._cases())
-        self.hessian, self.gradient = self._plain[0].copy(), self._plain[1].copy()
-        self._own: list[_Offsets] = []
-        self.settling = 0.0
-        for k, case in enumerate(self._plain[2]):
-            own = _Offsets.of(case, self._limit[k] if holding and self._limit is not None else None, damping, step)
-            self.hessian -= own.cross.T @ own.by_target
-            self.gradient += own.by_held - own.cross.T @ own.alone
-            self.settling += own.promised
-            self._own.append(own)
+        self._plain = plain or _Plain(jacobian.T @ jacobian, jacobian.T @ residuals, self._cases())
+        self.hessian, self.gradient, self.settling = self._plain.hessian, self._plain.gradient, 0.0
+        self._own: _Offsets | None = None
+        if self._plain.cases is not None:
+            own = self._own = _Offsets.of(self._plain.cases, self._limit if holding else None, damping, step)
+            self.hessian = self.hessian - own.cross.T @ own.by_target
+            self.gradient = self.gradient + own.by_held - own.alone @ own.cross
+            self.settling = own.promised
 
-    def _cases(self) -> list[_Case]:
+    def _cases(self) -> _Cases | None:
         """Those whose offsets are free."""
         if self._limit is None:
-            return []
-        return [
-            _Case.of(at, self._by_offset[rows], self.residuals[rows], self._jacobian[rows], prior)
-            for rows, prior, at in zip(self._rows, self._problem.prior, self._d, strict=True)
-        ]
+            return None
+        prior, of_cases = self._problem.prior, [(self._by_offset[rows].T, rows) for rows in self._rows]
+        return _Cases(
+            self._d,
+            np.array([by_row @ by_row.T for by_row, _ in of_cases]) + prior[:, None] * np.eye(6),
+            np.array([by_row @ self._jacobian[rows] for by_row, rows in of_cases]),
+            np.array([by_row @ self.residuals[rows] for by_row, rows in of_cases]) + prior * self._d,
+        )
 
     def damped(self, damping: float) -> _Linear:
         """The same with steps of the offsets damped."""
-        if self._limit is None:
-            return self
-        return self._again(damping, None)
+        return self if self._own is None else self._again(damping, None)
 
     def about(self, step: FloatArray) -> _Linear:
         """The same with those offsets held that would leave their range beside a step (n_targets,) of the targets."""
-        if not self._holding or self._limit is None:
+        if not self._holding or self._own is None or self._limit is None:
             return self
-        ends = [d + own.move(step) for d, own in zip(self._d, self._own, strict=True)]
-        held = any(not own.free.all() for own in self._own)
-        return self._again(self._damping, step) if held or np.any(np.abs(ends) > self._limit) else self
+        leave = not self._own.free.all() or bool(np.any(np.abs(self._d + self._own.move(step)) > self._limit))
+        return self._again(self._damping, step) if leave else self
 
     def _again(self, damping: float, step: FloatArray | None) -> _Linear:
         given = (self._problem, self._d, self.residuals, self._jacobian, self._by_offset)
@@ -464,9 +471,7 @@ class _Linear:
 
     def offsets(self, step: FloatArray) -> FloatArray:
         """(n_cases, 6) best offsets after a step (n_targets,) of the targets, kept within their limit."""
-        if self._limit is None:
-            return self._d
-        return self.limited(np.array([d + own.move(step) for d, own in zip(self._d, self._own, strict=True)]))
+        return self._d if self._own is None else self.limited(self._d + self._own.move(step))
 
     def limited(self, offsets: FloatArray) -> FloatArray:
         """Offsets kept within their limit."""
@@ -477,32 +482,29 @@ class _Linear:
         """(n_targets,) what steps are measured in: the residual each target changes."""
         return np.sqrt(np.maximum(np.diag(self.hessian), 0.0))
 
-    def slope(self, step: FloatArray, shift: FloatArray) -> FloatArray:
-        """First-order change of the residuals by a step (n_targets,) and a shift of the offsets (n_cases, 6)."""
-        change = self._jacobian @ step
-        if self._limit is not None:
-            for rows, own in zip(self._rows, shift, strict=True):
-                change[rows] += self._by_offset[rows] @ own
+    def slope(self, steps: FloatArray, shifts: FloatArray) -> FloatArray:
+        """First-order change of the residuals by steps (n_targets, k) and shifts of the offsets (n_cases, k, 6)."""
+        change = self._jacobian @ steps
+        if self._own is not None:
+            for rows, own in zip(self._rows, shifts, strict=True):
+                change[rows] += self._by_offset[rows] @ own.T
         return change
 
     def bend(self, curved: FloatArray, damping: float, free: BoolArray) -> tuple[FloatArray, FloatArray]:
         """Step and shift that undo a second derivative of the residuals, by least squares over the free targets."""
-        gradient = self._jacobian.T @ curved
-        pulls = []
-        for rows, own in zip(self._rows, self._own, strict=False):
-            pull = own.slopes.T @ curved[rows]
-            gradient -= own.by_target.T @ pull
-            pulls.append(np.linalg.solve(own.curvature, pull))
+        own, gradient = self._own, self._jacobian.T @ curved
+        pull = np.zeros((0, 6))
+        if own is not None:
+            pull = np.array([self._by_offset[rows].T @ curved[rows] for rows in self._rows]) * own.free
+            gradient = gradient - pull.reshape(-1) @ own.by_target
         hessian = self.hessian[np.ix_(free, free)]
         damped = hessian + damping * np.diag(np.maximum(np.diag(hessian), 1e-300))
         step = np.zeros(len(gradient))
         step[free] = -np.linalg.lstsq(damped, gradient[free], rcond=1e-14)[0]
-        if self._limit is None:
+        if own is None:
             return step, np.zeros_like(self._d)
-        shift = np.zeros_like(self._d)
-        for into, pulled, own in zip(shift, pulls, self._own, strict=True):
-            into[own.free] = -(pulled + own.by_target @ step)
-        return step, shift
+        pulled = np.linalg.solve(own.curvature, pull[..., None])[..., 0]
+        return step, -(pulled + (own.by_target @ step).reshape(-1, 6))
 
 
 def bounded_step(
@@ -542,3 +544,30 @@ def bounded_step(
             break
         held[int(np.argmax(inwards))] = False
     return np.clip(point, 0.0, 1.0)
+
+
+def bounded_steps(hessian: FloatArray, gradient: FloatArray, z: FloatArray) -> FloatArray:
+    """``bounded_step`` of k small problems at once, hessian (k, n, n), gradient and z (k, n) -> (k, n).
+
+    What leaves the cube is held at its end, what is held and pulled inwards is let go, all at once, until nothing
+    changes (Hintermueller, Ito & Kunisch 2003, a primal-dual active set); the few that cycle go one by one.
+    """
+    own = np.eye(z.shape[1])
+    side = np.zeros(z.shape, dtype=int)
+    for _ in range(MOST_CHANGES):
+        held = side != 0
+        to_end = np.where(held, (side > 0) - z, 0.0)
+        pull = gradient + (hessian @ to_end[..., None])[..., 0]
+        within = np.where(held[:, :, None] | held[:, None], own * held[:, None], hessian)
+        step = to_end - np.linalg.solve(within, np.where(held, 0.0, pull)[..., None])[..., 0]
+        slope = gradient + (hessian @ step[..., None])[..., 0]
+        leaving = (z + step > 1.0).astype(int) - (z + step < 0.0)
+        new = np.where(held, np.where(side * slope < 0.0, side, 0), leaving)
+        changed = np.any(new != side, axis=1)
+        side = new
+        if not changed.any():
+            return np.clip(np.where(held, side > 0, z + step), 0.0, 1.0)
+    found = np.where(side != 0, side > 0, z + step).astype(float)
+    for k in np.flatnonzero(changed):
+        found[k] = bounded_step(hessian[k], gradient[k], z[k])
+    return np.asarray(np.clip(found, 0.0, 1.0))

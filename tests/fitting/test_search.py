@@ -11,7 +11,7 @@ from mmgtune.errors import OptionError
 from mmgtune.fitting import FitOptions, Hooks, LeaveOutOptions, SweepOptions, fit, leave_out, make_problem, sweep
 from mmgtune.fitting.box import make_box
 from mmgtune.fitting.cmaes import from_box, search, to_box
-from mmgtune.fitting.least_squares import bounded_step, solve
+from mmgtune.fitting.least_squares import bounded_step, bounded_steps, solve
 from mmgtune.trial import load_trials
 from tests.fitting.conftest import make_set
 
@@ -109,6 +109,19 @@ def test_bounded_step_solves_the_bounded_quadratic():
         assert value <= least * (1.0 + 1e-9)
         assert found.min() >= 0.0
         assert found.max() <= 1.0
+
+
+def test_many_small_bounded_steps_at_once_are_those_one_by_one():
+    rng = np.random.default_rng(3)
+    for _ in range(200):
+        A = rng.normal(size=(5, 8, 6)) * 10.0 ** rng.uniform(-2.0, 2.0, size=(5, 1, 6))
+        hessian = A.transpose(0, 2, 1) @ A + 1e-3 * np.eye(6)
+        z = np.clip(rng.uniform(-0.3, 1.3, size=(5, 6)), 0.0, 1.0)  # many on a bound
+        gradient = (hessian @ rng.normal(scale=rng.choice([0.1, 1.0, 10.0]), size=(5, 6, 1)))[..., 0]
+        found = bounded_steps(hessian, gradient, z)
+        np.testing.assert_allclose(
+            found, [bounded_step(*one) for one in zip(hessian, gradient, z, strict=True)], atol=1e-8
+        )
 
 
 def test_least_squares_never_ends_above_its_start(problem):
