@@ -158,8 +158,7 @@ def summary(result: Diagnosis, folder: str, report: bool) -> str:
     lines += ["", f"verdict: {result.verdict}", result.sentence()]
     if result.record:
         lines.append(result.record.sentence)
-    for trace in result.traces:
-        lines.append(f"Trace, nothing that would be noticed, and in no profile: {trace.cause.sentence}.")
+    lines += [trace.sentence for trace in result.traces]
     where = f"J held out ({result.gain.words}; {result.gain.method})"
     named = result.causes and result.verdict != "unexplained" and not result.interrupted
     if named and before is not None and after is not None:

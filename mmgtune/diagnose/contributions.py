@@ -16,9 +16,10 @@ from ..arrays import FloatArray
 from ..backends import STATES
 from ..fitting.least_squares import fit_offsets
 from ..trial import Trial
-from .gain import INDICES
+from .gain import INDICES, measured
 from .hypotheses import Hypothesis
 from .intervals import Estimate, estimates
+from .leftover import Leftover
 from .search import Found, without
 from .unseen import Beside, held_out_fits
 from .workbench import Point, Workbench
@@ -66,6 +67,11 @@ class Contribution:
     form: float = FORM
 
     @property
+    def harmful(self) -> bool:
+        """Whether held-out trials are told no better with it than without."""
+        return self.channels is not None and self.share <= 0.0
+
+    @property
     def unnoticed(self) -> bool:
         """Whether a user would notice nothing without it, or find held-out trials told no worse.
 
@@ -73,7 +79,7 @@ class Contribution:
         """
         if self.channels is None or self.indices is None:
             return False
-        if self.share <= 0.0 or max(self.share, self.seen) < self.form:
+        if self.harmful or max(self.share, self.seen) < self.form:
             return True
         if self.share < FORM and self.seen < HARDLY_SEEN:
             return True
@@ -110,13 +116,19 @@ def contributions(bench: Workbench, found: Found, test: Sequence[Trial]) -> list
     return [_of(bench, found, cause, test) for cause in found.causes]
 
 
-def set_aside(bench: Workbench, found: Found, test: Sequence[Trial]) -> tuple[list[Aside], list[Contribution]]:
+def set_aside(
+    bench: Workbench, found: Found, test: Sequence[Trial], before: Leftover
+) -> tuple[list[Aside], list[Contribution]]:
     """Take traces out of what was found, the least first, and refit the rest.
+
+    before  what the model without any cause leaves
 
     -> the traces, and what each cause that stays brings
     """
     traces: list[Aside] = []
     brought = contributions(bench, found, test)
+    if test and len(brought) == 1 and not before.structured:
+        brought = [_alone(bench, found, test)]
     while any(one.unnoticed for one in brought):
         k = min((i for i, one in enumerate(brought) if one.unnoticed), key=lambda i: brought[i].seen)
         cause = found.causes[k]
@@ -136,6 +148,12 @@ def alone_of(bench: Workbench, found: Found) -> Found:
     for cause in found.causes[1:]:
         final = without(bench, final, cause)
     return replace(found, final=final, causes=found.causes[:1])
+
+
+def _alone(bench: Workbench, found: Found, test: Sequence[Trial]) -> Contribution:
+    """That of the only cause, where the model without it leaves nothing but noise: a trace if it does harm."""
+    gain = measured(bench, found, test)
+    return Contribution(1.0, gain.share_removed[0], {}, {}) if gain.worse else Contribution(1.0)
 
 
 def _of(bench: Workbench, found: Found, cause: Hypothesis, test: Sequence[Trial]) -> Contribution:

@@ -83,12 +83,13 @@ class Gain(Brief):
 
     @property
     def worse(self) -> bool:
-        """Whether test trials are told worse with the causes, all together and most of them.
+        """Whether test trials are told worse with the causes than by chance, all together and most of them.
 
         Held-out error alone does not tell where each run is left out: the targets themselves are known too badly then.
         """
+        before, after = self.excess.sum(axis=0)
         most = float(np.mean(self.excess[:, 1] > self.excess[:, 0])) > 0.5
-        return self.held_out == "test" and self.share_removed[0] < -WORSE and most
+        return self.held_out == "test" and after - before > max(WORSE * before, 3.0 * self.chance) and most
 
     @property
     def mostly_remains(self) -> bool:
@@ -183,7 +184,7 @@ def held_out(bench: Workbench, found: Found, test: Sequence[Trial]) -> Gain:
 
     Windows of one trial are left out together.
     """
-    gain = _gain(bench, found, test)
+    gain = measured(bench, found, test)
     if not gain.remains or gain.held_out == "only":
         return gain
     n = len({trial.run for trial in bench.trials})
@@ -238,7 +239,8 @@ def _with_other_ties(
     return np.stack(found, axis=1)
 
 
-def _gain(bench: Workbench, found: Found, test: Sequence[Trial]) -> Gain:
+def measured(bench: Workbench, found: Found, test: Sequence[Trial]) -> Gain:
+    """The gain as ``held_out`` has it, without what is expected of coefficients that are known no better."""
     if test:
         compared, excess = _on(bench, found.base, found.final, test)
         return Gain("test", tuple(compared), excess, *_chance(bench, test, found.final), _share_used(found.final, test))

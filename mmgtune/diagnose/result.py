@@ -110,6 +110,13 @@ class Trace:
     cause: Cause
     contribution: Contribution
 
+    @property
+    def sentence(self) -> str:
+        """What it is, and why it is no more than that."""
+        harmful = self.contribution.harmful
+        why = "held-out trials are told no better with it" if harmful else "nothing that would be noticed"
+        return f"Trace, {why}, and in no profile: {self.cause.sentence}."
+
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
         return {**self.cause.to_dict(), "contribution": self.contribution.to_dict()}
@@ -357,9 +364,15 @@ class Diagnosis(Plotted):
                 "open: inputs logged more often would tell more."
             )
         if self.verdict == "none":
+            alone = ", ".join(dict.fromkeys(one.cause.tag for one in self.traces if one.contribution.harmful))
+            none = (
+                f"what alone shows, {alone}, tells held-out trials worse"
+                if alone
+                else "no cause that was looked for shows"
+            )
             return (
-                "Nothing is wrong beyond the noise of the measurements: the re-tuned model fits these trials, and no "
-                "cause that was looked for shows."
+                "Nothing is wrong beyond the noise of the measurements: the re-tuned model fits these trials, and "
+                f"{none}."
             )
         where = "on trials not used" if self.gain.held_out == "test" else f"on {self.gain.words}"
         if self.verdict == "unexplained":

@@ -85,8 +85,8 @@ def _diagnose(
     found = search(bench, [*known, *differing_by_run], in_place, hooks.on_phase, hooks.stop)
     test = [found.held.evenly(trial) for trial in test] if found.held else test
     hooks.on_phase("measuring the gain")
-    traces, brought = set_aside(bench, found, test)
     before = leftover(bench, found.base)
+    traces, brought = set_aside(bench, found, test, before)
     differing: Sequence[Difference] = ()
     if choice is not None and not hooks.stop():
         hooks.on_phase("comparing the voyages")

@@ -12,8 +12,9 @@ import pytest
 from mmgtune.backends import Integrator
 from mmgtune.diagnose import DiagnoseOptions, Diagnosis, diagnose
 from mmgtune.diagnose.base_fit import base_fit
-from mmgtune.diagnose.contributions import Contribution
+from mmgtune.diagnose.contributions import Contribution, set_aside
 from mmgtune.diagnose.gain import BAND, expected, held_out
+from mmgtune.diagnose.hypotheses import known_causes
 from mmgtune.diagnose.leftover import Leftover
 from mmgtune.diagnose.record import ANSWERS, kind_of, record_of
 from mmgtune.diagnose.search import Found
@@ -289,3 +290,30 @@ def test_values_of_runs_that_leave_a_shape_are_not_believed(runs, excess, struct
 def test_what_a_cause_of_slightly_another_form_would_leave_is_all(explained, held_out, all_of_it):
     seen = SimpleNamespace(explained_share=explained, gain=SimpleNamespace(share_removed=(held_out, 0.9, 1.0)))
     assert Diagnosis.explains_all.fget(seen) is all_of_it
+
+
+@pytest.mark.parametrize(
+    ("there", "shaped", "stays"), [("seen", False, False), ("seen", True, True), ("all", False, True)]
+)
+def test_a_cause_that_is_alone_is_a_trace_where_nothing_needs_it_and_it_does_harm(suzaku, there, shaped, stays):
+    """The rate gyro is off in the runs looked at, or in the test runs too."""
+    profile, trials = suzaku.profile, load_trials("suzaku")
+    rng = np.random.default_rng(5)
+    sailed = [trials.trials[name] for name in ("turn_p35", "turn_m20", "zigzag_20", "turn_m40", "zigzag_10")]
+    motions = simulate_trials(profile, sailed, integrator=Integrator("rk4"))
+    made = [logged(trial, motion, rng) for trial, motion in zip(sailed, motions, strict=True)]
+    off = len(made) if there == "all" else 3
+    made = [replace(one, r=one.r + 0.1 * DEG) if k < off else one for k, one in enumerate(made)]
+    cause = next(one for one in known_causes(profile, made, DiagnoseOptions()) if one.tag == "gyro-bias")
+    bench = make_workbench(profile, made[:3], DiagnoseOptions(), cause.names)
+    base = base_fit(bench)
+    final = bench.refit(
+        (*base.names, *cause.names), np.append(base.unit, bench.null(cause.names))[:, None], base.offsets
+    )
+    found = Found(base, final, [cause])
+    before = Leftover(9.0, {}, {}, {"r": 99.0}, {}, {}) if shaped else Leftover(0.0, {}, {}, {}, {}, {})
+    assert before.structured == shaped
+    traces, brought = set_aside(bench, found, made[3:], before)
+    assert [one.hypothesis for one in traces] == ([] if stays else [cause])
+    assert len(brought) == len(found.causes) == stays
+    assert stays or traces[0].contribution.harmful
