@@ -219,7 +219,8 @@ class LaneModel:
             for name, factor in zip(one.effect.changes, self.of(one.effect.function)(around, one.e), strict=True):
                 section, _, symbol = name.partition(".")
                 part = getattr(p, section)
-                p = p._replace(**{section: part._replace(**{symbol: getattr(part, symbol) * factor})})
+                if symbol in part._fields:
+                    p = p._replace(**{section: part._replace(**{symbol: getattr(part, symbol) * factor})})
         return p
 
     def breakdown(self, state: State, control: Any, around: Surroundings = UNKNOWN) -> Any:

@@ -87,7 +87,7 @@ class Gain(Brief):
 
         Held-out error alone does not tell where each run is left out: the targets themselves are known too badly then.
         """
-        before, after = self.excess.sum(axis=0)
+        before, after = self.excess.sum(axis=0).tolist()
         most = float(np.mean(self.excess[:, 1] > self.excess[:, 0])) > 0.5
         return self.held_out == "test" and after - before > max(WORSE * before, 3.0 * self.chance) and most
 

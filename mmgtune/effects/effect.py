@@ -239,7 +239,8 @@ class FactorsFunction(Protocol):
 class FactorsEffect(Effect):
     """Coefficients that change on the way, with what is measured around the ship.
 
-    changes  what is multiplied, by name: section.symbol, of the components of the arrangement
+    changes  what is multiplied, by name: section.symbol, of the components of the arrangement; a symbol that a ship's
+             own component does not have is passed over, unless ``needs`` has it too
     """
 
     place = "factors"

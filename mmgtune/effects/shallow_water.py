@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..physics.elementary import where
+from ..physics.elementary import exp, log, where
 from ..physics.quantities import Lanes, Surroundings
-from ..physics.regressions.kijima1990 import LEAST, ShallowRatios, shallow_ratios
+from ..physics.regressions.kijima1990 import LEAST, shallow_ratios
 from .effect import FactorsEffect, Parameter, factor_on_measured
 from .visited import Visited
 
@@ -23,22 +23,73 @@ class ShallowWater(NamedTuple):
 
     depth: Lanes
     measured: Lanes
+    Y_v: Lanes
+    Y_r: Lanes
+    N_v: Lanes
+    N_r: Lanes
+    cross: Lanes
     L_pp: Lanes
     B: Lanes
     d: Lanes
     C_b: Lanes
 
 
-def shallow_water(around: Surroundings, e: ShallowWater) -> ShallowRatios:
-    """Factors on the linear hull derivatives in water of some depth [m].
+class ShallowFactors(NamedTuple):
+    """Factors [-] on the linear derivatives of the hull, and on all that is not linear, of whatever hull it is."""
+
+    Y_v: Lanes
+    Y_r: Lanes
+    N_v: Lanes
+    N_r: Lanes
+    Y_vvv: Lanes
+    Y_vvr: Lanes
+    Y_vrr: Lanes
+    Y_rrr: Lanes
+    N_vvv: Lanes
+    N_vvr: Lanes
+    N_vrr: Lanes
+    N_rrr: Lanes
+    Y_vv: Lanes
+    Y_vr: Lanes
+    Y_rr: Lanes
+    N_vv: Lanes
+    N_rr: Lanes
+    C_D: Lanes
+
+
+def shallow_water(around: Surroundings, e: ShallowWater) -> ShallowFactors:
+    """Factors on hull derivatives in water of some depth [m].
 
     Where the trial has measured depth it counts, the draught over it times ``measured``; else the steady one.  Added
-    masses, wake and rudder are left as they are, and the water as deep under the whole ship (assumptions).
+    masses, wake and rudder are left as they are, and the water as deep under the whole ship (assumptions).  The others
+    may grow more or less than the formulas have it: by the factor on Y_v to a power, which is 0 in the formulas; those
+    know of no growth of what is not linear.
     """
     by_log = around.depth_known * e.measured > 0.0
     h = np.minimum(e.measured * e.d / np.maximum(around.depth, 1e-6), 1.0 / AFLOAT)
-    ratios: ShallowRatios = shallow_ratios(e.L_pp, e.B, e.d, e.C_b, where(by_log, h, e.d / e.depth))
-    return ratios
+    found = shallow_ratios(e.L_pp, e.B, e.d, e.C_b, where(by_log, h, e.d / e.depth))
+    growth = log(found.Y_v)
+    cross = exp(e.cross * growth)
+    return ShallowFactors(
+        Y_v=found.Y_v * exp(e.Y_v * growth),
+        Y_r=found.Y_r * exp(e.Y_r * growth),
+        N_v=found.N_v * exp(e.N_v * growth),
+        N_r=found.N_r * exp(e.N_r * growth),
+        Y_vvv=cross,
+        Y_vvr=cross,
+        Y_vrr=cross,
+        Y_rrr=cross,
+        N_vvv=cross,
+        N_vvr=cross,
+        N_vrr=cross,
+        N_rrr=cross,
+        Y_vv=cross,
+        Y_vr=cross,
+        Y_rr=cross,
+        N_vv=cross,
+        N_rr=cross,
+        C_D=cross,
+    )
 
 
 def beyond(values: Mapping[str, float], around: Surroundings) -> str:
@@ -56,6 +107,15 @@ def unvisited(found: Mapping[str, float], visited: Visited) -> str:
     if visited.span(np.abs(visited.rate))[1] > TURNING:
         return ""
     return f"a ship that turns, with r L/U beyond {TURNING:g}"
+
+
+def _power(of: str, low: float = -1.0, high: float = 1.0) -> Parameter:
+    """How much more than the formulas have it something grows."""
+    return Parameter(
+        f"power of the factor on Y_v by which {of} grows beyond the formulas",
+        bounds=lambda _: (low, high),
+        bounds_source="a choice: beyond it another effect is at work",
+    )
 
 
 EFFECT = FactorsEffect(
@@ -79,7 +139,10 @@ EFFECT = FactorsEffect(
         "measured": factor_on_measured(
             "the draught over the depth", 1.5, 0.3, "from deep water to half as shallow again as measured"
         ),
+        **{name: _power(name) for name in ("Y_v", "Y_r", "N_v", "N_r")},
+        "cross": _power("what is not linear in Y and N", -0.5, 1.5),
     },
+    form={"Y_v": 0.25, "Y_r": 0.25, "N_v": 0.25, "N_r": 0.25, "cross": 0.5},
     borrowed={name: f"particulars.{name}" for name in ("L_pp", "B", "d", "C_b")},
     variants=(("depth",), ("measured",)),
     unvisited=unvisited,
@@ -95,5 +158,5 @@ EFFECT = FactorsEffect(
     varies=("depth",),
     subject="depth of the water",
     beyond=beyond,
-    changes=("hull.Y_v", "hull.Y_r", "hull.N_v", "hull.N_r"),
+    changes=tuple(f"hull.{name}" for name in ShallowFactors._fields),
 )

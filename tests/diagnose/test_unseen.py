@@ -39,8 +39,13 @@ def test_values_of_runs_are_estimated_in_runs_held_out_and_each_run_is_compared_
 
 @pytest.mark.parametrize(
     ("before", "after", "worse"),
-    [((800, 700), (900, 820), True), ((16_000, 8_000), (1_700, 40_000), False), ((800, 700), (810, 705), False)],
-    ids=["every run", "one of two", "hardly"],
+    [
+        ((800, 700), (900, 820), True),
+        ((16_000, 8_000), (1_700, 40_000), False),
+        ((800, 700), (810, 705), False),
+        ((8, 7), (12, 10), False),
+    ],
+    ids=["every run", "one of two", "hardly", "as chance would"],
 )
 def test_causes_are_told_worse_by_most_test_trials_or_not_at_all(before, after, worse):
     excess = np.column_stack([before, after]).astype(float)

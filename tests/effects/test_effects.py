@@ -9,7 +9,8 @@ import pytest
 from mmgtune.backends import Integrator, get_backend, pad
 from mmgtune.backends.compiled import Compiled
 from mmgtune.backends.whole import whole_of
-from mmgtune.effects import effects, find_effect
+from mmgtune.components import COMPONENTS
+from mmgtune.effects import FactorsEffect, effects, find_effect
 from mmgtune.errors import ProfileError
 from mmgtune.fitting.box import make_box
 from mmgtune.model import Model
@@ -32,7 +33,7 @@ STRONG = {
     "wind-drift": {"along": 0.02, "across": -0.005},
     "flap": {"factor": 0.9},
     "propeller-side-force": {"force": 1.4, "moment": 0.7},
-    "shallow-water": {"depth": 10.0},
+    "shallow-water": {"depth": 10.0, "N_r": 0.1, "cross": 0.5},
     "loading": {"draught": 1.05, "trim": 0.1, "displacement": 0.97},
     "resistance": {"factor": 1.1, "slope": 1.0},
     "wind": {"speed": 8.0, "direction": 1.0},
@@ -377,3 +378,18 @@ def test_a_current_is_fitted_like_any_coefficient(ship, tmp_path):
         assert result.theta[f"effects.current.{name}"] == pytest.approx(value, abs=0.01)
     tuned = parse_profile(result.tuned_text())
     assert tuned.value("effects.current.north") == result.theta["effects.current.north"]
+
+
+def test_factors_are_on_coefficients_that_there_are():
+    """A symbol that a component does not have is passed over, so that a wrong one would never be missed."""
+    there = {f"{one.kind}.{symbol}" for one in COMPONENTS for symbol in one.params._fields}
+    for effect in effects():
+        if isinstance(effect, FactorsEffect):
+            assert set(effect.changes) <= there
+
+
+def test_shallow_water_changes_side_force_and_moment_of_every_hull():
+    changed = find_effect("shallow-water").changes
+    for hull in (one for one in COMPONENTS if one.kind == "hull"):
+        lateral = [symbol for symbol in hull.params._fields if symbol.startswith(("Y_", "N_", "C_D"))]
+        assert set(lateral) <= {name.removeprefix("hull.") for name in changed}, hull.tag

@@ -263,28 +263,36 @@ def numbers(suzaku):
 def test_shallow_water(numbers):
     """Kijima et al. 1990, with the numbers of SUZAKU at a depth of 8 m."""
     effect = find_effect("shallow-water")
-    ship = [numbers[f"particulars.{name}"] for name in ("L_pp", "B", "d", "C_b")]
-    found = effect.function(STILL, effect.params(8.0, 1.0, *ship))
+    ship = {name: numbers[f"particulars.{name}"] for name in ("L_pp", "B", "d", "C_b")}
     h, b = 3.8 / 8.0, 0.737 * 13.5 / 3.8
+
+    def of(around, depth, measured, **powers):
+        beside = {"Y_v": 0.0, "Y_r": 0.0, "N_v": 0.0, "N_r": 0.0, "cross": 0.0}
+        return effect.function(around, effect.params(depth=depth, measured=measured, **beside | powers, **ship))
 
     def deep(n):
         return 1.0 / (1.0 - h) ** n - h
 
+    found = of(STILL, 8.0, 1.0)
     cubic = 1.0 + (-5.5 * b**2 + 26.0 * b - 31.5) * h
     cubic += (37.0 * b**2 - 185.0 * b + 230.0) * h**2 + (-38.0 * b**2 + 197.0 * b - 250.0) * h**3
     factors = {"Y_v": deep(0.40 * b), "N_v": deep(0.425 * b), "N_r": deep(1.5 - 14.28 * 3.8 / 83.0), "Y_r": cubic}
-    for name, factor in factors.items():
-        assert getattr(found, name) == pytest.approx(factor), name
+    for name, factor in found._asdict().items():
+        assert factor == pytest.approx(factors.get(name, 1.0)), name
     assert tuple(f"hull.{name}" for name in found._fields) == effect.changes
     logged = UNKNOWN._replace(depth=8.0, depth_known=1.0)
-    assert effect.function(logged, effect.params(math.inf, 1.0, *ship)) == pytest.approx(found)
+    assert of(logged, math.inf, 1.0) == pytest.approx(found)
     # Half of the draught over the depth is twice the depth; none of it is deep water.
-    assert effect.function(logged, effect.params(5.0, 0.5, *ship)) == pytest.approx(
-        effect.function(STILL, effect.params(16.0, 1.0, *ship))
-    )
-    assert tuple(effect.function(logged, effect.params(math.inf, 0.0, *ship))) == (1.0, 1.0, 1.0, 1.0)
-    aground = effect.function(logged._replace(depth=1.0), effect.params(math.inf, 1.0, *ship))
-    assert aground == pytest.approx(effect.function(STILL, effect.params(1.05 * 3.8, 1.0, *ship)))
+    assert of(logged, 5.0, 0.5) == pytest.approx(of(STILL, 16.0, 1.0))
+    assert set(of(logged, math.inf, 0.0)) == {1.0}
+    assert of(logged._replace(depth=1.0), math.inf, 1.0) == pytest.approx(of(STILL, 1.05 * 3.8, 1.0))
+
+    # What grows otherwise than the formulas have it does so with the depth, and not in deep water.
+    powers = {"Y_v": -0.2, "Y_r": 0.3, "N_v": 0.25, "N_r": -0.1, "cross": 0.5}
+    for name, factor in of(STILL, 8.0, 1.0, **powers)._asdict().items():
+        grown = deep(0.40 * b) ** powers.get(name, powers["cross"])
+        assert factor == pytest.approx(factors.get(name, 1.0) * grown), name
+    assert set(of(STILL, math.inf, 1.0, **powers)) == {1.0}
 
 
 def test_loading(numbers):
