@@ -3,7 +3,7 @@
 result            what comes out; run: from beginning to end; planning: what it would do
 hypotheses        what may be the cause
 workbench         trials, model with every effect, refits
-noise, inputs     what chance does to residuals
+noise, inputs     what chance does to residuals; beliefs, winds: what is not known of the hull and of causes
 linear, screening signatures beyond re-tuning, scores, critical values
 search            forward search, backward look, rivals; base_fit: where it begins
 refitting, refit  which hypotheses are refitted and how far; whether one is believed, and what rivals it

@@ -49,7 +49,7 @@ def base_fit(bench: Workbench) -> Point:
     starts = np.column_stack([end.unit for end in apart])
     point = bench.refit(names, starts, ends[0].offsets, tolerance=unnoticed(bench, ends[0].J))
     names = bench.tuned_alone
-    point = replace(point, unit=np.concatenate([point.unit, bench.null(list(bench.leeway))]))
+    point = replace(point, unit=np.concatenate([point.unit, bench.null(list(bench.believed.leeway))]))
     for _ in range(AGAIN):  # initial states at the end of their range make a bad start; from there it is a new one
         tolerance = unnoticed(bench, point.chi2, PRECISE)
         again = bench.refit(names, point.unit[:, None], point.offsets, tolerance=tolerance)

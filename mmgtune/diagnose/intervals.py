@@ -60,7 +60,7 @@ def covariance(bench: Workbench, point: Point) -> tuple[tuple[str, ...], FloatAr
     if not inside:
         return (), np.zeros((0, 0))
     R, noise, size = _told(bench, point, tuple(inside))
-    before = np.array([bench.loosely.get(name, np.sqrt(OF_BOX)) for name in inside])
+    before = np.array([bench.believed.deviations.get(name, np.sqrt(OF_BOX)) for name in inside])
     told = R.T @ np.linalg.solve(noise, R) + np.diag((size / before) ** 2)
     return tuple(inside), np.linalg.inv(told) * np.outer(size, size)
 

@@ -157,7 +157,7 @@ def _causes(bench: Workbench, found: Found, sizes: Mapping[str, Estimate], test:
         gain = 1.0 - J_after / J_before if J_before and J_after is not None else None
         p_value = max((s.refits[0].p_value for s in steps), default=0.0)
         estimated = {name: sizes[name] for name in names}
-        form = {name: sizes[name] for name in bench.form_of(own[0].effect) if name in sizes}
+        form = {name: sizes[name] for name in bench.believed.form_of(own[0].effect) if name in sizes}
         effect, variant = own[0].effect, tuple(dict.fromkeys(name for h in own for name in h.variant))
         runs = ByRun.of(effect, variant, by, own[0].groups, bench.trials, estimated) if by else None
         causes.append(Cause(tag, effect, {} if by else estimated | form, p_value, gain, runs))

@@ -245,7 +245,7 @@ def linearise(
     columns = np.column_stack([values[:, 0], slopes, wander(bench, point)])
     left = problem.without_offsets(columns, by_offset, problem.prior, point.offsets)
     inside = np.array([name not in apart and 0.0 < z < 1.0 for name, z in zip(point.names, point.unit, strict=True)])
-    loose = inside & np.array([name in bench.loosely for name in point.names])
+    loose = inside & np.array([name in bench.believed.deviations for name in point.names])
     own = [name for name, is_loose in zip(point.names, loose, strict=True) if is_loose]
     moved_by = left[:, 1 : 1 + n_free][:, loose] / np.array([unit_of(bench, name) for name in own])
     left[:, 0] -= moved_by @ (point.unit[loose] - bench.null(own))  # where nothing with leeway has moved
@@ -253,7 +253,7 @@ def linearise(
         base: np.sum(left[:, [1 + i for i, name in enumerate(names) if base_of(name) == base]], axis=1)
         for base in dict.fromkeys(varying)
     }
-    deviation = np.array([bench.loosely[name] for name in own])
+    deviation = np.array([bench.believed.deviations[name] for name in own])
     tuned = Tuned.by(left[:, 1 : 1 + n_free][:, inside & ~loose], moved_by * deviation)
     left = tuned.out_of(left)
     chosen = (*apart, *wanted)

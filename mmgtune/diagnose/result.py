@@ -13,7 +13,7 @@ from ..fitting.comparison import finite, finite_values
 from ..options import DiagnoseOptions
 from ..profile import ShipProfile, tuned, with_effects
 from ..trial import Coverage
-from . import leeway, winds
+from . import beliefs, winds
 from .by_run import ByRun
 from .contributions import Contribution
 from .gain import MOST, Gain
@@ -449,7 +449,7 @@ class Diagnosis(Plotted):
         ]
         effects = [cause.effect for cause in self.causes if cause.effect is not None]
         held = 0.0 if self.choice is not None else self.options.leeway
-        return [*of_profile, *leeway.in_words(held, effects), *winds.in_words(effects)]
+        return [*of_profile, *beliefs.in_words(held, effects), *winds.in_words(effects)]
 
     def _voyages(self) -> dict[str, Any] | None:
         """What was looked at of voyages, and what differs from one to the next."""

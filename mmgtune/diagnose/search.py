@@ -211,7 +211,7 @@ def look(
 
 def _as_given(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis]) -> Given | None:
     """The point refitted with what has leeway at the profile's values, where that leaves much."""
-    kept = [i for i, name in enumerate(point.names) if name not in bench.leeway]
+    kept = [i for i, name in enumerate(point.names) if name not in bench.believed.leeway]
     if len(kept) == len(point.names):
         return None
     names, start = [point.names[i] for i in kept], point.unit[kept][:, None]

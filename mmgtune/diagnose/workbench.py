@@ -12,7 +12,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..backends import STATES, Integrator, get_backend
 from ..components import split_name
-from ..effects import Effect, Visited
+from ..effects import Visited
 from ..fitting.box import Box, base_of, choose_targets, group_of, make_box
 from ..fitting.least_squares import LeastSquaresResult, solve
 from ..fitting.one_sided import followers, tied
@@ -23,7 +23,7 @@ from ..options import DiagnoseOptions
 from ..profile import ShipProfile, with_all_effects
 from ..trial import Coverage, Held, Trial, visited_by
 from ..trial.kinematics import white_noise
-from .leeway import deviations, forms, let_go
+from .beliefs import Beliefs, forms, let_go
 from .noise import NoiseModel, white
 from .runs import between, labels_of
 
@@ -70,9 +70,8 @@ class Workbench:
     model     with every effect at its null or at the profile's own value
     sigma     (6,) white noise of each channel, from the trials' own columns
     targets   coefficients that may be re-tuned
-    leeway    coefficients beside the targets that may move a little: their standard deviations in the unit cube
-    forms     parameters of the forms of effects likewise, which move wherever their effect does
-    box       of both and of every parameter of every hypothesis
+    believed  of coefficients beside the targets that may move a little, and of the forms of effects
+    box       of all these and of every parameter of every hypothesis
     noise     as known so far
     spreads   of values that groups of runs have of their own, by ``runs.spread_key``, in the unit cube
     held      inputs whose log looks held between updates, None where none does
@@ -90,30 +89,12 @@ class Workbench:
     spreads: dict[str, float] = field(default_factory=dict)
     held: Held | None = None
     updates: list[list[IntArray]] | None = None
-    leeway: Mapping[str, float] = field(default_factory=dict)
-    forms: Mapping[str, float] = field(default_factory=dict)
+    believed: Beliefs = field(default_factory=Beliefs)
 
     @property
     def tuned_alone(self) -> tuple[str, ...]:
         """What is re-tuned without any cause: the targets, and what has leeway."""
-        return (*self.targets, *self.leeway)
-
-    @property
-    def loosely(self) -> Mapping[str, float]:
-        """All of which something is believed before any trial is looked at: standard deviations in the unit cube."""
-        return {**self.leeway, **self.forms}
-
-    def form_of(self, effect: Effect) -> tuple[str, ...]:
-        """Parameters of the form of an effect that move with it."""
-        return tuple(name for name in self.forms if name.startswith(f"{effect.kind}."))
-
-    def _with_forms(self, names: Sequence[str], starts: FloatArray) -> tuple[tuple[str, ...], FloatArray]:
-        """Names and starts (n_names, n_starts) with the forms of all effects among them, in front, and no others."""
-        moving = {split_name(base_of(name))[0] for name in names if name not in self.forms}
-        asked = [name for name in self.forms if split_name(name)[0] in moving and name not in names]
-        kept = [k for k, name in enumerate(names) if name not in self.forms or split_name(name)[0] in moving]
-        begin = np.repeat(self.null(asked)[:, None], starts.shape[1], axis=1)
-        return (*asked, *(names[k] for k in kept)), np.concatenate([begin, starts[kept]])
+        return (*self.targets, *self.believed.leeway)
 
     def beliefs(self, names: Sequence[str], spreads: Mapping[str, float]) -> tuple[FloatArray, FloatArray] | None:
         """What is believed of what is free before any trial is looked at; None for nothing.
@@ -121,9 +102,9 @@ class Workbench:
         -> (k, n_names) matrix A and (n_names,) centre: |A (unit - centre)|^2 is part of chi-squared
         """
         rows = [] if (apart := between(names, spreads)) is None else [apart]
-        loose = [k for k, name in enumerate(names) if name in self.loosely]
+        loose, own = self.believed.rows(names)
         if loose:
-            rows.append(np.eye(len(names))[loose] / np.array([self.loosely[names[k]] for k in loose])[:, None])
+            rows.append(own)
         if not rows:
             return None
         centre = np.zeros(len(names))
@@ -190,7 +171,9 @@ class Workbench:
 
         spreads  of values that groups of runs have of their own, those of the workbench where None
         """
-        names, starts = self._with_forms(names, starts)
+        forms, kept = self.believed.moving_with(names)
+        names = (*forms, *(names[k] for k in kept))
+        starts = np.concatenate([np.repeat(self.null(forms)[:, None], starts.shape[1], axis=1), starts[kept]])
         problem = self.problem_of(names, integrator).with_offsets(offsets)
         whiten = self.noise.apply if self.noise_known else None
         spreads = self.spreads if spreads is None else spreads
@@ -319,6 +302,5 @@ def make_workbench(
         problem,
         white(cases),
         held=held,
-        leeway=deviations(box, loose, options.leeway),
-        forms={name: sd / float(box.part([name]).width[0]) for name, sd in shapes.items()},
+        believed=Beliefs.of(box, loose, options.leeway, shapes),
     )

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmgtune.diagnose import DiagnoseOptions, leeway, winds
+from mmgtune.diagnose import DiagnoseOptions, beliefs, winds
 from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.inputs import DRAWS, changes
 from mmgtune.diagnose.leftover import leftover
@@ -58,7 +58,7 @@ def test_the_wind_is_found_though_its_force_is_off_the_formulas(sailed):
     assert found["effects.wind.speed"] ** 2 * found["effects.wind.across"] == pytest.approx(64.0 * 1.3, rel=0.15)
     assert found["effects.wind.turning"] == pytest.approx(2.2, abs=0.4)
     held, stiff, _ = wind_on(*sailed, leeway=0.0)
-    assert not held.forms
+    assert not held.believed.forms
     assert stiff.chi2 - point.chi2 > 1000.0
 
 
@@ -67,7 +67,7 @@ def test_a_form_goes_with_its_effect(sailed):
     kept = [k for k, name in enumerate(point.names) if name not in WIND]
     names = [point.names[k] for k in kept]
     without = bench.refit(names, point.unit[kept][:, None], point.offsets, max_iterations=2)
-    assert not set(without.names) & set(bench.forms)
+    assert not set(without.names) & set(bench.believed.forms)
 
 
 def test_a_problem_made_linear_knows_what_is_believed_of_forms(sailed):
@@ -132,10 +132,10 @@ def test_gusts_are_no_unknown_cause(sailed):
 
 def test_what_is_believed_beforehand_is_told():
     wind, lag = find_effect("wind"), find_effect("steering-lag")
-    told = {one["name"]: one["value"] for one in (*leeway.in_words(0.05, [wind, lag]), *winds.in_words([wind, lag]))}
+    told = {one["name"]: one["value"] for one in (*beliefs.in_words(0.05, [wind, lag]), *winds.in_words([wind, lag]))}
     assert told["hull.*, particulars.m_x_, particulars.m_y_, particulars.k_zz_"].endswith("5 %")
     assert told["effects.wind.turning"] == "1 with a standard deviation of 0.5"
     assert told["effects.wind.arm"] == "0 with a standard deviation of 0.05"
     assert "12 %" in told["gusts"]
     assert len(told) == 1 + len(wind.form) + 1
-    assert leeway.in_words(0.0, [wind]) == winds.in_words([lag]) == []
+    assert beliefs.in_words(0.0, [wind]) == winds.in_words([lag]) == []

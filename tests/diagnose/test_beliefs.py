@@ -6,8 +6,8 @@ import pytest
 from mmgtune.backends import Integrator
 from mmgtune.diagnose import DiagnoseOptions
 from mmgtune.diagnose.base_fit import base_fit
+from mmgtune.diagnose.beliefs import let_go
 from mmgtune.diagnose.detecting import told_apart
-from mmgtune.diagnose.leeway import let_go
 from mmgtune.diagnose.linear import Tuned, linearise
 from mmgtune.diagnose.workbench import make_workbench
 from mmgtune.model import Model
@@ -41,7 +41,7 @@ def test_a_hull_a_little_off_is_no_error_beyond_noise(sailed):
         left[leeway] = point.chi2 / bench.problem.n_residuals
     assert left[0.0] > 1.05
     assert left[0.05] < 1.04  # what is believed of coefficients counted in
-    moved = np.array([bench.values(point)[name] / profile.value(name) - 1.0 for name in bench.leeway])
+    moved = np.array([bench.values(point)[name] / profile.value(name) - 1.0 for name in bench.believed.leeway])
     assert 0.005 < np.sqrt(np.mean(moved**2)) < 0.1
 
 
