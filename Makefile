@@ -15,7 +15,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help install demo test quick long lint types arch check regression docs bench fuzz signs hidden trials browser constraints clean
+.PHONY: help install demo test quick long times lint types arch check regression docs bench fuzz signs hidden trials browser constraints clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-11s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -33,6 +33,9 @@ test: $(DEV) ## run the tests, on all cores (those of the page need chromium: ma
 
 quick: $(DEV) ## the tests of the edit loop: none that is slow or opens a page
 	$(PYTEST) -q -m 'not slow and not browser and not long'
+
+times: $(DEV) ## all tests, and how long they take into tests/times.json: twice after a change of the physics, which compiles
+	$(PYTEST) --write-times
 
 long: $(DEV) ## the tests left out of test: more of the same, on other ships, causes, seeds or pages
 	$(PYTEST) -m long

@@ -22,29 +22,43 @@ from mmgtune.backends.twins import FUSE
 from mmgtune.model import Model
 from mmgtune.profile import load_profile
 from mmgtune.resources import profile_names
+from tests import times
 
 os.environ.setdefault("XLA_FLAGS", f"--{FUSE}")  # as the program has it, for tests that import JAX themselves
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--write-times", action="store_true", help="write tests/times.json; of a run of all tests")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    if config.getoption("--write-times") and not hasattr(config, "workerinput"):
+        config.pluginmanager.register(times.Writer())
 
 
 @pytest.hookimpl(tryfirst=True)  # before the plugin of the workers reads the groups
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Tests that share what took long stay together, in one worker; what takes longest comes first, so that no worker
-    is left with it at the end.
+    is left with it at the end.  What takes long, or begins with what does, is marked slow.
 
-    Tests with a fixture of their module stay together, and those that a marker ``xdist_group(name)`` says; a marker
-    ``slow(seconds)`` of a module or of a test says how long it takes.
+    Tests with a fixture of their module stay together, and those that a marker ``xdist_group(name)`` says.
     """
+    taken = times.read()
     together: dict[str, list[pytest.Item]] = {}
     for item in items:
         if item.get_closest_marker("browser"):  # once more where chromium was stuck and had to be ended
             item.add_marker(pytest.mark.flaky(reruns=1, only_rerun=["TargetClosedError"]))
-        if not item.get_closest_marker("xdist_group") and _has_one_of_its_module(item):
-            item.add_marker(pytest.mark.xdist_group(item.nodeid.partition("::")[0]))
+        of_module, file = _has_one_of_its_module(item), times.file_of(item.nodeid)
+        if of_module and not item.get_closest_marker("xdist_group"):
+            item.add_marker(pytest.mark.xdist_group(file))
+        if max(taken.get(item.nodeid, 0.0), taken.get(file, 0.0) if of_module else 0.0) >= times.SLOW:
+            item.add_marker("slow")
         group = item.get_closest_marker("xdist_group")
         together.setdefault(group.args[0] if group else item.nodeid, []).append(item)
 
     def seconds(tests: list[pytest.Item]) -> float:
-        return sum(float(mark.args[0]) for item in tests if (mark := item.get_closest_marker("slow")))
+        names = {name for item in tests for name in (item.nodeid, times.file_of(item.nodeid))}
+        return sum(taken.get(name, 0.0) for name in names)
 
     items[:] = [item for tests in sorted(together.values(), key=seconds, reverse=True) for item in tests]
 

@@ -50,7 +50,6 @@ def test_back_ends_agree_with_every_input_moving(ship):
     assert np.abs(compiled[0, -1] - compiled[0, 0]).max() > 1.0
 
 
-@pytest.mark.slow(6)
 def test_effects_on_rudders_move_both_and_those_without_a_part_do_not_apply(ship):
     from mmgtune.effects import find_effect
     from mmgtune.profile import missing_for

@@ -8,7 +8,7 @@ from mmgtune import ValidateOptions, compare, load_profile, load_trials, validat
 from mmgtune.profile import tuned
 from mmgtune.report import render
 
-pytestmark = [pytest.mark.xdist_group("compared"), pytest.mark.slow(6)]
+pytestmark = pytest.mark.xdist_group("compared")
 
 known = functools.cache(compare)
 """Of bundled names, once for all tests."""

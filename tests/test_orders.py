@@ -42,7 +42,6 @@ def _on_compiled(model, theta, watches):
     order_by_order(model, theta, watches, get_backend("compiled"))
 
 
-@pytest.mark.slow(20)
 @pytest.mark.parametrize("way", [step_by_step, _on_compiled])
 @pytest.mark.parametrize("effects", [{}, TOGETHER], ids=["plain", "every effect"])
 def test_lanes_side_by_side_are_those_alone(effects, way):
@@ -84,7 +83,6 @@ HELMSMEN = (
 )
 
 
-@pytest.mark.slow(20)
 @pytest.mark.parametrize("effects", [{}, TOGETHER], ids=["plain", "every effect"])
 def test_order_by_order_is_step_by_step(effects):
     """On the compiled simulator the inputs and motions are those of stepping, whatever steps and lengths they have."""

@@ -118,7 +118,6 @@ def test_what_is_no_parquet_says_so(tmp_path, bytes_):
     assert "Traceback" not in found.err
 
 
-@pytest.mark.slow(20)
 def test_a_fit_leaves_them_beside_its_profile(tmp_path):
     write_trial(load_trials("suzaku").trials["turn_p35"], tmp_path / "one.parquet")
     few = ("--method", "least-squares", "--starts", "1", "--no-report", "--out", "fitted")
@@ -139,7 +138,6 @@ def test_a_fit_leaves_them_beside_its_profile(tmp_path):
     assert foretold.indices()["runs"] == bands["predicted"]["runs"]
 
 
-@pytest.mark.slow(15)
 def test_the_command_writes_them_and_others_take_them(tmp_path):
     write_trial(load_trials("suzaku").trials["turn_p35"], tmp_path / "one.parquet")
     ended = run("posterior", "-t", "one.parquet", "--particles", "20", "--out", "bands", "--json", cwd=tmp_path)
@@ -170,7 +168,6 @@ def test_the_command_writes_them_and_others_take_them(tmp_path):
     assert "bands" not in alone["runs"][0]
 
 
-@pytest.mark.slow(5)
 def test_validate_scores_their_bands_as_compare_does(particles, tmp_path):
     save_particles(particles, tmp_path / "particles.parquet")
     arguments = "particles.parquet", "suzaku", "suzaku", "--restart", "200"

@@ -64,7 +64,6 @@ def sailed(suzaku):
     return TrialSet(trials, tuple(trials), (), "suzaku")
 
 
-@pytest.mark.slow(5)
 def test_validation_and_its_document(suzaku, sailed):
     found = validate({"physics": suzaku, "simple": Nomoto()}, sailed, ValidateOptions(manoeuvres=True))
     document = json.loads(json.dumps(found.to_dict(), allow_nan=False))
@@ -128,7 +127,6 @@ def test_the_front_of_the_package_simulates_it_and_writes_every_member(sailed, t
         mmgtune.simulate(Nomoto())
 
 
-@pytest.mark.slow(8)
 def test_two_of_one_name_are_both_scored(suzaku, sailed):
     """A ship and what was tuned of it share their id."""
     other = with_effects(suzaku.profile, {"current": {"north": 0.3}}, "test")

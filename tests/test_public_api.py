@@ -3,8 +3,6 @@
 import re
 from dataclasses import replace
 
-import pytest
-
 import mmgtune
 
 
@@ -15,7 +13,6 @@ def test_everything_listed_can_be_had_twice():
         assert callable(first)
 
 
-@pytest.mark.slow(8)
 def test_from_profile_to_verdict(tmp_path):
     profile = mmgtune.load_profile("suzaku")
     trials = mmgtune.load_trials("suzaku")

@@ -14,7 +14,7 @@ from mmgtune.trial import write_trial
 from mmgtune.trial.schema import ATTRIBUTES
 from tests.command import run
 
-pytestmark = [pytest.mark.xdist_group("repeating"), pytest.mark.slow(5)]
+pytestmark = pytest.mark.xdist_group("repeating")
 
 RAD = math.radians(1.0)
 

@@ -119,7 +119,7 @@ def with_memory(profile):
 
 
 @pytest.mark.parametrize("backend", ["compiled", "numpy"])
-@pytest.mark.parametrize("kind", ["gear", "at once", pytest.param("memory", marks=pytest.mark.slow(17)), "astern"])
+@pytest.mark.parametrize("kind", ["gear", "at once", "memory", "astern"])
 def test_lanes_are_those_stepped_with_their_helmsmen(kvlcc2, esso_osaka, kind, backend):
     rudder, check, known = [TURN, -TEN, TWENTY, -TEN], [np.inf, TEN, TWENTY, 5.0 * DEG], {"until": 100.0 * DEG}
     model = kvlcc2
@@ -170,7 +170,6 @@ def test_indices_of_lanes_are_those_of_their_records(kvlcc2):
             assert zigzags[f"overshoot_{k}"][lane] == pytest.approx(angle, abs=0.005 * DEG)
 
 
-@pytest.mark.slow(3)
 def test_they_are_those_of_fine_single_runs(kvlcc2):
     steered, record = march(kvlcc2, [TURN, TWENTY], [np.inf, TWENTY], until=185.0 * DEG)
     turns, zigzags = turning(record), zigzag(record, np.array([np.inf, TWENTY]))

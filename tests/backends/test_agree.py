@@ -137,7 +137,6 @@ def test_residuals_are_the_roots_of_the_cost(suzaku, backend):
             np.testing.assert_allclose(result.residuals[row], expected, atol=1e-12)
 
 
-@pytest.mark.slow(5)
 @pytest.mark.parametrize("n_candidates", [1, 3, 11])
 def test_lanes_over_cases_and_candidates_are_bit_equal_to_single_runs(esso_osaka, n_candidates):
     """Few candidates on cases of many lengths share blocks: nothing of one lane may show in another."""
@@ -184,7 +183,6 @@ def test_lanes_over_cases_and_candidates_are_bit_equal_to_single_runs(esso_osaka
             assert np.array_equal(alone.residuals[:, 0], together.residuals[own, candidate])
 
 
-@pytest.mark.slow(12)
 @pytest.mark.parametrize("backend", ["compiled", "numpy", "jax"])
 def test_a_candidate_for_each_case_is_the_same_as_every_case_with_every_candidate(suzaku, backend):
     """Cases of many lengths and steps, with a lag that remembers and a clock that is late."""
@@ -228,7 +226,7 @@ def test_a_candidate_for_each_case_is_the_same_as_every_case_with_every_candidat
     ("backend", "n_candidates"),
     [
         ("compiled", 1), ("compiled", 9), ("numpy", 1), ("numpy", 9),
-        pytest.param("jax", 9, marks=pytest.mark.slow(5)),
+        pytest.param("jax", 9),
     ],
 )  # fmt: skip
 def test_candidates_that_differ_from_case_to_case_are_those_of_each_case_alone(suzaku, backend, n_candidates):

@@ -22,8 +22,6 @@ from tests.runs import driven, measured, turn
 
 jax = pytest.importorskip("jax")
 
-pytestmark = pytest.mark.slow(2)  # each compiles something
-
 
 EULER, RK4 = Integrator("euler"), Integrator("rk4")
 
@@ -46,7 +44,6 @@ def agree(model, cases, integrator=RK4, theta=None, initial=None):
     return found
 
 
-@pytest.mark.slow(6)
 def test_every_profile_moves_as_on_numpy(any_model):
     integrator = Integrator("rk4", 2)  # euler is that of the tests below
     name = f"{any_model.parts[-1].kind}.{any_model.parts[-1].params._fields[0]}"
@@ -54,7 +51,6 @@ def test_every_profile_moves_as_on_numpy(any_model):
     agree(any_model, zigzag_like(any_model, 150), integrator, theta)
 
 
-@pytest.mark.slow(6)
 def test_ahead_and_astern(esso_osaka):
     found = agree(esso_osaka, backing(esso_osaka, 250), EULER, esso_osaka.matrix(["hull.C_D"], [[0.8, 1.0, 1.2]]))
     assert found.states[0, :, :, 3].min() < -0.02
@@ -78,7 +74,6 @@ def of_many_lengths(model, rng):
     )
 
 
-@pytest.mark.slow(8)
 @pytest.mark.parametrize("integrator", [EULER, Integrator("rk4", 2)])
 def test_gaps_and_cases_of_different_length(suzaku, integrator):
     rng = np.random.default_rng(1)
@@ -87,7 +82,6 @@ def test_gaps_and_cases_of_different_length(suzaku, integrator):
     agree(suzaku, cases, integrator, suzaku.matrix(["hull.R_0"], [[0.01, 0.017, 0.03]]), initial)
 
 
-@pytest.mark.slow(20)
 @pytest.mark.parametrize(("integrator", "strong"), [(EULER, False), (Integrator("rk4", 2), True)])
 def test_every_effect_at_once_and_at_null(integrator, strong):
     ship = load_profile("suzaku")
@@ -180,7 +174,6 @@ def close(names, derivatives, expected, rounding):
     assert not bad.any(), [(names[k], off[k], size[k], rounding[k]) for k in np.flatnonzero(bad)]
 
 
-@pytest.mark.slow(8)
 def test_rates_have_derivatives_wherever_a_ship_can_be(any_model):
     """By all coefficients, state and inputs: finite, and off the special places those of central differences."""
     rates = rates_of(any_model)
@@ -241,7 +234,6 @@ def with_effects_of(strong, places=PLACES):
     return Model(with_effects(load_profile("suzaku"), chosen, "test"))
 
 
-@pytest.mark.slow(20)
 def test_rates_have_derivatives_with_every_effect():
     """Backwards, from everywhere a ship can be, at the nulls and off them, with all measured and with nothing."""
     null, strong = (with_effects_of(off, ("flow", "coefficients", "factors", "force")) for off in (False, True))
@@ -259,7 +251,6 @@ def test_rates_have_derivatives_with_every_effect():
             assert finite(by_lane(values, *special(null), around))
 
 
-@pytest.mark.slow(10)
 def test_runs_have_derivatives_backwards_where_a_limit_is_infinite():
     """A rudder without a limit of its rate, behind a clock, remembered by the hull."""
     model = with_effects_of(False, ("clock", "actuator", "lag"))
@@ -274,7 +265,6 @@ def test_runs_have_derivatives_backwards_where_a_limit_is_infinite():
     assert finite(by_lane(model.base, states, controls, weights))
 
 
-@pytest.mark.slow(40)
 def test_runs_have_derivatives_with_every_effect():
     """Forwards, by all that all effects have, on the way from parameters to what sensors show: finite from everywhere
     a ship can be, and off the special places those of central differences.

@@ -48,7 +48,6 @@ def cache(made, tmp_path):
     return Path(shutil.copytree(made, tmp_path / "cache"))
 
 
-@pytest.mark.slow(8)
 def test_what_is_broken_is_made_anew(cache):
     def cut(pattern, keep):
         (path,) = (cache / "kernels").rglob(pattern)
@@ -63,7 +62,6 @@ def test_what_is_broken_is_made_anew(cache):
     assert not compiles(cache)
 
 
-@pytest.mark.slow(4)
 def test_an_index_that_was_planted_is_not_read(cache, tmp_path):
     """It is a pickle, which runs what it says."""
 
@@ -78,7 +76,6 @@ def test_an_index_that_was_planted_is_not_read(cache, tmp_path):
     assert not (tmp_path / "planted").exists()
 
 
-@pytest.mark.slow(4)
 def test_byte_code_that_was_planted_is_not_run(cache, tmp_path):
     import importlib.util
     import marshal
@@ -94,7 +91,6 @@ def test_byte_code_that_was_planted_is_not_run(cache, tmp_path):
     assert not (tmp_path / "planted").exists()
 
 
-@pytest.mark.slow(2)
 def test_kernels_stay_in_their_folder(tmp_path):
     """Wherever functions of others are kept: what lies there is not looked at here."""
     compiles(tmp_path / "own", NUMBA_CACHE_DIR=str(tmp_path / "numba"))

@@ -72,7 +72,6 @@ def test_a_regression_is_named_with_what_it_is_owed_to(worse):
     assert "hull.N_r" in str(first)
 
 
-@pytest.mark.slow(5)
 def test_an_effect_that_has_faded_away_goes_into_a_baseline(ship, data, tmp_path):
     """Some effects are none at infinity, a number that JSON does not have."""
     faded = with_effects(ship, {"rudder-stall": {}}, "test")

@@ -9,8 +9,6 @@ import pytest
 from tests.checking.test_renderers import check_junit
 from tests.command import run
 
-pytestmark = pytest.mark.slow(1)
-
 
 @pytest.fixture
 def ready(folder):

@@ -8,8 +8,6 @@ import pytest
 
 from mmgtune.checking import write_baseline
 
-pytestmark = pytest.mark.slow(1)
-
 CHECK = '[[check]]\nprofile = "ship.toml"\ntrials = "trials"\nbaseline = "check.json"\n'
 
 

@@ -16,8 +16,6 @@ from mmgtune.resources import folder
 from mmgtune.trial import read_trial, write_trial
 from tests.command import QUICK, run
 
-pytestmark = pytest.mark.slow(1)
-
 SUZAKU = folder("trials") / "suzaku"
 
 

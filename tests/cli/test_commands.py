@@ -10,8 +10,6 @@ import pytest
 from mmgtune.trial import load_trials, read_trial, write_trial
 from tests.command import run
 
-pytestmark = pytest.mark.slow(1)
-
 COMMANDS = [
     ("fit",), ("sweep",), ("leave-out",), ("validate",), ("learn", "compare"), ("check",), ("cite",), ("doctor",),
     ("simulate",), ("report",), ("trials", "import"),

@@ -10,8 +10,6 @@ from mmgtune.profile import load_profile
 from mmgtune.resources import profile_names
 from tests.command import run
 
-pytestmark = pytest.mark.slow(1)
-
 
 def test_a_good_installation(tmp_path):
     ended = run("doctor", "--json", cwd=tmp_path)

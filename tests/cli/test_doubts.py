@@ -52,7 +52,6 @@ def page(folder):
     return (folder / "report.html").read_text(encoding="utf-8"), (folder / "report.md").read_text(encoding="utf-8")
 
 
-@pytest.mark.slow(15)
 @pytest.mark.parametrize(
     ("command", "record"), [("fit", "fit.json"), ("sweep", "sweep.json"), ("leave-out", "leave_out.json")]
 )
@@ -70,7 +69,6 @@ def test_what_tunes(folder, command, record):
             assert "such a ship was never seen" in text
 
 
-@pytest.mark.slow(15)
 def test_diagnose(folder):
     arguments = ("diagnose", "-p", "ship.toml", "-t", "trials", "--effects", "current", "--quiet")
     assert said(run(*arguments, "--out", "of_diagnose", cwd=folder)) == 1
@@ -98,7 +96,6 @@ def test_validate_on_voyages(folder):
         assert "such a ship was never seen" in text
 
 
-@pytest.mark.slow(6)
 def test_compare_and_simulate(folder):
     ended = run("profile", "compare", "suzaku", "ship.toml", "--out", "compared", cwd=folder)
     assert said(ended) == 1

@@ -28,10 +28,10 @@ def test_settings_that_numba_cannot_work_with(name, value, tmp_path):
 @pytest.mark.parametrize("value", ["abc", "0", "-1", "1.5", "²", "9" * 30])
 def test_cores_that_are_no_number(value, tmp_path):
     few = ("--method", "least-squares", "--starts", "1", "--targets", "hull.R_0", "--no-report", "--quiet")
-    fitted = run("fit", *few, cwd=tmp_path, env={"MMGTUNE_THREADS": value}, fresh=True)
+    fitted = run("fit", *few, cwd=tmp_path, env={"MMGTUNE_THREADS": value})
     assert (fitted.code, "MMGTUNE_THREADS is" in fitted.err) == (2, True), fitted.err
     assert "unset it" in fitted.err
-    doctor = run("doctor", cwd=tmp_path, env={"MMGTUNE_THREADS": value}, fresh=True)
+    doctor = run("doctor", cwd=tmp_path, env={"MMGTUNE_THREADS": value})
     assert "MMGTUNE_THREADS is" in doctor.out
 
 

@@ -11,7 +11,7 @@ from mmgtune.profile import load_profile
 from mmgtune.trial import load_trials
 from tests.command import QUICK, run, run_until
 
-pytestmark = [pytest.mark.xdist_group("cli_fit"), pytest.mark.slow(15)]
+pytestmark = pytest.mark.xdist_group("cli_fit")
 
 PROMISED = {
     "J_tune", "J_test", "J_tune_before", "J_test_before", "theta", "stderr", "at_bound", "undetermined", "evaluations",

@@ -39,7 +39,7 @@ def test_a_folder_belongs_to_one_run(tmp_path):
     assert list((tmp_path / "run").iterdir()) == []
 
 
-@pytest.mark.parametrize("command", ["fit", "sweep", "leave-out", pytest.param("diagnose", marks=pytest.mark.slow(6))])
+@pytest.mark.parametrize("command", ["fit", "sweep", "leave-out", "diagnose"])
 def test_every_long_command_claims_its_folder(tmp_path, command):
     (tmp_path / "run").mkdir()
     handle = os.open(tmp_path / "run", os.O_RDONLY)

@@ -6,8 +6,6 @@ import sys
 
 import pytest
 
-pytestmark = pytest.mark.slow(2)
-
 WATCHED = """
 import os, signal, sys
 

@@ -15,7 +15,6 @@ from tests.command import start
 NAMES = ("t.parquet", "log.csv", "map.toml", "net.safetensors", "orders.csv", "base.json", "fleet.toml")
 
 
-@pytest.mark.slow(20)
 @pytest.mark.parametrize(
     "line",
     [

@@ -91,7 +91,6 @@ def test_an_output_that_exists_is_found_before_the_work(tmp_path, monkeypatch):
         assert "exists already" in ended.err
 
 
-@pytest.mark.slow(8)
 def test_two_profiles_compared(tmp_path):
     ended = run("profile", "compare", "suzaku", "suzaku_fam", "--out", "both", cwd=tmp_path)
     assert ended.code == 0, ended.err

@@ -6,8 +6,6 @@ import typer
 from mmgtune.cli import app
 from tests.command import typed
 
-pytestmark = pytest.mark.slow(1)
-
 
 @pytest.mark.parametrize(
     ("arguments", "words"),

@@ -56,7 +56,6 @@ def test_json_has_it_as_a_field(folder):
     assert {SAID, HIGH} <= set(simulated.json()["notes"])
 
 
-@pytest.mark.slow(20)
 def test_fit_has_it_among_its_warnings(folder):
     ended = run(
         *("fit", "-p", "ship.toml", "-t", "trials", "--targets", "hull.R_0", "--method", "least-squares"),
@@ -89,7 +88,6 @@ def voyages(folder):
     return folder / "voyages"
 
 
-@pytest.mark.slow(6)
 def test_validate_on_voyages_says_it_once_for_each_model(folder, voyages):
     arguments = ("validate", "ship.toml", "suzaku", voyages, "--backend", "numpy", "--restart", "300", "--out", "on")
     ended = run(*arguments, cwd=folder)

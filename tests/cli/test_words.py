@@ -26,7 +26,6 @@ def completed(typed, cwd):
     return done.stdout.split()
 
 
-@pytest.mark.slow(5)
 def test_the_shell_completes_words_names_and_files(tmp_path):
     (tmp_path / "my_ship.toml").write_text("")
     (tmp_path / "my_notes.txt").write_text("")
@@ -48,7 +47,6 @@ def test_help_shows_the_choices(tmp_path):
     assert all(tag in diagnose for tag in effect_tags())
 
 
-@pytest.mark.slow(8)
 def test_tables_fit_sixty_columns(tmp_path):
     env = {"COLUMNS": "60"}
     quick = ("--method", "least-squares", "--starts", "1", "--quiet", "--no-report", "--out")
@@ -78,7 +76,6 @@ def test_a_table_cuts_words_and_leaves_out_what_is_spare():
     assert columns.table(("name", "x"), [("a_name_that_is_rather_long", "1.5")], width=20)[1] == "a_name_…er_long  1.5"
 
 
-@pytest.mark.slow(3)
 def test_a_profile_is_copied_to_be_changed(tmp_path):
     from mmgtune.profile import load_profile
 
@@ -98,7 +95,6 @@ def test_what_is_no_profile_lists_trained_models_too(tmp_path):
     assert "esso_osaka_3m_hybrid" in run("validate", "nope", "suzaku", cwd=tmp_path).err
 
 
-@pytest.mark.slow(3)
 def test_a_dry_run_that_nobody_reads_is_no_failure(tmp_path):
     line = f"{sys.executable} -m mmgtune fit --method least-squares --dry-run"
     done = subprocess.run(

@@ -17,7 +17,7 @@ from mmgtune.trial import load_trials
 from tests.hidden.cases import Case, of_one_run, of_runs, tide
 from tests.hidden.plant import TUNING, simulate, write
 
-pytestmark = [pytest.mark.xdist_group("by run"), pytest.mark.slow(25)]
+pytestmark = pytest.mark.xdist_group("by run")
 
 FEW = ("hull.R_0", "wake.w_P0", "rudder.eps", "rudder.gamma_Rp", "rudder.gamma_Rn")
 """Targets: the ship is the profile's own but for what is hidden, and a test has to end."""

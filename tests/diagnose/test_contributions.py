@@ -78,7 +78,6 @@ def test_slow_noise_of_sensors_is_nothing_unknown(certainty, left):
     assert found.unknown == pytest.approx(left)
 
 
-@pytest.mark.slow(4)
 def test_what_uncertain_coefficients_bring_is_expected_of_held_out_trials(suzaku):
     """Ships that differ in their targets, tuned on two runs and looked at on the others."""
     profile, trials = suzaku.profile, load_trials("suzaku")
@@ -181,7 +180,6 @@ def test_the_bundled_trials_visit_what_every_effect_is_about():
             assert effect.unvisited(found, seen) == "", effect.tag
 
 
-@pytest.mark.slow(15)
 def test_ten_degree_zigzags_name_no_stall(tmp_path, monkeypatch):
     """Hidden is a force that grows no more beyond 6 deg: a stall fits that perfectly, and no rudder stalls there."""
     monkeypatch.setattr(plant, "TRIALS", tuple((f"zigzag_{k}", 10.0, 500.0) for k in range(3)))

@@ -28,8 +28,6 @@ from tests.hidden.plant import AUTOCORRELATED, simulate, write
 from tests.hidden.study import covered, outcome
 from tests.hidden.suzaku import PROFILE
 
-pytestmark = pytest.mark.slow(15)
-
 ROOT = Path(__file__).parent.parent.parent
 
 
@@ -180,7 +178,6 @@ def test_a_resistance_beyond_the_box_of_its_target_is_a_cause(tmp_path):
     assert extended.value("effects.resistance.factor") == pytest.approx(2.2, rel=0.02)
 
 
-@pytest.mark.slow(25)
 def test_a_cause_that_would_be_believed_alone_is_named_though_a_hull_unlike_the_profile_s_adds_terms(tmp_path):
     case = single("rudder-offset", 3, seed=1)
     rng = np.random.default_rng(1)

@@ -8,8 +8,6 @@ from mmgtune.trial import load_trials
 from tests.hidden.cases import null
 from tests.hidden.plant import simulate, write
 
-pytestmark = pytest.mark.slow(15)
-
 LATE = ("clock-offset", "dead-time", "steering-lag")
 
 

@@ -17,7 +17,6 @@ from mmgtune.trial import load_trials
 from tests.diagnose.sensors import logged
 
 
-@pytest.mark.slow(5)
 @pytest.mark.parametrize(("times", "said"), [(1.8, True), (1.3, False)], ids=["beyond the box", "inside"])
 def test_a_resistance_beyond_the_box_is_said(suzaku, times, said):
     profile = suzaku.profile

@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
 from mmgtune.diagnose import DiagnoseOptions, diagnose
 from mmgtune.diagnose.separate import holds, menu
@@ -12,8 +11,6 @@ from mmgtune.profile import load_profile
 from mmgtune.trial import load_trials
 from tests.hidden.cases import Case, null
 from tests.hidden.plant import WHITE, simulate, write
-
-pytestmark = pytest.mark.slow(15)
 
 
 def said_of(effects, folder, *asked):

@@ -16,8 +16,6 @@ from mmgtune.trial import load_voyages
 from tests.command import run
 from tests.hidden.service import serve
 
-pytestmark = pytest.mark.slow(45)
-
 FEW = ("hull.R_0", "wake.w_P0", "rudder.eps", "rudder.gamma_Rp", "rudder.gamma_Rn")
 """Targets: the ship is the profile's own but for what is hidden, and a test has to end."""
 

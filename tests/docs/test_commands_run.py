@@ -100,17 +100,9 @@ def shorter(words):
     return SHORTER.get(words[0], ()) + SHORTER.get(" ".join(words[:2]), ())
 
 
-SECONDS = {"README.md": 40, "learn.md": 30}
-"""About, of pages that take much longer than the others."""
-
-
 @pytest.mark.parametrize(
     "page",
-    [
-        pytest.param(page, id=page.name, marks=pytest.mark.slow(SECONDS.get(page.name, 12)))
-        for page in PAGES
-        if commands(page)
-    ],
+    [pytest.param(page, id=page.name) for page in PAGES if commands(page)],
 )
 def test_commands_of_a_page_run(page, desk):
     lines = commands(page)

@@ -32,21 +32,18 @@ def code(page, language):
     ]
 
 
-@pytest.mark.slow(5)
 def test_the_example_of_the_readme_runs(capsys):
     (example,) = code(ROOT / "README.md", "python")
     exec(compile(example, "README.md", "exec"), {})
     assert "4 of 4 of these trials improve" in capsys.readouterr().out
 
 
-@pytest.mark.slow(10)
 def test_the_examples_of_the_library_page_run(capsys):
     for example in code(ROOT / "docs" / "reference" / "api" / "index.md", "python"):
         exec(compile(example, "index.md", "exec"), {})
     assert "4 of 4 of these trials improve" in capsys.readouterr().out
 
 
-@pytest.mark.slow(5)
 def test_every_command_shown_is_understood(monkeypatch):
     """Commands are run with --help behind them: options and arguments must exist, nothing is worked on."""
     import typer.core
@@ -105,7 +102,6 @@ def test_every_key_of_the_result_is_documented():
     assert missing == []
 
 
-@pytest.mark.slow(2)
 def test_numbers_of_the_readme_are_those_of_the_program():
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     guide = (ROOT / "docs" / "guides" / "calibrate.md").read_text(encoding="utf-8")

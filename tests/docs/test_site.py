@@ -19,7 +19,7 @@ import pytest
 from tests.browser import chromium
 from tests.command import run
 
-pytestmark = [pytest.mark.xdist_group("site"), pytest.mark.slow(30)]
+pytestmark = pytest.mark.xdist_group("site")
 
 ROOT = Path(__file__).parents[2]
 OVERFLOW = "document.documentElement.scrollWidth - document.documentElement.clientWidth"

@@ -9,11 +9,8 @@ import sys
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 from tools import generate_tutorial_logs
-
-pytestmark = pytest.mark.slow(60)
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "tutorial" / "index.md"

@@ -102,7 +102,6 @@ def test_null_is_the_base_run_bit_for_bit_on_numpy(ship, base, tag):
     assert np.array_equal(without, null)
 
 
-@pytest.mark.slow(6)
 @pytest.mark.parametrize("integrator", [Integrator("euler"), Integrator("rk4"), Integrator("rk4", 3)])
 def test_null_is_the_base_run_bit_for_bit_compiled(ship, integrator):
     cases = blown(Model(ship))
@@ -137,7 +136,6 @@ def test_among_all_effects_a_run_is_that_of_its_own_kernel_bit_for_bit(ship, mon
     assert taken[-2:] == [whole.model, model]  # once there is work enough, it gets its own
 
 
-@pytest.mark.slow(6)
 @pytest.mark.parametrize("backend", ["numpy", "compiled"])
 def test_null_beside_lanes_with_every_effect_is_the_base_run_bit_for_bit(ship, backend):
     """Simulators pass by what no lane has; where one has it, the equations themselves must leave the others alone."""
@@ -163,7 +161,6 @@ def test_each_changes_the_run_and_can_be_written_and_read(ship, base, tag):
     assert np.abs(changed - without).max() > 3e-4
 
 
-@pytest.mark.slow(8)
 @pytest.mark.parametrize("integrator", [Integrator("euler"), Integrator("rk4", 2)])  # every stage, every substep
 @pytest.mark.parametrize("strong", [TOGETHER, {"discrepancy": STRONG["discrepancy"]}], ids=["causes", "no cause"])
 def test_back_ends_agree_with_every_effect_at_once(ship, integrator, strong):
@@ -245,7 +242,6 @@ def test_the_first_sample_is_what_the_sensors_showed(ship):
         assert np.allclose(states(model, cases, backend=backend)[0, 0, 1], cases.initial[0], atol=4.0)
 
 
-@pytest.mark.slow(3)
 def test_measured_wind_counts_where_there_is_some(ship):
     steady = Model(with_effects(ship, {"wind": {"speed": 9.0, "direction": 0.7}}, "test"))
     by_log = Model(with_effects(ship, {"wind": {"measured": 1.0}}, "test"))

@@ -7,8 +7,6 @@ from pathlib import Path
 
 import pytest
 
-pytestmark = pytest.mark.slow(40)
-
 # Its functions are called like a variable of the kernel and like a function of the program.
 TUG = """
 from typing import Any, NamedTuple

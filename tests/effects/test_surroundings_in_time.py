@@ -62,7 +62,6 @@ def test_waves_count_within_45_degrees_of_the_bow(degrees):
     assert from_ahead(ahead, starboard, 1.0) == pytest.approx(taper, abs=1e-12)
 
 
-@pytest.mark.slow(10)
 def test_a_current_that_grows_is_one_measured_to_grow():
     """Linear in time from the beginning of the run, which a window is a part of."""
     trial = load_trials("suzaku").trials["turn_p35"]
@@ -122,7 +121,6 @@ def test_a_head_sea_slows_the_ship_down():
     assert speed(0.2) == pytest.approx(speed(-0.5), abs=1e-3)
 
 
-@pytest.mark.slow(15)
 @pytest.mark.parametrize("profile", ["suzaku", "esso_osaka_3m"])
 def test_depth_along_the_track_changes_the_linear_derivatives(profile):
     """Of either hull and in both back ends: a measured depth that does not change is the steady depth, to rounding; one

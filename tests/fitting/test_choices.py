@@ -11,8 +11,6 @@ from mmgtune.fitting.leaving_out import leaving_out
 from mmgtune.trial import TrialSet, write_trial
 from tests.command import run
 
-pytestmark = pytest.mark.slow(5)
-
 QUICK = FitOptions(method="least-squares", starts=2)
 
 

@@ -11,7 +11,7 @@ from mmgtune.fitting.identifiability import analyse
 from mmgtune.fitting.whitening import estimate_whitening
 from tests.fitting.conftest import TRUTH, make_set
 
-pytestmark = [pytest.mark.xdist_group("identifiability"), pytest.mark.slow(5)]
+pytestmark = pytest.mark.xdist_group("identifiability")
 
 TRADED = {"rudder.t_R", "rudder.a_H", "rudder.x_H_", "rudder.eps", "rudder.gamma_Rp", "rudder.gamma_Rn"}
 

@@ -91,7 +91,6 @@ def one_sided(turns):
     return fit(profile, trials, options), sailed
 
 
-@pytest.mark.slow(6)
 def test_a_fit_to_one_side_does_not_make_the_other_wrong(one_sided):
     result, sailed = one_sided
     profile = load_profile("suzaku")
@@ -105,7 +104,6 @@ def test_a_fit_to_one_side_does_not_make_the_other_wrong(one_sided):
     assert document["coverage"]["sides"] == ["starboard"]
 
 
-@pytest.mark.slow(2)
 def test_simulate_says_where_nothing_was_measured(one_sided):
     ship = parse_profile(one_sided[0].tuned_text())
     found = simulate(ship, options=SimulateOptions(turn=("35", "-35")))

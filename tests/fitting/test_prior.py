@@ -137,7 +137,6 @@ def test_twice_the_data_half_the_pull(suzaku):
     assert off[2] / off[4] == pytest.approx(2.0, rel=0.15)
 
 
-@pytest.mark.slow(25)
 def test_ships_drawn_from_the_prior_are_recovered_better_with_it(suzaku):
     names = tuple(dict.fromkeys((*MANY, *suzaku.profile.targets)))
     profile = scattered(suzaku.profile, 0.15, names)
@@ -157,7 +156,6 @@ def test_ships_drawn_from_the_prior_are_recovered_better_with_it(suzaku):
     assert np.sum(better > 1.0) >= 5
 
 
-@pytest.mark.slow(6)
 def test_both_searches_make_the_same_small(formulas, noisy):
     problem = make_problem(formulas, noisy, replace(QUICK, targets=("hull.R_0", "wake.w_P0", "rudder.kappa")))
     start = problem.box.to_unit(problem.box.pre)
@@ -201,7 +199,6 @@ def test_a_solve_is_told_from_another_by_its_prior(formulas, noisy):
     assert len(set(asked)) == 4
 
 
-@pytest.mark.slow(6)
 def test_sweeps_and_leaving_out_follow(formulas, noisy):
     few = ("hull.R_0", "wake.w_P0")
     swept = sweep(
@@ -216,7 +213,6 @@ def test_sweeps_and_leaving_out_follow(formulas, noisy):
     assert plain.thetas != left.thetas
 
 
-@pytest.mark.slow(10)
 def test_a_user_sees_box_and_prior(formulas, tmp_path):
     ship = tmp_path / "ship.toml"
     ship.write_text(formulas.text)

@@ -7,7 +7,7 @@ from mmgtune.fitting import FitOptions, fit, make_problem
 from mmgtune.fitting.combinations import COMBINATIONS
 from tests.fitting.conftest import TRUTH
 
-pytestmark = [pytest.mark.xdist_group("recovery"), pytest.mark.slow(10)]
+pytestmark = pytest.mark.xdist_group("recovery")
 
 QUICK = FitOptions(method="least-squares", starts=6)
 

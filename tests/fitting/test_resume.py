@@ -19,8 +19,6 @@ from mmgtune.trial import load_trials, write_trial
 from mmgtune.trial.schema import ATTRIBUTES
 from tests.command import run, run_until
 
-pytestmark = pytest.mark.slow(8)
-
 CLOCK = {"created", "wall_s", "command", "out"}
 FEW = ("hull.R_0", "wake.w_P0", "rudder.kappa")
 

@@ -15,7 +15,7 @@ from mmgtune.fitting.least_squares import bounded_step, bounded_steps, solve
 from mmgtune.trial import load_trials
 from tests.fitting.conftest import make_set
 
-pytestmark = [pytest.mark.xdist_group("search"), pytest.mark.slow(10)]
+pytestmark = pytest.mark.xdist_group("search")
 
 
 @pytest.fixture(scope="module")

@@ -221,7 +221,6 @@ initial_turning_time = "70 s"
 """
 
 
-@pytest.mark.slow(7)
 def test_a_sea_trial_report_as_a_user_has_it(truth, tmp_path):
     folder = tmp_path / "trials"
     folder.mkdir()

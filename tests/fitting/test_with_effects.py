@@ -15,8 +15,6 @@ from mmgtune.profile import load_profile, parse_profile, with_effects
 from mmgtune.trial import TrialSet, load_trials
 from tests.command import run
 
-pytestmark = pytest.mark.slow(5)
-
 RATE = np.radians(2.32)
 """Of the steering gear of the bundled trials [rad/s]."""
 

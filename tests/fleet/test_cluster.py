@@ -36,7 +36,6 @@ def test_without_the_extra_the_error_says_how_to_get_it(monkeypatch: pytest.Monk
     assert "pip install 'mmgtune[cluster]'" in error.value.problems[0].fix
 
 
-@pytest.mark.slow(12)
 def test_a_cluster_of_its_own_does_the_same_and_listens_on_loopback_only(tmp_path: Path) -> None:
     pytest.importorskip("distributed")
     make_logs(tmp_path, ("a1", "a2"), ("2025-01",))
@@ -72,7 +71,6 @@ def certificates(folder: Path) -> dict[str, Path]:
 
 
 @pytest.mark.skipif(shutil.which("openssl") is None, reason="needs openssl to make certificates")
-@pytest.mark.slow(5)
 def test_tls_is_passed_through(tmp_path: Path) -> None:
     distributed = pytest.importorskip("distributed")
     files = certificates(tmp_path / "tls")

@@ -49,7 +49,6 @@ def test_a_job_is_the_single_run_to_the_last_bit(fleet: Path, tmp_path: Path) ->
     assert motions[0].equals(motions[1])
 
 
-@pytest.mark.slow(12)
 def test_all_jobs_each_once_whatever_fails(fleet: Path, tmp_path: Path) -> None:
     bad = tmp_path / "logs" / "a2" / "2025-01" / "turn_p35.parquet"
     good = bad.read_bytes()
@@ -102,7 +101,6 @@ def test_the_command_says_jobs_and_time_and_writes_nothing(tmp_path: Path) -> No
     assert (wrong.code, "--tls-ca" in wrong.err) == (2, True)
 
 
-@pytest.mark.slow(6)
 def test_reports_of_jobs_can_be_left_out_and_made_later(tmp_path: Path) -> None:
     make_logs(tmp_path, ("a1",), ("2025-01",))
     (tmp_path / "fleet.toml").write_text(QUICK, encoding="utf-8")
@@ -121,7 +119,6 @@ def test_reports_of_jobs_can_be_left_out_and_made_later(tmp_path: Path) -> None:
     assert f'{folder.relative_to(tmp_path / "out")}/report.html"' in page
 
 
-@pytest.mark.slow(4)
 def test_two_fleets_do_not_mix_in_one_folder(tmp_path: Path) -> None:
     for of in "ab":
         make_logs(tmp_path / of, (f"{of}1",), ("2025-01",))
@@ -145,7 +142,6 @@ def test_two_fleets_do_not_mix_in_one_folder(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="needs /proc to find the workers")
-@pytest.mark.slow(15)
 def test_killed_workers_and_a_killed_driver_lose_nothing(tmp_path: Path) -> None:
     make_logs(tmp_path, ("a1", "a2"), ("2025-01", "2025-02", "2025-03"))
     (tmp_path / "fleet.toml").write_text(QUICK, encoding="utf-8")
@@ -200,7 +196,6 @@ def test_a_job_whose_data_changed_fails_and_says_so(fleet: Path, tmp_path: Path)
     assert row["problems"][0]["why"] == "zigzag_20.parquet"
 
 
-@pytest.mark.slow(6)
 def test_every_command_can_be_a_job(tmp_path: Path) -> None:
     make_logs(tmp_path, ("a1",), ("2025-01",))
     trials = tmp_path / "logs" / "a1" / "2025-01"

@@ -15,7 +15,6 @@ SECONDS = 7.0
 """For all kinds together."""
 
 
-@pytest.mark.slow(3)
 @pytest.mark.parametrize("name", KINDS)
 def test_hostile_inputs(name: str) -> None:
     found = campaign(KINDS[name], 60, seed=20, seconds=SECONDS / len(KINDS))
@@ -31,7 +30,6 @@ def test_what_once_failed(case: Path, tmp_path: Path) -> None:
     assert not outcome.failed, outcome.said
 
 
-@pytest.mark.slow(6)
 def test_cases_can_be_made_again() -> None:
     for kind in KINDS.values():
         assert dict(files_of(kind, 1, 7)) == dict(files_of(kind, 1, 7)), kind.name

@@ -21,8 +21,6 @@ FEW = {"train-b": 27 * 40, "test-b": 14 * 30, "test-zt": 12 * 40, "test-r": 10 *
 
 AS_PUBLISHED = dict(sets.PLANS)
 
-pytestmark = pytest.mark.slow(6)
-
 
 @pytest.fixture(scope="module", autouse=True)
 def _short():

@@ -16,8 +16,6 @@ from . import cases, plant
 from .suzaku import GEAR_RATE, NULL, PROFILE, TARGETS, coefficients
 from .unknown import UNKNOWN
 
-pytestmark = pytest.mark.slow(5)
-
 X, Y, PSI, U, V, R, N, DELTA = range(1, 9)
 """Columns of what ``plant.sail`` gives."""
 

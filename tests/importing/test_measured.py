@@ -16,8 +16,6 @@ from mmgtune.physics.frame import to_earth
 from mmgtune.trial import load_trials
 from mmgtune.units import DEG
 
-pytestmark = pytest.mark.slow(10)
-
 FOLDER = Path(os.environ.get("MMGTUNE_DATA", Path(__file__).parents[2].parent / "shared" / "data"))
 DATA, MARIN, HSVA = (FOLDER / name for name in ("esso-osaka-frt", "kvlcc2-marin", "kvlcc2-hsva"))
 

@@ -29,7 +29,6 @@ def needs(name):
 # disguises
 
 
-@pytest.mark.slow(15)
 def test_disguises_of_bundled_trials(tmp_path):
     logs = bundled_logs()
     right = total = 0
@@ -46,7 +45,6 @@ def test_disguises_of_bundled_trials(tmp_path):
     assert right > 0.97 * total
 
 
-@pytest.mark.slow(8)
 @pytest.mark.parametrize("name", [pytest.param(name, marks=needs(name)) for name in SETS])
 def test_disguises_of_measured_trials(tmp_path, name):
     preset, pattern, _ = SETS[name]
@@ -72,7 +70,6 @@ def test_a_wrong_map_makes_other_trials(tmp_path):
 # measured sets as they are
 
 
-@pytest.mark.slow(6)
 @pytest.mark.parametrize("name", [pytest.param(name, marks=needs(name)) for name in ("esso-osaka-frt", "kvlcc2-hsva")])
 def test_the_map_of_a_measured_set_is_the_preset(name):
     preset, pattern, _ = SETS[name]

@@ -31,7 +31,7 @@ from mmgtune.validation import window_scores
 
 from .sailed import NOISE, SHIP, noisy, sailed
 
-pytestmark = [pytest.mark.xdist_group("ensembles"), pytest.mark.slow(3)]
+pytestmark = pytest.mark.xdist_group("ensembles")
 
 TRAINED = EnsembleOptions(
     members=8, width=32, layers=2, steps=1000, validate_every=500, rate=3e-3, horizon=40, initial=10, restart=50.0
@@ -75,7 +75,6 @@ def spread_of(ensemble, trials, sampling="TS-infinity"):
     return pooled(scores, dict.fromkeys(("x", "y", "psi", "u", "v_m", "r"), 1.0))
 
 
-@pytest.mark.slow(25)
 def test_training_comes_near_to_the_noise(trained):
     """With three velocities a model that is right has a loss of 3."""
     for one in trained.members:
@@ -107,7 +106,6 @@ def test_outside_the_data_errors_grow_and_so_does_the_band(trained):
     assert 0.1 < far.L_Maha / near.L_Maha < 10.0
 
 
-@pytest.mark.slow(10)
 def test_estimated_starts_bring_the_fit_nearer_to_the_truth(data, trained):
     """L_fit, eq. 29: roll-outs along the windows learned from, against motions without noise."""
     one = learn_ensemble(SHIP, data, replace(TRAINED, members=1, initial=0)).ensemble
@@ -152,7 +150,6 @@ def test_the_predictor_is_the_roll_out_that_was_trained(data, trained):
     np.testing.assert_allclose(np.asarray(on_jax)[:, 0, :3], found.states[0, 3, :, :3], atol=5e-3)
 
 
-@pytest.mark.slow(8)
 def test_gradients_are_those_of_finite_differences(task):
     import jax
 
@@ -217,7 +214,6 @@ def test_windows_that_watch_do_not_overlap(task):
     assert moments(np.array([[1.0, 2.0], [3.0, 2.0]]))[1].tolist() == [[1.0, 1.0]]
 
 
-@pytest.mark.slow(8)
 def test_the_same_seed_gives_the_same_weights_and_another_others(data, small, monkeypatch):
     from mmgtune.learning import ensemble_run
 
@@ -229,7 +225,6 @@ def test_the_same_seed_gives_the_same_weights_and_another_others(data, small, mo
     assert np.abs(weights(small) - weights(other)).max() > 0.01
 
 
-@pytest.mark.slow(8)
 @pytest.mark.parametrize("after", [1, 4])
 def test_resumed_equals_not_interrupted(data, small, tmp_path, after):
     """Stopped in the first member or in the second, and gone on: the same bits."""
@@ -249,7 +244,6 @@ def test_resumed_equals_not_interrupted(data, small, tmp_path, after):
         learn_ensemble(SHIP, data, SMALL, folder=tmp_path, resume=True)
 
 
-@pytest.mark.slow(4)
 def test_divergence_goes_back_in_its_member_alone(data, monkeypatch):
     from mmgtune.learning import training
 
@@ -276,7 +270,6 @@ def test_divergence_goes_back_in_its_member_alone(data, monkeypatch):
     assert np.isfinite(weights(result)).all()
 
 
-@pytest.mark.slow(6)
 def test_runs_kept_back_watch_and_held_out_ones_are_scored(data, tmp_path):
     ids = data.tune
     split = replace(data, tune=ids[:8], test=ids[8:])

@@ -28,7 +28,7 @@ from mmgtune.report.wording import shown
 from mmgtune.trial import load_trials
 from mmgtune.validation import L_MSE
 
-pytestmark = [pytest.mark.xdist_group("hybrids"), pytest.mark.slow(3)]
+pytestmark = pytest.mark.xdist_group("hybrids")
 
 SMALL = HybridOptions(steps=24, validate_every=8, batch=24, width=6, restart=80.0, step=2.0)
 
@@ -53,7 +53,6 @@ def trained():
     return learn_hybrid("suzaku", "suzaku", SMALL)
 
 
-@pytest.mark.slow(8)
 def test_it_removes_error_on_runs_it_has_not_seen(trained):
     """The bundled plant differs from the captive profile by its coefficients: much is there to be gained."""
     assert trained.gained
@@ -93,7 +92,6 @@ def test_its_page_begins_with_metres_and_degrees(trained, tmp_path):
         assert built.verdict.startswith(said)
 
 
-@pytest.mark.slow(6)
 def test_training_on_jax_and_the_predictor_are_one_model(trained):
     """The roll-out that is trained against, and what users get: the same states but for single precision."""
     import jax.numpy as jnp
@@ -118,7 +116,6 @@ def test_training_on_jax_and_the_predictor_are_one_model(trained):
     np.testing.assert_allclose(on_jax[:, :2], states[:, :2], atol=0.02)
 
 
-@pytest.mark.slow(8)
 def test_gradients_are_those_of_finite_differences():
     import jax
 
@@ -154,7 +151,6 @@ def test_gradients_are_finite_at_rest_and_astern():
     assert all(np.isfinite(one).all() for one in gradient)
 
 
-@pytest.mark.slow(10)
 def test_resumed_equals_not_interrupted(tmp_path, trained):
     asked = []
     hooks = Hooks(on_progress=lambda *_: asked.append(1), stop=lambda: len(asked) >= 2)
@@ -168,7 +164,6 @@ def test_resumed_equals_not_interrupted(tmp_path, trained):
     assert second.gains == trained.gains
 
 
-@pytest.mark.slow(8)
 def test_where_nothing_is_missing_it_says_no_gain():
     """Trials simulated by the profile itself: whatever a network adds is wrong."""
     from mmgtune.simulation import as_trial
@@ -190,7 +185,6 @@ def test_where_nothing_is_missing_it_says_no_gain():
     assert not result.hybrid.weights.W_3.any()
 
 
-@pytest.mark.slow(6)
 def test_a_tuned_profile_is_tuned_anew_without_the_runs():
     """What tuning it found is found again on the same runs, and something else on others."""
     data = load_trials("suzaku")

@@ -86,7 +86,6 @@ def reading(lacking, trials):
     return read_network(lacking, trials)
 
 
-@pytest.mark.slow(5)
 def test_the_piece_is_named_first_with_its_value(reading):
     first = reading.terms[0]
     assert first.name == "hull-term.N_rabsr"
@@ -149,7 +148,6 @@ def test_a_lag_follows_the_motion_from_the_beginning_of_the_window(trials):
         np.testing.assert_allclose(lost[:, column], behind - now, atol=0.05 * np.abs(now).max())
 
 
-@pytest.mark.slow(4)
 def test_tuned_coefficients_count_before_any_term(trials):
     """What a coefficient that was tuned would give is no missing physics."""
     profile = load_profile("suzaku")

@@ -20,7 +20,7 @@ from mmgtune.options.learning import LearnOptions
 from mmgtune.trial import load_trials
 from mmgtune.validating import validate
 
-pytestmark = [pytest.mark.xdist_group("networks"), pytest.mark.slow(3)]
+pytestmark = pytest.mark.xdist_group("networks")
 
 SMALL = LearnOptions(seeds=1, steps=6, validate_every=2, batch=16, width=6, memory=3, horizon=8, restart=60.0)
 
@@ -34,7 +34,6 @@ def trained():
     return learn_rnn("suzaku", "suzaku", replace(SMALL, steps=60, validate_every=20, rate=2e-2, width=16, horizon=20))
 
 
-@pytest.mark.slow(8)
 def test_training_learns(trained):
     losses = [row["loss"] for row in trained.members[0].curve]
     assert losses[-1] < 0.5 * losses[0]
@@ -71,7 +70,6 @@ def test_the_score_that_chose_is_that_of_validate(trained, tmp_path):
     assert np.mean(by_kind) == pytest.approx(trained.members[0].score, rel=2e-3)
 
 
-@pytest.mark.slow(10)
 def test_the_same_seed_gives_the_same_weights_and_another_others():
     a, b = (learn_rnn("suzaku", "suzaku", SMALL) for _ in range(2))
     other = learn_rnn("suzaku", "suzaku", replace(SMALL, seed=2))
@@ -79,7 +77,6 @@ def test_the_same_seed_gives_the_same_weights_and_another_others():
     assert np.abs(weights(a) - weights(other)).max() > 0.01
 
 
-@pytest.mark.slow(10)
 @pytest.mark.parametrize("after", [1, 4])
 def test_resumed_equals_not_interrupted(tmp_path, after):
     """Stopped in the first seed or in the second, and gone on: the same bits."""
@@ -103,7 +100,6 @@ def test_resumed_equals_not_interrupted(tmp_path, after):
     assert [one.to_dict() for one in second.members] == [one.to_dict() for one in whole.members]
 
 
-@pytest.mark.slow(5)
 def test_a_checkpoint_of_another_training_or_damaged_is_refused(tmp_path):
     hooks = Hooks(stop=lambda: True)
     learn_rnn("suzaku", "suzaku", SMALL, hooks=hooks, folder=tmp_path)
@@ -117,7 +113,6 @@ def test_a_checkpoint_of_another_training_or_damaged_is_refused(tmp_path):
         learn_rnn("suzaku", "suzaku", SMALL, folder=tmp_path / "other", resume=True)
 
 
-@pytest.mark.slow(8)
 @pytest.mark.parametrize("type", ["2", "3"])
 def test_other_types_learn_too(type):
     result = learn_rnn("suzaku", "suzaku", replace(SMALL, type=type, steps=30, validate_every=10, rate=5e-3))
@@ -152,7 +147,6 @@ def test_one_run_leaves_nothing_to_choose_by():
         learn_rnn("suzaku", one, SMALL)
 
 
-@pytest.mark.slow(5)
 def test_divergence_is_told_with_its_step_and_training_goes_back(monkeypatch):
     """Gradients that are no numbers for a while: training goes back to the last good state at half the rate."""
     from mmgtune.learning import training
@@ -179,7 +173,6 @@ def test_divergence_is_told_with_its_step_and_training_goes_back(monkeypatch):
     assert np.isfinite(result.members[0].score)
 
 
-@pytest.mark.slow(5)
 def test_gradients_that_are_never_numbers_are_an_error(monkeypatch):
     monkeypatch.setattr(runs.RecurrentAim, "loss", lambda self, w, starts, data: sum(one.sum() for one in w) * np.nan)
     with pytest.raises(OptionError, match="diverged 6 times, the last time at step 60") as error:

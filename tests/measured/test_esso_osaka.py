@@ -7,8 +7,6 @@ import pytest
 
 from tests.command import run
 
-pytestmark = pytest.mark.slow(5)
-
 DATA = Path(os.environ.get("MMGTUNE_DATA", Path(__file__).parents[2].parent / "shared" / "data")) / "esso-osaka-frt"
 
 PUBLISHED = {

@@ -11,8 +11,6 @@ from mmgtune.repeating import repeat, summary
 from mmgtune.trial import load_trials
 from tests.command import run
 
-pytestmark = pytest.mark.slow(15)
-
 DATA = Path(os.environ.get("MMGTUNE_DATA", Path(__file__).parents[2].parent / "shared" / "data"))
 
 SETS = {

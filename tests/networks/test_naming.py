@@ -27,7 +27,6 @@ def models(tmp_path):
     return tmp_path
 
 
-@pytest.mark.slow(5)
 def test_validate_and_simulate_take_them(models):
     found = run("validate", "suzaku", "rnn.safetensors", "hybrid.safetensors", "trials", "--json", cwd=models)
     assert found.code == 0, found.err
@@ -51,7 +50,6 @@ def test_trials_of_another_ship_are_told(models):
         assert [sum("'another'" in one for one in of) for of in notes] == [told, told]
 
 
-@pytest.mark.slow(5)
 def test_validate_on_voyages_takes_them(models):
     from mmgtune.model import Model
     from tools.generate_voyage import make_voyage

@@ -86,7 +86,6 @@ def results(fitted, trials):
     ]
 
 
-@pytest.mark.slow(10)
 def test_every_result_is_a_line_a_table_and_a_text(fitted, trials):
     for one in results(fitted, trials):
         assert "\n" not in repr(one)
@@ -133,7 +132,6 @@ def test_options_say_what_was_chosen():
     assert repr(mmgtune.FitOptions(a_r=0.3, seed=2)) == "FitOptions(seed=2, a_r=0.3)"
 
 
-@pytest.mark.slow(6)
 def test_a_fit_as_lmfit_prints_it(fitted):
     frame = fitted.to_frame().set_index("coefficient")
     for row in fitted.coefficients():
@@ -176,13 +174,11 @@ def test_names_where_objects_are_taken(trials):
     assert mmgtune.load_network("esso_osaka_3m_type1").ship
 
 
-@pytest.mark.slow(5)
 def test_trials_stand_where_orders_do(trials):
     by_name, by_place = mmgtune.predict("suzaku", "suzaku"), mmgtune.predict("suzaku", trials=trials)
     assert [run.id for run in by_name.runs] == [run.id for run in by_place.runs] == list(trials.trials)
 
 
-@pytest.mark.slow(6)
 def test_hostile_names_stay_words(hostile, plt):
     options = mmgtune.FitOptions(method="least-squares", starts=1, targets=("hull.R_0",))
     results = [hostile, hostile[HOSTILE], mmgtune.simulate("suzaku", hostile), mmgtune.validate("suzaku", hostile)]
@@ -200,7 +196,6 @@ def test_hostile_names_stay_words(hostile, plt):
         one.plot.histories(HOSTILE, channels=("psi",))[0].figure.draw_without_rendering()
 
 
-@pytest.mark.slow(4)
 def test_pictures_hold_what_they_are_of(fitted, trials, plt):
     axes = fitted.plot.tracks()
     assert len(axes) == len(fitted.compared)

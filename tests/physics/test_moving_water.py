@@ -128,7 +128,6 @@ def over_ground(model, t, north, east, start):
     return np.array(found)
 
 
-@pytest.mark.slow(8)
 @pytest.mark.parametrize("period", [TIDE, 240.0], ids=["tide", "minutes"])
 def test_a_current_that_turns_is_what_newton_says(following, ship, period):
     t = np.arange(0.0, 301.0, 5.0)

@@ -145,7 +145,6 @@ def test_a_log_has_what_was_ordered(ship):
     assert list(trial.noise.values()) == noise.tolist()
 
 
-@pytest.mark.slow(12)
 def test_the_side_that_no_trial_shows_is_to_be_sailed_and_it_keeps_the_promise(ship, sailed, particles):
     plan = plan_trial(particles, QUESTION, PlanOptions(half_speed=False, kind=("turn", "zigzag")))
     ids = [one.id for one in plan.trials]
@@ -163,7 +162,6 @@ def test_the_side_that_no_trial_shows_is_to_be_sailed_and_it_keeps_the_promise(s
     assert again.best.shrinks < plan.best.shrinks
 
 
-@pytest.mark.slow(4)
 def test_the_room_of_particles_is_that_they_were_drawn_in(ship, particles):
     room = room_of(particles)
     assert room.names == particles.names
@@ -173,7 +171,6 @@ def test_the_room_of_particles_is_that_they_were_drawn_in(ship, particles):
         room_of(other)
 
 
-@pytest.mark.slow(5)
 def test_particles_that_do_not_say_how_they_were_made(particles):
     silent = replace(particles, facts={})
     with pytest.raises(ProfileError, match="believed"):
@@ -183,7 +180,6 @@ def test_particles_that_do_not_say_how_they_were_made(particles):
     assert any("noise" in note for note in found.notes)
 
 
-@pytest.mark.slow(8)
 def test_the_command_has_a_table_and_json(desk):
     arguments = ("plan", "bands", "--question", QUESTION, "--kind", "turn", "--no-half-speed")
     ended = run(*arguments, cwd=desk)
@@ -197,7 +193,6 @@ def test_the_command_has_a_table_and_json(desk):
     assert document["question"]["unit"] == "m"
 
 
-@pytest.mark.slow(5)
 def test_a_plan_with_a_folder_has_a_report(desk):
     arguments = ("plan", "bands", "--question", QUESTION, "--kind", "straight", "--no-half-speed", "--out", "plan")
     ended = run(*arguments, cwd=desk)
@@ -209,7 +204,6 @@ def test_a_plan_with_a_folder_has_a_report(desk):
     assert run(*arguments, cwd=desk).code == 2
 
 
-@pytest.mark.slow(6)
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

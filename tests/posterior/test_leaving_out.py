@@ -15,7 +15,7 @@ from tests.command import run
 
 OPTIONS = LeaveOutOptions(a_r=0.5, starts=1, folds=3, targets=("hull.Y_v", "hull.N_v", "hull.N_r"))
 
-pytestmark = [pytest.mark.xdist_group("bands left out"), pytest.mark.slow(15)]
+pytestmark = pytest.mark.xdist_group("bands left out")
 
 
 @pytest.fixture(scope="module")

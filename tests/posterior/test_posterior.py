@@ -85,7 +85,6 @@ def test_forces_of_unknown_form_know_which_sides_are_alike(term):
     assert abs(starboard) <= 0.01 * unit
 
 
-@pytest.mark.slow(25)
 def test_a_ship_of_the_right_form_is_covered(ship, sailed, starboard):
     measured, truth = sailed
     both = posterior(ship, [measured[name] for name in ("turn_p10", "turn_m20", "zigzag_10")], QUICK)
@@ -100,7 +99,6 @@ def test_a_ship_of_the_right_form_is_covered(ship, sailed, starboard):
     assert np.median([row["width_over_prior"] for row in rows]) < 0.5
 
 
-@pytest.mark.slow(5)
 def test_the_side_that_no_trial_shows_is_less_certain(starboard):
     of = starboard.particles.predictor().drawn(100, 1)
     low, _, high = turns(of, 35.0)["tactical_diameter"]
@@ -108,7 +106,6 @@ def test_the_side_that_no_trial_shows_is_less_certain(starboard):
     assert port_high - port_low > 1.3 * (high - low)
 
 
-@pytest.mark.slow(5)
 def test_particles_hold_what_trials_do_not_tell(starboard):
     spread = np.std(starboard.particles.values, axis=1) / starboard.room.deviation
     names = starboard.room.names

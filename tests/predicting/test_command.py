@@ -21,7 +21,6 @@ def desk(tmp_path_factory):
 APPROACH = ("--speed", "1 m/s", "--rpm", "600")
 
 
-@pytest.mark.slow(12)
 def test_turn_with_a_band(desk):
     arguments = "predict", "model.safetensors", "--turn", "35", *APPROACH, "--out", "foretold", "--keep-particles"
     ended = run(*arguments, "--json", cwd=desk)
@@ -37,7 +36,6 @@ def test_turn_with_a_band(desk):
     assert run("report", "foretold", cwd=desk).code == 0
 
 
-@pytest.mark.slow(3)
 def test_a_list_of_orders_on_the_console(desk):
     ended = run("predict", "model.safetensors", "orders.csv", *APPROACH, cwd=desk)
     assert ended.code == 0, ended.err
@@ -48,7 +46,6 @@ def test_a_list_of_orders_on_the_console(desk):
     assert "no steering gear" in ended.err
 
 
-@pytest.mark.slow(4)
 def test_a_profile_and_a_hybrid_say_that_they_have_no_band(tmp_path):
     ended = run("predict", "suzaku", "--turn", "35", cwd=tmp_path)
     assert ended.code == 0, ended.err
@@ -63,7 +60,6 @@ def test_a_profile_and_a_hybrid_say_that_they_have_no_band(tmp_path):
     assert turn["indices"][0]["half_width"] is None
 
 
-@pytest.mark.slow(3)
 def test_trials_and_their_scores(tmp_path):
     ended = run("predict", "suzaku_fam", "-t", "suzaku", "--restart", "100", cwd=tmp_path)
     assert ended.code == 0, ended.err

@@ -18,7 +18,7 @@ from tests.report.test_browser import OVERFLOW, Visit
 
 from .test_predict import scattered, two_trials
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow(12)]
+pytestmark = pytest.mark.browser
 
 
 @pytest.fixture(scope="module")

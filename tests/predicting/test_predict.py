@@ -83,7 +83,6 @@ def turned(five):
     return predict(five, options=TURN)
 
 
-@pytest.mark.slow(10)
 def test_a_single_run_has_the_indices_of_a_helmsman_at_fine_steps(kvlcc2):
     found = predict(kvlcc2, options=PredictOptions(turn=("-35",), zigzag=("10/10",)))
     turn, zigzag = found.runs
@@ -187,7 +186,6 @@ def test_what_diverges_or_never_turns_is_counted(kvlcc2):
     assert found.to_dict()["runs"][0]["diverged"] == 1
 
 
-@pytest.mark.slow(8)
 def test_a_crash_stop(esso_osaka):
     """By a ship whose propeller goes astern; full astern until she is dead in the water."""
     found = predict(scattered(esso_osaka, 3), options=PredictOptions(stop=True))
@@ -280,7 +278,6 @@ def test_scores_of_windows(suzaku, on_trials):
     np.testing.assert_array_equal(found.runs[0].states, on_trials.runs[0].states)  # what is drawn are whole trials
 
 
-@pytest.mark.slow(6)
 def test_what_is_written_is_what_was_found(on_trials, tmp_path):
     document = write_prediction(on_trials, tmp_path, "mmgtune predict", keep_particles=True)
     assert json.loads((tmp_path / "predict.json").read_text()) == document

@@ -86,7 +86,6 @@ def test_what_is_written_is_read_back(name, change, template):
     read_back(CHANGES[change](profile if template else replace(profile, template=""), rng))
 
 
-@pytest.mark.slow(3)
 @settings(max_examples=25, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), changes=st.lists(st.sampled_from(list(CHANGES)), min_size=1, max_size=4))
 def test_what_is_written_is_read_back_after_any_changes(seed, changes):

@@ -21,7 +21,7 @@ from mmgtune.trial import load_trials
 from tests.command import run
 from tests.networks.made import network
 
-pytestmark = [pytest.mark.xdist_group("report"), pytest.mark.slow(20)]
+pytestmark = pytest.mark.xdist_group("report")
 
 ROOT = Path(__file__).parents[2]
 PLANNED = ("fit", "sweep", "leave-out", "diagnose")

@@ -13,7 +13,7 @@ from tests.browser import chromium
 
 from . import fake_run
 
-pytestmark = [pytest.mark.browser, pytest.mark.xdist_group("report"), pytest.mark.slow(10)]
+pytestmark = [pytest.mark.browser, pytest.mark.xdist_group("report")]
 
 READY = 'html[data-ready="1"]'
 OVERFLOW = "document.documentElement.scrollWidth - document.documentElement.clientWidth"

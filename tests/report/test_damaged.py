@@ -9,8 +9,6 @@ from mmgtune.report import render
 
 from . import fake_run
 
-pytestmark = pytest.mark.slow(5)
-
 
 @pytest.mark.parametrize(
     "changes",

@@ -18,7 +18,7 @@ from tests.browser import chromium
 
 from .test_browser import OPEN_ALL, OVERFLOW, Visit
 
-pytestmark = [pytest.mark.browser, pytest.mark.xdist_group("report"), pytest.mark.slow(25)]
+pytestmark = [pytest.mark.browser, pytest.mark.xdist_group("report")]
 
 HOSTILE = "</script><img src=x onerror=alert(1)>"
 SCREENS = {

@@ -22,7 +22,7 @@ from tests.twin import sail, twin, with_value
 
 from . import fake_run
 
-pytestmark = [pytest.mark.xdist_group("report"), pytest.mark.slow(10)]
+pytestmark = pytest.mark.xdist_group("report")
 
 INPUTS = ["n", "delta_port", "delta_stbd", "n_bow"]
 

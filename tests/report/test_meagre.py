@@ -16,7 +16,7 @@ from mmgtune.report import render
 from . import fake_run
 from .conftest import read
 
-pytestmark = [pytest.mark.xdist_group("report"), pytest.mark.slow(5)]
+pytestmark = pytest.mark.xdist_group("report")
 
 
 def meagre(tmp_path: Path, **changes: object) -> str:

@@ -23,7 +23,7 @@ from mmgtune.report.wording import shown
 from . import fake_run
 from .conftest import read
 
-pytestmark = [pytest.mark.xdist_group("report"), pytest.mark.slow(10)]
+pytestmark = pytest.mark.xdist_group("report")
 
 FIGURES = {"tracks", "distances", "histories", "coefficients", "convergence", "correlation"}
 

@@ -10,8 +10,6 @@ from mmgtune.report import svg, unexplained
 from mmgtune.report.blocks import Picture
 from tests.diagnose.test_whereabouts import run as force_run
 
-pytestmark = pytest.mark.slow(3)
-
 
 @pytest.fixture(scope="module")
 def record():

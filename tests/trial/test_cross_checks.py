@@ -137,7 +137,6 @@ def test_speed_against_length() -> None:
     assert not warnings_of(trial)
 
 
-@pytest.mark.slow(12)
 @pytest.mark.parametrize(
     ("folder", "preset", "ship", "step"),
     [

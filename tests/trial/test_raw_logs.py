@@ -89,7 +89,6 @@ def test_an_empty_folder_and_one_of_texts_are_not_taken_for_logs(tmp_path):
         load_trials(tmp_path)
 
 
-@pytest.mark.slow(4)
 @pytest.mark.parametrize("command", ["fit", "validate", "leave-out", "diagnose"])
 def test_commands_say_it(command, folder, tmp_path):
     given = ("suzaku", str(folder)) if command == "validate" else ("-p", "suzaku", "-t", str(folder))

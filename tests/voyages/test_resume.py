@@ -94,7 +94,6 @@ def test_what_is_noted_is_recalled_to_the_last_bit(logs):
     assert found[2].around  # the model acts on wind
 
 
-@pytest.mark.slow(12)
 def test_killed_in_the_middle_and_resumed(logs, tmp_path):
     command = ("validate", "suzaku", "kvlcc2", logs, "--no-report", "--quiet")
     whole = run(*command, "--out", "whole", cwd=tmp_path)
@@ -116,7 +115,6 @@ def test_killed_in_the_middle_and_resumed(logs, tmp_path):
     assert "nothing to resume" in nothing.err
 
 
-@pytest.mark.slow(6)
 def test_ctrl_c_says_how_to_go_on(logs, tmp_path):
     before = "import mmgtune.cli.progress as p; p.Progress.on_share = lambda self, a, b, id: id == 'b' and sent()"
     arguments = ("validate", "suzaku", str(logs), "--no-report", "--quiet", "--out", "run")

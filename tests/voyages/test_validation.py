@@ -279,7 +279,6 @@ def test_stopped_between_portions(voyage_file, monkeypatch):
     assert "interrupted" in repr(result)
 
 
-@pytest.mark.slow(6)
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_ctrl_c(voyage, tmp_path, number):
     """What is done so far is written, marked interrupted, and the exit code says so."""

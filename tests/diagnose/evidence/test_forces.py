@@ -68,7 +68,6 @@ def test_a_force_of_the_earth_frame_is_found_with_its_size_and_direction(suzaku,
     assert (north, east) == pytest.approx((WIND * np.cos(1.0), WIND * np.sin(1.0)), abs=0.15 * WIND)
 
 
-@pytest.mark.slow(5)
 def test_what_was_measured_around_the_ship_acts_as_in_the_simulation(suzaku):
     """A wind that turns, a current that grows, waves and a shoal: nothing is left of a model that acts on them."""
     acting = {tag: {"measured": 1.0} for tag in ("wind", "current", "waves", "shallow-water")}

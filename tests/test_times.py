@@ -1,0 +1,28 @@
+"""What is said of how long tests take is of tests that there are, and told by all processes that run them."""
+
+from types import SimpleNamespace
+
+from tests import times
+
+
+def test_every_file_that_is_listed_is_there():
+    assert {
+        name for name in map(times.file_of, times.read()) if not (times.FILE.parent.parent / name).exists()
+    } == set()
+
+
+def test_what_took_long_is_written(tmp_path, monkeypatch):
+    monkeypatch.setattr(times, "FILE", tmp_path / "times.json")
+    assert times.read() == {}
+    writer = times.Writer()
+    for name, when, seconds in (
+        ("tests/a.py::one[x@y]@tests/a.py", "setup", 2.04),  # as a worker calls it
+        ("tests/a.py::one[x@y]@tests/a.py", "call", 0.15),
+        ("tests/a.py::one[x@y]@tests/a.py", "teardown", 0.1),
+        ("tests/a.py::two", "setup", 0.01),
+        ("tests/a.py::two", "call", 0.1),
+        ("tests/b.py::three@group", "call", 3.0),
+    ):
+        writer.pytest_runtest_logreport(SimpleNamespace(nodeid=name, when=when, duration=seconds))
+    writer.pytest_sessionfinish()
+    assert times.read() == {"tests/a.py": 2.0, "tests/a.py::one[x@y]": 0.2, "tests/b.py::three": 3.0}
