@@ -91,8 +91,9 @@ class TomlReader:
 
     def schema(self, number: int) -> None:
         """The version of the format, which must be ``number``."""
-        if self.data.get("schema") != number:
-            what = f"schema is {brief(self.data.get('schema'))}, not {number}"
+        found = self.data.get("schema")
+        if type(found) is not int or found != number:  # true equals 1 too
+            what = f"schema is {brief(found)}, not {number}"
             self.problem(what, "", "schema", fix=f"write 'schema = {number}' on top")
 
     def unknown(self, name: str, table: dict[str, Any], known: tuple[str, ...]) -> None:

@@ -184,6 +184,8 @@ def test_profile_with_several_mistakes_names_them_all(tmp_path):
         ("[wake]", "[wakes]", "did you mean 'wake'"),
         ('model = "flapped"', 'model = "flaped"', "unknown rudder model 'flaped'"),
         ("schema = 1", "schema = 2", "schema is 2"),
+        ("schema = 1", "schema = true", "schema is True, not 1"),
+        ("schema = 1", "schema = 1.0", "schema is 1.0, not 1"),
         ("w_P0 = 0.422", 'w_P0 = "0.422 m"', "pure number"),
         ("w_P0 = 0.422", "w_P0 = true", "not a number"),
         ("w_P0 = 0.422", "w_P0 = nan", "only finite"),
