@@ -137,11 +137,11 @@ class Scale:
         """(n,) pixels."""
         array = np.array(values, dtype=float)
         low, high = self.low, self.high
-        if self.log:
-            with np.errstate(divide="ignore", invalid="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # of records that somebody edited
+            if self.log:
                 array = np.where(array > 0.0, np.log10(array), np.nan)
-            low, high = math.log10(low), math.log10(high)
-        found: FloatArray = self.first + (array - low) / (high - low) * (self.last - self.first)
+                low, high = math.log10(low), math.log10(high)
+            found: FloatArray = self.first + (array - low) / (high - low) * (self.last - self.first)
         return found
 
 
