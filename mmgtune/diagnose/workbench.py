@@ -171,9 +171,9 @@ class Workbench:
 
         spreads  of values that groups of runs have of their own, those of the workbench where None
         """
-        forms, kept = self.believed.moving_with(names)
-        names = (*forms, *(names[k] for k in kept))
-        starts = np.concatenate([np.repeat(self.null(forms)[:, None], starts.shape[1], axis=1), starts[kept]])
+        along, kept = self.believed.moving_with(names)
+        names = (*along, *(names[k] for k in kept))
+        starts = np.concatenate([np.repeat(self.null(along)[:, None], starts.shape[1], axis=1), starts[kept]])
         problem = self.problem_of(names, integrator).with_offsets(offsets)
         whiten = self.noise.apply if self.noise_known else None
         spreads = self.spreads if spreads is None else spreads
