@@ -57,8 +57,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         together.setdefault(group.args[0] if group else item.nodeid, []).append(item)
 
     def seconds(tests: list[pytest.Item]) -> float:
-        names = {name for item in tests for name in (item.nodeid, times.file_of(item.nodeid))}
-        return sum(taken.get(name, 0.0) for name in names)
+        names = dict.fromkeys(name for item in tests for name in (item.nodeid, times.file_of(item.nodeid)))
+        return sum(taken.get(name, 0.0) for name in names)  # in one order: all workers must find the same
 
     items[:] = [item for tests in sorted(together.values(), key=seconds, reverse=True) for item in tests]
 
