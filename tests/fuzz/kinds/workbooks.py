@@ -5,7 +5,9 @@ from __future__ import annotations
 import datetime
 import functools
 import io
+import re
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +28,10 @@ ODD: tuple[Any, ...] = (
 )  # fmt: skip
 
 
+WRITTEN_AT = re.compile(rb"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ")
+"""When a workbook was made and changed, as it says itself."""
+
+
 @functools.cache
 def rows() -> tuple[tuple[Any, ...], ...]:
     """Rows of a log that can be imported: 60 of a turn."""
@@ -44,6 +50,17 @@ def written(found: list[list[Any]], rng: np.random.Generator) -> bytes:
         book.active.merge_cells(start_row=1, start_column=1, end_row=2, end_column=3)
     out = io.BytesIO()
     book.save(out)
+    return _archive(out.getvalue(), lambda _, part: WRITTEN_AT.sub(b"2000-01-01T00:00:00Z", part))
+
+
+def _archive(content: bytes, changed: Callable[[str, bytes], bytes | None]) -> bytes:
+    """The archive with each part changed, or left out for None; all of them of one time, so that a case can be made
+    again to the byte."""
+    out = io.BytesIO()
+    with zipfile.ZipFile(io.BytesIO(content)) as old, zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as new:
+        for name in old.namelist():
+            if (part := changed(name, old.read(name))) is not None:
+                new.writestr(zipfile.ZipInfo(name), part, zipfile.ZIP_DEFLATED)
     return out.getvalue()
 
 
@@ -76,28 +93,22 @@ def _rows(rng: np.random.Generator, found: list[list[Any]]) -> list[list[Any]]:
 
 def _parts(rng: np.random.Generator, content: bytes) -> bytes:
     """A part of the archive left out, damaged, or with odd words in its XML."""
-    out = io.BytesIO()
-    with zipfile.ZipFile(io.BytesIO(content)) as old, zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as new:
-        names = old.namelist()
-        struck = pick(rng, names)
-        for name in names:
-            part = old.read(name)
-            if name == struck:
-                how = rng.random()
-                if how < 0.15:
-                    continue
-                if how < 0.4:
-                    part = mutated_bytes(rng, part)
-                else:
-                    word = pick(
-                        rng, (b"1", b"0", b"A1", b"<v>", b"t=", b"r=", b"s=", b'"', b"General", b"rId1", b"sheet")
-                    )
-                    other = encoded(
-                        pick(rng, (*NUMBERS, "-5", "A0", "XFD1048576", "ZZZZ9", "1048577", "<a>", "&x;", "é", ""))
-                    )
-                    part = part.replace(word, other, int(pick(rng, (1, 5, 10000))))
-            new.writestr(name, part)
-    return out.getvalue()
+    with zipfile.ZipFile(io.BytesIO(content)) as old:
+        struck = pick(rng, old.namelist())
+
+    def changed(name: str, part: bytes) -> bytes | None:
+        if name != struck:
+            return part
+        how = rng.random()
+        if how < 0.15:
+            return None
+        if how < 0.4:
+            return mutated_bytes(rng, part)
+        word = pick(rng, (b"1", b"0", b"A1", b"<v>", b"t=", b"r=", b"s=", b'"', b"General", b"rId1", b"sheet"))
+        other = encoded(pick(rng, (*NUMBERS, "-5", "A0", "XFD1048576", "ZZZZ9", "1048577", "<a>", "&x;", "é", "")))
+        return part.replace(word, other, int(pick(rng, (1, 5, 10000))))
+
+    return _archive(content, changed)
 
 
 def make(rng: np.random.Generator) -> Files:
@@ -116,7 +127,6 @@ def make(rng: np.random.Generator) -> Files:
         text = text.replace("[time]", f"[log]\nskip = {int(rng.integers(5))}\n[time]")
     if rng.random() < 0.1:
         text = text.replace('"time"', f'"{odd_text(rng)[:5]}"'.replace("\n", " ").replace("\\", "/"))
-    # Times of the archive's entries are no part of a case.
     return {"log.xlsx": content, "map.toml": encoded(text)}
 
 
