@@ -103,9 +103,10 @@ def solve(
     beliefs         (k, n_targets) matrix A and (n_targets,) centre: adds |A (unit - centre)|^2 to what is minimised
                     (not to the J reported)
     trusting        a start also ends after the step from which the linear problem promises no more than the tolerance,
-                    instead of two steps in a row that bring no more, and two again; and initial states that would
-                    leave their range are held at its end in the linear problem, and held back by large damping
-                    (elsewhere they find the way round a bound by steps of their own)
+                    or that brought what was promised to within it, instead of two steps in a row that bring no more,
+                    and two again; and initial states that would leave their range are held at its end in the linear
+                    problem, and held back by large damping (elsewhere they find the way round a bound by steps of
+                    their own)
     Returns a result per start, never above what it began with.
     """
     n_starts = starts.shape[1]
@@ -168,15 +169,15 @@ def solve(
             break
         around = zip(*_jacobians(problem, z, d, rows, whiten), strict=True)
         linear = [_Linear(problem, at, off, J, S, holding=trusting) for at, off, J, S in around]
-        last = np.zeros(len(rows), dtype=bool)
+        last, promised = np.zeros(len(rows), dtype=bool), np.full(len(rows), np.inf)
         tried = np.empty((len(z), len(rows), 2, len(DAMPINGS)))
         moved = np.empty((len(problem.cases), len(rows), 2, len(DAMPINGS), 6))
         for i, row in enumerate(rows):
             hessian, _ = of_all(linear[i], z[:, row])
             scale = np.maximum(np.diag(hessian), 1e-12 * np.diag(hessian).max() + 1e-300)
             if trusting:
-                promised = promised_by(linear[i], z[:, row], scale)
-                last[i] = promised <= tolerance
+                promised[i] = promised_by(linear[i], z[:, row], scale)
+                last[i] = promised[i] <= tolerance
                 damping[row] = min(damping[row], 1e-3) if last[i] else damping[row]
             for k, factor in enumerate(DAMPINGS):
                 at = linear[i]
@@ -207,7 +208,7 @@ def solve(
                 damping[row] *= 1e3
             small = 0.0 < gain <= max(QUIET * value[row], tolerance)
             quiet[row] = quiet[row] + 1 if small else 0
-            if last[i]:
+            if last[i] or abs(gain - promised[i]) <= tolerance:
                 converged[row], running[row] = True, False
                 continue
             if quiet[row] >= 2 or damping[row] > 1e8 or value[row] < 1e-24:
