@@ -219,7 +219,8 @@ class Refitting:
         if alike is None or not found[0].hypothesis.by:
             return found
         n = self.bench.problem.n_residuals
-        left = [max(refit.point.chi2 - n, math.sqrt(2.0 * n)) for refit in (found[0], alike)]
+        noise = n if alike.point.chi2 >= n else found[0].point.chi2  # beneath n, noise was known as too large
+        left = [max(refit.point.chi2 - noise, math.sqrt(2.0 * n)) for refit in (found[0], alike)]
         inflation = max(found[0].score.inflation, alike.score.inflation)
         better = (found[0].gain - alike.gain) / inflation - found[0].cost + alike.cost
         none = alike.evidence < ENOUGH

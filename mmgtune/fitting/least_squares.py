@@ -35,6 +35,9 @@ HARDLY = 1e-9
 MOST_CHANGES = 12
 """Rounds in which small problems choose anew what is held at a bound, before they are solved one by one."""
 
+FORETOLD = 0.3
+"""Share of a promised fall by which it may differ for the derivatives to be used once more."""
+
 AHEAD = 0.1
 """Share of a step at which its second derivative is taken."""
 
@@ -155,6 +158,23 @@ def solve(
     def cost(unit: FloatArray, offsets: FloatArray) -> FloatArray:
         return problem.costs(unit, offsets) if whiten is None else _squares(residuals_of(unit, offsets))
 
+    def around(rows: npt.NDArray[np.intp]) -> list[_Linear]:
+        """The quadratic models at the running starts: of derivatives taken there, or of the last ones where those
+        foretold what came."""
+        anew = [row for row in rows if not told[row]]
+        if anew:
+            made = zip(*_jacobians(problem, z, d, np.array(anew), whiten), strict=True)
+            for row, (at, off, slopes, by_offset) in zip(anew, made, strict=True):
+                models[row] = _Linear(problem, at, off, slopes, by_offset, holding=trusting)
+        again = [row for row in rows if told[row]]
+        if again:
+            residuals = residuals_of(z[:, again], d[:, again])
+            for k, row in enumerate(again):
+                models[row] = models[row].with_residuals(d[:, row], residuals[:, k])
+        return [models[row] for row in rows]
+
+    models: dict[int, _Linear] = {}
+    told = np.zeros(n_starts, dtype=bool)
     J = cost(z, d)
     value = J + penalty(z, d)
     damping = np.full(n_starts, 1e-3)
@@ -167,8 +187,7 @@ def solve(
         rows = np.flatnonzero(running)
         if len(rows) == 0 or stop():
             break
-        around = zip(*_jacobians(problem, z, d, rows, whiten), strict=True)
-        linear = [_Linear(problem, at, off, J, S, holding=trusting) for at, off, J, S in around]
+        linear = around(rows)
         last, promised = np.zeros(len(rows), dtype=bool), np.full(len(rows), np.inf)
         tried = np.empty((len(z), len(rows), 2, len(DAMPINGS)))
         moved = np.empty((len(problem.cases), len(rows), 2, len(DAMPINGS), 6))
@@ -206,6 +225,7 @@ def solve(
                 damping[row] = min(max(damping[row] * DAMPINGS[k], 1e-12), 1e6)
             else:
                 damping[row] *= 1e3
+            told[row] = trusting and gain > 0.0 and abs(gain - promised[i]) <= FORETOLD * promised[i]
             small = 0.0 < gain <= max(QUIET * value[row], tolerance)
             quiet[row] = quiet[row] + 1 if small else 0
             if last[i] or abs(gain - promised[i]) <= tolerance:
@@ -454,6 +474,15 @@ class _Linear:
             np.array([by_row @ self._jacobian[rows] for by_row, rows in of_cases]),
             np.array([by_row @ self.residuals[rows] for by_row, rows in of_cases]) + prior * self._d,
         )
+
+    def with_residuals(self, d: FloatArray, residuals: FloatArray) -> _Linear:
+        """The same derivatives around a point nearby."""
+        cases = self._plain.cases
+        if cases is not None:
+            slope = np.array([self._by_offset[rows].T @ residuals[rows] for rows in self._rows])
+            cases = cases._replace(at=d, slope=slope + self._problem.prior * d)
+        plain = _Plain(self._plain.hessian, self._jacobian.T @ residuals, cases)
+        return _Linear(self._problem, d, residuals, self._jacobian, self._by_offset, self._holding, plain=plain)
 
     def damped(self, damping: float) -> _Linear:
         """The same with steps of the offsets damped."""

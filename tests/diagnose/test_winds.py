@@ -11,7 +11,7 @@ from mmgtune.diagnose.inputs import DRAWS, changes
 from mmgtune.diagnose.leftover import leftover
 from mmgtune.diagnose.linear import linearise
 from mmgtune.diagnose.winds import ALONG, other_winds
-from mmgtune.diagnose.workbench import make_workbench
+from mmgtune.diagnose.workbench import TOLERANCE, make_workbench
 from mmgtune.effects import find_effect
 from mmgtune.model import Model
 from mmgtune.physics.quantities import Surroundings
@@ -73,7 +73,7 @@ def test_a_form_goes_with_its_effect(sailed):
 def test_a_problem_made_linear_knows_what_is_believed_of_forms(sailed):
     bench, point, _ = wind_on(*sailed)
     linear = linearise(bench, point)
-    assert np.sum(linear.residual**2) == pytest.approx(point.chi2, rel=1e-5)
+    assert np.sum(linear.residual**2) == pytest.approx(point.chi2, abs=TOLERANCE)
 
 
 def test_nothing_wavers_where_no_wind_blows(sailed):
