@@ -7,7 +7,7 @@ cause in place, the smallest mismatch of the model's form passes it under some n
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -46,6 +46,10 @@ FORM, FORM_IF_ROUGH = 0.0005, 0.003
 HARDLY_SEEN = 0.005
 """Share of the fall of chi-squared up to which a cause has to remove more than ``FORM`` on held-out trials."""
 
+SHOWS, OWN = 1.0, 100.0
+"""Error in a channel on held-out trials, over the variance of its noise, and share of what all causes remove there,
+over what the others' form may leave: a cause that removes as much in any channel is no matter of that form."""
+
 
 @dataclass(frozen=True)
 class Contribution:
@@ -55,6 +59,7 @@ class Contribution:
     share    the same of the error on held-out trials
     channels by channel, the error on held-out trials that it removes over the variance of the noise
     form     such shares that the form of others may leave
+    own      by channel, such a share of the error in that channel alone
     indices  by manoeuvring index, the largest change on held-out trials: of lengths as a share, of angles [deg]
 
     Where ``seen`` is enough to tell that it is no trace, the others are not asked for: NaN and empty.
@@ -65,11 +70,18 @@ class Contribution:
     channels: Mapping[str, float] | None = None
     indices: Mapping[str, float] | None = None
     form: float = FORM
+    own: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def harmful(self) -> bool:
         """Whether held-out trials are told no better with it than without."""
         return self.channels is not None and self.share <= 0.0
+
+    @property
+    def stands_out(self) -> bool:
+        """Whether it shows in a channel of which the others remove little else, such as that of a gyro that is off."""
+        channels = self.channels or {}
+        return any(error >= SHOWS and self.own.get(name, 0.0) >= OWN * self.form for name, error in channels.items())
 
     @property
     def unnoticed(self) -> bool:
@@ -79,9 +91,10 @@ class Contribution:
         """
         if self.channels is None or self.indices is None:
             return False
-        if self.harmful or max(self.share, self.seen) < self.form:
+        if self.harmful:
             return True
-        if self.share < FORM and self.seen < HARDLY_SEEN:
+        little = max(self.share, self.seen) < self.form or (self.share < FORM and self.seen < HARDLY_SEEN)
+        if little and not self.stands_out:
             return True
         moved = all(
             change < (OF_ANGLE if name.endswith("_deg") else OF_LENGTH) for name, change in self.indices.items()
@@ -177,7 +190,12 @@ def _of(bench: Workbench, found: Found, cause: Hypothesis, test: Sequence[Trial]
     }
     scale = max(float(removed[0]), abs(float(removed[1])))  # all together may remove less than one, or nothing
     form = FORM_IF_ROUGH if any(one.effect.rough for one in found.causes) else FORM
-    return Contribution(seen, float(removed[1]) / scale if scale > 0.0 else 1.0, channels, changes, form)
+    own = {}
+    for k, name in enumerate(STATES):
+        by_all, by_one = errors[0, k] - errors[2, k], errors[1, k] - errors[2, k]
+        if name in channels and by_one > 0.0:
+            own[name] = float(by_one / max(by_all, by_one))
+    return Contribution(seen, float(removed[1]) / scale if scale > 0.0 else 1.0, channels, changes, form, own)
 
 
 def _errors(

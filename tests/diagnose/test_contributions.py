@@ -71,6 +71,22 @@ def test_a_cause_beside_larger_ones_has_to_help_where_nobody_looked(seen, share,
 
 
 @pytest.mark.parametrize(
+    ("error", "own", "form", "trace"),
+    [
+        (6.0, 0.4, 0.0005, False),  # a rate gyro that is off, beside a current
+        (6.0, 0.4, 0.003, False),
+        (6.0, 0.2, 0.003, True),  # formulas in place that are rough
+        (6.0, 0.01, 0.0005, True),
+        (0.5, 0.9, 0.0005, True),
+    ],
+)
+def test_a_cause_in_a_channel_of_its_own_is_no_trace(error, own, form, trace):
+    one = Contribution(0.002, 0.0001, {"x": 0.2, "r": error}, {}, form, {"x": 0.0002, "r": own})
+    assert one.unnoticed == trace
+    assert replace(one, share=0.0).unnoticed
+
+
+@pytest.mark.parametrize(
     ("certainty", "left"), [(0.0, 0.25), (6.0, 4.0)], ids=["noise of a sensor", "the ship did move"]
 )
 def test_slow_noise_of_sensors_is_nothing_unknown(certainty, left):
