@@ -60,6 +60,8 @@ EFFECT = SensorEffect(
     },
     variants=(("angle",), ("alone",)),
     besides=("alone",),
+    varies=("angle", "alone"),
+    subject="error of the compass",
     sentence=lambda v: (
         "The compass showed " + " and ".join(_WORDS[name].format(v[name]) for name in _WORDS if name in v)
     ),

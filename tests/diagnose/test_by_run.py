@@ -14,6 +14,7 @@ from mmgtune.diagnose import DiagnoseOptions, diagnose, write_diagnosis
 from mmgtune.profile import load_profile, parse_profile
 from mmgtune.report import render
 from mmgtune.trial import load_trials
+from mmgtune.units import DEG
 from tests.hidden.cases import Case, of_one_run, of_runs, tide
 from tests.hidden.plant import TUNING, simulate, write
 
@@ -105,6 +106,17 @@ def test_a_rudder_zero_that_differs(tmp_path):
     assert (cause.tag, cause.runs.by) == ("rudder-offset", "trial")
     assert np.abs(misses(cause.runs, case, "rudder-offset")).max() < 3.5
     assert "The zero of the rudder differed from run to run" in result.sentence()
+
+
+def test_a_gyro_that_was_set_anew_for_each_run(tmp_path):
+    case = of_runs("rudder-offset", 0, seed=3)
+    off = dict(zip(sorted(TUNING), (3, -2, 0.5, -4, 1), strict=True))
+    case = replace(case, of_trial={name: {"heading-bias": {"angle": angle * DEG}} for name, angle in off.items()})
+    result = said_of(case, tmp_path, ("current", "heading-bias", "rudder-offset"))
+    (cause,) = result.causes
+    assert (result.verdict, cause.tag, cause.runs.by) == ("found", "heading-bias", "trial"), result.sentence()
+    assert np.abs(misses(cause.runs, case, "heading-bias")).max() < 3.5
+    assert "The error of the compass differed from run to run: -4 to 3°." in result.sentence()
 
 
 def test_a_resistance_that_differs_though_it_is_a_target_too(tmp_path):
