@@ -44,7 +44,8 @@ FORM, FORM_IF_ROUGH = 0.0005, 0.003
 """Share of the error that a cause leaves whose form is 2 % off, and one whose formula is no better than 5 %."""
 
 HARDLY_SEEN = 0.005
-"""Share of the fall of chi-squared up to which a cause has to remove more than ``FORM`` on held-out trials."""
+"""Share of the fall of chi-squared up to which a cause has to remove more than ``FORM`` on held-out trials, and
+share of the error there up to which one that shows in a channel of its own may seem to add to others."""
 
 SHOWS, OWN = 1.0, 100.0
 """Error in a channel on held-out trials, over the variance of its noise, and share of what all causes remove there,
@@ -74,8 +75,11 @@ class Contribution:
 
     @property
     def harmful(self) -> bool:
-        """Whether held-out trials are told no better with it than without."""
-        return self.channels is not None and self.share <= 0.0
+        """Whether held-out trials are told no better with it than without.
+
+        Where it shows in a channel of its own, the form of larger ones may add as much elsewhere as it removes there.
+        """
+        return self.channels is not None and self.share <= (-HARDLY_SEEN if self.stands_out else 0.0)
 
     @property
     def stands_out(self) -> bool:

@@ -83,7 +83,8 @@ def test_a_cause_beside_larger_ones_has_to_help_where_nobody_looked(seen, share,
 def test_a_cause_in_a_channel_of_its_own_is_no_trace(error, own, form, trace):
     one = Contribution(0.002, 0.0001, {"x": 0.2, "r": error}, {}, form, {"x": 0.0002, "r": own})
     assert one.unnoticed == trace
-    assert replace(one, share=0.0).unnoticed
+    assert replace(one, share=-0.001).unnoticed == trace  # the wind's form, in positions
+    assert replace(one, share=-0.01).unnoticed
 
 
 @pytest.mark.parametrize(
