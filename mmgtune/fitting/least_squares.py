@@ -38,6 +38,9 @@ MOST_CHANGES = 12
 FORETOLD = 0.3
 """Share of a promised fall by which it may differ for the derivatives to be used once more."""
 
+SETTLED = 4
+"""Iterations from which on that is done: before, parameters that move later than others still find their way."""
+
 AHEAD = 0.1
 """Share of a step at which its second derivative is taken."""
 
@@ -225,7 +228,8 @@ def solve(
                 damping[row] = min(max(damping[row] * DAMPINGS[k], 1e-12), 1e6)
             else:
                 damping[row] *= 1e3
-            told[row] = trusting and gain > 0.0 and abs(gain - promised[i]) <= FORETOLD * promised[i]
+            foretold = gain > 0.0 and abs(gain - promised[i]) <= FORETOLD * promised[i]
+            told[row] = trusting and foretold and iterations[row] >= SETTLED
             small = 0.0 < gain <= max(QUIET * value[row], tolerance)
             quiet[row] = quiet[row] + 1 if small else 0
             if last[i] or abs(gain - promised[i]) <= tolerance:

@@ -112,7 +112,7 @@ def test_a_gyro_that_was_set_anew_for_each_run(tmp_path):
     case = of_runs("rudder-offset", 0, seed=3)
     off = dict(zip(sorted(TUNING), (3, -2, 0.5, -4, 1), strict=True))
     case = replace(case, of_trial={name: {"heading-bias": {"angle": angle * DEG}} for name, angle in off.items()})
-    result = said_of(case, tmp_path, ("current", "heading-bias", "rudder-offset"))
+    result = said_of(case, tmp_path, ("current", "heading-bias"))
     (cause,) = result.causes
     assert (result.verdict, cause.tag, cause.runs.by) == ("found", "heading-bias", "trial"), result.sentence()
     assert np.abs(misses(cause.runs, case, "heading-bias")).max() < 3.5

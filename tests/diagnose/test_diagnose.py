@@ -148,7 +148,7 @@ def test_half_a_wind_is_none():
     assert [known.parameters for known in result.detectability] == [("speed", "direction")]
 
 
-@pytest.mark.parametrize("noise", ["white", "autocorrelated"])
+@pytest.mark.parametrize("noise", ["white", pytest.param("autocorrelated", marks=pytest.mark.long)])
 def test_nothing_hidden_nothing_found(noise, tmp_path):
     case = null(5) if noise == "white" else null(5, AUTOCORRELATED)
     result = said_of(case, tmp_path)
