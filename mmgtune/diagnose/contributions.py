@@ -59,9 +59,9 @@ class Contribution:
     seen     share of the fall of chi-squared by all causes, on the trials looked at, that is lost without it
     share    the same of the error on held-out trials
     channels by channel, the error on held-out trials that it removes over the variance of the noise
+    indices  by manoeuvring index, the largest change on held-out trials: of lengths as a share, of angles [deg]
     form     such shares that the form of others may leave
     own      by channel, such a share of the error in that channel alone
-    indices  by manoeuvring index, the largest change on held-out trials: of lengths as a share, of angles [deg]
 
     Where ``seen`` is enough to tell that it is no trace, the others are not asked for: NaN and empty.
     """

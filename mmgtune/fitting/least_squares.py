@@ -171,9 +171,10 @@ def solve(
                 models[row] = _Linear(problem, at, off, slopes, by_offset, holding=trusting)
         again = [row for row in rows if told[row]]
         if again:
-            residuals = residuals_of(z[:, again], d[:, again])
+            offsets = d[:, again]
+            residuals = residuals_of(z[:, again], offsets)
             for k, row in enumerate(again):
-                models[row] = models[row].with_residuals(d[:, row], residuals[:, k])
+                models[row] = models[row].with_residuals(offsets[:, k], residuals[:, k])
         return [models[row] for row in rows]
 
     models: dict[int, _Linear] = {}
@@ -471,20 +472,23 @@ class _Linear:
         """Those whose offsets are free."""
         if self._limit is None:
             return None
-        prior, of_cases = self._problem.prior, [(self._by_offset[rows].T, rows) for rows in self._rows]
+        of_cases = [(self._by_offset[rows].T, rows) for rows in self._rows]
         return _Cases(
             self._d,
-            np.array([by_row @ by_row.T for by_row, _ in of_cases]) + prior[:, None] * np.eye(6),
+            np.array([by_row @ by_row.T for by_row, _ in of_cases]) + self._problem.prior[:, None] * np.eye(6),
             np.array([by_row @ self._jacobian[rows] for by_row, rows in of_cases]),
-            np.array([by_row @ self.residuals[rows] for by_row, rows in of_cases]) + prior * self._d,
+            self._slope(self._d, self.residuals),
         )
+
+    def _slope(self, d: FloatArray, residuals: FloatArray) -> FloatArray:
+        """(n_cases, 6) halves of the first derivatives by the offsets d, of which the residuals are."""
+        return np.array([self._by_offset[rows].T @ residuals[rows] for rows in self._rows]) + self._problem.prior * d
 
     def with_residuals(self, d: FloatArray, residuals: FloatArray) -> _Linear:
         """The same derivatives around a point nearby."""
         cases = self._plain.cases
         if cases is not None:
-            slope = np.array([self._by_offset[rows].T @ residuals[rows] for rows in self._rows])
-            cases = cases._replace(at=d, slope=slope + self._problem.prior * d)
+            cases = cases._replace(at=d, slope=self._slope(d, residuals))
         plain = _Plain(self._plain.hessian, self._jacobian.T @ residuals, cases)
         return _Linear(self._problem, d, residuals, self._jacobian, self._by_offset, self._holding, plain=plain)
 

@@ -8,7 +8,17 @@ import pytest
 
 from mmgtune.cli.sweep import summary
 from mmgtune.errors import OptionError
-from mmgtune.fitting import FitOptions, Hooks, LeaveOutOptions, SweepOptions, fit, leave_out, make_problem, sweep
+from mmgtune.fitting import (
+    FitOptions,
+    Hooks,
+    LeaveOutOptions,
+    SweepOptions,
+    fit,
+    least_squares,
+    leave_out,
+    make_problem,
+    sweep,
+)
 from mmgtune.fitting.box import make_box
 from mmgtune.fitting.cmaes import from_box, search, to_box
 from mmgtune.fitting.least_squares import bounded_step, bounded_steps, solve
@@ -122,6 +132,44 @@ def test_many_small_bounded_steps_at_once_are_those_one_by_one():
         np.testing.assert_allclose(
             found, [bounded_step(*one) for one in zip(hessian, gradient, z, strict=True)], atol=1e-8
         )
+
+
+def test_derivatives_that_foretold_a_step_serve_the_next_to_the_same_end(problem, monkeypatch):
+    """With initial states estimated, as in a diagnosis."""
+    made = []
+    jacobians = least_squares._jacobians
+    monkeypatch.setattr(least_squares, "_jacobians", lambda *given: made.append(1) or jacobians(*given))
+    estimated = problem.estimated(np.full((len(problem.cases), 6), 0.1))
+    start = estimated.box.to_unit(estimated.box.pre)[:, None]
+
+    def end(settled):
+        made.clear()
+        monkeypatch.setattr(least_squares, "SETTLED", settled)
+        (found,) = solve(estimated, start, tolerance=1e-9, trusting=True)
+        return found, len(made)
+
+    (own, every), (kept, fewer) = end(10**9), end(1)
+    assert fewer < every
+    assert kept.converged
+    assert pytest.approx(own.J, rel=1e-5) == kept.J
+
+
+def test_derivatives_are_taken_along_to_another_point(problem):
+    estimated = problem.estimated(np.full((len(problem.cases), 6), 0.1))
+    here = np.full((len(problem.box), 1), 0.5)
+    offsets = np.zeros((len(problem.cases), 1, 6))
+    at, _, slopes, by_offset = (one[0] for one in least_squares._jacobians(estimated, here, offsets, np.array([0])))
+    there = at + 0.01
+    residuals = estimated.residuals(here + 0.05, there[:, None])[0]
+    model = least_squares._Linear(estimated, at, estimated.residuals(here, at[:, None])[0], slopes, by_offset, True)
+    along, anew = (
+        model.with_residuals(there, residuals),
+        least_squares._Linear(estimated, there, residuals, slopes, by_offset, True),
+    )
+    for name in ("hessian", "gradient", "settling"):
+        np.testing.assert_allclose(getattr(along, name), getattr(anew, name), rtol=1e-12)
+    step = np.full(len(problem.box), 0.01)
+    np.testing.assert_allclose(along.offsets(step), anew.offsets(step), rtol=1e-12)
 
 
 def test_least_squares_never_ends_above_its_start(problem):
