@@ -50,7 +50,7 @@ TYPICAL = {"steering-lag": (), "antenna": ("antenna", "position-latency", "speed
 """An actuator among all causes, a sensor among those like it; others are below.  The full study has them all."""
 
 
-@pytest.mark.parametrize("tag", ["steering-lag", pytest.param("antenna", marks=pytest.mark.long)])
+@pytest.mark.parametrize("tag", [pytest.param("steering-lag", marks=pytest.mark.long), "antenna"])
 def test_a_typical_effect_is_named(tag, tmp_path):
     case = single(tag, 3, seed=1)
     result = said_of(case, tmp_path, effects=TYPICAL[tag])
@@ -168,7 +168,7 @@ def test_a_resistance_beyond_the_box_of_its_target_is_a_cause(tmp_path):
     case = null(1)
     fouled = {**case.ship, "hull.R_0": 2.2 * PROFILE["hull.R_0"]}  # the box ends at 1.5 times
     write(simulate(fouled, {}, case.seed, case.noise), tmp_path)
-    options = DiagnoseOptions(effects=("resistance", "hull-term", "wave-drift", "rpm-scale"))
+    options = DiagnoseOptions(effects=("resistance", "wave-drift", "rpm-scale"))
     result = diagnose(load_profile("suzaku"), load_trials(tmp_path), options)
     assert (result.verdict, [cause.tag for cause in result.causes]) == ("found", ["resistance"]), result.sentence()
     factor = result.to_dict()["causes"][0]["parameters"]["factor"]["value"]
@@ -184,7 +184,7 @@ def test_a_cause_that_would_be_believed_alone_is_named_though_a_hull_unlike_the_
     derivatives = [name for name in load_profile("suzaku").sections["hull"].coefficients if name[0] in "YN"]
     hull = {f"hull.{name}": PROFILE[f"hull.{name}"] * rng.uniform(0.93, 1.07) for name in derivatives}
     write(simulate({**case.ship, **hull}, case.effects, case.seed, case.noise), tmp_path)
-    options = DiagnoseOptions(effects=("rudder-offset", "hull-term", "rpm-scale", "heading-filter"), leeway=0.0)
+    options = DiagnoseOptions(effects=("rudder-offset", "hull-term"), leeway=0.0)
     result = diagnose(load_profile("suzaku"), load_trials(tmp_path), options)
     assert (result.verdict, [cause.tag for cause in result.causes]) == ("found", ["rudder-offset"])
     assert result.doubted.effects[0] == "rudder-offset"
