@@ -217,7 +217,8 @@ class LaneModel:
         p = self.p
         for one in self.factors:
             for name, factor in zip(one.effect.changes, self.of(one.effect.function)(around, one.e), strict=True):
-                section, _, symbol = name.partition(".")
+                kind, _, symbol = name.partition(".")
+                section = "ship" if kind == "particulars" else kind
                 part = getattr(p, section)
                 if symbol in part._fields:
                     p = p._replace(**{section: part._replace(**{symbol: getattr(part, symbol) * factor})})
@@ -258,7 +259,7 @@ class LaneModel:
         """Time derivatives of the six states and of what lags remember, (n_states, n_lanes)."""
         state = State(*s[:N_STATES])
         total, slopes = self.acting_force(s, control, around, h)
-        rate = self.of(rates)(state, *self.water(state, around), total, self.p.ship)
+        rate = self.of(rates)(state, *self.water(state, around), total, self.here(around).ship)
         for moving in self.flows:
             if moving.effect.rate is not None:
                 rate = self.of(carried)(rate, *self.of(moving.effect.rate)(state, around, moving.e))

@@ -235,6 +235,10 @@ class FactorsFunction(Protocol):
     def __call__(self, around: Surroundings, e: Any, /) -> tuple[Lanes, ...]: ...
 
 
+ENTRAINED = ("particulars.m_x_", "particulars.m_y_", "particulars.J_zz_")
+"""Of the particulars what is of the water carried along: the rest stays with a ship."""
+
+
 @dataclass(frozen=True, kw_only=True, repr=False)
 class FactorsEffect(Effect):
     """Coefficients that change on the way, with what is measured around the ship.
@@ -249,8 +253,8 @@ class FactorsEffect(Effect):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if any(name.startswith("particulars.") for name in self.changes):
-            raise TypeError(f"effect '{self.tag}': particulars of the ship do not change on the way")
+        if any(name.startswith("particulars.") and name not in ENTRAINED for name in self.changes):
+            raise TypeError(f"effect '{self.tag}': of the particulars only added masses change on the way")
 
 
 class ForceFunction(Protocol):

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..physics.elementary import exp, log, where
-from ..physics.quantities import Lanes, Surroundings
+from ..physics.quantities import Lanes, Ship, Surroundings
 from ..physics.regressions.kijima1990 import LEAST, shallow_ratios
 from .effect import FactorsEffect, Parameter, factor_on_measured
 from .visited import Visited
@@ -28,6 +28,7 @@ class ShallowWater(NamedTuple):
     N_v: Lanes
     N_r: Lanes
     cross: Lanes
+    inertia: Lanes
     L_pp: Lanes
     B: Lanes
     d: Lanes
@@ -35,7 +36,9 @@ class ShallowWater(NamedTuple):
 
 
 class ShallowFactors(NamedTuple):
-    """Factors [-] on the linear derivatives of the hull, and on all that is not linear, of whatever hull it is."""
+    """Factors [-] on the linear derivatives of the hull, on all that is not linear, of whatever hull it is, and on
+    the water carried along.
+    """
 
     Y_v: Lanes
     Y_r: Lanes
@@ -55,21 +58,24 @@ class ShallowFactors(NamedTuple):
     N_vv: Lanes
     N_rr: Lanes
     C_D: Lanes
+    m_y_: Lanes
+    J_zz_: Lanes
 
 
 def shallow_water(around: Surroundings, e: ShallowWater) -> ShallowFactors:
     """Factors on hull derivatives in water of some depth [m].
 
-    Where the trial has measured depth it counts, the draught over it times ``measured``; else the steady one.  Added
-    masses, wake and rudder are left as they are, and the water as deep under the whole ship (assumptions).  The others
-    may grow more or less than the formulas have it: by the factor on Y_v to a power, which is 0 in the formulas; those
-    know of no growth of what is not linear.
+    Where the trial has measured depth it counts, the draught over it times ``measured``; else the steady one.  Wake
+    and rudder are left as they are, and the water as deep under the whole ship (assumptions).  The others may grow
+    more or less than the formulas have it: by the factor on Y_v to a power, which is 0 in the formulas; those know of
+    no growth of what is not linear, nor of added masses.
     """
     by_log = around.depth_known * e.measured > 0.0
     h = np.minimum(e.measured * e.d / np.maximum(around.depth, 1e-6), 1.0 / AFLOAT)
     found = shallow_ratios(e.L_pp, e.B, e.d, e.C_b, where(by_log, h, e.d / e.depth))
     growth = log(found.Y_v)
     cross = exp(e.cross * growth)
+    inertia = exp(e.inertia * growth)
     return ShallowFactors(
         Y_v=found.Y_v * exp(e.Y_v * growth),
         Y_r=found.Y_r * exp(e.Y_r * growth),
@@ -89,6 +95,8 @@ def shallow_water(around: Surroundings, e: ShallowWater) -> ShallowFactors:
         N_vv=cross,
         N_rr=cross,
         C_D=cross,
+        m_y_=inertia,
+        J_zz_=inertia,
     )
 
 
@@ -141,8 +149,9 @@ EFFECT = FactorsEffect(
         ),
         **{name: _power(name) for name in ("Y_v", "Y_r", "N_v", "N_r")},
         "cross": _power("what is not linear in Y and N", -0.5, 1.5),
+        "inertia": _power("the added mass in sway and the added moment of inertia in yaw", -0.5, 1.0),
     },
-    form={"Y_v": 0.25, "Y_r": 0.25, "N_v": 0.25, "N_r": 0.25, "cross": 0.5},
+    form={"Y_v": 0.25, "Y_r": 0.25, "N_v": 0.25, "N_r": 0.25, "cross": 0.5, "inertia": 0.25},
     borrowed={name: f"particulars.{name}" for name in ("L_pp", "B", "d", "C_b")},
     variants=(("depth",), ("measured",)),
     unvisited=unvisited,
@@ -158,5 +167,5 @@ EFFECT = FactorsEffect(
     varies=("depth",),
     subject="depth of the water",
     beyond=beyond,
-    changes=tuple(f"hull.{name}" for name in ShallowFactors._fields),
+    changes=tuple(f"{'particulars' if name in Ship._fields else 'hull'}.{name}" for name in ShallowFactors._fields),
 )

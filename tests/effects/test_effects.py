@@ -33,7 +33,7 @@ STRONG = {
     "wind-drift": {"along": 0.02, "across": -0.005},
     "flap": {"factor": 0.9},
     "propeller-side-force": {"force": 1.4, "moment": 0.7},
-    "shallow-water": {"depth": 10.0, "N_r": 0.1, "cross": 0.5},
+    "shallow-water": {"depth": 10.0, "N_r": 0.1, "cross": 0.5, "inertia": 0.3},
     "loading": {"draught": 1.05, "trim": 0.1, "displacement": 0.97},
     "resistance": {"factor": 1.1, "slope": 1.0},
     "wind": {"speed": 8.0, "direction": 1.0},

@@ -267,7 +267,7 @@ def test_shallow_water(numbers):
     h, b = 3.8 / 8.0, 0.737 * 13.5 / 3.8
 
     def of(around, depth, measured, **powers):
-        beside = {"Y_v": 0.0, "Y_r": 0.0, "N_v": 0.0, "N_r": 0.0, "cross": 0.0}
+        beside = {"Y_v": 0.0, "Y_r": 0.0, "N_v": 0.0, "N_r": 0.0, "cross": 0.0, "inertia": 0.0}
         return effect.function(around, effect.params(depth=depth, measured=measured, **beside | powers, **ship))
 
     def deep(n):
@@ -279,7 +279,8 @@ def test_shallow_water(numbers):
     factors = {"Y_v": deep(0.40 * b), "N_v": deep(0.425 * b), "N_r": deep(1.5 - 14.28 * 3.8 / 83.0), "Y_r": cubic}
     for name, factor in found._asdict().items():
         assert factor == pytest.approx(factors.get(name, 1.0)), name
-    assert tuple(f"hull.{name}" for name in found._fields) == effect.changes
+    inertia = ("m_y_", "J_zz_")
+    assert effect.changes == tuple(f"{'particulars' if name in inertia else 'hull'}.{name}" for name in found._fields)
     logged = UNKNOWN._replace(depth=8.0, depth_known=1.0)
     assert of(logged, math.inf, 1.0) == pytest.approx(found)
     # Half of the draught over the depth is twice the depth; none of it is deep water.
@@ -288,9 +289,10 @@ def test_shallow_water(numbers):
     assert of(logged._replace(depth=1.0), math.inf, 1.0) == pytest.approx(of(STILL, 1.05 * 3.8, 1.0))
 
     # What grows otherwise than the formulas have it does so with the depth, and not in deep water.
-    powers = {"Y_v": -0.2, "Y_r": 0.3, "N_v": 0.25, "N_r": -0.1, "cross": 0.5}
+    powers = {"Y_v": -0.2, "Y_r": 0.3, "N_v": 0.25, "N_r": -0.1, "cross": 0.5, "inertia": 0.3}
+    powers_of = powers | {"m_y_": powers["inertia"], "J_zz_": powers["inertia"]}
     for name, factor in of(STILL, 8.0, 1.0, **powers)._asdict().items():
-        grown = deep(0.40 * b) ** powers.get(name, powers["cross"])
+        grown = deep(0.40 * b) ** powers_of.get(name, powers["cross"])
         assert factor == pytest.approx(factors.get(name, 1.0) * grown), name
     assert set(of(STILL, math.inf, 1.0, **powers)) == {1.0}
 
