@@ -244,9 +244,9 @@ def _explained(
     lengths = [max(2, round(BLOCK / float(np.median(np.diff(trial.t))))) for trial in bench.trials]
 
     def means(values: Sequence[FloatArray]) -> FloatArray:
-        return np.concatenate(
-            [np.nanmean(v[: len(v) // n * n].reshape(-1, n), axis=1) for v, n in zip(values, lengths, strict=True)]
-        )
+        blocks = [v[: len(v) // n * n].reshape(-1, n) for v, n in zip(values, lengths, strict=True)]
+        with np.errstate(invalid="ignore"):  # of a block in which nothing was measured: not a number
+            return np.concatenate([np.nansum(one, axis=1) / np.isfinite(one).sum(axis=1) for one in blocks])
 
     states = {
         "heading": means([np.mod(trial.psi, 2.0 * np.pi) for trial in bench.trials]),
