@@ -47,7 +47,7 @@ HARDLY_SEEN = 0.005
 """Share of the fall of chi-squared up to which a cause has to remove more than ``FORM`` on held-out trials, and
 share of the error there up to which one that shows in a channel of its own may seem to add to others."""
 
-SHOWS, OWN = 1.0, 100.0
+SHOWS, OWN = 0.2, 100.0
 """Error in a channel on held-out trials, over the variance of its noise, and share of what all causes remove there,
 over what the others' form may leave: a cause that removes as much in any channel is no matter of that form."""
 
@@ -193,7 +193,7 @@ def _of(bench: Workbench, found: Found, cause: Hypothesis, test: Sequence[Trial]
         if counts[k] and (noise := bench.noise.channels.get(name))
     }
     scale = max(float(removed[0]), abs(float(removed[1])))  # all together may remove less than one, or nothing
-    form = FORM_IF_ROUGH if any(one.effect.rough for one in found.causes) else FORM
+    form = FORM_IF_ROUGH if any(one.rough for one in found.causes) else FORM
     own = {}
     for k, name in enumerate(STATES):
         by_all, by_one = errors[0, k] - errors[2, k], errors[1, k] - errors[2, k]

@@ -60,6 +60,11 @@ class Hypothesis:
         """Whether it makes a hull of two like sides push to one of them."""
         return any(LOPSIDED_HULL.fullmatch(name) for name in self.bases)
 
+    @property
+    def rough(self) -> bool:
+        """Whether what it leaves says little: its formula, or a change that it takes for even, is not that exact."""
+        return self.effect.rough or bool(set(self.effect.rough_with) & set(self.variant))
+
     def holds(self, other: Hypothesis) -> bool:
         """Whether the other is a special case of this: fewer parameters, or the same for more runs."""
         finer = self.by == "trial" or self.by == other.by or not other.by

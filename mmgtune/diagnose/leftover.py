@@ -19,6 +19,7 @@ from ..backends import STATES
 from ..displayed import Brief
 from ..physics.frame import to_earth
 from ..trial import Trial
+from ..trial.kinematics import rounding_noise
 from ..units import DEG
 from .evidence import FEWEST_BLOCKS, share_explained
 from .linear import linearise
@@ -109,7 +110,7 @@ class Leftover(Brief):
 def leftover(bench: Workbench, point: Point) -> Leftover:
     """What is left at a point, on the trials of the workbench."""
     residuals = residuals_of(bench, point)
-    level = _white(residuals)
+    level = np.maximum(_white(residuals), _rounding(bench.trials))
     left_open = _left_open(bench, point)
     excess, excused = {}, {}
     for k, name in enumerate(STATES):
@@ -192,6 +193,11 @@ def _white(residuals: Sequence[FloatArray]) -> FloatArray:
     """(6,) white noise of each channel, from second differences of the residuals."""
     second = np.concatenate([np.diff(r, n=2, axis=0) for r in residuals])
     return np.asarray(np.sqrt(np.nanmean(second**2, axis=0) / 6.0))
+
+
+def _rounding(trials: Sequence[Trial]) -> FloatArray:
+    """(6,) noise of rounding of each channel, which second differences do not show where it moves little."""
+    return np.asarray(np.median([[rounding_noise(values) for values in trial.motion.T] for trial in trials], axis=0))
 
 
 def _left_open(bench: Workbench, point: Point) -> FloatArray:

@@ -22,7 +22,7 @@ from ..objective import Objective, cases_of
 from ..options import DiagnoseOptions
 from ..profile import ShipProfile, with_all_effects
 from ..trial import Coverage, Held, Trial, visited_by
-from ..trial.kinematics import white_noise
+from ..trial.kinematics import motion_noise
 from .beliefs import Beliefs, forms, let_go
 from .noise import NoiseModel, white
 from .runs import between, labels_of
@@ -248,8 +248,8 @@ class Workbench:
 
 
 def noise_levels(trials: Sequence[Trial]) -> FloatArray:
-    """(6,) deviation of white noise by channel: the median over trials of what second differences show."""
-    found = np.median([[white_noise(values) for values in trial.motion.T] for trial in trials], axis=0)
+    """(6,) deviation of the noise by channel: the median over trials of what second differences and rounding show."""
+    found = np.median([[motion_noise(values) for values in trial.motion.T] for trial in trials], axis=0)
     floor = 1e-6 * np.nanmax([np.nanmax(np.abs(trial.motion), axis=0) for trial in trials], axis=0)
     return np.asarray(np.maximum(found, np.maximum(floor, 1e-12)))
 

@@ -96,6 +96,7 @@ EFFECT = FlowEffect(
     sentence=_sentence,
     of_measured={"measured": "current"},
     besides=("north_rate", "east_rate"),
+    rough_with=("north_rate", "east_rate"),
     stand_in=("north", "east", "north_rate", "east_rate"),
     varies=("north", "east", "north_rate", "east_rate"),
 )

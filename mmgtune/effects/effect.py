@@ -73,6 +73,7 @@ class Effect(Component):
     pivots     parameters about which others are meant, {parameter: its value by ship where the effect is put into a
                profile}; they are never searched for
     rough      whether its formula is right to no more than some per cent of itself, so that what it leaves says little
+    rough_with parameters with which it is so, as a change that is never quite even
     besides    parameters that a search looks for, and a fit with the effect tunes only where they are named
     form       parameters that say how far the force is off its formula, {parameter: one standard deviation about its
                null}; a search lets them go wherever it fits the effect, a fit tunes them only where they are named
@@ -100,6 +101,7 @@ class Effect(Component):
     told_as: Mapping[tuple[str, str], tuple[str, str]] = field(default_factory=dict)
     pivots: Mapping[str, Callable[[Scale], float]] = field(default_factory=dict)
     rough: bool = False
+    rough_with: tuple[str, ...] = ()
     besides: tuple[str, ...] = ()
     form: Mapping[str, float] = field(default_factory=dict)
     absorbed: Mapping[str, str] = field(default_factory=dict)

@@ -10,16 +10,36 @@ class SpeedScale(NamedTuple):
     """See the parameters below."""
 
     factor: Lanes
+    both: Lanes
+
+
+SHOWN = {"factor": "speed ahead", "both": "speeds ahead and to starboard"}
+"""What each parameter is a factor on."""
 
 
 def speed_scale(state: State, e: SpeedScale) -> State:
-    """Surge velocity shown = factor [-] times surge velocity."""
-    return State(x=state.x, y=state.y, psi=state.psi, u=state.u * e.factor, v_m=state.v_m, r=state.r)
+    """Surge velocity shown = factor times both [-] times surge velocity, sway velocity shown = both times it."""
+    u, v_m = state.u * e.factor * e.both, state.v_m * e.both
+    return State(x=state.x, y=state.y, psi=state.psi, u=u, v_m=v_m, r=state.r)
 
 
 def speed_scale_inverse(logged: State, e: SpeedScale) -> State:
-    """Surge velocity from the one shown."""
-    return State(x=logged.x, y=logged.y, psi=logged.psi, u=logged.u / e.factor, v_m=logged.v_m, r=logged.r)
+    """Velocities from those shown."""
+    u, v_m = logged.u / (e.factor * e.both), logged.v_m / e.both
+    return State(x=logged.x, y=logged.y, psi=logged.psi, u=u, v_m=v_m, r=logged.r)
+
+
+def _factor(of: str) -> Parameter:
+    """What is shown over what is."""
+    return Parameter(
+        f"{of} shown over {of}",
+        low=0.0,
+        high=3.0,
+        null=1.0,
+        bounds=lambda _: (0.7, 1.3),
+        typical=lambda _: 0.02,
+        bounds_source="three tenths either way",
+    )
 
 
 EFFECT = SensorEffect(
@@ -30,17 +50,9 @@ EFFECT = SensorEffect(
     function=speed_scale,
     inverse=speed_scale_inverse,
     cites=(),
-    fields={
-        "factor": Parameter(
-            "surge velocity shown over surge velocity",
-            low=0.0,
-            high=3.0,
-            null=1.0,
-            bounds=lambda _: (0.7, 1.3),
-            typical=lambda _: 0.02,
-            bounds_source="three tenths either way",
-        )
-    },
-    variants=(("factor",),),
-    sentence=lambda v: f"The speed log showed {v['factor']} times the speed",
+    fields={name: _factor(of) for name, of in SHOWN.items()},
+    variants=(("factor",), ("both",)),
+    sentence=lambda v: (
+        "The speed log showed " + ", and ".join(f"{v[name]} times the {of}" for name, of in SHOWN.items() if name in v)
+    ),
 )

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..trial import Trial
-from ..trial.kinematics import white_noise
+from ..trial.kinematics import motion_noise
 from ..trial.schema import MOTION
 
 LARGEST = 5.0
@@ -22,10 +22,10 @@ LARGEST = 5.0
 def noise_of(trial: Trial) -> FloatArray:
     """Standard deviation of white noise in x, y, psi, u, v_m, r: (6,), SI units.
 
-    What the file says, else what second differences show, in which a smooth motion hardly does.
+    What the file says, else what second differences show, in which a smooth motion hardly does, and rounding.
     """
     channels = zip(MOTION, trial.motion.T, strict=True)
-    return np.array([trial.noise.get(name, white_noise(values)) for name, values in channels])
+    return np.array([trial.noise.get(name, motion_noise(values)) for name, values in channels])
 
 
 def deviations(trials: Sequence[Trial], scales: FloatArray) -> FloatArray:

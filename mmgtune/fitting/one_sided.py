@@ -17,7 +17,7 @@ LOPSIDED_HULL = re.compile(r"effects\.hull-term\.[YN]_(one|absr|vv|rr|rrabsr)")
 """Terms of a hull of two unlike sides."""
 
 LOPSIDED = re.compile(
-    r"propeller\.(C_PY|C_PN)\w*|effects\.rudder-offset\.angle|effects\.propeller-side-force\.\w+"
+    r"propeller\.(C_PY|C_PN)\w*|effects\.rudder-offset\.angle|effects\.propeller-(side-force|walk)\.\w+"
     rf"|{LOPSIDED_HULL.pattern}"
 )
 """Coefficients that push to one side whatever the rudder does: on one side they are any change of the others."""

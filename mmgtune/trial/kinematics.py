@@ -141,6 +141,34 @@ def white_noise(values: FloatArray) -> float:
     return 1.4826 * float(np.median(np.abs(bends))) / np.sqrt(6.0) if len(bends) else 0.0
 
 
+def rounding_noise(values: FloatArray) -> float:
+    """Standard deviation of what rounding adds to a motion, as to a speed logged in tenths of a knot; 0 if none shows.
+
+    Its square is a twelfth of that of the step that all values are whole multiples of.  Not for orders: a rudder that
+    was only ever ordered to 0 and 35 deg is not logged in steps of 35 deg.
+    """
+    known = values[np.isfinite(values)]
+    found = np.unique(known)
+    steps = np.diff(found)
+    steps = steps[steps > 1e-9 * np.max(np.abs(known), initial=0.0)]  # the same number, worked out in two ways
+    if not len(steps) or (len(found) < FEW_VALUES and len(known) < OFTEN * len(found)):
+        return 0.0
+    of = (found - found[0]) / np.min(steps)
+    return float(np.min(steps) / np.sqrt(12.0)) if np.max(np.abs(of - np.round(of))) < 0.05 else 0.0
+
+
+FEW_VALUES, OFTEN = 8, 3
+"""So few values lie on a grid by chance, unless each comes so often."""
+
+
+def motion_noise(values: FloatArray) -> float:
+    """Standard deviation of the noise of a channel of the motion: white, but no less than that of rounding.
+
+    Of steps longer than the noise most second differences are 0.
+    """
+    return max(white_noise(values), rounding_noise(values))
+
+
 def middle(values: FloatArray) -> FloatArray:
     """(n_samples - 1,) means of neighbouring samples."""
     return 0.5 * (values[1:] + values[:-1])

@@ -33,6 +33,7 @@ STRONG = {
     "wind-drift": {"along": 0.02, "across": -0.005},
     "flap": {"factor": 0.9},
     "propeller-side-force": {"force": 1.4, "moment": 0.7},
+    "propeller-walk": {"share": 0.05},
     "shallow-water": {"depth": 10.0, "N_r": 0.1, "cross": 0.5, "inertia": 0.3},
     "loading": {"draught": 1.05, "trim": 0.1, "displacement": 0.97},
     "resistance": {"factor": 1.1, "slope": 1.0},
@@ -46,7 +47,7 @@ STRONG = {
     "antenna": {"x": 10.0, "y": 3.0, "x_alone": -6.0, "y_alone": 2.0},
     "heading-bias": {"angle": 0.03, "alone": -0.02},
     "compass-deviation": {"sine": 0.05, "cosine": -0.03, "sine_alone": 0.02, "cosine_alone": 0.02},
-    "speed-scale": {"factor": 1.02},
+    "speed-scale": {"factor": 1.02, "both": 0.99},
     "gyro-scale": {"factor": 1.03},
     "gyro-bias": {"rate": 0.001},
     "position-latency": {"seconds": 2.5},
@@ -56,8 +57,8 @@ STRONG = {
 }
 TAGS = [effect.tag for effect in effects()]
 
-TOGETHER = {tag: values for tag, values in STRONG.items() if tag != "discrepancy"}
-"""Those of the kernel that diagnoses run on; what is no cause has one of its own."""
+TOGETHER = {tag: values for tag, values in STRONG.items() if tag not in ("discrepancy", "propeller-walk")}
+"""Those of the kernel that diagnoses of this ship run on; what is no cause of hers has one of its own."""
 
 
 @pytest.fixture(scope="module")
@@ -149,7 +150,7 @@ def test_null_beside_lanes_with_every_effect_is_the_base_run_bit_for_bit(ship, b
     assert np.abs(beside[:, 0] - beside[:, 1]).max() > 1.0
 
 
-@pytest.mark.parametrize("tag", TAGS)
+@pytest.mark.parametrize("tag", [tag for tag in TAGS if tag != "propeller-walk"])  # no cause of hers: below
 def test_each_changes_the_run_and_can_be_written_and_read(ship, base, tag):
     stderr = {name: 0.1 * abs(value) for name, value in STRONG[tag].items()}
     read = parse_profile(with_effects(ship, {tag: STRONG[tag]}, "a test", {tag: stderr}).text)
@@ -159,6 +160,19 @@ def test_each_changes_the_run_and_can_be_written_and_read(ship, base, tag):
     cases, without = base(blown if tag == "wind-drift" else zigzag_like, 200)
     changed = states(Model(read), cases, backend="numpy")
     assert np.abs(changed - without).max() > 3e-4
+
+
+def test_a_propeller_walks_where_the_profile_has_no_side_force_of_it():
+    ship = load_profile("suzaku_fam")
+    cases = zigzag_like(Model(ship), 200)
+    null, walking = (
+        parse_profile(with_effects(ship, {"propeller-walk": values}, "a test").text) for values in ({}, {"share": 0.05})
+    )
+    without, alike, changed = (states(Model(one), cases, backend="numpy") for one in (ship, null, walking))
+    assert np.array_equal(without, alike)
+    assert np.abs(changed - without).max() > 3e-4
+    compiled = states(Model(walking), cases, backend="compiled")
+    assert np.max(np.abs(compiled - changed) / (1.0 + np.abs(changed))) < 1e-9
 
 
 @pytest.mark.parametrize("integrator", [Integrator("euler"), Integrator("rk4", 2)])  # every stage, every substep

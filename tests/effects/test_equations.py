@@ -154,6 +154,14 @@ def test_a_stalled_rudder_keeps_the_force_of_the_angle_it_stalled_at(added, delt
     assert not unchanged.any()
 
 
+def test_a_propeller_pushes_the_stern_aside_by_a_share_of_its_thrust(added):
+    force, found = added("propeller-walk", {"share": 0.05}, control=Control(1.7, 0.3))
+    n, D_P, K_T = (float(np.squeeze(getattr(found.propeller, name))) for name in ("n", "D_P", "K_T"))
+    thrust = RHO * n**2 * D_P**4 * K_T
+    assert thrust > 0.0
+    np.testing.assert_allclose(force, [0.0, 0.05 * thrust, -0.05 * thrust * L / 2.0])
+
+
 def test_memory_is_a_lag_of_first_order():
     e = find_effect("memory").params(6.0, 0.0, 0.0)
     found = SimpleNamespace(hull=Force(1.0, 10.0, 100.0))
@@ -215,12 +223,13 @@ def test_a_biased_compass_turns_the_axes_and_not_the_track():
     [
         ("gyro-bias", 0.001, {"r": MOVING.r + 0.001}),
         ("gyro-scale", 1.1, {"r": MOVING.r * 1.1}),
-        ("speed-scale", 1.1, {"u": MOVING.u * 1.1}),
+        ("speed-scale", (1.1, 1.0), {"u": MOVING.u * 1.1}),
+        ("speed-scale", (1.0, 1.1), {"u": MOVING.u * 1.1, "v_m": MOVING.v_m * 1.1}),
     ],
 )
-def test_sensors_with_one_number(tag, value, seen):
+def test_sensors_with_a_number_or_two(tag, value, seen):
     effect = find_effect(tag)
-    e = effect.params(value)
+    e = effect.params(*np.atleast_1d(value))
     assert effect.function(MOVING, e) == pytest.approx(MOVING._replace(**seen))
     assert effect.inverse(effect.function(MOVING, e), e) == pytest.approx(MOVING)
 

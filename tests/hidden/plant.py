@@ -414,7 +414,7 @@ def sensed(rows: np.ndarray, count: int, e: Mapping[str, Mapping[str, float]]) -
     heading = heading + _low_pass(psi, e["heading-filter"]["alone"]) - psi + e["heading-bias"]["alone"]
     heading = heading + compass["sine_alone"] * np.sin(psi) + compass["cosine_alone"] * np.cos(psi)
     heading = heading + e["gyro-drift"]["heading_alone"] * t
-    u = e["speed-scale"]["factor"] * u
+    u, v = e["speed-scale"]["factor"] * e["speed-scale"]["both"] * u, e["speed-scale"]["both"] * v
     u = u * (1.0 + e["unknown-log-quadratic"]["magnitude"] * (1.0 - u / SPEED))
     v = v + e["unknown-sway-bias"]["magnitude"]
     r = _low_pass(r, smooth["yaw_rate"])

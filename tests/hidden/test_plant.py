@@ -210,6 +210,8 @@ def test_sensors(still):
     np.testing.assert_allclose(sailed("gyro-scale", factor=1.05)["turn_p35"][:, R], 1.05 * r, atol=1e-15)
     np.testing.assert_allclose(sailed("gyro-bias", rate=1e-3)["turn_p35"][:, R], r + 1e-3, atol=1e-15)
     np.testing.assert_allclose(sailed("speed-scale", factor=0.9)["turn_p35"][:, U], 0.9 * turn[:, U], atol=1e-12)
+    scaled = sailed("speed-scale", both=0.9)["turn_p35"]
+    np.testing.assert_allclose(scaled[:, [U, V]], 0.9 * turn[:, [U, V]], atol=1e-12)
 
 
 def test_unknown_names_are_refused():

@@ -1,0 +1,54 @@
+"""The propeller pushes the stern sideways, where the profile knows of no such force."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..physics.quantities import Force, Lanes, State, Surroundings
+from .effect import ForceEffect, Parameter
+from .propeller_side_force import unvisited
+
+AT = -0.5
+"""Where the propeller stands, forward of midship over L_pp [-]: at the after perpendicular (assumption)."""
+
+
+class PropellerWalk(NamedTuple):
+    """See the parameters below."""
+
+    share: Lanes
+
+
+def propeller_walk(state: State, around: Surroundings, found: Any, components: Any, p: Any, e: PropellerWalk) -> Force:
+    """Side force as a share [-] of the thrust, positive to starboard, where the propeller stands.
+
+    Blades meet another wake at the top than at the bottom, so that both sides do not cancel; that it grows with the
+    thrust is an assumption, which holds about the speeds of service and not astern.
+    """
+    D_P = found.propeller.D_P
+    Y = e.share * (np.pi / 8.0) * p.ship.rho * D_P * D_P * found.propeller.jet
+    return Force(X=0.0 * Y, Y=Y, N=AT * p.ship.L_pp * Y)
+
+
+EFFECT = ForceEffect(
+    kind="effects.propeller-walk",
+    tag="propeller-walk",
+    title="side force of the propeller",
+    params=PropellerWalk,
+    function=propeller_walk,
+    cites=(),
+    fields={
+        "share": Parameter(
+            "side force over thrust, positive to starboard",
+            bounds=lambda _: (-0.2, 0.2),
+            typical=lambda _: 0.05,
+            bounds_source="a fifth of the thrust either way",
+        )
+    },
+    variants=(("share",),),
+    of_parts=("propeller",),
+    needs=("propeller.k_0",),
+    unvisited=unvisited,
+    sentence=lambda v: (
+        f"The propeller pushed the stern sideways by {v['share']} of its thrust (positive: to starboard)"
+    ),
+)
