@@ -81,7 +81,12 @@ def known_causes(
     profile: ShipProfile, trials: Sequence[Trial], options: DiagnoseOptions, *, in_place: bool = False
 ) -> list[Hypothesis]:
     """What a diagnosis of a profile on these trials looks for; ``in_place`` as for ``hypotheses``."""
-    present = [f"{effect.kind}.{name}" for effect in Model(profile).effects for name in effect.parameters]
+    present = [
+        f"{effect.kind}.{name}"
+        for effect in Model(profile).effects
+        for name, parameter in effect.parameters.items()
+        if profile.value(f"{effect.kind}.{name}") != parameter.null
+    ]
     measured = frozenset[str]().union(*(measured_around(trial) for trial in trials))
     whole = Model(with_all_effects(profile))
     return hypotheses(whole, options.targets or profile.targets, options.effects, measured, present, in_place=in_place)
@@ -102,7 +107,7 @@ def hypotheses(
     tags           effects asked for; empty for all
     measured       what any trial has of wind, current and so on; only then do parameters act that take it from there,
                    and those that stand in for it do not
-    present        parameters that the profile itself has already
+    present        parameters that the profile itself has already, at other than their null
     in_place       those that do the same as a target instead, and so would take its place; none out of many
     """
     found = []

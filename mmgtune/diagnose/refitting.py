@@ -142,6 +142,7 @@ class Refitting:
             chosen += terms[: (2 if self.strong else 1) * TERMS_REFITTED]
         fitted = self._fitted([s for s in chosen if s.power > 0.0])
         fitted += self._fitted(self._of_runs_worth(order, [end for _, end in fitted], quick=quick))
+        fitted += self._fitted(akin(order, fitted))
         self.known.ends.update((score.hypothesis.names, end) for score, end in fitted)
         asked = [s.hypothesis for s in ranked]
         chance = None if quick else ChanceScores(self.linear, asked, self.bench.options.seed)
@@ -367,6 +368,16 @@ def _unvisited(bench: Workbench, end: Point, hypothesis: Hypothesis) -> str:
     values = bench.values(end)
     found = {name.rpartition(".")[2]: values[name] for name in hypothesis.names}
     return hypothesis.effect.unvisited(found, bench.visited)
+
+
+def akin(order: Sequence[Score], fitted: Sequence[tuple[Score, Point]]) -> list[Score]:
+    """Those that act much like the one that fits best: the score of a wind is that of a light one, hardly its force."""
+    if not fitted:
+        return []
+    best = min(fitted, key=lambda one: one[1].chi2)[0].hypothesis
+    there = {score.hypothesis.names for score, _ in fitted}
+    alike = [score for score in order if score.hypothesis.tag in best.effect.akin and score.power > 0.0]
+    return [s for s in alike if s.hypothesis.by in ("", best.by) and s.hypothesis.names not in there]
 
 
 def kept_free(point: Point, hypothesis: Hypothesis) -> list[int]:

@@ -67,6 +67,7 @@ EFFECT = ForceEffect(
     },
     form={"ahead": 0.25, "turning": 0.02},
     variants=(("force", "direction"),),
+    akin=("wind",),
     varies=("force", "direction"),
     sentence=lambda v: f"A steady force of {v['force']}, as of waves from {v['direction']}, acted on the ship",
 )

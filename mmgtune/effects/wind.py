@@ -95,6 +95,7 @@ EFFECT = ForceEffect(
     form={"ahead": 0.2, "across": 0.2, "turning": 0.5, "arm": 0.05},
     borrowed={name: f"above_water.{name}" for name in SHOWN},
     variants=(("speed", "direction"), ("measured",)),
+    akin=("wave-drift",),
     sentence=lambda v: (
         f"The wind measured in the trials acts on the ship, with {v['measured']} times its measured speed"
         if "measured" in v

@@ -77,7 +77,7 @@ def test_a_cause_beside_larger_ones_has_to_help_where_nobody_looked(seen, share,
         (6.0, 0.4, 0.003, False),
         (6.0, 0.2, 0.003, True),  # formulas in place that are rough
         (6.0, 0.01, 0.0005, True),
-        (0.5, 0.9, 0.0005, True),
+        (0.15, 0.9, 0.0005, True),
     ],
 )
 def test_a_cause_in_a_channel_of_its_own_is_no_trace(error, own, form, trace):

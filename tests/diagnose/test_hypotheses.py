@@ -1,11 +1,13 @@
 """Which causes a diagnosis looks for: those that act on what trials have measured, or what stands in for it."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from mmgtune.diagnose.hypotheses import known_causes
+from mmgtune.diagnose.refitting import akin
 from mmgtune.options import DiagnoseOptions
 from mmgtune.profile import load_profile, with_effects
 from mmgtune.trial import load_trials
@@ -42,6 +44,29 @@ def test_without_columns_the_constants_are(trials):
     assert variants(trials, "current") == [("north", "east"), ("north", "east", "north_rate", "east_rate")]
     assert variants(trials, "shallow-water") == [("depth",)]
     assert variants(trials, "waves") == []
+
+
+def test_a_wind_nobody_measured_is_looked_for_though_a_measured_one_would_act(trials):
+    assert load_profile("esso_osaka").value("effects.wind.measured") == 1.0
+    assert variants(trials, "wind", "esso_osaka") == [("speed", "direction")]
+
+
+def test_what_acts_much_like_the_best_is_fitted_too(trials):
+    known = known_causes(load_profile("suzaku"), trials, DiagnoseOptions())
+    by_tag = {one.tag: SimpleNamespace(hypothesis=one, power=1.0) for one in known}
+    order = list(by_tag.values())
+
+    def beside(best, *others):
+        fitted = [(by_tag[tag], SimpleNamespace(chi2=2.0 + k)) for k, tag in enumerate((best, *others))]
+        return [score.hypothesis.tag for score in akin(order, fitted)]
+
+    assert beside("wave-drift", "current") == ["wind"]
+    assert beside("wind") == ["wave-drift"]
+    assert beside("wave-drift", "wind") == []
+    assert beside("current", "wave-drift") == []
+    by_tag["wind"].power = 0.0
+    assert beside("wave-drift") == []
+    assert akin(order, []) == []
 
 
 def test_what_the_profile_has_already_is_not_looked_for(trials):
