@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mmgtune.effects import effect_tags, effects
+from mmgtune.effects import effects
 from mmgtune.model import Model
 from mmgtune.physics.arrangements.single_propeller_single_rudder import Control, derivatives
 from mmgtune.physics.quantities import State
-from mmgtune.profile import load_profile
+from mmgtune.profile import load_profile, with_all_effects
 from mmgtune.trial import load_trials
 
 from . import cases, plant
@@ -54,10 +54,11 @@ def test_accelerations_agree_with_the_program():
     np.testing.assert_allclose(found, [expected.u, expected.v_m, expected.r], rtol=1e-10, atol=1e-16)
 
 
-def test_every_effect_of_the_registry_is_here():
+def test_every_effect_of_the_registry_that_applies_to_the_ship_is_here():
     # The plant logs nothing of what is around the ship.
     of_measured = {e.tag for e in effects() if all(set(variant) <= set(e.of_measured) for variant in e.variants)}
-    assert set(effect_tags()) - of_measured == set(NULL) - set(UNKNOWN) == set(cases.LADDER)
+    applying = {effect.tag for effect in Model(with_all_effects(load_profile("suzaku"))).effects}
+    assert applying - of_measured == set(NULL) - set(UNKNOWN) == set(cases.LADDER)
     assert len(UNKNOWN) >= 24
 
 
