@@ -127,7 +127,7 @@ def breakdown(
     logged = model.arrangement.control(*controls.T)
     control = lanes.moved([], logged, None, np.zeros(len(states)))[-1]
     measured = UNKNOWN if around is None else Surroundings(*around.T)
-    return lanes.breakdown(lanes.unsensed(State(*states.T)), control, measured)
+    return lanes.breakdown(lanes.unsensed(State(*states.T)), control, measured, lanes.here(measured))
 
 
 def track_of(trial: Trial) -> Track:

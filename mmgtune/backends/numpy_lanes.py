@@ -133,6 +133,7 @@ class LaneModel:
         self.arrangement = model.arrangement
         self.components = self.of(model.components)
         self.p = model.coefficients(theta)
+        self._field_of = {part.kind: name for part, name in zip(model.parts, self.p._fields, strict=True)}
 
         def acting(kind: type[E]) -> list[Acting[E]]:
             return [Acting(effect, model.parameters(effect, theta)) for effect in model.acting(kind)]
@@ -218,15 +219,15 @@ class LaneModel:
         for one in self.factors:
             for name, factor in zip(one.effect.changes, self.of(one.effect.function)(around, one.e), strict=True):
                 kind, _, symbol = name.partition(".")
-                section = "ship" if kind == "particulars" else kind
-                part = getattr(p, section)
+                field = self._field_of[kind]
+                part = getattr(p, field)
                 if symbol in part._fields:
-                    p = p._replace(**{section: part._replace(**{symbol: getattr(part, symbol) * factor})})
+                    p = p._replace(**{field: part._replace(**{symbol: getattr(part, symbol) * factor})})
         return p
 
-    def breakdown(self, state: State, control: Any, around: Surroundings = UNKNOWN) -> Any:
-        """Forces of the components, and in the total those that effects add."""
-        through, p = self.of(through_water)(state, *self.water(state, around)), self.here(around)
+    def breakdown(self, state: State, control: Any, around: Surroundings, p: Any) -> Any:
+        """Forces of the components, and in the total those that effects add; p the coefficients ``here``."""
+        through = self.of(through_water)(state, *self.water(state, around))
         found = self.of(self.arrangement.forces)(through, control, self.components, p)
         total = found.total
         for one in self.forces:
@@ -237,13 +238,13 @@ class LaneModel:
         """What lags remember at the first state."""
         if not self.lags:
             return []
-        found = self.breakdown(state, control, around)
+        found = self.breakdown(state, control, around, self.here(around))
         return [value for one in self.lags for value in self.of(one.effect.start)(found, one.e)]
 
-    def acting_force(self, s: Any, control: Any, around: Surroundings, h: Any) -> tuple[Force, list[Any]]:
-        """Force on the ship, with those that effects and lags add, and the rates of what lags remember."""
+    def acting_force(self, s: Any, control: Any, around: Surroundings, h: Any, p: Any) -> tuple[Force, list[Any]]:
+        """Force on the ship, with those that effects and lags add, and the rates of what lags remember; p as above."""
         state = State(*s[:N_STATES])
-        found = self.breakdown(state, control, around)
+        found = self.breakdown(state, control, around, p)
         total: Force = found.total
         slopes: list[Any] = []
         at = N_STATES
@@ -258,8 +259,9 @@ class LaneModel:
     def rates(self, s: Any, control: Any, around: Surroundings, h: Any) -> Any:
         """Time derivatives of the six states and of what lags remember, (n_states, n_lanes)."""
         state = State(*s[:N_STATES])
-        total, slopes = self.acting_force(s, control, around, h)
-        rate = self.of(rates)(state, *self.water(state, around), total, self.here(around).ship)
+        p = self.here(around)
+        total, slopes = self.acting_force(s, control, around, h, p)
+        rate = self.of(rates)(state, *self.water(state, around), total, p.ship)
         for moving in self.flows:
             if moving.effect.rate is not None:
                 rate = self.of(carried)(rate, *self.of(moving.effect.rate)(state, around, moving.e))

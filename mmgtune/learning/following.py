@@ -102,7 +102,8 @@ def own_force(of: Followed) -> FloatArray:
     ship = LaneModel(of.model, of.model.matrix()[:, 0])
     s = of.at(of.s)[:-N_MEMORY]
     with np.errstate(all="ignore"):
-        total, _ = ship.acting_force(s, of.acts(of.at(of.control)), of.surroundings(), of.at(of.h[:, None])[0])
+        control, around = of.acts(of.at(of.control)), of.surroundings()
+        total, _ = ship.acting_force(s, control, around, of.at(of.h[:, None])[0], ship.here(around))
     return np.column_stack(np.broadcast_arrays(*total))
 
 

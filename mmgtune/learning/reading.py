@@ -9,10 +9,12 @@ from typing import Any
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray
+from ..backends import LaneModel
 from ..inputs import INPUTS
 from ..model import Model
 from ..networks.hybrid import Hybrid
 from ..physics.kinematics import flow
+from ..physics.quantities import UNKNOWN
 from ..physics.rigid_body import accelerations
 from ..trial import Trial
 from ..units import DEG
@@ -256,7 +258,7 @@ def mass_matrix(model: Model) -> FloatArray:
 
     Found from ``physics.rigid_body``, whose accelerations at rest are proportional to the force.
     """
-    ship = model.coefficients(model.matrix()[:, 0]).ship
+    ship = LaneModel(model, model.matrix()[:, 0]).here(UNKNOWN).ship
     columns = [accelerations(0.0, 0.0, 0.0, X, Y, N, ship) for X, Y, N in np.eye(3).tolist()]
     return np.asarray(np.linalg.inv(np.array(columns, dtype=float).T))
 

@@ -9,6 +9,7 @@ import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 
 from ...arrays import FloatArray
+from ...backends import LaneModel
 from ...model import Model
 from ...physics.prime import force_unit, moment_unit
 from ...physics.quantities import HELD, Forces, Ship, Surroundings
@@ -125,8 +126,8 @@ def residual_forces(model: Model, trial: Trial) -> ResidualForces:
     # A natural cubic spline through a natural cubic spline's own values at its knots is that spline.
     slopes = CubicSpline(motion.t[known], velocities, bc_type="natural")(motion.t[known], 1)
     inner = motion.inner[known]
-    force = needed_force(model, velocities[inner], slopes[inner]) - _total(found)[inner]
-    ship = _ship(model)
+    ship = ship_in(model, around[at])
+    force = needed_force(ship, velocities[inner], slopes[inner]) - _total(found)[inner]
     U = np.asarray(found.flow.U)[inner]
     unit_F = force_unit(ship.rho, ship.L_pp, ship.d, U)
     unit_M = moment_unit(ship.rho, ship.L_pp, ship.d, U)
@@ -148,15 +149,14 @@ def residual_forces(model: Model, trial: Trial) -> ResidualForces:
     )
 
 
-def needed_force(model: Model, velocities: FloatArray, slopes: FloatArray) -> FloatArray:
+def needed_force(ship: Ship, velocities: FloatArray, slopes: FloatArray) -> FloatArray:
     """Force and moment that give the ship with her added mass these accelerations.
 
-    velocities (n, 3) u, v_m [m/s], r [rad/s] through the water, slopes (n, 3) their time derivatives
-    -> (n, 3) X, Y [N], N [N m].
+    ship of (1,) or (n,) each, velocities (n, 3) u, v_m [m/s], r [rad/s] through the water, slopes (n, 3) their time
+    derivatives -> (n, 3) X, Y [N], N [N m].
 
     Accelerations are affine in the forces; they are evaluated at none and at one of each, and solved for the forces.
     """
-    ship = _ship(model)
     size = float((ship.rho * ship.L_pp * ship.B * ship.d)[0])  # about the ship's mass, to keep digits
     units = size * np.array([1.0, 1.0, float(ship.L_pp[0])])
 
@@ -213,11 +213,12 @@ def _noise(
 ) -> FloatArray:
     """(n, 3) deviation of residual forces from noise in u, v_m and r and, apart from it, in their slopes."""
     states, controls, around = motion.states[at], controls[at], around[at]
+    ship = ship_in(model, around)
     value_noise, slope_noise = motion.value_noise[3:], motion.slope_noise[3:]
 
     def force(moved: FloatArray, change: FloatArray) -> FloatArray:
         found = breakdown(model, moved, controls, around)
-        return needed_force(model, _velocities(found), slopes + change) - _total(found)
+        return needed_force(ship, _velocities(found), slopes + change) - _total(found)
 
     base = force(states, np.zeros(3))
     variance = np.zeros_like(base)
@@ -229,8 +230,9 @@ def _noise(
     return np.sqrt(variance)
 
 
-def _ship(model: Model) -> Ship:
-    found = model.coefficients(model.matrix()).ship
+def ship_in(model: Model, around: FloatArray) -> Ship:
+    """The ship with the water that she carries along in surroundings (n, n_surroundings)."""
+    found = LaneModel(model, model.matrix()).here(Surroundings(*around.T)).ship
     assert isinstance(found, Ship)
     return found
 

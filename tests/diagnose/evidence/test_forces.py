@@ -26,7 +26,7 @@ def test_needed_force_undoes_accelerations(suzaku):
     force = random.standard_normal((5, 3)) * [1e5, 1e5, 1e7]
     ship = suzaku.coefficients(suzaku.matrix()).ship
     slopes = np.column_stack(accelerations(*velocities.T, *force.T, ship))
-    np.testing.assert_allclose(needed_force(suzaku, velocities, slopes), force, rtol=1e-9)
+    np.testing.assert_allclose(needed_force(ship, velocities, slopes), force, rtol=1e-9)
 
 
 def test_nothing_is_left_of_the_true_model_but_noise(suzaku, plain):
@@ -91,6 +91,16 @@ def test_what_was_measured_around_the_ship_acts_as_in_the_simulation(suzaku):
         assert np.all(np.sqrt(np.mean(found.prime**2, axis=0)) < 2e-4)
         blind = residual_forces(Model(ship), replace(trial, extra={}))
         assert np.sqrt(np.mean(blind.prime[:, 1] ** 2)) > 5e-3
+
+
+def test_water_carried_along_in_shallow_water_is_set_in_motion_too(suzaku):
+    depth = 1.5 * suzaku.profile.value("particulars.d")
+    ship = with_effects(suzaku.profile, {"shallow-water": {"depth": depth, "inertia": 0.8}}, "a test")
+    deep = make_trials(suzaku, noise=0.0)[1]
+    (motion,) = simulate(ship, [deep], integrator=Integrator("rk4", 4), backend="numpy")
+    trial = replace(deep, **dict(zip(STATES, motion.states.T, strict=True)))
+    found = residual_forces(Model(ship), trial)
+    assert np.all(np.sqrt(np.mean(found.prime**2, axis=0)) < 2e-4)
 
 
 def test_noise_of_what_was_measured_around_the_ship_is_blunted(suzaku, plain):
