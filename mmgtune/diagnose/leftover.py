@@ -23,7 +23,7 @@ from ..trial.kinematics import rounding_noise
 from ..units import DEG
 from .evidence import FEWEST_BLOCKS, share_explained
 from .linear import linearise
-from .noise import rows_of_channels
+from .noise import by_channel, rows_of_channels
 from .workbench import Point, Workbench
 
 NOTICED = 0.05
@@ -110,7 +110,8 @@ class Leftover(Brief):
 def leftover(bench: Workbench, point: Point) -> Leftover:
     """What is left at a point, on the trials of the workbench."""
     residuals = residuals_of(bench, point)
-    level = np.maximum(_white(residuals), _rounding(bench.trials))
+    # Second differences do not show the noise of rounding where a channel moves little.
+    level = np.maximum(_white(residuals), by_channel(bench.trials, rounding_noise))
     left_open = _left_open(bench, point)
     excess, excused = {}, {}
     for k, name in enumerate(STATES):
@@ -193,11 +194,6 @@ def _white(residuals: Sequence[FloatArray]) -> FloatArray:
     """(6,) white noise of each channel, from second differences of the residuals."""
     second = np.concatenate([np.diff(r, n=2, axis=0) for r in residuals])
     return np.asarray(np.sqrt(np.nanmean(second**2, axis=0) / 6.0))
-
-
-def _rounding(trials: Sequence[Trial]) -> FloatArray:
-    """(6,) noise of rounding of each channel, which second differences do not show where it moves little."""
-    return np.asarray(np.median([[rounding_noise(values) for values in trial.motion.T] for trial in trials], axis=0))
 
 
 def _left_open(bench: Workbench, point: Point) -> FloatArray:

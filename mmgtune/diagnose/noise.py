@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..backends import STATES, Cases
+from ..trial import Trial
 
 LAGS = 6
 """Autocovariances a fading part is estimated from."""
@@ -206,3 +207,8 @@ def _decompose(covariance: FloatArray, n: int) -> ChannelNoise:
     powers = phi ** np.arange(1, LAGS + 1)
     fading = float(np.clip(powers @ lagged / (powers @ powers), 0.0, variance))
     return ChannelNoise(phi=phi, fading=fading, white=max(variance - fading, 1e-3 * variance))
+
+
+def by_channel(trials: Sequence[Trial], level: Callable[[FloatArray], float]) -> FloatArray:
+    """(6,) medians over trials of a level of noise, worked out from each channel of the measured motion."""
+    return np.asarray(np.median([[level(values) for values in trial.motion.T] for trial in trials], axis=0))

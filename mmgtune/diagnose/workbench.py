@@ -24,7 +24,7 @@ from ..profile import ShipProfile, with_all_effects
 from ..trial import Coverage, Held, Trial, visited_by
 from ..trial.kinematics import motion_noise
 from .beliefs import Beliefs, forms, let_go
-from .noise import NoiseModel, white
+from .noise import NoiseModel, by_channel, white
 from .runs import between, labels_of
 
 TOLERANCE = 0.2
@@ -249,7 +249,7 @@ class Workbench:
 
 def noise_levels(trials: Sequence[Trial]) -> FloatArray:
     """(6,) deviation of the noise by channel: the median over trials of what second differences and rounding show."""
-    found = np.median([[motion_noise(values) for values in trial.motion.T] for trial in trials], axis=0)
+    found = by_channel(trials, motion_noise)
     floor = 1e-6 * np.nanmax([np.nanmax(np.abs(trial.motion), axis=0) for trial in trials], axis=0)
     return np.asarray(np.maximum(found, np.maximum(floor, 1e-12)))
 

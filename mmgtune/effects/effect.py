@@ -44,6 +44,22 @@ class Parameter(Field):
             object.__setattr__(self, "default", self.null)
 
 
+def factor_about_one(what: str, off: float, typical: float, source: str) -> Parameter:
+    """A factor that changes nothing at 1, on what a sensor shows, an actuator does or a ship carries.
+
+    off, typical  how far from 1 it is looked for, and a size worth finding; source says why no further than that
+    """
+    return Parameter(
+        what,
+        low=0.0,
+        high=3.0,
+        null=1.0,
+        bounds=lambda _: (1.0 - off, 1.0 + off),
+        typical=lambda _: typical,
+        bounds_source=source,
+    )
+
+
 def factor_on_measured(what: str, most: float, typical: float, source: str) -> Parameter:
     """The factor on something that was measured around the ship: as measured unless told otherwise, absent at 0.
 

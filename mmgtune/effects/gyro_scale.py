@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from ..physics.quantities import Lanes, State
-from .effect import Parameter, SensorEffect
+from .effect import SensorEffect, factor_about_one
 
 
 class GyroScale(NamedTuple):
@@ -30,17 +30,7 @@ EFFECT = SensorEffect(
     function=gyro_scale,
     inverse=gyro_scale_inverse,
     cites=(),
-    fields={
-        "factor": Parameter(
-            "yaw rate shown over yaw rate",
-            low=0.0,
-            high=3.0,
-            null=1.0,
-            bounds=lambda _: (0.7, 1.3),
-            typical=lambda _: 0.02,
-            bounds_source="three tenths either way",
-        )
-    },
+    fields={"factor": factor_about_one("yaw rate shown over yaw rate", 0.3, 0.02, "three tenths either way")},
     variants=(("factor",),),
     sentence=lambda v: f"The rate gyro showed {v['factor']} times the yaw rate",
 )

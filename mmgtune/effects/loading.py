@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from ..physics.quantities import Lanes
 from ..physics.regressions.inoue1981 import LinearDerivatives, linear_derivatives
-from .effect import CoefficientsEffect, Parameter
+from .effect import CoefficientsEffect, Parameter, factor_about_one
 
 
 class Loading(NamedTuple):
@@ -49,15 +49,7 @@ EFFECT = CoefficientsEffect(
     function=loading,
     cites=("Inoue, Hirano & Kijima 1981, International Shipbuilding Progress 28, 112-125",),
     fields={
-        "draught": Parameter(
-            "draught over the profile's",
-            low=0.0,
-            high=3.0,
-            null=1.0,
-            bounds=lambda _: (0.6, 1.4),
-            typical=lambda _: 0.05,
-            bounds_source="from ballast to overloaded",
-        ),
+        "draught": factor_about_one("draught over the profile's", 0.4, 0.05, "from ballast to overloaded"),
         "trim": Parameter(
             "trim by the stern over the draught",
             low=-1.0,
@@ -66,15 +58,7 @@ EFFECT = CoefficientsEffect(
             typical=lambda _: 0.1,
             bounds_source="half the draught",
         ),
-        "displacement": Parameter(
-            "factor on the displacement at that draught",
-            low=0.0,
-            high=3.0,
-            null=1.0,
-            bounds=lambda _: (0.6, 1.4),
-            typical=lambda _: 0.05,
-            bounds_source="as for the draught",
-        ),
+        "displacement": factor_about_one("factor on the displacement at that draught", 0.4, 0.05, "as for the draught"),
     },
     variants=(("draught",), ("trim",), ("displacement",)),
     varies=("draught", "trim", "displacement"),

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from ..physics.quantities import Lanes
-from .effect import ActuatorEffect, Parameter
+from .effect import ActuatorEffect, factor_about_one
 
 
 class RpmScale(NamedTuple):
@@ -25,17 +25,7 @@ EFFECT = ActuatorEffect(
     params=RpmScale,
     function=rpm_scale,
     cites=(),
-    fields={
-        "factor": Parameter(
-            "revolutions over indicated revolutions",
-            low=0.0,
-            high=3.0,
-            null=1.0,
-            bounds=lambda _: (0.7, 1.3),
-            typical=lambda _: 0.02,
-            bounds_source="thrust changes by half",
-        )
-    },
+    fields={"factor": factor_about_one("revolutions over indicated revolutions", 0.3, 0.02, "thrust changes by half")},
     variants=(("factor",),),
     varies=("factor",),
     subject="scale of the revolutions",

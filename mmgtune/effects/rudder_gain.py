@@ -6,7 +6,7 @@ from typing import NamedTuple
 from ..physics.elementary import where
 from ..physics.quantities import Lanes
 from ..units import DEG
-from .effect import ActuatorEffect, Parameter
+from .effect import ActuatorEffect, Parameter, factor_about_one
 from .visited import Visited
 
 LEAST = 2.0 * DEG
@@ -30,15 +30,7 @@ def rudder_gain(start: Lanes, end: Lanes, before: Lanes, h: Lanes, e: RudderGain
 
 
 def _factor(words: str) -> Parameter:
-    return Parameter(
-        f"rudder angle over indicated angle{words}",
-        low=0.0,
-        high=3.0,
-        null=1.0,
-        bounds=lambda _: (0.5, 1.5),
-        typical=lambda _: 0.05,
-        bounds_source="half as much again either way",
-    )
+    return factor_about_one(f"rudder angle over indicated angle{words}", 0.5, 0.05, "half as much again either way")
 
 
 def unvisited(found: Mapping[str, float], visited: Visited) -> str:

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from ..physics.quantities import Lanes, State
-from .effect import Parameter, SensorEffect
+from .effect import Parameter, SensorEffect, factor_about_one
 
 
 class SpeedScale(NamedTuple):
@@ -31,15 +31,7 @@ def speed_scale_inverse(logged: State, e: SpeedScale) -> State:
 
 def _factor(of: str) -> Parameter:
     """What is shown over what is."""
-    return Parameter(
-        f"{of} shown over {of}",
-        low=0.0,
-        high=3.0,
-        null=1.0,
-        bounds=lambda _: (0.7, 1.3),
-        typical=lambda _: 0.02,
-        bounds_source="three tenths either way",
-    )
+    return factor_about_one(f"{of} shown over {of}", 0.3, 0.02, "three tenths either way")
 
 
 EFFECT = SensorEffect(
