@@ -5,6 +5,7 @@ Kernels compiled by tests go to a cache of the checkout, for all workers and for
 
 from __future__ import annotations
 
+import gc
 import os
 from pathlib import Path
 
@@ -18,11 +19,13 @@ if "PYTEST_XDIST_WORKER" in os.environ:  # a core each, for the commands that a 
         os.environ.setdefault(name, "1")
 os.environ.setdefault("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1")  # of messages that numba keeps to itself
 
+from mmgtune.backends import get_backend
 from mmgtune.backends.twins import FUSE
 from mmgtune.model import Model
-from mmgtune.profile import load_profile
+from mmgtune.profile import load_profile, with_all_effects
 from mmgtune.resources import profile_names
 from tests import times
+from tests.runs import turn
 
 os.environ.setdefault("XLA_FLAGS", f"--{FUSE}")  # as the program has it, for tests that import JAX themselves
 
@@ -32,6 +35,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    gc.set_threshold(50_000, 20, 20)  # collecting among all that was imported is one second in twenty
     if config.getoption("--write-times") and not hasattr(config, "workerinput"):
         config.pluginmanager.register(times.Writer())
 
@@ -61,6 +65,18 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         return sum(taken.get(name, 0.0) for name in names)  # in one order: all workers must find the same
 
     items[:] = [item for tests in sorted(together.values(), key=seconds, reverse=True) for item in tests]
+
+
+MANY = 1000
+"""Tests among which there are some of every effect."""
+
+
+@pytest.hookimpl(trylast=True)  # the controller knows by then that this worker is ready, and lets the others begin
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """The simulator of all effects is made first, by one worker: it serves all tests of some of them."""
+    if os.environ.get("PYTEST_XDIST_WORKER") == "gw0" and len(session.items) > MANY:
+        model = Model(with_all_effects(load_profile("suzaku")))
+        get_backend("compiled").run(model, model.matrix(), turn(model, 20.0, 1.0))
 
 
 def _has_one_of_its_module(item: pytest.Item) -> bool:
