@@ -50,13 +50,19 @@ def sample(model: Model, inputs: str, around: str, shifts: Sequence[str]) -> lis
     return lines
 
 
-def around_lane() -> list[str]:
-    """What was measured around lane l at this stage of a step."""
-    slots = []
+AROUND = "around = around_of(outside, l)"
+"""What was measured around lane l at this stage of a step, in blocks where anything asks for it."""
+
+
+def surround(model: Model) -> list[str]:
+    """What was measured around all lanes at this stage, in an array of the stack."""
+    if not looks_around(model):
+        return []
+    lines = []
     for k, name in enumerate(Surroundings._fields):
         here, there = slot("here", k), slot("there", k)
-        slots.append(there if name in HELD else f"between({here}, {there}, at)")
-    return [f"around = Surroundings({', '.join(slots)})"]
+        lines.append(f"{slot('outside', k)} = " + (there if name in HELD else f"between({here}, {there}, at)"))
+    return ["if looking:", *indented(each_lane(lines))]
 
 
 def looking(model: Model) -> list[Effect]:

@@ -24,7 +24,7 @@ from ...physics.quantities import STATES, Force, Surroundings
 from ..tuples import leaves, numbered
 from .inputs import actuate, looking, looks_around, sample, shifts_of
 from .sensors import filtered, log_of, log_rows, settled
-from .stage import changes_of, gaining, sees_forces, stage
+from .stage import gaining, sees_forces, stage
 from .text import (
     IN_KERNEL,
     N_STATES,
@@ -51,7 +51,7 @@ from mmgtune.physics.quantities import Force, State, Surroundings
 {imports}
 
 state_of = lane(State, range({n_own}), {W})
-{loads}{found_of}
+{loads}{found_of}{around_of}
 
 
 @njit(error_model="numpy", nogil=True, cache=True)
@@ -171,9 +171,6 @@ def kernel(
 @lru_cache(maxsize=64)
 def kernel_source(model: Model) -> str:
     """Python text of the simulator for the arrangement, components and effects of ``model``."""
-    used: set[int] = set()
-    for part in (*model.parts, *model.effects):
-        used.update(row for of in model.fields(part) for row in of)
     sensors, filters = model.acting(SensorEffect), model.acting(FilterEffect)
     levels = len(model.acting(ActuatorEffect))
     n_inputs = len(model.inputs)
@@ -184,7 +181,7 @@ def kernel_source(model: Model) -> str:
     return _TEMPLATE.format(
         title=", ".join(model.tags),
         imports="\n".join(_imports(model)),
-        n_rows=max(used) + 1,
+        n_rows=rows_of(model),
         n_states=n_states,
         n_control=n_inputs * (1 + levels),
         arrays="".join(f"    {name} = carray(stack({n} * {WIDTH}), ({n} * {WIDTH},))\n" for name, n in _arrays(model)),
@@ -209,6 +206,7 @@ def kernel_source(model: Model) -> str:
         n_own=N_STATES,
         loads="\n".join(_loads(model)),
         found_of=_found_of(model) if sees_forces(model) else "",
+        around_of=_around_of() if looks_around(model) else "",
         forces=block_of(20, stage(model)),
         finish=block_of(
             20, [f"{slot('s', k)} = after_step({slot('s', k)}, h[l], {slot('total', k)})" for k in range(n_states)]
@@ -216,6 +214,11 @@ def kernel_source(model: Model) -> str:
         filters=block_of(16, ["if filtering:", *indented(each_lane(filtered(model)))] if filters else []),
         sense=block_of(12, log_of(model)),
     )
+
+
+def rows_of(model: Model) -> int:
+    """Rows of theta that a kernel may look at: up to the last of its components and effects."""
+    return 1 + max(row for part in (*model.parts, *model.effects) for of in model.fields(part) for row in of)
 
 
 def _present(model: Model, shifts: Sequence[str]) -> list[str]:
@@ -231,7 +234,7 @@ def _present(model: Model, shifts: Sequence[str]) -> list[str]:
         lines += ["shifted = False", f"for l in range({WIDTH}):"]
         lines += [f"    shifted = shifted or {shift} != 0.0" for shift in dict.fromkeys(filter(None, shifts))]
     if model.acting(FactorsEffect):
-        lines += [f"for k in range({len(changes_of(model)) * WIDTH}):", "    factors[k] = 1.0"]
+        lines += [f"for k in range({rows_of(model) * WIDTH}):", "    changed[k] = p[k]"]
     return lines
 
 
@@ -239,7 +242,7 @@ def _arrays(model: Model) -> list[tuple[str, int]]:
     """Arrays of the stack that only some models need, with the numbers of a lane in each."""
     found = []
     if looks_around(model):
-        found += [(name, len(Surroundings._fields)) for name in ("here", "there")]
+        found += [(name, len(Surroundings._fields)) for name in ("here", "there", "outside")]
     if model.acting(FilterEffect):
         found.append(("logs", log_rows(model)))
     if model.acting(FlowEffect):
@@ -247,7 +250,7 @@ def _arrays(model: Model) -> list[tuple[str, int]]:
     if gaining(model):
         found.append(("gains", 2))
     if model.acting(FactorsEffect):
-        found.append(("factors", len(changes_of(model))))
+        found.append(("changed", rows_of(model)))
     if sees_forces(model):
         found += [("kept", len(leaves(model.arrangement.breakdown))), ("acting", len(Force._fields))]
     if lags := model.acting(LagEffect):
@@ -313,3 +316,8 @@ def _loads(model: Model) -> list[str]:
 def _found_of(model: Model) -> str:
     """The function that makes the breakdown of a lane out of what was kept of it."""
     return f"\nfound_of = lane(Breakdown, {numbered(model.arrangement.breakdown)}, {WIDTH})"
+
+
+def _around_of() -> str:
+    """The function that makes the surroundings of a lane."""
+    return f"\naround_of = lane(Surroundings, range({len(Surroundings._fields)}), {WIDTH})"

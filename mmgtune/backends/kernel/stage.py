@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 
 from ...effects import ActuatorEffect, FactorsEffect, FlowEffect, ForceEffect, LagEffect
 from ...model import Model
 from ...physics.quantities import STATES, Force
 from ..tuples import leaves
-from .inputs import around_lane
+from .inputs import AROUND, surround
 from .text import N_STATES, WIDTH, any_of, each_lane, indented, name_of, slot, tuple_of, where_present
 
 
 def stage(model: Model) -> list[str]:
     """A stage of a step: velocity of the water, forces of the components, those of effects, and where that leads."""
-    lines = [*_flows(model), *_factors(model)]
+    lines = [*surround(model), *_flows(model), *_factors(model)]
     levels, n_inputs = len(model.acting(ActuatorEffect)), len(model.inputs)
     control = ", ".join(
         f"between({slot('now', levels * n_inputs + k)}, {slot('then', levels * n_inputs + k)}, at)"
@@ -31,7 +32,7 @@ def stage(model: Model) -> list[str]:
     more = [f"{slot('acting', k)} += more.{axis}" for k, axis in enumerate(Force._fields)]
     for effect in model.acting(ForceEffect):
         force = f"more = {name_of(effect)}(state, around, found, components, coefficients, {tuple_of(effect)})"
-        seen = ["state = state_of(z, l)", *around_lane(), "found = found_of(kept, l)", *_coefficients(model), force]
+        seen = ["state = state_of(z, l)", AROUND, "found = found_of(kept, l)", *_coefficients(model), force]
         lines += where_present(effect, [*seen, *more])
     lines += _lagging(model, more)
     acting = f"acting_force = Force({', '.join(slot('acting', k) for k in range(len(Force._fields)))})"
@@ -65,45 +66,47 @@ def _flows(model: Model) -> list[str]:
         for effect in effects:
             more = f"u_w, v_w = {name_of(effect)}{suffix}(state, around, {tuple_of(effect)})"
             added = [f"{slot(name, 0)} += u_w", f"{slot(name, 1)} += v_w"]
-            lines += where_present(effect, ["state = state_of(z, l)", *around_lane(), more, *added])
+            lines += where_present(effect, ["state = state_of(z, l)", AROUND, more, *added])
     return lines
 
 
-def changes_of(model: Model) -> list[tuple[FactorsEffect, int, str]]:
-    """Factors on coefficients by their place in the array of the stack: effect, number within it, name."""
-    return [(effect, j, name) for effect in model.acting(FactorsEffect) for j, name in enumerate(effect.changes)]
+def _changes(model: Model) -> list[tuple[FactorsEffect, int, int]]:
+    """Coefficients of components that change with the surroundings: effect, number of its factor, row."""
+    rows = {
+        f"{part.kind}.{symbol}": row
+        for part in model.parts
+        for symbol, (row, *_) in zip(part.params._fields, model.fields(part), strict=True)
+    }
+    return [
+        (effect, j, rows[name])
+        for effect in model.acting(FactorsEffect)
+        for j, name in enumerate(effect.changes)
+        if name in rows
+    ]
 
 
 def _factors(model: Model) -> list[str]:
-    """Factors on coefficients in these surroundings, in an array of the stack."""
-    lines = []
-    changes = changes_of(model)
+    """Coefficients in these surroundings, in an array of the stack that holds the others as they are."""
+    changes = _changes(model)
+    of_row = Counter(row for *_, row in changes)
+    lines = [f"{slot('changed', row)} = {slot('p', row)}" for row, effects in of_row.items() if effects > 1]
+    lines = each_lane(lines) if lines else []
     for effect in model.acting(FactorsEffect):
-        worked_out = [*around_lane(), f"found = {name_of(effect)}(around, {tuple_of(effect)})"]
-        kept = [f"{slot('factors', k)} = found[{j}]" for k, (of, j, _) in enumerate(changes) if of is effect]
-        lines += where_present(effect, [*worked_out, *kept])
+        found = [AROUND, f"found = {name_of(effect)}(around, {tuple_of(effect)})"]
+        for of, j, row in changes:
+            if of is effect:
+                before = "changed" if of_row[row] > 1 else "p"
+                found.append(f"{slot('changed', row)} = {slot(before, row)} * found[{j}]")
+        lines += where_present(effect, found)
     return lines
 
 
 def _coefficients(model: Model) -> list[str]:
     """Functions and coefficients of the components of lane l."""
-    factors: dict[str, list[str]] = {}
-    for k, (_, _, name) in enumerate(changes_of(model)):
-        factors.setdefault(name, []).append(slot("factors", k))
-    lines = []
-    tuples = []
-    for part in model.parts:
-        if not any(f"{part.kind}.{symbol}" in factors for symbol in part.params._fields):
-            tuples.append(tuple_of(part))
-            continue
-        lines.append(f"own_{part.kind} = {tuple_of(part)}")
-        own = (
-            " * ".join([f"own_{part.kind}.{symbol}", *factors.get(f"{part.kind}.{symbol}", ())])
-            for symbol in part.params._fields
-        )
-        tuples.append(f"{name_of(part)}_params({', '.join(own)})")
+    array = "changed" if model.acting(FactorsEffect) else "p"
     functions = ", ".join(name_of(part) for part in model.parts if part.function is not None)
-    return [*lines, f"components = Components({functions})", f"coefficients = Coefficients({', '.join(tuples)})"]
+    tuples = ", ".join(tuple_of(part, array) for part in model.parts)
+    return [f"components = Components({functions})", f"coefficients = Coefficients({tuples})"]
 
 
 def _lagging(model: Model, more: Sequence[str]) -> list[str]:

@@ -82,6 +82,6 @@ def flag_of(effect: Effect) -> str:
     return re.sub(r"\W", "_", f"has_{effect.kind}")
 
 
-def tuple_of(part: Component) -> str:
+def tuple_of(part: Component, array: str = "p") -> str:
     """The tuple of a component's coefficients of lane l."""
-    return f"{name_of(part)}_load(p, l)"
+    return f"{name_of(part)}_load({array}, l)"
