@@ -117,6 +117,7 @@ def twin() -> Model:
             THRUSTER, {"k": Coefficient(2e4, "a test"), "x": Coefficient(0.4 * ship.L_pp, "a test")}, "a test"
         ),
     }
+    sections["above_water"] = sections.pop("above_water")  # behind all components, as profiles are written and read
     return Model(replace(ship, sections=sections, arrangement=TWIN))
 
 

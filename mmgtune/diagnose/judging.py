@@ -25,6 +25,7 @@ from .leftover import Leftover, leftover
 from .legs import Difference
 from .refit import Refit
 from .result import Candidate, Cause, Diagnosis, Doubted, Trace
+from .retuned import retuned
 from .search import Found, Step, rivals_of
 from .separate import Suggestion, suggest
 from .voyages import Choice
@@ -77,7 +78,7 @@ class Judge:
         bench = self.bench
         sizes = estimates(bench, found.final)
         left = leftover(bench, found.final) if found.causes or found.finer_step else self.before
-        theta, retuned = (_targets_of(bench, point) for point in (found.final, found.base))
+        theta, alone = (_targets_of(bench, point) for point in (found.final, found.base))
         coverage = Coverage.of(bench.trials, self.profile.L_pp)
         return Diagnosis(
             profile=self.profile,
@@ -93,7 +94,8 @@ class Judge:
             leftover=left,
             explained_share=_explained(found, self.before, left),
             theta=theta,
-            retuned=retuned,
+            retuned=alone,
+            moved=tuple(retuned(bench, found.final)),
             coverage=coverage,
             warnings=tuple(coverage_notes(bench.model, bench.targets, coverage)),
             noise=_noise(bench),

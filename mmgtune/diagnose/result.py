@@ -21,6 +21,8 @@ from .intervals import Estimate
 from .leftover import Leftover, in_words
 from .legs import Difference
 from .record import Record, kind_of, record_of
+from .retuned import Retuned
+from .retuned import in_words as moved_in_words
 from .runs import IN_WORDS
 from .separate import Suggestion
 from .voyages import Choice
@@ -221,6 +223,7 @@ class Diagnosis(Plotted):
     """A finished diagnosis.
 
     theta     tuned targets, and what had leeway, with all causes in place; retuned: without any
+    moved     targets beside their pre-determined values, with all causes in place
     traces    what is statistically there besides and changes nothing that a user would notice; in no profile
     contributions  of the causes, by tag in their order, the others in place
     groups    causes that cannot be told apart, each a list of tags
@@ -246,6 +249,7 @@ class Diagnosis(Plotted):
     explained_share: float
     theta: Mapping[str, float]
     retuned: Mapping[str, float]
+    moved: tuple[Retuned, ...]
     noise: Mapping[str, Mapping[str, float]]
     chi2: tuple[float, float]
     evidence: Mapping[str, Any]
@@ -370,6 +374,8 @@ class Diagnosis(Plotted):
                 if alone
                 else "no cause that was looked for shows"
             )
+            if far := moved_in_words(self.moved):
+                return f"Re-tuning is all it takes: with {far}, the model fits these trials to their noise, and {none}."
             return (
                 "Nothing is wrong beyond the noise of the measurements: the re-tuned model fits these trials, and "
                 f"{none}."
@@ -555,6 +561,7 @@ class Diagnosis(Plotted):
             "noise": {name: dict(values) for name, values in self.noise.items()},
             "chi2_per_residual": {"before": self.chi2[0], "after": self.chi2[1]},
             "theta": finite_values(self.kept),
+            "retuned": [] if self.verdict in ("unexplained", "interrupted") else [one.to_dict() for one in self.moved],
             "inputs": [one.to_dict() for one in self.profile.arrangement.inputs],
             "trial_results": [one.to_dict() for one in self.gain.compared],
             "assumptions": self._assumptions(),

@@ -16,19 +16,23 @@ from .forces import ship_of
 from .load import DiagnosisRecord, Kind, inputs_of, motions_in
 from .of_runs import of_runs, parameters_of
 from .plot import Axis, Color, Dots, Figure, Line, Look, Mark, Panel
-from .tables import tone
+from .tables import described, tone
 from .wording import (
     CHANNELS,
     NONE,
+    NORMAL,
+    UNIT_PERCENT,
     beyond_noise,
     change,
     clean,
+    coefficient_text,
     count,
     fixed,
     index_words,
     number,
     percent,
     share,
+    short,
     shown,
     span,
 )
@@ -74,6 +78,7 @@ def build(record: DiagnosisRecord) -> Page:
         _where(data) if unknown else None,
         _causes(data),
         _voyages(data),
+        _retuned(data),
         Section("next", "What to do next", (Commands(advice.after_diagnosis(data)),)),
         _why(data),
         _gain(data),
@@ -265,6 +270,39 @@ def _causes(data: Mapping[str, Any]) -> Section | None:
         blocks.append(Prose((sentence,)))
     blocks += unexplained.traces(data)
     return Section("causes", "Causes" if data["causes"] else "What comes closest", tuple(blocks))
+
+
+def _retuned(data: Mapping[str, Any]) -> Section | None:
+    """Targets as they were re-tuned, what is surest to differ from the profile first."""
+    rows = data.get("retuned") or ()
+    if not rows:
+        return None
+    lines = []
+    for row in rows:
+        error, before = number(row["stderr"]), row["pre_determined"]
+        half = None if error is None or not before else 100.0 * NORMAL * error / abs(before)
+        lines.append(
+            cells(
+                short(clean(row["name"])),
+                described(row),
+                coefficient_text(before),
+                coefficient_text(row["value"]),
+                Cell(percent(change(before, row["value"])), "note" if row["far"] else ""),
+                NONE if half is None else f"{shown(half, 2)}{UNIT_PERCENT}",
+            )
+        )
+    table = Table(
+        "retuned-table",
+        "Targets, the surest to differ first",
+        ("symbol", "meaning", "pre-determined", "re-tuned", "change", "±"),
+        tuple(lines),
+        numeric=range(2, 6),
+        cards=True,
+        about=(("±", "half the 95 % interval of the change, the model's form taken as right; none at a bound"),),
+    )
+    far = [one for one in rows if one["far"]]
+    said = f"{count(len(far), 'coefficient is', 'coefficients are')} surely more than a tenth off the profile's value"
+    return Section("retuned", "What re-tuning changed", (Fold(said if far else "All targets", (table,), bool(far)),))
 
 
 def _unit(unit: str) -> str:

@@ -345,7 +345,7 @@ def test_what_a_profile_gets_wrong_is_said(ship):
         parse_profile(ship.text + "\n[effects.current]\nnorth = 1.0\n")
     with pytest.raises(ProfileError, match=r"unknown key 'effects\.current\.up'"):
         parse_profile(ship.text + '\n[effects.current]\nup = "1 m/s"\n')
-    plain = load_profile("kvlcc2")
+    plain = load_profile("kvlcc2_l7")
     assert missing_for(find_effect("flap"), plain) == ["rudder.flap[0]"]
     with pytest.raises(ProfileError, match="'wind' does not apply"):
         parse_profile(plain.text + '\n[effects.wind]\nspeed = "8 m/s"\ndirection = "10 deg"\n')

@@ -1,0 +1,104 @@
+"""What re-tuning alone changed: coefficients that are far from what the profile has, as those of a fouled hull."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..components import split_name
+from ..fitting.comparison import finite
+from .intervals import NORMAL, covariance
+from .workbench import Point, Workbench
+
+FAR = 0.1
+"""Share of its pre-determined value from which a target that moved is spoken of."""
+
+SURE = 3.0
+"""Standard errors by which it must be further than that: a dozen targets are looked at."""
+
+
+@dataclass(frozen=True)
+class Retuned:
+    """A target as it was re-tuned.
+
+    label   what it is, in words
+    before  pre-determined value, in the profile's unit; after: re-tuned, with its standard error, None at a bound
+    """
+
+    name: str
+    label: str
+    unit: str
+    before: float
+    after: float
+    stderr: float | None
+
+    @property
+    def change(self) -> float | None:
+        """By which share of its pre-determined value its size grew; None where that is 0, or the sign is another."""
+        return self.after / self.before - 1.0 if self.before and self.after * self.before > 0.0 else None
+
+    @property
+    def deviation(self) -> float | None:
+        """Standard error of that."""
+        return None if self.stderr is None or not self.before else self.stderr / abs(self.before)
+
+    @property
+    def far(self) -> bool:
+        """Whether it is certainly far from what was pre-determined."""
+        if self.change is None or self.deviation is None:
+            return False
+        return abs(self.change) - SURE * self.deviation >= FAR
+
+    @property
+    def words(self) -> str:
+        """In a sentence: "resistance going straight (R_0) 47 ± 4 % above its pre-determined value"."""
+        assert self.change is not None
+        assert self.deviation is not None
+        symbol, side = self.name.rpartition(".")[2], "above" if self.change > 0.0 else "below"
+        size, error = 100.0 * abs(self.change), 100.0 * NORMAL * self.deviation
+        digits = 0 if error >= 1.0 else 1
+        return f"{self.label} ({symbol}) {size:.{digits}f} ± {error:.{digits}f} % {side} its pre-determined value"
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "name": self.name,
+            "label": self.label,
+            "unit": self.unit,
+            "pre_determined": self.before,
+            "value": finite(self.after),
+            "stderr": self.stderr,
+            "far": self.far,
+        }
+
+
+def retuned(bench: Workbench, point: Point) -> list[Retuned]:
+    """Targets at a point, what is surest far from its pre-determined value first."""
+    names = [name for name in point.names if name in bench.targets]
+    if not names:
+        return []
+    inside, spread = covariance(bench, point)
+    box, profile = bench.sub_box(names), bench.model.profile
+    unit = np.array([point.unit[point.names.index(name)] for name in names])
+    found = []
+    for k, (name, value) in enumerate(zip(names, box.from_unit(unit[:, None])[:, 0], strict=True)):
+        at = inside.index(name) if name in inside else None
+        stderr = None if at is None else float(np.sqrt(spread[at, at]) * box.width[k])
+        section, symbol = split_name(name)
+        field = profile.sections[section].component.fields[symbol]
+        found.append(Retuned(name, field.label, field.unit, float(box.pre[k]), float(value), stderr))
+    return sorted(found, key=_distance, reverse=True)
+
+
+def in_words(moved: Sequence[Retuned]) -> str:
+    """Those far away, the surest first: "A ... and B ..."; "" for none."""
+    told = [one.words for one in moved if one.far]
+    return " and ".join([", ".join(told[:-1]), told[-1]] if len(told) > 1 else told)
+
+
+def _distance(one: Retuned) -> float:
+    """From its pre-determined value, in standard errors; what is not known last."""
+    return abs(one.after - one.before) / one.stderr if one.stderr else -1.0

@@ -1,0 +1,77 @@
+"""What re-tuning alone changed is told: a hull that was fouled is no hidden cause, and not nothing either."""
+
+import json
+
+import pytest
+
+from mmgtune.cli.diagnose import summary
+from mmgtune.diagnose import DiagnoseOptions, diagnose, write_diagnosis
+from mmgtune.diagnose.retuned import Retuned, in_words
+from mmgtune.profile import load_profile
+from mmgtune.report import render
+from mmgtune.trial import load_trials
+from tests.hidden.plant import simulate, write
+
+TARGETS = ("hull.R_0", "wake.w_P0", "rudder.kappa")
+
+
+def moved(after, stderr, before=0.5):
+    return Retuned("hull.R_0", "resistance going straight", "prime", before, after, stderr)
+
+
+@pytest.mark.parametrize(
+    ("after", "stderr", "far"),
+    [(0.7, 0.01, True), (0.3, 0.01, True), (0.54, 0.001, False), (0.7, 0.06, False), (0.9, None, False),
+     (-0.7, 0.01, False)],
+    ids=["above", "below", "less than a tenth", "not sure", "at a bound", "of another sign"],
+)  # fmt: skip
+def test_far_is_surely_more_than_a_tenth(after, stderr, far):
+    assert moved(after, stderr).far == far
+    assert moved(-after, stderr, before=-0.5).far == far  # of a negative coefficient alike
+
+
+def test_a_change_from_nothing_has_no_share():
+    assert moved(0.1, 0.01, before=0.0).change is None
+    assert not moved(0.1, 0.01, before=0.0).far
+
+
+def test_words():
+    assert in_words([moved(0.54, 0.1)]) == ""
+    up, down = moved(0.7, 0.01), moved(0.3, 0.001)
+    assert in_words([up]) == "resistance going straight (R_0) 40 ± 4 % above its pre-determined value"
+    assert in_words([up, down]).endswith(
+        " value and resistance going straight (R_0) 40.0 ± 0.4 % below its pre-determined value"
+    )
+
+
+@pytest.mark.parametrize("hidden", [{}, {"rudder-offset": {"angle": 0.03}}], ids=["nothing else", "and a cause"])
+def test_a_fouled_hull_is_told(tmp_path, hidden):
+    """Resistance 40 % above the profile's, a target: no effect has to stand for it."""
+    ship = load_profile("suzaku")
+    write(simulate({"hull.R_0": 1.4 * ship.value("hull.R_0")}, hidden, seed=3), tmp_path / "trials")
+    options = DiagnoseOptions(effects=("rudder-offset", "gyro-bias"), targets=TARGETS)
+    result = diagnose(ship, load_trials(tmp_path / "trials"), options)
+    assert [cause.tag for cause in result.causes] == list(hidden)
+    first, *others = result.moved
+    assert first.name == "hull.R_0"
+    assert first.far
+    assert not any(one.far for one in others)
+    assert abs(first.change - 0.4) < 3.0 * first.deviation
+    said = "resistance going straight (R_0)"
+    assert (said in result.sentence()) == (not hidden)
+    assert said in summary(result, "runs", report=False)
+    write_diagnosis(result, tmp_path / "run")
+    document = json.loads((tmp_path / "run" / "diagnosis.json").read_text(encoding="utf-8"))
+    assert [one["name"] for one in document["retuned"] if one["far"]] == ["hull.R_0"]
+    render(tmp_path / "run")
+    page = (tmp_path / "run" / "report.html").read_text(encoding="utf-8")
+    assert "What re-tuning changed" in page
+    assert "1 coefficient is surely more than a tenth off" in page
+
+
+def test_a_hull_as_the_profile_has_it_is_not(tmp_path):
+    write(simulate({}, {}, seed=3), tmp_path)
+    options = DiagnoseOptions(effects=("rudder-offset", "gyro-bias"), targets=TARGETS)
+    result = diagnose(load_profile("suzaku"), load_trials(tmp_path), options)
+    assert not any(one.far for one in result.moved)
+    assert result.sentence().startswith("Nothing is wrong beyond the noise")
