@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
-from ..effects import Effect
+from ..components import UNTAGGED
+from ..effects import Effect, effects
 from ..fitting.box import AT
 from ..fitting.one_sided import LOPSIDED_HULL
 from ..model import Model
@@ -90,6 +91,18 @@ def known_causes(
     measured = frozenset[str]().union(*(measured_around(trial) for trial in trials))
     whole = Model(with_all_effects(profile))
     return hypotheses(whole, options.targets or profile.targets, options.effects, measured, present, in_place=in_place)
+
+
+def not_looked_for(profile: ShipProfile, tags: Sequence[str]) -> list[str]:
+    """What was not looked for since the profile lacks a section that it may leave out, in words; of effects of these
+    tags, of all where there are none."""
+    lacking = set(UNTAGGED) - set(profile.sections)
+    return [
+        f"{effect.tag} was not looked for: the profile has no [{section}]"
+        for effect in effects()
+        if not tags or effect.tag in tags
+        for section in sorted(lacking & {name.partition(".")[0] for name in effect.needs})
+    ]
 
 
 def hypotheses(

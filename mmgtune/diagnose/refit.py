@@ -50,21 +50,36 @@ class Refit:
         """Whether this explains so much more that the other is out of the question.
 
         One value for all runs need not fit better than values of each run do: these are charged for what they could
-        have been, not by their number.
+        have been, not by their number.  What chance would bring, along a signature that noise has much of, is no rival
+        of what it would not.
         """
+        if self.evidence >= ENOUGH and other.evidence <= 0.0:
+            return True
         if self.hypothesis.by and not other.hypothesis.by and self._hardly_above(other):
             return False
         better = (self.gain - other.gain) / max(self.score.inflation, other.score.inflation)
         simpler = other.hypothesis.by and not self.hypothesis.by
         return (better >= BETTER or bool(simpler)) and better - self.cost + other.cost >= ENOUGH
 
+    def by_chance(self, level: float) -> bool:
+        """Whether chance brings as much, at this probability, or its parameters are worth as much."""
+        return self.p_value > level or self.evidence < ENOUGH
+
     def _hardly_above(self, other: Refit) -> bool:
         """Whether another explains hardly less and leaves hardly more."""
         return other.gain >= AS_MUCH * self.gain and other.point.chi2 <= self.point.chi2 / AS_LITTLE
 
 
-def believable_first(refits: list[Refit]) -> list[Refit]:
-    """The best that is about what the trials visit in front, unless it is far from as good as the best of all."""
+def believable_first(refits: list[Refit], level: float) -> list[Refit]:
+    """The best that is about what the trials visit in front, unless it is far from as good as the best of all.
+
+    Noise may have so much of a signature that chance brings more of it than a true cause brings of another: where that
+    is so of the best, what has the most evidence comes first.
+    """
+    told = [refit for refit in refits if not (refit.unvisited or refit.by_chance(level))]
+    if told and refits[0].by_chance(level):
+        best = max(told, key=lambda refit: refit.evidence)
+        return [best, *(refit for refit in refits if refit is not best)]
     for k, refit in enumerate(refits):
         if refits[0].beats(refit):
             break

@@ -363,7 +363,7 @@ class Diagnosis(Plotted):
             return f"The search was stopped before its end, so nothing can be concluded. {told}"
         if self.verdict == "none" and self.leftover.left_open > OPEN:
             return (
-                f"No cause shows. The re-tuned model leaves {self.leftover.left_open:.0%} of the noise of the sensors "
+                f"No cause shows. The re-tuned model leaves {_of_noise(self.leftover.left_open)} of the sensors "
                 "besides, no more than what revolutions and rudder angle did between two samples of their log leaves "
                 "open: inputs logged more often would tell more."
             )
@@ -382,11 +382,6 @@ class Diagnosis(Plotted):
             )
         where = "on trials not used" if self.gain.held_out == "test" else f"on {self.gain.words}"
         if self.verdict == "unexplained":
-            told = (
-                f"the best of what is known would remove {_percent(self.explained_share)} of it"
-                if self.causes
-                else ("no known cause accounts for it")
-            )
             if self.unclear:
                 tags = " + ".join(tag for tag, _ in self.contributions)
                 return (
@@ -404,12 +399,20 @@ class Diagnosis(Plotted):
                 )
             excess = self.leftover.unknown
             left = (
-                f"{excess:.0%} beyond the noise of the measurements is left"
+                f"{_of_noise(excess)} of the measurements besides"
                 if excess < LARGE
-                else f"an error {math.sqrt(1.0 + excess):,.0f} times the noise of the sensors is left"
+                else f"an error {math.sqrt(1.0 + excess):,.0f} times the noise of the sensors"
             )
             offsets = " ".join(f"{in_words(*one)}." for one in self.leftover.offsets.items())
-            return f"Something is wrong that this program does not know: {left}, and {told}. {offsets}".rstrip()
+            if not self.causes:
+                told = f"the re-tuned model leaves {left}, and no known cause accounts for it."
+                return f"Something is wrong that this program does not know: {told} {offsets}".rstrip()
+            tags = " + ".join(dict.fromkeys(cause.tag for cause in self.causes))
+            removed = f"{tags}, removes {_percent(self.explained_share)} of the error and leaves {left}."
+            return (
+                "Something is wrong that this program does not know. "
+                f"The best of what is known, {removed} {offsets}".rstrip()
+            )
         unsure = {tag for group in self.groups for tag in group}
         text, doubtful = (
             " ".join(f"{cause.sentence}." for cause in self.causes if (cause.tag in unsure) == asked)
@@ -571,6 +574,11 @@ class Diagnosis(Plotted):
             "voyages": self._voyages(),
             "wall_s": self.wall_s,
         }
+
+
+def _of_noise(variance: float) -> str:
+    """A variance as a share of that of the noise."""
+    return f"{100.0 * variance:.0f} % of the noise"
 
 
 def _percent(share: float) -> str:

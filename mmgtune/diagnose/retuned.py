@@ -76,8 +76,8 @@ class Retuned:
 
 
 def retuned(bench: Workbench, point: Point) -> list[Retuned]:
-    """Targets at a point, what is surest far from its pre-determined value first."""
-    names = [name for name in point.names if name in bench.targets]
+    """Targets of the ship herself at a point, what is surest far from its pre-determined value first."""
+    names = [name for name in point.names if name in bench.targets and not name.startswith("effects.")]
     if not names:
         return []
     inside, spread = covariance(bench, point)

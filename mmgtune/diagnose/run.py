@@ -18,7 +18,7 @@ from ..profile import ShipProfile, with_all_effects
 from ..threads import blas_on_one_thread
 from ..trial import Trial, TrialSet, VoyageSet, oddities
 from .contributions import set_aside
-from .hypotheses import known_causes, of_runs
+from .hypotheses import known_causes, not_looked_for, of_runs
 from .judging import Judge
 from .leftover import leftover
 from .legs import LEG_NAMES, Difference, differences
@@ -94,7 +94,8 @@ def _diagnose(
     hooks.on_phase("gathering the evidence")
     judge = Judge(bench, profile, options, provenance, hooks, known, test, before, traces, choice, differing)
     result, found = judge.answer(found, brought)
-    warnings = (*odd, *result.warnings, *(narrow_box(bench, found) if not hooks.stop() else ()))
+    unseen = not_looked_for(profile, options.effects) if result.verdict != "none" else []
+    warnings = (*odd, *result.warnings, *unseen, *(narrow_box(bench, found) if not hooks.stop() else ()))
     return replace(result, warnings=warnings, wall_s=time.perf_counter() - began)
 
 

@@ -192,7 +192,8 @@ def look(
         ranked = scores(linear, hypotheses)
         known.good = False
     given = _as_given(bench, point, hypotheses)
-    refits = believable_first(Refitting(bench, point, linear, known, given, stop).best(ranked, quick=False))
+    fitted = Refitting(bench, point, linear, known, given, stop).best(ranked, quick=False)
+    refits = believable_first(fitted, bench.options.level)
     finer_gain = None
     if first:
         tolerance = unnoticed(bench, point.chi2)

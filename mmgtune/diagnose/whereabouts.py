@@ -189,7 +189,8 @@ class Whereabouts:
             tag = next(iter(self.removable))
             most = _percent(self.removable[tag])
             found.append(
-                f"None of {len(self.removable)} effects tried alone removes more than {most} of the error ({tag})."
+                f"Of {len(self.removable)} effects tried alone, with one value for all runs, {tag} would remove the "
+                f"largest share of the error, {most}."
             )
         found.append(f"What would tell: {self.suggestion}.")
         return found

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mmgtune.diagnose.hypotheses import known_causes
+from mmgtune.diagnose.hypotheses import known_causes, not_looked_for
 from mmgtune.diagnose.refitting import akin
 from mmgtune.options import DiagnoseOptions
 from mmgtune.profile import load_profile, with_effects
@@ -74,3 +74,11 @@ def test_what_the_profile_has_already_is_not_looked_for(trials):
     seen = replace(trials[0], extra={name: np.full(n, 0.5) for name in MEASURED["current"]})
     own = with_effects(load_profile("suzaku"), {"current": {"measured": 1.0}}, "a test")
     assert "current" not in {one.tag for one in known_causes(own, [seen], DiagnoseOptions())}
+
+
+def test_what_a_profile_has_no_section_for_is_said():
+    assert not_looked_for(load_profile("suzaku"), ()) == []
+    model = load_profile("kvlcc2_l7")
+    assert not_looked_for(model, ()) == ["wind was not looked for: the profile has no [above_water]"]
+    assert not_looked_for(model, ("current",)) == []
+    assert not_looked_for(load_profile("vectwin_3m"), ()) == []  # another propeller is no section that is missing

@@ -71,7 +71,7 @@ def test_a_force_that_follows_the_heading_is_found_with_its_axis():
     said = " ".join(found.sentences())
     assert "75 % of the error is in 1 of 3 runs: run_0" in said
     assert "sway force follows the heading" in said
-    assert "more than 30 % of the error (current)" in said
+    assert "current would remove the largest share of the error, 30 %" in said
     json.dumps(found.to_dict(), allow_nan=False)
 
 

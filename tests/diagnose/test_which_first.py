@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from mmgtune.diagnose.refit import Refit, believable_first, rivals_among
 from mmgtune.diagnose.refitting import Refitting
 
 N_RESIDUALS, BEFORE = 10_000, 15_000.0
@@ -38,3 +39,30 @@ def test_values_that_differ_stand_first_where_they_leave_far_less(differing, ali
     look = SimpleNamespace(strong=True, bench=SimpleNamespace(problem=SimpleNamespace(n_residuals=N_RESIDUALS)))
     ordered = Refitting._ordered(look, [refit(alike, "", 20.0), refit(differing, "trial", 60.0)])
     assert ordered[0].hypothesis.by == first
+
+
+def fitted(tag, gain, inflation, p_value, unvisited=""):
+    """A refit of one parameter, along a signature of which noise has ``inflation``."""
+    known = SimpleNamespace(by="", tag=tag), SimpleNamespace(inflation=inflation), SimpleNamespace(chi2=0.0)
+    return Refit(*known, gain, 9.0, gain / inflation - 9.0, 1.0, p_value, unvisited)
+
+
+NOISE = fitted("rudder-gain", 375.0, 66.0, 0.87)
+"""Gusts bring as much."""
+
+TRUE = fitted("gyro-bias", 220.0, 1.2, 1e-30)
+
+
+def test_a_cause_is_not_hidden_behind_what_chance_explains_more_by():
+    """A rate gyro that is off in a gusty wind: gusts have much of other signatures, nothing of that one."""
+    less = fitted("antenna", 150.0, 1.0, 1e-20)
+    ordered = believable_first([NOISE, less, TRUE], 0.01)
+    assert [one.hypothesis.tag for one in ordered] == ["gyro-bias", "rudder-gain", "antenna"]
+    assert [one.hypothesis.tag for one in rivals_among(ordered)] == ["antenna"] * (not TRUE.beats(less))
+    assert TRUE.beats(NOISE)
+    assert not NOISE.beats(TRUE)
+
+
+def test_where_chance_brings_all_of_it_nothing_comes_first():
+    others = [NOISE, fitted("antenna", 15.0, 1.0, 0.3), fitted("gyro-bias", 220.0, 1.2, 1e-30, unvisited="turns")]
+    assert believable_first(others, 0.01) == others
