@@ -35,6 +35,7 @@ class RecurrentAim:
         }
         self._scales = Scales(*(jnp.asarray(one, dtype=Single) for one in scales))
         self._sigma = jnp.asarray(sigma, dtype=Single)
+        self._signs = None if task.signs is None else jnp.asarray(task.signs, dtype=Single)
         self._h, self._memory, self._horizon, self._recipe = learn.step, task.memory, options.horizon, recipe
         if recipe.loss == "acceleration":
             self._deviation = jnp.asarray(np.nanstd(measured, axis=0), dtype=Single)
@@ -44,7 +45,7 @@ class RecurrentAim:
 
     def _of_windows(self, w: Weights, initial: Any, controls: Any, around: Any) -> Any:
         """See ``Roll``."""
-        return roll(w, self._scales, initial, controls[:-1], around[:-1, :, WIND], self._h, self._memory)
+        return roll(w, self._scales, initial, controls[:-1], around[:-1, :, WIND], self._h, self._memory, self._signs)
 
     def loss(self, w: Weights, starts: Any, data: Any) -> Any:
         """See ``Aim``."""
@@ -52,10 +53,13 @@ class RecurrentAim:
         states = from_origin(data["states"][rows])
         controls, wind = data["controls"][rows], data["wind"][rows]
         if self._recipe.loss == "acceleration":
+            measured = data["accelerations"][rows]
             return acceleration_loss(
-                w, self._scales, states, controls, wind, self._memory, data["accelerations"][rows], self._deviation
+                w, self._scales, states, controls, wind, self._memory, measured, self._deviation, self._signs
             )
-        return trajectory_loss(w, self._scales, states, controls[:-1], wind[:-1], self._h, self._memory, self._sigma)
+        return trajectory_loss(
+            w, self._scales, states, controls[:-1], wind[:-1], self._h, self._memory, self._sigma, self._signs
+        )
 
     def judged(self, w: Weights) -> dict[str, float]:
         """See ``Aim``: the mean over kinds of manoeuvre, each alike."""

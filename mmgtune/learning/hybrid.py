@@ -14,6 +14,7 @@ from ..backends.differentiable import Log, Marching, on_jax
 from ..backends.twins import jax_module
 from ..model import Model
 from ..networks.hybrid import HybridLanes
+from ..networks.motion import SIDES, mirror
 from ..networks.residual import Ranges, ResidualWeights, seen
 from ..trial import Trial
 from ..validation import L_MSE, by_manoeuvre, score
@@ -67,13 +68,11 @@ def ranges_of(samples: Samples, memory: float, roles: Sequence[str]) -> Ranges:
     deviation = np.sqrt(np.mean(x**2, axis=0))
     deviation = np.where(deviation > 0.0, deviation, 1.0)
     largest = np.quantile(np.abs(x) / deviation, QUANTILE, axis=0)
-    sides = [1.0, -1.0, -1.0]
-    inputs = [-1.0 if role in ("rudder", "thruster") else 1.0 for role in roles]
     return Ranges(
         deviation=deviation,
         largest=np.maximum(largest, 1e-3),
         accelerations=acceleration_deviations(samples),
-        mirrored=np.array([*sides, *inputs, 1.0, -1.0, *sides]),
+        mirrored=np.array([*mirror(roles), *SIDES]),
     )
 
 

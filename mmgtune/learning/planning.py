@@ -33,7 +33,15 @@ def plan_rnn(ship: ShipGiven, trials: TrialsGiven, options: LearnOptions) -> Pla
     task = make_task(ship_of(ship), trials_of(trials).series_only("a network"), options)
     split = task.split
     layers = 2 + (task.memory or 1)
-    operations = 6.0 * task.updates * options.batch * options.horizon * layers * options.width**2
+    operations = (
+        6.0
+        * task.updates
+        * options.batch
+        * options.horizon
+        * layers
+        * options.width**2
+        * (2 if options.mirrored else 1)
+    )
     lines = (
         f"learn     type {options.type}: {task.recipe.words}",
         *_material(task, options.horizon),

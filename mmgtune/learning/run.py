@@ -132,6 +132,7 @@ def learn_rnn(
         weights=Weights(*(np.stack(parts) for parts in zip(*(one.weights for one in members), strict=True))),
         scales=Scales(*(one[None] for one in scales)),
         facts={**travelling(made), "type": f"type {options.type}", "seeds": [one.seed for one in members]},
+        mirrored=options.mirrored,
     )
     done = len(members) == options.seeds and all(one.step >= options.steps for one in members)
     held = {"validation": task.split.choose, "test": task.test}

@@ -9,6 +9,8 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import OptionError, Problem
+from ..networks.model import sided
+from ..networks.motion import mirror
 from ..objective import spread, varying
 from ..options.learning import MOST_MEMBERS, EnsembleOptions, LearnOptions, TrainingOptions
 from ..profile import ShipProfile
@@ -51,14 +53,27 @@ class Task(Material):
         return self.recipe.memory(self.options)
 
     @property
+    def signs(self) -> FloatArray | None:
+        """(n_features,) as of ``mirror`` where port and starboard are to be mirror images, else None."""
+        roles = [one.role for one in self.profile.arrangement.inputs]
+        return np.asarray(mirror(roles)) if self.options.mirrored else None
+
+    @property
     def updates(self) -> int:
         """Updates of all seeds together."""
         return self.options.seeds * self.options.steps
 
 
 def make_task(profile: ShipProfile, data: TrialSet, options: LearnOptions) -> Task:
-    """The training of a type on the trials that tune.  Raises what ``material_of`` does."""
+    """The training of a type on the trials that tune.  Raises what ``material_of`` does.
+
+    Raises OptionError too for mirror images of inputs that have a side.
+    """
     recipe = RECIPES[options.type]
+    on_a_side = sided([one.name for one in profile.arrangement.inputs])
+    if options.mirrored and on_a_side:
+        why = f"{', '.join(on_a_side)} would have to change places"
+        raise OptionError(Problem("this ship cannot be mirrored", "mirrored", why, "write mirrored=False"))
     trials = recipe.trials([data.trials[id] for id in data.tune], str(data.path or "trials"))
     return Task(**vars(material_of(profile, data, trials, options, options.horizon)), recipe=recipe)
 

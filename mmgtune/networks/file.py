@@ -77,6 +77,7 @@ def _described(model: Trained) -> tuple[dict[str, Any], dict[str, dict[str, Any]
                 groups |= {name: one.layers._asdict(), f"{name}_standards": one.standards._asdict()}
         else:
             header |= {"kind": "recurrent", "memory": model.memory}
+            header |= {"mirrored": True} if model.mirrored else {}
             groups = {"weights": model.weights._asdict(), "scales": model.scales._asdict()}
     return {**header, "facts": model.facts}, groups
 
@@ -132,8 +133,11 @@ def _recurrent(header: dict[str, Any], weights: Weights, scales: Scales, where: 
     inputs = _inputs(header, where)
     if header["memory"] is not None:
         limits.NETWORK_MEMORY.hold(header["memory"], where, NetworkError)
+    mirrored = header.get("mirrored", False)  # files from before there were such networks do not say
+    if not isinstance(mirrored, bool):
+        raise NetworkError(Problem(f"mirrored of the network is {brief(mirrored)}", where, "", FIX))
     length, step = float(header["L_pp"]), float(header["step"])
-    return Network(header["ship"], length, inputs, step, header["memory"], weights, scales, header["facts"])
+    return Network(header["ship"], length, inputs, step, header["memory"], weights, scales, header["facts"], mirrored)
 
 
 def _hybrid(header: dict[str, Any], weights: ResidualWeights, ranges: Ranges, where: str) -> Hybrid:

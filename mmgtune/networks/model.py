@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from ..arrays import IntArray
+from ..arrays import FloatArray, IntArray
 from ..inputs import INPUTS
+from .motion import mirror
 from .recurrent import Scales, Weights
 
 N_ACCELERATIONS = 3
@@ -29,6 +31,7 @@ class Network:
     weights   (n_members, ...) each
     scales    (1, ...) each
     facts     provenance: type, trials, their source and licence, seeds, options, versions, scores; numbers and texts
+    mirrored  whether port and starboard are mirror images: a member gives the mean of what it says on both sides
     """
 
     ship: str
@@ -39,6 +42,7 @@ class Network:
     weights: Weights
     scales: Scales
     facts: dict[str, Any] = field(default_factory=dict)
+    mirrored: bool = False
 
     def __post_init__(self) -> None:
         """Raises ValueError where shapes do not fit together, or a number is not finite."""
@@ -60,6 +64,11 @@ class Network:
         """Units of a layer."""
         return int(self.weights.W_x.shape[-1])
 
+    @property
+    def signs(self) -> FloatArray | None:
+        """(n_features,) as of ``mirror``; None where port and starboard differ."""
+        return np.asarray(mirror([INPUTS[name].role for name in self.inputs])) if self.mirrored else None
+
     def member(self, k: int) -> Network:
         """One of the members alone."""
         return self.only(np.array([k]))
@@ -67,7 +76,14 @@ class Network:
     def only(self, members: IntArray) -> Network:
         """These members, in this order; one may be there again and again."""
         own = Weights(*(values[members] for values in self.weights))
-        return Network(self.ship, self.L_pp, self.inputs, self.step, self.memory, own, self.scales, self.facts)
+        return Network(
+            self.ship, self.L_pp, self.inputs, self.step, self.memory, own, self.scales, self.facts, self.mirrored
+        )
+
+
+def sided(inputs: Sequence[str]) -> list[str]:
+    """Inputs of one side of the ship, which would change places with those of the other in her mirror image."""
+    return [name for name in inputs if name.endswith(("_port", "_stbd"))]
 
 
 def n_features(inputs: tuple[str, ...]) -> int:
@@ -108,6 +124,8 @@ def problems_of_ship(inputs: tuple[str, ...], step: float, L_pp: float) -> list[
 def problems_of(network: Network) -> list[str]:
     """What is wrong with a network, in words."""
     found = problems_of_ship(network.inputs, network.step, network.L_pp)
+    if network.mirrored and sided(network.inputs):
+        found.append(f"it is mirrored, and {', '.join(sided(network.inputs))} would change places")
     if network.memory is not None and network.memory < 1:
         found.append(f"the memory has {network.memory} samples")
     first = np.shape(network.weights.W_x)

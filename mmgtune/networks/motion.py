@@ -5,6 +5,7 @@ Training differentiates them rebuilt on JAX.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,18 @@ from ..physics.kinematics import pose_rate
 
 Array = Any
 """An array of NumPy or of JAX, of any number type."""
+
+SIDES = (1.0, -1.0, -1.0)
+"""Velocities and accelerations where port and starboard change places: surge stays, sway and yaw change sign."""
+
+
+def mirror(roles: Sequence[str]) -> Array:
+    """(n_features,) -1 for what is ``observed`` and changes sign where port and starboard change places, else 1.
+
+    roles  of the inputs; a rudder or a thruster then acts to the other side
+    """
+    inputs = [-1.0 if role in ("rudder", "thruster") else 1.0 for role in roles]
+    return np.array([*SIDES, *inputs, 1.0, -1.0])
 
 
 def observed(states: Array, controls: Array, wind: Array) -> Array:

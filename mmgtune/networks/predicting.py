@@ -13,7 +13,7 @@ from ..threads import blas_on_one_thread
 from .marching import WIND, RunStepper, marched, paired
 from .model import Network
 from .motion import Array, moved
-from .recurrent import accelerations, features, projected, remembered, truncated
+from .recurrent import accelerations, alike, both_sides, features, projected, remembered, truncated
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,6 +89,9 @@ class NetworkRun:
         self.network = network
         self.states: Array = np.array(states)
         members, lanes = self.states.shape[:2]
+        self._signs = network.signs
+        if self._signs is not None:
+            lanes *= 2
         rows = lanes if network.memory is None else (network.memory - 1) * lanes
         self._held: Array = np.zeros((members, rows, network.width))
 
@@ -102,9 +105,12 @@ class NetworkRun:
             np.broadcast_to(around[..., WIND], (*lanes, 2)),
             net.scales,
         )
+        if self._signs is not None:
+            seen = both_sides(seen, self._signs)
         part = projected(seen, net.weights)
         if net.memory is None:
             first = self._held = remembered(part, self._held, net.weights)
         else:
             first, self._held = truncated(part, self._held, net.weights)
-        self.states = moved(self.states, accelerations(first, net.weights, net.scales), h)
+        rates = accelerations(first, net.weights, net.scales)
+        self.states = moved(self.states, rates if self._signs is None else alike(rates), h)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .motion import Array, observed
+from .motion import SIDES, Array, observed
 
 
 class Weights(NamedTuple):
@@ -42,6 +42,24 @@ class Scales(NamedTuple):
 def features(states: Array, controls: Array, wind: Array, scales: Scales) -> Array:
     """What the network sees, (..., n_features): what is ``observed``, scaled (eq. 7)."""
     return observed(states, controls, wind) / scales.features
+
+
+def both_sides(seen: Array, signs: Array) -> Array:
+    """Lanes as they are and, behind them, with port and starboard exchanged: (..., 2 n_lanes, n_features).
+
+    seen   (..., n_lanes, n_features)
+    signs  (n_features,) as of ``mirror``
+    """
+    return np.concatenate([seen, seen * signs], axis=-2)
+
+
+def alike(rates: Array) -> Array:
+    """Accelerations (..., n_lanes, 3) that are mirror images of those of the mirrored ship, from (..., 2 n_lanes, 3).
+
+    They are the mean of what the network gives for the ship, and for her mirror image mirrored back.
+    """
+    n = rates.shape[-2] // 2
+    return 0.5 * (rates[..., :n, :] + np.array(SIDES) * rates[..., n:, :])
 
 
 def projected(seen: Array, w: Weights) -> Array:

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..physics.elementary import exp
 from ..physics.frame import to_ship
+from .motion import SIDES
 
 Array = Any
 """An array of NumPy or of JAX, of any number type."""
@@ -34,9 +35,6 @@ class Ranges(NamedTuple):
     accelerations: Array  # (3,) what the output is multiplied with [m/s^2, m/s^2, rad/s^2]
     mirrored: Array  # (n_features,) -1 for features that change sign where port and starboard change places, else 1
 
-
-SIDES = (1.0, -1.0, -1.0)
-"""The accelerations where port and starboard change places: surge stays, sway and yaw change sign."""
 
 FALL = 4.0
 """How fast the network falls silent outside the data: at twice the largest value of one feature to e^-4."""

@@ -58,6 +58,11 @@ class LearnOptions(TrainingOptions):
     seeds: int = choice(5, "Networks trained, each from a start of its own.", least=1, most=100, panel=TRAINING)
     memory: int = choice(10, "Samples that truncated memory reaches back.", least=1, most=1000, panel=TRAINING)
     horizon: int = choice(60, "Samples that a window of the loss has.", least=2, most=100_000, panel=TRAINING)
+    mirrored: bool = choice(
+        False,
+        "Take port and starboard for mirror images: networks give the mean of what they see on either side.",
+        panel=TRAINING,
+    )
     step: float | None = again(TrainingOptions, "step", but="Default: that of most trials.")
 
 

@@ -19,6 +19,7 @@ from mmgtune.networks import NetworkPredictor, load_network
 from mmgtune.options.learning import LearnOptions
 from mmgtune.trial import load_trials
 from mmgtune.validating import validate
+from mmgtune.validation import L_MSE, by_manoeuvre
 
 pytestmark = pytest.mark.xdist_group("networks")
 
@@ -119,6 +120,21 @@ def test_other_types_learn_too(type):
     losses = [row["loss"] for row in result.members[0].curve]
     assert losses[-1] < losses[0]
     assert (result.network.memory is None) == (type == "2")
+
+
+def test_mirrored_it_is_trained_and_scored_as_it_predicts(tmp_path):
+    result = learn_rnn("suzaku", "suzaku", replace(SMALL, type="2", mirrored=True))
+    write_learned(result, tmp_path)
+    network = load_network(tmp_path / "model.safetensors")
+    assert network.mirrored
+    scores = result.scores["validation"]
+    by_kind = [L_MSE(of) for of in by_manoeuvre(scores).values()]
+    assert np.mean(by_kind) == pytest.approx(result.members[0].score, rel=2e-3)
+
+
+def test_a_ship_with_two_rudders_is_not_mirrored():
+    with pytest.raises(OptionError, match="change places"):
+        learn_rnn("vectwin_3m", "suzaku", replace(SMALL, mirrored=True))
 
 
 def test_types_on_runs_of_the_paper_say_which_are_missing():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -29,6 +30,12 @@ def test_round_trip(tmp_path, memory):
     )
     for a, b in zip((*net.weights, *net.scales), (*again.weights, *again.scales), strict=True):
         np.testing.assert_array_equal(np.float32(a), b)
+
+
+def test_a_mirrored_network_stays_one(tmp_path):
+    path = save_network(replace(network(), mirrored=True), tmp_path / "model.safetensors")
+    assert load_network(path).mirrored
+    assert load_network(path).member(0).mirrored
 
 
 def test_never_overwritten_silently(tmp_path):
@@ -98,6 +105,8 @@ def test_the_unaltered_file_is_read(tmp_path):
         (lambda a, h, m: h.update(memory=0), "memory"),
         (lambda a, h, m: h.update(memory=10**9), "memory"),
         (lambda a, h, m: h.pop("memory"), "memory"),
+        (lambda a, h, m: h.update(mirrored=1), "mirrored"),
+        (lambda a, h, m: h.update(mirrored=True, inputs=["n_port", "delta"]), "would change places"),
         (lambda a, h, m: h.update(L_pp=10**400), "too large"),
     ],
 )

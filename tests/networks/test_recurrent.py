@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -89,3 +91,38 @@ def test_a_step_is_euler_s(psi):
     c, s = np.cos(psi), np.sin(psi)
     by = [0.8 * c + 0.2 * s, 0.8 * s - 0.2 * c, 0.05, 0.1, -0.2, 0.3]
     np.testing.assert_allclose(found, state + 0.1 * np.array(by), rtol=1e-14)
+
+
+@pytest.mark.parametrize("memory", [None, 3])
+def test_mirrored_it_goes_as_far_to_port_as_to_starboard(memory):
+    """The mirror image of a run is the run of the mirror image, wind and rudder included; a plain network's is not."""
+    plain = network(members=2, memory=memory, size=0.8)
+    shown = np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])
+    rng = np.random.default_rng(4)
+    state = np.broadcast_to(np.array([0.0, 0.0, 0.3, 0.5, 0.1, 0.02]), (2, 1, 6))
+    off = []
+    for net in (replace(plain, mirrored=True), plain):
+        one, other = NetworkRun(net, state), NetworkRun(net, shown * state)
+        for _ in range(9):
+            controls = rng.standard_normal((1, 2))
+            north, east = rng.standard_normal(2)
+            here = np.array([UNKNOWN._replace(wind_north=north, wind_east=east)], dtype=float)
+            there = np.array([UNKNOWN._replace(wind_north=north, wind_east=-east)], dtype=float)
+            one.step(controls, here, 0.1)
+            other.step(controls * [1.0, -1.0], there, 0.1)
+        off.append(np.abs(one.states - shown * other.states).max())
+    assert off[0] < 1e-14
+    assert off[1] > 1e-3
+
+
+def test_mirrored_it_gives_the_mean_of_both_sides():
+    net = replace(network(memory=None), mirrored=True)
+    state = np.array([[[0.0, 0.0, 0.0, 0.5, 0.1, 0.02]]])
+    run = NetworkRun(net, state)
+    run.step(np.array([[7.0, 0.2]]), np.array([UNKNOWN], dtype=float), 1.0)
+    seen = np.array([0.5, 0.1, 0.02, 7.0, 0.2, 0.5, 0.1])
+    image = np.array([0.5, -0.1, -0.02, 7.0, -0.2, 0.5, -0.1])
+    scale = np.asarray(net.scales.features)[0, 0]
+    a, b = by_hand(net, seen[None] / scale), by_hand(net, image[None] / scale)
+    expected = state[0, 0, 3:] + 0.5 * (a + b * [1.0, -1.0, -1.0])
+    np.testing.assert_allclose(run.states[0, 0, 3:], expected, rtol=1e-12)
