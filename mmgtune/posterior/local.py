@@ -184,11 +184,12 @@ def find_mode(data: Windowed, temper: float = 1.0, start: FloatArray | None = No
         tried = np.column_stack([z - np.linalg.solve(H + damping * np.eye(n), g) for damping in DAMPING])
         found = cost(data.residuals(tried), tried)
         k = int(np.argmin(found))
-        converged = bool(now - found[k] < SMALL)
+        ends = bool(now - found[k] < SMALL)
+        converged = ends and bool(found[k] - now < SMALL)  # else every step leads uphill: the search is stuck
         if found[k] < now:
             z, now = tried[:, k], float(found[k])
             r, J = data.linearised(z)
-        if converged:
+        if ends:
             break
     return Mode(z, np.nan_to_num(r), J, converged)
 

@@ -83,6 +83,16 @@ def test_where_residuals_bend_particles_fit_as_well_as_they_should():
     assert above / 3.0 == pytest.approx(mode.learnt(3.0), rel=0.35)
 
 
+def test_a_search_that_is_stuck_has_not_converged(straight):
+    class Wrong(Straight):
+        def linearised(self, z):
+            r, J = super().linearised(z)
+            return r, -1e4 * J  # slopes that lead uphill
+
+    assert find_mode(straight).converged
+    assert not find_mode(Wrong(straight.A, straight.b + 30.0)).converged
+
+
 def test_a_mode_is_found_from_anywhere(straight):
     there = find_mode(straight, 5.0, np.full(6, 2.0))
     assert np.allclose(there.z, find_mode(straight, 5.0).z, atol=1e-9)
