@@ -1,6 +1,6 @@
 """Coverage of bands on generated ships with an effect that neither model nor room has, one line of JSON a case.
 
-    python -m tools.band_coverage --out docs/bands.jsonl [--cases 48] [--seconds 300] [--leave-out] [--room 1]
+    python -m tools.band_coverage --out docs/bands.jsonl [--ships 50] [--seconds 300] [--leave-out] [--of fresh]
 
 Ships, hidden effects and trials are those of ``tests.hidden``: targets drawn within 22 %, one typical effect of the
 registry, an effect that no registry holds, or nothing.  Each ship is learnt from a few of her trials, in turn several
