@@ -19,10 +19,12 @@ from .backends import Integrator
 from .components import split_name
 from .effects import FilterEffect, FlowEffect, SensorEffect
 from .errors import OptionError, Problem, ProfileError, reason
-from .files import atomic, hold_regular
+from .files import hold_regular
 from .model import Model
 from .predictor import PhysicsPredictor, Sampling
 from .profile import ShipProfile, parse_profile, with_effects
+from .tables import write_table
+from .trial.parquet import numbers as plain_numbers
 
 FILE = "particles.parquet"
 """What the file is called in a run folder."""
@@ -125,15 +127,10 @@ def save_particles(particles: Particles, path: Path | str, overwrite: bool = Fal
 
     Raises OutputError where the file exists and ``overwrite`` is false, or the system refuses to write.
     """
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
     path = Path(path)
     facts = {"schema": SCHEMA, "profile": particles.profile.text, "facts": dict(particles.facts)}
-    table = pa.table(dict(zip(particles.names, particles.values, strict=True)))
-    table = table.replace_schema_metadata({KEY: json.dumps(facts, allow_nan=False).encode()})
-    with atomic(path, overwrite) as part:
-        pq.write_table(table, part, compression="zstd", write_page_checksum=True)
+    columns = dict(zip(particles.names, particles.values, strict=True))
+    write_table(path, columns, overwrite=overwrite, metadata={KEY: json.dumps(facts, allow_nan=False).encode()})
     return path
 
 
@@ -145,7 +142,8 @@ def load_particles(path: Path | str) -> Particles:
     path = Path(path)
     try:
         hold_regular(path)
-        table = pq.read_table(path, page_checksum_verification=True)
+        with pq.ParquetFile(path, pre_buffer=False, page_checksum_verification=True) as file:
+            table = file.read(use_threads=False)
         raw = (table.schema.metadata or {})[KEY]
         facts = json.loads(raw)
         text, known, schema = facts["profile"], facts["facts"], facts["schema"]
@@ -161,12 +159,15 @@ def load_particles(path: Path | str) -> Particles:
     names = tuple(table.column_names)
     there = Model(profile).rows
     unknown = [name for name in names if name not in there]
-    numbers = all(pa.types.is_floating(column.type) for column in table.columns)
-    values = np.array([column.to_numpy() for column in table.columns], dtype=float) if numbers else np.empty((0, 0))
-    if unknown or not names or len(set(names)) < len(names):
+    floats = all(pa.types.is_floating(column.type) for column in table.columns)
+    columns = [plain_numbers(column.combine_chunks()) for column in table.columns] if floats else []
+    values = np.array(columns, dtype=float) if columns else np.empty((0, 0))
+    if unknown or not names:
         what = f"particles of '{unknown[0][:60]}', which their profile does not have" if unknown else "no particles"
         raise _unusable(what, path, "the file has no columns, or others than were written")
-    if not numbers or not values.size or not np.isfinite(values).all():
+    if len(set(names)) < len(names):
+        raise _unusable("a column of the particles is there twice", path, "each number has one column")
+    if not floats or not values.size or not np.isfinite(values).all():
         raise _unusable("particles that are no finite numbers", path, "each column holds floating-point numbers")
     beyond = np.abs(values).max(axis=1) > LARGEST
     if beyond.any():

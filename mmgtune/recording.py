@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 
 from .files import write_text
-from .fitting.folder import write_table
 from .inputs import INPUTS
 from .physics.quantities import STATES
 from .predictor import Predictor, profile_of
 from .provenance import made_by
 from .simulating import Simulated
 from .simulation import Motion, simulate
+from .tables import write_table
 from .trial import Trial, TrialSet
 from .validating import Validation
 

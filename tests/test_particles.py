@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import re
+import subprocess
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -92,7 +94,7 @@ def rewritten(path, change):
         (lambda t, f: (t, {**f, "profile": 3}), "damaged"),
         (lambda t, f: (t, {**f, "profile": "nonsense"}), "TOML"),
         (lambda t, f: (t.rename_columns(["hull.R_0", "hull.unheard"]), f), "unheard"),
-        (lambda t, f: (t.rename_columns(["hull.R_0", "hull.R_0"]), f), "cannot be read"),
+        (lambda t, f: (t.rename_columns(["hull.R_0", "hull.R_0"]), f), "twice"),
         (lambda t, f: (t.slice(0, 0), f), "finite"),
         (lambda t, f: (t.set_column(0, "hull.R_0", pa.array(["a"] * 30)), f), "finite"),
         (lambda t, f: (t.set_column(0, "hull.R_0", pa.array([np.nan] * 30)), f), "finite"),
@@ -105,6 +107,16 @@ def test_a_damaged_file_says_what_is_wrong(particles, tmp_path, change, words):
     with pytest.raises(ProfileError, match=words) as raised:
         load_particles(path)
     assert all(problem.fix for problem in raised.value.problems)
+
+
+def test_reading_and_writing_load_no_pandas(particles, tmp_path):
+    save_particles(particles, tmp_path / "particles.parquet")
+    asked = (
+        "import sys; from pathlib import Path; from mmgtune.particles import load_particles, save_particles;"
+        "known = load_particles(Path(sys.argv[1])); save_particles(known, Path(sys.argv[1]), True);"
+        "sys.exit('pandas' in sys.modules)"
+    )
+    subprocess.run([sys.executable, "-c", asked, str(tmp_path / "particles.parquet")], check=True)
 
 
 @pytest.mark.parametrize("bytes_", [b"", b"PAR1", b"PAR1" + bytes(200) + b"PAR1"])

@@ -1,6 +1,6 @@
 """Coverage of bands on generated ships with an effect that neither model nor room has, one line of JSON a case.
 
-    python -m tools.band_coverage --out docs/bands.jsonl [--cases 48] [--seconds 300] [--leave-out] [--room 1]
+    python -m tools.band_coverage --out docs/bands.jsonl [--ships 50] [--seconds 300] [--leave-out] [--of fresh]
 
 Ships, hidden effects and trials are those of ``tests.hidden``: targets drawn within 22 %, one typical effect of the
 registry, an effect that no registry holds, or nothing.  Each ship is learnt from a few of her trials, in turn several
@@ -62,14 +62,18 @@ FIRST, EVERY = 40, 20
 INDICES = ("advance", "transfer", "tactical_diameter")
 
 
-def cases() -> Iterator[Case]:
-    """Effects in turn, ships anew each time: one of each of the registry, six unknown ones, and a right model."""
-    for seed in range(1, 1000):
+def cases(of: str) -> Iterator[Case]:
+    """A ship of her own for each effect: those of the registry in turn, then unknown ones, then a right model.
+
+    of  "first", the ships that constants were chosen with; "fresh", ships drawn after that
+    """
+    for turn in [0] if of == "first" else range(1, 1000):
+        seed = 100 * turn
         for tag in LADDER:
-            yield single(tag, TYPICAL, seed)
-        for k in range(seed - 1, len(UNKNOWN) + seed - 1, 4):
-            yield unknown(k % len(UNKNOWN), seed)
-        yield null(1000 + seed)
+            yield single(tag, TYPICAL, seed := seed + 1)
+        for k in range(turn % 3, len(UNKNOWN), 3):
+            yield unknown(k, seed := seed + 1)
+        yield null(seed + 1)
 
 
 def scored(ship: PhysicsPredictor, before: PhysicsPredictor, trial: Trial) -> dict[str, Any]:
@@ -206,7 +210,8 @@ def main() -> None:
     """Run what is missing, and print the summary."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, required=True)
-    parser.add_argument("--cases", type=int, default=200, help="ships")
+    parser.add_argument("--ships", type=int, default=100)
+    parser.add_argument("--of", choices=("first", "fresh"), default="fresh")
     parser.add_argument("--seconds", type=float, default=300.0, help="of processor time, then stop")
     parser.add_argument("--room", type=float, default=1.0)
     parser.add_argument("--leave-out", action="store_true")
@@ -214,7 +219,7 @@ def main() -> None:
     os.nice(3)
     rows = [json.loads(line) for line in given.out.read_text().splitlines()] if given.out.is_file() else []
     done = {(row["case"], row["design"]) for row in rows}
-    for _, case in zip(range(given.cases), cases(), strict=False):
+    for _, case in zip(range(given.ships), cases(given.of), strict=False):
         for design in DESIGNS:
             if (case.name, design) in done or time.process_time() > given.seconds:
                 continue

@@ -1,6 +1,6 @@
-"""Bands on measured runs: each run left out in turn, and predicted from its logged inputs by particles of the others.
+"""Bands on measured runs: each, or a part of them, left out in turn and predicted from its logged inputs by the others.
 
-    python -m tools.band_leave_run_out PROFILE TRIALS [--out FILE.json] [--most 12] [--turn 35]
+    python -m tools.band_leave_run_out PROFILE TRIALS [--out FILE.json] [--folds 5] [--turn 35]
 
 Prints a row a run: coverage of nominal 90 % bands by channel, and their width over that of the room alone.  ``--turn``
 adds bands of advance and tactical diameter of turns of that rudder to both sides, from all runs and from the room
@@ -67,8 +67,8 @@ def main() -> None:
     parser.add_argument("--out", type=Path)
     parser.add_argument("--quick", action="store_true", help="no kinds and sides left out within what is learnt from")
     parser.add_argument("--without", default="", help="effects to leave no room for, with commas between")
-    parser.add_argument("--most", type=int, default=12, help="runs left out")
-    parser.add_argument("--turn", type=float, default=35.0, help="rudder of the turns [deg]")
+    parser.add_argument("--folds", type=int, default=0, help="parts of the runs left out together; 0: each by itself")
+    parser.add_argument("--turn", type=float, default=35.0, help="rudder of the turns [deg], 0: none")
     given = parser.parse_args()
     profile = load_profile(given.profile)
     trials = list(load_trials(given.trials).trials.values())
@@ -78,9 +78,10 @@ def main() -> None:
     before = prior_of(profile, options)
     rows: list[dict[str, Any]] = []
     runs = list(dict.fromkeys(trial.run for trial in trials))
-    for run in runs[: given.most]:
+    n_folds = given.folds or len(runs)
+    for fold in range(n_folds):
         began = time.process_time()
-        left = [trial for trial in trials if trial.run == run]
+        left = [trial for trial in trials if trial.run in runs[fold::n_folds]]
         found = posterior(profile, [trial for trial in trials if trial not in left], options)
         ship = found.particles.predictor(as_logged=True).drawn(200, 1)
         for trial in left:
@@ -97,7 +98,7 @@ def main() -> None:
     whole = posterior(profile, trials, options)
     ship = whole.particles.predictor().drawn(200, 1)
     table: dict[str, Any] = {"runs": rows, "sentences": whole.sentences(), "turns": {}}
-    for side in (1.0, -1.0):
+    for side in (1.0, -1.0) if given.turn else ():
         for name, of in (("posterior", ship), ("room", before)):
             key = f"{name}, {'starboard' if side > 0 else 'port'} {given.turn:g} deg"
             table["turns"][key] = turns(of, side * given.turn)

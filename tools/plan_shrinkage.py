@@ -25,9 +25,8 @@ from mmgtune.planning import plan_trial
 from mmgtune.posterior import posterior
 from mmgtune.predicting import predict
 from mmgtune.profile import load_profile
-from tests.hidden.cases import LADDER, Case, null
+from tests.hidden.cases import LADDER, TYPICAL, Case, null, single
 from tests.hidden.plant import simulate
-from tools.band_coverage import cases
 
 LEARNT = ("turn_p10", "turn_p35")
 QUESTION = "tactical diameter, turn -35"
@@ -91,7 +90,7 @@ def main() -> None:
     given = parser.parse_args()
     os.nice(3)
     done = {json.loads(line)["ship"] for line in given.out.read_text().splitlines()} if given.out.is_file() else set()
-    hidden = (case for case in cases() if case.effects)
+    hidden = (single(tag, TYPICAL, 1) for tag in LADDER)
     every = [*(null(seed) for seed in range(1001, 1001 + given.ships)), *islice(hidden, given.hidden)]
     for case in every:
         if case.name in done or time.process_time() > given.seconds:

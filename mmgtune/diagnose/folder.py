@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from ..files import write_text
-from ..fitting.folder import motions_table, write_table
+from ..fitting.folder import motions_table
 from ..fitting.journal import finished
+from ..tables import write_table
 from .calm import calm_profile
 from .result import Diagnosis
 

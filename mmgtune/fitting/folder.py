@@ -13,7 +13,8 @@ import numpy as np
 
 from ..backends import STATES
 from ..errors import OutputError, Problem
-from ..files import alone_in, atomic, cannot_write, exists, half, is_left_over, remove_left_overs, write_text
+from ..files import alone_in, cannot_write, exists, half, is_left_over, remove_left_overs, write_text
+from ..tables import write_table
 from .cmaes import Generation
 from .comparison import TrialComparison
 from .journal import finished
@@ -165,12 +166,3 @@ def motions_table(compared: Sequence[TrialComparison], inputs: Sequence[str]) ->
         texts = ("trial", "which")
         return {name: np.zeros(0, dtype=str if name in texts else float) for name in parts}
     return {name: np.concatenate(values) for name, values in parts.items()}
-
-
-def write_table(path: Path, columns: dict[str, Any]) -> None:
-    """Columns to a Parquet file, whole or not at all."""
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
-    with atomic(path) as part:
-        pq.write_table(pa.table(columns), part, compression="zstd")

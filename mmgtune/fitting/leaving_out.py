@@ -27,12 +27,13 @@ from ..profile import ShipProfile
 from ..profile.doubts import Doubt, in_words
 from ..repeating import Repeated, document, repeat
 from ..stated import IndexComparison, compare_stated
+from ..tables import write_table
 from ..threads import blas_on_one_thread
 from ..trial import Coverage, Trial, TrialSet, oddities
 from ..validation import L_MSE, TrialScore, by_manoeuvre, improvement, off_by, score_of
 from .comparison import TrialComparison, finite, finite_values
 from .extending import held_words, settled, tune_trials
-from .folder import motions_table, write_table
+from .folder import motions_table
 from .journal import finished, journalled
 from .least_squares import solve
 from .one_sided import coverage_notes

@@ -37,6 +37,12 @@ AT_ONCE = 512
 """Candidates run at one time; bounds the memory."""
 
 ITERATIONS = 30
+CORRECTIONS = 6
+"""Steps of particles from where linear residuals have them."""
+
+SETTLED = 0.5
+"""Fall of a particle's sum of squares from which on it is looked at no further."""
+
 DAMPING = (0.0, 0.1, 1.0, 10.0, 100.0)
 SMALL = 0.05
 """Fall of the sum of squares below which the mode is found."""
@@ -157,10 +163,13 @@ class Mode:
         return float(len(self.z) - np.trace(self.gaussian(temper)[1]))
 
 
-def find_mode(data: Windowed, temper: float = 1.0) -> Mode:
-    """Damped Gauss-Newton steps from the centre, all dampings as lanes of one call."""
+def find_mode(data: Windowed, temper: float = 1.0, start: FloatArray | None = None) -> Mode:
+    """Damped Gauss-Newton steps from ``start``, the centre where None; all dampings as lanes of one call.
+
+    temper  variance of residuals
+    """
     n = len(data.room)
-    z = np.zeros(n)
+    z = np.zeros(n) if start is None else start.copy()
     r, J = data.linearised(z)
 
     def cost(values: FloatArray, at: FloatArray) -> FloatArray:
@@ -175,10 +184,49 @@ def find_mode(data: Windowed, temper: float = 1.0) -> Mode:
         tried = np.column_stack([z - np.linalg.solve(H + damping * np.eye(n), g) for damping in DAMPING])
         found = cost(data.residuals(tried), tried)
         k = int(np.argmin(found))
-        converged = bool(now - found[k] < SMALL)
+        ends = bool(now - found[k] < SMALL)
+        converged = ends and bool(found[k] - now < SMALL)  # else every step leads uphill: the search is stuck
         if found[k] < now:
             z, now = tried[:, k], float(found[k])
             r, J = data.linearised(z)
-        if converged:
+        if ends:
             break
     return Mode(z, np.nan_to_num(r), J, converged)
+
+
+def particles_about(data: Windowed, mode: Mode, temper: float, n: int, seed: int) -> FloatArray:
+    """n particles z (n_names, n): the most probable points of what might have been measured and thought beforehand.
+
+    mode  found with residuals of that variance
+    Each has residuals and centre of its own, moved by noise (randomise, then optimise: Bardsley et al. 2014).  Where
+    residuals are linear these are draws of the Gaussian about the mode; where they bend, a few steps with the slopes of
+    the mode bring each to where it belongs.  One whose run leaves the world of ships, or comes out worse than the mode,
+    sets out from there.
+    """
+    rng = np.random.default_rng(seed)
+    centre = rng.standard_normal((len(mode.z), n))
+    noise = rng.standard_normal((len(mode.residual), n))
+    A = mode.slopes / np.sqrt(temper)
+    covariance = mode.gaussian(temper)[1]
+
+    def at(z: FloatArray) -> tuple[FloatArray, FloatArray]:
+        off = data.residuals(z) / np.sqrt(temper) - noise
+        total = np.sum(off**2, axis=0) + np.sum((z - centre) ** 2, axis=0)
+        return np.nan_to_num(off), np.where(np.isfinite(total), total, np.inf)
+
+    begun = np.repeat(mode.z[:, None], n, axis=1)
+    there = mode.residual[:, None] / np.sqrt(temper) - noise
+    squares = np.sum(there**2, axis=0) + np.sum((begun - centre) ** 2, axis=0)
+    z, off = begun, there
+    length = np.ones(n)
+    for _ in range(1 + CORRECTIONS):
+        tried = z - length * (covariance @ (A.T @ off + z - centre))
+        found, now = at(tried)
+        better = now < squares
+        moving = ~better | (squares - np.where(better, now, squares) > SETTLED)
+        z, off = np.where(better, tried, z), np.where(better, found, off)
+        squares = np.where(better, now, squares)
+        length = np.where(better, 1.0, 0.25 * length)
+        if np.mean(moving) < 0.1:
+            break
+    return np.asarray(z)

@@ -20,9 +20,9 @@ from ..particles import Particles
 from ..profile import tuned
 from ..threads import blas_on_one_thread
 from ..trial import Trial
-from .local import Mode, Windowed, find_mode, make_windowed
+from .local import Mode, Windowed, find_mode, make_windowed, particles_about
 from .room import Room, make_room, tags_of
-from .sizing import Shown, Sized, draws, own_variance, shown_by, size
+from .sizing import Shown, Sized, own_variance, shown_by, size
 
 EXPECTED = 4.0
 """Squares of residuals of particles over what a linear model has, up to which bands of generated ships held."""
@@ -147,11 +147,11 @@ def posterior(
         sized = size(windowed, mode, remake, options.seed)
     else:
         sized = Sized(mode.misfit, own_variance(windowed, mode))
-    mean, _ = mode.gaussian(sized.temper)
+    mode = find_mode(windowed, sized.temper, mode.z)
     z, nonlinear = sound(windowed, mode, sized.temper, options.particles, options.seed)
     said = {"made_by": "mmgtune posterior", "trials": [trial.id for trial in chosen], "temper": sized.temper}
     facts = {"seed": options.seed, "room": options.room, "noise": windowed.sigma.tolist()}
-    best = dict(zip(room.names, room.values(mean[:, None])[:, 0].tolist(), strict=True))
+    best = dict(zip(room.names, room.values(mode.z[:, None])[:, 0].tolist(), strict=True))
     likely = tuned(room.profile, best, {}, said, suffix="most probable")
     return Posterior(
         room=room,
@@ -168,10 +168,10 @@ def posterior(
 def sound(data: Windowed, mode: Mode, temper: float, n: int, seed: int) -> tuple[FloatArray, float]:
     """n particles (n_names, n) whose runs stay within the world of ships on the trials' windows, and ``nonlinear``.
 
-    Fewer where a fifth or more do not.
+    Fewer where some do not.
     """
-    z = draws(mode, temper, n + n // 4, seed)
+    z = particles_about(data, mode, temper, n, seed)
     squares = np.sum(data.residuals(z) ** 2, axis=0)
-    kept = np.flatnonzero(np.isfinite(squares))[:n]
+    kept = np.flatnonzero(np.isfinite(squares))
     above = np.median(squares[kept]) - np.sum(mode.residual**2) if len(kept) else np.inf
     return z[:, kept], float(above / temper / max(mode.learnt(temper), 1e-9))

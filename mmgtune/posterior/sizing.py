@@ -2,8 +2,9 @@
 
 What the model with all its room cannot follow shows as residuals larger than the noise.  Such an error is the same
 along a run, so it counts as one number for each channel of each run, not as one a sample.  Where trials are of several
-kinds and sides, each group is left out besides, and predicted from the others: the trials are believed as far as bands
-then cover what was left out at the nominal rate.
+kinds and sides, each group is left out besides, and predicted from the others, and so are the runs of a group where it
+has several: the trials are believed as far as bands then cover what was left out at the nominal rate, groups and runs
+alike.
 """
 
 from __future__ import annotations
@@ -13,14 +14,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import FloatArray
 from ..displayed import Brief
 from ..manoeuvres import manoeuvre_kind
 from ..predictor import PhysicsPredictor, cases_from
 from ..simulation import track_if_whole
 from ..trial import Trial
 from ..units import DEG
-from .local import Mode, Windowed, find_mode
+from .local import Mode, Windowed, find_mode, particles_about
 
 BASE = 3.0
 """Variance of residuals even where the model fits to the noise: what generated ships with a hidden effect call for."""
@@ -33,6 +33,9 @@ GRID = (1.0, 3.0, 10.0, 30.0, 100.0)
 
 CIRCLE = 150.0
 """Change of heading [deg] from which a trial shows a turn to that side."""
+
+SHARES = 4
+"""Parts of a group of several runs that are left out besides: trials of one kind differ among themselves too."""
 
 N_LEFT_OUT = 80
 """Particles that predict a left-out group."""
@@ -53,7 +56,7 @@ class Sized(Brief):
     groups     what was left out in turn, kinds and sides in words; none where that was not asked for, and of a
                single one nothing could be
     factor     on ``own`` from which bands cover them, 1 where nothing was left out
-    covered    share of left-out samples within bands, by factor
+    covered    share of left-out samples within bands, by factor as far as these were tried
     """
 
     misfit: float
@@ -154,16 +157,30 @@ def size(data: Windowed, mode: Mode, remake: Callable[[Sequence[Trial]], Windowe
         groups.setdefault(group_of(trial), []).append(trial)
     if len(groups) < 2:
         return Sized(mode.misfit, own, tuple(groups))
-    total = np.zeros(len(GRID))
-    for left in groups.values():
-        rest = remake([trial for trial in data.trials if not any(trial is one for one in left)])
-        found = find_mode(rest, own)
-        variance = own_variance(rest, found)
-        total += [coverage(rest, found, factor * variance, left, seed) for factor in GRID]
-    total /= len(groups)
-    enough = np.flatnonzero(total >= NOMINAL)
-    chosen = int(enough[0]) if len(enough) else int(np.argmax(total))
-    return Sized(mode.misfit, own, tuple(groups), GRID[chosen], tuple(total.tolist()))
+    parts = [[one for one in some if one.run in runs] for some in groups.values() for runs in _shares(some)]
+    left_out = [*groups.values(), *parts]
+    rests = [remake([one for one in data.trials if not any(one is other for other in left)]) for left in left_out]
+    modes = [find_mode(rest, own) for rest in rests]
+    variances = [own_variance(rest, found) for rest, found in zip(rests, modes, strict=True)]
+    covered: list[float] = []
+    for factor in GRID:
+        shares = []
+        for k, left in enumerate(left_out):
+            temper = factor * variances[k]
+            modes[k] = find_mode(rests[k], temper, modes[k].z)
+            shares.append(coverage(rests[k], modes[k], temper, left, seed))
+        of_groups, of_parts = shares[: len(groups)], shares[len(groups) :] or [1.0]
+        covered.append(float(min(np.mean(of_groups), np.mean(of_parts))))
+        if covered[-1] >= NOMINAL:
+            break
+    chosen = len(covered) - 1 if covered[-1] >= NOMINAL else int(np.argmax(covered))
+    return Sized(mode.misfit, own, tuple(groups), GRID[chosen], tuple(covered))
+
+
+def _shares(trials: Sequence[Trial]) -> list[set[str]]:
+    """Runs of a group, in at most SHARES parts; none where they are one run."""
+    runs = list(dict.fromkeys(trial.run for trial in trials))
+    return [set(runs[k::SHARES]) for k in range(min(SHARES, len(runs)))] if len(runs) > 1 else []
 
 
 def coverage(data: Windowed, mode: Mode, temper: float, trials: Sequence[Trial], seed: int) -> float:
@@ -171,7 +188,7 @@ def coverage(data: Windowed, mode: Mode, temper: float, trials: Sequence[Trial],
 
     Bands are those of the particles, wider by the noise of the sensors.
     """
-    z = draws(mode, temper, N_LEFT_OUT, seed)
+    z = particles_about(data, mode, temper, N_LEFT_OUT, seed)
     theta = data.model.matrix(data.room.names, data.room.values(z))
     predicted = PhysicsPredictor(data.model, theta, data.integrator, data.backend.name).predict(
         cases_from(trials, data.model.inputs, data.model.draught)
@@ -188,10 +205,3 @@ def coverage(data: Windowed, mode: Mode, temper: float, trials: Sequence[Trial],
         inside = (measured >= low - noise) & (measured <= high + noise)
         covered.append(float(np.mean(inside[np.isfinite(measured)])))
     return float(np.mean(covered))
-
-
-def draws(mode: Mode, temper: float, n: int, seed: int) -> FloatArray:
-    """n particles (n_names, n) of the distribution about a mode."""
-    mean, covariance = mode.gaussian(temper)
-    noise = np.random.default_rng(seed).standard_normal((len(mean), n))
-    return np.asarray(mean[:, None] + np.linalg.cholesky(covariance) @ noise)

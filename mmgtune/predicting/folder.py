@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from ..backends import STATES
-from ..files import atomic, write_text
+from ..files import write_text
+from ..tables import write_table
 from .result import Predicted
 
 RESULT = "predict.json"
@@ -30,10 +31,10 @@ def write_prediction(
     Returns the record; raises OutputError.
     """
     document = {**result.to_dict(command), "out": str(folder)}
-    _table(folder / BANDS, _bands(result), ("run", "variable", "t", *FAN, "measured"))
-    _table(folder / TRACKS, _tracks(result, ("x", "y"), DRAWN, POINTS), ("run", "particle", "t", "x", "y"))
+    _write(folder / BANDS, _bands(result), ("run", "variable", "t", *FAN, "measured"))
+    _write(folder / TRACKS, _tracks(result, ("x", "y"), DRAWN, POINTS), ("run", "particle", "t", "x", "y"))
     if keep_particles:
-        _table(folder / PATHS, _tracks(result, STATES), ("run", "particle", "t", *STATES, "diverged"))
+        _write(folder / PATHS, _tracks(result, STATES), ("run", "particle", "t", *STATES, "diverged"))
     write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
     return document
 
@@ -48,7 +49,9 @@ def _bands(result: Predicted) -> list[dict[str, Any]]:
                 continue
             measured = run.trial.motion[:, k] if run.trial else np.full(len(run.t), np.nan)
             n = len(run.t)
-            found.append({"run": [run.id] * n, "variable": [name] * n, "t": run.t, **band, "measured": measured})
+            found.append(
+                {"run": _text(run.id, n), "variable": _text(name, n), "t": run.t, **band, "measured": measured}
+            )
     return found
 
 
@@ -64,16 +67,15 @@ def _tracks(result: Predicted, names: tuple[str, ...], most: int = 0, points: in
         at = np.unique(np.linspace(0, n - 1, min(points, n)).round().astype(int)) if points else np.arange(n)
         for k in kept if most else few:
             states = {name: run.states[k, at, STATES.index(name)] for name in names}
-            lost = {} if most else {"diverged": [bool(run.diverged[k])] * len(at)}
-            found.append({"run": [run.id] * len(at), "particle": [int(k)] * len(at), "t": run.t[at], **states, **lost})
+            own = {"run": _text(run.id, len(at)), "particle": np.full(len(at), k), "t": run.t[at]}
+            found.append({**own, **states, "diverged": np.full(len(at), run.diverged[k])})
     return found
 
 
-def _table(path: Path, parts: list[dict[str, Any]], names: tuple[str, ...]) -> None:
-    """Parts below each other; of none the ``names`` of the columns that there would be."""
-    import pyarrow as pa
-    import pyarrow.parquet as pq
+def _text(word: str, n: int) -> Any:
+    return np.full(n, word, dtype=object)
 
-    with atomic(path) as part:
-        tables = [pa.table(one) for one in parts]
-        pq.write_table(pa.concat_tables(tables) if tables else pa.table({name: [] for name in names}), part)
+
+def _write(path: Path, parts: list[dict[str, Any]], names: tuple[str, ...]) -> None:
+    """These columns of all parts below each other; without parts the columns are empty."""
+    write_table(path, {name: np.concatenate([one[name] for one in parts]) if parts else [] for name in names})

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import BoolArray
 from ..backends import STATES
-from ..files import atomic, write_text
+from ..files import write_text
 from ..fitting.journal import finished
+from ..tables import write_table
 from ..trial.parquet import GROUP_ROWS
 from .result import VoyageValidation
 
@@ -21,8 +21,8 @@ RESULT = "voyages.json"
 def write_voyages(result: VoyageValidation, folder: Path) -> dict[str, Any]:
     """Write the windows, those that are drawn and, last, the result.  Returns its document."""
     if result.table is not None:
-        write_table(folder / "windows.parquet", result.columns())
-        write_table(folder / "drawn.parquet", _drawn(result))
+        write_table(folder / "windows.parquet", result.columns(), GROUP_ROWS)
+        write_table(folder / "drawn.parquet", _drawn(result), GROUP_ROWS)
     document = {**result.to_dict(), "out": str(folder)}
     write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
     if not result.interrupted:
@@ -48,36 +48,3 @@ def _drawn(result: VoyageValidation) -> dict[str, Any]:
                 parts[state].append(values)
             parts["delta"].append(one.delta)
     return {name: np.concatenate(values) for name, values in parts.items() if values}
-
-
-def write_table(path: Path, columns: dict[str, Any]) -> None:
-    """Columns of numbers, truths and texts (n_rows,) to a Parquet file, whole or not at all.
-
-    Made of their buffers: what pyarrow does with arrays by itself would load pandas, which takes longer than the rest.
-    """
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
-    with atomic(path) as part:
-        table = pa.table({name: _column(np.asarray(values)) for name, values in columns.items()})
-        pq.write_table(table, part, compression="zstd", row_group_size=GROUP_ROWS, write_page_checksum=True)
-
-
-def _column(values: np.ndarray) -> Any:
-    """An Arrow array of an array (n_rows,)."""
-    import pyarrow as pa
-
-    n = len(values)
-    if values.dtype == object:
-        raw = [str(one).encode("utf-8", "replace") for one in values]
-        ends = np.concatenate([[0], np.cumsum([len(one) for one in raw])]).astype("<i8")
-        return pa.Array.from_buffers(pa.large_string(), n, [None, pa.py_buffer(ends), pa.py_buffer(b"".join(raw))])
-    if values.dtype == bool:
-        return pa.Array.from_buffers(pa.bool_(), n, [None, pa.py_buffer(_bits(values))])
-    kind = pa.int64() if values.dtype.kind == "i" else pa.float64()
-    whole = np.ascontiguousarray(values, dtype="<i8" if values.dtype.kind == "i" else "<f8")
-    return pa.Array.from_buffers(kind, n, [None, pa.py_buffer(whole)])
-
-
-def _bits(values: BoolArray) -> bytes:
-    return np.packbits(values, bitorder="little").tobytes()

@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mmgtune.posterior.local import find_mode
-from mmgtune.posterior.sizing import BASE, draws, own_variance
+from mmgtune.posterior.local import find_mode, particles_about
+from mmgtune.posterior.sizing import BASE, own_variance
 
 
 class Straight:
@@ -45,7 +45,7 @@ def test_it_is_the_posterior_of_a_linear_problem(straight, temper):
 
 
 def test_where_no_trial_tells_particles_are_those_of_the_room(straight):
-    z = draws(find_mode(straight), 1.0, 20_000, seed=5)
+    z = particles_about(straight, find_mode(straight), 1.0, 20_000, seed=5)
     assert z[4].mean() == pytest.approx(0.0, abs=0.03)
     assert z[4].std() == pytest.approx(1.0, abs=0.03)
     apart = (z[3] - z[5]) / np.sqrt(2.0)
@@ -55,9 +55,47 @@ def test_where_no_trial_tells_particles_are_those_of_the_room(straight):
 
 
 def test_the_same_seed_draws_the_same(straight):
-    mode = find_mode(straight)
-    assert np.array_equal(draws(mode, 2.0, 5, seed=1), draws(mode, 2.0, 5, seed=1))
-    assert not np.array_equal(draws(mode, 2.0, 5, seed=1), draws(mode, 2.0, 5, seed=2))
+    mode = find_mode(straight, 2.0)
+    once, again, other = (particles_about(straight, mode, 2.0, 5, seed) for seed in (1, 1, 2))
+    assert np.array_equal(once, again)
+    assert not np.array_equal(once, other)
+
+
+class Bent(Straight):
+    """Residuals that bend in the first number."""
+
+    def residuals(self, z):
+        return super().residuals(z) + 2.0 * z[0] ** 2
+
+    def linearised(self, z):
+        J = self.A.copy()
+        J[:, 0] += 4.0 * z[0]
+        return self.residuals(z[:, None])[:, 0], J
+
+
+def test_where_residuals_bend_particles_fit_as_well_as_they_should():
+    rng = np.random.default_rng(4)
+    data = Bent(0.3 * rng.normal(size=(40, 6)), rng.normal(size=40) + 2.0)
+    mode = find_mode(data, 3.0)
+    assert mode.converged
+    z = particles_about(data, mode, 3.0, 4000, seed=1)
+    above = np.median(np.sum(data.residuals(z) ** 2, axis=0)) - np.sum(mode.residual**2)
+    assert above / 3.0 == pytest.approx(mode.learnt(3.0), rel=0.35)
+
+
+def test_a_search_that_is_stuck_has_not_converged(straight):
+    class Wrong(Straight):
+        def linearised(self, z):
+            r, J = super().linearised(z)
+            return r, -1e4 * J  # slopes that lead uphill
+
+    assert find_mode(straight).converged
+    assert not find_mode(Wrong(straight.A, straight.b + 30.0)).converged
+
+
+def test_a_mode_is_found_from_anywhere(straight):
+    there = find_mode(straight, 5.0, np.full(6, 2.0))
+    assert np.allclose(there.z, find_mode(straight, 5.0).z, atol=1e-9)
 
 
 def test_a_misfit_counts_as_one_number_a_series():
