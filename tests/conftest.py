@@ -73,7 +73,11 @@ MANY = 1000
 
 @pytest.hookimpl(trylast=True)  # the controller knows by then that this worker is ready, and lets the others begin
 def pytest_collection_finish(session: pytest.Session) -> None:
-    """The simulator of all effects is made first, by one worker: it serves all tests of some of them."""
+    """The simulator of all effects is made first, by one worker: it serves all tests of some of them.
+
+    What was imported and collected by then stays to the end, and is looked through no more.
+    """
+    gc.freeze()
     if os.environ.get("PYTEST_XDIST_WORKER") == "gw0" and len(session.items) > MANY:
         model = Model(with_all_effects(load_profile("suzaku")))
         get_backend("compiled").run(model, model.matrix(), turn(model, 20.0, 1.0))

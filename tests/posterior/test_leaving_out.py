@@ -13,7 +13,7 @@ from mmgtune.profile import load_profile
 from mmgtune.trial import load_trials
 from tests.command import run
 
-OPTIONS = LeaveOutOptions(a_r=0.5, starts=1, folds=3, targets=("hull.Y_v", "hull.N_v", "hull.N_r"))
+OPTIONS = LeaveOutOptions(a_r=0.5, starts=1, folds=2, targets=("hull.Y_v", "hull.N_v", "hull.N_r"))
 
 pytestmark = pytest.mark.xdist_group("bands left out")
 
