@@ -49,6 +49,9 @@ _RUNS = {"measured": "measured", "before": "without a cause", "after": "with the
 _BARS = 12
 """Hypotheses drawn."""
 
+_FOLLOWS = 0.05
+"""Share of an error from which it is said that a quantity predicts it."""
+
 _LETTERS = 26
 """Letters of a hypothesis' parameters beside its bar."""
 
@@ -545,6 +548,8 @@ def _left(data: Mapping[str, Any]) -> Block:
             f"Correlation of what {clean(pair)} say of it: {shown(value, 2)} (1: the same thing seen twice)."
         )
     for channel, best in left["largest_share_by_one_quantity"].items():
+        if (number(best["share"]) or 0.0) < _FOLLOWS:
+            continue
         words = CHANNELS[channel].words if channel in CHANNELS else clean(channel)
         sentences.append(f"Of the error of {words}, {clean(best['quantity'])} predicts {share(best['share'])}.")
     return Prose(tuple(sentences), listed=True)

@@ -137,6 +137,7 @@ def test_unexplained_opens_where_the_error_lives(runs: dict[str, Path]) -> None:
     sections = re.findall(r'<section id="([a-z]+)"', page)
     assert sections[:3] == ["motions", "evidence", "causes"]
     assert "times the noise" in page
+    assert not re.search(r"predicts 0\s%", page)
     assert not re.search(r"\d{4,}\s%", page)
 
 
