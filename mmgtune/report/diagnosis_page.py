@@ -294,18 +294,22 @@ def _retuned(data: Mapping[str, Any]) -> Section | None:
                 NONE if half is None else f"{shown(half, 2)}{UNIT_PERCENT}",
             )
         )
-    table = Table(
-        "retuned-table",
-        "Targets, the surest to differ first",
-        ("symbol", "meaning", "pre-determined", "re-tuned", "change", "±"),
-        tuple(lines),
-        numeric=range(2, 6),
-        cards=True,
-        about=(("±", "half the 95 % interval of the change, the model's form taken as right; none at a bound"),),
-    )
-    far = [one for one in rows if one["far"]]
-    said = f"{count(len(far), 'coefficient is', 'coefficients are')} surely more than a tenth off the profile's value"
-    return Section("retuned", "What re-tuning changed", (Fold(said if far else "All targets", (table,), bool(far)),))
+
+    def table(id: str, caption: str, of: Sequence[tuple[Cell, ...]]) -> Table:
+        return Table(
+            id,
+            caption,
+            ("symbol", "meaning", "pre-determined", "re-tuned", "change", "±"),
+            tuple(of),
+            numeric=range(2, 6),
+            cards=True,
+            about=(("±", "half the 95 % interval of the change, the model's form taken as right; none at a bound"),),
+        )
+
+    far = [line for line, row in zip(lines, rows, strict=True) if row["far"]]
+    every = Fold("All targets", (table("retuned-table", "Targets, the surest to differ first", lines),))
+    surely = table("far-table", "Surely more than a tenth off the profile's value", far)
+    return Section("retuned", "What re-tuning changed", (surely, every) if far else (every,))
 
 
 def _unit(unit: str) -> str:
