@@ -71,6 +71,8 @@ class Judge:
                 result, found = other, alone
         if result.verdict == "unexplained":
             result = replace(result, whereabouts=error_of(self.bench, found, result.leftover.offsets))
+        elif result.verdict != "interrupted":
+            result = replace(result, moved=tuple(retuned(self.bench, found.final)))
         return result, found
 
     def _judged(self, found: Found, brought: Sequence[Contribution], doubted: Doubted | None = None) -> Diagnosis:
@@ -95,7 +97,6 @@ class Judge:
             explained_share=_explained(found, self.before, left),
             theta=theta,
             retuned=alone,
-            moved=tuple(retuned(bench, found.final)),
             coverage=coverage,
             warnings=tuple(coverage_notes(bench.model, bench.targets, coverage)),
             noise=_noise(bench),

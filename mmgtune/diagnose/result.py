@@ -223,7 +223,7 @@ class Diagnosis(Plotted):
     """A finished diagnosis.
 
     theta     tuned targets, and what had leeway, with all causes in place; retuned: without any
-    moved     targets beside their pre-determined values, with all causes in place
+    moved     targets beside their pre-determined values, with all causes in place; none where nothing can be named
     traces    what is statistically there besides and changes nothing that a user would notice; in no profile
     contributions  of the causes, by tag in their order, the others in place
     groups    causes that cannot be told apart, each a list of tags
@@ -249,7 +249,6 @@ class Diagnosis(Plotted):
     explained_share: float
     theta: Mapping[str, float]
     retuned: Mapping[str, float]
-    moved: tuple[Retuned, ...]
     noise: Mapping[str, Mapping[str, float]]
     chi2: tuple[float, float]
     evidence: Mapping[str, Any]
@@ -260,6 +259,7 @@ class Diagnosis(Plotted):
     interrupted: bool = False
     whereabouts: Whereabouts | None = None
     doubted: Doubted | None = None
+    moved: tuple[Retuned, ...] = ()
     choice: Choice | None = None
     differing: tuple[Difference, ...] = ()
 
@@ -564,7 +564,7 @@ class Diagnosis(Plotted):
             "noise": {name: dict(values) for name, values in self.noise.items()},
             "chi2_per_residual": {"before": self.chi2[0], "after": self.chi2[1]},
             "theta": finite_values(self.kept),
-            "retuned": [] if self.verdict in ("unexplained", "interrupted") else [one.to_dict() for one in self.moved],
+            "retuned": [one.to_dict() for one in self.moved],
             "inputs": [one.to_dict() for one in self.profile.arrangement.inputs],
             "trial_results": [one.to_dict() for one in self.gain.compared],
             "assumptions": self._assumptions(),
