@@ -70,7 +70,7 @@ def visit(browser: Any, site: Path) -> Iterator[Any]:
 
     def go(name: str) -> Any:
         page.goto((site / name).as_uri())
-        page.wait_for_load_state("networkidle")
+        page.wait_for_function("window.document$ !== undefined")  # the theme's script has run
         assert page.evaluate(OVERFLOW) <= 0, name
         return page
 
