@@ -50,8 +50,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     taken = times.read()
     together: dict[str, list[pytest.Item]] = {}
     for item in items:
-        if item.get_closest_marker("browser"):  # once more where chromium was stuck and had to be ended
-            item.add_marker(pytest.mark.flaky(reruns=1, only_rerun=["TargetClosedError"]))
+        if item.get_closest_marker("browser"):  # once more where chromium was stuck
+            item.add_marker(pytest.mark.flaky(reruns=1, only_rerun=["TargetClosedError", "TimeoutError"]))
         of_module, file = _has_one_of_its_module(item), times.file_of(item.nodeid)
         if of_module and not item.get_closest_marker("xdist_group"):
             item.add_marker(pytest.mark.xdist_group(file))

@@ -111,6 +111,7 @@ def _system(url: str) -> tuple[Any, str]:
 def _reading(url: str) -> Iterator[None]:
     try:
         yield
-    except OSError as error:
+    except Exception as error:  # clients of stores have errors of their own: no credentials, nobody there
         fix = "check the URL, and that you may read it from here"
-        raise TrialError(Problem("the URL cannot be read", url, str(error), fix)) from error
+        why = str(error) or type(error).__name__
+        raise TrialError(Problem("the URL cannot be read", url, why, fix)) from error

@@ -68,6 +68,26 @@ def test_trials_at_urls_are_the_same_jobs(fleet: Path, tmp_path: Path) -> None:
     assert set(jobs[0].trials.files) == {"turn_p35.parquet", "zigzag_20.parquet"}
 
 
+def test_a_store_that_cannot_be_reached_is_said(fleet: Path) -> None:
+    fsspec = pytest.importorskip("fsspec")
+
+    class NoCredentials(Exception):
+        """As the clients of stores have them: no OSError."""
+
+    class Store(fsspec.AbstractFileSystem):  # type: ignore[misc, name-defined]
+        protocol = "store"
+
+        def ls(self, path: str, detail: bool = True, **options: object) -> list[str]:
+            raise NoCredentials("unable to locate credentials")
+
+    fsspec.register_implementation("store", Store, clobber=True)
+    fleet.write_text(TABLE.replace("logs/", "store://logs/"), encoding="utf-8")
+    message = said(fleet)
+    assert message.startswith("the URL cannot be read (store://logs/")
+    assert "why: unable to locate credentials" in message
+    assert "fix: check the URL" in message
+
+
 @pytest.mark.parametrize(
     ("changed", "words"),
     [
