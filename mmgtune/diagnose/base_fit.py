@@ -44,7 +44,8 @@ def base_fit(bench: Workbench) -> Point:
     rng = np.random.default_rng(bench.options.seed)
     starts = np.column_stack([bench.null(names), *rng.uniform(size=(STARTS - 1, len(names)))])
     quick = bench.problem_of(names, Integrator("euler"))  # a quarter of the work, and only a start
-    ends = sorted(solve(quick, starts, max_iterations=QUICK, tolerance=ROUGHLY, trusting=True), key=lambda end: end.J)
+    ends = solve(quick, starts, max_iterations=QUICK, stop=bench.stop, tolerance=ROUGHLY, trusting=True)
+    ends = sorted(ends, key=lambda end: end.J)
     apart = [end for k, end in enumerate(ends) if k == 0 or end.J > (1.0 + SAME) * ends[k - 1].J][:BEST]
     starts = np.column_stack([end.unit for end in apart])
     point = bench.refit(names, starts, ends[0].offsets, tolerance=unnoticed(bench, ends[0].J))

@@ -79,6 +79,7 @@ def _diagnose(
     names = [name for h in (*known, *in_place) for name in h.names]
     options = with_hull_held(options) if choice else options
     bench = make_workbench(profile, seen, options, [*names, *(_legs(profile, names) if choice else ())])
+    bench.stop = hooks.stop
     known = [h for h in known if not set(h.names) & set(bench.targets)]
     known = [h for h in known if not set(h.instead) & set(bench.targets)]
     differing_by_run = of_runs([*known, *in_place], seen) if choice is None else []

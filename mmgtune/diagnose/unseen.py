@@ -34,7 +34,7 @@ def held_out_fits(
         others = [trial for trial in bench.trials if trial.run != run]
         names = [name for name in bench.box.names if name not in bench.tuned_alone]
         rest = make_workbench(bench.model.profile, others, bench.options, names, coverage)
-        rest.targets, rest.believed = bench.targets, bench.believed
+        rest.targets, rest.believed, rest.stop = bench.targets, bench.believed, bench.stop
         rest.know(replace(bench.noise, cases=rest.problem.cases))
         keep = [i for i, trial in enumerate(bench.trials) if trial.run != run]
         refitted = [_refit_without(rest, point, keep) for point in points]

@@ -58,3 +58,17 @@ def test_initial_states_of_a_case_that_diverges_stay_as_measured(suzaku):
     assert np.isinf(costs[0])
     assert np.isfinite(costs[1])
     assert np.all(offsets[0] == 0.0)
+
+
+def test_a_refit_ends_where_it_is_when_all_is_to_stop(suzaku):
+    trials = [load_trials("suzaku").trials[name] for name in ("turn_p35", "zigzag_10")]
+    bench = make_workbench(suzaku.profile, trials, DiagnoseOptions())
+    start, offsets = bench.null(bench.targets), bench.problem.offsets
+    asked = []
+    bench.stop = lambda: asked.append(1) or len(asked) > 2
+    end = bench.refit(bench.targets, start[:, None], offsets, tolerance=1e-9)
+    assert len(asked) == 3
+    again = bench.refit(bench.targets, start[:, None], offsets, tolerance=1e-9)
+    assert len(asked) == 4
+    assert np.array_equal(again.unit, start)
+    assert end.chi2 < again.chi2
