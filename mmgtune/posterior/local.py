@@ -9,7 +9,7 @@ covariance of its residuals.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,6 +44,10 @@ SETTLED = 0.5
 """Fall of a particle's sum of squares from which on it is looked at no further."""
 
 DAMPING = (0.0, 0.1, 1.0, 10.0, 100.0)
+FIRM = (1e-3, 1e-2, 1e-1, 1.0)
+"""Damping where all of these lead uphill, over the largest curvature: far from the mode, where the model misses the
+trials by many times their noise, slopes hold for a small share of a deviation only."""
+
 SMALL = 0.05
 """Fall of the sum of squares below which the mode is found."""
 
@@ -164,12 +168,17 @@ class Mode:
 
 
 def find_mode(data: Windowed, temper: float = 1.0, start: FloatArray | None = None) -> Mode:
-    """Damped Gauss-Newton steps from ``start``, the centre where None; all dampings as lanes of one call.
+    """Damped Gauss-Newton steps within the room from ``start``, the centre where None; all dampings as lanes of a call.
 
     temper  variance of residuals
+    What is at the edge of the room and would leave it is held there, and the step is that of the others: beyond the
+    edge nothing changes, and a step that counts on what is there goes astray.  Where every step leads uphill, shorter
+    ones are tried.  It has converged where no step of full length finds anything better: that a short one does not
+    may be for its shortness.
     """
     n = len(data.room)
-    z = np.zeros(n) if start is None else start.copy()
+    low, high = data.room.box
+    z = np.zeros(n) if start is None else np.clip(start, low, high)
     r, J = data.linearised(z)
 
     def cost(values: FloatArray, at: FloatArray) -> FloatArray:
@@ -181,17 +190,34 @@ def find_mode(data: Windowed, temper: float = 1.0, start: FloatArray | None = No
     for _ in range(ITERATIONS):
         H = J.T @ J / temper + np.eye(n)
         g = J.T @ np.nan_to_num(r) / temper + z
-        tried = np.column_stack([z - np.linalg.solve(H + damping * np.eye(n), g) for damping in DAMPING])
+        tried = _steps(z, H, g, low, high, DAMPING)
         found = cost(data.residuals(tried), tried)
         k = int(np.argmin(found))
-        ends = bool(now - found[k] < SMALL)
-        converged = ends and bool(found[k] - now < SMALL)  # else every step leads uphill: the search is stuck
+        converged = bool(abs(now - found[k]) < SMALL)
+        if found[k] - now >= SMALL:
+            tried = _steps(z, H, g, low, high, np.max(np.diag(H)) * np.array(FIRM))
+            found = cost(data.residuals(tried), tried)
+            k = int(np.argmin(found))
+        ends = converged or not now - found[k] >= SMALL  # in the latter case the search is stuck
         if found[k] < now:
             z, now = tried[:, k], float(found[k])
             r, J = data.linearised(z)
         if ends:
             break
     return Mode(z, np.nan_to_num(r), J, converged)
+
+
+def _steps(
+    z: FloatArray, H: FloatArray, g: FloatArray, low: FloatArray, high: FloatArray, dampings: Iterable[float]
+) -> FloatArray:
+    """Where damped Gauss-Newton steps from z (n_names,) end within the box, (n_names, n_dampings)."""
+    free = np.flatnonzero(~(((z >= high) & (g < 0.0)) | ((z <= low) & (g > 0.0))))
+    ends = []
+    for damping in dampings:
+        end = z.copy()
+        end[free] -= np.linalg.solve(H[np.ix_(free, free)] + damping * np.eye(len(free)), g[free])
+        ends.append(np.clip(end, low, high))
+    return np.column_stack(ends)
 
 
 def particles_about(data: Windowed, mode: Mode, temper: float, n: int, seed: int) -> FloatArray:

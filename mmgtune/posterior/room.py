@@ -83,6 +83,11 @@ class Room(Brief):
     def __len__(self) -> int:
         return len(self.names)
 
+    @property
+    def box(self) -> tuple[FloatArray, FloatArray]:
+        """Bounds (n_names,) of z, low and high."""
+        return (self.low - self.centre) / self.deviation, (self.high - self.centre) / self.deviation
+
     def values(self, z: FloatArray) -> FloatArray:
         """Numbers (n_names, n) in profile units at z (n_names, n), standard deviations away from the centre."""
         found = self.centre[:, None] + self.deviation[:, None] * z

@@ -18,7 +18,7 @@ from .plot import Axis, Bar, Dots, Figure, Look, Mark, Panel
 from .tables import pairs
 from .wording import NONE, clean, count, fixed, shown
 
-_WORDS = {"single": "one member", "mean": "mean of members", "worst": "worst member"}
+_WORDS = {"single": "first member", "mean": "mean of members", "worst": "worst member"}
 _SHADES = (
     "#fee838", "#eed649", "#dbc75a", "#c8b866", "#b7a96e", "#a59c74", "#948e77", "#848279", "#757575", "#666970",
     "#575d6d", "#47516c", "#35456c", "#1e3a6f", "#002e6c", "#00224e",
@@ -57,7 +57,8 @@ def build(record: HeadingRecord) -> Page:
     data = record.data
     n = len(data["gains"])
     caption = (
-        "Scores by gain [rad s], on one scale; crosses mark gains at which a simulator promises more than is true."
+        "Scores by gain [rad s], colours by ratio; crosses mark gains at which a simulator promises more than is true. "
+        "Of single members the first is drawn."
     )
     shares = _shares(data["models"])
     return Page(
@@ -105,7 +106,7 @@ def _cards(models: Sequence[Mapping[str, Any]]) -> tuple[Card, ...]:
     return tuple(
         Card(f"Overrated, {words}", f"{shown(100 * share, 2)} %", note=clean(model["name"]))
         for model in models[:2]
-        for words, share, _ in shares_of(model)
+        for words, share, _ in dict.fromkeys((shares_of(model)[0], shares_of(model)[-1]))
     )
 
 
@@ -140,7 +141,7 @@ def _figure(record: HeadingRecord) -> Figure:
         x, y = Axis("K_D [deg s/rad]", edges[0], edges[-1], grid=False), Axis("K_P [deg/rad]", edges[0], edges[-1])
         panels.append(Panel(tuple(marks), x, y, title, 0.9))
     legend: list[tuple[str, Look | tuple[str, float]]] = [
-        (f"{shown(low + share * (high - low), 3)} rad s", (_SHADES[round(share * (len(_SHADES) - 1))], 1.0))
+        (f"{shown(_score(share, low, high), 3)} rad s", (_SHADES[round(share * (len(_SHADES) - 1))], 1.0))
         for share in (0.0, 0.25, 0.5, 0.75, 1.0)
     ]
     legend.append(("promises more than is true", Look("ink", 0.0, marker="x", size=6.0)))
@@ -149,8 +150,12 @@ def _figure(record: HeadingRecord) -> Figure:
 
 
 def _row(row: Sequence[float], edges: Sequence[float], k: int, low: float, high: float) -> list[Bar]:
-    """A row of a map as bars, one for neighbours of one shade."""
+    """A row of a map as bars, one for neighbours of one shade.
+
+    Each reaches a little below the row above, which is drawn later: where they only touch, the paper shines through.
+    """
     found: list[Bar] = []
+    top = edges[k + 1] if k + 2 == len(edges) else edges[k + 1] + 0.05 * (edges[k + 2] - edges[k + 1])
     for j, value in enumerate(row):
         if not math.isfinite(value):
             continue
@@ -159,13 +164,19 @@ def _row(row: Sequence[float], edges: Sequence[float], k: int, low: float, high:
         if last is not None and last.color == shade and last.x[1] == edges[j]:
             found[-1] = Bar((last.x[0], edges[j + 1]), last.y, shade)
         else:
-            found.append(Bar((edges[j], edges[j + 1]), (edges[k], edges[k + 1]), shade))
+            found.append(Bar((edges[j], edges[j + 1]), (edges[k], top), shade))
     return found
 
 
 def _shade(value: float, low: float, high: float) -> int:
-    """Place of a score in the map of colours."""
-    return round((value - low) / ((high - low) or 1.0) * (len(_SHADES) - 1))
+    """Place of a score in the map of colours; by ratios, since the worst members lie far above all that is true."""
+    share = math.log(value / low) / math.log(high / low) if 0.0 < low < high else (value - low) / ((high - low) or 1.0)
+    return round(share * (len(_SHADES) - 1))
+
+
+def _score(share: float, low: float, high: float) -> float:
+    """Score at a share of the map of colours, the inverse of ``_shade``."""
+    return low * (high / low) ** share if 0.0 < low < high else low + share * (high - low)
 
 
 def _made(data: Mapping[str, Any]) -> Section:

@@ -3,19 +3,39 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
+from typing import NamedTuple
 
 import numpy as np
 import pytest
 
-from mmgtune.posterior.local import find_mode, particles_about
+from mmgtune.backends import get_backend
+from mmgtune.posterior.local import find_mode, make_windowed, particles_about
+from mmgtune.posterior.room import make_room
 from mmgtune.posterior.sizing import BASE, own_variance
+from mmgtune.profile import load_profile
+from tests.hidden.cases import null
+from tests.hidden.plant import SILENT, simulate
+
+
+class Open(NamedTuple):
+    """A room of so many numbers, with an end where ``far`` says so."""
+
+    n: int
+    far: float = np.inf
+
+    def __len__(self):
+        return self.n
+
+    @property
+    def box(self):
+        return np.full(self.n, -self.far), np.full(self.n, self.far)
 
 
 class Straight:
     """Residuals A z - b, as ``Windowed`` gives them."""
 
     def __init__(self, A, b, n_series=1):
-        self.A, self.b, self.room, self.n_series = A, b, np.zeros(A.shape[1]), n_series
+        self.A, self.b, self.room, self.n_series = A, b, Open(A.shape[1]), n_series
 
     def residuals(self, z):
         return self.A @ z - self.b[:, None]
@@ -96,6 +116,57 @@ def test_a_search_that_is_stuck_has_not_converged(straight):
 def test_a_mode_is_found_from_anywhere(straight):
     there = find_mode(straight, 5.0, np.full(6, 2.0))
     assert np.allclose(there.z, find_mode(straight, 5.0).z, atol=1e-9)
+
+
+class Valley:
+    """A curved valley between steep sides: slopes hold for a small share of a deviation."""
+
+    room = Open(2)
+
+    def residuals(self, z):
+        return np.array([300.0 * (z[1] - z[0] ** 2), 100.0 * (1.5 - z[0])])
+
+    def linearised(self, z):
+        return self.residuals(z[:, None])[:, 0], np.array([[-600.0 * z[0], 300.0], [-100.0, 0.0]])
+
+
+def test_where_every_step_leads_uphill_shorter_ones_are_taken():
+    mode = find_mode(Valley())  # each of the usual steps from the centre, of cost 22500, leads uphill
+    assert mode.converged
+    assert np.sum(mode.residual**2) + np.sum(mode.z**2) == pytest.approx(1.5**2 + 1.5**4, rel=1e-3)
+
+
+def test_a_search_stays_within_the_room():
+    rng = np.random.default_rng(5)
+    A = rng.normal(size=(40, 3))
+    data = Straight(A, A @ [3.0, 0.5, -0.5])
+    data.room = Open(3, 1.0)
+    mode = find_mode(data)
+    others = np.linalg.solve(A[:, 1:].T @ A[:, 1:] + np.eye(2), A[:, 1:].T @ (data.b - A[:, 0]))
+    assert mode.converged
+    assert np.allclose(mode.z, [1.0, *others], atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("seed", "size", "sailed", "stuck_at", "found_at"),
+    [
+        (1005, 2.0, "zigzag_20", 201.1, 151.6),
+        (1005, 2.5, "turn_p35", 5883.0, 775.0),
+        (1006, 2.5, "zigzag_20", 733280.0, 1738.0),
+    ],
+)
+def test_the_mode_of_a_ship_far_from_her_profile_is_found(seed, size, sailed, stuck_at, found_at):
+    """Her twelve targets are twice and more those of the profile; ``stuck_at`` without short steps and the edge."""
+    case = null(seed)
+    ship = {name: size * value for name, value in case.ship.items()}
+    trials = [one for one in simulate(ship, case.effects, case.seed, SILENT) if one.id == sailed]
+    data = make_windowed(make_room(load_profile("suzaku")), trials, get_backend("compiled"))
+    mode = find_mode(data)
+    cost = np.sum(mode.residual**2) + np.sum(mode.z**2)
+    low, high = data.room.box
+    assert np.all((mode.z >= low) & (mode.z <= high))
+    assert cost < found_at + 0.3 * (stuck_at - found_at)  # a path of many steps hangs on the last digits
+    assert mode.converged or size > 2.0  # farther off, 30 steps do not always do
 
 
 def test_a_misfit_counts_as_one_number_a_series():
