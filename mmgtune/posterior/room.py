@@ -139,14 +139,18 @@ def room_of(particles: Particles) -> Room:
 
 
 def _coefficients(profile: ShipProfile) -> list[tuple[str, float, float, float, float]]:
+    """Those of hull, wake, propeller and rudder; above water those that are targets, so where wind was measured."""
     rows = Model(profile).rows
-    kinds = [kind for kind in profile.arrangement.kinds if kind != "particulars"]
     found = []
-    for kind in kinds:
+    for kind in (*profile.arrangement.kinds, "above_water"):
+        if kind == "particulars" or kind not in profile.sections:
+            continue
         section = profile.sections[kind]
         for symbol, coefficient in section.coefficients.items():
             name, field = f"{kind}.{symbol}", section.component.fields[symbol]
             if name not in rows or field.table or field.choices or symbol in GEOMETRY:
+                continue
+            if kind == "above_water" and name not in profile.targets:
                 continue
             before = coefficient.pre_determined
             value = profile.value(name) if before is None else float(before)
@@ -179,13 +183,17 @@ def _of_effect(
             pairs.append((len(found), len(found) + 1))
             found.append((name, size * np.cos(towards), deviation, -high, high))
             found.append((direction, size * np.sin(towards), deviation, -high, high))
-        elif parameter.chart == "linear" and low < parameter.null < high:
+        elif symbol in effect.of_measured and profile.value(name) == parameter.null:
+            continue  # the profile has what was measured do nothing
+        elif symbol in effect.of_measured or (parameter.chart == "linear" and low < parameter.null < high):
             value = profile.value(name)
             found.append((name, value, deviation, min(low, value), max(high, value)))
     return found, pairs
 
 
 def _deviation(effect: Effect, symbol: str, parameter: Parameter, profile: ShipProfile) -> float:
+    if symbol in effect.of_measured:
+        return TARGET  # a factor
     typical = float(parameter.typical(scale_of(profile)))
     if effect.tag != discrepancy.EFFECT.tag:
         return typical

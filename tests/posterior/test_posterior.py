@@ -60,6 +60,15 @@ def test_what_is_left_out_of_the_room_is_not_there(ship):
     assert "effects.current" not in room.profile.sections
 
 
+def test_the_force_of_a_measured_wind_has_room_where_it_acts(ship):
+    acts, calm = make_room(load_profile("esso_osaka_3m")), make_room(ship)
+    k = acts.names.index("effects.wind.measured")
+    assert (acts.centre[k], acts.deviation[k]) == (1.0, 0.2)
+    above = [name for name in acts.names if name.startswith("above_water.")]
+    assert above == [name for name in acts.profile.targets if name.startswith("above_water.")] != []
+    assert not any(name.endswith(".measured") or name.startswith("above_water.") for name in calm.names)
+
+
 def test_tuned_coefficients_have_room_about_what_they_were(ship):
     from mmgtune.profile import tuned
 
