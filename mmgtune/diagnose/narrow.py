@@ -18,6 +18,9 @@ WIDER = 2.0
 AS_MUCH = 0.5
 """Share of the fall of chi-squared by all that was found from which a wider box that brings it is spoken of."""
 
+FEW = 3
+"""Targets that may be so far off: with more, any model bends to anything, and no ship differs so."""
+
 STEPS = 20
 """Steps of that fit: it only has to show whether there is something to gain."""
 
@@ -28,7 +31,8 @@ HARDLY = 0.01
 def narrow_box(bench: Workbench, found: Found) -> list[str]:
     """Warnings of a diagnosis whose re-tuned model, any cause apart, would fit about as well in a wider box.
 
-    Targets at the end of their box are let go further; nothing is said where that explains little of what was found.
+    Targets at the end of their box are let go further; nothing is said where that explains little of what was found, or
+    takes many of them.
     """
     base = found.base
     at_end = [name for name, z in zip(base.names, base.unit, strict=True) if z <= 0.0 or z >= 1.0]
@@ -54,7 +58,7 @@ def narrow_box(bench: Workbench, found: Found) -> list[str]:
         for k, name in enumerate(base.names)
         if name in at_end and box.pre[k] != 0.0 and _beyond(values[k], ends[k], box.pre[k])
     ]
-    if not gone or gained < AS_MUCH * explained:
+    if not 0 < len(gone) <= FEW or gained < AS_MUCH * explained:
         return []
     share = f"{min(gained / explained, 1.0):.0%}"
     what = f"with {', '.join(gone)} the profile's value, outside, the model explains {share} of what the causes do"

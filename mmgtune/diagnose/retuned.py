@@ -16,6 +16,10 @@ from .workbench import Point, Workbench
 FAR = 0.1
 """Share of its pre-determined value from which a target that moved is spoken of."""
 
+IN_SERVICE = ("hull.R_0", "hull.X_0F")
+"""What fouling changes while a ship sails: these are told of in sentences.  Other targets take up what coefficients
+beside them are off by, so that most values that come out surely far off are not the ship's."""
+
 SURE = 3.0
 """Standard errors by which it must be further than that: a dozen targets are looked at."""
 
@@ -47,7 +51,7 @@ class Retuned:
 
     @property
     def far(self) -> bool:
-        """Whether it is certainly far from what was pre-determined."""
+        """Whether it is certainly far from what was pre-determined, if the form of the model is right."""
         if self.change is None or self.deviation is None:
             return False
         return abs(self.change) - SURE * self.deviation >= FAR
@@ -94,8 +98,8 @@ def retuned(bench: Workbench, point: Point) -> list[Retuned]:
 
 
 def in_words(moved: Sequence[Retuned]) -> str:
-    """Those far away, the surest first: "A ... and B ..."; "" for none."""
-    told = [one.words for one in moved if one.far]
+    """Those of service that are far away, the surest first: "A ... and B ..."; "" for none."""
+    told = [one.words for one in moved if one.far and one.name in IN_SERVICE]
     return " and ".join([", ".join(told[:-1]), told[-1]] if len(told) > 1 else told)
 
 

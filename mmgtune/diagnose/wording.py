@@ -26,7 +26,7 @@ def quantity(value: float, error: float | None, unit: str) -> str:
 def range_in_words(low: float, high: float, unit: str) -> str:
     """From the least to the largest: "0.2 to 0.4 m/s"."""
     word, factor = _after_number(unit)
-    ends = [f"{end * factor:.2g}" for end in (low, high)]
+    ends = [f"{float(f'{end * factor:.2g}'):g}" for end in (low, high)]  # 590, not 5.9e+02
     return f"{' to '.join(dict.fromkeys(ends))}{word}"
 
 

@@ -49,13 +49,20 @@ def coverage_notes(model: Model, targets: Sequence[str], coverage: Coverage) -> 
             return _offered(model, targets)
         return ["The trials hold no turn to either side: what this says of turns, nobody measured."]
     other = coverage.sides[0]
-    found = [
-        f"The trials turn to {other} only: errors and intervals here are of that side; to {side} none was measured."
-    ]
+    hardly = coverage.hardly_turns(side)
+    if hardly:
+        rates = " and ".join(f"{coverage.most_rate(one):.2g} to {one}" for one in (side, other))
+        found = [
+            f"The trials hardly turn to {side} (r L/U of {rates}): errors and intervals here are of turns to {other}."
+        ]
+    else:
+        what = f"errors and intervals here are of that side; to {side} none was measured"
+        found = [f"The trials turn to {other} only: {what}."]
     ties = [tie for tie in model.ties if tie.to in targets]
     if ties:
         words = ", ".join(f"{tie.name} (to {tie.to})" for tie in ties)
-        found.append(f"Tied, as nothing was measured on its side: {words}.")
+        little = "hardly anything" if hardly else "nothing"
+        found.append(f"Tied, as {little} was measured on its side: {words}.")
     alone = [
         seen
         for pair in BY_SIDE

@@ -303,12 +303,18 @@ def _retuned(data: Mapping[str, Any]) -> Section | None:
             tuple(of),
             numeric=range(2, 6),
             cards=True,
-            about=(("±", "half the 95 % interval of the change, the model's form taken as right; none at a bound"),),
+            about=(
+                (
+                    "re-tuned",
+                    "targets stand in for one another and for what is no target; the ship may be otherwise",
+                ),
+                ("±", "half the 95 % interval of the change, the model's form taken as right; none at a bound"),
+            ),
         )
 
     far = [line for line, row in zip(lines, rows, strict=True) if row["far"]]
     every = Fold("All targets", (table("retuned-table", "Targets, the surest to differ first", lines),))
-    surely = table("far-table", "Surely more than a tenth off the profile's value", far)
+    surely = table("far-table", "More than a tenth off the profile's value, by three standard errors", far)
     return Section("retuned", "What re-tuning changed", (surely, every) if far else (every,))
 
 

@@ -21,8 +21,9 @@ SLOW = 0.2
 AT_REST = 0.02
 """Speed that is hardly any, as a share of the largest."""
 
-ONE_SIDE = 0.25
-"""A side is visited where rudder or turning go to it by more than this share of what they go to the other."""
+ONE_SIDE, HARDLY = 0.25, 0.1
+"""A side is visited where the rudder goes to it by more than the first share of what it goes to the other, and turning
+by more than the second: a steady turn at full rudder is far beyond any weave, and a weave tells of both sides."""
 
 LEAST_RUDDER = 2.0 * DEG
 """Rudder angle [rad] to a side that is no more than keeping a course."""
@@ -135,9 +136,21 @@ class Coverage:
         for side, sign in (("port", -1), ("starboard", 1)):
             rudder, rate = (max(0.0, max(sign * end for end in pair)) for pair in (self.rudder, self.rate))
             other = [max(0.0, max(-sign * end for end in pair)) for pair in (self.rudder, self.rate)]
-            if rudder > max(LEAST_RUDDER, ONE_SIDE * other[0]) and rate > ONE_SIDE * other[1]:
+            if rudder > max(LEAST_RUDDER, ONE_SIDE * other[0]) and rate > HARDLY * other[1]:
                 found.append(side)
         return tuple(found)
+
+    def most_rate(self, side: str) -> float:
+        """The largest r L / U [-] to a side, "port" or "starboard"; 0 where there was none."""
+        low, high = self.rate
+        return max(0.0, -low if side == "port" else high)
+
+    def hardly_turns(self, side: str) -> bool:
+        """Whether a side she did not turn to counts as that though the rudder went there: a weave about a turn does."""
+        low, high = self.rudder
+        return (
+            side not in self.sides and self.most_rate(side) > 0.0 and (-low if side == "port" else high) > LEAST_RUDDER
+        )
 
     @property
     def unseen_side(self) -> str:

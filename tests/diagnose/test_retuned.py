@@ -38,6 +38,9 @@ def test_a_change_from_nothing_has_no_share():
 def test_words():
     assert in_words([moved(0.54, 0.1)]) == ""
     up, down = moved(0.7, 0.01), moved(0.3, 0.001)
+    stands_in = Retuned("propeller.t_P", "thrust deduction", "1", 0.2, 0.3, 0.001)
+    assert stands_in.far
+    assert in_words([stands_in]) == ""
     assert in_words([up]) == "resistance going straight (R_0) 40 ± 4 % above its pre-determined value"
     assert in_words([up, down]).endswith(
         " value and resistance going straight (R_0) 40.0 ± 0.4 % below its pre-determined value"
@@ -66,7 +69,7 @@ def test_a_fouled_hull_is_told(tmp_path, hidden):
     render(tmp_path / "run")
     page = (tmp_path / "run" / "report.html").read_text(encoding="utf-8")
     assert "What re-tuning changed" in page
-    assert "Surely more than a tenth off" in page
+    assert "More than a tenth off the profile" in page
 
 
 def test_a_hull_as_the_profile_has_it_is_not(tmp_path):

@@ -3,6 +3,7 @@
 import shlex
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from mmgtune.backends import Integrator
@@ -42,6 +43,21 @@ def test_the_coefficient_of_the_unseen_side_is_tied(turns, side, follows, leads)
     said = " ".join(coverage_notes(Model(profile, ties), names, coverage(turns[side])))
     assert f"turn to {side} only" in said
     assert f"Tied, as nothing was measured on its side: {follows} (to {leads})" in said
+
+
+def test_a_weave_about_a_turn_is_not_told_as_nothing(turns):
+    turn = turns["starboard"]
+    weave = replace(
+        turn,
+        delta=turn.delta * np.where(turn.t < 0.4 * turn.t[-1], -0.4, 1.0),
+        r=turn.r * np.where(turn.t < 0.3 * turn.t[-1], -0.05, 1.0),
+    )
+    profile, seen = load_profile("suzaku"), coverage(weave)
+    names, ties = tied(profile, TARGETS, seen)
+    notes = coverage_notes(Model(profile, ties), names, seen)
+    assert seen.unseen_side == "port"
+    assert notes[0].startswith("The trials hardly turn to port (r L/U of ")
+    assert f"Tied, as hardly anything was measured on its side: {BOTH[1]}" in notes[1]
 
 
 def test_with_both_sides_nothing_is_tied_and_nothing_said(turns):
