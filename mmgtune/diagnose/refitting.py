@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from .linear import Linear, inwards, typical
 from .refit import ENOUGH, Refit
 from .runs import spread_key
 from .screening import ChanceScores, Score, evidence, told_by
-from .workbench import TOLERANCE, Point, Slopes, Workbench
+from .workbench import TOLERANCE, Point, Workbench
 
 STRONG = 1.2
 """Chi-squared per residual beyond which every named hypothesis makes a step before the best are refitted."""
@@ -128,16 +127,6 @@ class Refitting:
         """Where named hypotheses are first looked for from: with nothing yet taken by what has leeway."""
         return self.given.point if self.given else self.point
 
-    @cached_property
-    def _slopes(self) -> Slopes:
-        """Derivatives at the point: far more than those by a hypothesis, and much the same a step away."""
-        return self.bench.slopes(self.point)
-
-    @cached_property
-    def _slopes_before(self) -> Slopes:
-        """The same where named hypotheses are first looked for from."""
-        return self.bench.slopes(self.given.point) if self.given else self._slopes
-
     def best(self, ranked: Sequence[Score], *, quick: bool) -> list[Refit]:
         """The most promising hypotheses refitted, best first; what is found is known from then on.
 
@@ -178,8 +167,7 @@ class Refitting:
                 chi2.append(-np.inf)
             elif score.power > 0.0:
                 starts = self._starts(point, score, SIZES)
-                steps = FIRST if starts.shape[1] > 1 else 1
-                self.known.begun[names] = self._steps(point, score, starts, steps, self._slopes_before)
+                self.known.begun[names] = self._steps(point, score, starts, FIRST if starts.shape[1] > 1 else 1)
                 chi2.append(min(end.chi2 for end in self.known.begun[names]))
             else:
                 chi2.append(np.inf)
@@ -246,7 +234,7 @@ class Refitting:
         names = score.hypothesis.names
         if names in self.known.ends:
             end = self.known.ends[names]
-            ends = [end] if self.known.good else self._steps(end, score, end.unit[:, None], ROUGH, self._slopes)
+            ends = [end] if self.known.good else self._steps(end, score, end.unit[:, None], ROUGH)
         elif names in self.known.begun:
             before = self._before
             null = origin(self.bench, before, names)
@@ -254,12 +242,11 @@ class Refitting:
             away = [end for end in begun if np.any(end.unit[-len(null) :] != null)]  # at the null there is no way on
             best = (away or begun)[:STARTS_KEPT]
             starts = np.column_stack([end.unit for end in best])
-            here = replace(best[0], chi2=before.chi2)
-            ends = [*begun, *self._steps(here, score, starts, ROUGH - 1, self._slopes_before)]
+            ends = [*begun, *self._steps(replace(best[0], chi2=before.chi2), score, starts, ROUGH - 1)]
             if self.given is not None:
                 ends = self._released(score, min(ends, key=lambda end: end.chi2))
         else:
-            ends = self._steps(self.point, score, self._starts(self.point, score, SIZES[:1]), ROUGH, self._slopes)
+            ends = self._steps(self.point, score, self._starts(self.point, score, SIZES[:1]), ROUGH)
         return min(ends, key=lambda end: end.chi2)
 
     def _released(self, score: Score, end: Point) -> list[Point]:
@@ -271,7 +258,7 @@ class Refitting:
         on = np.array([*own, *(there[name] for name in score.hypothesis.names)])
         found = []
         for offsets, start in ((end.offsets, on), (self.point.offsets, by_score)):
-            found += self._steps(replace(self.point, offsets=offsets), score, start[:, None], ROUGH, self._slopes)
+            found += self._steps(replace(self.point, offsets=offsets), score, start[:, None], ROUGH)
         return found
 
     def _starts(self, point: Point, score: Score, sizes: Sequence[float]) -> FloatArray:
@@ -295,11 +282,8 @@ class Refitting:
             others.append(self.bench.null([point.names[i] for i in kept]))
         return np.column_stack([np.concatenate([z, np.clip(place, 0.0, 1.0)]) for z in others for place in places])
 
-    def _steps(self, point: Point, score: Score, starts: FloatArray, iterations: int, slopes: Slopes) -> list[Point]:
-        """So many steps of fits with a hypothesis, from starts at a point, offsets beginning there.
-
-        slopes  nearby
-        """
+    def _steps(self, point: Point, score: Score, starts: FloatArray, iterations: int) -> list[Point]:
+        """So many steps of fits with a hypothesis, from starts at a point, offsets beginning there."""
         hypothesis = score.hypothesis
         excess = max(point.chi2 - self.bench.problem.n_residuals, 0.0)
         return self.bench.refits(
@@ -309,7 +293,6 @@ class Refitting:
             max_iterations=iterations,
             tolerance=max(TOLERANCE, 1e-3 * excess),
             spreads=self._spreads(point, hypothesis, max(score.spread, 1.0 if self.strong else LEAST_SPREAD)),
-            slopes=slopes,
         )
 
     def _on(self, score: Score, end: Point, steps: int) -> Point:

@@ -14,7 +14,7 @@ from ..backends import STATES, Integrator, get_backend
 from ..components import split_name
 from ..effects import Visited
 from ..fitting.box import Box, base_of, choose_targets, group_of, make_box
-from ..fitting.least_squares import LeastSquaresResult, Near, flat_where_lost, solve
+from ..fitting.least_squares import LeastSquaresResult, solve
 from ..fitting.one_sided import followers, tied
 from ..fitting.problem import FitProblem
 from ..model import Model
@@ -54,24 +54,6 @@ class Point:
     spreads: Mapping[str, float] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, eq=False)
-class Slopes:
-    """Derivatives of whitened residuals at a point, by what is free there.
-
-    by         (n_residuals,) each, by name
-    by_offset  (n_residuals, 6) by the initial offsets of their case
-    """
-
-    by: Mapping[str, FloatArray]
-    by_offset: FloatArray
-
-    def near(self, names: Sequence[str]) -> Near:
-        """The same for a refit of other names nearby."""
-        none = np.zeros(len(self.by_offset))
-        own = tuple(k for k, name in enumerate(names) if name not in self.by)
-        return Near(own, np.column_stack([self.by.get(name, none) for name in names]), self.by_offset)
-
-
 class _How(TypedDict, total=False):
     """What a refit may be told; see ``Workbench.refits``."""
 
@@ -79,7 +61,6 @@ class _How(TypedDict, total=False):
     max_iterations: int
     tolerance: float
     spreads: Mapping[str, float] | None
-    slopes: Slopes | None
 
 
 @dataclass(eq=False)
@@ -185,14 +166,12 @@ class Workbench:
         max_iterations: int = 30,
         tolerance: float = TOLERANCE,
         spreads: Mapping[str, float] | None = None,
-        slopes: Slopes | None = None,
     ) -> list[Point]:
         """Fits of ``names`` from starts (n_names, n_starts), initial states beginning at ``offsets``.
 
         What is fitted has the forms of its effects besides, before all else.
 
         spreads  of values that groups of runs have of their own, those of the workbench where None
-        slopes   at a point nearby, for first steps
         """
         along, kept = self.believed.moving_with(names)
         names = (*along, *(names[k] for k in kept))
@@ -210,21 +189,10 @@ class Workbench:
             tolerance=tolerance,
             beliefs=beliefs,
             trusting=True,
-            near=slopes.near(names) if slopes else None,
         )
         return [
             Point(names, end.unit, end.offsets, self._total(end, beliefs), problem.integrator, spreads) for end in ends
         ]
-
-    def slopes(self, point: Point) -> Slopes:
-        """Derivatives of residuals at a point, whitened by noise as known so far."""
-        problem = self.problem_of(point.names, point.integrator).with_offsets(point.offsets)
-        _, slopes, by_offset = problem.jacobians(point.unit[:, None], point.offsets[:, None])
-        found = flat_where_lost(np.concatenate([slopes[0], by_offset[0]], axis=1))
-        if self.noise_known:
-            found = self.noise.apply(found)
-        by, by_offset = np.split(found, [len(point.names)], axis=1)
-        return Slopes(dict(zip(point.names, by.T, strict=True)), by_offset)
 
     def _total(self, end: LeastSquaresResult, beliefs: tuple[FloatArray, FloatArray] | None) -> float:
         unlike = 0.0 if beliefs is None else float(np.sum((beliefs[0] @ (end.unit - beliefs[1])) ** 2))

@@ -41,9 +41,6 @@ FORETOLD = 0.3
 SETTLED = 4
 """Iterations from which on that is done: before, parameters that move later than others still find their way."""
 
-SERVES = 0.5
-"""Share of the fall that derivatives taken nearby promised of a step that it must bring for them to serve another."""
-
 AHEAD = 0.1
 """Share of a step at which its second derivative is taken."""
 
@@ -65,36 +62,13 @@ class LeastSquaresResult(Brief):
     converged: bool
 
 
-class Near(NamedTuple):
-    """Derivatives that were taken near the starts, for their first steps.
-
-    own        targets by number, in order, that they were not taken by: those are taken at each start
-    slopes     (n_rows, n_targets) of whitened residuals by the others
-    by_offset  (n_rows, 6) by the initial offsets of their case
-    """
-
-    own: tuple[int, ...]
-    slopes: FloatArray
-    by_offset: FloatArray
-
-
 def _asked(problem: FitProblem, starts: FloatArray, *given: Any, **named: Any) -> list[Any]:
     """What tells one solve from another."""
     named = {name: "a function" if callable(value) else value for name, value in named.items()}
     anchor = named.pop("anchor", None)
     beliefs = named.pop("beliefs", None)
-    near = named.pop("near", None)
     plain = [value for value in given if not callable(value)]
-    return [
-        "solve",
-        *problem.asked(),
-        starts,
-        anchor,
-        repr(plain),
-        repr(sorted(named.items())),
-        *(beliefs or ()),
-        *(near or ()),
-    ]
+    return ["solve", *problem.asked(), starts, anchor, repr(plain), repr(sorted(named.items())), *(beliefs or ())]
 
 
 def _noted(ends: list[LeastSquaresResult]) -> list[Any]:
@@ -120,7 +94,6 @@ def solve(
     tolerance: float = 0.0,
     beliefs: tuple[FloatArray, FloatArray] | None = None,
     trusting: bool = False,
-    near: Near | None = None,
 ) -> list[LeastSquaresResult]:
     """Minimise J within the unit cube from every column of ``starts`` (n_targets, n_starts).
 
@@ -140,8 +113,6 @@ def solve(
                     and two again; and initial states that would leave their range are held at its end in the linear
                     problem, and held back by large damping (elsewhere they find the way round a bound by steps of
                     their own)
-    near            with which a start makes its first steps, for as long as they bring what was promised; it ends by
-                    derivatives of its own alone
     Returns a result per start, never above what it began with.
     """
     n_starts = starts.shape[1]
@@ -176,16 +147,12 @@ def solve(
             step = bounded_step(hessian + np.diag(damping), gradient, at, step)
         return step, there
 
-    def fall_by(linear: _Linear, at: FloatArray, end: FloatArray) -> float:
-        """Fall of what is minimised that the quadratic model promises of a step."""
-        hessian, gradient = of_all(linear, at)
-        step = end - at
-        return linear.settling - 2.0 * float(gradient @ step) - float(step @ hessian @ step)
-
     def promised_by(linear: _Linear, at: FloatArray, scale: FloatArray) -> float:
-        """That of a step that is hardly damped."""
+        """Fall of what is minimised by a step that is hardly damped."""
         step, there = towards(linear, at, HARDLY * scale)
-        return fall_by(there, at, step)
+        hessian, gradient = of_all(there, at)
+        step = step - at
+        return there.settling - 2.0 * float(gradient @ step) - float(step @ hessian @ step)
 
     def residuals_of(unit: FloatArray, offsets: FloatArray) -> FloatArray:
         found = problem.residuals(unit, offsets).T
@@ -195,13 +162,11 @@ def solve(
         return problem.costs(unit, offsets) if whiten is None else _squares(residuals_of(unit, offsets))
 
     def around(rows: npt.NDArray[np.intp]) -> list[_Linear]:
-        """The quadratic models at the running starts: of derivatives taken there or near, or of the last ones where
-        those foretold what came."""
+        """The quadratic models at the running starts: of derivatives taken there, or of the last ones where those
+        foretold what came."""
         anew = [row for row in rows if not told[row]]
         if anew:
-            given = None if models else near
-            borrowed[anew] = given is not None
-            made = zip(*_jacobians(problem, z, d, np.array(anew), whiten, given), strict=True)
+            made = zip(*_jacobians(problem, z, d, np.array(anew), whiten), strict=True)
             for row, (at, off, slopes, by_offset) in zip(anew, made, strict=True):
                 models[row] = _Linear(problem, at, off, slopes, by_offset, holding=trusting)
         again = [row for row in rows if told[row]]
@@ -213,7 +178,7 @@ def solve(
         return [models[row] for row in rows]
 
     models: dict[int, _Linear] = {}
-    told, borrowed = np.zeros((2, n_starts), dtype=bool)
+    told = np.zeros(n_starts, dtype=bool)
     J = cost(z, d)
     value = J + penalty(z, d)
     damping = np.full(n_starts, 1e-3)
@@ -228,7 +193,6 @@ def solve(
             break
         linear = around(rows)
         last, promised = np.zeros(len(rows), dtype=bool), np.full(len(rows), np.inf)
-        expected = np.full((len(rows), len(DAMPINGS)), np.inf)
         tried = np.empty((len(z), len(rows), 2, len(DAMPINGS)))
         moved = np.empty((len(problem.cases), len(rows), 2, len(DAMPINGS), 6))
         for i, row in enumerate(rows):
@@ -245,9 +209,7 @@ def solve(
                 nearby = tried[:, i, 0, k - 1] if k else None
                 tried[:, i, 0, k], at = towards(at, z[:, row], damping[row] * factor * scale, nearby)
                 moved[:, i, 0, k] = at.offsets(tried[:, i, 0, k] - z[:, row])
-                if borrowed[row]:
-                    expected[i, k] = fall_by(at, z[:, row], tried[:, i, 0, k])
-        if last.all() or borrowed[rows].all():
+        if last.all():
             tried, moved = tried[:, :, :1], moved[:, :, :1]
         else:
             _accelerate(residuals_of, linear, z[:, rows], d[:, rows], damping[rows], tried, moved)
@@ -268,16 +230,10 @@ def solve(
             else:
                 damping[row] *= 1e3
             foretold = gain > 0.0 and abs(gain - promised[i]) <= FORETOLD * promised[i]
-            ends = bool(last[i] or abs(gain - promised[i]) <= tolerance)
-            if borrowed[row]:
-                told[row] = gain > max(SERVES * expected[i, best % len(DAMPINGS)], tolerance) and not ends
-            else:
-                told[row] = trusting and foretold and iterations[row] >= SETTLED
+            told[row] = trusting and foretold and iterations[row] >= SETTLED
             small = 0.0 < gain <= max(QUIET * value[row], tolerance)
             quiet[row] = quiet[row] + 1 if small else 0
-            if borrowed[row]:
-                continue
-            if ends:
+            if last[i] or abs(gain - promised[i]) <= tolerance:
                 converged[row], running[row] = True, False
                 continue
             if quiet[row] >= 2 or damping[row] > 1e8 or value[row] < 1e-24:
@@ -320,24 +276,17 @@ def _jacobians(
     d: FloatArray,
     rows: npt.NDArray[np.intp],
     whiten: Callable[[FloatArray], FloatArray] | None = None,
-    near: Near | None = None,
 ) -> tuple[FloatArray, ...]:
-    """Offsets, residuals and derivatives of the running starts, first axis the start; what is near, of that.
+    """Offsets, residuals and derivatives of the running starts, first axis the start.
 
     Where a neighbour diverged the derivative counts as flat.
     """
-    only = None if near is None else near.own
-    residuals, jacobians, by_offset = problem.jacobians(z[:, rows], d[:, rows], only=only)
+    residuals, jacobians, by_offset = problem.jacobians(z[:, rows], d[:, rows])
     jacobians, by_offset = flat_where_lost(jacobians), flat_where_lost(by_offset)
     if whiten is not None:
         residuals, jacobians, by_offset = (
-            np.moveaxis(whiten(np.moveaxis(values, 1, 0)), 0, 1) if values.size else values
-            for values in (residuals, jacobians, by_offset)
+            np.moveaxis(whiten(np.moveaxis(values, 1, 0)), 0, 1) for values in (residuals, jacobians, by_offset)
         )
-    if near is not None:
-        whole = np.repeat(near.slopes[None], len(rows), axis=0)
-        whole[:, :, list(near.own)] = jacobians
-        jacobians, by_offset = whole, np.repeat(near.by_offset[None], len(rows), axis=0)
     return d[:, rows].transpose(1, 0, 2), residuals, jacobians, by_offset
 
 

@@ -265,11 +265,7 @@ class FitProblem:
         return np.asarray(np.sqrt(self.weight) * rows[:, of.reshape(-1)])
 
     def jacobians(
-        self,
-        unit: FloatArray,
-        offsets: FloatArray | None = None,
-        step: float = 1e-6,
-        only: Sequence[int] | None = None,
+        self, unit: FloatArray, offsets: FloatArray | None = None, step: float = 1e-6
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Residuals and their derivatives at points (n_targets, n_points) of the unit cube, by forward differences.
 
@@ -277,14 +273,11 @@ class FitProblem:
         offsets of the case a residual belongs to (n_points, n_rows, 6; empty where they are held).
         Steps go inwards where a point is on the upper bound.  All points and columns run as lanes of one call;
         values of different groups of cases are moved in the same lanes.
-
-        only  targets by number, in order, whose derivatives alone are taken; those by offsets are empty then
         """
         n_targets, n_points = unit.shape
-        chosen = list(range(n_targets)) if only is None else list(only)
-        together = [both for both in self._moved_together() if not set(both).isdisjoint(chosen)]
+        together = self._moved_together()
         n_moved = len(together)
-        extra = 0 if self.sigma is None or only is not None else 6
+        extra = 0 if self.sigma is None else 6
         n_columns = 1 + n_moved + extra
         steps = np.where(unit + step > 1.0, -step, step)
         columns = np.repeat(unit[:, :, None], n_columns, axis=2)
@@ -292,7 +285,7 @@ class FitProblem:
             columns[moved_here, :, 1 + i] += steps[moved_here]
         base_offsets = np.repeat(self.offsets[:, None], n_points, axis=1) if offsets is None else offsets
         moved = np.repeat(base_offsets[:, :, None], n_columns, axis=2)
-        if extra:
+        if self.sigma is not None:
             self._move_offsets(moved[:, :, 1 + n_moved :], step)
         n_lanes = n_points * n_columns
         values = self.residuals(columns.reshape(n_targets, n_lanes), moved.reshape(len(self.cases), n_lanes, 6))
@@ -301,10 +294,10 @@ class FitProblem:
         with np.errstate(invalid="ignore"):
             slopes = values[:, :, 1 : 1 + n_moved] - base
             if self.grouped:
-                slopes = self._apart(slopes, together)[:, :, chosen]
-            slopes /= steps.T[:, None, chosen]
+                slopes = self._apart(slopes, together)
+            slopes /= steps.T[:, None, :]
             by_offset = values[:, :, 1 + n_moved :] - base
-            if extra:
+            if self.sigma is not None:
                 self._over_offsets(by_offset, step)
         return base[:, :, 0], slopes, by_offset
 

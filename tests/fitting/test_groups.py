@@ -53,14 +53,6 @@ def test_derivatives_are_those_of_the_groups(problem):
     assert np.any(slopes[0, rows[2], 1] != 0.0)
 
 
-@pytest.mark.parametrize("only", [(), (0,), (1, 2), (0, 2)])
-def test_derivatives_by_some_alone_are_the_same(problem, only):
-    _, whole, _ = problem.jacobians(UNIT[:, None])
-    _, some, by_offset = problem.jacobians(UNIT[:, None], only=only)
-    np.testing.assert_allclose(some, whole[:, :, list(only)], rtol=1e-12)
-    assert by_offset.shape[2] == 0
-
-
 def test_beliefs_hold_values_together(problem):
     apart = np.array([[0.0, 1.0, -1.0]]) * 1e6
     (free,) = solve(problem, UNIT[:, None], max_iterations=30)

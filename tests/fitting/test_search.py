@@ -21,7 +21,7 @@ from mmgtune.fitting import (
 )
 from mmgtune.fitting.box import make_box
 from mmgtune.fitting.cmaes import from_box, search, to_box
-from mmgtune.fitting.least_squares import Near, bounded_step, bounded_steps, solve
+from mmgtune.fitting.least_squares import bounded_step, bounded_steps, solve
 from mmgtune.trial import load_trials
 from tests.fitting.conftest import make_set
 
@@ -152,30 +152,6 @@ def test_derivatives_that_foretold_a_step_serve_the_next_to_the_same_end(problem
     assert fewer < every
     assert kept.converged
     assert pytest.approx(own.J, rel=1e-5) == kept.J
-
-
-@pytest.mark.parametrize("wrong", [False, True], ids=["near", "wrong"])
-def test_derivatives_taken_nearby_lead_to_the_same_end(problem, monkeypatch, wrong):
-    """Sooner where they are right; where they are wrong a start goes on by its own."""
-    made = []
-    jacobians = least_squares._jacobians
-    monkeypatch.setattr(least_squares, "_jacobians", lambda *given: made.append(given[-1] is None) or jacobians(*given))
-    estimated = problem.estimated(np.full((len(problem.cases), 6), 0.1))
-    start = estimated.box.to_unit(estimated.box.pre)[:, None]
-    beside = np.clip(start + 0.1, 0.0, 1.0)
-    _, slopes, by_offset = (one[0] for one in estimated.jacobians(beside))
-    rng = np.random.default_rng(0)
-    near = Near((0, 3), rng.permuted(slopes, axis=1) if wrong else slopes, by_offset)
-
-    def end(near):
-        made.clear()
-        (found,) = solve(estimated, start, tolerance=1e-9, trusting=True, near=near)
-        return found, sum(made)
-
-    (own, every), (led, fewer) = end(None), end(near)
-    assert wrong or fewer < every
-    assert led.converged
-    assert pytest.approx(own.J, rel=1e-5) == led.J
 
 
 def test_derivatives_are_taken_along_to_another_point(problem):
