@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -65,10 +65,6 @@ FEW = 4
 """The best few."""
 
 
-Stop = Callable[[], bool]
-"""Asked often; True ends the search with what it has."""
-
-
 class Stopped(Exception):
     """A look that was not finished, of which nothing can be told."""
 
@@ -115,7 +111,6 @@ class Refitting:
     linear: Linear
     known: Known
     given: Given | None = None
-    stop: Stop = lambda: False
 
     @property
     def strong(self) -> bool:
@@ -149,7 +144,7 @@ class Refitting:
         return self._ordered([self._judged(score, end, chance, max(1, len(terms))) for score, end in fitted])
 
     def _go_on(self) -> None:
-        if self.stop():
+        if self.bench.stop():
             raise Stopped
 
     def _likely(self, named: Sequence[Score]) -> list[Score]:

@@ -83,7 +83,7 @@ def _diagnose(
     known = [h for h in known if not set(h.names) & set(bench.targets)]
     known = [h for h in known if not set(h.instead) & set(bench.targets)]
     differing_by_run = of_runs([*known, *in_place], seen) if choice is None else []
-    found = search(bench, [*known, *differing_by_run], in_place, hooks.on_phase, hooks.stop)
+    found = search(bench, [*known, *differing_by_run], in_place, hooks.on_phase)
     test = [found.held.evenly(trial) for trial in test] if found.held else test
     hooks.on_phase("measuring the gain")
     before = leftover(bench, found.base)

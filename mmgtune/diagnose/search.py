@@ -20,7 +20,7 @@ from .base_fit import PRECISE, base_fit, unnoticed
 from .hypotheses import Hypothesis
 from .linear import Linear, linearise
 from .refit import ENOUGH, Refit, believable_first, decide, rivals_among
-from .refitting import STRONG, Given, Known, Refitting, Stop, Stopped, kept_free
+from .refitting import STRONG, Given, Known, Refitting, Stopped, kept_free
 from .screening import Score, scores
 from .workbench import Point, Workbench
 
@@ -90,7 +90,6 @@ def search(
     hypotheses: Sequence[Hypothesis],
     in_place: Sequence[Hypothesis] = (),
     say: Callable[[str], None] = lambda _: None,
-    stop: Stop = lambda: False,
 ) -> Found:
     """Forward search with a backward look after each addition; where it is stopped, what was accepted by then.
 
@@ -104,10 +103,10 @@ def search(
     left = list(hypotheses)
     dropped: list[Hypothesis] = []
     once: list[Hypothesis] = []
-    while not stop():
+    while not bench.stop():
         say("looking for a cause" if not found.causes else f"looking for cause {len(found.causes) + 1}")
         try:
-            step = look(bench, found.final, left, first=not found.steps, stop=stop)
+            step = look(bench, found.final, left, first=not found.steps)
         except Stopped:
             break
         found.steps.append(step)
@@ -146,7 +145,7 @@ def search(
         tolerance = unnoticed(bench, first.chi2)
         found.base = bench.refit(first.names, first.unit[:, None], first.offsets, tolerance=tolerance)
         found.final = bench.refit(found.final.names, found.final.unit[:, None], found.final.offsets, tolerance=PRECISE)
-    if len(found.causes) > 1 and not stop():
+    if len(found.causes) > 1 and not bench.stop():
         _drop_superfluous(bench, found, found.causes[:-1])
     return found
 
@@ -166,9 +165,7 @@ def finer(integrator: Integrator) -> Integrator:
     return Integrator("rk4", FINER * integrator.substeps)
 
 
-def look(
-    bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis], first: bool, stop: Stop = lambda: False
-) -> Step:
+def look(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis], first: bool) -> Step:
     """Scores of all hypotheses at a point, refits of the best, and whether the best of those is to be believed.
 
     Noise is estimated anew from what the best refit and all other signatures together leave: any less, and a cause
@@ -179,7 +176,7 @@ def look(
     linear = linearise(bench, point, names, varying=varying)
     ranked = scores(linear, hypotheses)
     known = Known()
-    best = Refitting(bench, point, linear, known, stop=stop).best(ranked, quick=True)
+    best = Refitting(bench, point, linear, known).best(ranked, quick=True)
     richest = best[0].point if best and best[0].gain > 2.0 * ENOUGH else point
     at_best = linear if richest is point else linearise(bench, richest, names)
     noise = _noise_at(bench, at_best)
@@ -192,7 +189,7 @@ def look(
         ranked = scores(linear, hypotheses)
         known.good = False
     given = _as_given(bench, point, hypotheses)
-    fitted = Refitting(bench, point, linear, known, given, stop).best(ranked, quick=False)
+    fitted = Refitting(bench, point, linear, known, given).best(ranked, quick=False)
     refits = believable_first(fitted, bench.options.level)
     finer_gain = None
     if first:

@@ -177,15 +177,14 @@ def _of_effect(
         name = f"{effect.kind}.{symbol}"
         deviation = _deviation(effect, symbol, parameter, profile)
         low, high = parameter.bounds(scale)
+        acts = symbol in effect.of_measured and profile.value(name) != parameter.null
         if parameter.chart == "polar":
             direction = f"{effect.kind}.{parameters[k + 1][0]}"
             size, towards = profile.value(name), profile.value(direction)
             pairs.append((len(found), len(found) + 1))
             found.append((name, size * np.cos(towards), deviation, -high, high))
             found.append((direction, size * np.sin(towards), deviation, -high, high))
-        elif symbol in effect.of_measured and profile.value(name) == parameter.null:
-            continue  # the profile has what was measured do nothing
-        elif symbol in effect.of_measured or (parameter.chart == "linear" and low < parameter.null < high):
+        elif acts or (parameter.chart == "linear" and low < parameter.null < high):
             value = profile.value(name)
             found.append((name, value, deviation, min(low, value), max(high, value)))
     return found, pairs

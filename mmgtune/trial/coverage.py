@@ -35,6 +35,9 @@ SLACK = 1.0 * DEG
 """The same of rudder angles [rad], for gears that miss their angle."""
 
 
+SIDES = ("port", "starboard")
+
+
 class Sailed(Protocol):
     """A trial, or the track of a simulated run: columns (n_samples,) in SI units."""
 
@@ -72,6 +75,12 @@ def _samples(trial: Sailed, L_pp: float) -> FloatArray:
     rate = np.where(under_way, r * L_pp / np.where(under_way, speed, 1.0), np.nan)
     drift = np.where(under_way, np.arctan2(-trial.v_m, trial.u), np.nan)
     return np.column_stack([seconds, trial.delta, speed, trial.u, rate, drift, n])
+
+
+def _to(side: str, pair: tuple[float, float]) -> float:
+    """How far a range (to port, to starboard) goes to a side; 0 where it does not, or nothing is known."""
+    low, high = pair
+    return max(0.0, -low if side == "port" else high)
 
 
 @dataclass(frozen=True)
@@ -133,24 +142,19 @@ class Coverage:
     def sides(self) -> tuple[str, ...]:
         """Sides she turned to under rudder: "port", "starboard", both, or none."""
         found = []
-        for side, sign in (("port", -1), ("starboard", 1)):
-            rudder, rate = (max(0.0, max(sign * end for end in pair)) for pair in (self.rudder, self.rate))
-            other = [max(0.0, max(-sign * end for end in pair)) for pair in (self.rudder, self.rate)]
-            if rudder > max(LEAST_RUDDER, ONE_SIDE * other[0]) and rate > HARDLY * other[1]:
+        for side, other in (SIDES, SIDES[::-1]):
+            rudder, rate = _to(side, self.rudder), _to(side, self.rate)
+            if rudder > max(LEAST_RUDDER, ONE_SIDE * _to(other, self.rudder)) and rate > HARDLY * _to(other, self.rate):
                 found.append(side)
         return tuple(found)
 
     def most_rate(self, side: str) -> float:
         """The largest r L / U [-] to a side, "port" or "starboard"; 0 where there was none."""
-        low, high = self.rate
-        return max(0.0, -low if side == "port" else high)
+        return _to(side, self.rate)
 
     def hardly_turns(self, side: str) -> bool:
         """Whether a side she did not turn to counts as that though the rudder went there: a weave about a turn does."""
-        low, high = self.rudder
-        return (
-            side not in self.sides and self.most_rate(side) > 0.0 and (-low if side == "port" else high) > LEAST_RUDDER
-        )
+        return side not in self.sides and _to(side, self.rate) > 0.0 and _to(side, self.rudder) > LEAST_RUDDER
 
     @property
     def unseen_side(self) -> str:
@@ -184,9 +188,8 @@ class Coverage:
         if not (self.to_dict() and other.to_dict()):
             return []
         found = []
-        for side, sign in (("port", -1), ("starboard", 1)):
-            asked = max(0.0, max(sign * end for end in other.rudder))
-            known = max(0.0, max(sign * end for end in self.rudder))
+        for side in SIDES:
+            asked, known = _to(side, other.rudder), _to(side, self.rudder)
             if asked > LEAST_RUDDER and asked > (1.0 + BEYOND) * known + SLACK:
                 turns = (
                     f"no turn to {side}"

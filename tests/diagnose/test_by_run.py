@@ -11,6 +11,7 @@ import pytest
 
 from mmgtune.cli.diagnose import summary
 from mmgtune.diagnose import DiagnoseOptions, diagnose, write_diagnosis
+from mmgtune.diagnose.wording import range_in_words
 from mmgtune.profile import load_profile, parse_profile
 from mmgtune.report import render
 from mmgtune.trial import load_trials
@@ -140,3 +141,8 @@ def test_a_current_that_changes_within_the_runs(tmp_path):
     assert cause.runs.variant == ("north", "east", "north_rate", "east_rate")
     assert np.abs(misses(cause.runs, case, "current")).max() < 3.5
     assert "changed within a run by up to" in result.sentence()
+
+
+def test_a_range_is_told_in_plain_numbers():
+    assert range_in_words(586e3, 661e3, "N") == "590 to 660 kN"
+    assert range_in_words(0.2, 0.4, "m/s") == "0.2 to 0.4 m/s"

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mmgtune.backends import Integrator
-from mmgtune.diagnose import DiagnoseOptions
+from mmgtune.diagnose import DiagnoseOptions, narrow
 from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.narrow import narrow_box
 from mmgtune.diagnose.search import Found
@@ -18,7 +18,7 @@ from tests.diagnose.sensors import logged
 
 
 @pytest.mark.parametrize(("times", "said"), [(1.8, True), (1.3, False)], ids=["beyond the box", "inside"])
-def test_a_resistance_beyond_the_box_is_said(suzaku, times, said):
+def test_a_resistance_beyond_the_box_is_said(suzaku, monkeypatch, times, said):
     profile = suzaku.profile
     fouled = tuned(profile, {"hull.R_0": times * profile.value("hull.R_0")}, {}, {}, "made")
     rng = np.random.default_rng(1)
@@ -35,4 +35,6 @@ def test_a_resistance_beyond_the_box_is_said(suzaku, times, said):
         assert "hull.R_0 8" in warnings[0]
         assert "% above the profile's value" in warnings[0]
         assert warnings[0].endswith("look again with a_r=1")
+        monkeypatch.setattr(narrow, "FEW", 0)
+        assert narrow_box(bench, Found(base, explained)) == []  # where it takes more of them than a ship may have
     assert narrow_box(bench, Found(base, base)) == []
