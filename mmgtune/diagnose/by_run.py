@@ -11,7 +11,7 @@ from ..effects import Effect
 from ..fitting.box import AT
 from ..trial import Trial
 from .intervals import NORMAL, Estimate
-from .runs import IN_WORDS, groups_of, name_of
+from .runs import FEWEST, IN_WORDS, groups_of, name_of
 from .wording import quantity, range_in_words
 
 CERTAIN = 3.0
@@ -97,6 +97,16 @@ class ByRun:
         return far > CERTAIN**2 + len(self._sizes)
 
     @property
+    def alone_in(self) -> str:
+        """The one run of three or more that a wind, or all that has a direction, shows in; "" elsewhere.
+
+        Whatever happened once, in one run, is imitated by a size and a direction of its own there.
+        """
+        shown = [k for k in range(len(self.groups)) if self.shows(k)]
+        once = len(shown) == 1 and len(self.groups) >= FEWEST and self.towards(shown[0]) is not None
+        return name_of(self.groups[shown[0]]) if once else ""
+
+    @property
     def _sizes(self) -> tuple[str, ...]:
         """Parameters that are sizes, no directions."""
         polar = self.effect.parameters[self.variant[0]].chart == "polar"
@@ -113,12 +123,18 @@ class ByRun:
         text = f"The {subject} differed from {word} to {word}: "
         if len(shown) == 1 and others:
             value, error = self.size(shown[0])
-            size = quantity(value, None if error is None else NORMAL * error, self.unit)
+            size = quantity(value, None if error is None else NORMAL * error, self.unit) + self._of_what
             text += f"{size} in {name_of(self.groups[shown[0]])}, and none shows in the other {others}"
         else:
-            text += range_in_words(min(sizes), max(sizes), self.unit)
+            text += range_in_words(min(sizes), max(sizes), self.unit) + self._of_what
             text += f", and none shows in {others} of {len(self.groups)}" if shown and others else ""
         return text + self._within()
+
+    @property
+    def _of_what(self) -> str:
+        """What a factor is of, behind the number."""
+        factor = self.effect.parameters[self.variant[0]].null == 1.0 and not self.effect.subject
+        return " times the model's" if factor else ""
 
     def _within(self) -> str:
         """What changed within runs, in words."""

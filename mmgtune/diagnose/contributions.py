@@ -16,7 +16,7 @@ from ..arrays import FloatArray
 from ..backends import STATES
 from ..fitting.least_squares import fit_offsets
 from ..trial import Trial
-from .gain import INDICES, measured
+from .gain import BAND, INDICES, expected, measured
 from .hypotheses import Hypothesis
 from .intervals import Estimate, estimates
 from .leftover import Leftover
@@ -47,6 +47,10 @@ HARDLY_SEEN = 0.005
 """Share of the fall of chi-squared up to which a cause has to remove more than ``FORM`` on held-out trials, and
 share of the error there up to which one that shows in a channel of its own may seem to add to others."""
 
+LEFT, OF_REST = 0.2, 0.9
+"""Error beyond noise, as a share of it, that others must leave, and the share of that which a cause with one value for
+all must remove, for it to be no matter of their form: what a form leaves has no such shape."""
+
 SHOWS, OWN = 0.2, 100.0
 """Error in a channel on held-out trials, over the variance of its noise, and share of what all causes remove there,
 over what the others' form may leave: a cause that removes as much in any channel is no matter of that form."""
@@ -62,6 +66,8 @@ class Contribution:
     indices  by manoeuvring index, the largest change on held-out trials: of lengths as a share, of angles [deg]
     form     such shares that the form of others may leave
     own      by channel, such a share of the error in that channel alone
+    whole    whether it removes nearly all of what the others leave, which no form of theirs would let it
+    unsure   whether coefficients that are known no better bring as much there as it does harm
 
     Where ``seen`` is enough to tell that it is no trace, the others are not asked for: NaN and empty.
     """
@@ -72,6 +78,8 @@ class Contribution:
     indices: Mapping[str, float] | None = None
     form: float = FORM
     own: Mapping[str, float] = field(default_factory=dict)
+    whole: bool = False
+    unsure: bool = False
 
     @property
     def harmful(self) -> bool:
@@ -79,7 +87,9 @@ class Contribution:
 
         Where it shows in a channel of its own, the form of larger ones may add as much elsewhere as it removes there.
         """
-        return self.channels is not None and self.share <= (-HARDLY_SEEN if self.stands_out else 0.0)
+        if self.channels is None or self.unsure:
+            return False
+        return self.share <= (-HARDLY_SEEN if self.stands_out else 0.0)
 
     @property
     def stands_out(self) -> bool:
@@ -98,7 +108,7 @@ class Contribution:
         if self.harmful:
             return True
         little = max(self.share, self.seen) < self.form or (self.share < FORM and self.seen < HARDLY_SEEN)
-        if little and not self.stands_out:
+        if little and not (self.stands_out or self.whole):
             return True
         moved = all(
             change < (OF_ANGLE if name.endswith("_deg") else OF_LENGTH) for name, change in self.indices.items()
@@ -175,8 +185,7 @@ def _alone(bench: Workbench, found: Found, test: Sequence[Trial]) -> Contributio
 
 def _of(bench: Workbench, found: Found, cause: Hypothesis, test: Sequence[Trial]) -> Contribution:
     fewer = without(bench, found.final, cause)
-    whole = found.base.chi2 - found.final.chi2
-    seen = (fewer.chi2 - found.final.chi2) / whole if whole > 0.0 else 1.0
+    seen = share_lost(found.base.chi2, fewer.chi2, found.final.chi2)
     if seen >= WORTH_ASKING:
         return Contribution(seen)
     errors, counts, changes = np.zeros((3, len(STATES))), np.zeros(len(STATES)), dict[str, float]()
@@ -192,6 +201,8 @@ def _of(bench: Workbench, found: Found, cause: Hypothesis, test: Sequence[Trial]
         for k, name in enumerate(STATES)
         if counts[k] and (noise := bench.noise.channels.get(name))
     }
+    harm = -float(removed[1])
+    unsure = seen >= SMALL and harm > 0.0 and harm <= BAND * expected(bench, found, test or bench.trials)
     scale = max(float(removed[0]), abs(float(removed[1])))  # all together may remove less than one, or nothing
     form = FORM_IF_ROUGH if any(one.rough for one in found.causes) else FORM
     own = {}
@@ -199,7 +210,30 @@ def _of(bench: Workbench, found: Found, cause: Hypothesis, test: Sequence[Trial]
         by_all, by_one = errors[0, k] - errors[2, k], errors[1, k] - errors[2, k]
         if name in channels and by_one > 0.0:
             own[name] = float(by_one / max(by_all, by_one))
-    return Contribution(seen, float(removed[1]) / scale if scale > 0.0 else 1.0, channels, changes, form, own)
+    share = float(removed[1]) / scale if scale > 0.0 else 1.0
+    return Contribution(seen, share, channels, changes, form, own, _takes_the_rest(bench, found, cause, fewer), unsure)
+
+
+def share_lost(base: float, fewer: float, final: float) -> float:
+    """Share of the fall of chi-squared from ``base`` to ``final`` that is lost at ``fewer``.
+
+    Motion without a cause may leave all bounds, and chi-squared with it: without that cause all is lost.
+    """
+    if fewer >= base or not final < base:
+        return 1.0
+    return (fewer - final) / (base - final) if np.isfinite(base) else 0.0
+
+
+def _takes_the_rest(bench: Workbench, found: Found, cause: Hypothesis, fewer: Point) -> bool:
+    """Whether a cause with one value for all removes nearly all that the others leave beyond noise.
+
+    fewer  the best fit without it
+    """
+    n = bench.problem.n_residuals
+    rest = fewer.chi2 - n
+    if cause.by or cause.effect.one_of_many or rest < LEFT * n:
+        return False
+    return fewer.chi2 - found.final.chi2 >= OF_REST * rest
 
 
 def _errors(

@@ -37,6 +37,9 @@ BAND = 3.0
 WORSE = 0.1
 """Share by which causes may make the error on test trials larger by chance."""
 
+MISSED = 2.0
+"""Error on test trials, over the noise of the sensors, from which these show that something is wrong."""
+
 MOST = 0.9
 """Share of the error above noise on held-out trials that the right causes remove at least."""
 
@@ -80,6 +83,16 @@ class Gain(Brief):
         after = float(self.excess[:, 1].sum())
         left = after > RELEVANT * self.floor + 3.0 * self.chance + BAND * self.unsure
         return left and self.share_removed[0] < MOST
+
+    @property
+    def left(self) -> float:
+        """Error that the causes leave on held-out trials, over the noise of the sensors; that is in it."""
+        return float(np.sqrt(1.0 + max(float(self.excess[:, 1].sum()), 0.0) / self.floor))
+
+    @property
+    def missed(self) -> bool:
+        """Whether test trials are told so badly that something is wrong which the others do not show."""
+        return self.held_out == "test" and self.remains and self.left > MISSED
 
     @property
     def worse(self) -> bool:

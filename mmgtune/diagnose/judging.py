@@ -63,13 +63,14 @@ class Judge:
         brought  what each cause contributes
         """
         result = self._compared(self._judged(found, brought), found)
-        if result.unclear and not self.hooks.stop():  # perhaps the first of them would have been believed alone
+        if result.unclear and len(found.causes) > 1 and not self.hooks.stop():
+            # perhaps the first of them would have been believed alone
             alone = alone_of(self.bench, found)
             brought = contributions(self.bench, alone, self.test)
             other = self._compared(self._judged(alone, brought, Doubted.of(result)), alone)
-            if other.verdict in ("found", "not-separable") and other.explains_nearly_all:
+            if other.names_causes and other.explains_nearly_all:
                 result, found = other, alone
-        if result.verdict == "unexplained":
+        if result.verdict == "unexplained" and not result.misses_test:
             result = replace(result, whereabouts=error_of(self.bench, found, result.leftover.offsets))
         elif result.verdict != "interrupted":
             result = replace(result, moved=tuple(retuned(self.bench, found.final)))

@@ -25,6 +25,7 @@ from .retuned import Retuned
 from .retuned import in_words as moved_in_words
 from .runs import IN_WORDS
 from .separate import Suggestion
+from .together import Together
 from .voyages import Choice
 from .whereabouts import Whereabouts
 from .wording import parameters_in_words
@@ -232,6 +233,7 @@ class Diagnosis(Plotted):
     coverage  what the trials it looked at visit; warnings: what of that a reader must know
     whereabouts  where the error lives, where nothing explains it; None else
     doubted      the sum of causes that the one named was found in, where that is not believed; None else
+    together  what was found without the trials kept for testing, where these had to be looked at too; None else
     choice    windows of voyages that were looked at, None for trials; differing: what differs between the voyages
     """
 
@@ -259,6 +261,7 @@ class Diagnosis(Plotted):
     interrupted: bool = False
     whereabouts: Whereabouts | None = None
     doubted: Doubted | None = None
+    together: Together | None = None
     moved: tuple[Retuned, ...] = ()
     choice: Choice | None = None
     differing: tuple[Difference, ...] = ()
@@ -275,7 +278,7 @@ class Diagnosis(Plotted):
             return "interrupted"
         fails = self.gain.remains and (self.leftover.noticed or self.gain.worse)
         fails = fails or bool(self.unclear)
-        shaped = self.leftover.structured or bool(self.leftover.offsets)
+        shaped = self.leftover.structured or bool(self.leftover.offsets) or self.misses_test
         if shaped if not self.causes else fails or self._mostly_left:
             return "found" if any(one.explained >= MOSTLY for one in self.between) else "unexplained"
         if self.groups:
@@ -300,10 +303,13 @@ class Diagnosis(Plotted):
 
     @property
     def unclear(self) -> str:
-        """Why a sum of causes is not believed, in words; "" where it is, and for a single cause.
+        """Why causes are not believed, in words; "" where they are.
 
         An effect that no registry holds looks like a sum of those that one does; the study says how such sums look.
         """
+        for cause in self.causes:
+            if cause.runs and cause.runs.alone_in:
+                return f"{cause.tag} shows in {cause.runs.alone_in} alone, and what happened once may be anything"
         brought = [one for _, one in self.contributions]
         if len(brought) < 2:
             return ""
@@ -311,6 +317,8 @@ class Diagnosis(Plotted):
             return f"it takes {len(brought)} terms"
         if len(brought) > 2 and self.groups:
             return "not all of them can be told from others"
+        if len(brought) > 2 and sum(bool(cause.runs) for cause in self.causes) > 1:
+            return "more than one of them differs from run to run"
         if sum(one.seen for one in brought) < NEEDED:
             return "each of them can be left out with little loss"
         if self.gain.mostly_remains:
@@ -318,6 +326,13 @@ class Diagnosis(Plotted):
         if self.leftover.structured and not self.explains_all:
             return "what they leave is no noise"
         return ""
+
+    @property
+    def misses_test(self) -> bool:
+        """Whether the model fits the trials looked at without any cause, and those kept for testing show that something
+        is wrong all the same."""
+        fits = not (self.causes or self.leftover.structured or self.leftover.offsets or self.choice)
+        return fits and self.gain.missed
 
     @property
     def explains_all(self) -> bool:
@@ -337,6 +352,11 @@ class Diagnosis(Plotted):
         return self.leftover.structured and (self.explained_share < MOSTLY or bent)
 
     @property
+    def names_causes(self) -> bool:
+        """Whether causes are named that a reader may rely on, be it one of a group."""
+        return self.verdict in ("found", "not-separable")
+
+    @property
     def named(self) -> tuple[Cause, ...]:
         """The causes a reader may rely on: none where something unknown is at work too, or the search was stopped."""
         return () if self.verdict in ("unexplained", "interrupted") else self.causes
@@ -349,7 +369,8 @@ class Diagnosis(Plotted):
         ]
         if self.verdict == "found" and not self.causes:
             return " ".join(["No cause that is the same in all voyages shows.", *told])
-        return " ".join([self._of_causes(), *told])
+        together = [self.together.sentence] if self.together else []
+        return " ".join([self._of_causes(), *told, *together])
 
     def _of_causes(self) -> str:
         """What is the same in all trials, in words."""
@@ -383,7 +404,7 @@ class Diagnosis(Plotted):
         where = "on trials not used" if self.gain.held_out == "test" else f"on {self.gain.words}"
         if self.verdict == "unexplained":
             if self.unclear:
-                tags = " + ".join(tag for tag, _ in self.contributions)
+                tags = " + ".join(dict.fromkeys(tag for tag, _ in self.contributions))
                 return (
                     f"Something is wrong that this program cannot name. The best partial explanation, {tags}, removes "
                     f"{_percent(self.explained_share)} of the error it was found on, but {self.unclear}: it stands for "
@@ -404,6 +425,12 @@ class Diagnosis(Plotted):
                 else f"an error {math.sqrt(1.0 + excess):,.0f} times the noise of the sensors"
             )
             offsets = " ".join(f"{in_words(*one)}." for one in self.leftover.offsets.items())
+            if self.misses_test:
+                return (
+                    "Something is wrong that this program does not know: the re-tuned model fits the trials looked at, "
+                    f"but leaves an error {self.gain.left:,.3g} times the noise of the sensors on trials kept for "
+                    "testing, more than coefficients known no better would."
+                )
             if not self.causes:
                 told = f"the re-tuned model leaves {left}, and no known cause accounts for it."
                 return f"Something is wrong that this program does not know: {told} {offsets}".rstrip()
@@ -503,6 +530,8 @@ class Diagnosis(Plotted):
         left_out = [cause.tag for cause in self.named if cause.runs]
         if left_out:
             facts["left_out"] = left_out
+        if self.together and self.together.settled:
+            facts["tuned_to_test"] = True
         if self.causes and not self.named:
             facts["not_believed"] = [cause.tag for cause in self.causes]
         values: dict[str, dict[str, float]] = {}
@@ -560,6 +589,7 @@ class Diagnosis(Plotted):
             },
             "whereabouts": self.whereabouts.to_dict() if self.whereabouts else None,
             "doubted": self.doubted.to_dict() if self.doubted else None,
+            "together": self.together.to_dict() if self.together else None,
             "detectability": [one.to_dict() for one in self.detectability],
             "noise": {name: dict(values) for name, values in self.noise.items()},
             "chi2_per_residual": {"before": self.chi2[0], "after": self.chi2[1]},

@@ -25,6 +25,7 @@ from .legs import LEG_NAMES, Difference, differences
 from .narrow import narrow_box
 from .result import Diagnosis
 from .search import search
+from .together import Together
 from .voyages import Choice, looked_at, with_hull_held
 from .workbench import make_workbench
 
@@ -43,7 +44,8 @@ def diagnose(
     """Show what the model gets wrong on the trials, name the cause, extend the model, measure the gain.
 
     Causes are looked for on every trial that the split does not keep for testing; the gain is that on the test trials,
-    or on each trial in turn where there are none.  Nothing is read but the profile, the columns and the split.
+    or on each trial in turn where there are none.  Where what is found does not tell the test trials, all are looked at
+    together, unless the options keep them.  Nothing is read but the profile, the columns and the split.
 
     Of voyages, logs of hours, a bounded number of windows is looked at, and what differs from one to the next is told.
 
@@ -70,6 +72,37 @@ def _diagnose(
     provenance: dict[str, Any],
 ) -> Diagnosis:
     began = time.perf_counter()
+    result = _looked_at(profile, trials, choice, options, hooks, provenance)
+    if result.gain.missed and not (options.keep_test or choice or hooks.stop()):
+        hooks.on_phase("looking at all trials together")
+        of_all = _looked_at(profile, replace(trials, test=()), None, options, hooks, provenance)
+        result = _settled(result, of_all)
+    return replace(result, wall_s=time.perf_counter() - began)
+
+
+def _settled(alone: Diagnosis, of_all: Diagnosis) -> Diagnosis:
+    """Of an answer that does not tell the trials kept for testing and that of all together, the one to give.
+
+    A cause that the others show stays, unless all together show one that tells what is held out better.
+    """
+    if of_all.interrupted:
+        return replace(alone, interrupted=True)
+    better = of_all.names_causes and of_all.gain.share_removed[0] > alone.gain.share_removed[0]
+    settled = better or not alone.names_causes
+    effects = tuple(cause.tag for cause in alone.causes)
+    together = Together.of(alone.gain, effects, believed=alone.names_causes, settled=settled)
+    return replace(of_all if settled else alone, together=together)
+
+
+def _looked_at(
+    profile: ShipProfile,
+    trials: TrialSet,
+    choice: Choice | None,
+    options: DiagnoseOptions,
+    hooks: Hooks,
+    provenance: dict[str, Any],
+) -> Diagnosis:
+    """The answer of the trials that are not kept for testing; how long it took is for the caller to say."""
     odd = oddities(trials.trials, profile.L_pp) if choice is None else []
     trials = in_pieces(trials, options.fit_options())
     seen = _in_order([trial for name, trial in trials.trials.items() if name not in trials.test])
@@ -97,7 +130,7 @@ def _diagnose(
     result, found = judge.answer(found, brought)
     unseen = not_looked_for(profile, options.effects) if result.verdict != "none" else []
     warnings = (*odd, *result.warnings, *unseen, *(narrow_box(bench, found) if not hooks.stop() else ()))
-    return replace(result, warnings=warnings, wall_s=time.perf_counter() - began)
+    return replace(result, warnings=warnings)
 
 
 def _legs(profile: ShipProfile, names: Sequence[str]) -> list[str]:

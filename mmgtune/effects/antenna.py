@@ -6,6 +6,7 @@ from typing import NamedTuple
 from ..physics.frame import to_earth
 from ..physics.quantities import Lanes, State
 from .effect import Parameter, SensorEffect
+from .signs import signed
 
 
 class Antenna(NamedTuple):
@@ -57,7 +58,8 @@ BOTH, ALONE = "positions and velocities being its own", "velocities being those 
 def _sentence(v: Mapping[str, str]) -> str:
     said = {"x": "Position and velocities are those", "x_alone": "The position, not the velocities, is that"}
     return ". ".join(
-        f"{whose} of an antenna {v[x]} forward and {v[x.replace('x', 'y', 1)]} to starboard of midship"
+        f"{whose} of an antenna {signed(v[x], 'forward', 'aft')} of midship and "
+        f"{signed(v[x.replace('x', 'y', 1)], 'to starboard', 'to port')}"
         for x, whose in said.items()
         if x in v
     )

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from ..physics.quantities import Lanes
 from .effect import ClockEffect, Parameter
+from .signs import signed
 
 
 class ClockOffset(NamedTuple):
@@ -30,5 +31,5 @@ EFFECT = ClockEffect(
     variants=(("seconds",),),
     varies=("seconds",),
     subject="clock of the control log against that of the motion log",
-    sentence=lambda v: f"The control log ran {v['seconds']} behind the motion log (negative: ahead of it)",
+    sentence=lambda v: f"The control log ran {signed(v['seconds'], 'behind', 'ahead of')} the motion log",
 )

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from ..physics.quantities import Lanes, State
 from .effect import Parameter, SensorEffect
+from .signs import signed
 
 
 class GyroBias(NamedTuple):
@@ -42,5 +43,5 @@ EFFECT = SensorEffect(
         )
     },
     variants=(("rate",),),
-    sentence=lambda v: f"The rate gyro showed {v['rate']} too much (negative: too little)",
+    sentence=lambda v: f"The rate gyro showed {signed(v['rate'], 'too much', 'too little')}",
 )

@@ -6,6 +6,7 @@ from ..physics.frame import to_ship
 from ..physics.quantities import Lanes, State
 from ..units import DEG
 from .effect import Parameter, SensorEffect
+from .signs import signed
 
 
 class HeadingBias(NamedTuple):
@@ -44,7 +45,7 @@ def _angle(words: str) -> Parameter:
     )
 
 
-_WORDS = {"angle": "{} too much (negative: too little)", "alone": "{} too much, velocities being logged in true axes"}
+_WORDS = {"angle": "{}", "alone": "{}, velocities being logged in true axes"}
 
 EFFECT = SensorEffect(
     kind="effects.heading-bias",
@@ -63,6 +64,7 @@ EFFECT = SensorEffect(
     varies=("angle", "alone"),
     subject="error of the compass",
     sentence=lambda v: (
-        "The compass showed " + " and ".join(_WORDS[name].format(v[name]) for name in _WORDS if name in v)
+        "The compass showed "
+        + " and ".join(_WORDS[name].format(signed(v[name], "too much", "too little")) for name in _WORDS if name in v)
     ),
 )

@@ -7,6 +7,7 @@ import numpy as np
 from ..physics.frame import to_earth
 from ..physics.quantities import Lanes, State
 from .effect import FilterEffect, Parameter
+from .signs import signed
 
 
 class PositionLatency(NamedTuple):
@@ -77,5 +78,5 @@ EFFECT = FilterEffect(
         )
     },
     variants=(("seconds",),),
-    sentence=lambda v: f"Positions were logged {v['seconds']} late (negative: ahead)",
+    sentence=lambda v: f"Positions were logged {signed(v['seconds'], 'late', 'early')}",
 )

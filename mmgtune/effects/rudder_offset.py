@@ -5,6 +5,7 @@ from typing import NamedTuple
 from ..physics.quantities import Lanes
 from ..units import DEG
 from .effect import ActuatorEffect, Parameter
+from .signs import signed
 
 
 class RudderOffset(NamedTuple):
@@ -40,5 +41,5 @@ EFFECT = ActuatorEffect(
     variants=(("angle",),),
     varies=("angle",),
     subject="zero of the rudder",
-    sentence=lambda v: f"The rudder stood {v['angle']} off its indicator (positive to starboard)",
+    sentence=lambda v: f"The rudder stood {signed(v['angle'], 'to starboard', 'to port')} of its indicator",
 )

@@ -32,6 +32,11 @@ class DiagnoseOptions(SimulationOptions):
     )
     most: int = choice(4, "Largest number of causes looked for.", least=1, most=8)
     level: float = choice(0.01, "Largest probability of a false alarm over the search.", above=0, below=0.5)
+    keep_test: bool = choice(
+        False,
+        "Never look at trials kept for testing. Else they are looked at with the others where what these show does not "
+        "tell them.",
+    )
     seed: int = again(FitOptions, "seed")
     windows: int = choice(
         72, "Voyages: largest number of windows looked at, as many from each.", least=4, most=1000, panel=VOYAGES

@@ -1,0 +1,50 @@
+"""Trials kept for testing that an answer does not tell, and that were looked at with the others therefore.
+
+Coefficients fitted to a few trials can take up a cause, which then shows in none but those that were kept.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from .gain import Gain
+
+
+@dataclass(frozen=True)
+class Together:
+    """What the other trials alone were answered, and what that left of those kept for testing.
+
+    effects  tags of the causes, with ``believed`` whether they were
+    left     error that was left there, over the noise of the sensors
+    settled  whether the answer given is that of all trials together, not that of the others
+    """
+
+    effects: tuple[str, ...]
+    believed: bool
+    left: float
+    settled: bool
+
+    @classmethod
+    def of(cls, gain: Gain, effects: tuple[str, ...], *, believed: bool, settled: bool) -> Together:
+        """From the gain on test trials."""
+        return cls(effects, believed, gain.left, settled)
+
+    @property
+    def sentence(self) -> str:
+        """What was done, in words."""
+        left = f"left an error {self.left:,.3g} times the noise of the sensors on trials kept for testing"
+        if not self.settled:
+            return f"That {left}, and a look at all trials together tells no more."
+        shown = " + ".join(dict.fromkeys(self.effects)) or "no cause"
+        doubt = "" if self.believed or not self.effects else ", which was not believed"
+        return f"The other trials alone showed {shown}{doubt}; that {left}, so all were looked at together."
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "effects_of_others": list(self.effects),
+            "believed": self.believed,
+            "error_over_noise": self.left,
+            "settled": self.settled,
+        }
