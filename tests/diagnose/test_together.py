@@ -1,0 +1,42 @@
+"""Trials kept for testing that an answer misses are looked at with the others."""
+
+from dataclasses import replace
+
+import pytest
+
+from mmgtune.diagnose import DiagnoseOptions, diagnose
+from mmgtune.diagnose.contributions import share_lost
+from mmgtune.effects.signs import signed
+from mmgtune.profile import load_profile
+from mmgtune.trial import load_trials
+from tests.hidden.cases import of_runs
+from tests.hidden.plant import simulate, write
+
+FEW = ("hull.R_0", "wake.w_P0", "rudder.eps", "rudder.gamma_Rp", "rudder.gamma_Rn")
+TUNE, TEST = ("turn_p20", "turn_m20"), ("turn_m10", "turn_p10", "zigzag_20")
+
+
+@pytest.mark.parametrize(("keep", "verdict"), [(True, "unexplained"), (False, "found")])
+def test_water_that_moves_only_in_trials_kept_for_testing_is_no_nothing(keep, verdict, tmp_path):
+    case = of_runs("current", 3, seed=1)
+    moved = {name: what for name, what in case.of_trial.items() if name in TEST}
+    write(simulate({}, case.effects, case.seed, case.noise, moved), tmp_path)
+    trials = load_trials(tmp_path)
+    few = replace(trials, trials={name: trials.trials[name] for name in (*TUNE, *TEST)}, tune=TUNE, test=TEST)
+    options = DiagnoseOptions(effects=("current", "rudder-offset"), targets=FEW, keep_test=keep)
+    result = diagnose(load_profile("suzaku"), few, options)
+    assert result.verdict == verdict
+    assert [cause.tag for cause in result.causes] == ([] if keep else ["current"])
+    assert "trials kept for testing" in result.sentence()
+    assert (result.together is None) == keep
+
+
+def test_without_a_cause_motion_may_run_away():
+    assert share_lost(100.0, float("inf"), 10.0) == 1.0
+    assert share_lost(100.0, 55.0, 10.0) == pytest.approx(0.5)
+    assert share_lost(100.0, 10.0, 100.0) == 1.0
+
+
+def test_signs_are_said():
+    assert signed("-2.1 ± 0.3 m", "forward", "aft") == "2.1 ± 0.3 m aft"
+    assert signed("2.1 m", "forward", "aft") == "2.1 m forward"
