@@ -216,6 +216,7 @@ def test_ten_degree_zigzags_name_no_stall(tmp_path, monkeypatch):
 def sum_of(*brought, groups=(), structured=False, explains_all=False, remains=False):
     """What ``Diagnosis.unclear`` sees of a sum of causes."""
     return SimpleNamespace(
+        causes=(),
         contributions=[("tag", one) for one in brought],
         groups=groups,
         leftover=SimpleNamespace(structured=structured),
