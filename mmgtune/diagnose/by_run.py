@@ -97,12 +97,17 @@ class ByRun:
         return far > CERTAIN**2 + len(self._sizes)
 
     @property
+    def _shown(self) -> list[int]:
+        """Groups by number that it shows in."""
+        return [k for k in range(len(self.groups)) if self.shows(k)]
+
+    @property
     def alone_in(self) -> str:
         """The one run of three or more that a wind, or all that has a direction, shows in; "" elsewhere.
 
         Whatever happened once, in one run, is imitated by a size and a direction of its own there.
         """
-        shown = [k for k in range(len(self.groups)) if self.shows(k)]
+        shown = self._shown
         once = len(shown) == 1 and len(self.groups) >= FEWEST and self.towards(shown[0]) is not None
         return name_of(self.groups[shown[0]]) if once else ""
 
@@ -117,7 +122,7 @@ class ByRun:
         """In words."""
         word = IN_WORDS[self.by]
         subject = self.effect.subject or self.effect.title
-        shown = [k for k in range(len(self.groups)) if self.shows(k)]
+        shown = self._shown
         sizes = [self.size(k)[0] for k in (shown or range(len(self.groups)))]
         others = len(self.groups) - len(shown)
         text = f"The {subject} differed from {word} to {word}: "

@@ -60,24 +60,13 @@ def diagnose(
     provenance = make_provenance(profile, trials, command)
     identity = identity_of(profile, trials, options, provenance)
     with journalled(folder, identity, hooks.stop, resume=resume):
-        return _diagnose(profile, trials, choice, options, hooks, provenance)
-
-
-def _diagnose(
-    profile: ShipProfile,
-    trials: TrialSet,
-    choice: Choice | None,
-    options: DiagnoseOptions,
-    hooks: Hooks,
-    provenance: dict[str, Any],
-) -> Diagnosis:
-    began = time.perf_counter()
-    result = _looked_at(profile, trials, choice, options, hooks, provenance)
-    if result.gain.missed and not (options.keep_test or choice or hooks.stop()):
-        hooks.on_phase("looking at all trials together")
-        of_all = _looked_at(profile, replace(trials, test=()), None, options, hooks, provenance)
-        result = _settled(result, of_all)
-    return replace(result, wall_s=time.perf_counter() - began)
+        began = time.perf_counter()
+        result = _looked_at(profile, trials, choice, options, hooks, provenance)
+        if result.gain.missed and not (options.keep_test or choice or hooks.stop()):
+            hooks.on_phase("looking at all trials together")
+            of_all = _looked_at(profile, replace(trials, test=()), None, options, hooks, provenance)
+            result = _settled(result, of_all)
+        return replace(result, wall_s=time.perf_counter() - began)
 
 
 def _settled(alone: Diagnosis, of_all: Diagnosis) -> Diagnosis:
