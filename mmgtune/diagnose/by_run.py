@@ -11,7 +11,7 @@ from ..effects import Effect
 from ..fitting.box import AT
 from ..trial import Trial
 from .intervals import NORMAL, Estimate
-from .runs import FEWEST, IN_WORDS, groups_of, name_of
+from .runs import IN_WORDS, groups_of, name_of
 from .wording import quantity, range_in_words
 
 CERTAIN = 3.0
@@ -97,21 +97,6 @@ class ByRun:
         return far > CERTAIN**2 + len(self._sizes)
 
     @property
-    def _shown(self) -> list[int]:
-        """Groups by number that it shows in."""
-        return [k for k in range(len(self.groups)) if self.shows(k)]
-
-    @property
-    def alone_in(self) -> str:
-        """The one run of three or more that a wind, or all that has a direction, shows in; "" elsewhere.
-
-        Whatever happened once, in one run, is imitated by a size and a direction of its own there.
-        """
-        shown = self._shown
-        once = len(shown) == 1 and len(self.groups) >= FEWEST and self.towards(shown[0]) is not None
-        return name_of(self.groups[shown[0]]) if once else ""
-
-    @property
     def _sizes(self) -> tuple[str, ...]:
         """Parameters that are sizes, no directions."""
         polar = self.effect.parameters[self.variant[0]].chart == "polar"
@@ -122,7 +107,7 @@ class ByRun:
         """In words."""
         word = IN_WORDS[self.by]
         subject = self.effect.subject or self.effect.title
-        shown = self._shown
+        shown = [k for k in range(len(self.groups)) if self.shows(k)]
         sizes = [self.size(k)[0] for k in (shown or range(len(self.groups)))]
         others = len(self.groups) - len(shown)
         text = f"The {subject} differed from {word} to {word}: "

@@ -63,8 +63,7 @@ class Judge:
         brought  what each cause contributes
         """
         result = self._compared(self._judged(found, brought), found)
-        if result.unclear and len(found.causes) > 1 and not self.hooks.stop():
-            # perhaps the first of them would have been believed alone
+        if result.unclear and not self.hooks.stop():  # perhaps the first of them would have been believed alone
             alone = alone_of(self.bench, found)
             brought = contributions(self.bench, alone, self.test)
             other = self._compared(self._judged(alone, brought, Doubted.of(result)), alone)

@@ -303,13 +303,10 @@ class Diagnosis(Plotted):
 
     @property
     def unclear(self) -> str:
-        """Why causes are not believed, in words; "" where they are.
+        """Why a sum of causes is not believed, in words; "" where it is, and for a single cause.
 
         An effect that no registry holds looks like a sum of those that one does; the study says how such sums look.
         """
-        for cause in self.causes:
-            if cause.runs and cause.runs.alone_in:
-                return f"{cause.tag} shows in {cause.runs.alone_in} alone, and what happened once may be anything"
         brought = [one for _, one in self.contributions]
         if len(brought) < 2:
             return ""
