@@ -211,7 +211,7 @@ def _of(bench: Workbench, found: Found, cause: Hypothesis, test: Sequence[Trial]
         if name in channels and by_one > 0.0:
             own[name] = float(by_one / max(by_all, by_one))
     share = float(removed[1]) / scale if scale > 0.0 else 1.0
-    return Contribution(seen, share, channels, changes, form, own, _takes_the_rest(bench, found, cause, fewer), unsure)
+    return Contribution(seen, share, channels, changes, form, own, takes_the_rest(bench, found, cause, fewer), unsure)
 
 
 def share_lost(base: float, fewer: float, final: float) -> float:
@@ -224,7 +224,7 @@ def share_lost(base: float, fewer: float, final: float) -> float:
     return (fewer - final) / (base - final) if np.isfinite(base) else 0.0
 
 
-def _takes_the_rest(bench: Workbench, found: Found, cause: Hypothesis, fewer: Point) -> bool:
+def takes_the_rest(bench: Workbench, found: Found, cause: Hypothesis, fewer: Point) -> bool:
     """Whether a cause with one value for all removes nearly all that the others leave beyond noise.
 
     fewer  the best fit without it

@@ -12,7 +12,7 @@ import pytest
 from mmgtune.backends import Integrator
 from mmgtune.diagnose import DiagnoseOptions, Diagnosis, diagnose
 from mmgtune.diagnose.base_fit import base_fit
-from mmgtune.diagnose.contributions import Contribution, set_aside
+from mmgtune.diagnose.contributions import Contribution, set_aside, takes_the_rest
 from mmgtune.diagnose.gain import BAND, expected, held_out
 from mmgtune.diagnose.hypotheses import known_causes
 from mmgtune.diagnose.leftover import Leftover
@@ -68,6 +68,32 @@ def test_a_cause_beside_larger_ones_has_to_help_where_nobody_looked(seen, share,
     large = {"x": 40.0}, {"overshoot_1_deg": 3.0}
     assert Contribution(seen, share, *large).unnoticed == trace
     assert Contribution(seen, share, *large, form=0.03).unnoticed == (trace or share < 0.03)  # as of a hull
+
+
+def test_a_cause_that_takes_all_that_others_leave_is_no_matter_of_their_form():
+    one = Contribution(0.002, 0.0002, {"u": 28.0}, {}, 0.003)
+    assert one.unnoticed
+    assert not replace(one, whole=True).unnoticed
+
+
+def test_harm_that_uncertain_coefficients_would_do_is_none_of_the_cause():
+    one = Contribution(0.12, -0.001, {"x": -300.0, "r": 2.0}, {})
+    assert one.harmful
+    assert not replace(one, unsure=True).harmful
+
+
+@pytest.mark.parametrize(
+    ("rest", "taken", "by", "whole"),
+    [(2.8, 0.99, "", True), (2.8, 0.8, "", False), (0.1, 0.99, "", False), (2.8, 0.99, "trial", False)],
+    ids=["log beside a tide", "a part of it", "hardly anything left", "values of runs bend to anything"],
+)
+def test_what_takes_the_rest(rest, taken, by, whole):
+    n = 1000
+    fewer = SimpleNamespace(chi2=n * (1.0 + rest))
+    found = SimpleNamespace(final=SimpleNamespace(chi2=fewer.chi2 - taken * n * rest))
+    cause = SimpleNamespace(by=by, effect=SimpleNamespace(one_of_many=False))
+    bench = SimpleNamespace(problem=SimpleNamespace(n_residuals=n))
+    assert takes_the_rest(bench, found, cause, fewer) == whole
 
 
 @pytest.mark.parametrize(
@@ -213,10 +239,10 @@ def test_ten_degree_zigzags_name_no_stall(tmp_path, monkeypatch):
     assert result.verdict in ("unexplained", "none")
 
 
-def sum_of(*brought, groups=(), structured=False, explains_all=False, remains=False):
+def sum_of(*brought, groups=(), structured=False, explains_all=False, remains=False, by_run=0):
     """What ``Diagnosis.unclear`` sees of a sum of causes."""
     return SimpleNamespace(
-        causes=(),
+        causes=[SimpleNamespace(runs=k < by_run) for k in range(len(brought))],
         contributions=[("tag", one) for one in brought],
         groups=groups,
         leftover=SimpleNamespace(structured=structured),
@@ -242,6 +268,9 @@ GROUP = (("a", "b"),)
         (sum_of(SMALL_BUT_CLEAR, SMALL_BUT_CLEAR), "left out"),
         (sum_of(CLEAR, SMALL_BUT_CLEAR, structured=True), "no noise"),
         (sum_of(CLEAR, SMALL_BUT_CLEAR, remains=True), "on test trials"),
+        (sum_of(CLEAR, CLEAR, CLEAR, by_run=2), "from run to run"),
+        (sum_of(CLEAR, CLEAR, CLEAR, by_run=1), ""),
+        (sum_of(CLEAR, CLEAR, by_run=2), ""),
         (sum_of(CLEAR, remains=True), ""),
         (sum_of(CLEAR, structured=True), ""),
         (sum_of(CLEAR, SMALL_BUT_CLEAR, structured=True, explains_all=True), ""),
