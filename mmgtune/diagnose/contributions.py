@@ -16,7 +16,7 @@ from ..arrays import FloatArray
 from ..backends import STATES
 from ..fitting.least_squares import fit_offsets
 from ..trial import Trial
-from .gain import BAND, INDICES, expected, measured
+from .gain import INDICES, measured
 from .hypotheses import Hypothesis
 from .intervals import Estimate, estimates
 from .leftover import Leftover
@@ -67,7 +67,6 @@ class Contribution:
     form     such shares that the form of others may leave
     own      by channel, such a share of the error in that channel alone
     whole    whether it removes nearly all of what the others leave, which no form of theirs would let it
-    unsure   whether coefficients that are known no better bring as much there as it does harm
 
     Where ``seen`` is enough to tell that it is no trace, the others are not asked for: NaN and empty.
     """
@@ -79,7 +78,6 @@ class Contribution:
     form: float = FORM
     own: Mapping[str, float] = field(default_factory=dict)
     whole: bool = False
-    unsure: bool = False
 
     @property
     def harmful(self) -> bool:
@@ -87,9 +85,7 @@ class Contribution:
 
         Where it shows in a channel of its own, the form of larger ones may add as much elsewhere as it removes there.
         """
-        if self.channels is None or self.unsure:
-            return False
-        return self.share <= (-HARDLY_SEEN if self.stands_out else 0.0)
+        return self.channels is not None and self.share <= (-HARDLY_SEEN if self.stands_out else 0.0)
 
     @property
     def stands_out(self) -> bool:
@@ -201,8 +197,6 @@ def _of(bench: Workbench, found: Found, cause: Hypothesis, test: Sequence[Trial]
         for k, name in enumerate(STATES)
         if counts[k] and (noise := bench.noise.channels.get(name))
     }
-    harm = -float(removed[1])
-    unsure = seen >= SMALL and harm > 0.0 and harm <= BAND * expected(bench, found, test or bench.trials)
     scale = max(float(removed[0]), abs(float(removed[1])))  # all together may remove less than one, or nothing
     form = FORM_IF_ROUGH if any(one.rough for one in found.causes) else FORM
     own = {}
@@ -211,7 +205,7 @@ def _of(bench: Workbench, found: Found, cause: Hypothesis, test: Sequence[Trial]
         if name in channels and by_one > 0.0:
             own[name] = float(by_one / max(by_all, by_one))
     share = float(removed[1]) / scale if scale > 0.0 else 1.0
-    return Contribution(seen, share, channels, changes, form, own, takes_the_rest(bench, found, cause, fewer), unsure)
+    return Contribution(seen, share, channels, changes, form, own, takes_the_rest(bench, found, cause, fewer))
 
 
 def share_lost(base: float, fewer: float, final: float) -> float:

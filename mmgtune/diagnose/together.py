@@ -33,12 +33,15 @@ class Together:
     @property
     def sentence(self) -> str:
         """What was done, in words."""
-        left = f"left an error {self.left:,.3g} times the noise of the sensors on trials kept for testing"
+        times = f"an error {self.left:,.3g} times the noise of the sensors"
         if not self.settled:
-            return f"That {left}, and a look at all trials together tells no more."
+            return f"That leaves {times} on trials kept for testing, and a look at all trials together tells no more."
         shown = " + ".join(dict.fromkeys(self.effects)) or "no cause"
-        doubt = "" if self.believed or not self.effects else ", which was not believed"
-        return f"The other trials alone showed {shown}{doubt}; that {left}, so all were looked at together."
+        doubt = "" if self.believed or not self.effects else ", not to be believed,"
+        return (
+            f"Without the trials kept for testing {shown} showed{doubt} and {times} was left on these, so all were "
+            "looked at together."
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""

@@ -76,12 +76,6 @@ def test_a_cause_that_takes_all_that_others_leave_is_no_matter_of_their_form():
     assert not replace(one, whole=True).unnoticed
 
 
-def test_harm_that_uncertain_coefficients_would_do_is_none_of_the_cause():
-    one = Contribution(0.12, -0.001, {"x": -300.0, "r": 2.0}, {})
-    assert one.harmful
-    assert not replace(one, unsure=True).harmful
-
-
 @pytest.mark.parametrize(
     ("rest", "taken", "by", "whole"),
     [(2.8, 0.99, "", True), (2.8, 0.8, "", False), (0.1, 0.99, "", False), (2.8, 0.99, "trial", False)],
