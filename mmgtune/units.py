@@ -20,6 +20,7 @@ _FACTORS: dict[str, dict[str, float]] = {
     "deg": {"deg": 1.0, "rad": 1.0 / DEG},
     "rad/s": {"rad/s": 1.0, "deg/s": DEG, "deg/min": DEG / 60.0},
     "rad/s^2": {"rad/s^2": 1.0, "deg/s^2": DEG},
+    "s/m": {"s/m": 1.0, "per m/s": 1.0, "per kn": 1.0 / KNOT},
     "m/s^2": {"m/s^2": 1.0, "m/s in ten minutes": 1.0 / 600.0},
     "1/s": {"1/s": 1.0, "rps": 1.0, "rpm": 1.0 / 60.0},
     "1/s^2": {"1/s^2": 1.0, "rpm/s": 1.0 / 60.0},
@@ -53,7 +54,7 @@ DIMENSIONLESS = ("-", "prime")
 _SHOWN = {"rad": "deg", "rad/s": "deg/s", "1/s": "rpm", "1/s^2": "rpm/s"}
 """SI units that people read something else for."""
 
-_IN_SENTENCES = {"rad/s^2": "deg/s^2", "N": "kN", "m/s^2": "m/s in ten minutes"}
+_IN_SENTENCES = {"rad/s^2": "deg/s^2", "N": "kN", "m/s^2": "m/s in ten minutes", "s/m": "per m/s"}
 """More of these, for sizes of causes."""
 
 _SIGNS = {"deg": "°", "deg/s": "°/s", "deg/s^2": "°/s²"}

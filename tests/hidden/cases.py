@@ -222,7 +222,9 @@ LADDER: dict[str, Draw] = {
     ),
     "gyro-scale": _factor("factor", _sensor(0.05)),
     "gyro-bias": _degrees(_signed("rate", _sensor(0.05))),
-    "speed-scale": _factor("factor", _sensor(0.04)),
+    "log-misalignment": _degrees(_signed("angle", _sensor(1.5))),
+    "speed-scale": _one_of(_factor("factor", _sensor(0.04)), _signed("grows", _sensor(0.05))),
+    "log-zero": _one_of(*(_signed(name, _sensor(0.1)) for name in ("ahead", "abeam"))),
 }
 """By tag, the effect at five levels: below visible, hardly, small, typical, and well above."""
 

@@ -414,9 +414,12 @@ def sensed(rows: np.ndarray, count: int, e: Mapping[str, Mapping[str, float]]) -
     heading = heading + _low_pass(psi, e["heading-filter"]["alone"]) - psi + e["heading-bias"]["alone"]
     heading = heading + compass["sine_alone"] * np.sin(psi) + compass["cosine_alone"] * np.cos(psi)
     heading = heading + e["gyro-drift"]["heading_alone"] * t
-    u, v = e["speed-scale"]["factor"] * e["speed-scale"]["both"] * u, e["speed-scale"]["both"] * v
-    u = u * (1.0 + e["unknown-log-quadratic"]["magnitude"] * (1.0 - u / SPEED))
-    v = v + e["unknown-sway-bias"]["magnitude"]
+    mounted, scale, zero = np.exp(-1j * e["log-misalignment"]["angle"]), e["speed-scale"], e["log-zero"]
+    velocity = (u + 1j * v) * mounted
+    u, v = velocity.real, velocity.imag
+    growing = scale["grows"] * (u - SPEED) + e["unknown-log-quadratic"]["magnitude"] * (1.0 - u / SPEED)
+    u, v = scale["factor"] * scale["both"] * u * (1.0 + growing), scale["both"] * v
+    u, v = u + zero["ahead"], v + zero["abeam"] + e["unknown-sway-bias"]["magnitude"]
     r = _low_pass(r, smooth["yaw_rate"])
     r = e["gyro-scale"]["factor"] * r + e["gyro-bias"]["rate"] + e["gyro-drift"]["yaw_rate"] * t
     late = e["clock-offset"]["seconds"] + e["unknown-clock-drift"]["magnitude"] * t / 600.0

@@ -133,7 +133,9 @@ NULL: dict[str, dict[str, float]] = {
     "gyro-drift": {"heading": 0.0, "heading_alone": 0.0, "yaw_rate": 0.0},
     "gyro-scale": {"factor": 1.0},
     "gyro-bias": {"rate": 0.0},
-    "speed-scale": {"factor": 1.0, "both": 1.0},
+    "log-misalignment": {"angle": 0.0},
+    "speed-scale": {"factor": 1.0, "both": 1.0, "grows": 0.0},
+    "log-zero": {"ahead": 0.0, "abeam": 0.0},
     **{name: {"magnitude": 0.0} for name in UNKNOWN},
 }
 """Every effect with its parameters where they do nothing; SI units, angles in radians."""

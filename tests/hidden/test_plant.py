@@ -213,6 +213,14 @@ def test_sensors(still):
     np.testing.assert_allclose(sailed("speed-scale", factor=0.9)["turn_p35"][:, U], 0.9 * turn[:, U], atol=1e-12)
     scaled = sailed("speed-scale", both=0.9)["turn_p35"]
     np.testing.assert_allclose(scaled[:, [U, V]], 0.9 * turn[:, [U, V]], atol=1e-12)
+    grown = sailed("speed-scale", grows=0.1)["turn_p35"]
+    np.testing.assert_allclose(grown[:, U], turn[:, U] * (1.0 + 0.1 * (turn[:, U] - plant.SPEED)), atol=1e-12)
+    zero = sailed("log-zero", ahead=0.1, abeam=-0.2)["turn_p35"]
+    np.testing.assert_allclose(zero[:, [U, V]], turn[:, [U, V]] + [0.1, -0.2], atol=1e-12)
+    turned = sailed("log-misalignment", angle=0.5 * np.pi)["turn_p35"]
+    np.testing.assert_allclose(turned[:, [U, V]], np.column_stack([turn[:, V], -turn[:, U]]), atol=1e-12)
+    for one in (grown, zero, turned):
+        np.testing.assert_array_equal(one[:, [X, Y, PSI, R]], turn[:, [X, Y, PSI, R]])
 
 
 def test_unknown_names_are_refused():

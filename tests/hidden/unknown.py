@@ -36,7 +36,7 @@ UNKNOWN: dict[str, Unknown] = {
     "unknown-current-rotating": Unknown("current turning clockwise once in 900 s", "m/s", (0.2, 0.3, 0.45)),
     "unknown-current-south": Unknown("current to the east, only south of the start", "m/s", (0.2, 0.3, 0.4)),
     "unknown-gust": Unknown("wind from 230 deg, magnitude sin^2(pi t / 300 s)", "m/s", (9.0, 12.0, 15.0)),
-    "unknown-log-quadratic": Unknown("u logged + magnitude u (1 - u/U0)", "-", (-0.15, 0.12, 0.2)),
+    "unknown-log-quadratic": Unknown("u logged + magnitude u (1 - u/U0)", "-", (-0.15, 0.12, 0.2), "speed-scale"),
     "unknown-bank": Unknown("suction to a bank in the east, growing with y", "N", (6e3, 1.2e4, 2.0e4)),
     "unknown-thrust-yaw": Unknown("thrust times 1 - magnitude tanh|r'|", "-", (0.1, 0.16, 0.24)),
     "unknown-rpm-hunting": Unknown("unlogged factor 1 + magnitude sin(2 pi t / 60 s) on n", "-", (0.1, 0.15, 0.2)),
@@ -61,7 +61,7 @@ UNKNOWN: dict[str, Unknown] = {
     "unknown-position-step": Unknown(
         "positions logged + magnitude to the north-east from 150 s on", "m", (5.0, 8.0, 12.0)
     ),
-    "unknown-sway-bias": Unknown("v logged + magnitude", "m/s", (-0.12, 0.08, 0.15)),
+    "unknown-sway-bias": Unknown("v logged + magnitude", "m/s", (-0.12, 0.08, 0.15), "log-zero"),
     "unknown-clock-drift": Unknown("control log late by magnitude t / 600 s", "s", (-8.0, 6.0, 10.0)),
     "unknown-controls-held": Unknown(
         "controls logged every magnitude seconds and held between", "s", (6.0, 8.0, 12.0), "inputs-held"
