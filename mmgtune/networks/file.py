@@ -13,7 +13,7 @@ from .. import limits
 from ..errors import NetworkError, Problem, brief, reason
 from ..files import atomic, hold_regular
 from ..profile import parse_profile
-from ..resources import folder, taken
+from ..resources import folder, looked_for, network_names, taken
 from .ensemble import Ensemble, Part
 from .feedforward import Layers, Standards
 from .hybrid import Hybrid
@@ -94,6 +94,8 @@ def load_network(path: str | Path) -> Trained:
     where = str(path)
     try:
         hold_regular(path)
+        if path.is_dir():
+            raise OSError("it is a folder")
         limits.NETWORK_BYTES.hold(path.stat().st_size, where, NetworkError)
         with safe_open(path, framework="numpy") as file:
             header = _header(file.metadata() or {}, where)
@@ -105,8 +107,11 @@ def load_network(path: str | Path) -> Trained:
             if lacking:
                 raise NetworkError(Problem(f"the network lacks {', '.join(lacking)}", where, "", FIX))
             arrays = [np.asarray(file.get_tensor(name)) for name in wanted]
+    except FileNotFoundError as error:
+        fix = f"give a file that mmgtune learn has written, or a bundled name: {', '.join(network_names())}"
+        raise NetworkError(Problem("no such trained model", where, looked_for(where, "model"), fix)) from error
     except (OSError, SafetensorError, ValueError, TypeError, MemoryError) as error:
-        raise NetworkError(Problem("the network cannot be read", where, brief(str(error)), FIX)) from error
+        raise NetworkError(Problem("the network cannot be read", where, brief(reason(error)), FIX)) from error
     if any(one.dtype.kind != "f" for one in arrays):
         raise NetworkError(Problem("the network holds arrays that are no numbers", where, "", FIX))
     wide = iter([one.astype(np.float64) for one in arrays])

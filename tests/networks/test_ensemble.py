@@ -203,6 +203,16 @@ def test_files_cut_short_are_refused(tmp_path):
             load_network(tmp_path / "cut.safetensors")
 
 
+def test_where_there_is_none_those_that_are_bundled_are_named(tmp_path):
+    with pytest.raises(NetworkError, match="no such trained model") as error:
+        load_network(tmp_path / "none.safetensors")
+    assert "Errno" not in str(error.value)
+    assert "esso_osaka_3m_mixture" in error.value.problems[0].fix
+    (tmp_path / "folder.safetensors").mkdir()
+    with pytest.raises(NetworkError, match="it is a folder"):
+        load_network(tmp_path / "folder.safetensors")
+
+
 def test_trials_of_another_ship_lack_what_drives_this_one():
     from dataclasses import replace
 
