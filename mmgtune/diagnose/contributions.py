@@ -20,7 +20,7 @@ from .gain import INDICES, measured
 from .hypotheses import Hypothesis
 from .intervals import Estimate, estimates
 from .leftover import Leftover
-from .search import Found, without
+from .search import Found, step_of, without
 from .unseen import Beside, held_out_fits
 from .workbench import Point, Workbench
 
@@ -156,8 +156,8 @@ def set_aside(
         k = min((i for i, one in enumerate(brought) if one.unnoticed), key=lambda i: brought[i].seen)
         cause = found.causes[k]
         sizes = estimates(bench, found.final)
-        steps = [s for s in found.steps if s.refits and s.refits[0].hypothesis == cause]
-        p_value = steps[0].refits[0].p_value if steps else 0.0
+        step = step_of(found, cause)
+        p_value = step.refits[0].p_value if step else 0.0
         traces.append(Aside(cause, {name: sizes[name] for name in cause.names}, p_value, brought[k]))
         found.final = without(bench, found.final, cause)
         del found.causes[k]

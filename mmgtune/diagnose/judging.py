@@ -20,13 +20,14 @@ from .detecting import detectability
 from .gain import J_of, held_out
 from .gathering import error_of, evidence
 from .hypotheses import INPUTS_HELD, INTEGRATION_STEP, Hypothesis
+from .instead import instead_of_tuning
 from .intervals import Estimate, estimates
 from .leftover import Leftover, leftover
 from .legs import Difference
 from .refit import Refit
 from .result import Candidate, Cause, Diagnosis, Doubted, Trace
 from .retuned import retuned
-from .search import Found, Step, rivals_of
+from .search import Found, Step, rivals_of, step_of
 from .separate import Suggestion, suggest
 from .voyages import Choice
 from .workbench import Point, Workbench
@@ -37,7 +38,7 @@ class Judge:
     """What every answer of one diagnosis shares.
 
     profile, options, provenance  as given
-    known     hypotheses that were looked for
+    known     hypotheses that were looked for; asked: those and the ones that do the same as a target
     test      trials kept for testing
     before    what the model without any cause leaves
     traces    what was set aside
@@ -50,6 +51,7 @@ class Judge:
     provenance: Mapping[str, Any]
     hooks: Hooks
     known: Sequence[Hypothesis]
+    asked: Sequence[Hypothesis]
     test: Sequence[Trial]
     before: Leftover
     traces: Sequence[Aside]
@@ -73,6 +75,9 @@ class Judge:
             result = replace(result, whereabouts=error_of(self.bench, found, result.leftover.offsets))
         elif result.verdict != "interrupted":
             result = replace(result, moved=tuple(retuned(self.bench, found.final)))
+        if result.verdict == "none" and self.choice is None:
+            self.hooks.on_phase("asking what re-tuning may stand for")
+            result = replace(result, instead=instead_of_tuning(self.bench, found.base, self.asked))
         return result, found
 
     def _judged(self, found: Found, brought: Sequence[Contribution], doubted: Doubted | None = None) -> Diagnosis:
@@ -155,7 +160,7 @@ def _causes(bench: Workbench, found: Found, sizes: Mapping[str, Estimate], test:
     for tag, by in dict.fromkeys((h.tag, h.by) for h in found.causes):
         own = [h for h in found.causes if (h.tag, h.by) == (tag, by)]
         names = [name for h in own for name in h.names]
-        steps = [s for s in found.steps if s.refits and s.refits[0].hypothesis in own]
+        steps = [step for one in own if (step := step_of(found, one)) is not None]
         J_after = J_of(bench, steps[0].refits[0].point, test) if steps else None
         gain = 1.0 - J_after / J_before if J_before and J_after is not None else None
         p_value = max((s.refits[0].p_value for s in steps), default=0.0)

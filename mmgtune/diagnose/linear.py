@@ -244,8 +244,9 @@ def linearise(
 
     columns = np.column_stack([values[:, 0], slopes, wander(bench, point)])
     left = problem.without_offsets(columns, by_offset, problem.prior, point.offsets)
-    inside = np.array([name not in apart and 0.0 < z < 1.0 for name, z in zip(point.names, point.unit, strict=True)])
-    loose = inside & np.array([name in bench.believed.deviations for name in point.names])
+    free = zip(point.names, point.unit, strict=True)
+    inside = np.array([name not in apart and 0.0 < z < 1.0 for name, z in free], dtype=bool)
+    loose = inside & np.array([name in bench.believed.deviations for name in point.names], dtype=bool)
     own = [name for name, is_loose in zip(point.names, loose, strict=True) if is_loose]
     moved_by = left[:, 1 : 1 + n_free][:, loose] / np.array([unit_of(bench, name) for name in own])
     left[:, 0] -= moved_by @ (point.unit[loose] - bench.null(own))  # where nothing with leeway has moved

@@ -26,6 +26,9 @@ ROUNDS = 6
 NEAR = 4.0
 """Variance over that of white noise beyond which what is left may be an error of the model, and is not made more of."""
 
+POSITIONS = ("x", "y")
+"""Channels of which a satellite receiver's errors wander far and slowly; those of a model show in the others too."""
+
 NOTICED = 4.0
 """A fading part counts from this many standard errors of the autocorrelation."""
 
@@ -170,7 +173,8 @@ def estimate(
     found = _autocovariances(cases, residuals[:, None])
     counts = {channel: sum(map(len, series)) for channel, series in rows_of_channels(cases).items()}
     model = NoiseModel(cases, {channel: _decompose(found[channel], counts[channel]) for channel in found})
-    far = max((noise.variance for noise in model.channels.values()), default=0.0) > NEAR
+    moving = [noise.variance for channel, noise in model.channels.items() if channel not in POSITIONS]
+    far = max(moving or [noise.variance for noise in model.channels.values()], default=0.0) > NEAR
     if fitted is None or far or not model.coloured:
         return model
     plain = np.random.default_rng(0).standard_normal((len(residuals), DRAWS))

@@ -366,13 +366,20 @@ def _unvisited(bench: Workbench, end: Point, hypothesis: Hypothesis) -> str:
 
 
 def akin(order: Sequence[Score], fitted: Sequence[tuple[Score, Point]]) -> list[Score]:
-    """Those that act much like the one that fits best: the score of a wind is that of a light one, hardly its force."""
+    """Those that act much like the one that fits best, whose scores may mislead: that of a wind is that of a light one,
+    hardly its force; and the special cases of one whose values differ between groups of runs."""
     if not fitted:
         return []
     best = min(fitted, key=lambda one: one[1].chi2)[0].hypothesis
     there = {score.hypothesis.names for score, _ in fitted}
-    alike = [score for score in order if score.hypothesis.tag in best.effect.akin and score.power > 0.0]
-    return [s for s in alike if s.hypothesis.by in ("", best.by) and s.hypothesis.names not in there]
+    found = []
+    for score in order:
+        one = score.hypothesis
+        alike = one.tag in best.effect.akin and one.by in ("", best.by)
+        special = bool(best.by and one.by) and best.holds(one)
+        if (alike or special) and score.power > 0.0 and one.names not in there:
+            found.append(score)
+    return found
 
 
 def kept_free(point: Point, hypothesis: Hypothesis) -> list[int]:

@@ -17,6 +17,7 @@ from . import beliefs, winds
 from .by_run import ByRun
 from .contributions import Contribution
 from .gain import MOST, Gain
+from .instead import Instead
 from .intervals import Estimate
 from .leftover import Leftover, in_words
 from .legs import Difference
@@ -225,6 +226,7 @@ class Diagnosis(Plotted):
 
     theta     tuned targets, and what had leeway, with all causes in place; retuned: without any
     moved     targets beside their pre-determined values, with all causes in place; none where nothing can be named
+    instead   a cause that would do most of what re-tuning did, where no other shows; None else
     traces    what is statistically there besides and changes nothing that a user would notice; in no profile
     contributions  of the causes, by tag in their order, the others in place
     groups    causes that cannot be told apart, each a list of tags
@@ -263,6 +265,7 @@ class Diagnosis(Plotted):
     doubted: Doubted | None = None
     together: Together | None = None
     moved: tuple[Retuned, ...] = ()
+    instead: Instead | None = None
     choice: Choice | None = None
     differing: tuple[Difference, ...] = ()
 
@@ -394,9 +397,10 @@ class Diagnosis(Plotted):
             )
             if far := moved_in_words(self.moved):
                 return f"Re-tuning is all it takes: with {far}, the model fits these trials to their noise, and {none}."
+            instead = f" {self.instead.sentence}" if self.instead else ""
             return (
                 "Nothing is wrong beyond the noise of the measurements: the re-tuned model fits these trials, and "
-                f"{none}."
+                f"{none}.{instead}"
             )
         where = "on trials not used" if self.gain.held_out == "test" else f"on {self.gain.words}"
         if self.verdict == "unexplained":
@@ -592,6 +596,7 @@ class Diagnosis(Plotted):
             "chi2_per_residual": {"before": self.chi2[0], "after": self.chi2[1]},
             "theta": finite_values(self.kept),
             "retuned": [one.to_dict() for one in self.moved],
+            "instead_of_tuning": self.instead.to_dict() if self.instead else None,
             "inputs": [one.to_dict() for one in self.profile.arrangement.inputs],
             "trial_results": [one.to_dict() for one in self.gain.compared],
             "assumptions": self._assumptions(),

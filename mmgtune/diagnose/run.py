@@ -115,7 +115,8 @@ def _looked_at(
         hooks.on_phase("comparing the voyages")
         differing = differences(bench, found.final, choice.voyages)
     hooks.on_phase("gathering the evidence")
-    judge = Judge(bench, profile, options, provenance, hooks, known, test, before, traces, choice, differing)
+    asked = [*known, *in_place]
+    judge = Judge(bench, profile, options, provenance, hooks, known, asked, test, before, traces, choice, differing)
     result, found = judge.answer(found, brought)
     unseen = not_looked_for(profile, options.effects) if result.verdict != "none" else []
     warnings = (*odd, *result.warnings, *unseen, *(narrow_box(bench, found) if not hooks.stop() else ()))

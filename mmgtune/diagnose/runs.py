@@ -11,7 +11,10 @@ from ..fitting.box import AT, base_of, group_of
 from ..trial import Trial
 
 FEWEST = 3
-"""Groups there must be for a spread between them to mean anything."""
+"""Runs there must be for a spread between them to mean anything; of two runs, each can be a case of its own."""
+
+FEWEST_GROUPS = 2
+"""Groups of several runs that there must be: two days tell what differs between them by the runs of each."""
 
 GROUPINGS = ("trial", "file", "group")
 """Ways to put runs together: each by itself, those cut from one log, those that say they are of one group."""
@@ -35,7 +38,9 @@ def groupings(trials: Sequence[Trial]) -> dict[str, tuple[str, ...]]:
     found: dict[str, tuple[str, ...]] = {}
     for by in GROUPINGS:
         labels = tuple(dict.fromkeys(f"{by}:{groups_of(trial)[by]}" for trial in trials))
-        if len(labels) >= FEWEST and len(labels) not in [len(other) for other in found.values()]:
+        together = by == "group" and len(labels) <= len(trials) // 2
+        fewest = FEWEST_GROUPS if together else FEWEST
+        if len(labels) >= fewest and len(labels) not in [len(other) for other in found.values()]:
             found[by] = labels
     return found
 

@@ -147,6 +147,8 @@ def search(
         found.final = bench.refit(found.final.names, found.final.unit[:, None], found.final.offsets, tolerance=PRECISE)
     if len(found.causes) > 1 and not bench.stop():
         _drop_superfluous(bench, found, found.causes[:-1])
+    if not bench.stop():
+        _make_plain(bench, found, hypotheses)
     return found
 
 
@@ -287,6 +289,31 @@ def _make_alike(bench: Workbench, found: Found, asked: Sequence[Hypothesis]) -> 
             found.final = alike
 
 
+def _make_plain(bench: Workbench, found: Found, hypotheses: Sequence[Hypothesis]) -> None:
+    """Put a special case in the place of a cause where the parameters it does without earn too little: what else was
+    wrong when the cause was found may have bent them."""
+    for cause in list(found.causes):
+        special = [one for one in hypotheses if one.by == cause.by and cause.holds(one)]
+        for one in sorted(special, key=lambda one: len(one.names)):
+            gone = set(cause.names) - set(one.names)
+            final = found.final
+            kept = [i for i, name in enumerate(final.names) if name not in gone]
+            names = [final.names[i] for i in kept]
+            fewer = bench.refit(names, final.unit[kept][:, None], final.offsets, spreads=final.spreads)
+            if fewer.chi2 - final.chi2 < len(gone) * float(np.log(bench.problem.n_residuals)) + ENOUGH:
+                found.causes[found.causes.index(cause)] = one
+                found.final = fewer
+                break
+
+
+def step_of(found: Found, cause: Hypothesis) -> Step | None:
+    """The look in which a cause was found, or what it is a special case of."""
+    steps = [step for step in found.steps if step.refits]
+    as_it_is = [step for step in steps if step.refits[0].hypothesis == cause]
+    of_more = [step for step in steps if step.refits[0].hypothesis.holds(cause)]
+    return next(iter([*as_it_is, *of_more]), None)
+
+
 def _price(bench: Workbench, found: Found, hypothesis: Hypothesis) -> float:
     """What a cause must explain at least: its share by BIC, or what it was charged when it was found."""
     paid = [r.cost for step in found.steps for r in step.refits[:1] if r.hypothesis == hypothesis and hypothesis.by]
@@ -296,7 +323,7 @@ def _price(bench: Workbench, found: Found, hypothesis: Hypothesis) -> float:
 def rivals_of(bench: Workbench, found: Found, cause: Hypothesis) -> list[Refit]:
     """Other hypotheses that would do nearly as well in the place of a cause, all others in place: of those that were
     near when it was found."""
-    step = next((s for s in found.steps if s.refits and s.refits[0].hypothesis == cause), None)
+    step = step_of(found, cause)
     if step is None:
         return []
     near = [r for r in step.refits[1:] if r.hypothesis.tag != cause.tag and r.gain > 0.5 * step.refits[0].gain]

@@ -17,7 +17,7 @@ from mmgtune.report import render
 from mmgtune.trial import load_trials
 from mmgtune.units import DEG
 from tests.hidden.cases import Case, of_one_run, of_runs, tide
-from tests.hidden.plant import TUNING, simulate, write
+from tests.hidden.plant import NAMES, TUNING, simulate, write
 
 pytestmark = pytest.mark.xdist_group("by run")
 
@@ -141,6 +141,21 @@ def test_a_current_that_changes_within_the_runs(tmp_path):
     assert cause.runs.variant == ("north", "east", "north_rate", "east_rate")
     assert np.abs(misses(cause.runs, case, "current")).max() < 3.5
     assert "changed within a run by up to" in result.sentence()
+
+
+def test_two_days_of_several_runs_are_told_apart_by_day(tmp_path):
+    case = of_runs("current", 0, seed=1)
+    first = {*sorted(TUNING)[:3], *sorted({*NAMES} - {*TUNING})[:3]}
+    waters = ({"north": -0.1, "east": 0.1}, {"north": 0.25, "east": 0.2})
+    case = replace(case, of_trial={name: {"current": waters[name in first]} for name in NAMES})
+    write(simulate({}, case.effects, case.seed, case.noise, case.of_trial), tmp_path)
+    trials = load_trials(tmp_path)
+    of_day = {name: replace(one, group=f"day {2 - (name in first)}") for name, one in trials.trials.items()}
+    options = DiagnoseOptions(effects=("current", "rudder-offset"), targets=FEW)
+    result = diagnose(load_profile("suzaku"), replace(trials, trials=of_day), options)
+    (cause,) = result.causes
+    assert (cause.runs.by, cause.runs.variant) == ("group", ("north", "east"))
+    assert "The current differed from group to group: 0.14 to 0.32 m/s." in result.sentence()
 
 
 def test_a_range_is_told_in_plain_numbers():

@@ -102,5 +102,7 @@ def test_trials_belong_together_by_what_they_say():
     days = groupings(grouped("a", "a", "b", "b", "c"))
     assert list(days) == ["trial", "group"]
     assert days["group"] == ("group:a", "group:b", "group:c")
+    assert groupings(grouped("a", "a", "b", "b"))["group"] == ("group:a", "group:b")
+    assert list(groupings(grouped("a", "b", "b"))) == ["trial"]  # no group of several but one
     window = dataclasses.replace(trial, id="run_1@100", part_of="run_1", group="a")
     assert {"trial:run_1", "group:a"} <= labels_of(window)

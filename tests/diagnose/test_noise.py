@@ -52,3 +52,20 @@ def test_white_noise_stays_as_it_is():
     fitted = fit_of_slow_changes(3)
     found, naive = estimate(Cases(), fitted(white), fitted), estimate(Cases(), fitted(white))
     assert found.channels == naive.channels
+
+
+@pytest.mark.parametrize(("channel", "whole"), [("x", True), ("psi", False)])
+def test_positions_may_wander_far_beyond_their_white_noise_where_the_rest_does_not(channel, whole):
+    """Of a receiver that wandered by half a metre a third was seen, and a compass was blamed; an error of the model shows
+    in other channels than the position."""
+    far = ChannelNoise(phi=0.96, fading=12.0, white=1.0)
+    names = ("x", "y", "psi", "u", "v_m", "r")
+    true = NoiseModel(Cases(), {name: far if name == channel else ChannelNoise() for name in names})
+    fitted = fit_of_slow_changes(5)
+    left = fitted(true.restore(np.random.default_rng(1).standard_normal(Cases.rows.size)))
+    found, naive = estimate(Cases(), left, fitted).channels, estimate(Cases(), left).channels
+    if whole:
+        assert found[channel].fading > 1.2 * naive[channel].fading
+        assert found[channel].phi > naive[channel].phi
+    else:
+        assert found == naive

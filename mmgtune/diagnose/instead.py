@@ -1,0 +1,107 @@
+"""One cause in the place of re-tuning: coefficients that are re-tuned can take up a cause, and then none shows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..fitting.least_squares import fit_offsets
+from .hypotheses import Hypothesis
+from .intervals import Estimate
+from .linear import linearise
+from .refitting import Known, Refitting, Stopped
+from .screening import scores
+from .wording import parameters_in_words
+from .workbench import Point, Workbench
+
+MISSES = 2.0
+"""Chi-squared per residual of the profile as it is from which there is something to explain."""
+
+NEARLY = 0.85
+"""Share of what re-tuning removes that a cause alone must remove."""
+
+OF_OTHERS = 1.0 / 3.0
+"""Share of what it leaves of that, over what the next best of another effect leaves, at most."""
+
+ALSO, FAR_LESS = 0.75, 0.02
+"""Share of what re-tuning removes beyond which another effect does much the same, as any does of a ship that is unlike
+her profile in many ways; and the share of what that one leaves that the best may leave then."""
+
+
+@dataclass(frozen=True)
+class Instead:
+    """A cause that does alone, all coefficients being the profile's, most of what re-tuning does.
+
+    words       the cause as a sentence without its full stop
+    share       of the fall of chi-squared by re-tuning that it brings; next_share: that of the next best effect
+    next_effect its tag, "" for none
+    """
+
+    effect: str
+    words: str
+    share: float
+    next_effect: str
+    next_share: float
+
+    @property
+    def sentence(self) -> str:
+        """What re-tuning may stand for."""
+        other = f", the next best, {self.next_effect}, {100.0 * self.next_share:.0f} %" if self.next_effect else ""
+        return (
+            "Re-tuning may stand for a cause: with all coefficients as the profile has them, one cause alone removes "
+            f"{100.0 * self.share:.3g} % of what re-tuning removes{other}. {self.words}."
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "effect": self.effect,
+            "sentence": self.words,
+            "share": self.share,
+            "next_effect": self.next_effect or None,
+            "next_share": self.next_share,
+        }
+
+
+def instead_of_tuning(bench: Workbench, tuned: Point, hypotheses: Sequence[Hypothesis]) -> Instead | None:
+    """What one of the hypotheses does alone where re-tuning did much, and no other does nearly as well.
+
+    tuned  the model re-tuned without any cause
+    Raises nothing where it is stopped: there is no answer then.
+    """
+    as_it_is = _untuned(bench, tuned)
+    fall = as_it_is.chi2 - tuned.chi2
+    if as_it_is.chi2 < MISSES * bench.problem.n_residuals or fall <= 0.0:
+        return None
+    asked = [one for one in hypotheses if not (one.by or one.effect.one_of_many)]
+    linear = linearise(bench, as_it_is, [name for one in asked for name in one.bases])
+    try:
+        fits = Refitting(bench, as_it_is, linear, Known()).best(scores(linear, asked), quick=False)
+    except Stopped:
+        return None
+    fits.sort(key=lambda fit: -fit.gain)
+    if not fits or fits[0].gain < NEARLY * fall:
+        return None
+    best = fits[0]
+    other = next((fit for fit in fits if fit.hypothesis.tag != best.hypothesis.tag), None)
+    next_gain = other.gain if other else 0.0
+    if fall - best.gain > (FAR_LESS if next_gain > ALSO * fall else OF_OTHERS) * (fall - next_gain):
+        return None
+    sizes = {name: Estimate(name, value, None, None, None) for name, value in bench.values(best.point).items()}
+    effect = best.hypothesis.effect
+    own = {name: size for name, size in sizes.items() if name in best.hypothesis.names}
+    words = effect.sentence(parameters_in_words(effect, own))
+    tag = other.hypothesis.tag if other else ""
+    return Instead(effect.tag, words, min(best.gain / fall, 1.0), tag, next_gain / fall)
+
+
+def _untuned(bench: Workbench, tuned: Point) -> Point:
+    """The profile as it is, its initial states fitted."""
+    anyone = bench.targets[:1]  # a problem is of something that is free
+    null = bench.null(anyone)
+    offsets = fit_offsets(bench.problem_of(anyone, tuned.integrator), null)
+    there = bench.refit(anyone, null[:, None], offsets, max_iterations=0, integrator=tuned.integrator)
+    return Point((), np.zeros(0), offsets, there.chi2, tuned.integrator)
