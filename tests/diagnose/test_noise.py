@@ -56,8 +56,8 @@ def test_white_noise_stays_as_it_is():
 
 @pytest.mark.parametrize(("channel", "whole"), [("x", True), ("psi", False)])
 def test_positions_may_wander_far_beyond_their_white_noise_where_the_rest_does_not(channel, whole):
-    """Of a receiver that wandered by half a metre a third was seen, and a compass was blamed; an error of the model shows
-    in other channels than the position."""
+    """Of a receiver that wandered by half a metre a third was seen, and a compass was blamed.  An error of the model
+    shows in other channels than the position."""
     far = ChannelNoise(phi=0.96, fading=12.0, white=1.0)
     names = ("x", "y", "psi", "u", "v_m", "r")
     true = NoiseModel(Cases(), {name: far if name == channel else ChannelNoise() for name in names})
