@@ -70,8 +70,11 @@ def instead_of_tuning(bench: Workbench, tuned: Point, hypotheses: Sequence[Hypot
     """What one of the hypotheses does alone where re-tuning did much, and no other does nearly as well.
 
     tuned  the model re-tuned without any cause
-    Raises nothing where it is stopped: there is no answer then.
+
+    There is no answer where it is stopped.
     """
+    if not bench.targets:
+        return None
     as_it_is = _untuned(bench, tuned)
     fall = as_it_is.chi2 - tuned.chi2
     if as_it_is.chi2 < MISSES * bench.problem.n_residuals or fall <= 0.0:

@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from typing import NamedTuple
 
+import numpy as np
+
 from ..physics.quantities import Lanes, State
 from .effect import Parameter, SensorEffect, factor_about_one
 from .visited import Visited
@@ -36,7 +38,7 @@ def speed_scale_inverse(logged: State, e: SpeedScale) -> State:
     straight = logged.u / (e.factor * e.both)
     u = straight
     for _ in range(5):
-        slope = 1.0 + e.grows * (2.0 * u - e.pivot)
+        slope = np.maximum(1.0 + e.grows * (2.0 * u - e.pivot), 0.1)
         u = u - (u * (1.0 + e.grows * (u - e.pivot)) - straight) / slope
     return State(x=logged.x, y=logged.y, psi=logged.psi, u=u, v_m=logged.v_m / e.both, r=logged.r)
 
