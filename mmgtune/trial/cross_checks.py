@@ -26,6 +26,9 @@ ADVANCE = (0.004, 0.12)
 STRIDES = 24
 """Parts of a record in which the way is compared."""
 
+ASTERN = 0.05
+"""Share of a run with the propeller turning astern from which it may be that which swings the ship."""
+
 
 def cross_findings(trial: Trial, where: str, L_pp: float | None, contradicted: bool) -> list[Finding]:
     """Findings on channels that contradict each other.
@@ -211,7 +214,7 @@ def _rudder(trial: Trial, where: str) -> list[Finding]:
     # No sensor reads the same for ever.
     lost = np.ptp(delta) == 0.0 and abs(delta[0]) < 1.0 * DEG and turned > 90.0 * DEG
     lost = lost and ended > 0.5 * float(np.abs(steady).max())
-    if not both and not gains and not lost:
+    if not both and (_reversed(trial) or not (gains or lost)):
         return []
     stands = f"stands at {float(np.median(delta)) / DEG:.3g} deg all the time"
     return [
@@ -223,6 +226,11 @@ def _rudder(trial: Trial, where: str) -> list[Finding]:
             "write the measured rudder angle into 'delta'",
         )
     ]
+
+
+def _reversed(trial: Trial) -> bool:
+    """Whether the propeller was put astern in the run, which swings a ship that nobody steers."""
+    return bool(np.mean(trial.n < 0.0) > ASTERN)
 
 
 def _smoothed(values: FloatArray, width: int) -> FloatArray:

@@ -121,6 +121,11 @@ def test_a_rudder_that_stands_while_the_ship_is_steered(seed: int | None, angle:
     turn = made(seed=seed)
     assert not warnings_of(replace(turn, delta=np.full(turn.n_samples, 20.0 * DEG)))
     assert "'delta' was not measured" in said(replace(turn, delta=0.0 * turn.delta))
+    # A propeller that was put astern swings a ship that nobody steers; nothing swings her to both sides.
+    for one, steered in ((turn, False), (trial, True)):
+        half = np.arange(one.n_samples) > one.n_samples // 2
+        stopping = replace(one, delta=0.0 * one.delta, n=np.where(half, -0.5 * one.n, one.n))
+        assert ("the ship is steered" in "\n".join(warnings_of(stopping))) is steered
 
 
 def test_a_rudder_far_over() -> None:
