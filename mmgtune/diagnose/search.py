@@ -251,11 +251,22 @@ def _differs(a: noises.NoiseModel, b: noises.NoiseModel) -> bool:
 
 def without(bench: Workbench, point: Point, hypothesis: Hypothesis) -> Point:
     """The point refitted without one of its hypotheses."""
-    kept = [i for i, name in enumerate(point.names) if name not in hypothesis.names]
-    names = [point.names[i] for i in kept]
-    back = [name for name in hypothesis.instead if name in bench.targets and name not in names]
-    start = np.concatenate([point.unit[kept], bench.null(back)])
-    return bench.refit((*names, *back), start[:, None], point.offsets, spreads=point.spreads)
+    back = [name for name in hypothesis.instead if name in bench.targets and name not in point.names]
+    return _exchanged(bench, point, hypothesis.names, back, bench.null(back))
+
+
+def _exchanged(
+    bench: Workbench,
+    point: Point,
+    gone: Sequence[str],
+    names: Sequence[str] = (),
+    unit: Sequence[float] | FloatArray = (),
+) -> Point:
+    """The point refitted without some of its names, and with others from ``unit`` on."""
+    kept = [i for i, name in enumerate(point.names) if name not in gone]
+    start = np.concatenate([point.unit[kept], unit])
+    free = (*(point.names[i] for i in kept), *names)
+    return bench.refit(free, start[:, None], point.offsets, spreads=point.spreads)
 
 
 def _drop_superfluous(bench: Workbench, found: Found, asked: Sequence[Hypothesis]) -> None:
@@ -275,15 +286,9 @@ def _make_alike(bench: Workbench, found: Found, asked: Sequence[Hypothesis]) -> 
     for cause in asked:
         one = replace(cause, by="", groups=())
         final = found.final
-        kept = [i for i, name in enumerate(final.names) if name not in cause.names]
         values = dict(zip(final.names, final.unit, strict=True))
         mean = [float(np.mean([values[name] for name in cause.names if base_of(name) == base])) for base in one.names]
-        alike = bench.refit(
-            (*(final.names[i] for i in kept), *one.names),
-            np.concatenate([final.unit[kept], mean])[:, None],
-            final.offsets,
-            spreads=final.spreads,
-        )
+        alike = _exchanged(bench, final, cause.names, one.names, mean)
         if alike.chi2 < STRONG * bench.problem.n_residuals:
             found.causes[found.causes.index(cause)] = one
             found.final = alike
@@ -295,12 +300,9 @@ def _make_plain(bench: Workbench, found: Found, hypotheses: Sequence[Hypothesis]
     for cause in list(found.causes):
         special = [one for one in hypotheses if one.by == cause.by and cause.holds(one)]
         for one in sorted(special, key=lambda one: len(one.names)):
-            gone = set(cause.names) - set(one.names)
-            final = found.final
-            kept = [i for i, name in enumerate(final.names) if name not in gone]
-            names = [final.names[i] for i in kept]
-            fewer = bench.refit(names, final.unit[kept][:, None], final.offsets, spreads=final.spreads)
-            if fewer.chi2 - final.chi2 < len(gone) * float(np.log(bench.problem.n_residuals)) + ENOUGH:
+            gone = [name for name in cause.names if name not in one.names]
+            fewer = _exchanged(bench, found.final, gone)
+            if fewer.chi2 - found.final.chi2 < len(gone) * float(np.log(bench.problem.n_residuals)) + ENOUGH:
                 found.causes[found.causes.index(cause)] = one
                 found.final = fewer
                 break

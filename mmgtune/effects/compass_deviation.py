@@ -6,8 +6,7 @@ import numpy as np
 
 from ..physics.elementary import cos, sin
 from ..physics.quantities import Lanes, State
-from ..units import DEG
-from .effect import Parameter, SensorEffect
+from .effect import Parameter, SensorEffect, angle_about_zero
 from .heading_bias import heading_shown
 
 
@@ -44,15 +43,7 @@ def compass_deviation_inverse(logged: State, e: CompassDeviation) -> State:
 
 
 def _harmonic(of: str, words: str) -> Parameter:
-    return Parameter(
-        f"deviation in proportion to the {of} of the heading, {words}",
-        "rad",
-        low=-0.6,
-        high=0.6,
-        bounds=lambda _: (-15.0 * DEG, 15.0 * DEG),
-        typical=lambda _: 1.0 * DEG,
-        bounds_source="beyond 15 deg anyone would see it",
-    )
+    return angle_about_zero(f"deviation in proportion to the {of} of the heading, {words}", 0.6, 15.0)
 
 
 _TURNED, _ALONE = "in whose axes velocities are logged", "velocities being logged in the ship's own axes"

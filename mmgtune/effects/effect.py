@@ -11,6 +11,7 @@ import numpy as np
 from ..components import Component, Field
 from ..inputs import Role
 from ..physics.quantities import KNOWN, Force, Lanes, State, Surroundings
+from ..units import DEG
 from .visited import Visited
 
 
@@ -57,6 +58,22 @@ def factor_about_one(what: str, off: float, typical: float, source: str) -> Para
         bounds=lambda _: (1.0 - off, 1.0 + off),
         typical=lambda _: typical,
         bounds_source=source,
+    )
+
+
+def angle_about_zero(what: str, most: float, off: float) -> Parameter:
+    """An angle [rad] by which what is shown, or stands, is off, absent at 0.
+
+    most  the largest that a profile may say [rad]; off: how far [deg] it is looked for
+    """
+    return Parameter(
+        what,
+        "rad",
+        low=-most,
+        high=most,
+        bounds=lambda _: (-off * DEG, off * DEG),
+        typical=lambda _: 1.0 * DEG,
+        bounds_source=f"beyond {off:g} deg anyone would see it",
     )
 
 

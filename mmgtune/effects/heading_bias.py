@@ -4,8 +4,7 @@ from typing import NamedTuple
 
 from ..physics.frame import to_ship
 from ..physics.quantities import Lanes, State
-from ..units import DEG
-from .effect import Parameter, SensorEffect
+from .effect import Parameter, SensorEffect, angle_about_zero
 from .signs import signed
 
 
@@ -34,15 +33,7 @@ def heading_bias_inverse(logged: State, e: HeadingBias) -> State:
 
 
 def _angle(words: str) -> Parameter:
-    return Parameter(
-        f"heading shown less true heading, {words}",
-        "rad",
-        low=-3.2,
-        high=3.2,
-        bounds=lambda _: (-15.0 * DEG, 15.0 * DEG),
-        typical=lambda _: 1.0 * DEG,
-        bounds_source="beyond 15 deg anyone would see it",
-    )
+    return angle_about_zero(f"heading shown less true heading, {words}", 3.2, 15.0)
 
 
 _WORDS = {"angle": "{}", "alone": "{}, velocities being logged in true axes"}

@@ -4,8 +4,7 @@ from typing import NamedTuple
 
 from ..physics.frame import to_ship
 from ..physics.quantities import Lanes, State
-from ..units import DEG
-from .effect import Parameter, SensorEffect
+from .effect import SensorEffect, angle_about_zero
 from .signs import signed
 
 
@@ -36,15 +35,7 @@ EFFECT = SensorEffect(
     inverse=log_misalignment_inverse,
     cites=(),
     fields={
-        "angle": Parameter(
-            "angle of the log's axes to the ship's, positive to starboard",
-            "rad",
-            low=-3.2,
-            high=3.2,
-            bounds=lambda _: (-15.0 * DEG, 15.0 * DEG),
-            typical=lambda _: 1.0 * DEG,
-            bounds_source="beyond 15 deg anyone would see it",
-        )
+        "angle": angle_about_zero("angle of the log's axes to the ship's, positive to starboard", 3.2, 15.0),
     },
     variants=(("angle",),),
     sentence=lambda v: f"The speed log was turned by {signed(v['angle'], 'to starboard', 'to port')}",

@@ -3,8 +3,7 @@
 from typing import NamedTuple
 
 from ..physics.quantities import Lanes
-from ..units import DEG
-from .effect import ActuatorEffect, Parameter
+from .effect import ActuatorEffect, angle_about_zero
 from .signs import signed
 
 
@@ -28,15 +27,7 @@ EFFECT = ActuatorEffect(
     function=rudder_offset,
     cites=(),
     fields={
-        "angle": Parameter(
-            "angle of the rudder when the indicator shows 0, to starboard",
-            "rad",
-            low=-1.0,
-            high=1.0,
-            bounds=lambda _: (-10.0 * DEG, 10.0 * DEG),
-            typical=lambda _: 1.0 * DEG,
-            bounds_source="beyond 10 deg anyone would see it",
-        )
+        "angle": angle_about_zero("angle of the rudder when the indicator shows 0, to starboard", 1.0, 10.0),
     },
     variants=(("angle",),),
     varies=("angle",),
