@@ -10,6 +10,7 @@ most that any process of a run had resident; overhead is the time of the workers
 from __future__ import annotations
 
 import argparse
+import ctypes
 import json
 import os
 import resource
@@ -19,6 +20,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +32,9 @@ from tools.generate_fleet import make
 
 KILL_EVERY = 20.0
 """Seconds between two workers killed."""
+
+SUBREAPER = 36
+"""Of ``prctl(2)``: processes whose parent ended become this process's, which waits for them."""
 
 SAME = ("names", "values", "errors", "off_track", "off_heading", "tuned_track", "tuned_heading", "verdict", "key")
 
@@ -48,7 +53,11 @@ def timed(command: list[str], meanwhile: Callable[[int], None] = lambda _: None)
     threading.Thread(target=meanwhile, args=(process.pid,), daemon=True).start()
     if process.wait() != 0:
         raise SystemExit(f"{command} ended with {process.returncode}")
-    wall, after = time.perf_counter() - began, resource.getrusage(resource.RUSAGE_CHILDREN)
+    wall = time.perf_counter() - began
+    with suppress(ChildProcessError):  # what workers are forked from ends after the command
+        while True:
+            os.wait()
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
     spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
     return {"wall_s": wall, "processor_s": spent, "largest_MB": after.ru_maxrss / 1024.0}
 
@@ -57,18 +66,32 @@ def killing(count: list[int]) -> Callable[[int], None]:
     """Kills one worker of a driver every ``KILL_EVERY`` seconds, as long as it lives."""
 
     def kill(driver: int) -> None:
-        while True:
+        while Path(f"/proc/{driver}").exists():
             time.sleep(KILL_EVERY)
-            try:
-                children = Path(f"/proc/{driver}/task/{driver}/children").read_text().split()
-                workers = [k for k in children if "spawn_main" in Path(f"/proc/{k}/cmdline").read_text()]
-                if workers:
-                    os.kill(int(workers[0]), signal.SIGKILL)
+            for worker in workers_of(driver)[:1]:
+                with suppress(ProcessLookupError):
+                    os.kill(worker, signal.SIGKILL)
                     count[0] += 1
-            except OSError:
-                return
 
     return kill
+
+
+def workers_of(driver: int) -> list[int]:
+    """Worker processes of a driver: children of the one that it started to fork them."""
+    forking = [child for child in _children(driver) if "forkserver" in _command(child)]
+    return [worker for server in forking for worker in _children(server)]
+
+
+def _children(process: int) -> list[int]:
+    with suppress(OSError):
+        return [int(k) for k in Path(f"/proc/{process}/task/{process}/children").read_text().split()]
+    return []
+
+
+def _command(process: int) -> str:
+    with suppress(OSError):
+        return Path(f"/proc/{process}/cmdline").read_text()
+    return ""
 
 
 def numbers(out: Path) -> list[dict[str, Any]]:
@@ -113,6 +136,7 @@ def measured(folder: Path) -> dict[str, Any]:
 
 
 if __name__ == "__main__":
+    ctypes.CDLL(None).prctl(SUBREAPER, 1)
     parser = argparse.ArgumentParser(description="How fast a fleet runs.")
     parser.add_argument("folder", type=Path)
     parser.add_argument("--out", type=Path, default=Path("docs/fleet-speed.json"))

@@ -22,7 +22,7 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from ..arrays import FloatArray, IntArray
 
@@ -170,7 +170,7 @@ def _described(series: _Series, found: dict[int, float], level: float) -> Course
     theta, left, A = series.solved(places)
     dof = series.dof(len(places))
     error = np.sqrt(np.diag(np.linalg.pinv(A.T @ A)) * left / dof)
-    half = stats.t.ppf(0.5 + SURE / 2.0, dof) * error
+    half = special.stdtrit(dof, 0.5 + SURE / 2.0) * error
     changes = tuple(
         Change(
             place,
@@ -184,7 +184,7 @@ def _described(series: _Series, found: dict[int, float], level: float) -> Course
     fitted = series.design(places) @ theta
     if not series.sloping:
         return Course(0.0, 0.0, False, changes, fitted)
-    p = 2.0 * stats.t.sf(abs(theta[1]) / max(error[1], 1e-300), dof)
+    p = 2.0 * special.stdtr(dof, -abs(theta[1]) / max(error[1], 1e-300))
     return Course(float(theta[1]), float(half[1]), bool(p < level), changes, fitted)
 
 
@@ -216,7 +216,7 @@ def _best(series: _Series, taken: tuple[int, ...], more: Sequence[tuple[int, ...
     before, falls = _falls(series, taken, np.array(more))
     best = int(np.argmax(falls))
     F = falls[best] / size / max((before - falls[best]) / dof, 1e-300)
-    p = min(1.0, len(more) * float(stats.f.sf(F, size, dof)))
+    p = min(1.0, len(more) * float(special.fdtrc(size, dof, F)))
     return dict.fromkeys(more[best], p) if p < level else {}
 
 

@@ -6,11 +6,13 @@ import multiprocessing
 import multiprocessing.connection
 import os
 import signal
+import sys
 import threading
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 
 from .job import Job
 from .work import one_thread, run_job
@@ -21,8 +23,31 @@ TRIES = 5
 LIFE = 200
 """Jobs of each worker process after which all are replaced, so that their memory stays bounded."""
 
+IMPORTED = (
+    "mmgtune.backends.compiling",
+    "mmgtune.fleet.commands",
+    "mmgtune.fleet.work",
+    "mmgtune.report.kinds",
+    "pandas",
+    "pyarrow.parquet",
+)
+"""What jobs import: once, by the process that workers are forked from."""
+
 Ran = tuple[Job, str, float]
 """A job, what became of it ("killed" where it was given up), and its time [s]."""
+
+
+def prepare() -> None:
+    """Begin, in the background, to make workers quick to start: they are forked from a process that has imported what
+    jobs need.
+
+    On Linux alone: elsewhere the libraries of the system do not stand a fork, and each worker starts by itself.
+    """
+    if sys.platform == "linux":
+        from multiprocessing import forkserver
+
+        multiprocessing.get_context("forkserver").set_forkserver_preload(list(IMPORTED))
+        forkserver.ensure_running()
 
 
 def cores() -> int:
@@ -46,7 +71,7 @@ def run_here(
     while left:
         pending: dict[Future[tuple[str, str, float]], Job] = {}
         broken, life = False, LIFE * workers
-        with _pool(workers) as pool:
+        with pool_of(workers) as pool:
             while not broken and (pending or (left and life)):
                 try:
                     while left and life and len(pending) < workers:  # so that it is known which were at work
@@ -72,13 +97,23 @@ def run_here(
                 yield job, "killed", 0.0
 
 
-def _pool(workers: int) -> ProcessPoolExecutor:
-    context = multiprocessing.get_context("spawn")
-    return ProcessPoolExecutor(workers, mp_context=context, initializer=_begin)
+@contextmanager
+def pool_of(workers: int) -> Iterator[ProcessPoolExecutor]:
+    """Worker processes; when nothing is left for them, they end by themselves."""
+    context = multiprocessing.get_context("forkserver" if sys.platform == "linux" else "spawn")
+    pool = ProcessPoolExecutor(workers, mp_context=context, initializer=_begin, initargs=(dict(os.environ),))
+    waits = True
+    try:
+        yield pool
+        waits = False
+    finally:
+        pool.shutdown(wait=waits)  # whoever is interrupted waits for the jobs that are at work
 
 
-def _begin() -> None:
-    """What a worker process does first."""
+def _begin(environment: Mapping[str, str]) -> None:
+    """What a worker process does first; the environment is that of its driver now."""
+    os.environ.clear()
+    os.environ.update(environment)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches it too; its driver decides
     parent = multiprocessing.parent_process()
     if parent is not None:

@@ -18,7 +18,7 @@ from ..provenance import made_by
 from . import rows
 from .expanding import expand
 from .job import Job
-from .processes import Ran, cores, run_here
+from .processes import Ran, cores, prepare, run_here
 from .reckoning import Reckoned, reckon
 from .record import JOBS, RECORD, listed_places, made_before, write_record
 from .table import FleetTable, read_table
@@ -97,6 +97,8 @@ def run_fleet(
     resume  whether ``out`` may hold results already: jobs of the same data, options and program are not run again
     Raises OptionError for a table that makes no sense or a scheduler that does not answer, OutputError for ``out``.
     """
+    if options.scheduler is None:
+        prepare()
     out = Path(out).absolute()
     read = read_table(table) if isinstance(table, (str, Path)) else table
     jobs = expand(read)

@@ -22,9 +22,11 @@ from mmgtune.fitting import FitOptions, fit, write_run
 from mmgtune.fleet import read_results, read_table, run_fleet
 from mmgtune.fleet.expanding import expand
 from mmgtune.fleet.job import Job
+from mmgtune.fleet.processes import pool_of
 from mmgtune.fleet.work import run_job
 from mmgtune.options import FleetOptions
 from tests.command import run as command
+from tools.fleet_speed import workers_of
 
 from .conftest import QUICK, make_logs
 
@@ -149,10 +151,10 @@ def test_killed_workers_and_a_killed_driver_lose_nothing(tmp_path: Path) -> None
     arguments = [sys.executable, "-m", "mmgtune", "fleet", "run", "fleet.toml", "--out", "out", "--workers", "2"]
     driver = subprocess.Popen(arguments, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     _until(lambda: _rows(out) >= 1)
-    for worker in _workers(driver.pid)[:1]:
+    for worker in workers_of(driver.pid)[:1]:
         os.kill(worker, signal.SIGKILL)
     _until(lambda: _rows(out) >= 2 or driver.poll() is not None)
-    workers = _workers(driver.pid)
+    workers = workers_of(driver.pid)
     driver.kill()
     driver.communicate(timeout=60)
     _until(lambda: not any(Path(f"/proc/{worker}").exists() for worker in workers))  # nobody stays behind
@@ -167,16 +169,15 @@ def test_killed_workers_and_a_killed_driver_lose_nothing(tmp_path: Path) -> None
     assert not list(out.glob("runs/*/*/.attempt-*"))
 
 
+def test_workers_begin_with_the_environment_of_their_driver_as_it_is_now(monkeypatch: pytest.MonkeyPatch) -> None:
+    for folder in ("/one", "/other"):  # the process they are forked from has been there since the first
+        monkeypatch.setenv("MMGTUNE_CACHE", folder)
+        with pool_of(1) as workers:
+            assert workers.submit(os.getenv, "MMGTUNE_CACHE").result() == folder
+
+
 def _rows(out: Path) -> int:
     return len(list(out.glob("results/*/*/*.parquet")))
-
-
-def _workers(driver: int) -> list[int]:
-    try:
-        children = Path(f"/proc/{driver}/task/{driver}/children").read_text().split()
-        return [int(k) for k in children if b"spawn_main" in Path(f"/proc/{k}/cmdline").read_bytes()]
-    except FileNotFoundError:
-        return []
 
 
 def _until(true: object, seconds: float = 120.0) -> None:
