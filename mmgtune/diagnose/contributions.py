@@ -136,7 +136,14 @@ def contributions(bench: Workbench, found: Found, test: Sequence[Trial]) -> list
     """That of each cause; a cause that is alone, or stands beside none but a finer integration step, brings all."""
     if len(found.causes) < 2:
         return [Contribution(1.0) for _ in found.causes]
-    return [_of(bench, found, cause, test) for cause in found.causes]
+    fewer = [without(bench, found.final, cause) for cause in found.causes]
+    seen = [share_lost(found.base.chi2, point.chi2, found.final.chi2) for point in fewer]
+    asked = [k for k, share in enumerate(seen) if share < WORTH_ASKING]
+    held_out = dict(zip(asked, _held_out(bench, found, [fewer[k] for k in asked], test), strict=True))
+    return [
+        _of(bench, found, cause, fewer[k], seen[k], held_out[k]) if k in held_out else Contribution(seen[k])
+        for k, cause in enumerate(found.causes)
+    ]
 
 
 def set_aside(
@@ -179,18 +186,41 @@ def _alone(bench: Workbench, found: Found, test: Sequence[Trial]) -> Contributio
     return Contribution(1.0, gain.share_removed[0], {}, {}) if gain.worse else Contribution(1.0)
 
 
-def _of(bench: Workbench, found: Found, cause: Hypothesis, test: Sequence[Trial]) -> Contribution:
-    fewer = without(bench, found.final, cause)
-    seen = share_lost(found.base.chi2, fewer.chi2, found.final.chi2)
-    if seen >= WORTH_ASKING:
-        return Contribution(seen)
-    errors, counts, changes = np.zeros((3, len(STATES))), np.zeros(len(STATES)), dict[str, float]()
-    for points, trials in held_out_fits(bench, (found.base, fewer, found.final), test):
-        held, n, indices = _errors(bench, points, trials)
-        errors, counts = errors + held, counts + n
-        for name in INDICES:
-            for one in indices[name]:
-                changes[name] = max(changes.get(name, 0.0), one)
+@dataclass(eq=False)
+class _HeldOut:
+    """Trials that nothing was fitted to, by the model without any cause, without one, and with all.
+
+    errors   (3, 6) squares by channel in variances of white noise
+    counts   (6,) samples
+    changes  the largest of each index by the cause
+    """
+
+    errors: FloatArray = field(default_factory=lambda: np.zeros((3, len(STATES))))
+    counts: FloatArray = field(default_factory=lambda: np.zeros(len(STATES)))
+    changes: dict[str, float] = field(default_factory=dict)
+
+    def add(self, errors: FloatArray, counts: FloatArray, changes: Mapping[str, Sequence[float]]) -> None:
+        """Further trials."""
+        self.errors, self.counts = self.errors + errors, self.counts + counts
+        for name, those in changes.items():
+            if those:
+                self.changes[name] = max(self.changes.get(name, 0.0), *those)
+
+
+def _held_out(bench: Workbench, found: Found, fewer: Sequence[Point], test: Sequence[Trial]) -> list[_HeldOut]:
+    """What is held out, without one cause or another: a point each."""
+    all_of = [_HeldOut() for _ in fewer]
+    for points, trials in held_out_fits(bench, (found.base, found.final, *fewer), test) if fewer else ():
+        base, final, *others = points
+        for one, point in zip(all_of, others, strict=True):
+            one.add(*_errors(bench, (base, point, final), trials))
+    return all_of
+
+
+def _of(
+    bench: Workbench, found: Found, cause: Hypothesis, fewer: Point, seen: float, held_out: _HeldOut
+) -> Contribution:
+    errors, counts, changes = held_out.errors, held_out.counts, held_out.changes
     removed = errors[:2].sum(axis=1) - errors[2].sum()
     channels = {
         name: float((errors[1, k] - errors[2, k]) / (counts[k] * noise.variance))

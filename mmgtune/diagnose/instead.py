@@ -82,7 +82,7 @@ def instead_of_tuning(bench: Workbench, tuned: Point, hypotheses: Sequence[Hypot
     asked = [one for one in hypotheses if not (one.by or one.effect.one_of_many)]
     linear = linearise(bench, as_it_is, [name for one in asked for name in one.bases])
     try:
-        fits = Refitting(bench, as_it_is, linear, Known()).best(scores(linear, asked), quick=False)
+        fits = Refitting(bench, as_it_is, linear, Known(), every=True).best(scores(linear, asked), quick=False)
     except Stopped:
         return None
     fits.sort(key=lambda fit: -fit.gain)

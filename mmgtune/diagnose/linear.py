@@ -88,7 +88,8 @@ class Linear:
     tuned       what re-tuning takes out of columns
     plain       signatures (n_rows,) of what may differ between runs, by name, coefficients not taken out
     groups      of each trial
-    fitted      what fits leave of whitened residuals (n_residuals, k): (n_rows, k) free of all ``noise`` is free of
+    retuned     what re-tuning leaves of changes of whitened residuals (n_residuals, k): (n_rows, k)
+    fitted      what is left of them besides where all signatures are free: (n_rows, k) free of all ``noise`` is free of
     kept        what was worked out from it once
     """
 
@@ -106,6 +107,7 @@ class Linear:
     tuned: Tuned
     plain: Mapping[str, FloatArray]
     groups: tuple[frozenset[str], ...]
+    retuned: Callable[[FloatArray], FloatArray]
     fitted: Callable[[FloatArray], FloatArray]
     kept: dict[Any, Any] = field(default_factory=dict)
 
@@ -267,9 +269,11 @@ def linearise(
     every = basis(np.column_stack([signature, small]))
     first, blocks = blocks_of(problem)
 
+    def retuned(columns: FloatArray) -> FloatArray:
+        return tuned.out_of(problem.without_offsets(columns, by_offset, problem.prior))
+
     def fitted(columns: FloatArray) -> FloatArray:
-        left = problem.without_offsets(columns, by_offset, problem.prior)
-        left = tuned.out_of(left)
+        left = retuned(columns)
         return np.asarray(left - every @ (every.T @ left))
 
     return Linear(
@@ -287,6 +291,7 @@ def linearise(
         tuned=tuned,
         plain=plain,
         groups=problem.groups,
+        retuned=retuned,
         fitted=fitted,
     )
 

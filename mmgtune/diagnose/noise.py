@@ -80,9 +80,13 @@ class NoiseModel:
     cases: Cases
     channels: dict[str, ChannelNoise]
     _series: list[tuple[str, _Rows]] = field(init=False)
+    _sigma: FloatArray = field(init=False)
 
     def __post_init__(self) -> None:
         self._series = [(channel, _evenly(rows)) for channel, rows in series_of(self.cases)]
+        self._sigma = np.ones(sum(len(rows) for _, rows in series_of(self.cases)))
+        for channel, rows in self._series:
+            self._sigma[rows] = self.channels[channel].filter[2]
 
     @property
     def coloured(self) -> bool:
@@ -91,13 +95,12 @@ class NoiseModel:
 
     def apply(self, values: FloatArray) -> FloatArray:
         """Residuals (n_residuals, ...) or their derivatives with noise of variance 1 and no memory."""
-        out = np.empty_like(values)
+        out = values / self._sigma.reshape(-1, *(1,) * (values.ndim - 1))
         for channel, rows in self._series:
             noise = self.channels[channel]
-            phi, theta, sigma = noise.filter
             if noise.fading <= 0.0:
-                out[rows] = values[rows] / sigma
                 continue
+            phi, theta, sigma = noise.filter
             with np.errstate(invalid="ignore", over="ignore"):
                 white = _filtered([1.0 / sigma, -phi / sigma], [1.0, theta], values[rows])
                 white[0] *= sigma / np.sqrt(noise.variance)

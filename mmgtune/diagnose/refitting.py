@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray
 from ..fitting.box import base_of
 from .base_fit import unnoticed
 from .hypotheses import Hypothesis
@@ -27,8 +27,18 @@ REFITTED, TERMS_REFITTED = 9, 4
 LIKELY = 9
 """Hypotheses of the best first steps that are refitted where scores alone cannot choose."""
 
+BEGUN, STARTS_BEGUN = 18, 3
+"""Hypotheses, and starts of each, that make these first steps: those of which derivatives foretell most."""
+
+NEARBY = 1e-5
+"""Step of derivatives by the parameters of a hypothesis at its start, in the unit cube."""
+
 HOPELESS = 10.0
-"""Where much is left, values of runs that leave so many times what the best of them leave are not refitted further."""
+"""Where much is left, what leaves so many times what the best leaves is not refitted further: of values of runs, beside
+the best of them; of all others, where the best of these leaves hardly more than noise."""
+
+HARDLY_MORE = 0.05
+"""Share of the residuals beyond their noise that any may leave."""
 
 RUNS_REFITTED = 6
 """Hypotheses of values that differ between runs that are refitted each time, at most."""
@@ -76,11 +86,23 @@ class Known:
     ends   finished ones
     good   whether their noise is the one in use; else they are places to go on from
     begun  first steps from each start
+    least  chi-squared of the best of one value for all runs, finished or not, in that noise
     """
 
     ends: dict[tuple[str, ...], Point] = field(default_factory=dict)
     good: bool = True
     begun: dict[tuple[str, ...], list[Point]] = field(default_factory=dict)
+    least: float = math.inf
+
+    def outdate(self) -> None:
+        """Noise is known to be other."""
+        self.good, self.least = False, math.inf
+
+    def note(self, hypothesis: Hypothesis, ends: list[Point]) -> list[Point]:
+        """Ends of refits of a hypothesis, which may be the best of all."""
+        if not hypothesis.by:
+            self.least = min([self.least, *(end.chi2 for end in ends)])
+        return ends
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,10 +110,12 @@ class Given:
     """Where a look begins with what has leeway at the profile's values: there it has taken nothing of any cause.
 
     point  what is known so far, fitted so
+    linear what the signatures of hypotheses are there
     steps  of hypotheses by name, in typical sizes, as their scores there promise; the best scores first
     """
 
     point: Point
+    linear: Linear
     steps: Mapping[tuple[str, ...], FloatArray]
 
 
@@ -104,6 +128,7 @@ class Refitting:
     linear  what the signatures of hypotheses are there
     known   refits there are within the look
     given   what is known so far without leeway, None where nothing has any or little is left without it either
+    every   whether every hypothesis makes first steps: where nothing is re-tuned derivatives foretell little
     """
 
     bench: Workbench
@@ -111,11 +136,17 @@ class Refitting:
     linear: Linear
     known: Known
     given: Given | None = None
+    every: bool = False
 
     @property
     def strong(self) -> bool:
         """Whether so much is left that a linear score cannot choose."""
         return self.point.chi2 > STRONG * self.bench.problem.n_residuals
+
+    @property
+    def _hopeless(self) -> float:
+        """Chi-squared from which on refits are given up here."""
+        return hopeless_beside(self.bench, self.known.least)
 
     @property
     def _before(self) -> Point:
@@ -133,6 +164,7 @@ class Refitting:
         if quick:
             chosen = named[:3] + terms[:1]
         else:
+            self._renew(ranked)
             chosen = self._likely(named) if self.strong or self.given else named[:REFITTED]
             chosen += terms[: (2 if self.strong else 1) * TERMS_REFITTED]
         fitted = self._fitted([s for s in chosen if s.power > 0.0])
@@ -142,6 +174,15 @@ class Refitting:
         asked = [s.hypothesis for s in ranked]
         chance = None if quick else ChanceScores(self.linear, asked, self.bench.options.seed)
         return self._ordered([self._judged(score, end, chance, max(1, len(terms))) for score, end in fitted])
+
+    def _renew(self, ranked: Sequence[Score]) -> None:
+        """Refits there are, in the noise as it is known now: what others are hopeless beside."""
+        if not self.known.good:
+            for score in ranked:
+                if score.hypothesis.names in self.known.ends:
+                    self._go_on()
+                    self.known.ends[score.hypothesis.names] = self._rough(score)
+            self.known.good = True
 
     def _go_on(self) -> None:
         if self.bench.stop():
@@ -154,27 +195,74 @@ class Refitting:
         if self.given:
             place = {names: k for k, names in enumerate(self.given.steps)}
             named = sorted(named, key=lambda score: place[score.hypothesis.names])
-        chi2 = []
-        for score in named:
+        known = [score.hypothesis.names in self.known.ends for score in named]
+        chi2 = np.where(known, -np.inf, np.inf)
+        asked = [k for k, score in enumerate(named) if score.power > 0.0 and not known[k]]
+        starts = {k: self._starts(point, named[k], SIZES) for k in asked}
+        for k, those in (starts if self.every else self._promising(point, named, starts)).items():
             self._go_on()
-            names = score.hypothesis.names
-            if names in self.known.ends:
-                chi2.append(-np.inf)
-            elif score.power > 0.0:
-                starts = self._starts(point, score, SIZES)
-                self.known.begun[names] = self._steps(point, score, starts, FIRST if starts.shape[1] > 1 else 1)
-                chi2.append(min(end.chi2 for end in self.known.begun[names]))
-            else:
-                chi2.append(np.inf)
+            ends = self._steps(point, named[k], those, FIRST if those.shape[1] > 1 else 1)
+            self.known.begun[named[k].hypothesis.names] = ends
+            chi2[k] = min(end.chi2 for end in ends)
         kept = {*np.argsort(chi2)[:LIKELY].tolist(), *range(REFITTED // 2)}
         return [score for k, score in enumerate(named) if k in kept]
 
+    def _promising(
+        self, point: Point, named: Sequence[Score], starts: Mapping[int, FloatArray]
+    ) -> dict[int, FloatArray]:
+        """Those of the starts, by number of the hypothesis, of which most is foretold; of the best scores anyhow."""
+        left = self._foretold(point, [named[k] for k in starts], list(starts.values()))
+        least = dict(zip(starts, left, strict=True))
+        likely = sorted(starts, key=lambda k: least[k].min())[:BEGUN]
+        return {
+            k: those[:, np.argsort(least[k], kind="stable")[:STARTS_BEGUN]]
+            for k, those in starts.items()
+            if k in likely or k < REFITTED // 2
+        }
+
+    def _foretold(self, point: Point, named: Sequence[Score], starts: Sequence[FloatArray]) -> list[FloatArray]:
+        """Chi-squared (n_starts,) that a step from each start of each hypothesis would leave, by derivatives of what is
+        free at the point taken there, without the hypothesis, and by its own at the start; inf where a run is lost.
+        """
+        bench, linear = self.bench, self.given.linear if self.given else self.linear
+        names = tuple(dict.fromkeys((*point.names, *(name for score in named for name in score.hypothesis.names))))
+        null = dict(zip(names, bench.null(names), strict=True))
+        here = null | dict(zip(point.names, point.unit, strict=True))
+        problem = bench.problem_of(names, point.integrator).with_offsets(point.offsets)
+        (as_it_is,) = problem.residuals(np.array([*here.values()])[:, None])
+
+        def simulated(columns: Sequence[Mapping[str, float]]) -> tuple[FloatArray, BoolArray]:
+            """What re-tuning leaves of the residuals (n_rows, k), and which runs are lost."""
+            runs = problem.residuals(np.array([[*column.values()] for column in columns]).T).T
+            lost = np.asarray(~np.isfinite(runs).all(axis=0))
+            runs[:, lost] = as_it_is[:, None]
+            return linear.residual[:, None] + linear.retuned(bench.noise.apply(runs - as_it_is[:, None])), lost
+
+        found = []
+        for score, those in zip(named, starts, strict=True):
+            self._go_on()
+            own = score.hypothesis.names
+            free = self._free_with(point, score.hypothesis)
+            gone = {name: null[name] for name in score.hypothesis.instead if name in here}
+            columns = []
+            for start in those.T:
+                there = here | gone | dict(zip(free, start.tolist(), strict=True))
+                columns += [there, *(there | {name: there[name] + _inside(there[name])} for name in own)]
+            left, lost = simulated(columns)
+            ends = []
+            for k, start in enumerate(those[-len(own) :].T):
+                first = k * (1 + len(own))
+                slopes = (left[:, first + 1 : first + 1 + len(own)] - left[:, first : first + 1]) / _inside(start)
+                slopes[:, lost[first + 1 : first + 1 + len(own)]] = 0.0
+                step = np.linalg.lstsq(slopes, -left[:, first], rcond=1e-6)[0]
+                end = left[:, first] + slopes @ (np.clip(start + step, 0.0, 1.0) - start)
+                ends.append(np.inf if lost[first] else min(float(end @ end), float(left[:, first] @ left[:, first])))
+            found.append(np.array(ends))
+        return found
+
     def _fitted(self, chosen: Sequence[Score]) -> list[tuple[Score, Point]]:
         """Hypotheses refitted, those that promise much to the end."""
-        rough = []
-        for score in chosen:
-            self._go_on()
-            rough.append(self._rough(score))
+        rough = self._all_rough(chosen)
         n = self.bench.problem.n_residuals
         gains = sorted((self.point.chi2 - end.chi2 for end in rough), reverse=True)
         enough = min([WORTH_GOING_ON * gains[0], *gains[FEW - 1 : FEW]]) if gains else 0.0
@@ -192,6 +280,16 @@ class Refitting:
             self._go_on()
             ends[k] = self._on(chosen[k], ends[k], ALL_STEPS)
         return list(zip(chosen, ends, strict=True))
+
+    def _all_rough(self, chosen: Sequence[Score]) -> list[Point]:
+        """A few steps towards the best fit with each hypothesis, the likeliest first: others may be hopeless then."""
+        begun = [self.known.begun.get(score.hypothesis.names, ()) for score in chosen]
+        likely = np.argsort([min((end.chi2 for end in ends), default=np.inf) for ends in begun], kind="stable")
+        found: dict[int, Point] = {}
+        for k in likely.tolist():
+            self._go_on()
+            found[k] = self._rough(chosen[k])
+        return [found[k] for k in range(len(chosen))]
 
     def _of_runs_worth(self, order: Sequence[Score], fitted: Sequence[Point], *, quick: bool) -> list[Score]:
         """Hypotheses of values that differ between runs that are worth a refit beside those of one value for all.
@@ -281,13 +379,17 @@ class Refitting:
         """So many steps of fits with a hypothesis, from starts at a point, offsets beginning there."""
         hypothesis = score.hypothesis
         excess = max(point.chi2 - self.bench.problem.n_residuals, 0.0)
-        return self.bench.refits(
-            (*(point.names[i] for i in kept_free(point, hypothesis)), *hypothesis.names),
-            starts,
-            point.offsets,
-            max_iterations=iterations,
-            tolerance=max(TOLERANCE, 1e-3 * excess),
-            spreads=self._spreads(point, hypothesis, max(score.spread, 1.0 if self.strong else LEAST_SPREAD)),
+        return self.known.note(
+            hypothesis,
+            self.bench.refits(
+                self._free_with(point, hypothesis),
+                starts,
+                point.offsets,
+                max_iterations=iterations,
+                tolerance=max(TOLERANCE, 1e-3 * excess),
+                spreads=self._spreads(point, hypothesis, max(score.spread, 1.0 if self.strong else LEAST_SPREAD)),
+                hopeless=self._hopeless,
+            ),
         )
 
     def _on(self, score: Score, end: Point, steps: int) -> Point:
@@ -295,14 +397,19 @@ class Refitting:
         spread = 0.0
         if score.hypothesis.by:
             spread = max(told_by(self.linear, score.hypothesis, self._moved(score.hypothesis, end))[0], LEAST_SPREAD)
-        return self.bench.refit(
-            end.names,
-            end.unit[:, None],
-            end.offsets,
-            spreads=self._spreads(self.point, score.hypothesis, spread),
-            max_iterations=steps,
-            tolerance=unnoticed(self.bench, end.chi2),
+        (end,) = self.known.note(
+            score.hypothesis,
+            self.bench.refits(
+                end.names,
+                end.unit[:, None],
+                end.offsets,
+                spreads=self._spreads(self.point, score.hypothesis, spread),
+                max_iterations=steps,
+                tolerance=unnoticed(self.bench, end.chi2),
+                hopeless=self._hopeless,
+            ),
         )
+        return end
 
     def _judged(self, score: Score, end: Point, chance: ChanceScores | None, n_terms: int) -> Refit:
         """A refit with what chance would bring; n_terms  of those there are to choose from."""
@@ -330,6 +437,10 @@ class Refitting:
             chance.p_value(evidence(max(gain / score.inflation - volume, 0.0), k)) if chance else 1.0,
             _unvisited(bench, end, hypothesis),
         )
+
+    def _free_with(self, point: Point, hypothesis: Hypothesis) -> tuple[str, ...]:
+        """What is free with a hypothesis at a point, its own parameters last."""
+        return (*(point.names[i] for i in kept_free(point, hypothesis)), *hypothesis.names)
 
     def _new(self, hypothesis: Hypothesis) -> int:
         """Numbers that a hypothesis adds to the point: means that are not free there, and a spread."""
@@ -365,6 +476,13 @@ def _unvisited(bench: Workbench, end: Point, hypothesis: Hypothesis) -> str:
     return hypothesis.effect.unvisited(found, bench.visited)
 
 
+def hopeless_beside(bench: Workbench, chi2: float) -> float:
+    """Chi-squared from which on a refit is given up beside one that leaves hardly more than noise; inf where that one
+    leaves more."""
+    n = bench.problem.n_residuals
+    return math.inf if chi2 > STRONG * n else n + HOPELESS * max(chi2 - n, HARDLY_MORE * n)
+
+
 def akin(order: Sequence[Score], fitted: Sequence[tuple[Score, Point]]) -> list[Score]:
     """Those that act much like the one that fits best, whose scores may mislead: that of a wind is that of a light one,
     hardly its force; and the special cases of one whose values differ between groups of runs."""
@@ -380,6 +498,11 @@ def akin(order: Sequence[Score], fitted: Sequence[tuple[Score, Point]]) -> list[
         if (alike or special) and score.power > 0.0 and one.names not in there:
             found.append(score)
     return found
+
+
+def _inside(z: FloatArray | float) -> FloatArray:
+    """The step of derivatives at a place in the unit cube, inwards where that is its upper end."""
+    return np.where(np.asarray(z) + NEARBY > 1.0, -NEARBY, NEARBY)
 
 
 def kept_free(point: Point, hypothesis: Hypothesis) -> list[int]:

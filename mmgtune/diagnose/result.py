@@ -156,6 +156,7 @@ class Doubted:
 class Candidate:
     """A hypothesis that was looked at: score and refit at the first look; J on the test trials.
 
+    gain       fall of chi-squared by the refit; of one that was given up, as far as it had come
     unvisited  what the trials would have to visit for it to be believed, "" where they do
     by         what has a value of its own: "" for one for all, else a grouping of runs
     """

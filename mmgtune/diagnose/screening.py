@@ -178,7 +178,12 @@ class ChanceScores:
         signs = rng.choice([-1.0, 1.0], size=(len(linear.blocks), DRAWS))
         n_draws = linear.wander.shape[1]
         pick = rng.integers(n_draws, size=(len(linear.cases), DRAWS))
-        self.largest = np.zeros(DRAWS)
+        scores: dict[int, FloatArray] = {}
+
+        def add(score: FloatArray, parameters: int) -> None:
+            """Keep the largest, of that many parameters: the most evidence is of the largest score."""
+            scores[parameters] = np.maximum(scores.get(parameters, 0.0), score)
+
         for hypothesis in (one for one in hypotheses if one.by):
             found = _between_runs(linear, hypothesis)
             if found is None:
@@ -186,7 +191,7 @@ class ChanceScores:
             drawn = self._drawn(found.chance, signs, pick)
             drawn += _lacking(found.chance, rng)
             gain = found.hierarchy.gains(drawn, found.hierarchy.spreads(ROUGHLY)).max(axis=0)
-            self.largest = np.maximum(self.largest, _evidence(np.maximum(gain, 0.0), degrees(hypothesis)))
+            add(gain, degrees(hypothesis))
         for hypothesis in (one for one in hypotheses if not one.by):
             for columns in linear.looks(hypothesis.names):
                 if not _shown(columns):
@@ -194,9 +199,9 @@ class ChanceScores:
                 Q = basis(columns)
                 chance = linear.chance(Q)
                 drawn = self._drawn(chance, signs, pick) + _lacking(chance, rng)
-                score = np.sum(drawn**2, axis=0) / inflation(*chance)
-                self.largest = np.maximum(self.largest, _evidence(score, Q.shape[1]))
-        self.largest.sort()
+                add(np.sum(drawn**2, axis=0) / inflation(*chance), Q.shape[1])
+        evidences = [_evidence(score, parameters) for parameters, score in scores.items()]
+        self.largest = np.sort(np.max([np.zeros(DRAWS), *evidences], axis=0))
 
     @staticmethod
     def _drawn(chance: tuple[FloatArray, FloatArray], signs: FloatArray, pick: IntArray) -> FloatArray:

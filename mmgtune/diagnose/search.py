@@ -20,7 +20,7 @@ from .base_fit import PRECISE, base_fit, unnoticed
 from .hypotheses import Hypothesis
 from .linear import Linear, linearise
 from .refit import ENOUGH, Refit, believable_first, decide, rivals_among
-from .refitting import STRONG, Given, Known, Refitting, Stopped, kept_free
+from .refitting import STRONG, Given, Known, Refitting, Stopped, hopeless_beside, kept_free
 from .screening import Score, scores
 from .workbench import Point, Workbench
 
@@ -189,7 +189,7 @@ def look(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis], first
         point = bench.refit(point.names, point.unit[:, None], point.offsets, tolerance=tolerance)
         linear = linearise(bench, point, names, varying=varying)
         ranked = scores(linear, hypotheses)
-        known.good = False
+        known.outdate()
     given = _as_given(bench, point, hypotheses)
     fitted = Refitting(bench, point, linear, known, given).best(ranked, quick=False)
     refits = believable_first(fitted, bench.options.level)
@@ -226,9 +226,10 @@ def _as_given(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis]) 
     if there.chi2 < STRONG * bench.problem.n_residuals:
         return None
     alike = [h for h in hypotheses if not h.by]
-    ranked = scores(linearise(bench, there, [name for h in alike for name in h.bases]), alike)
+    linear = linearise(bench, there, [name for h in alike for name in h.bases])
+    ranked = scores(linear, alike)
     ranked.sort(key=lambda score: -score.score)
-    return Given(there, {score.hypothesis.names: score.step for score in ranked})
+    return Given(there, linear, {score.hypothesis.names: score.step for score in ranked})
 
 
 def _noise_at(bench: Workbench, linear: Linear) -> noises.NoiseModel:
@@ -344,6 +345,7 @@ def rivals_of(bench: Workbench, found: Found, cause: Hypothesis) -> list[Refit]:
             np.concatenate([fewer.unit[kept], start])[:, None],
             fewer.offsets,
             spreads={**fewer.spreads, **rival.point.spreads},
+            hopeless=hopeless_beside(bench, found.final.chi2),
         )
         rival = replace(rival, point=other, gain=fewer.chi2 - other.chi2)
         if not best.beats(rival):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -61,6 +62,7 @@ class _How(TypedDict, total=False):
     max_iterations: int
     tolerance: float
     spreads: Mapping[str, float] | None
+    hopeless: float
 
 
 @dataclass(eq=False)
@@ -166,12 +168,14 @@ class Workbench:
         max_iterations: int = 30,
         tolerance: float = TOLERANCE,
         spreads: Mapping[str, float] | None = None,
+        hopeless: float = math.inf,
     ) -> list[Point]:
         """Fits of ``names`` from starts (n_names, n_starts), initial states beginning at ``offsets``.
 
         What is fitted has the forms of its effects besides, before all else.
 
-        spreads  of values that groups of runs have of their own, those of the workbench where None
+        spreads   of values that groups of runs have of their own, those of the workbench where None
+        hopeless  chi-squared that a fit must promise to fall below after its first steps, to go on
         """
         along, kept = self.believed.moving_with(names)
         names = (*along, *(names[k] for k in kept))
@@ -189,6 +193,7 @@ class Workbench:
             tolerance=tolerance,
             beliefs=beliefs,
             trusting=True,
+            hopeless=hopeless,
         )
         return [
             Point(names, end.unit, end.offsets, self._total(end, beliefs), problem.integrator, spreads) for end in ends

@@ -7,6 +7,7 @@ and left again when the gradient says so.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -40,6 +41,9 @@ FORETOLD = 0.3
 
 SETTLED = 4
 """Iterations from which on that is done: before, parameters that move later than others still find their way."""
+
+FIRST_STEPS = 1
+"""Steps before a start is given up for what the linear problem promises: far from its end that says little."""
 
 AHEAD = 0.1
 """Share of a step at which its second derivative is taken."""
@@ -94,6 +98,7 @@ def solve(
     tolerance: float = 0.0,
     beliefs: tuple[FloatArray, FloatArray] | None = None,
     trusting: bool = False,
+    hopeless: float = math.inf,
 ) -> list[LeastSquaresResult]:
     """Minimise J within the unit cube from every column of ``starts`` (n_targets, n_starts).
 
@@ -113,6 +118,8 @@ def solve(
                     and two again; and initial states that would leave their range are held at its end in the linear
                     problem, and held back by large damping (elsewhere they find the way round a bound by steps of
                     their own)
+    hopeless        a trusting start also ends, after its first steps, where all that the linear problem promises would
+                    leave more of what is minimised than this
     Returns a result per start, never above what it began with.
     """
     n_starts = starts.shape[1]
@@ -146,6 +153,11 @@ def solve(
             hessian, gradient = of_all(there, at)
             step = bounded_step(hessian + np.diag(damping), gradient, at, step)
         return step, there
+
+    def scale_of(linear: _Linear, at: FloatArray) -> FloatArray:
+        """(n_targets,) what damping is a multiple of."""
+        curvature = np.diag(of_all(linear, at)[0])
+        return np.asarray(np.maximum(curvature, 1e-12 * curvature.max() + 1e-300))
 
     def promised_by(linear: _Linear, at: FloatArray, scale: FloatArray) -> float:
         """Fall of what is minimised by a step that is hardly damped."""
@@ -192,22 +204,29 @@ def solve(
         if len(rows) == 0 or stop():
             break
         linear = around(rows)
-        last, promised = np.zeros(len(rows), dtype=bool), np.full(len(rows), np.inf)
+        scales = [scale_of(at, z[:, row]) for at, row in zip(linear, rows, strict=True)]
+        promised = np.full(len(rows), np.inf)
+        if trusting:
+            promised[:] = [promised_by(at, z[:, row], own) for at, row, own in zip(linear, rows, scales, strict=True)]
+        going = (iterations[rows] < FIRST_STEPS) | (value[rows] - promised <= hopeless)
+        running[rows[~going]] = False
+        if not going.any():
+            break
+        kept = np.flatnonzero(going)
+        rows, promised = rows[kept], promised[kept]
+        linear, scales = [linear[k] for k in kept], [scales[k] for k in kept]
+        last = promised <= tolerance
         tried = np.empty((len(z), len(rows), 2, len(DAMPINGS)))
         moved = np.empty((len(problem.cases), len(rows), 2, len(DAMPINGS), 6))
         for i, row in enumerate(rows):
-            hessian, _ = of_all(linear[i], z[:, row])
-            scale = np.maximum(np.diag(hessian), 1e-12 * np.diag(hessian).max() + 1e-300)
-            if trusting:
-                promised[i] = promised_by(linear[i], z[:, row], scale)
-                last[i] = promised[i] <= tolerance
-                damping[row] = min(damping[row], 1e-3) if last[i] else damping[row]
+            if last[i]:
+                damping[row] = min(damping[row], 1e-3)
             for k, factor in enumerate(DAMPINGS):
                 at = linear[i]
                 if trusting and damping[row] * factor > FIRM:
                     at = at.damped(damping[row] * factor)
                 nearby = tried[:, i, 0, k - 1] if k else None
-                tried[:, i, 0, k], at = towards(at, z[:, row], damping[row] * factor * scale, nearby)
+                tried[:, i, 0, k], at = towards(at, z[:, row], damping[row] * factor * scales[i], nearby)
                 moved[:, i, 0, k] = at.offsets(tried[:, i, 0, k] - z[:, row])
         if last.all():
             tried, moved = tried[:, :, :1], moved[:, :, :1]

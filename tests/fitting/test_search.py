@@ -154,6 +154,17 @@ def test_derivatives_that_foretold_a_step_serve_the_next_to_the_same_end(problem
     assert pytest.approx(own.J, rel=1e-5) == kept.J
 
 
+def test_a_start_of_which_the_linear_problem_promises_too_little_is_given_up(problem):
+    start = problem.box.to_unit(problem.box.pre)[:, None]
+    (whole,) = solve(problem, start, tolerance=1e-9, trusting=True)
+    (given_up,) = solve(problem, start, tolerance=1e-9, trusting=True, hopeless=0.9 * whole.J)
+    (going_on,) = solve(problem, start, tolerance=1e-9, trusting=True, hopeless=1.1 * whole.J)
+    assert given_up.iterations < whole.iterations
+    assert not given_up.converged
+    assert whole.J < given_up.J < problem.costs(start)[0]
+    assert going_on.J == whole.J
+
+
 def test_derivatives_are_taken_along_to_another_point(problem):
     estimated = problem.estimated(np.full((len(problem.cases), 6), 0.1))
     here = np.full((len(problem.box), 1), 0.5)

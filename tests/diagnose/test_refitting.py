@@ -1,0 +1,79 @@
+"""Which hypotheses are refitted where much is left: what is foretold of their starts, and what is given up."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mmgtune.diagnose import DiagnoseOptions
+from mmgtune.diagnose.base_fit import base_fit
+from mmgtune.diagnose.hypotheses import known_causes
+from mmgtune.diagnose.linear import linearise
+from mmgtune.diagnose.refitting import HARDLY_MORE, HOPELESS, Known, Refitting
+from mmgtune.diagnose.screening import scores
+from mmgtune.diagnose.workbench import make_workbench
+from mmgtune.profile import load_profile, with_effects
+from mmgtune.simulation import simulate
+from mmgtune.trial import load_trials
+from tests.diagnose.sensors import logged
+
+CURRENT = {"north": 0.08, "east": -0.06}
+"""Steady [m/s]."""
+
+NAMES = tuple(f"effects.current.{name}" for name in CURRENT)
+
+
+@pytest.fixture(scope="module")
+def look():
+    """A look at a ship in a current, coefficients as in the profile."""
+    profile = load_profile("suzaku")
+    rng = np.random.default_rng(7)
+    trials = [load_trials("suzaku").trials[name] for name in ("turn_p35", "turn_m20", "zigzag_20")]
+    ship = with_effects(profile, {"current": CURRENT}, "made")
+    made = [logged(trial, motion, rng) for trial, motion in zip(trials, simulate(ship, trials), strict=True)]
+    options = DiagnoseOptions(effects=("current", "heading-bias", "flap", "steering-lag"))
+    known = known_causes(profile, made, options)
+    bench = make_workbench(profile, made, options, [name for one in known for name in one.names])
+    point = base_fit(bench)
+    linear = linearise(bench, point, [name for one in known for name in one.names])
+    return Refitting(bench, point, linear, Known()), {s.hypothesis.names: s for s in scores(linear, known)}
+
+
+def test_what_a_start_leaves_is_foretold_without_a_refit(look):
+    refitting, by_names = look
+    bench, point = refitting.bench, refitting.point
+    null, there = bench.null(NAMES), bench.sub_box(NAMES).to_unit(list(CURRENT.values()))
+    starts = np.array([[*point.unit, *(null + share * (there - null))] for share in (0.0, 0.5, 1.0, -1.0)]).T
+    (left,) = refitting._foretold(point, [by_names[NAMES]], [starts])
+    assert (left < 0.05 * point.chi2).all()
+    end = bench.refit((*point.names, *NAMES), starts[:, 2:3], point.offsets, max_iterations=8)
+    assert end.chi2 < 1.1 * bench.problem.n_residuals  # the targets had gone far astray
+    other = by_names["effects.flap.factor",]
+    (left,) = refitting._foretold(point, [other], [refitting._starts(point, other, ())])
+    assert 0.5 * point.chi2 < left[0] <= point.chi2
+
+
+def test_all_that_is_asked_is_foretold_in_the_order_asked(look):
+    refitting, by_names = look
+    asked = list(by_names.values())
+    starts = [refitting._starts(refitting.point, score, (1.0, 0.5)) for score in asked]
+    together = refitting._foretold(refitting.point, asked, starts)
+    assert [len(left) for left in together] == [those.shape[1] for those in starts]
+    for score, those, left in zip(asked, starts, together, strict=True):
+        (alone,) = refitting._foretold(refitting.point, [score], [those])
+        np.testing.assert_allclose(left, alone, rtol=1e-9)
+
+
+def test_beside_one_that_leaves_noise_others_are_given_up(look):
+    refitting, by_names = look
+    known, n = refitting.known, refitting.bench.problem.n_residuals
+    assert refitting.strong
+    assert refitting._hopeless == np.inf
+    best = refitting.best(list(by_names.values()), quick=False)
+    assert best[0].hypothesis.names == NAMES
+    assert known.least <= best[0].point.chi2 < 1.1 * n
+    assert refitting._hopeless == n + HOPELESS * max(known.least - n, HARDLY_MORE * n)
+    other = next(refit for refit in best if refit.hypothesis.tag == "heading-bias")
+    assert refitting._hopeless < other.point.chi2 <= refitting.point.chi2
+    known.outdate()
+    assert refitting._hopeless == np.inf
