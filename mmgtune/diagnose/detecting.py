@@ -27,7 +27,7 @@ def detectability(bench: Workbench, step: Step, known: Sequence[Hypothesis]) -> 
     found = []
     for i, score in enumerate(named):
         h = score.hypothesis
-        needed = ENOUGH + len(h.names) * math.log(bench.problem.n_residuals)
+        needed = ENOUGH + len(h.names) * bench.price
         power = told_apart(step.linear, h.names)
         sizes = math.sqrt(needed * score.inflation) / power if power > 0.0 else math.inf
         sizes = max(sizes, WORTH)

@@ -50,9 +50,10 @@ class Instead:
     def sentence(self) -> str:
         """What re-tuning may stand for."""
         other = f", the next best, {self.next_effect}, {100.0 * self.next_share:.0f} %" if self.next_effect else ""
+        words = self.words[0].lower() + self.words[1:]
         return (
             "Re-tuning may stand for a cause: with all coefficients as the profile has them, one cause alone removes "
-            f"{100.0 * self.share:.3g} % of what re-tuning removes{other}. {self.words}."
+            f"{100.0 * self.share:.3g} % of what re-tuning removes{other}. If so: {words}."
         )
 
     def to_dict(self) -> dict[str, Any]:

@@ -299,7 +299,7 @@ class Refitting:
         differing = [s for s in order if s.hypothesis.by and s.spread > 0.0]
         n = self.bench.problem.n_residuals
         left = min((end.chi2 for end in fitted), default=self.point.chi2)
-        price = math.log(n)
+        price = self.bench.price
         earned = [s for s in differing if s.score - self._new(s.hypothesis) * price > 0.5 * ENOUGH]
         if left > STRONG * n:
             return earned[: 1 if quick else RUNS_REFITTED]
@@ -424,7 +424,7 @@ class Refitting:
         assert gain >= 0.0, "a nested refit ended above the model it extends"
         volume = told_by(self.linear, hypothesis, self._moved(hypothesis, end))[1] if hypothesis.by else 0.0
         k = self._new(hypothesis)
-        cost = k * np.log(bench.problem.n_residuals) + (2.0 * np.log(n_terms) if hypothesis.effect.one_of_many else 0.0)
+        cost = k * bench.price + (2.0 * np.log(n_terms) if hypothesis.effect.one_of_many else 0.0)
         cost += volume + (UNLIKE_SIDES if hypothesis.lopsided else 0.0)
         return Refit(
             hypothesis,

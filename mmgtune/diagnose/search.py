@@ -303,7 +303,7 @@ def _make_plain(bench: Workbench, found: Found, hypotheses: Sequence[Hypothesis]
         for one in sorted(special, key=lambda one: len(one.names)):
             gone = [name for name in cause.names if name not in one.names]
             fewer = _exchanged(bench, found.final, gone)
-            if fewer.chi2 - found.final.chi2 < len(gone) * float(np.log(bench.problem.n_residuals)) + ENOUGH:
+            if fewer.chi2 - found.final.chi2 < len(gone) * bench.price + ENOUGH:
                 found.causes[found.causes.index(cause)] = one
                 found.final = fewer
                 break
@@ -320,7 +320,7 @@ def step_of(found: Found, cause: Hypothesis) -> Step | None:
 def _price(bench: Workbench, found: Found, hypothesis: Hypothesis) -> float:
     """What a cause must explain at least: its share by BIC, or what it was charged when it was found."""
     paid = [r.cost for step in found.steps for r in step.refits[:1] if r.hypothesis == hypothesis and hypothesis.by]
-    return paid[0] if paid else len(hypothesis.names) * float(np.log(bench.problem.n_residuals))
+    return paid[0] if paid else len(hypothesis.names) * bench.price
 
 
 def rivals_of(bench: Workbench, found: Found, cause: Hypothesis) -> list[Refit]:

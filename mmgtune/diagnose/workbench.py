@@ -131,6 +131,11 @@ class Workbench:
         }
 
     @property
+    def price(self) -> float:
+        """Fall of chi-squared that a further free number must bring, by the Bayesian information criterion."""
+        return math.log(self.problem.n_residuals)
+
+    @property
     def channels(self) -> tuple[str, ...]:
         """Motion channels that count."""
         return tuple(self.noise.channels)

@@ -95,7 +95,7 @@ def load_network(path: str | Path) -> Trained:
     try:
         hold_regular(path)
         if path.is_dir():
-            raise OSError("it is a folder")
+            raise NetworkError(Problem("a folder is no trained model", where, "", _in_folder(path)))
         limits.NETWORK_BYTES.hold(path.stat().st_size, where, NetworkError)
         with safe_open(path, framework="numpy") as file:
             header = _header(file.metadata() or {}, where)
@@ -120,6 +120,12 @@ def load_network(path: str | Path) -> Trained:
         return made.make(header, *groups, where)
     except (ValueError, OverflowError) as error:
         raise NetworkError(Problem(str(error), where, "the parts of the network do not fit", FIX)) from error
+
+
+def _in_folder(path: Path) -> str:
+    """The file to give in place of a folder."""
+    inside = sorted(path.glob(f"*{SUFFIX}"))
+    return f"give the file in it: {inside[0]}" if inside else "give the file that mmgtune learn has written"
 
 
 _Kinds = Mapping[str, Any]
