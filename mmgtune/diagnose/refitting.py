@@ -168,6 +168,7 @@ class Refitting:
             chosen = self._likely(named) if self.strong or self.given else named[:REFITTED]
             chosen += terms[: (2 if self.strong else 1) * TERMS_REFITTED]
         fitted = self._fitted([s for s in chosen if s.power > 0.0])
+        self.known.ends.update((score.hypothesis.names, end) for score, end in fitted)
         fitted += self._fitted(self._of_runs_worth(order, [end for _, end in fitted], quick=quick))
         fitted += self._fitted(akin(order, fitted))
         self.known.ends.update((score.hypothesis.names, end) for score, end in fitted)
@@ -340,7 +341,20 @@ class Refitting:
                 ends = self._released(score, min(ends, key=lambda end: end.chi2))
         else:
             ends = self._steps(self.point, score, self._starts(self.point, score, SIZES[:1]), ROUGH)
+            ends += self._from_one_for_all(score)
         return min(ends, key=lambda end: end.chi2)
+
+    def _from_one_for_all(self, score: Score) -> list[Point]:
+        """A few steps with values that differ between runs, from one value for all where that is fitted: they cannot do
+        worse, and a linear score may lead elsewhere."""
+        hypothesis = score.hypothesis
+        alike = self.known.ends.get(replace(hypothesis, by="", groups=()).names) if hypothesis.by else None
+        if alike is None:
+            return []
+        values = dict(zip(alike.names, alike.unit, strict=True))
+        start = np.array([values.get(name, values.get(base_of(name))) for name in self._free_with(alike, hypothesis)])
+        there = replace(alike, chi2=self.point.chi2, spreads=self.point.spreads)
+        return self._steps(there, score, start[:, None], ROUGH)
 
     def _released(self, score: Score, end: Point) -> list[Point]:
         """A few steps with leeway, on from a refit without any, and from where the score says."""

@@ -55,6 +55,9 @@ BENT = 1.0
 """Variance beyond noise, as a share of it, that a cause with values of each run may leave where it has a shape: such
 values bend to what is elsewhere, or at another hour, and not of the run at all."""
 
+TOLD = 0.5
+"""Share of the held-out error that causes must remove which were found once no trial was kept for testing."""
+
 TOO_MANY = 4
 """Terms of a sum of causes from which it is not believed."""
 
@@ -280,7 +283,8 @@ class Diagnosis(Plotted):
         """One of ``VERDICTS``."""
         if self.interrupted:
             return "interrupted"
-        fails = self.gain.remains and (self.leftover.noticed or self.gain.worse)
+        bends = any(cause.runs for cause in self.causes)  # where it was found that explains much of anything
+        fails = self.gain.remains and (self.leftover.noticed or self.gain.worse or bends)
         fails = fails or bool(self.unclear)
         shaped = self.leftover.structured or bool(self.leftover.offsets) or self.misses_test
         if shaped if not self.causes else fails or self._mostly_left:
@@ -307,11 +311,14 @@ class Diagnosis(Plotted):
 
     @property
     def unclear(self) -> str:
-        """Why a sum of causes is not believed, in words; "" where it is, and for a single cause.
+        """Why causes are not believed, in words; "" where they are.  A single one is doubted only where it was found
+        once trials kept for testing were looked at too.
 
         An effect that no registry holds looks like a sum of those that one does; the study says how such sums look.
         """
         brought = [one for _, one in self.contributions]
+        if self._told_by_none:
+            return "with it any run is told little better by the others"
         if len(brought) < 2:
             return ""
         if len(brought) >= TOO_MANY:
@@ -327,6 +334,13 @@ class Diagnosis(Plotted):
         if self.leftover.structured and not self.explains_all:
             return "what they leave is no noise"
         return ""
+
+    @property
+    def _told_by_none(self) -> bool:
+        """Whether causes that only show in all trials together, those kept for testing among them, do not tell most of
+        the error of each from the others: nothing else is left to test them by."""
+        settled = self.together is not None and self.together.settled
+        return settled and bool(self.causes) and self.gain.share_removed[0] < TOLD
 
     @property
     def misses_test(self) -> bool:
@@ -415,10 +429,12 @@ class Diagnosis(Plotted):
             if self.causes and not self.leftover.noticed:
                 tags = " + ".join(dict.fromkeys(cause.tag for cause in self.causes))
                 them = "it was" if len(self.causes) == 1 else "they were"
+                share = self.gain.share_removed[0]
+                held_out = f"leaves {_percent(1.0 - share)} of it" if share > 0.0 else "errs more"
                 return (
                     f"Something is wrong that this program cannot name. The best of what is known, {tags}, would "
-                    f"remove {_percent(self.explained_share)} of the error {them} found on, but the model with it errs "
-                    f"more {where}."
+                    f"remove {_percent(self.explained_share)} of the error {them} found on, but the model with it "
+                    f"{held_out} {where}."
                 )
             excess = self.leftover.unknown
             left = (

@@ -76,11 +76,13 @@ def _settled(alone: Diagnosis, of_all: Diagnosis) -> Diagnosis:
     """
     if of_all.interrupted:
         return replace(alone, interrupted=True)
-    better = of_all.names_causes and of_all.gain.share_removed[0] > alone.gain.share_removed[0]
-    settled = better or not alone.names_causes
     effects = tuple(cause.tag for cause in alone.causes)
-    together = Together.of(alone.gain, effects, believed=alone.names_causes, settled=settled)
-    return replace(of_all if settled else alone, together=together)
+    together = Together.of(alone.gain, effects, believed=alone.names_causes, settled=True)
+    settled = replace(of_all, together=together)
+    better = settled.names_causes and of_all.gain.share_removed[0] > alone.gain.share_removed[0]
+    if better or not alone.names_causes:
+        return settled
+    return replace(alone, together=replace(together, settled=False))
 
 
 def _looked_at(

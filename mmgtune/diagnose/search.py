@@ -193,6 +193,8 @@ def look(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis], first
     given = _as_given(bench, point, hypotheses)
     fitted = Refitting(bench, point, linear, known, given).best(ranked, quick=False)
     refits = believable_first(fitted, bench.options.level)
+    if refits and refits[0] is not fitted[0] and fitted[0].by_chance(bench.options.level):
+        refits = refits if _stands_beside(bench, refits[0], fitted[0]) else fitted
     finer_gain = None
     if first:
         tolerance = unnoticed(bench, point.chi2)
@@ -207,6 +209,19 @@ def look(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis], first
     rivals = rivals_among(refits) if refits else []
     accepted, reason = decide(bench, refits, rivals)
     return Step(point, linear, ranked, refits, rivals, accepted, reason, finer_gain, evenly)
+
+
+def _stands_beside(bench: Workbench, one: Refit, more: Refit) -> bool:
+    """Whether a cause is needed beside what explains more, though by chance perhaps: else it may be a part of that."""
+    names = one.hypothesis.names
+    kept = kept_free(more.point, one.hypothesis)
+    both = bench.refit(
+        (*(more.point.names[i] for i in kept), *names),
+        np.concatenate([more.point.unit[kept], one.point.unit[-len(names) :]])[:, None],
+        more.point.offsets,
+        spreads={**more.point.spreads, **one.point.spreads},
+    )
+    return (more.point.chi2 - both.chi2) / one.score.inflation - one.cost >= ENOUGH
 
 
 def _as_given(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis]) -> Given | None:

@@ -242,6 +242,7 @@ def sum_of(*brought, groups=(), structured=False, explains_all=False, remains=Fa
         leftover=SimpleNamespace(structured=structured),
         explains_all=explains_all,
         gain=SimpleNamespace(mostly_remains=remains),
+        _told_by_none=False,
     )
 
 

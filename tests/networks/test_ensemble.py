@@ -209,10 +209,10 @@ def test_where_there_is_none_those_that_are_bundled_are_named(tmp_path):
     assert "Errno" not in str(error.value)
     assert "esso_osaka_3m_mixture" in error.value.problems[0].fix
     (tmp_path / "folder.safetensors").mkdir()
-    with pytest.raises(NetworkError, match="(?s)a folder is no trained model.*has written"):
+    with pytest.raises(NetworkError, match=r"(?s)a folder is no trained model.*has written"):
         load_network(tmp_path / "folder.safetensors")
     (tmp_path / "folder.safetensors" / "model.safetensors").touch()
-    with pytest.raises(NetworkError, match="(?s)give the file in it: .*model.safetensors"):
+    with pytest.raises(NetworkError, match=r"(?s)give the file in it: .*model\.safetensors"):
         load_network(tmp_path / "folder.safetensors")
 
 
