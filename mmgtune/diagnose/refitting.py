@@ -168,10 +168,8 @@ class Refitting:
             chosen = self._likely(named) if self.strong or self.given else named[:REFITTED]
             chosen += terms[: (2 if self.strong else 1) * TERMS_REFITTED]
         fitted = self._fitted([s for s in chosen if s.power > 0.0])
-        self.known.ends.update((score.hypothesis.names, end) for score, end in fitted)
         fitted += self._fitted(self._of_runs_worth(order, [end for _, end in fitted], quick=quick))
         fitted += self._fitted(akin(order, fitted))
-        self.known.ends.update((score.hypothesis.names, end) for score, end in fitted)
         asked = [s.hypothesis for s in ranked]
         chance = None if quick else ChanceScores(self.linear, asked, self.bench.options.seed)
         return self._ordered([self._judged(score, end, chance, max(1, len(terms))) for score, end in fitted])
@@ -223,7 +221,8 @@ class Refitting:
 
     def _foretold(self, point: Point, named: Sequence[Score], starts: Sequence[FloatArray]) -> list[FloatArray]:
         """Chi-squared (n_starts,) that a step from each start of each hypothesis would leave, by derivatives of what is
-        free at the point taken there, without the hypothesis, and by its own at the start; inf where a run is lost.
+        free at the point taken there, without the hypothesis, and by its own at the start; inf where a run is lost, 0
+        of all where the point itself is.
         """
         bench, linear = self.bench, self.given.linear if self.given else self.linear
         names = tuple(dict.fromkeys((*point.names, *(name for score in named for name in score.hypothesis.names))))
@@ -231,6 +230,8 @@ class Refitting:
         here = null | dict(zip(point.names, point.unit, strict=True))
         problem = bench.problem_of(names, point.integrator).with_offsets(point.offsets)
         (as_it_is,) = problem.residuals(np.array([*here.values()])[:, None])
+        if not np.isfinite(as_it_is).all():
+            return [np.zeros(those.shape[1]) for those in starts]
 
         def simulated(columns: Sequence[Mapping[str, float]]) -> tuple[FloatArray, BoolArray]:
             """What re-tuning leaves of the residuals (n_rows, k), and which runs are lost."""
@@ -280,6 +281,7 @@ class Refitting:
         for k in best:  # where little is known the others may take for ever, and are out of the question
             self._go_on()
             ends[k] = self._on(chosen[k], ends[k], ALL_STEPS)
+        self.known.ends.update((score.hypothesis.names, end) for score, end in zip(chosen, ends, strict=True))
         return list(zip(chosen, ends, strict=True))
 
     def _all_rough(self, chosen: Sequence[Score]) -> list[Point]:
