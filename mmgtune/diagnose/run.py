@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from ..errors import ProfileError
 from ..fitting.extending import with_width
 from ..fitting.journal import journalled
 from ..fitting.run import Hooks, identity_of, in_pieces, make_provenance
@@ -64,8 +66,9 @@ def diagnose(
         result = _looked_at(profile, trials, choice, options, hooks, provenance)
         if result.gain.missed and not (options.keep_test or choice or hooks.stop()):
             hooks.on_phase("looking at all trials together")
-            of_all = _looked_at(profile, replace(trials, test=()), None, options, hooks, provenance)
-            result = _settled(result, of_all)
+            with suppress(ProfileError):  # where the model runs away on the others there is nothing more to look at
+                of_all = _looked_at(profile, replace(trials, test=()), None, options, hooks, provenance)
+                result = _settled(result, of_all)
         return replace(result, wall_s=time.perf_counter() - began)
 
 

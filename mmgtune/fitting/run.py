@@ -32,6 +32,7 @@ from .identifiability import analyse
 from .initial import deviations
 from .journal import journalled
 from .least_squares import LeastSquaresResult, fit_offsets, solve
+from .lost import hold_simulated
 from .one_sided import tied
 from .pooled import Pooled, SistersPrior, pooled, read_sisters, with_sisters
 from .problem import FitProblem
@@ -225,7 +226,7 @@ def _fit(
     setting = make_setting(profile, trials, options)
     problem = setting.problem()
     if options.identifiable:
-        held = traded(problem)
+        held = traded(profile, trials, problem)
         options = replace(options, fixed=(*options.fixed, *held), identifiable=False)
         setting = setting.holding(held)
         problem = problem.with_targets(setting.model, setting.box)
@@ -248,6 +249,7 @@ def _fit(
     best = min(ends, key=lambda end: end.J + ridge * float(np.sum((end.unit - before) ** 2)))
     problem = problem.with_offsets(best.offsets)
     if options.loss == "huber" and not hooks.stop():
+        hold_simulated(profile, problem, best.unit, _tuned_on(trials))
         hooks.on_phase("weighing outliers down")
         problem, best = weigh_down(problem, best, ridge, before)
         ends = [best]
@@ -260,6 +262,8 @@ def _fit(
         if not hooks.stop():
             ends += solve(problem, found.unit[:, None], stop=hooks.stop)
             best = min(ends, key=lambda end: end.J)
+    if not np.isfinite(best.J):
+        hold_simulated(profile, problem, best.unit, _tuned_on(trials))
     if not hooks.stop() and ridge == 0.0:
         best = _nearest(problem, best, before)
     unit, cost = best.unit, best.J
@@ -307,6 +311,11 @@ def _fit(
     )
 
 
+def _tuned_on(trials: TrialSet) -> list[str]:
+    """Tune trials that have a motion, a case of the problem each."""
+    return [name for name in trials.tune if name in trials.trials]
+
+
 def edge_ridge(problem: FitProblem, options: FitOptions, before: FloatArray) -> float:
     """Weight of squared distances from the pre-determined values (n_targets,) in the cube, of a weighed problem."""
     asked = options.regularise * float(problem.misfit(before[:, None])[0]) / EDGE**2 if options.regularise else 0.0
@@ -349,16 +358,18 @@ def compared_stated(
     return tuple(compare_stated(setting.model, thetas, stated, roles, setting.backend.name))
 
 
-def traded(problem: FitProblem) -> tuple[str, ...]:
+def traded(profile: ShipProfile, trials: TrialSet, problem: FitProblem) -> tuple[str, ...]:
     """One coefficient of every direction no trial can tell, found at the pre-determined values."""
     free = np.zeros(len(problem.box), dtype=bool)
-    directions = analyse(problem, problem.box.to_unit(problem.box.pre), free).null_directions
+    before = problem.box.to_unit(problem.box.pre)
+    hold_simulated(profile, problem, before, _tuned_on(trials), "with the values of the profile")
+    directions = analyse(problem, before, free).null_directions
     return tuple(next(iter(direction.weights)) for direction in directions)
 
 
 def hold_directions(profile: ShipProfile, trials: TrialSet, options: FitOptions) -> FitOptions:
     """The same options with one coefficient fixed for every direction no trial can tell, found before searching."""
-    held = traded(make_problem(profile, trials, options))
+    held = traded(profile, trials, make_problem(profile, trials, options))
     return replace(options, fixed=(*options.fixed, *held), identifiable=False)
 
 

@@ -187,7 +187,7 @@ def find_mode(data: Windowed, temper: float = 1.0, start: FloatArray | None = No
 
     now = float(cost(r[:, None], z[:, None])[0])
     converged = False
-    for _ in range(ITERATIONS):
+    for _ in range(ITERATIONS if np.isfinite(now) else 0):  # no slope leads out of what cannot be simulated
         H = J.T @ J / temper + np.eye(n)
         g = J.T @ np.nan_to_num(r) / temper + z
         tried = _steps(z, H, g, low, high, DAMPING)

@@ -12,12 +12,13 @@ from ..arrays import FloatArray
 from ..backends import Integrator, get_backend
 from ..components import split_name
 from ..displayed import Plotted
-from ..errors import Problem, TrialError
+from ..errors import Problem, ProfileError, TrialError
+from ..fitting.lost import runs_away
 from ..fitting.run import make_provenance
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..options import PosteriorOptions
 from ..particles import Particles
-from ..profile import tuned
+from ..profile import ShipProfile, tuned
 from ..threads import blas_on_one_thread
 from ..trial import Trial
 from .local import Mode, Windowed, find_mode, make_windowed, particles_about
@@ -123,7 +124,8 @@ def posterior(
 
     profile, trials  objects, paths or bundled names; where coefficients are tuned, the room is about what they were
     command          what to call this in the provenance
-    Raises TrialError where there is no time series to learn from, OptionError for choices that make no sense.
+    Raises TrialError where there is no time series to learn from, OptionError for choices that make no sense,
+    ProfileError where no likely ship can be simulated on the trials.
     """
     ship = ship_of(profile)
     if isinstance(trials, Sequence) and not isinstance(trials, str):
@@ -143,12 +145,16 @@ def posterior(
 
     windowed = remake(chosen)
     mode = find_mode(windowed, 1.0)
+    if not np.isfinite(mode.residual).all():
+        raise _lost(ship, chosen)
     if options.leave_out:
         sized = size(windowed, mode, remake, options.seed)
     else:
         sized = Sized(mode.misfit, own_variance(windowed, mode))
     mode = find_mode(windowed, sized.temper, mode.z)
     z, nonlinear = sound(windowed, mode, sized.temper, options.particles, options.seed)
+    if not z.shape[1]:
+        raise _lost(ship, chosen)
     said = {"made_by": "mmgtune posterior", "trials": [trial.id for trial in chosen], "temper": sized.temper}
     facts = {"seed": options.seed, "room": options.room, "noise": windowed.sigma.tolist()}
     best = dict(zip(room.names, room.values(mode.z[:, None])[:, 0].tolist(), strict=True))
@@ -163,6 +169,10 @@ def posterior(
         shown=shown_by(chosen),
         provenance=provenance,
     )
+
+
+def _lost(ship: ShipProfile, trials: Sequence[Trial]) -> ProfileError:
+    return runs_away(ship, [trial.id for trial in trials], "with any coefficients that are likely")
 
 
 def sound(data: Windowed, mode: Mode, temper: float, n: int, seed: int) -> tuple[FloatArray, float]:

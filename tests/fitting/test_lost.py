@@ -1,0 +1,72 @@
+"""Profiles of which no simulation stays within bounds on the trials: a clear error, whatever is asked."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from mmgtune.diagnose import DiagnoseOptions, diagnose
+from mmgtune.errors import ProfileError
+from mmgtune.fitting import FitOptions, fit
+from mmgtune.options import PosteriorOptions
+from mmgtune.posterior import posterior
+from mmgtune.profile import parse_profile
+from mmgtune.trial import load_trials
+from tests.command import ROOT
+
+TARGETS = ("wake.w_P0",)
+QUICK = FitOptions(targets=TARGETS, method="least-squares", starts=1)
+
+
+@pytest.fixture(scope="module")
+def wild():
+    """SUZAKU's profile with a coefficient that lost its decimal point."""
+    text = (ROOT / "ship_profiles" / "suzaku.toml").read_text(encoding="utf-8")
+    return parse_profile(re.sub(r"(?m)^X_vvvv.*$", "X_vvvv = 500.0", text), Path("wild.toml"))
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        QUICK,
+        replace(QUICK, initial="estimated"),
+        replace(QUICK, loss="huber"),
+        FitOptions(targets=TARGETS, starts=2),
+    ],
+    ids=["least squares", "initial states estimated", "huber", "CMA-ES"],
+)
+def test_a_fit_of_a_ship_that_runs_away_says_where(wild, options):
+    with pytest.raises(
+        ProfileError, match="runs away on turn_m20, turn_p35, turn_m40, wherever the targets are"
+    ) as error:
+        fit(wild, "suzaku", options)
+    (problem,) = error.value.problems
+    assert "sign or a power of ten" in problem.why
+    assert "mmgtune validate" in problem.fix
+
+
+def test_so_does_the_question_what_trials_tell(wild):
+    with pytest.raises(ProfileError, match="with the values of the profile"):
+        fit(wild, "suzaku", replace(QUICK, identifiable=True))
+
+
+def test_so_does_a_diagnosis(wild):
+    with pytest.raises(ProfileError, match=r"runs away on .* and 1 more"):
+        diagnose(wild, "suzaku", DiagnoseOptions(targets=TARGETS))
+
+
+def test_so_do_particles(wild):
+    with pytest.raises(ProfileError, match="with any coefficients that are likely"):
+        posterior(wild, "suzaku", PosteriorOptions(particles=20))
+
+
+def test_a_diagnosis_of_trials_that_can_be_simulated_stands_beside_others_that_cannot(wild):
+    trials = load_trials("suzaku")
+    chosen = {name: trials.trials[name] for name in ("turn_p10", "zigzag_10", "turn_p35")}
+    some = replace(trials, trials=chosen, tune=("turn_p10", "zigzag_10"), test=("turn_p35",))
+    result = diagnose(wild, some, DiagnoseOptions(targets=TARGETS, effects=("rudder-offset",)))
+    assert result.verdict == "unexplained"
+    assert result.together is None
