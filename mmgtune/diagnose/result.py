@@ -311,8 +311,9 @@ class Diagnosis(Plotted):
 
     @property
     def unclear(self) -> str:
-        """Why causes are not believed, in words; "" where they are.  A single one is doubted only where it was found
-        once trials kept for testing were looked at too.
+        """Why causes are not believed, in words; "" where they are.
+
+        A single one is doubted only where it was found once trials kept for testing were looked at too.
 
         An effect that no registry holds looks like a sum of those that one does; the study says how such sums look.
         """

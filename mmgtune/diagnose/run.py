@@ -54,7 +54,8 @@ def diagnose(
     profile, trials  objects, paths or bundled names
     folder  where each finished refit is noted at once; None for nowhere
     resume  continue what was stopped in the folder
-    Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to.
+    Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to, ProfileError
+    where the simulation of a trial runs away wherever the targets are.
     """
     profile = ship_of(profile)
     options = with_width(profile, options)

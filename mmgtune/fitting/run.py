@@ -193,7 +193,8 @@ def fit(
     resume             continue the fit saved there
     more_starts        coefficient sets to start least squares from besides, such as the optimum of a smaller box
     command            what to call this fit in its provenance
-    Raises OptionError for choices that make no sense, OutputError where the checkpoint cannot be written.
+    Raises OptionError for choices that make no sense, OutputError where the checkpoint cannot be written, ProfileError
+    where the simulation of a tune trial runs away wherever the targets are.
     """
     profile, trials = ship_of(profile), trials_of(trials)
     profile, options = settled(profile, options, trials)
