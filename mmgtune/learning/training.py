@@ -181,7 +181,7 @@ class Trainer:
                     "training found no weights with which the ship stays in the world",
                     "rate",
                     f"after {now.step} steps; it went back {len(now.events)} times",
-                    "train at a smaller rate, or look at the trials for jumps",
+                    "train at a smaller rate, or look at the trials for jumps, and at the profile",
                 )
             )
         return now
@@ -194,7 +194,7 @@ class Trainer:
                     f"training diverged {BACK + 1} times, the last time at step {now.step}",
                     "rate",
                     why,
-                    "train at a smaller rate, or look at the trials for jumps",
+                    "train at a smaller rate, or look at the trials for jumps, and at the profile",
                 )
             )
         back = _copy(good)
