@@ -83,8 +83,9 @@ class NoiseModel:
     _sigma: FloatArray = field(init=False)
 
     def __post_init__(self) -> None:
-        self._series = [(channel, _evenly(rows)) for channel, rows in series_of(self.cases)]
-        self._sigma = np.ones(sum(len(rows) for _, rows in series_of(self.cases)))
+        series = series_of(self.cases)
+        self._series = [(channel, _evenly(rows)) for channel, rows in series]
+        self._sigma = np.ones(sum(len(rows) for _, rows in series))
         for channel, rows in self._series:
             self._sigma[rows] = self.channels[channel].filter[2]
 

@@ -244,7 +244,7 @@ class Refitting:
         for score, those in zip(named, starts, strict=True):
             self._go_on()
             own = score.hypothesis.names
-            free = self._free_with(point, score.hypothesis)
+            free = free_with(point, score.hypothesis)
             gone = {name: null[name] for name in score.hypothesis.instead if name in here}
             columns = []
             for start in those.T:
@@ -253,12 +253,13 @@ class Refitting:
             left, lost = simulated(columns)
             ends = []
             for k, start in enumerate(those[-len(own) :].T):
-                first = k * (1 + len(own))
-                slopes = (left[:, first + 1 : first + 1 + len(own)] - left[:, first : first + 1]) / _inside(start)
-                slopes[:, lost[first + 1 : first + 1 + len(own)]] = 0.0
-                step = np.linalg.lstsq(slopes, -left[:, first], rcond=1e-6)[0]
-                end = left[:, first] + slopes @ (np.clip(start + step, 0.0, 1.0) - start)
-                ends.append(np.inf if lost[first] else min(float(end @ end), float(left[:, first] @ left[:, first])))
+                here_and_near = slice(k * (1 + len(own)), (k + 1) * (1 + len(own)))
+                base, near = left[:, here_and_near][:, 0], left[:, here_and_near][:, 1:]
+                base_lost, *near_lost = lost[here_and_near]
+                slopes = np.where(near_lost, 0.0, (near - base[:, None]) / _inside(start))
+                step = np.linalg.lstsq(slopes, -base, rcond=1e-6)[0]
+                end = base + slopes @ (np.clip(start + step, 0.0, 1.0) - start)
+                ends.append(np.inf if base_lost else min(float(end @ end), float(base @ base)))
             found.append(np.array(ends))
         return found
 
@@ -354,7 +355,7 @@ class Refitting:
         if alike is None:
             return []
         values = dict(zip(alike.names, alike.unit, strict=True))
-        start = np.array([values.get(name, values.get(base_of(name))) for name in self._free_with(alike, hypothesis)])
+        start = np.array([values.get(name, values.get(base_of(name))) for name in free_with(alike, hypothesis)])
         there = replace(alike, chi2=self.point.chi2, spreads=self.point.spreads)
         return self._steps(there, score, start[:, None], ROUGH)
 
@@ -398,7 +399,7 @@ class Refitting:
         return self.known.note(
             hypothesis,
             self.bench.refits(
-                self._free_with(point, hypothesis),
+                free_with(point, hypothesis),
                 starts,
                 point.offsets,
                 max_iterations=iterations,
@@ -434,8 +435,7 @@ class Refitting:
         if end.chi2 > point.chi2:  # a wind of nearly nothing is not quite nothing; the null itself is always open
             kept = kept_free(point, hypothesis)
             unit = np.concatenate([point.unit[kept], origin(bench, point, hypothesis.names)])
-            names = (*(point.names[i] for i in kept), *hypothesis.names)
-            end = Point(names, unit, point.offsets, point.chi2, point.integrator, end.spreads)
+            end = Point(free_with(point, hypothesis), unit, point.offsets, point.chi2, point.integrator, end.spreads)
         gain = point.chi2 - end.chi2
         assert gain >= 0.0, "a nested refit ended above the model it extends"
         volume = told_by(self.linear, hypothesis, self._moved(hypothesis, end))[1] if hypothesis.by else 0.0
@@ -453,10 +453,6 @@ class Refitting:
             chance.p_value(evidence(max(gain / score.inflation - volume, 0.0), k)) if chance else 1.0,
             _unvisited(bench, end, hypothesis),
         )
-
-    def _free_with(self, point: Point, hypothesis: Hypothesis) -> tuple[str, ...]:
-        """What is free with a hypothesis at a point, its own parameters last."""
-        return (*(point.names[i] for i in kept_free(point, hypothesis)), *hypothesis.names)
 
     def _new(self, hypothesis: Hypothesis) -> int:
         """Numbers that a hypothesis adds to the point: means that are not free there, and a spread."""
@@ -526,6 +522,11 @@ def kept_free(point: Point, hypothesis: Hypothesis) -> list[int]:
     targets it takes the place of."""
     gone = {*hypothesis.bases, *hypothesis.instead}
     return [i for i, name in enumerate(point.names) if base_of(name) not in gone]
+
+
+def free_with(point: Point, hypothesis: Hypothesis) -> tuple[str, ...]:
+    """What is free with a hypothesis at a point, its own parameters last."""
+    return (*(point.names[i] for i in kept_free(point, hypothesis)), *hypothesis.names)
 
 
 def origin(bench: Workbench, point: Point, names: Sequence[str]) -> FloatArray:

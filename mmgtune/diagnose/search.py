@@ -6,6 +6,7 @@ chance would bring anywhere in the search, its size is worth speaking of, and no
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -21,7 +22,7 @@ from .base_fit import PRECISE, base_fit, unnoticed
 from .hypotheses import Hypothesis
 from .linear import Linear, linearise
 from .refit import ENOUGH, Refit, believable_first, decide, rivals_among
-from .refitting import STRONG, Given, Known, Refitting, Stopped, hopeless_beside, kept_free
+from .refitting import STRONG, Given, Known, Refitting, Stopped, free_with, hopeless_beside, kept_free
 from .screening import Score, scores
 from .workbench import Point, Workbench
 
@@ -217,15 +218,20 @@ def look(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis], first
 
 def _stands_beside(bench: Workbench, one: Refit, more: Refit) -> bool:
     """Whether a cause is needed beside what explains more, though by chance perhaps: else it may be a part of that."""
-    names = one.hypothesis.names
-    kept = kept_free(more.point, one.hypothesis)
-    both = bench.refit(
-        (*(more.point.names[i] for i in kept), *names),
-        np.concatenate([more.point.unit[kept], one.point.unit[-len(names) :]])[:, None],
-        more.point.offsets,
-        spreads={**more.point.spreads, **one.point.spreads},
-    )
+    both = _with(bench, more.point, one)
     return (more.point.chi2 - both.chi2) / one.score.inflation - one.cost >= ENOUGH
+
+
+def _with(bench: Workbench, point: Point, other: Refit, hopeless: float = math.inf) -> Point:
+    """A point refitted with the hypothesis of a refit besides, from where that ended."""
+    own = other.point.unit[-len(other.hypothesis.names) :]
+    return bench.refit(
+        free_with(point, other.hypothesis),
+        np.concatenate([point.unit[kept_free(point, other.hypothesis)], own])[:, None],
+        point.offsets,
+        spreads={**point.spreads, **other.point.spreads},
+        hopeless=hopeless,
+    )
 
 
 def _as_given(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis]) -> Given | None:
@@ -357,15 +363,7 @@ def rivals_of(bench: Workbench, found: Found, cause: Hypothesis) -> list[Refit]:
     for rival in near:
         if set(rival.hypothesis.bases) & {base_of(name) for name in fewer.names}:
             continue
-        start = rival.point.unit[-len(rival.hypothesis.names) :]
-        kept = kept_free(fewer, rival.hypothesis)
-        other = bench.refit(
-            (*(fewer.names[i] for i in kept), *rival.hypothesis.names),
-            np.concatenate([fewer.unit[kept], start])[:, None],
-            fewer.offsets,
-            spreads={**fewer.spreads, **rival.point.spreads},
-            hopeless=hopeless_beside(bench, found.final.chi2),
-        )
+        other = _with(bench, fewer, rival, hopeless_beside(bench, found.final.chi2))
         rival = replace(rival, point=other, gain=fewer.chi2 - other.chi2)
         if not best.beats(rival):
             rivals.setdefault(rival.hypothesis.tag, rival)

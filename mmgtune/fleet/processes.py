@@ -33,6 +33,9 @@ IMPORTED = (
 )
 """What jobs import: once, by the process that workers are forked from."""
 
+METHOD = "forkserver" if sys.platform == "linux" else "spawn"
+"""How a worker starts: forked on Linux alone, elsewhere the libraries of the system do not stand that."""
+
 Ran = tuple[Job, str, float]
 """A job, what became of it ("killed" where it was given up), and its time [s]."""
 
@@ -41,12 +44,12 @@ def prepare() -> None:
     """Begin, in the background, to make workers quick to start: they are forked from a process that has imported what
     jobs need.
 
-    On Linux alone: elsewhere the libraries of the system do not stand a fork, and each worker starts by itself.
+    Where each worker starts by itself there is nothing to begin.
     """
-    if sys.platform == "linux":
+    if METHOD == "forkserver":
         from multiprocessing import forkserver
 
-        multiprocessing.get_context("forkserver").set_forkserver_preload(list(IMPORTED))
+        multiprocessing.get_context(METHOD).set_forkserver_preload(list(IMPORTED))
         forkserver.ensure_running()
 
 
@@ -100,7 +103,7 @@ def run_here(
 @contextmanager
 def pool_of(workers: int) -> Iterator[ProcessPoolExecutor]:
     """Worker processes; when nothing is left for them, they end by themselves."""
-    context = multiprocessing.get_context("forkserver" if sys.platform == "linux" else "spawn")
+    context = multiprocessing.get_context(METHOD)
     pool = ProcessPoolExecutor(workers, mp_context=context, initializer=_begin, initargs=(dict(os.environ),))
     waits = True
     try:

@@ -33,6 +33,9 @@ LOST = 10
 BACK = 5
 """Times training goes back, each time at half the rate, before it ends with what it has."""
 
+FIX = "train at a smaller rate, or look at the trials for jumps, and at the profile"
+"""What helps where no weights are found."""
+
 
 class Aim(Protocol):
     """What is trained for.
@@ -181,7 +184,7 @@ class Trainer:
                     "training found no weights with which the ship stays in the world",
                     "rate",
                     f"after {now.step} steps; it went back {len(now.events)} times",
-                    "train at a smaller rate, or look at the trials for jumps, and at the profile",
+                    FIX,
                 )
             )
         return now
@@ -194,7 +197,7 @@ class Trainer:
                     f"training diverged {BACK + 1} times, the last time at step {now.step}",
                     "rate",
                     why,
-                    "train at a smaller rate, or look at the trials for jumps, and at the profile",
+                    FIX,
                 )
             )
         back = _copy(good)

@@ -125,7 +125,7 @@ def load_network(path: str | Path) -> Trained:
 def _in_folder(path: Path) -> str:
     """The file to give in place of a folder."""
     inside = sorted(path.glob(f"*{SUFFIX}"))
-    return f"give the file in it: {inside[0]}" if inside else "give the file that mmgtune learn has written"
+    return f"give the file in it: {inside[0]}" if inside else FIX
 
 
 _Kinds = Mapping[str, Any]
