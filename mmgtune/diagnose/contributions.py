@@ -67,6 +67,7 @@ class Contribution:
     form     such shares that the form of others may leave
     own      by channel, such a share of the error in that channel alone
     whole    whether it removes nearly all of what the others leave, which no form of theirs would let it
+    bends    whether it has values of each run, which bend to what is elsewhere, on held-out trials too
 
     Where ``seen`` is enough to tell that it is no trace, the others are not asked for: NaN and empty.
     """
@@ -78,6 +79,7 @@ class Contribution:
     form: float = FORM
     own: Mapping[str, float] = field(default_factory=dict)
     whole: bool = False
+    bends: bool = False
 
     @property
     def harmful(self) -> bool:
@@ -103,7 +105,8 @@ class Contribution:
             return False
         if self.harmful:
             return True
-        little = max(self.share, self.seen) < self.form or (self.share < FORM and self.seen < HARDLY_SEEN)
+        shown = self.seen if self.bends else max(self.share, self.seen)
+        little = shown < self.form or (self.share < FORM and self.seen < HARDLY_SEEN)
         if little and not (self.stands_out or self.whole):
             return True
         moved = all(
@@ -235,7 +238,8 @@ def _of(
         if name in channels and by_one > 0.0:
             own[name] = float(by_one / max(by_all, by_one))
     share = float(removed[1]) / scale if scale > 0.0 else 1.0
-    return Contribution(seen, share, channels, changes, form, own, takes_the_rest(bench, found, cause, fewer))
+    whole = takes_the_rest(bench, found, cause, fewer)
+    return Contribution(seen, share, channels, changes, form, own, whole, bool(cause.by))
 
 
 def share_lost(base: float, fewer: float, final: float) -> float:

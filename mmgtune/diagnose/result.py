@@ -61,6 +61,9 @@ TOLD = 0.5
 TOO_MANY = 4
 """Terms of a sum of causes from which it is not believed."""
 
+OF_MANY = 0.75
+"""Share of the held-out error that three causes or more must remove: what little there is any three would imitate."""
+
 NEEDED = 0.15
 """Share of the fall of chi-squared that the terms of a sum must lose, one left out at a time, all added up."""
 
@@ -328,6 +331,8 @@ class Diagnosis(Plotted):
             return "not all of them can be told from others"
         if len(brought) > 2 and sum(bool(cause.runs) for cause in self.causes) > 1:
             return "more than one of them differs from run to run"
+        if len(brought) > 2 and self.gain.share_removed[0] < OF_MANY:
+            return "so many should remove more of the error where nothing was fitted"
         if sum(one.seen for one in brought) < NEEDED:
             return "each of them can be left out with little loss"
         if self.gain.mostly_remains:

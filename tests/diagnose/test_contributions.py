@@ -70,6 +70,13 @@ def test_a_cause_beside_larger_ones_has_to_help_where_nobody_looked(seen, share,
     assert Contribution(seen, share, *large, form=0.03).unnoticed == (trace or share < 0.03)  # as of a hull
 
 
+def test_values_of_runs_are_shown_by_the_trials_looked_at_alone():
+    one = Contribution(0.00001, 0.008, {"y": 970.0}, {"overshoot_1_deg": 0.6}, bends=True)
+    assert one.unnoticed  # bent to a stream in one part of the sea, on held-out trials too
+    assert not replace(one, bends=False).unnoticed
+    assert not replace(one, seen=0.004).unnoticed
+
+
 def test_a_cause_that_takes_all_that_others_leave_is_no_matter_of_their_form():
     one = Contribution(0.002, 0.0002, {"u": 28.0}, {}, 0.003)
     assert one.unnoticed
@@ -233,7 +240,7 @@ def test_ten_degree_zigzags_name_no_stall(tmp_path, monkeypatch):
     assert result.verdict in ("unexplained", "none")
 
 
-def sum_of(*brought, groups=(), structured=False, explains_all=False, remains=False, by_run=0):
+def sum_of(*brought, groups=(), structured=False, explains_all=False, remains=False, by_run=0, removed=0.99):
     """What ``Diagnosis.unclear`` sees of a sum of causes."""
     return SimpleNamespace(
         causes=[SimpleNamespace(runs=k < by_run) for k in range(len(brought))],
@@ -241,7 +248,7 @@ def sum_of(*brought, groups=(), structured=False, explains_all=False, remains=Fa
         groups=groups,
         leftover=SimpleNamespace(structured=structured),
         explains_all=explains_all,
-        gain=SimpleNamespace(mostly_remains=remains),
+        gain=SimpleNamespace(mostly_remains=remains, share_removed=(removed, 0.0, 1.0)),
         _told_by_none=False,
     )
 
@@ -266,6 +273,8 @@ GROUP = (("a", "b"),)
         (sum_of(CLEAR, CLEAR, CLEAR, by_run=2), "from run to run"),
         (sum_of(CLEAR, CLEAR, CLEAR, by_run=1), ""),
         (sum_of(CLEAR, CLEAR, by_run=2), ""),
+        (sum_of(CLEAR, CLEAR, CLEAR, removed=0.46), "so many"),
+        (sum_of(CLEAR, CLEAR, removed=0.46), ""),
         (sum_of(CLEAR, remains=True), ""),
         (sum_of(CLEAR, structured=True), ""),
         (sum_of(CLEAR, SMALL_BUT_CLEAR, structured=True, explains_all=True), ""),
