@@ -49,7 +49,10 @@ def plain(draw: Callable[..., Any]) -> Callable[..., Any]:
         import matplotlib as mpl
 
         with mpl.rc_context({"text.parse_math": False, "axes.unicode_minus": True}):
-            return draw(*args, **how)
+            made = draw(*args, **how)
+            showing = mpl.is_interactive()
+        mpl.interactive(showing)  # a back end loaded by the first picture has set it; the end of the context undid that
+        return made
 
     return drawn
 

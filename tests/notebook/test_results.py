@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from dataclasses import replace
@@ -223,6 +224,18 @@ def test_what_there_is_no_picture_of(trials, plt):
         trials.plot.coefficients()
     with pytest.raises(OptionError, match="1 channels on 2 axes"):
         trials.plot.histories(channels=("psi",), ax=plt.figure().subplots(1, 2))
+
+
+def test_pictures_leave_a_notebook_showing_what_is_drawn_next(tmp_path):
+    (tmp_path / "inline.py").write_text(
+        "import matplotlib\nfrom matplotlib.backends.backend_agg import *\nmatplotlib.interactive(True)\n"
+    )  # as the back end of notebooks does when pyplot first loads it
+    code = (
+        "import matplotlib, mmgtune; mmgtune.load_trials('suzaku')['turn_p35'].plot.tracks();"
+        "assert matplotlib.is_interactive()"
+    )
+    env = {**os.environ, "MPLBACKEND": "module://inline", "PYTHONPATH": str(tmp_path)}
+    subprocess.run([sys.executable, "-c", code], check=True, env=env)
 
 
 def test_tables_need_no_matplotlib():
