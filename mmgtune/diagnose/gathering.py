@@ -10,10 +10,11 @@ import numpy as np
 from ..arrays import FloatArray
 from ..backends import STATES
 from ..fitting.box import group_of
+from ..fitting.comparison import finite
 from ..model import Model
 from ..trial import Trial
 from ..trial.smoothing import FEWEST
-from .evidence import ResidualForces, explain_forces, noise_share, residual_forces, short_horizon
+from .evidence import ResidualForces, can_be_explained, explain_forces, noise_share, residual_forces, short_horizon
 from .leftover import Leftover, residuals_of
 from .search import Found
 from .whereabouts import Whereabouts, whereabouts
@@ -29,9 +30,9 @@ def evidence(bench: Workbench, found: Found, before: Leftover, left: Leftover) -
         shown[f"short_horizon_{which}"] = {}
         if long_enough:
             short = _short_horizon(models, long_enough, point)
-            shown[f"short_horizon_{which}"] = dict(zip(STATES, map(float, short), strict=True))
+            shown[f"short_horizon_{which}"] = dict(zip(STATES, map(finite, map(float, short)), strict=True))
         forces = [forces for forces, _ in _forces(bench, point)]
-        if forces:
+        if can_be_explained(forces):
             shown[f"forces_{which}"] = {
                 "explained": {axis: dict(shares) for axis, shares in explain_forces(forces).items()},
                 "noise": dict(noise_share(forces)),

@@ -61,8 +61,10 @@ def covariance(bench: Workbench, point: Point) -> tuple[tuple[str, ...], FloatAr
         return (), np.zeros((0, 0))
     R, noise, size = _told(bench, point, tuple(inside))
     before = np.array([bench.believed.deviations.get(name, np.sqrt(OF_BOX)) for name in inside])
-    told = R.T @ np.linalg.solve(noise, R) + np.diag((size / before) ** 2)
-    return tuple(inside), np.linalg.inv(told) * np.outer(size, size)
+    known = (size / before) ** 2
+    told, directions = np.linalg.eigh(R.T @ np.linalg.solve(noise, R) + np.diag(known))
+    told = np.maximum(told, known.min())  # trials nearly free of noise tell so much that the rest drowns in rounding
+    return tuple(inside), (directions / told) @ directions.T * np.outer(size, size)
 
 
 def _told(bench: Workbench, point: Point, names: tuple[str, ...]) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -243,7 +243,7 @@ def whereabouts(
     if not forces:
         return Whereabouts(runs, {}, {}, {}, {}, {}, (), removable, offsets)
     phase = [phases_of(found, trial) for found, trial in forces]
-    ratio = [(found.force / np.maximum(found.noise, 1e-300)) ** 2 - 1.0 for found, _ in forces]
+    ratio = [(found.force / np.maximum(found.noise, 1e-100)) ** 2 - 1.0 for found, _ in forces]
     every, excess = np.concatenate(phase), np.concatenate(ratio)
     names = list(PHASES)
     axes = dict(zip(AXES, map(float, np.mean(excess, axis=0)), strict=True))

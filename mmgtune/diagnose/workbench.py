@@ -261,10 +261,16 @@ class Workbench:
 
 
 def noise_levels(trials: Sequence[Trial]) -> FloatArray:
-    """(6,) deviation of the noise by channel: the median over trials of what second differences and rounding show."""
+    """(6,) deviation of the noise by channel: the median over trials of what second differences and rounding show.
+
+    Generated trials may have none: there it is a millionth of the largest value; of a channel that stays at 0, of a
+    metre, a radian, the largest speed, or a radian in the time the ship takes for a metre.
+    """
     found = by_channel(trials, motion_noise)
-    floor = 1e-6 * np.nanmax([np.nanmax(np.abs(trial.motion), axis=0) for trial in trials], axis=0)
-    return np.asarray(np.maximum(found, np.maximum(floor, 1e-12)))
+    largest = np.nanmax([np.nanmax(np.abs(trial.motion), axis=0) for trial in trials], axis=0)
+    speed = max(float(np.max(largest[3:5])), 1e-3)
+    scale = np.where(largest > 0.0, largest, [1.0, 1.0, 1.0, speed, speed, speed])
+    return np.asarray(np.maximum(found, 1e-6 * scale))
 
 
 def _in_noise(sigma: FloatArray, channels: Sequence[str]) -> Objective:

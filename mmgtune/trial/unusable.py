@@ -37,6 +37,7 @@ def unusable(columns: Mapping[str, FloatArray], where: str, reported: Collection
         return [*problems, Problem(what, where, "a motion needs two or more", "write the whole record")]
     with np.errstate(all="ignore"):
         problems += _time(columns, where) + _values(columns, where) + _rudder(columns, where)
+        problems += _dead(columns, where)
         damaged = any(impossible(values, _unit(name)).any() for name, values in columns.items())
         return problems if damaged else problems + in_degrees(columns, where)
 
@@ -181,6 +182,17 @@ def _rudder(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
                 )
             )
     return problems
+
+
+def _dead(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
+    """A record in which nothing moves and nothing was ordered."""
+    there = [columns[name] for name in (*MOTION, *MAIN_INPUTS) if name in columns]
+    still = all(len(np.unique(values[np.isfinite(values)])) <= 1 for values in there)
+    speeds = [columns[name] for name in ("u", "v", "r", "n") if name in columns]
+    if not speeds or not still or any(np.any(values[np.isfinite(values)]) for values in speeds):
+        return []
+    why = "speeds and revolutions are 0 and nothing changes from the first sample to the last"
+    return [Problem("nothing moves in the whole trial", where, why, "export the columns again, or leave the file out")]
 
 
 def in_degrees(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:

@@ -37,6 +37,15 @@ def test_too_few_samples(tmp_path: Path, row: int) -> None:
     assert short.duration == 0.0
 
 
+def test_a_record_in_which_nothing_moves(tmp_path: Path) -> None:
+    trial = made()
+    still = {name: np.zeros(trial.n_samples) for name in ATTRIBUTES_OF[1:]}
+    (problem,) = problems_of(write_trial(replace(trial, **still), tmp_path / "a.parquet"))
+    assert "nothing moves in the whole trial" in problem
+    moored = replace(trial, **{**still, "psi": np.full(trial.n_samples, 0.3), "delta": trial.delta})
+    assert not said(moored, "error")  # the rudder was tried alongside
+
+
 ATTRIBUTES_OF = ("t", "x", "y", "psi", "u", "v_m", "r", "n", "delta")
 
 

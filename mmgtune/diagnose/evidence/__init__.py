@@ -6,7 +6,7 @@ short_horizon  residuals of simulations restarted every window
 explained      the share of a residual that one variable alone explains, and the share that is noise
 """
 
-from .explained import FEWEST_BLOCKS, explain_forces, noise_share, share_explained
+from .explained import FEWEST_BLOCKS, can_be_explained, explain_forces, noise_share, share_explained
 from .forces import ResidualForces, residual_forces
 from .short_horizon import ShortHorizon, short_horizon
 
@@ -14,6 +14,7 @@ __all__ = [
     "FEWEST_BLOCKS",
     "ResidualForces",
     "ShortHorizon",
+    "can_be_explained",
     "explain_forces",
     "noise_share",
     "residual_forces",

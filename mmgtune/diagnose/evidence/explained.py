@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from ...arrays import FloatArray
+from ...arrays import FloatArray, IntArray
 from .forces import ResidualForces
 
 NODES = 5
@@ -81,13 +81,23 @@ def explain_forces(forces: Sequence[ResidualForces], *, block: float = 60.0) -> 
         raise ValueError("there are no trials" if not forces else f"a block of {block:g} s is not positive")
     parts = [f.variables for f in forces]
     variables = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-    numbers = [np.floor((f.time - f.time[0]) / block).astype(int) for f in forces]
-    firsts = np.cumsum([0, *(number[-1] + 1 for number in numbers[:-1])])
-    blocks = np.concatenate([number + first for number, first in zip(numbers, firsts, strict=True)])
+    blocks = _blocks(forces, block)
     return {
         name: share_explained(values, variables, blocks=blocks, weights=_weights(noise))
         for name, values, noise in _pooled(forces)
     }
+
+
+def can_be_explained(forces: Sequence[ResidualForces], *, block: float = 60.0) -> bool:
+    """Whether trials last long enough together for ``explain_forces``."""
+    return bool(forces) and len(np.unique(_blocks(forces, block))) >= FEWEST_BLOCKS
+
+
+def _blocks(forces: Sequence[ResidualForces], block: float) -> IntArray:
+    """(n,) label of each sample: trials one after the other, each in blocks of so many seconds."""
+    numbers = [np.floor((f.time - f.time[0]) / block).astype(int) for f in forces]
+    firsts = np.cumsum([0, *(number[-1] + 1 for number in numbers[:-1])])
+    return np.concatenate([number + first for number, first in zip(numbers, firsts, strict=True)])
 
 
 def noise_share(forces: Sequence[ResidualForces]) -> dict[str, float]:
