@@ -51,18 +51,20 @@ ALL, ALL_HELD_OUT = 0.998, 0.98
 OPEN = 0.3
 """Variance beyond noise that is spoken of where the log of the inputs leaves it open, as a share of the noise."""
 
+BEYOND_OPEN = 3.0
+"""Squared error on trials left out in turn, over noise and what the logged inputs leave open, from which causes are not
+believed that fit all of them together."""
+
 BENT = 1.0
 """Variance beyond noise, as a share of it, that a cause with values of each run may leave where it has a shape: such
 values bend to what is elsewhere, or at another hour, and not of the run at all."""
 
 TOLD = 0.5
-"""Share of the held-out error that causes must remove which were found once no trial was kept for testing."""
+"""Share of the held-out error that causes must remove which were found once no trial was kept for testing, and several
+causes anyhow: what little there is any two or three would imitate."""
 
 TOO_MANY = 4
 """Terms of a sum of causes from which it is not believed."""
-
-OF_MANY = 0.75
-"""Share of the held-out error that three causes or more must remove: what little there is any three would imitate."""
 
 NEEDED = 0.15
 """Share of the fall of chi-squared that the terms of a sum must lose, one left out at a time, all added up."""
@@ -287,7 +289,8 @@ class Diagnosis(Plotted):
         if self.interrupted:
             return "interrupted"
         bends = any(cause.runs for cause in self.causes)  # where it was found that explains much of anything
-        fails = self.gain.remains and (self.leftover.noticed or self.gain.worse or bends)
+        far = self.gain.held_out == "each" and self.gain.left**2 > BEYOND_OPEN * (1.0 + self.leftover.left_open)
+        fails = self.gain.remains and (self.leftover.noticed or self.gain.worse or bends or far)
         fails = fails or bool(self.unclear)
         shaped = self.leftover.structured or bool(self.leftover.offsets) or self.misses_test
         if shaped if not self.causes else fails or self._mostly_left:
@@ -331,7 +334,7 @@ class Diagnosis(Plotted):
             return "not all of them can be told from others"
         if len(brought) > 2 and sum(bool(cause.runs) for cause in self.causes) > 1:
             return "more than one of them differs from run to run"
-        if len(brought) > 2 and self.gain.share_removed[0] < OF_MANY:
+        if self.gain.share_removed[0] < TOLD:
             return "so many should remove more of the error where nothing was fitted"
         if sum(one.seen for one in brought) < NEEDED:
             return "each of them can be left out with little loss"

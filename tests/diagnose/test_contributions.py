@@ -274,7 +274,9 @@ GROUP = (("a", "b"),)
         (sum_of(CLEAR, CLEAR, CLEAR, by_run=1), ""),
         (sum_of(CLEAR, CLEAR, by_run=2), ""),
         (sum_of(CLEAR, CLEAR, CLEAR, removed=0.46), "so many"),
-        (sum_of(CLEAR, CLEAR, removed=0.46), ""),
+        (sum_of(CLEAR, CLEAR, removed=-0.16), "so many"),
+        (sum_of(CLEAR, CLEAR, removed=0.6), ""),
+        (sum_of(CLEAR, removed=-0.16), ""),
         (sum_of(CLEAR, remains=True), ""),
         (sum_of(CLEAR, structured=True), ""),
         (sum_of(CLEAR, SMALL_BUT_CLEAR, structured=True, explains_all=True), ""),
@@ -331,6 +333,30 @@ def test_values_of_runs_that_leave_a_shape_are_not_believed(runs, excess, struct
     assert Diagnosis._mostly_left.fget(seen) is not believed
     seen.explains_all = True
     assert not Diagnosis._mostly_left.fget(seen)
+
+
+@pytest.mark.parametrize(
+    ("held_out", "left", "open_", "believed"),
+    [
+        ("each", 52.0, 383.0, False),  # the blade stuck for a minute in two runs of five
+        ("each", 30.0, 383.0, True),  # no more than logs of a sample a second leave open
+        ("each", 1.5, 0.0, True),
+        ("test", 52.0, 0.0, True),  # said beside the answer
+    ],
+)
+def test_what_tells_no_run_from_the_others_is_not_believed(held_out, left, open_, believed):
+    seen = SimpleNamespace(
+        interrupted=False,
+        causes=[SimpleNamespace(runs=None)],
+        gain=SimpleNamespace(held_out=held_out, remains=True, left=left, worse=False),
+        leftover=SimpleNamespace(noticed=False, structured=False, offsets={}, left_open=open_),
+        unclear="",
+        misses_test=False,
+        _mostly_left=False,
+        between=(),
+        groups=(),
+    )
+    assert Diagnosis.verdict.fget(seen) == ("found" if believed else "unexplained")
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -43,7 +44,9 @@ def test_values_that_differ_stand_first_where_they_leave_far_less(differing, ali
 
 def fitted(tag, gain, inflation, p_value, unvisited=""):
     """A refit of one parameter, along a signature of which noise has ``inflation``."""
-    known = SimpleNamespace(by="", tag=tag), SimpleNamespace(inflation=inflation), SimpleNamespace(chi2=0.0)
+    akin = {"wave-drift": ("wind",)}.get(tag, ())
+    hypothesis = SimpleNamespace(by="", tag=tag, effect=SimpleNamespace(akin=akin))
+    known = hypothesis, SimpleNamespace(inflation=inflation), SimpleNamespace(chi2=0.0)
     return Refit(*known, gain, 9.0, gain / inflation - 9.0, 1.0, p_value, unvisited)
 
 
@@ -58,7 +61,7 @@ def test_a_cause_is_not_hidden_behind_what_chance_explains_more_by():
     less = fitted("antenna", 150.0, 1.0, 1e-20)
     ordered = believable_first([NOISE, less, TRUE], 0.01)
     assert [one.hypothesis.tag for one in ordered] == ["gyro-bias", "rudder-gain", "antenna"]
-    assert [one.hypothesis.tag for one in rivals_among(ordered)] == ["antenna"] * (not TRUE.beats(less))
+    assert [one.hypothesis.tag for one in rivals_among(ordered, N_RESIDUALS)] == ["antenna"] * (not TRUE.beats(less))
     assert TRUE.beats(NOISE)
     assert not NOISE.beats(TRUE)
 
@@ -66,3 +69,15 @@ def test_a_cause_is_not_hidden_behind_what_chance_explains_more_by():
 def test_where_chance_brings_all_of_it_nothing_comes_first():
     others = [NOISE, fitted("antenna", 15.0, 1.0, 0.3), fitted("gyro-bias", 220.0, 1.2, 1e-30, unvisited="turns")]
     assert believable_first(others, 0.01) == others
+
+
+@pytest.mark.parametrize(
+    ("left", "wind", "rivals"),
+    [(90.0, 118_000.0, ["wind"]), (1.1, 118_000.0, []), (90.0, 30_000.0, [])],
+    ids=["of another form than both", "the drift fits", "too little"],
+)
+def test_a_wind_may_be_meant_where_the_drift_of_waves_fits_badly(left, wind, rivals):
+    point = SimpleNamespace(chi2=left * N_RESIDUALS)
+    drift = replace(fitted("wave-drift", 340_000.0, 1.0, 0.0), point=point)
+    others = [fitted("current", 200_000.0, 1.0, 0.0), fitted("wind", wind, 1.0, 0.0)]
+    assert [one.hypothesis.tag for one in rivals_among([drift, *others], N_RESIDUALS)] == rivals
