@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 from ..displayed import Brief, Plotted
@@ -97,6 +98,23 @@ class Cause:
         if self.runs is not None:
             return self.runs.sentence
         return self.effect.sentence(parameters_in_words(self.effect, self.estimates))
+
+    @property
+    def sized(self) -> bool:
+        """Whether the interval of any of its parameters leaves out the value at which it is absent."""
+        if self.effect is None or not self.estimates:
+            return True
+        fields = [*self.effect.parameters.items()]
+        directions = {name for (_, before), (name, _) in pairwise(fields) if before.chart == "polar"}
+        nulls = {name: field.null for name, field in fields if name not in directions}
+        known = {name.rpartition(".")[2]: one for name, one in self.estimates.items()}
+        return any(
+            not (-math.inf if one.low is None else one.low)
+            <= nulls[name]
+            <= (math.inf if one.high is None else one.high)
+            for name, one in known.items()
+            if name in nulls
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON; values in the unit named, interval ends null where infinite."""
@@ -336,6 +354,8 @@ class Diagnosis(Plotted):
             return "more than one of them differs from run to run"
         if self.gain.share_removed[0] < TOLD:
             return "so many should remove more of the error where nothing was fitted"
+        if unsized := [cause.tag for cause in self.causes if not cause.sized]:
+            return f"how large {' and '.join(unsized)} would be is not told"
         if sum(one.seen for one in brought) < NEEDED:
             return "each of them can be left out with little loss"
         if self.gain.mostly_remains:

@@ -15,8 +15,10 @@ from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.contributions import Contribution, set_aside, takes_the_rest
 from mmgtune.diagnose.gain import BAND, expected, held_out
 from mmgtune.diagnose.hypotheses import known_causes
+from mmgtune.diagnose.intervals import Estimate
 from mmgtune.diagnose.leftover import Leftover
 from mmgtune.diagnose.record import ANSWERS, kind_of, record_of
+from mmgtune.diagnose.result import Cause
 from mmgtune.diagnose.search import Found
 from mmgtune.diagnose.workbench import make_workbench
 from mmgtune.effects import Visited, effects, find_effect
@@ -240,10 +242,12 @@ def test_ten_degree_zigzags_name_no_stall(tmp_path, monkeypatch):
     assert result.verdict in ("unexplained", "none")
 
 
-def sum_of(*brought, groups=(), structured=False, explains_all=False, remains=False, by_run=0, removed=0.99):
+def sum_of(
+    *brought, groups=(), structured=False, explains_all=False, remains=False, by_run=0, removed=0.99, sized=True
+):
     """What ``Diagnosis.unclear`` sees of a sum of causes."""
     return SimpleNamespace(
-        causes=[SimpleNamespace(runs=k < by_run) for k in range(len(brought))],
+        causes=[SimpleNamespace(runs=k < by_run, sized=sized, tag="wind") for k in range(len(brought))],
         contributions=[("tag", one) for one in brought],
         groups=groups,
         leftover=SimpleNamespace(structured=structured),
@@ -275,6 +279,8 @@ GROUP = (("a", "b"),)
         (sum_of(CLEAR, CLEAR, by_run=2), ""),
         (sum_of(CLEAR, CLEAR, CLEAR, removed=0.46), "so many"),
         (sum_of(CLEAR, CLEAR, removed=-0.16), "so many"),
+        (sum_of(CLEAR, CLEAR, sized=False), "how large wind"),
+        (sum_of(CLEAR, sized=False), ""),
         (sum_of(CLEAR, CLEAR, removed=0.6), ""),
         (sum_of(CLEAR, removed=-0.16), ""),
         (sum_of(CLEAR, remains=True), ""),
@@ -333,6 +339,24 @@ def test_values_of_runs_that_leave_a_shape_are_not_believed(runs, excess, struct
     assert Diagnosis._mostly_left.fget(seen) is not believed
     seen.explains_all = True
     assert not Diagnosis._mostly_left.fget(seen)
+
+
+@pytest.mark.parametrize(
+    ("tag", "estimated", "sized"),
+    [
+        ("wave-drift", {"force": (0.0, 82e3), "direction": (0.2, 1.0)}, False),  # 36 +- 46 kN: its direction is no size
+        ("wave-drift", {"force": (20e3, 82e3), "direction": (-1.0, 1.0)}, True),
+        ("antenna", {"x": (-34.0, -30.0), "y": (-0.1, 0.1)}, True),
+        ("rpm-scale", {"factor": (0.955, 1.001)}, False),
+        ("memory", {"time_constant": (1.0, None)}, True),
+        ("rudder-stall", {"angle": (0.4, None)}, False),  # absent at infinity
+        ("current", {}, True),  # values of runs
+    ],
+)
+def test_whether_the_size_of_a_cause_is_told(tag, estimated, sized):
+    effect = find_effect(tag)
+    sizes = {f"{effect.kind}.{name}": Estimate(name, 1.0, *ends, 1.0) for name, ends in estimated.items()}
+    assert Cause(tag, effect, sizes, 0.0, None).sized is sized
 
 
 @pytest.mark.parametrize(
