@@ -21,7 +21,7 @@ from .hypotheses import Hypothesis
 from .intervals import Estimate, estimates
 from .leftover import Leftover
 from .search import Found, step_of, without
-from .unseen import Beside, held_out_fits
+from .unseen import Beside, Unseen
 from .workbench import Point, Workbench
 
 SHARE = 0.01
@@ -135,14 +135,14 @@ class Aside:
     contribution: Contribution
 
 
-def contributions(bench: Workbench, found: Found, test: Sequence[Trial]) -> list[Contribution]:
+def contributions(bench: Workbench, found: Found, unseen: Unseen) -> list[Contribution]:
     """That of each cause; a cause that is alone, or stands beside none but a finer integration step, brings all."""
     if len(found.causes) < 2:
         return [Contribution(1.0) for _ in found.causes]
     fewer = [without(bench, found.final, cause) for cause in found.causes]
     seen = [share_lost(found.base.chi2, point.chi2, found.final.chi2) for point in fewer]
     asked = [k for k, share in enumerate(seen) if share < WORTH_ASKING]
-    held_out = dict(zip(asked, _held_out(bench, found, [fewer[k] for k in asked], test), strict=True))
+    held_out = dict(zip(asked, _held_out(found, [fewer[k] for k in asked], unseen), strict=True))
     return [
         _of(bench, found, cause, fewer[k], seen[k], held_out[k]) if k in held_out else Contribution(seen[k])
         for k, cause in enumerate(found.causes)
@@ -150,7 +150,7 @@ def contributions(bench: Workbench, found: Found, test: Sequence[Trial]) -> list
 
 
 def set_aside(
-    bench: Workbench, found: Found, test: Sequence[Trial], before: Leftover
+    bench: Workbench, found: Found, unseen: Unseen, before: Leftover
 ) -> tuple[list[Aside], list[Contribution]]:
     """Take traces out of what was found, the least first, and refit the rest.
 
@@ -159,9 +159,9 @@ def set_aside(
     -> the traces, and what each cause that stays brings
     """
     traces: list[Aside] = []
-    brought = contributions(bench, found, test)
-    if test and len(brought) == 1 and not before.structured:
-        brought = [_alone(bench, found, test)]
+    brought = contributions(bench, found, unseen)
+    if unseen.test and len(brought) == 1 and not before.structured:
+        brought = [_alone(found, unseen)]
     while any(one.unnoticed for one in brought):
         k = min((i for i, one in enumerate(brought) if one.unnoticed), key=lambda i: brought[i].seen)
         cause = found.causes[k]
@@ -171,7 +171,7 @@ def set_aside(
         traces.append(Aside(cause, {name: sizes[name] for name in cause.names}, p_value, brought[k]))
         found.final = without(bench, found.final, cause)
         del found.causes[k]
-        brought = contributions(bench, found, test)
+        brought = contributions(bench, found, unseen)
     return traces, brought
 
 
@@ -183,9 +183,9 @@ def alone_of(bench: Workbench, found: Found) -> Found:
     return replace(found, final=final, causes=found.causes[:1])
 
 
-def _alone(bench: Workbench, found: Found, test: Sequence[Trial]) -> Contribution:
+def _alone(found: Found, unseen: Unseen) -> Contribution:
     """That of the only cause, where the model without it leaves nothing but noise: a trace if it does harm."""
-    gain = measured(bench, found, test)
+    gain = measured(found, unseen)
     return Contribution(1.0, gain.share_removed[0], {}, {}) if gain.worse else Contribution(1.0)
 
 
@@ -210,13 +210,13 @@ class _HeldOut:
                 self.changes[name] = max(self.changes.get(name, 0.0), *those)
 
 
-def _held_out(bench: Workbench, found: Found, fewer: Sequence[Point], test: Sequence[Trial]) -> list[_HeldOut]:
+def _held_out(found: Found, fewer: Sequence[Point], unseen: Unseen) -> list[_HeldOut]:
     """What is held out, without one cause or another: a point each."""
     all_of = [_HeldOut() for _ in fewer]
-    for points, trials in held_out_fits(bench, (found.base, found.final, *fewer), test) if fewer else ():
+    for points, trials in unseen.fits((found.base, found.final, *fewer)) if fewer else ():
         base, final, *others = points
         for one, point in zip(all_of, others, strict=True):
-            one.add(*_errors(bench, (base, point, final), trials))
+            one.add(*_errors(unseen.bench, (base, point, final), trials))
     return all_of
 
 

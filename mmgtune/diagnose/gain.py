@@ -22,7 +22,7 @@ from .elsewhere import FIRST, estimated_there, first_part
 from .inputs import DRAWS, changes
 from .intervals import OF_BOX, covariance
 from .search import Found
-from .unseen import Beside, held_out_fits, problem_on
+from .unseen import Beside, Unseen, problem_on
 from .workbench import Point, Workbench
 
 RESAMPLES = 2000
@@ -192,12 +192,13 @@ def _share(excess: FloatArray) -> float:
     return float(1.0 - after / before) if before > 0.0 else 0.0
 
 
-def held_out(bench: Workbench, found: Found, test: Sequence[Trial]) -> Gain:
+def held_out(found: Found, unseen: Unseen) -> Gain:
     """The gain on test trials; where there are none, on each trial with everything refitted without it.
 
     Windows of one trial are left out together.
     """
-    gain = measured(bench, found, test)
+    gain = measured(found, unseen)
+    bench, test = unseen.bench, unseen.test
     if not gain.remains or gain.held_out == "only":
         return gain
     n = len({trial.run for trial in bench.trials})
@@ -252,14 +253,15 @@ def _with_other_ties(
     return np.stack(found, axis=1)
 
 
-def measured(bench: Workbench, found: Found, test: Sequence[Trial]) -> Gain:
+def measured(found: Found, unseen: Unseen) -> Gain:
     """The gain as ``held_out`` has it, without what is expected of coefficients that are known no better."""
+    bench, test = unseen.bench, unseen.test
     if test:
         compared, excess = _on(bench, found.base, found.final, test)
         return Gain("test", tuple(compared), excess, *_chance(bench, test, found.final), _share_used(found.final, test))
     every: list[TrialComparison] = []
     rows = []
-    for (before, after), trials in held_out_fits(bench, (found.base, found.final), ()):
+    for (before, after), trials in unseen.fits((found.base, found.final)):
         compared, excess = _on(bench, before, after, trials)
         every += compared
         rows.append(excess)

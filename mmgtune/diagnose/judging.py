@@ -24,13 +24,17 @@ from .instead import instead_of_tuning
 from .intervals import Estimate, estimates
 from .leftover import Leftover, leftover
 from .legs import Difference
-from .refit import Refit
+from .refit import Refit, kin_among
 from .result import Candidate, Cause, Diagnosis, Doubted, Trace
 from .retuned import retuned
 from .search import Found, Step, rivals_of, step_of
 from .separate import Suggestion, suggest
+from .unseen import Unseen
 from .voyages import Choice
 from .workbench import Point, Workbench
+
+OF_ANOTHER_FORM = 1.0
+"""Variance beyond noise, as a share of it, from which on what a single cause leaves says that its form is another."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +43,7 @@ class Judge:
 
     profile, options, provenance  as given
     known     hypotheses that were looked for; asked: those and the ones that do the same as a target
-    test      trials kept for testing
+    unseen    what answers are judged by: the trials kept for testing, or each run in turn
     before    what the model without any cause leaves
     traces    what was set aside
     choice    windows of voyages, None for trials; differing: what differs between the voyages
@@ -52,7 +56,7 @@ class Judge:
     hooks: Hooks
     known: Sequence[Hypothesis]
     asked: Sequence[Hypothesis]
-    test: Sequence[Trial]
+    unseen: Unseen
     before: Leftover
     traces: Sequence[Aside]
     choice: Choice | None
@@ -67,7 +71,7 @@ class Judge:
         result = self._compared(self._judged(found, brought), found)
         if result.unclear and not self.hooks.stop():  # perhaps the first of them would have been believed alone
             alone = alone_of(self.bench, found)
-            brought = contributions(self.bench, alone, self.test)
+            brought = contributions(self.bench, alone, self.unseen)
             other = self._compared(self._judged(alone, brought, Doubted.of(result)), alone)
             if other.names_causes and other.explains_nearly_all:
                 result, found = other, alone
@@ -90,14 +94,14 @@ class Judge:
         return Diagnosis(
             profile=self.profile,
             options=self.options,
-            causes=tuple(_causes(bench, found, sizes, self.test)),
+            causes=tuple(_causes(bench, found, sizes, self.unseen.test)),
             traces=tuple(_trace(bench, one) for one in self.traces),
             contributions=tuple((h.tag, one) for h, one in zip(found.causes, brought, strict=True)),
             groups=(),
-            candidates=tuple(_candidates(bench, found, self.test)),
+            candidates=tuple(_candidates(bench, found, self.unseen.test)),
             detectability=tuple(detectability(bench, found.steps[0], self.known)) if found.steps else (),
             suggestion=None,
-            gain=held_out(bench, found, self.test),
+            gain=held_out(found, self.unseen),
             leftover=left,
             explained_share=_explained(found, self.before, left),
             theta=theta,
@@ -124,6 +128,9 @@ class Judge:
             return result
         self.hooks.on_phase("comparing the causes with their rivals")
         rivals = [rivals_of(self.bench, found, cause) for cause in found.causes]
+        if result.leftover.unknown > OF_ANOTHER_FORM and len(found.causes) == 1 and not rivals[0]:
+            step = step_of(found, found.causes[0])
+            rivals = [kin_among(step.refits) if step else []]
         groups = tuple(
             (cause.tag, *(rival.hypothesis.tag for rival in of))
             for cause, of in zip(found.causes, rivals, strict=True)

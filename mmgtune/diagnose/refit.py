@@ -20,9 +20,8 @@ AS_MUCH, AS_LITTLE = 0.97, 0.9
 """Share of the fall of chi-squared, and of what is left, within which one value of an effect for all runs is a rival of
 values of another that differ between runs: these bend to an effect whose form is a little off."""
 
-FAR_ABOVE, AKIN = 2.0, 0.3
-"""Chi-squared per residual from which on a cause has another form than the true one, and share of its evidence from
-which on an effect that acts much like it may be meant."""
+AKIN = 0.3
+"""Share of the fall of chi-squared from which on an effect that acts much like the best may be meant."""
 
 WORTH = 0.1
 """Smallest size worth speaking of where another effect would do as well, as a share of the typical one."""
@@ -108,14 +107,19 @@ def decide(bench: Workbench, refits: Sequence[Refit], rivals: Sequence[Refit]) -
     return True, ""
 
 
-def rivals_among(refits: Sequence[Refit], n_residuals: int) -> list[Refit]:
-    """Refits of other effects than the best that explain nearly as much, or act much like it where it leaves far more
-    than noise: then it has another form than the true cause, and a form is all that tells such effects apart."""
+def rivals_among(refits: Sequence[Refit]) -> list[Refit]:
+    """Refits of other effects than the best that explain nearly as much."""
     best = refits[0]
-    rough = best.point.chi2 > FAR_ABOVE * n_residuals
     found: dict[str, Refit] = {}
     for refit in refits[1:]:
-        akin = rough and refit.hypothesis.tag in best.hypothesis.effect.akin and refit.evidence >= AKIN * best.evidence
-        if refit.hypothesis.tag != best.hypothesis.tag and (akin or not best.beats(refit)):
+        if not best.beats(refit) and refit.hypothesis.tag != best.hypothesis.tag:
             found.setdefault(refit.hypothesis.tag, refit)
     return list(found.values())
+
+
+def kin_among(refits: Sequence[Refit]) -> list[Refit]:
+    """Refits of effects that act much like the best and explain a good part of what it does: where that leaves far more
+    than noise it has another form than the true cause, and form is all that tells such effects apart."""
+    best = refits[0]
+    akin = [refit for refit in refits[1:] if refit.hypothesis.tag in best.hypothesis.effect.akin]
+    return [max(akin, key=lambda refit: refit.gain)] if akin and akin[0].gain >= AKIN * best.gain else []

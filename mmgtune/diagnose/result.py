@@ -353,7 +353,7 @@ class Diagnosis(Plotted):
         if len(brought) > 2 and sum(bool(cause.runs) for cause in self.causes) > 1:
             return "more than one of them differs from run to run"
         if self.gain.share_removed[0] < TOLD:
-            return "so many should remove more of the error where nothing was fitted"
+            return "it removes little of the error where nothing was fitted"
         if unsized := [cause.tag for cause in self.causes if not cause.sized]:
             return f"how large {' and '.join(unsized)} would be is not told"
         if sum(one.seen for one in brought) < NEEDED:

@@ -28,6 +28,7 @@ from .narrow import narrow_box
 from .result import Diagnosis
 from .search import search
 from .together import Together
+from .unseen import Unseen
 from .voyages import Choice, looked_at, with_hull_held
 from .workbench import make_workbench
 
@@ -115,17 +116,18 @@ def _looked_at(
     test = [found.held.evenly(trial) for trial in test] if found.held else test
     hooks.on_phase("measuring the gain")
     before = leftover(bench, found.base)
-    traces, brought = set_aside(bench, found, test, before)
+    unseen = Unseen(bench, test)
+    traces, brought = set_aside(bench, found, unseen, before)
     differing: Sequence[Difference] = ()
     if choice is not None and not hooks.stop():
         hooks.on_phase("comparing the voyages")
         differing = differences(bench, found.final, choice.voyages)
     hooks.on_phase("gathering the evidence")
     asked = [*known, *in_place]
-    judge = Judge(bench, profile, options, provenance, hooks, known, asked, test, before, traces, choice, differing)
+    judge = Judge(bench, profile, options, provenance, hooks, known, asked, unseen, before, traces, choice, differing)
     result, found = judge.answer(found, brought)
-    unseen = not_looked_for(profile, options.effects) if result.verdict != "none" else []
-    warnings = (*odd, *result.warnings, *unseen, *(narrow_box(bench, found) if not hooks.stop() else ()))
+    left_out = not_looked_for(profile, options.effects) if result.verdict != "none" else []
+    warnings = (*odd, *result.warnings, *left_out, *(narrow_box(bench, found) if not hooks.stop() else ()))
     return replace(result, warnings=warnings)
 
 

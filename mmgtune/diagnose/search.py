@@ -211,7 +211,7 @@ def look(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis], first
         read = replace(bench)
         read.read_evenly()
         evenly = point.chi2 - read.refit(point.names, point.unit[:, None], point.offsets).chi2
-    rivals = rivals_among(refits, bench.problem.n_residuals) if refits else []
+    rivals = rivals_among(refits) if refits else []
     accepted, reason = decide(bench, refits, rivals)
     return Step(point, linear, ranked, refits, rivals, accepted, reason, finer_gain, evenly)
 
@@ -356,7 +356,7 @@ def rivals_of(bench: Workbench, found: Found, cause: Hypothesis) -> list[Refit]:
         return []
     near = [r for r in step.refits[1:] if r.hypothesis.tag != cause.tag and r.gain > 0.5 * step.refits[0].gain]
     if len(found.causes) == 1:
-        return rivals_among(step.refits, bench.problem.n_residuals)
+        return rivals_among(step.refits)
     fewer = without(bench, found.final, cause)
     best = replace(step.refits[0], point=found.final, gain=fewer.chi2 - found.final.chi2)
     rivals: dict[str, Refit] = {}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -18,36 +18,67 @@ from .runs import labels_of
 from .workbench import Point, Workbench, make_workbench
 
 
-def held_out_fits(
-    bench: Workbench, points: Sequence[Point], test: Sequence[Trial]
-) -> Iterator[tuple[list[Point], list[Trial]]]:
-    """Fitted points with trials they were not fitted to: the test trials, or each run in turn, all refitted without it.
+@dataclass(frozen=True, eq=False)
+class Unseen:
+    """The trials that fitted points are judged by, which nothing was fitted to: those kept for testing, or each run in
+    turn, all refitted without it.
 
-    Where there is but one run, that run.
+    bench    what the points were fitted on; what it knows of noise and inputs is settled
+    test     trials kept for testing
+    without  the same without a run, by run; made when asked for
     """
-    runs = list(dict.fromkeys(trial.run for trial in bench.trials))
-    if test or len(runs) < 2:
-        yield list(points), list(test or bench.trials)
-        return
-    coverage = Coverage.of(bench.trials, bench.model.L_pp)  # what is left may turn to one side alone
-    for run in runs:
-        others = [trial for trial in bench.trials if trial.run != run]
+
+    bench: Workbench
+    test: Sequence[Trial]
+    without: dict[str, _Without] = field(default_factory=dict)
+
+    def fits(self, points: Sequence[Point]) -> Iterator[tuple[list[Point], list[Trial]]]:
+        """Fitted points with trials they were not fitted to.  Where there is but one run, that run."""
+        runs = list(dict.fromkeys(trial.run for trial in self.bench.trials))
+        if self.test or len(runs) < 2:
+            yield list(points), list(self.test or self.bench.trials)
+            return
+        for run in runs:
+            if run not in self.without:
+                self.without[run] = _Without.of(self.bench, run)
+            refitted = [self.without[run].refitted(point) for point in points]
+            yield refitted, [trial for trial in self.bench.trials if trial.run == run]
+
+
+@dataclass(frozen=True, eq=False)
+class _Without:
+    """The workbench of all runs but one.
+
+    rest   that workbench; keep: its trials, by number in the whole one
+    known  points and what was refitted of them, by identity of the point: causes are set aside one by one, and what
+           stays is asked for again
+    """
+
+    rest: Workbench
+    keep: list[int]
+    known: dict[int, tuple[Point, Point]] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, bench: Workbench, run: str) -> _Without:
+        coverage = Coverage.of(bench.trials, bench.model.L_pp)  # what is left may turn to one side alone
+        keep = [i for i, trial in enumerate(bench.trials) if trial.run != run]
         names = [name for name in bench.box.names if name not in bench.tuned_alone]
-        rest = make_workbench(bench.model.profile, others, bench.options, names, coverage)
+        rest = make_workbench(bench.model.profile, [bench.trials[i] for i in keep], bench.options, names, coverage)
         rest.targets, rest.believed, rest.stop = bench.targets, bench.believed, bench.stop
         rest.know(replace(bench.noise, cases=rest.problem.cases))
-        keep = [i for i, trial in enumerate(bench.trials) if trial.run != run]
-        refitted = [_refit_without(rest, point, keep) for point in points]
-        yield refitted, [trial for trial in bench.trials if trial.run == run]
+        return cls(rest, keep)
 
-
-def _refit_without(rest: Workbench, point: Point, keep: Sequence[int]) -> Point:
-    """A point refitted on the trials that are left, without values of runs that are not among them."""
-    labels = frozenset[str]().union(*rest.problem.groups)
-    own = [i for i, name in enumerate(point.names) if not group_of(name) or group_of(name) in labels]
-    names = [point.names[i] for i in own]
-    offsets = point.offsets[keep]
-    return rest.refit(names, point.unit[own][:, None], offsets, integrator=point.integrator, spreads=point.spreads)
+    def refitted(self, point: Point) -> Point:
+        """A point refitted on the trials that are left, without values of runs that are not among them."""
+        if id(point) not in self.known:
+            labels = frozenset[str]().union(*self.rest.problem.groups)
+            own = [i for i, name in enumerate(point.names) if not group_of(name) or group_of(name) in labels]
+            names, start = [point.names[i] for i in own], point.unit[own][:, None]
+            refitted = self.rest.refit(
+                names, start, point.offsets[self.keep], integrator=point.integrator, spreads=point.spreads
+            )
+            self.known[id(point)] = point, refitted
+        return self.known[id(point)][1]
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,8 +6,8 @@ import pytest
 from mmgtune.backends import Integrator
 from mmgtune.diagnose import DiagnoseOptions
 from mmgtune.diagnose.gain import Gain
-from mmgtune.diagnose.unseen import Beside
-from mmgtune.diagnose.workbench import Point, make_workbench
+from mmgtune.diagnose.unseen import Beside, Unseen
+from mmgtune.diagnose.workbench import Point, Workbench, make_workbench
 from mmgtune.profile import load_profile
 from mmgtune.trial import load_trials
 from tests.hidden.cases import of_runs
@@ -54,3 +54,19 @@ def test_causes_are_told_worse_by_most_test_trials_or_not_at_all(before, after, 
     assert gain.mostly_remains  # in all of these
     assert not Gain("test", (), excess, floor=100.0, chance=5.0, unsure=1e5).mostly_remains
     assert not Gain("each", (), excess, floor=100.0, chance=5.0).worse
+
+
+def test_a_point_is_refitted_without_each_run_once(monkeypatch):
+    seen = [load_trials("suzaku").trials[name] for name in ("turn_p35", "turn_m35")]
+    bench = make_workbench(load_profile("suzaku"), seen, DiagnoseOptions(targets=("hull.R_0",)))
+    first, second = (Point(bench.targets, bench.null(bench.targets), np.zeros((2, 6)), 0.0, Integrator()) for _ in "ab")
+    made = []
+    refits = Workbench.refits
+    monkeypatch.setattr(Workbench, "refits", lambda self, *a, **k: made.append(self) or refits(self, *a, **k))
+    unseen = Unseen(bench, ())
+    once = [points for points, _ in unseen.fits((first,))]
+    again = [points for points, _ in unseen.fits((first, second))]
+    assert len(made) == 4
+    assert [points[0] for points in again] == [points[0] for points in once]
+    assert [trials for _, trials in unseen.fits((first,))] == [[seen[0]], [seen[1]]]
+    assert next(iter(Unseen(bench, seen[:1]).fits((first,)))) == ([first], seen[:1])
