@@ -23,6 +23,7 @@ from .files import write_text
 from .given import TrialsGiven, trials_of
 from .inputs import INPUTS
 from .options import CompareModelsOptions
+from .options.choice import must_be
 from .predictor import Predictor, Sampling, Uncertain, particles_of, profile_of
 from .provenance import made_by
 from .recording import MOST, write_motions
@@ -257,6 +258,7 @@ def compare_models(
     Raises OptionError as ``validate`` does, and where nothing is left of the trials; TrialError where some are no time
     series, or lack what drives a model.
     """
+    must_be(options, CompareModelsOptions)
     began = time.perf_counter()
     several = predictors_of(models, options)
     data = _only(trials_of(trials).series_only("a comparison of models"), options.only)

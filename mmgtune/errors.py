@@ -115,6 +115,12 @@ def brief(value: object) -> str:
     return short.repr(value)
 
 
+def kind_of(value: object) -> str:
+    """The type of a value with its article: "a dict", "an int"."""
+    name = type(value).__name__
+    return f"{'an' if name[0] in 'aeiou' else 'a'} {name}"
+
+
 def reason(error: BaseException) -> str:
     """What an exception says, in one short line: of a file, what the system says, without its number and the path."""
     if isinstance(error, UnicodeDecodeError):

@@ -22,6 +22,7 @@ from .files import write_text
 from .given import ShipGiven, ship_of
 from .inputs import INPUTS
 from .networks import named_ship
+from .options.choice import must_be
 from .options.studying import HeadingOptions
 from .physics.actuation import actuated
 from .physics.quantities import UNKNOWN
@@ -120,6 +121,7 @@ def study_heading_keeping(
     Raises OptionError for a truth without approach or actuators, and for a model that is driven otherwise or cannot be
     steered on lanes.
     """
+    must_be(options, HeadingOptions)
     began = time.perf_counter()
     ship = ship_of(truth)
     known = [as_predictor(named_ship(one)) for one in models]

@@ -19,11 +19,12 @@ from .manoeuvres.summary import criteria_of, indices_of
 from .model import Model
 from .networks import named_ship
 from .options import SimulateOptions
+from .options.choice import must_be
 from .orders import Helmsman, Sailing, TurningOrder, ZigzagOrder, run_manoeuvres
 from .predictor import PhysicsPredictor, Predictor, as_predictor, profile_of
 from .profile import ShipProfile
 from .simulation import Motion, as_trial
-from .trial import Coverage, Trial, write_trial
+from .trial import Coverage, write_trial
 from .units import DEG, parse
 
 ORDERED = "rk4"
@@ -143,7 +144,7 @@ def _beyond(ship: ShipProfile | None, motions: Sequence[Motion]) -> list[str]:
 
 def simulate(
     ship: ShipGiven | Model | Predictor,
-    trials: TrialsGiven | Sequence[Trial] | None = None,
+    trials: TrialsGiven | None = None,
     options: SimulateOptions = SimulateOptions(),
     *,
     integrator: Integrator | None = None,
@@ -157,6 +158,7 @@ def simulate(
     Raises OptionError for orders that make no sense or are given together with trials, and for a predictor without a
     profile that is given no trials.
     """
+    must_be(options, SimulateOptions)
     predictor = as_predictor(
         named_ship(ship, integrator or options.make_integrator()),
         integrator=integrator or options.make_integrator(),
@@ -181,7 +183,7 @@ def simulate(
     return Simulated(predictor, simulated, records, options, (*notes, *_beyond(profile_of(predictor), simulated)))
 
 
-def files_of(folder: Path, trials: TrialsGiven | Sequence[Trial] | None, options: SimulateOptions) -> list[Path]:
+def files_of(folder: Path, trials: TrialsGiven | None, options: SimulateOptions) -> list[Path]:
     """Where ``Simulated.write`` would write the runs of a profile, known before they are made.
 
     Raises OptionError for orders that make no sense, and as loading trials does.

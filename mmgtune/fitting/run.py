@@ -17,6 +17,7 @@ from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..model import Model
 from ..objective import Objective, cases_of, make_objective, spread
 from ..options import FitOptions, Options, TuningOptions
+from ..options.choice import must_be
 from ..profile import ShipProfile
 from ..provenance import made_by as made_by
 from ..stated import IndexComparison, compare_stated, possible
@@ -196,6 +197,7 @@ def fit(
     Raises OptionError for choices that make no sense, OutputError where the checkpoint cannot be written, ProfileError
     where the simulation of a tune trial runs away wherever the targets are.
     """
+    must_be(options, FitOptions)
     profile, trials = ship_of(profile), trials_of(trials)
     profile, options = settled(profile, options, trials)
     provenance = make_provenance(profile, trials, command)

@@ -24,6 +24,7 @@ from ..networks import (
 )
 from ..networks.hybrid import Hybrid, silent
 from ..objective import spread, varying
+from ..options.choice import must_be
 from ..options.learning import MixtureOptions
 from ..predictor import Predictor
 from ..profile import ShipProfile
@@ -111,6 +112,7 @@ def learn_mixture(
     trials   that neither was trained on: those that tune choose the share.  None takes the one share of the options
     Raises OptionError where parts do not fit, or nothing says which of several shares is meant; NetworkError.
     """
+    must_be(options, MixtureOptions)
     hybrid, net = _hybrid(named_ship(model)), _network(named_ship(network))
     try:
         mixtures = [Mixture(hybrid, net, share) for share in options.share]

@@ -16,7 +16,7 @@ from ..errors import Problem, ProfileError, among, brief, near_to, reason
 from ..inputs import Input
 from ..metrics import METRICS
 from ..physics.regressions.fujiwara1998 import wind_harmonics
-from ..resources import folder, looked_for, network_names, profile_names, taken
+from ..resources import folder, looked_for, must_be_name, network_names, profile_names, taken
 from ..toml_reading import TomlReader, toml_of
 from .changing import missing_for
 from .model import ABSENT, Actuator, Approach, Coefficient, Section, ShipProfile, SteeringGear
@@ -35,6 +35,7 @@ VALUE_KEYS = ("value", "source", "assumption", "note", "bounds", "pre_determined
 
 def find_profile(name: str | Path) -> Path:
     """The file of a profile given by path or by the name of a bundled one; ProfileError if there is none."""
+    must_be_name(name, "ship profile", ProfileError)
     path = Path(name)
     if found := taken(name, path.is_file(), folder("ship_profiles") / f"{name}.toml"):
         return found
