@@ -299,12 +299,13 @@ def _only(data: TrialSet, only: Sequence[str]) -> TrialSet:
 
 
 def write_model_comparison(
-    result: ModelComparison, folder: Path, command: str = "", notes: Sequence[str] = ()
+    result: ModelComparison, folder: Path | str, command: str = "", notes: Sequence[str] = ()
 ) -> dict[str, Any]:
     """Write the record into a run folder, and the motions of whole trials.  Returns it; raises OutputError.
 
     notes  what a reader of the errors must know
     """
+    folder = Path(folder)
     pieces = list(result.data.trials.values())[:MOST]
     names = write_motions({one.name: one.predictor for one in result.models}, pieces, folder)
     document = {

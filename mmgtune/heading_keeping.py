@@ -181,8 +181,9 @@ def overrated(scores: FloatArray, truth: FloatArray) -> float:
     return float(np.mean(scores < truth))
 
 
-def write_heading_study(result: HeadingStudy, folder: Path, command: str = "") -> dict[str, Any]:
+def write_heading_study(result: HeadingStudy, folder: Path | str, command: str = "") -> dict[str, Any]:
     """Write the record into a run folder.  Returns it; raises OutputError."""
+    folder = Path(folder)
     document = {**result.to_dict(command), "out": str(folder)}
     write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
     return document

@@ -77,11 +77,12 @@ class Simulated(Plotted, Sequence[Motion]):
         records = self.records or (None,) * len(self.motions)
         return [self._described(motion, record) for motion, record in zip(self.motions, records, strict=True)]
 
-    def write(self, folder: Path, *, with_forces: bool = False, overwrite: bool = False) -> list[Path]:
+    def write(self, folder: Path | str, *, with_forces: bool = False, overwrite: bool = False) -> list[Path]:
         """Write every run as a trial file, with its number in the name where there are several members.
 
         Raises OutputError where one is there already, OptionError for forces of a predictor that has none.
         """
+        folder = Path(folder)
         several = self.predictor.n_members > 1
         ids = [f"{motion.id}_{motion.member}" if several else motion.id for motion in self.motions]
         paths = [folder / f"{id}.parquet" for id in ids]

@@ -1,5 +1,6 @@
 """The library as a notebook user meets it."""
 
+import inspect
 import re
 from dataclasses import replace
 
@@ -85,3 +86,23 @@ def test_what_is_of_the_wrong_type_is_refused_in_words(call, what, fix):
     assert what in str(problem)
     assert fix in problem.fix
     assert problem.why
+
+
+def test_folders_are_texts_or_paths(tmp_path):
+    kept = str(tmp_path / "checkpoint")
+    (tmp_path / "checkpoint").mkdir()
+    result = mmgtune.fit("suzaku", TRIALS["turn_p35"], QUICK, checkpoint_folder=kept)
+    mmgtune.write_run(result, str(tmp_path / "run"))
+    assert mmgtune.render(str(tmp_path / "run"))[0] == tmp_path / "run" / "report.html"
+    assert mmgtune.simulate("suzaku", TRIALS["turn_p35"]).write(str(tmp_path / "simulated"))
+
+
+def test_whatever_takes_a_path_takes_a_text():
+    """Of the signatures, so that no function is forgotten."""
+    for name in mmgtune.__all__:
+        thing = getattr(mmgtune, name)
+        written = getattr(thing, "write", None)
+        for function in (written,) if inspect.isclass(thing) else (thing,):
+            for parameter in inspect.signature(function).parameters.values() if function else ():
+                kinds = re.findall(r"[\w.]+", str(parameter.annotation))
+                assert "Path" not in kinds or "str" in kinds, f"{name}: {parameter}"

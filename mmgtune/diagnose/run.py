@@ -40,7 +40,7 @@ def diagnose(
     options: DiagnoseOptions = DiagnoseOptions(),
     *,
     hooks: Hooks = Hooks(),
-    folder: Path | None = None,
+    folder: Path | str | None = None,
     resume: bool = False,
     command: str = "",
 ) -> Diagnosis:
@@ -58,6 +58,7 @@ def diagnose(
     Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to, ProfileError
     where the simulation of a trial runs away wherever the targets are.
     """
+    folder = None if folder is None else Path(folder)
     must_be(options, DiagnoseOptions)
     profile = ship_of(profile)
     options = with_width(profile, options)

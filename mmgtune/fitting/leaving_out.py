@@ -227,7 +227,7 @@ def leave_out(
     options: LeaveOutOptions = LeaveOutOptions(),
     *,
     hooks: Hooks = Hooks(),
-    folder: Path | None = None,
+    folder: Path | str | None = None,
     resume: bool = False,
     command: str = "",
 ) -> LeftOut:
@@ -240,6 +240,7 @@ def leave_out(
     Every fit starts from the fit to all runs; that one takes the starts of the options.
     Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to.
     """
+    folder = None if folder is None else Path(folder)
     must_be(options, LeaveOutOptions)
     profile, trials = ship_of(profile), trials_of(trials)
     profile, options = settled(profile, options, trials)

@@ -182,7 +182,7 @@ def fit(
     options: FitOptions = FitOptions(),
     *,
     hooks: Hooks = Hooks(),
-    checkpoint_folder: Path | None = None,
+    checkpoint_folder: Path | str | None = None,
     resume: bool = False,
     more_starts: tuple[Mapping[str, float], ...] = (),
     command: str = "",
@@ -197,6 +197,7 @@ def fit(
     Raises OptionError for choices that make no sense, OutputError where the checkpoint cannot be written, ProfileError
     where the simulation of a tune trial runs away wherever the targets are.
     """
+    checkpoint_folder = None if checkpoint_folder is None else Path(checkpoint_folder)
     must_be(options, FitOptions)
     profile, trials = ship_of(profile), trials_of(trials)
     profile, options = settled(profile, options, trials)

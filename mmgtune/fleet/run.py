@@ -79,6 +79,7 @@ class FleetPlan:
 
 def plan_fleet(table: FleetTable | Path | str, out: Path | str | None = None) -> FleetPlan:
     """The jobs of a table, and about how long they take.  Raises OptionError for what a run would refuse."""
+    out = None if out is None else Path(out)
     jobs = expand(read_table(table) if isinstance(table, (str, Path)) else table)
     there = frozenset(rows.done(out)) if out is not None else frozenset()
     return FleetPlan(tuple(jobs), there, reckon([job for job in jobs if job.key not in there]))

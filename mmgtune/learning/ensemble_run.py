@@ -103,7 +103,7 @@ def learn_ensemble(
     options: EnsembleOptions = EnsembleOptions(),
     *,
     hooks: Hooks = Hooks(),
-    folder: Path | None = None,
+    folder: Path | str | None = None,
     resume: bool = False,
     command: str = "",
 ) -> LearnedEnsemble:
@@ -114,6 +114,7 @@ def learn_ensemble(
     resume  go on with what is there: the result is that of a run without a stop, bit for bit
     Raises what ``ensemble_task`` does, and OptionError where JAX is missing.
     """
+    folder = None if folder is None else Path(folder)
     must_be(options, EnsembleOptions)
     began = time.perf_counter()
     needed()

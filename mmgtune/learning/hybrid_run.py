@@ -92,7 +92,7 @@ def learn_hybrid(
     options: HybridOptions = HybridOptions(),
     *,
     hooks: Hooks = Hooks(),
-    folder: Path | None = None,
+    folder: Path | str | None = None,
     resume: bool = False,
     command: str = "",
 ) -> LearnedHybrid:
@@ -103,6 +103,7 @@ def learn_hybrid(
     resume  go on with what is there: the result is that of a run without a stop, bit for bit
     Raises OptionError for too few runs or trials from which nothing can be learned, and where JAX is missing.
     """
+    folder = None if folder is None else Path(folder)
     must_be(options, HybridOptions)
     began = time.perf_counter()
     needed()

@@ -89,8 +89,9 @@ class LearnedMixture:
             "provenance": self.provenance,
         }
 
-    def write(self, folder: Path) -> dict[str, Any]:
+    def write(self, folder: Path | str) -> dict[str, Any]:
         """Write the model and the record into a run folder.  Returns the record; raises OutputError."""
+        folder = Path(folder)
         document = {**self.to_dict(), "out": str(folder)}
         save_network(self.model, folder / MODEL, overwrite=True)
         write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")

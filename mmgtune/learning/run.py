@@ -98,7 +98,7 @@ def learn_rnn(
     options: LearnOptions = LearnOptions(),
     *,
     hooks: Hooks = Hooks(),
-    folder: Path | None = None,
+    folder: Path | str | None = None,
     resume: bool = False,
     command: str = "",
 ) -> Learned:
@@ -109,6 +109,7 @@ def learn_rnn(
     resume  go on with what is there: the result is that of a run without a stop, bit for bit
     Raises what ``make_task`` does, and OptionError where JAX is missing.
     """
+    folder = None if folder is None else Path(folder)
     must_be(options, LearnOptions)
     began = time.perf_counter()
     needed()

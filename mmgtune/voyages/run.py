@@ -125,7 +125,7 @@ def validate_voyages(
     options: VoyageOptions = VoyageOptions(),
     *,
     hooks: Hooks | None = None,
-    folder: Path | None = None,
+    folder: Path | str | None = None,
     resume: bool = False,
     command: str = "",
 ) -> VoyageValidation:
@@ -141,6 +141,7 @@ def validate_voyages(
     another run; OutputError where the folder cannot be written to; TrialError for what is wrong with a file, and where
     no window could be cut.
     """
+    folder = None if folder is None else Path(folder)
     must_be(options, VoyageOptions)
     began = time.perf_counter()
     if options.manoeuvres:
