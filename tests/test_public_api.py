@@ -4,6 +4,7 @@ import inspect
 import re
 from dataclasses import replace
 
+import numpy as np
 import pandas
 import pytest
 
@@ -86,6 +87,19 @@ def test_what_is_of_the_wrong_type_is_refused_in_words(call, what, fix):
     assert what in str(problem)
     assert fix in problem.fix
     assert problem.why
+
+
+def test_channels_of_a_motion_have_the_names_of_columns():
+    motion = mmgtune.simulate("suzaku", TRIALS["turn_p35"])[0]
+    assert np.array_equal(motion.channel("v"), motion.channel("v_m"))
+    for name, fix in (("heading", "'psi'"), ("t", "motion.t"), ("delta", "motion.controls[:, 1]"), ("speed", "these")):
+        with pytest.raises(mmgtune.MmgtuneError, match=f"no channel '{name}'") as caught:
+            motion.channel(name)
+        (problem,) = caught.value.problems
+        assert "x, y, psi, u, v, r" in problem.why
+        assert fix in problem.fix
+    with pytest.raises(mmgtune.MmgtuneError, match="x, y, psi, u, v, r"):
+        mmgtune.fit("suzaku", TRIALS, mmgtune.FitOptions(channels=("x", "y", "heading")))
 
 
 def test_folders_are_texts_or_paths(tmp_path):

@@ -118,6 +118,9 @@ ATTRIBUTES = {name: "v_m" if name == "v" else name for name in REQUIRED}
 CHANNELS = STATES
 """Motion channels in the order of ``Trial.motion``."""
 
+FILE_CHANNELS = tuple(name for state in CHANNELS for name, of in ATTRIBUTES.items() if of == state)
+"""The same as files and people name them: sway is ``v``."""
+
 RUDDERS = tuple(name for name, one in INPUTS.items() if one.role == "rudder")
 
 LARGEST = {"s": 1e11, "m": 1e9, "rad": 1e6, "deg": 1e6, "m/s": 1e4, "rad/s": 1e4, "1/s": 1e5}
