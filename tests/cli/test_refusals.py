@@ -38,6 +38,14 @@ from tests.command import typed
         (("plan",), ("argument MODEL is missing (mmgtune plan)", "Particles of posterior", "mmgtune plan runs/bands")),
         (("trials", "make", "suzaku"), ("--out is missing (mmgtune trials make)", "Folder for", "mmgtune trials make")),
         (("fit", "--metod", "x"), ("unknown option --metod (mmgtune fit)", "none is called that", "'--method'")),
+        (
+            ("posterior", "--resume"),
+            ("unknown option --resume", "these have it: diagnose, fit, fleet run", "fix: mmgtune posterior --help"),
+        ),
+        (
+            ("leave-out", "--method", "cma-es"),
+            ("unknown option --method", "these have it: fit, sweep", "fix: mmgtune leave-out --help lists them"),
+        ),
         (("--zzz",), ("unknown option --zzz (mmgtune)", "options", "mmgtune --help lists them")),
         (("fit", "more"), ("'more' is one word too many (mmgtune fit)", "takes options alone", "write mmgtune fit ")),
         (("report", "a", "b"), ("'b' is one word too many", "takes argument RUN", "write mmgtune report ")),
