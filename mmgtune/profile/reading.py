@@ -203,7 +203,10 @@ class _Reader(TomlReader):
             component = find(kind, model) if isinstance(model, str) else None
             if component is None:
                 what = f"unknown {kind} model {brief(model)}" if model else f"[{kind}] names no model"
-                self.problem(what, kind, "model", fix=f"{kind} models: {', '.join(tags(kind))}")
+                near = near_to(model, tags(kind)) if isinstance(model, str) else ""
+                self.problem(
+                    what, kind, "model", f"{kind} models are {', '.join(tags(kind))}", near or "write one of these"
+                )
                 return None
         # Effects are often tried out by hand, so a source is welcome there but not asked for.
         source = (
@@ -314,19 +317,25 @@ class _Reader(TomlReader):
         numbers = self.quantities(kind, symbol, written, field.unit, infinite=_may_be_infinite(field))
         if numbers is None:
             return None
+        point = units.with_point(written) if isinstance(written, str) and not field.table else None
+        if point is not None:
+            why = "a comma stands between numbers, and this is one number"
+            self.problem(f"'{name}' = {brief(written)} has a decimal comma", kind, symbol, why, f'write "{point}"')
+            return None
         return numbers if self.possible(kind, symbol, field, numbers) else None
 
     def possible(self, kind: str, symbol: str, field: Field, numbers: tuple[float, ...]) -> bool:
         name = f"{kind}.{symbol}"
         expected = field.table or 1
         if len(numbers) != expected:
-            self.problem(f"'{name}' has {len(numbers)} values, not {expected}", kind, symbol)
+            self.problem(f"'{name}' has {len(numbers)} values, not {expected}", kind, symbol, fix=f"give {expected}")
             return False
         for number in numbers:
             if number == math.inf and _may_be_infinite(field):
                 continue
             if not math.isfinite(number):
-                self.problem(f"'{name}' is {number}", kind, symbol, why="only finite numbers can be simulated")
+                why, fix = "only finite numbers can be simulated", "check the number; a large one may lack a point"
+                self.problem(f"'{name}' is {number}", kind, symbol, why, fix)
                 return False
             if (field.low is not None and number <= field.low) or (field.high is not None and number >= field.high):
                 low, high = ("" if end is None else f"{end:g}" for end in (field.low, field.high))
@@ -404,7 +413,12 @@ class _Reader(TomlReader):
         if profile.value("particulars.B") >= L_pp:
             self.problem("'particulars.B' is not below L_pp", "particulars", "B", fix="check the units of both")
         if abs(profile.value("particulars.x_G")) > 0.25 * L_pp:
-            self.problem("'particulars.x_G' is more than a quarter of L_pp from midship", "particulars", "x_G")
+            self.problem(
+                "'particulars.x_G' is more than a quarter of L_pp from midship",
+                "particulars",
+                "x_G",
+                fix="check the units of both",
+            )
         for kind, section in profile.sections.items():
             missing = missing_for(section.component, profile) if isinstance(section.component, Effect) else []
             if missing:
@@ -416,7 +430,7 @@ class _Reader(TomlReader):
                 )
         propeller = profile.sections["propeller"].coefficients if "propeller" in profile.sections else {}
         if "phi_min" in propeller and profile.value("propeller.phi_min") >= profile.value("propeller.phi_max"):
-            self.problem("'propeller.phi_min' is not below phi_max", "propeller", "phi_min")
+            self.problem("'propeller.phi_min' is not below phi_max", "propeller", "phi_min", fix="check both")
 
 
 def actuator_fields(one: Input) -> dict[str, Field]:
