@@ -132,6 +132,9 @@ def impossible(values: FloatArray, unit: str) -> BoolArray:
     return np.asarray(np.abs(values) > LARGEST.get(unit, np.inf))
 
 
+FEWEST_SAMPLES = 3
+"""Samples without which there is no motion: of two there is one step, and no index, rate or turn to be read."""
+
 SHORTEST_STEP = 1e-7
 """Time [s] between samples below which stamps cannot be seconds."""
 

@@ -11,6 +11,7 @@ from ..errors import Problem, closest
 from .kinematics import FITS, IN_DEGREES, position_misfits, turning
 from .schema import (
     COLUMNS,
+    FEWEST_SAMPLES,
     LARGEST,
     LARGEST_RUDDER,
     MAIN_INPUTS,
@@ -32,13 +33,19 @@ def unusable(columns: Mapping[str, FloatArray], where: str, reported: Collection
     """
     problems = missing_columns(columns, where, reported)
     samples = max((len(values) for values in columns.values()), default=0)
-    if samples < 2:
-        what = "the trial has no samples" if samples == 0 else "the trial has one sample"
-        return [*problems, Problem(what, where, "a motion needs two or more", "write the whole record")]
+    if samples < FEWEST_SAMPLES:
+        return [*problems, too_short(samples, where)]
     with np.errstate(all="ignore"):
         problems += _time(columns, where) + _values(columns, where) + _rudder(columns, where)
         damaged = any(impossible(values, _unit(name)).any() for name, values in columns.items())
         return problems if damaged else problems + in_degrees(columns, where)
+
+
+def too_short(samples: int, where: str) -> Problem:
+    """The problem of a record with too few samples to be a motion."""
+    count = {0: "no samples", 1: "one sample"}.get(samples, f"{samples} samples")
+    why = f"a motion needs {FEWEST_SAMPLES} or more"
+    return Problem(f"the trial has {count}", where, why, "write the whole record, or take the file out of the folder")
 
 
 def increasing(t: FloatArray) -> bool:

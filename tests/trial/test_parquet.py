@@ -54,7 +54,7 @@ names = st.text("abcdefghijklmnopqrstuvwxyz_0123456789", min_size=1, max_size=12
 @st.composite
 def trials(draw: st.DrawFn) -> Trial:
     """Any numbers that a file may hold: gaps in the motion, uneven time, extremes of what a ship and a float may be."""
-    samples = draw(st.integers(2, 12))
+    samples = draw(st.integers(3, 12))
 
     def column(low: float, high: float, gaps: bool = False) -> np.ndarray:
         number = st.floats(low, high)
