@@ -16,6 +16,9 @@ from .schema import LARGEST_YAW_RATE, MOTION
 REPEATED = 0.05
 """Share of samples that repeat the one before, and that do not, from which a channel is taken for one of few digits."""
 
+SMALL = 0.02
+"""Share of the level of a channel up to which the step of its last digit may be that of an instrument."""
+
 
 def motion_findings(trial: Trial, where: str) -> list[Finding]:
     """Findings on the motion channels of a trial that can be used."""
@@ -29,26 +32,37 @@ def motion_findings(trial: Trial, where: str) -> list[Finding]:
 
 
 def _gaps(trial: Trial, where: str) -> list[Finding]:
-    found = []
-    for name, values in trial.columns.items():
-        missing = np.isnan(values)
-        if name in MOTION and missing.any():
-            edges = np.flatnonzero(np.diff(np.concatenate([[0], missing.astype(int), [0]])))
-            begins, ends = edges[::2], edges[1::2]
-            k = int(np.argmax(ends - begins))
-            # A gap lasts from the last sample before it to the first one after it, if there is one.
-            lasts = trial.t[min(ends[k], trial.n_samples - 1)] - trial.t[begins[k] - 1]
-            found.append(
-                Finding(
-                    "warning",
-                    f"'{name}' has gaps: {missing.sum()} of {len(values)} samples; "
-                    f"the longest has {ends[k] - begins[k]} samples, {lasts:.3g} s",
-                    f"{where}, column '{name}', row {begins[k]}",
-                    "samples in gaps count in no comparison",
-                    code="gaps",
-                )
-            )
-    return found
+    """One finding for all columns: sensors that fail together would fill pages."""
+    missing = {name: np.isnan(values) for name, values in trial.columns.items() if name in MOTION}
+    missing = {name: rows for name, rows in missing.items() if rows.any()}
+    if not missing:
+        return []
+    longest = {name: _longest(rows) for name, rows in missing.items()}
+    worst = max(longest, key=lambda name: longest[name][1] - longest[name][0])
+    begins, ends = longest[worst]
+    # A gap lasts from the last sample before it to the first one after it, if there is one.
+    lasts = trial.t[min(ends, trial.n_samples - 1)] - trial.t[begins - 1]
+    counts = sorted({int(rows.sum()) for rows in missing.values()})
+    many = f"{counts[0]}" if len(counts) == 1 else f"{counts[0]} to {counts[-1]}"
+    *names, last = (f"'{name}'" for name in missing)
+    told = f"{', '.join(names)} and {last} have gaps" if names else f"{last} has gaps"
+    return [
+        Finding(
+            "warning",
+            f"{told}: {many} of {trial.n_samples} samples; the longest has {ends - begins} samples, {lasts:.3g} s",
+            f"{where}, column '{worst}', row {begins}",
+            "samples in gaps count in no comparison",
+            code="gaps",
+        )
+    ]
+
+
+def _longest(missing: BoolArray) -> tuple[int, int]:
+    """First row of the longest gap, and the row behind it."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], missing.astype(int), [0]])))
+    begins, ends = edges[::2], edges[1::2]
+    k = int(np.argmax(ends - begins))
+    return int(begins[k]), int(ends[k])
 
 
 def full_turns(psi: FloatArray) -> BoolArray:
@@ -114,11 +128,27 @@ def spikes(values: FloatArray, share: float) -> npt.NDArray[np.intp]:
 
 
 def _digit(values: FloatArray) -> float:
-    """The usual step of a channel that often repeats its value, because few digits are logged; 0 for any other."""
-    steps = np.abs(np.diff(values[np.isfinite(values)]))
+    """The usual step of a channel that often repeats its value, because few digits are logged; 0 for any other.
+
+    Of one that hardly ever moves, as revolutions logged in halves, it is what all values are whole multiples of.
+    """
+    known = values[np.isfinite(values)]
+    steps = np.abs(np.diff(known))
     moving = steps[steps > 0.0]
     few = REPEATED * len(steps) < len(moving) < (1.0 - REPEATED) * len(steps)  # one that rests but for spikes is none
-    return float(np.median(moving)) if few else 0.0
+    return float(np.median(moving)) if few else _quantum(known)
+
+
+def _quantum(known: FloatArray) -> float:
+    """The step that all values (n,) are whole multiples of, where it is small beside them; else 0."""
+    found = np.unique(known)
+    level = float(np.median(np.abs(known)))
+    step = float(np.min(np.diff(found), initial=np.inf))
+    # The same number worked out in two ways, and a spike that happens to be a multiple: 0 among revolutions.
+    if not 1e-6 * level < step < SMALL * level:
+        return 0.0
+    of = known / step
+    return step if np.max(np.abs(of - np.round(of))) < 0.01 else 0.0
 
 
 def _yaw(trial: Trial, where: str) -> list[Finding]:
