@@ -9,7 +9,17 @@ from ..arrays import BoolArray, FloatArray
 from ..inputs import INPUTS
 from ..units import DEG
 from .finding import Finding
-from .kinematics import FITS, IN_DEGREES, IN_EARTH_AXES, position_misfits, turning
+from .kinematics import (
+    FITS,
+    IN_DEGREES,
+    IN_EARTH_AXES,
+    IN_KNOTS,
+    SWAPPED,
+    TO_PORT,
+    lever_of,
+    position_misfits,
+    turning,
+)
 from .model import Trial
 from .schema import LARGEST_YAW_RATE, MOTION
 
@@ -18,6 +28,25 @@ REPEATED = 0.05
 
 SMALL = 0.02
 """Share of the level of a channel up to which the step of its last digit may be that of an instrument."""
+
+USUAL = (
+    "give velocities over ground (not through the water), in ship axes, in m/s, and both velocities and positions at "
+    "midship, not at an antenna or at the centre of gravity"
+)
+"""What to do where no one reading of velocities and positions makes them agree."""
+
+MENDED = {
+    IN_EARTH_AXES: "turn 'u' and 'v' into ship axes: u cos(psi) + v sin(psi) and v cos(psi) - u sin(psi)",
+    TO_PORT: "change the sign of 'v': positive to starboard",
+    SWAPPED: "swap 'x' and 'y': x is north and y is east",
+    IN_KNOTS: "multiply 'u' and 'v' by 0.5144: they are in m/s",
+}
+"""What makes of a reading that fits the one that is asked for."""
+
+OF_MIDSHIP = "give positions of midship: [antenna] of the map says where they were measured"
+
+FREER = 2.0
+"""What the misfit counts of a reading that has two numbers to choose, among those that have none."""
 
 
 def motion_findings(trial: Trial, where: str) -> list[Finding]:
@@ -188,18 +217,24 @@ def _positions(trial: Trial, where: str) -> list[Finding]:
         return []
     # Small angles in degrees read as earth axes do; headings surely in degrees make a trial unusable.
     del misfits[IN_DEGREES]
-    fitting = sorted((miss, name) for name, miss in misfits.items() if miss < min(FITS, 0.5 * asked))
-    if fitting:
-        fits = "they fit if read " + " or ".join(name for _, name in fitting)
-    else:
-        fits = f"nor do they fit if read in earth axes ({100 * misfits[IN_EARTH_AXES]:.0f} %)"
+    enough = min(FITS, 0.5 * asked)
+    fitting = [(miss, f"if read {name}", MENDED[name]) for name, miss in misfits.items() if miss < enough]
+    lever = lever_of(trial.columns)
+    if lever is not None and lever.likely and FREER * lever.misfit < enough:
+        place = f"if they are of a point about {lever.x:.2g} m forward and {lever.y:.2g} m to starboard of midship"
+        fitting.append((FREER * lever.misfit, place, OF_MIDSHIP))
+    fitting.sort()
+    fits = "they fit " + ", or ".join(words for _, words, _ in fitting)
+    fix = "; or ".join(fix for _, _, fix in fitting)
+    if not fitting:
+        fits, fix = f"nor do they fit if read in earth axes ({100 * misfits[IN_EARTH_AXES]:.0f} %)", USUAL
     return [
         Finding(
             "warning",
             "u, v and heading do not integrate to the positions",
             f"{where}, columns 'x', 'y', 'psi', 'u' and 'v'",
             f"read in ship axes they miss by {100 * asked:.0f} % of the distance; {fits}",
-            "give velocities over ground (not through the water), in ship axes, at midship, in m/s",
+            fix,
             "contradicted",
         )
     ]

@@ -84,6 +84,29 @@ def test_velocities_against_positions(change: Any, reading: str, zigzag: bool, s
     only(change(start), reading)
 
 
+def test_the_fix_is_of_the_reading_that_fits() -> None:
+    start = made(seed=1)
+    knots = replace(start, u=start.u * 1.944, v_m=start.v_m * 1.944)
+    for trial, fix in (
+        (replace(start, x=start.y, y=start.x), "swap 'x' and 'y'"),
+        (replace(start, v_m=-start.v_m), "change the sign of 'v'"),
+        (knots, "multiply 'u' and 'v' by 0.5144"),
+        (in_earth_axes(start), "turn 'u' and 'v' into ship axes"),
+        (replace(start, u=start.u * 0.6), "both velocities and positions at midship, not at an antenna"),
+    ):
+        (finding,) = [one for one in check_trial(trial) if one.code == "contradicted"]
+        assert finding.fix.startswith(fix) or fix in finding.fix
+        assert ("over ground" in finding.fix) == (fix.startswith("both"))
+
+
+def test_positions_of_an_antenna_are_told() -> None:
+    start = made(seed=1, angle=35.0 * DEG)
+    forward = replace(start, x=start.x + 25.0 * np.cos(start.psi), y=start.y + 25.0 * np.sin(start.psi))
+    (finding,) = [one for one in check_trial(forward) if one.severity == "warning"]
+    assert "they fit if they are of a point about 25 m forward" in finding.why
+    assert finding.fix.startswith("give positions of midship: [antenna]")
+
+
 @SEEDS
 @pytest.mark.parametrize("kind", [{}, {"zigzag": True}, {"angle": -10 * DEG}])
 def test_rudder_of_the_other_sign(seed: int | None, kind: dict[str, Any]) -> None:
