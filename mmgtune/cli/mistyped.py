@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import inspect
 import re
+import shlex
+from pathlib import Path
 from typing import Any
 
 import typer
@@ -45,10 +47,27 @@ def problem_of(error: Any) -> Problem | None:
     if extra := re.search(r"extra arguments?(?:\(s\))? \((.*)\)", message):
         takes = ", ".join(_named(one) for one in ctx.command.params if one.param_type_name == "argument")
         why = f"{path} takes {takes or 'options alone'}"
-        return Problem(f"'{extra[1]}' is one word too many", path, why, f"write {example}")
+        fix = f"write {as_options(extra[1].split(), ctx) or example}"
+        many = "is one word too many" if len(extra[1].split()) == 1 else "are words too many"
+        return Problem(f"'{extra[1]}' {many}", path, why, fix)
     return Problem(
         message[:1].lower() + message[1:], path, "the command line ends or goes on elsewhere", f"write {example}"
     )
+
+
+def as_options(words: list[str], ctx: Any) -> str:
+    """The command with a profile and trials that were given as words, as its options; "" where it cannot be that."""
+    shorts = {one.name: one.opts for one in ctx.command.params if one.param_type_name == "option"}
+    wanted = [flag for name, flag in (("profile", "-p"), ("trials", "-t")) if flag in shorts.get(name, ())]
+    if len(wanted) == 2 and len(words) == 1 and _are_trials(words[0]):
+        wanted = wanted[1:]
+    if not wanted or len(words) > len(wanted):
+        return ""
+    return " ".join([path_of(ctx), *(f"{flag} {shlex.quote(word)}" for flag, word in zip(wanted, words, strict=False))])
+
+
+def _are_trials(word: str) -> bool:
+    return word.endswith(".parquet") or Path(word).is_dir()
 
 
 def _unknown_option(name: str, ctx: Any) -> Problem:

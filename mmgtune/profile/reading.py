@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+import shlex
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -59,6 +60,9 @@ def find_profile(name: str | Path) -> Path:
 def load_profile(name: str | Path) -> ShipProfile:
     """Read and validate a profile by path or bundled name.  Raises ProfileError with everything wrong in it."""
     path = find_profile(name)
+    if path.suffix == ".parquet":
+        what, why = "this is a trial, not a ship profile", "profiles are TOML files, trials are Parquet files"
+        raise ProfileError(Problem(what, str(path), why, f"give it with trials={shlex.quote(str(name))}"))
     try:
         text = limits.text(path, limits.PROFILE_BYTES, ProfileError)
     except (OSError, ValueError) as error:

@@ -3,8 +3,11 @@
 import pytest
 import typer
 
+from mmgtune import resources
 from mmgtune.cli import app
 from tests.command import typed
+
+TRIAL = resources.folder("trials") / "suzaku" / "turn_p35.parquet"
 
 
 @pytest.mark.parametrize(
@@ -48,6 +51,12 @@ from tests.command import typed
         ),
         (("--zzz",), ("unknown option --zzz (mmgtune)", "options", "mmgtune --help lists them")),
         (("fit", "more"), ("'more' is one word too many (mmgtune fit)", "takes options alone", "write mmgtune fit ")),
+        (("fit", "ship", "logs"), ("'ship logs' are words", "takes options", "write mmgtune fit -p ship -t logs")),
+        (("fit", "a.parquet"), ("'a.parquet' is one word", "takes options", "write mmgtune fit -t a.parquet")),
+        (
+            ("fit", "-p", str(TRIAL), "-t", "suzaku"),
+            ("a trial, not a ship profile", "TOML files", f"--trials {TRIAL}"),
+        ),
         (("report", "a", "b"), ("'b' is one word too many", "takes argument RUN", "write mmgtune report ")),
         (
             ("fit", "--starts", "many"),
