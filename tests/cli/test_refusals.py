@@ -57,6 +57,20 @@ TRIAL = resources.folder("trials") / "suzaku" / "turn_p35.parquet"
             ("fit", "-p", str(TRIAL), "-t", "suzaku"),
             ("a trial, not a ship profile", "TOML files", f"--trials {TRIAL}"),
         ),
+        (
+            ("predict", "suzaku", "--turn", "35", "--rpm", "1e9"),
+            ("1e+09 rpm (--rpm)", "times the 106 rpm of the profile's approach", "less than 530 rpm"),
+        ),
+        (
+            ("predict", "suzaku", "--speed", "500 kn"),
+            ("500 kn (--speed)", "a Froude number of 9 ", "a speed below 27.7 kn"),
+        ),
+        (
+            ("predict", "suzaku", "--stop", "--astern", "1e6"),
+            ("1e+06 rpm (--astern)", "the 106 rpm", "less than 530 rpm"),
+        ),
+        (("simulate", "--turn", "35", "--speed", "500kn"), ("500 kn (--speed)", "Froude", "a speed below")),
+        (("simulate", "--turn", "35", "--rpm", "1e9"), ("1e+09 rpm (--rpm)", "times the", "less than")),
         (("report", "a", "b"), ("'b' is one word too many", "takes argument RUN", "write mmgtune report ")),
         (
             ("fit", "--starts", "many"),
