@@ -70,8 +70,9 @@ class Comparison(Displayed):
         """For JSON."""
         return dict(self.data)
 
-    def write(self, folder: Path, overwrite: bool = False) -> Path:
+    def write(self, folder: Path | str, overwrite: bool = False) -> Path:
         """Write the record into a folder; its path.  Raises OutputError where there is one already."""
+        folder = Path(folder)
         import json
 
         path = folder / FILE

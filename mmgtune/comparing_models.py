@@ -23,6 +23,7 @@ from .files import write_text
 from .given import TrialsGiven, trials_of
 from .inputs import INPUTS
 from .options import CompareModelsOptions
+from .options.choice import must_be
 from .predictor import Predictor, Sampling, Uncertain, particles_of, profile_of
 from .provenance import made_by
 from .recording import MOST, write_motions
@@ -257,6 +258,7 @@ def compare_models(
     Raises OptionError as ``validate`` does, and where nothing is left of the trials; TrialError where some are no time
     series, or lack what drives a model.
     """
+    must_be(options, CompareModelsOptions)
     began = time.perf_counter()
     several = predictors_of(models, options)
     data = _only(trials_of(trials).series_only("a comparison of models"), options.only)
@@ -297,12 +299,13 @@ def _only(data: TrialSet, only: Sequence[str]) -> TrialSet:
 
 
 def write_model_comparison(
-    result: ModelComparison, folder: Path, command: str = "", notes: Sequence[str] = ()
+    result: ModelComparison, folder: Path | str, command: str = "", notes: Sequence[str] = ()
 ) -> dict[str, Any]:
     """Write the record into a run folder, and the motions of whole trials.  Returns it; raises OutputError.
 
     notes  what a reader of the errors must know
     """
+    folder = Path(folder)
     pieces = list(result.data.trials.values())[:MOST]
     names = write_motions({one.name: one.predictor for one in result.models}, pieces, folder)
     document = {

@@ -86,13 +86,16 @@ def closest(name: str, known: Sequence[str]) -> str:
     return near_to(name, known) or _listed(known)
 
 
-def near_to(name: str, known: Sequence[str]) -> str:
-    """A question naming the nearest known names, "" where none is near."""
+def near_to(name: str, known: Sequence[str], cutoff: float = 0.5) -> str:
+    """A question naming the nearest known names, "" where none is near.
+
+    cutoff  likeness from which a name is near, 1 being the same
+    """
     import difflib
 
     # Names may come from files: comparing grows with the product of lengths.
     short = [other for other in known[:1000] if len(other) <= 80]
-    near = difflib.get_close_matches(name[:80], short, n=3, cutoff=0.5)
+    near = difflib.get_close_matches(name[:80], short, n=3, cutoff=cutoff)
     return "did you mean " + " or ".join(f"'{other}'" for other in near) + "?" if near else ""
 
 
@@ -113,6 +116,12 @@ def brief(value: object) -> str:
     short.maxlevel, short.maxstring, short.maxother = 3, 80, 80
     short.maxlist = short.maxdict = short.maxtuple = 8
     return short.repr(value)
+
+
+def kind_of(value: object) -> str:
+    """The type of a value with its article: "a dict", "an int"."""
+    name = type(value).__name__
+    return f"{'an' if name[0] in 'aeiou' else 'a'} {name}"
 
 
 def reason(error: BaseException) -> str:

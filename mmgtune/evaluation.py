@@ -201,7 +201,7 @@ class TrialRecord(Plotted):
 
 def evaluate(
     ship: ShipGiven | Model | Predictor,
-    trials: TrialsGiven | Sequence[Trial],
+    trials: TrialsGiven,
     objective: Objective | None = None,
     *,
     theta: FloatArray | None = None,

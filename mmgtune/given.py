@@ -2,28 +2,80 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
+from .errors import OptionError, Problem, TrialError, brief, kind_of
 from .profile import ShipProfile, load_profile
-from .trial import Trial, TrialSet, load_trials
+from .trial import IndexTrial, Trial, TrialSet, load_trials
 
 ShipGiven = ShipProfile | str | Path
-TrialsGiven = TrialSet | str | Path
+TrialsGiven = TrialSet | Trial | IndexTrial | Sequence[Trial | IndexTrial] | Sequence[Trial] | str | Path
 
 
 def ship_of(given: ShipGiven) -> ShipProfile:
-    """A profile, or the one of that path or bundled name.  Raises ProfileError."""
-    return load_profile(given) if isinstance(given, (str, Path)) else given
+    """A profile, or the one of that path or bundled name.  Raises ProfileError, OptionError for anything else."""
+    if isinstance(given, ShipProfile):
+        return given
+    if isinstance(given, (str, Path)):
+        return load_profile(given)
+    fix = "load a profile with load_profile(NAME)"
+    if isinstance(given, (TrialSet, Trial, IndexTrial)):
+        fix = "give the ship first, then the trials"
+    raise OptionError(Problem(f"{kind_of(given)} is no ship profile", brief(given), "a ship is wanted here", fix))
 
 
 def trials_of(given: TrialsGiven) -> TrialSet:
-    """A data set, or the one of that path or bundled name.  Raises TrialError."""
-    return load_trials(given) if isinstance(given, (str, Path)) else given
+    """A data set, or the one of that path or bundled name; a trial, or several, as a set that tunes to all of them.
+
+    Raises TrialError, OptionError for anything else.
+    """
+    if isinstance(given, TrialSet):
+        return given
+    return load_trials(given) if isinstance(given, (str, Path)) else _set_of(_several(given))
 
 
-def list_of(given: TrialsGiven | Sequence[Trial]) -> list[Trial]:
-    """The trials of a data set, in its order, or those of a list."""
+def list_of(given: TrialsGiven) -> list[Trial]:
+    """The trials of a data set, in its order, or those of a list.  Raises as ``trials_of`` does."""
+    what = "a simulation of trials"
     if isinstance(given, (str, Path, TrialSet)):
-        return list(trials_of(given).series_only("a simulation of trials").trials.values())
-    return list(given)
+        return list(trials_of(given).series_only(what).trials.values())
+    several = _several(given)
+    series = [one for one in several if isinstance(one, Trial)]
+    if len(series) < len(several):
+        _set_of(several).series_only(what)
+    return series
+
+
+def _several(given: object) -> list[Trial | IndexTrial]:
+    """What is given as one trial or several.  Raises OptionError for anything else."""
+    if isinstance(given, (Trial, IndexTrial)):
+        return [given]
+    parts = list(given) if isinstance(given, Iterable) and not isinstance(given, Mapping) else None
+    others = [one for one in parts or () if not isinstance(one, (Trial, IndexTrial))]
+    if parts is not None and not others:
+        return parts
+    what = f"{kind_of(given)} is no set of trials"
+    if others and isinstance(given, Sequence):
+        what = f"{kind_of(others[0])} in the {type(given).__name__} of trials is no trial"
+    fix = "give a TrialSet, a Trial, a list of these, a path or a bundled name; load_trials(NAME) reads a set"
+    if isinstance(given, ShipProfile):
+        fix = "give the ship first, then the trials"
+    if others and all(isinstance(one, str) for one in others) and isinstance(given, Sequence):
+        fix = f"ids are looked up in their set: [TRIALS[{others[0]!r}]], where TRIALS is load_trials(NAME)"
+    raise OptionError(Problem(what, brief(given), "measured trials are wanted here", fix))
+
+
+def _set_of(several: Sequence[Trial | IndexTrial]) -> TrialSet:
+    """Trials as a data set that tunes to all of them.  Raises TrialError for none, and for two of one id."""
+    if not several:
+        raise TrialError(Problem("the list of trials is empty", "trials", "nothing was measured", "give one at least"))
+    ids = [one.id for one in several]
+    twice = [id for id in dict.fromkeys(ids) if ids.count(id) > 1]
+    if twice:
+        why = "trials are told apart by their ids"
+        raise TrialError(Problem(f"two trials are called '{twice[0]}'", "trials", why, "give each its own id"))
+    series = {one.id: one for one in several if isinstance(one, Trial)}
+    stated = {one.id: one for one in several if isinstance(one, IndexTrial)}
+    ship = next((one.ship for one in several if one.ship), "")
+    return TrialSet(series, tuple(series), (), ship, stated=stated, tune_stated=tuple(stated))

@@ -22,6 +22,7 @@ from .files import write_text
 from .given import ShipGiven, ship_of
 from .inputs import INPUTS
 from .networks import named_ship
+from .options.choice import must_be
 from .options.studying import HeadingOptions
 from .physics.actuation import actuated
 from .physics.quantities import UNKNOWN
@@ -120,6 +121,7 @@ def study_heading_keeping(
     Raises OptionError for a truth without approach or actuators, and for a model that is driven otherwise or cannot be
     steered on lanes.
     """
+    must_be(options, HeadingOptions)
     began = time.perf_counter()
     ship = ship_of(truth)
     known = [as_predictor(named_ship(one)) for one in models]
@@ -179,8 +181,9 @@ def overrated(scores: FloatArray, truth: FloatArray) -> float:
     return float(np.mean(scores < truth))
 
 
-def write_heading_study(result: HeadingStudy, folder: Path, command: str = "") -> dict[str, Any]:
+def write_heading_study(result: HeadingStudy, folder: Path | str, command: str = "") -> dict[str, Any]:
     """Write the record into a run folder.  Returns it; raises OutputError."""
+    folder = Path(folder)
     document = {**result.to_dict(command), "out": str(folder)}
     write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
     return document

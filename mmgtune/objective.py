@@ -18,6 +18,7 @@ from .physics.constants import GRAVITY
 from .predictor import cases_from
 from .trial import Trial
 from .trial.pieces import counting
+from .trial.schema import ATTRIBUTES, FILE_CHANNELS
 
 PAPER_CHANNELS = ("x", "y", "psi")
 """Position and heading: the channels of Suyama et al. 2023, eq. 39-40."""
@@ -120,9 +121,9 @@ def make_objective(
     weights: dict[str, float] = {}
     for entry in channels or (PAPER_CHANNELS if scales is None else STATES):
         name, _, written = entry.partition(":")
-        name = "v_m" if name == "v" else name
-        if name not in STATES:
-            raise OptionError(Problem(f"unknown channel '{name}'", "channels", **among(name, STATES)))
+        if name not in (*FILE_CHANNELS, *STATES):
+            raise OptionError(Problem(f"unknown channel '{name}'", "channels", **among(name, FILE_CHANNELS)))
+        name = ATTRIBUTES.get(name, name)
         try:
             weights[name] = float(written) if written else 1.0
         except ValueError:

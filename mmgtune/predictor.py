@@ -15,7 +15,7 @@ import numpy as np
 from .arrays import BoolArray, FloatArray, IntArray
 from .backends import STATES, Cases, Integrator, LaneModel, get_backend, pad
 from .displayed import Brief
-from .errors import OptionError, Problem
+from .errors import OptionError, Problem, kind_of
 from .model import Model
 from .physics.quantities import State, Surroundings
 from .profile import ShipProfile
@@ -283,7 +283,7 @@ def as_predictor(
     if not isinstance(ship, Predictor):
         raise OptionError(
             Problem(
-                f"a {type(ship).__name__} is no ship",
+                f"{kind_of(ship)} is no ship",
                 repr(ship)[:60],
                 "a ship profile, a model or a predictor is needed",
                 "load a profile with load_profile(NAME)",

@@ -80,7 +80,7 @@ class Repeated(Brief):
 
 def repeat(
     ship: ShipGiven | Model | Predictor,
-    trials: TrialsGiven | Sequence[Trial],
+    trials: TrialsGiven,
     *,
     theta: FloatArray | None = None,
 ) -> list[Repeated]:

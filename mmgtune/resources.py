@@ -5,6 +5,8 @@ from __future__ import annotations
 import warnings
 from pathlib import Path
 
+from .errors import MmgtuneError, Problem, brief, kind_of
+
 _PACKAGE = Path(__file__).resolve().parent
 
 
@@ -12,6 +14,13 @@ def folder(name: str) -> Path:
     """The folder ``ship_profiles`` or ``trials``: package data where installed, the checkout's own otherwise."""
     installed = _PACKAGE / "data" / name
     return installed if installed.is_dir() else _PACKAGE.parent / name
+
+
+def must_be_name(name: object, kind: str, error: type[MmgtuneError]) -> None:
+    """Raises an error of that class for what is neither a name nor a path; ``kind`` is what it would be the name of."""
+    if not isinstance(name, (str, Path)):
+        why = f"a {kind} is found by a path or a bundled name, and {kind_of(name)} is neither"
+        raise error(Problem(f"no name of a {kind}", brief(name), why, "give a text or a Path"))
 
 
 def taken(name: str | Path, there: bool, bundled: Path) -> Path | None:

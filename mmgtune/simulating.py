@@ -19,12 +19,14 @@ from .manoeuvres.summary import criteria_of, indices_of
 from .model import Model
 from .networks import named_ship
 from .options import SimulateOptions
+from .options.choice import must_be
 from .orders import Helmsman, Sailing, TurningOrder, ZigzagOrder, run_manoeuvres
+from .physics.constants import GRAVITY
 from .predictor import PhysicsPredictor, Predictor, as_predictor, profile_of
-from .profile import ShipProfile
+from .profile import Approach, ShipProfile
 from .simulation import Motion, as_trial
-from .trial import Coverage, Trial, write_trial
-from .units import DEG, parse
+from .trial import Coverage, write_trial
+from .units import DEG, KNOT, parse
 
 ORDERED = "rk4"
 """How manoeuvres given as orders are simulated, at steps of their own."""
@@ -76,11 +78,12 @@ class Simulated(Plotted, Sequence[Motion]):
         records = self.records or (None,) * len(self.motions)
         return [self._described(motion, record) for motion, record in zip(self.motions, records, strict=True)]
 
-    def write(self, folder: Path, *, with_forces: bool = False, overwrite: bool = False) -> list[Path]:
+    def write(self, folder: Path | str, *, with_forces: bool = False, overwrite: bool = False) -> list[Path]:
         """Write every run as a trial file, with its number in the name where there are several members.
 
         Raises OutputError where one is there already, OptionError for forces of a predictor that has none.
         """
+        folder = Path(folder)
         several = self.predictor.n_members > 1
         ids = [f"{motion.id}_{motion.member}" if several else motion.id for motion in self.motions]
         paths = [folder / f"{id}.parquet" for id in ids]
@@ -143,7 +146,7 @@ def _beyond(ship: ShipProfile | None, motions: Sequence[Motion]) -> list[str]:
 
 def simulate(
     ship: ShipGiven | Model | Predictor,
-    trials: TrialsGiven | Sequence[Trial] | None = None,
+    trials: TrialsGiven | None = None,
     options: SimulateOptions = SimulateOptions(),
     *,
     integrator: Integrator | None = None,
@@ -157,6 +160,7 @@ def simulate(
     Raises OptionError for orders that make no sense or are given together with trials, and for a predictor without a
     profile that is given no trials.
     """
+    must_be(options, SimulateOptions)
     predictor = as_predictor(
         named_ship(ship, integrator or options.make_integrator()),
         integrator=integrator or options.make_integrator(),
@@ -181,7 +185,7 @@ def simulate(
     return Simulated(predictor, simulated, records, options, (*notes, *_beyond(profile_of(predictor), simulated)))
 
 
-def files_of(folder: Path, trials: TrialsGiven | Sequence[Trial] | None, options: SimulateOptions) -> list[Path]:
+def files_of(folder: Path, trials: TrialsGiven | None, options: SimulateOptions) -> list[Path]:
     """Where ``Simulated.write`` would write the runs of a profile, known before they are made.
 
     Raises OptionError for orders that make no sense, and as loading trials does.
@@ -198,6 +202,7 @@ def _on_orders(predictor: Predictor, options: SimulateOptions) -> list[Motion]:
     model, ship = predictor.model, predictor.model.profile
     speed = None if options.speed is None else approach_speed(options.speed)
     n = None if options.rpm is None else revolutions(options.rpm)
+    possible_approach(speed, n, ship.L_pp, ship.approach)
     L, V = ship.L_pp, speed or (ship.approach.speed if ship.approach else 1.0)
     # Models are quicker than ships: sample ten times per ship length travelled, once a second at most.
     sample = min(1.0, round(L / V / 10.0, 1) or 0.1)
@@ -262,6 +267,38 @@ def revolutions(text: str) -> float:
             Problem(f"the revolutions are {text}", "rpm", "manoeuvres begin ahead", "give a number above 0")
         )
     return n
+
+
+FROUDE = 1.0
+"""Speed over sqrt(g L_pp) [1] that no ship of displacement comes near: ships stay below 0.5."""
+
+FASTER = 5.0
+"""Times the revolutions of the profile's approach beyond which no shaft turns: engines have a tenth to spare."""
+
+FASTEST_SHAFT = 100.0
+"""Revolutions [1/s] that no propeller makes, not even a model's."""
+
+
+def possible_approach(
+    speed: float | None, n: float | None, L_pp: float, own: Approach | None, *, option: str = "rpm"
+) -> None:
+    """Raises OptionError for an approach that was ordered and is beyond any ship; None where nothing was.
+
+    own     approach of the profile, None where there is none
+    option  that ordered the revolutions
+    """
+    fastest = FROUDE * math.sqrt(GRAVITY * L_pp)
+    if speed is not None and not speed <= fastest:
+        why = f"a Froude number of {speed / fastest:.2g} with {L_pp:.4g} m between perpendiculars; ships stay below 0.5"
+        fix = f"give a speed below {0.5 * fastest / KNOT:.3g} kn, with its unit"
+        raise OptionError(Problem(f"the approach speed is {speed / KNOT:.4g} kn", "speed", why, fix))
+    most = FASTEST_SHAFT if own is None else FASTER * own.n
+    if n is not None and n > most:
+        why = "no propeller turns so fast, not even a model's"
+        if own is not None:
+            why = f"that is {n / own.n:.3g} times the {60.0 * own.n:.4g} rpm of the profile's approach"
+        fix = f"give less than {60.0 * most:.4g} rpm, or correct [approach] of the profile"
+        raise OptionError(Problem(f"the revolutions are {60.0 * n:.4g} rpm", option, why, fix))
 
 
 def zigzag_angles(text: str) -> tuple[float, float]:

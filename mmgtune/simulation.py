@@ -12,7 +12,7 @@ import numpy as np
 from .arrays import FloatArray
 from .backends import STATES, Integrator, LaneModel
 from .displayed import Plotted, inert
-from .errors import OptionError, Problem, TrialError
+from .errors import OptionError, Problem, TrialError, among
 from .given import ShipGiven, ship_of
 from .inputs import INPUTS, Role
 from .manoeuvres import Track, manoeuvre_kind, zigzag_indices
@@ -22,7 +22,7 @@ from .physics.quantities import UNKNOWN, Force, State, Surroundings
 from .predictor import Predictor, as_predictor, cases_from, draught_of, portions, profile_of
 from .profile import ShipProfile
 from .trial import Trial
-from .trial.schema import MAIN_INPUTS
+from .trial.schema import ATTRIBUTES, FILE_CHANNELS, MAIN_INPUTS
 from .units import DEG
 
 ORDERED = re.compile(r"zig-?zag\D*(\d+(?:\.\d+)?)\s*/\s*(\d+(?:\.\d+)?)", re.IGNORECASE)
@@ -58,8 +58,19 @@ class Motion(Plotted):
         return f"Motion({inert(self.id)}: {end})"
 
     def channel(self, name: str) -> FloatArray:
-        """One of x, y, psi, u, v_m, r: (n_samples,)."""
-        return self.states[:, STATES.index(name)]
+        """One of x, y, psi, u, v, r: (n_samples,); sway is ``v`` as in files, or ``v_m``.
+
+        Raises OptionError for a name that is no channel of motion.
+        """
+        state = ATTRIBUTES.get(name, name)
+        if state in STATES:
+            return self.states[:, STATES.index(state)]
+        known = {"t": "write motion.t", "time": "write motion.t", "heading": "write channel('psi')"}
+        known |= {one: f"write motion.controls[:, {k}]" for k, one in enumerate(self.inputs)}
+        problem = {"why": f"channels are {', '.join(FILE_CHANNELS)}", "fix": known.get(name, "")}
+        raise OptionError(
+            Problem(f"no channel '{name}'", "channel", **problem if name in known else among(str(name), FILE_CHANNELS))
+        )
 
     def track(self) -> Track:
         """The run as indices of manoeuvres are computed from it."""

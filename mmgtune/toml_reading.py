@@ -128,16 +128,20 @@ class TomlReader:
         if isinstance(written, str):
             try:
                 return units.parse(written, unit, infinite=infinite)
-            except ValueError as error:
-                self.problem(f"'{shown}': {error}", name, key)
+            except units.Unreadable as error:
+                self.problem(f"'{shown}': {error}", name, key, fix=error.fix)
         elif not isinstance(written, (int, float)) or isinstance(written, bool):
             fix = f"write {key} = {units.example(unit)}"
             self.problem(f"'{shown}' is {brief(written)}, not a number", name, key, fix=fix)
+        elif not infinite and isinstance(written, float) and not math.isfinite(written):
+            fix = f"write {key} = {units.example(unit)}" if unit in units.DIMENSIONLESS else ""
+            fix = fix or f'write a number with its unit: {key} = "{units.example(unit)}"'
+            self.problem(f"'{shown}' is {written}", name, key, "only finite numbers can be simulated", fix)
         elif unit not in units.DIMENSIONLESS:
             fix = f'write {key} = "{brief(written)} {unit}"'
             self.problem(f"'{shown}' = {brief(written)} has no unit", name, key, fix=fix)
         elif isinstance(written, int) and finite(written) is None:
-            self.problem(f"'{shown}' is {brief(written)}, more than a number can be", name, key)
+            self.problem(f"'{shown}' is {brief(written)}, more than a number can be", name, key, fix="write it shorter")
         else:
             return (float(written),)
         return None

@@ -80,35 +80,59 @@ _QUANTITY = re.compile(r"^\s*((?:[-+0-9.eE]+\s*,\s*)*[-+0-9.eE]+)\s*([^\s0-9].*?
 
 LONGEST = 2000
 """Characters a quantity may have."""
+_NOT_FINITE = re.compile(r"^\s*[-+]?(nan|inf|infinity)(\s.*)?$", re.IGNORECASE)
+_DECIMAL_COMMA = re.compile(r"^\s*([-+]?[0-9]+),([0-9]+)(\s*[^\s0-9,].*)?$")
+
+
+class Unreadable(ValueError):
+    """A text that is no quantity: a sentence that says so, and ``fix``, what to write instead."""
+
+    def __init__(self, words: str, fix: str):
+        super().__init__(words)
+        self.fix = fix
+
+
 _INFINITE = re.compile(r"^\s*(inf)\s+(\S.*?)\s*$")
 
 
 def parse(text: str, unit: str, infinite: bool = False) -> tuple[float, ...]:
     """The numbers of "12 kn" or "0, 10, 18 deg" in ``unit``; "inf deg/s" too where ``infinite`` allows it.
 
-    Raises ValueError with a sentence saying what was expected.
+    Raises Unreadable with a sentence saying what was expected.
     """
+    such = f'write a number with its unit, such as "{example(unit)}"'
     if len(text) > LONGEST:
-        raise ValueError(f"'{text[:40]}...' is too long for a number with a unit, such as '{example(unit)}'")
+        raise Unreadable(f"'{text[:40]}...' is too long for a number with a unit, such as '{example(unit)}'", such)
     match = (_INFINITE.match(text) if infinite else None) or _QUANTITY.match(text)
+    if match is None and _NOT_FINITE.match(text):
+        raise Unreadable(f"'{text}' is not a finite number", such)
     if match is None:
-        raise ValueError(f"'{text}' is not a number with a unit, such as '{example(unit)}'")
+        raise Unreadable(f"'{text}' is not a number with a unit, such as '{example(unit)}'", such)
     written = (match.group(2) or "").strip()
     known = factors(unit)
     if unit in DIMENSIONLESS:
         if written and written != "-":
-            raise ValueError(f"'{text}' has a unit where a pure number belongs")
+            raise Unreadable(f"'{text}' has a unit where a pure number belongs", f"write {match.group(1)}")
         factor = 1.0
     elif not written:
-        raise ValueError(f"'{text}' has no unit; write for example '{example(unit)}'")
+        fix = f'write "{text.strip()} {unit}" if it is in {unit}'
+        raise Unreadable(f"'{text}' has no unit; write for example '{example(unit)}'", fix)
     elif written not in known:
-        raise ValueError(f"unit '{written}' is not one of {', '.join(known)}")
+        meant = canonical(written)
+        fix = f'write "{match.group(1)} {meant}"' if meant in known else f"write it in {' or '.join(known)}"
+        raise Unreadable(f"unit '{written}' is not one of {', '.join(known)}", fix)
     else:
         factor = known[written]
     try:
         return tuple(float(number) * factor for number in match.group(1).split(","))
     except ValueError:
-        raise ValueError(f"'{text}' is not a number with a unit, such as '{example(unit)}'") from None
+        raise Unreadable(f"'{text}' is not a number with a unit, such as '{example(unit)}'", such) from None
+
+
+def with_point(text: str) -> str | None:
+    """ "83.0 m" for "83,0 m": one number written with a decimal comma; None for anything else."""
+    match = _DECIMAL_COMMA.match(text[:LONGEST])
+    return f"{match[1]}.{match[2]}{match[3] or ''}" if match else None
 
 
 def canonical(unit: str) -> str:

@@ -17,6 +17,7 @@ from .model import Model
 from .networks import named_ship
 from .objective import spread, varying
 from .options import ParticleOptions, SimulationOptions, ValidateOptions
+from .options.choice import must_be
 from .predictor import PhysicsPredictor, Predictor, as_predictor, particles_of, profile_of, words_of
 from .profile.doubts import Doubt
 from .repeating import Repeated, document, repeat
@@ -136,6 +137,7 @@ def validate(
     Integrator and back end of the options are for profiles; a predictor has its own ways.
     Raises OptionError for no profile, and for trials in which a state does not vary.
     """
+    must_be(options, ValidateOptions)
     several = predictors_of(profiles, options)
     data = trials_of(trials)
     called = str(trials) if isinstance(trials, (str, Path)) else str(data.path or "trials")

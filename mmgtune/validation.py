@@ -117,7 +117,7 @@ def by_member(scores: Sequence[TrialScore]) -> list[list[TrialScore]]:
 
 def score(
     ship: ShipGiven | Model | Predictor,
-    trials: TrialsGiven | Sequence[Trial],
+    trials: TrialsGiven,
     sigma: Mapping[str, float] | None = None,
     *,
     theta: FloatArray | None = None,

@@ -1,7 +1,12 @@
 """The library as a notebook user meets it."""
 
+import inspect
 import re
 from dataclasses import replace
+
+import numpy as np
+import pandas
+import pytest
 
 import mmgtune
 
@@ -39,3 +44,79 @@ def test_from_profile_to_verdict(tmp_path):
 def test_a_manoeuvre_of_a_bundled_ship_and_its_forces():
     motion = mmgtune.run_manoeuvre("suzaku", mmgtune.TurningOrder(0.6), longest=60.0)
     assert mmgtune.breakdown("suzaku", motion.states, motion.controls).total.X.shape == motion.t.shape
+
+
+QUICK = mmgtune.FitOptions(method="least-squares", starts=1)
+
+
+def test_a_trial_and_a_list_of_trials_are_sets_that_tune():
+    whole = mmgtune.load_trials("suzaku")
+    one = whole["turn_p35"]
+    alone, listed = mmgtune.fit("suzaku", one, QUICK), mmgtune.fit("suzaku", [one], QUICK)
+    assert alone.J == listed.J
+    assert [compared.trial.id for compared in alone.compared] == ["turn_p35"]
+    assert [motion.id for motion in mmgtune.simulate("suzaku", one)] == ["turn_p35"]
+    assert mmgtune.validate("suzaku", [one, whole["zigzag_20"]]).pieces[1].id == "zigzag_20"
+
+
+SHIP, TRIALS = mmgtune.load_profile("suzaku"), mmgtune.load_trials("suzaku")
+
+
+@pytest.mark.parametrize(
+    ("call", "what", "fix"),
+    [
+        (lambda: mmgtune.fit(SHIP, {"a": 1}), "a dict is no set of trials", "load_trials(NAME)"),
+        (lambda: mmgtune.fit(SHIP, SHIP), "a ShipProfile is no set of trials", "ship first"),
+        (lambda: mmgtune.fit(SHIP, pandas.DataFrame({"t": [0.0]})), "a DataFrame is no set", "load_trials(NAME)"),
+        (lambda: mmgtune.fit(pandas.DataFrame(), TRIALS), "a DataFrame is no ship profile", "load_profile(NAME)"),
+        (lambda: mmgtune.fit(TRIALS, SHIP), "a TrialSet is no ship profile", "ship first"),
+        (lambda: mmgtune.fit(SHIP, []), "the list of trials is empty", "one at least"),
+        (lambda: mmgtune.fit(SHIP, [TRIALS["turn_p35"]] * 2), "two trials are called 'turn_p35'", "own id"),
+        (lambda: mmgtune.fit(SHIP, TRIALS, {"a_r": 0.5}), "a dict is no FitOptions", "mmgtune.FitOptions(a_r=0.5)"),
+        (lambda: mmgtune.simulate(SHIP, ["turn_p35"]), "a str in the list of trials", "[TRIALS['turn_p35']]"),
+        (lambda: mmgtune.simulate(SHIP, TRIALS, QUICK), "a FitOptions is no SimulateOptions", "SimulateOptions(...)"),
+        (lambda: mmgtune.run_manoeuvre(SHIP, 35), "an int is no helmsman", "TurningOrder(radians(35))"),
+        (lambda: mmgtune.load_trials(5), "no name of a data set (5)", "a text or a Path"),
+        (lambda: mmgtune.load_profile(None), "no name of a ship profile (None)", "a text or a Path"),
+    ],
+)
+def test_what_is_of_the_wrong_type_is_refused_in_words(call, what, fix):
+    with pytest.raises(mmgtune.MmgtuneError) as caught:
+        call()
+    (problem,) = caught.value.problems
+    assert what in str(problem)
+    assert fix in problem.fix
+    assert problem.why
+
+
+def test_channels_of_a_motion_have_the_names_of_columns():
+    motion = mmgtune.simulate("suzaku", TRIALS["turn_p35"])[0]
+    assert np.array_equal(motion.channel("v"), motion.channel("v_m"))
+    for name, fix in (("heading", "'psi'"), ("t", "motion.t"), ("delta", "motion.controls[:, 1]"), ("speed", "these")):
+        with pytest.raises(mmgtune.MmgtuneError, match=f"no channel '{name}'") as caught:
+            motion.channel(name)
+        (problem,) = caught.value.problems
+        assert "x, y, psi, u, v, r" in problem.why
+        assert fix in problem.fix
+    with pytest.raises(mmgtune.MmgtuneError, match="x, y, psi, u, v, r"):
+        mmgtune.fit("suzaku", TRIALS, mmgtune.FitOptions(channels=("x", "y", "heading")))
+
+
+def test_folders_are_texts_or_paths(tmp_path):
+    kept = str(tmp_path / "checkpoint")
+    (tmp_path / "checkpoint").mkdir()
+    result = mmgtune.fit("suzaku", TRIALS["turn_p35"], QUICK, checkpoint_folder=kept)
+    mmgtune.write_run(result, str(tmp_path / "run"))
+    assert mmgtune.render(str(tmp_path / "run"))[0] == tmp_path / "run" / "report.html"
+    assert mmgtune.simulate("suzaku", TRIALS["turn_p35"]).write(str(tmp_path / "simulated"))
+
+
+def test_whatever_takes_a_path_takes_a_text():
+    """Of the signatures, so that no function is forgotten."""
+    for name in mmgtune.__all__:
+        thing = getattr(mmgtune, name)
+        written = getattr(thing, "write", None)
+        for function in (written,) if inspect.isclass(thing) else (thing,):
+            for parameter in inspect.signature(function).parameters.values() if function else ():
+                kinds = re.findall(r"[\w.]+", str(parameter.annotation))
+                assert "Path" not in kinds or "str" in kinds, f"{name}: {parameter}"

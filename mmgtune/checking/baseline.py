@@ -90,13 +90,15 @@ class Baseline:
         }
 
 
-def write_baseline(baseline: Baseline, path: Path) -> None:
+def write_baseline(baseline: Baseline, path: Path | str) -> None:
     """Write the file, replacing one that is there.  Raises OutputError where the system refuses."""
+    path = Path(path)
     write_text(path, json.dumps(baseline.to_dict(), indent=1, allow_nan=False) + "\n")
 
 
-def read_baseline(path: Path) -> Baseline:
+def read_baseline(path: Path | str) -> Baseline:
     """The baseline in a file.  Raises OptionError with everything that is wrong in it."""
+    path = Path(path)
     again = "write it anew with update_baseline=True, or take it from the repository"
     try:
         data = json.loads(limits.text(path, limits.RECORD_BYTES, OptionError))

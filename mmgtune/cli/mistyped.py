@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import inspect
 import re
+import shlex
+from pathlib import Path
 from typing import Any
 
 import typer
@@ -34,9 +36,7 @@ def problem_of(error: Any) -> Problem | None:
             f"{_named(error.param)} is missing", path, f"it is needed: {_help(error.param)}", f"write {example}"
         )
     if kind == "NoSuchOption":
-        name, known = error.option_name, [flag for one in ctx.command.params for flag in one.opts if flag[:2] == "--"]
-        why, near = f"{path} has {len(known)} options, and none is called that", near_to(name, known)
-        return Problem(f"unknown option {name}", path, why, near or f"{path} --help lists them")
+        return _unknown_option(error.option_name, ctx)
     if kind == "BadParameter" and error.param is not None:
         takes = next((words for kind, words in _NUMBERS.items() if f"valid {kind}" in message), "")
         fix = f"give {takes}" if takes else f"write {example}"
@@ -47,10 +47,53 @@ def problem_of(error: Any) -> Problem | None:
     if extra := re.search(r"extra arguments?(?:\(s\))? \((.*)\)", message):
         takes = ", ".join(_named(one) for one in ctx.command.params if one.param_type_name == "argument")
         why = f"{path} takes {takes or 'options alone'}"
-        return Problem(f"'{extra[1]}' is one word too many", path, why, f"write {example}")
+        fix = f"write {as_options(extra[1].split(), ctx) or example}"
+        many = "is one word too many" if len(extra[1].split()) == 1 else "are words too many"
+        return Problem(f"'{extra[1]}' {many}", path, why, fix)
     return Problem(
         message[:1].lower() + message[1:], path, "the command line ends or goes on elsewhere", f"write {example}"
     )
+
+
+def as_options(words: list[str], ctx: Any) -> str:
+    """The command with a profile and trials that were given as words, as its options; "" where it cannot be that."""
+    shorts = {one.name: one.opts for one in ctx.command.params if one.param_type_name == "option"}
+    wanted = [flag for name, flag in (("profile", "-p"), ("trials", "-t")) if flag in shorts.get(name, ())]
+    if len(wanted) == 2 and len(words) == 1 and _are_trials(words[0]):
+        wanted = wanted[1:]
+    if not wanted or len(words) > len(wanted):
+        return ""
+    return " ".join([path_of(ctx), *(f"{flag} {shlex.quote(word)}" for flag, word in zip(wanted, words, strict=False))])
+
+
+def _are_trials(word: str) -> bool:
+    return word.endswith(".parquet") or Path(word).is_dir()
+
+
+def _unknown_option(name: str, ctx: Any) -> Problem:
+    """Only near spellings are proposed; of an option that other commands have it is said which."""
+    path, known = path_of(ctx), _flags(ctx.command)
+    why = f"{path} has {len(known)} options, and none is called that"
+    elsewhere = [others for others, command in _commands(ctx.find_root().command) if name in _flags(command)]
+    if elsewhere:
+        why += f"; these have it: {', '.join(elsewhere[:10])}{' and others' * (len(elsewhere) > 10)}"
+    # The dashes are alike in all: they say nothing of the spelling.
+    near = near_to(name.lstrip("-"), [flag.lstrip("-") for flag in known], cutoff=0.65)
+    return Problem(f"unknown option {name}", path, why, near.replace(" '", " '--") or f"{path} --help lists them")
+
+
+def _flags(command: Any) -> list[str]:
+    """The long flags of a command."""
+    return [flag for one in command.params for flag in one.opts if flag[:2] == "--"]
+
+
+def _commands(group: Any, before: str = "") -> list[tuple[str, Any]]:
+    """The commands of a group and of those in it, each by what is typed behind ``mmgtune``."""
+    found: list[tuple[str, Any]] = []
+    for name, one in sorted(getattr(group, "commands", {}).items()):
+        if not one.hidden:
+            found += _commands(one, f"{before}{name} ") if hasattr(one, "commands") else [(before + name, one)]
+    return found
 
 
 def path_of(ctx: Any) -> str:

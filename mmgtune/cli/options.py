@@ -159,6 +159,7 @@ def parameters_of(of: type[Options]) -> list[inspect.Parameter]:
     for name, known in flags_of(of).items():
         kind, default = _typed(hints[name], defaults[name])
         shown = known.flag
+        only_off = defaults[name] is True and off_flag(known.flag) == known.flag
         if defaults[name] is True:  # what is on can be turned off
             off = off_flag(known.flag)
             shown = f" /{off}" if off == known.flag else f"{known.flag}/{off}"
@@ -168,6 +169,7 @@ def parameters_of(of: type[Options]) -> list[inspect.Parameter]:
         option = typer.Option(
             *decls,
             help=known.help,
+            show_default=not only_off,  # "--no-prior, default True" reads as if it were given
             rich_help_panel=known.panel,
             metavar="|".join(known.values) or METAVARS.get(_parts(hints[name]) or ()),
             autocompletion=completing.of_choice(name, known),

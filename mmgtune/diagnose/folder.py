@@ -17,11 +17,12 @@ RESULT = "diagnosis.json"
 CALM = "calm.toml"
 
 
-def write_diagnosis(result: Diagnosis, folder: Path) -> dict[str, Any]:
+def write_diagnosis(result: Diagnosis, folder: Path | str) -> dict[str, Any]:
     """Write the extended profile, the held-out motions and, last, the result.  Returns its document.
 
     Where a cause is of the day, such as a current, ``calm.toml`` is the profile without it, for predictions.
     """
+    folder = Path(folder)
     extended = result.extended_profile()
     write_text(folder / "profile.toml", extended.text)
     calm = calm_profile(extended)

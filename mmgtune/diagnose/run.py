@@ -16,6 +16,7 @@ from ..fitting.run import Hooks, identity_of, in_pieces, make_provenance
 from ..given import ShipGiven, TrialsGiven, ship_of
 from ..model import Model
 from ..options import DiagnoseOptions
+from ..options.choice import must_be
 from ..profile import ShipProfile, with_all_effects
 from ..threads import blas_on_one_thread
 from ..trial import Trial, TrialSet, VoyageSet, oddities
@@ -40,7 +41,7 @@ def diagnose(
     options: DiagnoseOptions = DiagnoseOptions(),
     *,
     hooks: Hooks = Hooks(),
-    folder: Path | None = None,
+    folder: Path | str | None = None,
     resume: bool = False,
     command: str = "",
 ) -> Diagnosis:
@@ -58,6 +59,8 @@ def diagnose(
     Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to, ProfileError
     where the simulation of a trial runs away wherever the targets are.
     """
+    folder = None if folder is None else Path(folder)
+    must_be(options, DiagnoseOptions)
     profile = ship_of(profile)
     options = with_width(profile, options)
     trials, choice = looked_at(profile, trials, options)

@@ -11,6 +11,7 @@ from typing import Any
 from ..components import ABOVE_WATER, SHIP, Field, find
 from ..errors import Problem, ProfileError
 from ..options import EstimateOptions
+from ..options.choice import must_be
 from ..physics.prime import force_unit
 from ..physics.regressions import (
     clarke1982,
@@ -75,6 +76,7 @@ def estimate(ship: Particulars | str | Path, options: EstimateOptions = Estimate
     but for the added masses.  The approach is at self-propulsion.  Raises ProfileError where a formula gives an
     impossible number, as it may far outside its range.
     """
+    must_be(options, EstimateOptions)
     found = read_particulars(ship) if isinstance(ship, (str, Path)) else ship
     return _Estimate(found, options).profile()
 

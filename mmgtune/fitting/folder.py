@@ -121,8 +121,9 @@ def claimed(folder: Path, *, force: bool = False, resume: bool = False) -> Itera
             raise
 
 
-def write_run(result: FitResult, folder: Path) -> dict[str, Any]:
+def write_run(result: FitResult, folder: Path | str) -> dict[str, Any]:
     """Write a run folder; the result last, so that its presence means the rest is there.  Returns its document."""
+    folder = Path(folder)
     write_text(folder / "profile.toml", result.tuned_text())
     write_table(folder / "history.parquet", _history(result.history))
     inputs = [one.name for one in result.profile.arrangement.inputs]

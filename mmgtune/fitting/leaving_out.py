@@ -22,6 +22,7 @@ from ..inputs import INPUTS
 from ..model import Model
 from ..objective import spread
 from ..options import LeaveOutOptions
+from ..options.choice import must_be
 from ..predictor import as_predictor, words_of
 from ..profile import ShipProfile
 from ..profile.doubts import Doubt, in_words
@@ -226,7 +227,7 @@ def leave_out(
     options: LeaveOutOptions = LeaveOutOptions(),
     *,
     hooks: Hooks = Hooks(),
-    folder: Path | None = None,
+    folder: Path | str | None = None,
     resume: bool = False,
     command: str = "",
 ) -> LeftOut:
@@ -239,6 +240,8 @@ def leave_out(
     Every fit starts from the fit to all runs; that one takes the starts of the options.
     Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to.
     """
+    folder = None if folder is None else Path(folder)
+    must_be(options, LeaveOutOptions)
     profile, trials = ship_of(profile), trials_of(trials)
     profile, options = settled(profile, options, trials)
     provenance = make_provenance(profile, trials, command)

@@ -17,6 +17,7 @@ from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..model import Model
 from ..objective import Objective, cases_of, make_objective, spread
 from ..options import FitOptions, Options, TuningOptions
+from ..options.choice import must_be
 from ..profile import ShipProfile
 from ..provenance import made_by as made_by
 from ..stated import IndexComparison, compare_stated, possible
@@ -181,7 +182,7 @@ def fit(
     options: FitOptions = FitOptions(),
     *,
     hooks: Hooks = Hooks(),
-    checkpoint_folder: Path | None = None,
+    checkpoint_folder: Path | str | None = None,
     resume: bool = False,
     more_starts: tuple[Mapping[str, float], ...] = (),
     command: str = "",
@@ -196,6 +197,8 @@ def fit(
     Raises OptionError for choices that make no sense, OutputError where the checkpoint cannot be written, ProfileError
     where the simulation of a tune trial runs away wherever the targets are.
     """
+    checkpoint_folder = None if checkpoint_folder is None else Path(checkpoint_folder)
+    must_be(options, FitOptions)
     profile, trials = ship_of(profile), trials_of(trials)
     profile, options = settled(profile, options, trials)
     provenance = make_provenance(profile, trials, command)

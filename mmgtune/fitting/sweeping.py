@@ -14,6 +14,7 @@ from ..displayed import Plotted
 from ..files import write_text
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..options import SweepOptions
+from ..options.choice import must_be
 from ..profile import ShipProfile
 from ..trial import TrialSet
 from .box import A_R
@@ -211,7 +212,7 @@ def sweep(
     options: SweepOptions = SweepOptions(),
     *,
     hooks: Hooks = Hooks(),
-    folder: Path | None = None,
+    folder: Path | str | None = None,
     resume: bool = False,
     command: str = "",
 ) -> SweepResult:
@@ -222,6 +223,8 @@ def sweep(
     resume  continue the sweep in the folder that was stopped: what is finished there is read back
     Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to.
     """
+    folder = None if folder is None else Path(folder)
+    must_be(options, SweepOptions)
     profile, trials = ship_of(profile), trials_of(trials)
     profile, options = settled(profile, options, trials)
     identity = identity_of(profile, trials, options, make_provenance(profile, trials, command))

@@ -116,8 +116,9 @@ def _inside(folder: Path) -> list[Path]:
         return []
 
 
-def read(out: Path) -> list[dict[str, Any]]:
+def read(out: Path | str) -> list[dict[str, Any]]:
     """All rows with their ship and date, by these and name.  Raises OptionError where there is no such data set."""
+    out = Path(out)
     import pyarrow as pa
     import pyarrow.dataset as ds
 

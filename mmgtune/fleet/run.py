@@ -14,6 +14,7 @@ from ..displayed import Displayed
 from ..errors import OptionError, OutputError, Problem
 from ..files import alone_in, cannot_write, exists, remove_left_overs, write_text
 from ..options import FleetOptions
+from ..options.choice import must_be
 from ..provenance import made_by
 from . import rows
 from .expanding import expand
@@ -76,8 +77,9 @@ class FleetPlan:
     reckoned: Reckoned
 
 
-def plan_fleet(table: FleetTable | Path | str, out: Path | None = None) -> FleetPlan:
+def plan_fleet(table: FleetTable | Path | str, out: Path | str | None = None) -> FleetPlan:
     """The jobs of a table, and about how long they take.  Raises OptionError for what a run would refuse."""
+    out = None if out is None else Path(out)
     jobs = expand(read_table(table) if isinstance(table, (str, Path)) else table)
     there = frozenset(rows.done(out)) if out is not None else frozenset()
     return FleetPlan(tuple(jobs), there, reckon([job for job in jobs if job.key not in there]))
@@ -97,6 +99,7 @@ def run_fleet(
     resume  whether ``out`` may hold results already: jobs of the same data, options and program are not run again
     Raises OptionError for a table that makes no sense or a scheduler that does not answer, OutputError for ``out``.
     """
+    must_be(options, FleetOptions)
     if options.scheduler is None:
         prepare()
     out = Path(out).absolute()

@@ -14,6 +14,7 @@ from ..files import refuse_existing, write_text
 from ..inputs import INPUTS
 from ..model import Model
 from ..options import MakeOptions
+from ..options.choice import must_be
 from ..profile import ShipProfile, froude_scaled, load_profile
 from ..trial import Trial, write_trial
 from ..trial.schema import MAIN_INPUTS
@@ -69,6 +70,7 @@ def make_trials(ship: str, out: Path | str, options: MakeOptions = MakeOptions()
     At full scale the profile of the ship is written beside them.  The same seed makes the same trials, whichever
     other sets are made.  Raises OptionError for an unknown ship, OutputError where there are such files already.
     """
+    must_be(options, MakeOptions)
     if ship not in SHIPS:
         raise OptionError(Problem(f"no trials can be made of '{ship}'", "ship", **among(ship, tuple(SHIPS))))
     model = Model(load_profile(SHIPS[ship]))

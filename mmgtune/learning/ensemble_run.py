@@ -22,6 +22,7 @@ from ..errors import OptionError, Problem
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..networks.ensemble import Ensemble, EnsemblePredictor, Part
 from ..networks.feedforward import Layers, Standards
+from ..options.choice import must_be
 from ..options.learning import EnsembleOptions
 from ..validation import TrialScore
 from .choosing import Single
@@ -102,7 +103,7 @@ def learn_ensemble(
     options: EnsembleOptions = EnsembleOptions(),
     *,
     hooks: Hooks = Hooks(),
-    folder: Path | None = None,
+    folder: Path | str | None = None,
     resume: bool = False,
     command: str = "",
 ) -> LearnedEnsemble:
@@ -113,6 +114,8 @@ def learn_ensemble(
     resume  go on with what is there: the result is that of a run without a stop, bit for bit
     Raises what ``ensemble_task`` does, and OptionError where JAX is missing.
     """
+    folder = None if folder is None else Path(folder)
+    must_be(options, EnsembleOptions)
     began = time.perf_counter()
     needed()
     task = ensemble_task(ship_of(ship), trials_of(trials).series_only("a network"), options)

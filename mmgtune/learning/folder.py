@@ -181,8 +181,9 @@ def _short(value: float, name: str) -> float:
     return round(value, 2) if name.endswith("_m") else float(f"{value:.5g}")
 
 
-def write_learned(result: Learned | LearnedHybrid | LearnedEnsemble, folder: Path) -> dict[str, Any]:
+def write_learned(result: Learned | LearnedHybrid | LearnedEnsemble, folder: Path | str) -> dict[str, Any]:
     """Write a run folder, the record last; checkpoints stay where the training was stopped.  Returns the record."""
+    folder = Path(folder)
     if isinstance(result, LearnedHybrid):
         save_network(result.hybrid, folder / MODEL, overwrite=True)
         document, name = hybrid_document(result), HYBRID_RESULT

@@ -18,6 +18,7 @@ from ..model import Model
 from ..networks.hybrid import Hybrid, HybridPredictor
 from ..networks.residual import Ranges, ResidualWeights
 from ..objective import spread, varying
+from ..options.choice import must_be
 from ..options.learning import HybridOptions
 from ..predictor import as_predictor
 from ..profile import ShipProfile
@@ -91,7 +92,7 @@ def learn_hybrid(
     options: HybridOptions = HybridOptions(),
     *,
     hooks: Hooks = Hooks(),
-    folder: Path | None = None,
+    folder: Path | str | None = None,
     resume: bool = False,
     command: str = "",
 ) -> LearnedHybrid:
@@ -102,6 +103,8 @@ def learn_hybrid(
     resume  go on with what is there: the result is that of a run without a stop, bit for bit
     Raises OptionError for too few runs or trials from which nothing can be learned, and where JAX is missing.
     """
+    folder = None if folder is None else Path(folder)
+    must_be(options, HybridOptions)
     began = time.perf_counter()
     needed()
     profile, data = ship_of(ship), trials_of(trials).series_only("a network")

@@ -24,6 +24,7 @@ from ..networks import (
 )
 from ..networks.hybrid import Hybrid, silent
 from ..objective import spread, varying
+from ..options.choice import must_be
 from ..options.learning import MixtureOptions
 from ..predictor import Predictor
 from ..profile import ShipProfile
@@ -88,8 +89,9 @@ class LearnedMixture:
             "provenance": self.provenance,
         }
 
-    def write(self, folder: Path) -> dict[str, Any]:
+    def write(self, folder: Path | str) -> dict[str, Any]:
         """Write the model and the record into a run folder.  Returns the record; raises OutputError."""
+        folder = Path(folder)
         document = {**self.to_dict(), "out": str(folder)}
         save_network(self.model, folder / MODEL, overwrite=True)
         write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
@@ -111,6 +113,7 @@ def learn_mixture(
     trials   that neither was trained on: those that tune choose the share.  None takes the one share of the options
     Raises OptionError where parts do not fit, or nothing says which of several shares is meant; NetworkError.
     """
+    must_be(options, MixtureOptions)
     hybrid, net = _hybrid(named_ship(model)), _network(named_ship(network))
     try:
         mixtures = [Mixture(hybrid, net, share) for share in options.share]

@@ -14,6 +14,7 @@ from ..errors import OptionError, Problem
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..networks import Network, NetworkPredictor
 from ..networks.recurrent import Scales, Weights
+from ..options.choice import must_be
 from ..options.learning import LearnOptions
 from ..predictor import Predictor
 from ..trial import Trial
@@ -97,7 +98,7 @@ def learn_rnn(
     options: LearnOptions = LearnOptions(),
     *,
     hooks: Hooks = Hooks(),
-    folder: Path | None = None,
+    folder: Path | str | None = None,
     resume: bool = False,
     command: str = "",
 ) -> Learned:
@@ -108,6 +109,8 @@ def learn_rnn(
     resume  go on with what is there: the result is that of a run without a stop, bit for bit
     Raises what ``make_task`` does, and OptionError where JAX is missing.
     """
+    folder = None if folder is None else Path(folder)
+    must_be(options, LearnOptions)
     began = time.perf_counter()
     needed()
     task = make_task(ship_of(ship), trials_of(trials).series_only("a network"), options)

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import Problem, TrialError
+from ..trial.schema import FEWEST_SAMPLES
 from ..units import DEG
 
 Direction = Literal["starboard", "port"]
@@ -46,8 +47,9 @@ class Track:
                 continue
             values = np.asarray(given, dtype=np.float64)
             object.__setattr__(self, name, values)
-            if values.ndim != 1 or values.shape != np.shape(self.t) or values.size < 3:
-                problems.append(Problem(f"channel has shape {values.shape}", name, "(n_samples,) as t, 3 at least"))
+            if values.ndim != 1 or values.shape != np.shape(self.t) or values.size < FEWEST_SAMPLES:
+                shape = f"(n_samples,) as t, {FEWEST_SAMPLES} at least"
+                problems.append(Problem(f"channel has shape {values.shape}", name, shape))
             elif not np.all(np.isfinite(values)):
                 problems.append(Problem("channel has gaps (NaN or infinite)", name, fix="cut or fill them first"))
             elif name == "t" and np.any(np.diff(values) <= 0.0):

@@ -29,10 +29,11 @@ Trained = Network | Hybrid | Ensemble | Mixture
 FIX = "give a file that mmgtune learn has written, or train the model again"
 
 
-def save_network(network: Trained, path: Path, *, overwrite: bool = False) -> Path:
+def save_network(network: Trained, path: Path | str, *, overwrite: bool = False) -> Path:
     """Write networks, with the profile where there is one, whole or not at all.  Raises OutputError."""
     from safetensors.numpy import save
 
+    path = Path(path)
     header, groups = _described(network)
     arrays = {
         f"{group}.{name}": np.ascontiguousarray(values, dtype=np.float32)

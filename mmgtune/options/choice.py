@@ -5,14 +5,14 @@ from __future__ import annotations
 import functools
 import math
 import textwrap
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from numbers import Integral, Real
 from pathlib import Path
 from types import NoneType, UnionType
 from typing import Any, get_args, get_type_hints
 
-from ..errors import OptionError, Problem, among
+from ..errors import OptionError, Problem, among, kind_of
 
 INPUT, SEARCH, OUTPUT, REPRODUCE = "Input", "Search", "Output", "Reproducibility"
 """Panels of the help, in its order."""
@@ -167,6 +167,18 @@ class Options:
     def shared_with(self, of: type[Options]) -> dict[str, Any]:
         """Values of the choices that another dataclass has too, by field."""
         return {name: getattr(self, name) for name in choices(of) if hasattr(self, name)}
+
+
+def must_be(options: object, of: type[Options]) -> None:
+    """Raises OptionError for options that are not of the class a function takes."""
+    if isinstance(options, of):
+        return
+    why = f"they are given as a {of.__name__}, whose fields have defaults and are looked at when it is made"
+    fix = f"write mmgtune.{of.__name__}(...)"
+    if isinstance(options, Mapping) and all(isinstance(name, str) for name in options):
+        given = ", ".join(f"{name}={value!r}" for name, value in options.items())
+        fix = f"write mmgtune.{of.__name__}({textwrap.shorten(given, 200, placeholder=' ...')})"
+    raise OptionError(Problem(f"{kind_of(options)} is no {of.__name__}", "options", why, fix))
 
 
 _KINDS: dict[type, tuple[type, str]] = {

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray
-from ..errors import OptionError, Problem
+from ..errors import OptionError, Problem, kind_of
 from ..inputs import Role
 from ..model import Model
 from ..profile import ShipProfile
@@ -48,6 +48,15 @@ class Sailing:
     sample: float = 1.0
     step: float | None = None
     engine: Callable[[float], float] | None = None
+
+    def __post_init__(self) -> None:
+        """Raises OptionError for a helmsman that cannot steer, such as a bare angle."""
+        lacking = [name for name in ("order", "finished") if not callable(getattr(self.helmsman, name, None))]
+        if lacking:
+            what = f"{kind_of(self.helmsman)} is no helmsman"
+            why = f"it has no {' and no '.join(lacking)}: how the rudder is moved is not known"
+            fix = "give orders, such as TurningOrder(radians(35)) or ZigzagOrder(radians(10))"
+            raise OptionError(Problem(what, "helmsman", why, fix))
 
     def approach(self, profile: ShipProfile) -> tuple[float, float]:
         """Speed [m/s] and revolutions [1/s] of the approach.  Raises OptionError where they are not known."""

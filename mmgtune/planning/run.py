@@ -20,6 +20,7 @@ from ..errors import OptionError, Problem, ProfileError
 from ..files import write_text
 from ..networks import named_ship
 from ..options import PlanOptions, PredictOptions
+from ..options.choice import must_be
 from ..particles import ParticlePredictor, Particles
 from ..posterior.local import least_noise
 from ..posterior.room import room_of
@@ -141,6 +142,7 @@ def plan_trial(model: str | Path | Particles, question: str, options: PlanOption
     Raises OptionError for what is no question, for one that many particles do not answer, and for a model without
     particles; ProfileError for particles that ``posterior`` did not make.
     """
+    must_be(options, PlanOptions)
     began = time.perf_counter()
     particles = _particles(model)
     room = room_of(particles)

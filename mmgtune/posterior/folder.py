@@ -13,11 +13,12 @@ from .run import Posterior
 RESULT = "posterior.json"
 
 
-def write_posterior(result: Posterior, folder: Path, overwrite: bool = False) -> dict[str, Any]:
+def write_posterior(result: Posterior, folder: Path | str, overwrite: bool = False) -> dict[str, Any]:
     """Write particles and their document; the latter last, so that its presence means the rest is there.
 
     Returns the document.  Raises OutputError where a file is there already and ``overwrite`` is false.
     """
+    folder = Path(folder)
     save_particles(result.particles, folder / FILE, overwrite)
     document = {**result.to_dict(), "out": str(folder)}
     write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n", overwrite)

@@ -15,8 +15,9 @@ from ..displayed import Plotted
 from ..errors import Problem, ProfileError, TrialError
 from ..fitting.lost import runs_away
 from ..fitting.run import make_provenance
-from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
+from ..given import ShipGiven, TrialsGiven, list_of, ship_of, trials_of
 from ..options import PosteriorOptions
+from ..options.choice import must_be
 from ..particles import Particles
 from ..profile import ShipProfile, tuned
 from ..threads import blas_on_one_thread
@@ -115,7 +116,7 @@ class Posterior(Plotted):
 @blas_on_one_thread
 def posterior(
     profile: ShipGiven,
-    trials: TrialsGiven | Sequence[Trial],
+    trials: TrialsGiven,
     options: PosteriorOptions = PosteriorOptions(),
     *,
     command: str = "",
@@ -127,9 +128,11 @@ def posterior(
     Raises TrialError where there is no time series to learn from, OptionError for choices that make no sense,
     ProfileError where no likely ship can be simulated on the trials.
     """
+    must_be(options, PosteriorOptions)
     ship = ship_of(profile)
     if isinstance(trials, Sequence) and not isinstance(trials, str):
-        chosen, provenance = list(trials), {"trials": [trial.id for trial in trials]}
+        chosen = list_of(trials)
+        provenance: dict[str, Any] = {"trials": [trial.id for trial in chosen]}
     else:
         data = trials_of(trials)
         chosen = [data.trials[name] for name in data.tune]

@@ -11,7 +11,15 @@ from ..model import Model
 from ..options import PredictOptions
 from ..predictor import Predictor
 from ..profile import Actuator, ShipProfile
-from ..simulating import approach_speed, revolutions, rudder_angle, turn_name, zigzag_angles, zigzag_name
+from ..simulating import (
+    approach_speed,
+    possible_approach,
+    revolutions,
+    rudder_angle,
+    turn_name,
+    zigzag_angles,
+    zigzag_name,
+)
 from ..stated import ASTERN
 from ..units import DEG
 
@@ -55,8 +63,11 @@ def profile_behind(predictor: Predictor) -> ShipProfile | None:
 def approach_of(predictor: Predictor, options: PredictOptions) -> Approach:
     """The approach, of the options or of the profile.  Raises OptionError where neither says it."""
     own = profile.approach if (profile := profile_behind(predictor)) else None
-    speed = approach_speed(options.speed) if options.speed else own.speed if own else None
-    n = revolutions(options.rpm) if options.rpm else own.n if own else None
+    ordered = approach_speed(options.speed) if options.speed else None
+    turning = revolutions(options.rpm) if options.rpm else None
+    possible_approach(ordered, turning, predictor.L_pp, own)
+    speed = own.speed if ordered is None and own else ordered
+    n = own.n if turning is None and own else turning
     if speed is None or n is None:
         lacking = [name for name, value in (("speed", speed), ("rpm", n)) if value is None]
         why = "its profile has no [approach] section" if profile else "a network knows no approach condition"
@@ -100,8 +111,11 @@ def _zigzag(rudder: float, heading: float, approach: Approach) -> Asked:
 
 
 def _stop(predictor: Predictor, options: PredictOptions, approach: Approach) -> Asked:
-    n = revolutions(options.astern.lstrip("-")) if options.astern else approach.n
     profile = profile_behind(predictor)
+    n = approach.n
+    if options.astern:
+        n = revolutions(options.astern.lstrip("-"))
+        possible_approach(None, n, predictor.L_pp, profile.approach if profile else None, option="astern")
     propeller = profile.sections["propeller"].component.tag if profile and "propeller" in profile.sections else ""
     if profile is not None and propeller not in ASTERN:
         what = f"the propeller '{propeller}' of '{profile.id}' has no revolutions astern"

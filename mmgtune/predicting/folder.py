@@ -24,12 +24,13 @@ DRAWN, POINTS = 40, 150
 
 
 def write_prediction(
-    result: Predicted, folder: Path, command: str = "", *, keep_particles: bool = False
+    result: Predicted, folder: Path | str, command: str = "", *, keep_particles: bool = False
 ) -> dict[str, Any]:
     """Write the record, the bands and some tracks into a run folder; all particles too where they are to be kept.
 
     Returns the record; raises OutputError.
     """
+    folder = Path(folder)
     document = {**result.to_dict(command), "out": str(folder)}
     _write(folder / BANDS, _bands(result), ("run", "variable", "t", *FAN, "measured"))
     _write(folder / TRACKS, _tracks(result, ("x", "y"), DRAWN, POINTS), ("run", "particle", "t", "x", "y"))

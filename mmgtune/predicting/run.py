@@ -14,6 +14,7 @@ from ..given import ShipGiven, TrialsGiven, list_of
 from ..model import Model
 from ..networks import named_ship
 from ..options import PredictOptions
+from ..options.choice import must_be
 from ..options.predicting import OF_TRIALS, ORDERS
 from ..predictor import PhysicsPredictor, Predictor, Sampling, Uncertain, as_predictor, particles_of
 from ..resources import trial_set_names
@@ -29,7 +30,7 @@ from .steering import sail
 def predict(
     model: ShipGiven | Model | Predictor,
     orders: str | Path | TrialSet | Sequence[Trial] | None = None,
-    trials: TrialsGiven | Sequence[Trial] | None = None,
+    trials: TrialsGiven | None = None,
     options: PredictOptions = PredictOptions(),
 ) -> Predicted:
     """Predict manoeuvres, or trials with their own inputs, by as many particles as the model has or draws.
@@ -43,6 +44,7 @@ def predict(
     index, is counted.
     Raises OptionError for orders that make no sense or contradict each other, and as ``as_predictor`` does.
     """
+    must_be(options, PredictOptions)
     began = time.perf_counter()
     if trials is None and orders is not None and _are_trials(orders):
         orders, trials = None, orders

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+import shlex
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -16,7 +17,7 @@ from ..errors import Problem, ProfileError, among, brief, near_to, reason
 from ..inputs import Input
 from ..metrics import METRICS
 from ..physics.regressions.fujiwara1998 import wind_harmonics
-from ..resources import folder, looked_for, network_names, profile_names, taken
+from ..resources import folder, looked_for, must_be_name, network_names, profile_names, taken
 from ..toml_reading import TomlReader, toml_of
 from .changing import missing_for
 from .model import ABSENT, Actuator, Approach, Coefficient, Section, ShipProfile, SteeringGear
@@ -35,6 +36,7 @@ VALUE_KEYS = ("value", "source", "assumption", "note", "bounds", "pre_determined
 
 def find_profile(name: str | Path) -> Path:
     """The file of a profile given by path or by the name of a bundled one; ProfileError if there is none."""
+    must_be_name(name, "ship profile", ProfileError)
     path = Path(name)
     if found := taken(name, path.is_file(), folder("ship_profiles") / f"{name}.toml"):
         return found
@@ -58,6 +60,9 @@ def find_profile(name: str | Path) -> Path:
 def load_profile(name: str | Path) -> ShipProfile:
     """Read and validate a profile by path or bundled name.  Raises ProfileError with everything wrong in it."""
     path = find_profile(name)
+    if path.suffix == ".parquet":
+        what, why = "this is a trial, not a ship profile", "profiles are TOML files, trials are Parquet files"
+        raise ProfileError(Problem(what, str(path), why, f"give it with trials={shlex.quote(str(name))}"))
     try:
         text = limits.text(path, limits.PROFILE_BYTES, ProfileError)
     except (OSError, ValueError) as error:
@@ -202,7 +207,10 @@ class _Reader(TomlReader):
             component = find(kind, model) if isinstance(model, str) else None
             if component is None:
                 what = f"unknown {kind} model {brief(model)}" if model else f"[{kind}] names no model"
-                self.problem(what, kind, "model", fix=f"{kind} models: {', '.join(tags(kind))}")
+                near = near_to(model, tags(kind)) if isinstance(model, str) else ""
+                self.problem(
+                    what, kind, "model", f"{kind} models are {', '.join(tags(kind))}", near or "write one of these"
+                )
                 return None
         # Effects are often tried out by hand, so a source is welcome there but not asked for.
         source = (
@@ -313,19 +321,25 @@ class _Reader(TomlReader):
         numbers = self.quantities(kind, symbol, written, field.unit, infinite=_may_be_infinite(field))
         if numbers is None:
             return None
+        point = units.with_point(written) if isinstance(written, str) and not field.table else None
+        if point is not None:
+            why = "a comma stands between numbers, and this is one number"
+            self.problem(f"'{name}' = {brief(written)} has a decimal comma", kind, symbol, why, f'write "{point}"')
+            return None
         return numbers if self.possible(kind, symbol, field, numbers) else None
 
     def possible(self, kind: str, symbol: str, field: Field, numbers: tuple[float, ...]) -> bool:
         name = f"{kind}.{symbol}"
         expected = field.table or 1
         if len(numbers) != expected:
-            self.problem(f"'{name}' has {len(numbers)} values, not {expected}", kind, symbol)
+            self.problem(f"'{name}' has {len(numbers)} values, not {expected}", kind, symbol, fix=f"give {expected}")
             return False
         for number in numbers:
             if number == math.inf and _may_be_infinite(field):
                 continue
             if not math.isfinite(number):
-                self.problem(f"'{name}' is {number}", kind, symbol, why="only finite numbers can be simulated")
+                why, fix = "only finite numbers can be simulated", "check the number; a large one may lack a point"
+                self.problem(f"'{name}' is {number}", kind, symbol, why, fix)
                 return False
             if (field.low is not None and number <= field.low) or (field.high is not None and number >= field.high):
                 low, high = ("" if end is None else f"{end:g}" for end in (field.low, field.high))
@@ -403,7 +417,12 @@ class _Reader(TomlReader):
         if profile.value("particulars.B") >= L_pp:
             self.problem("'particulars.B' is not below L_pp", "particulars", "B", fix="check the units of both")
         if abs(profile.value("particulars.x_G")) > 0.25 * L_pp:
-            self.problem("'particulars.x_G' is more than a quarter of L_pp from midship", "particulars", "x_G")
+            self.problem(
+                "'particulars.x_G' is more than a quarter of L_pp from midship",
+                "particulars",
+                "x_G",
+                fix="check the units of both",
+            )
         for kind, section in profile.sections.items():
             missing = missing_for(section.component, profile) if isinstance(section.component, Effect) else []
             if missing:
@@ -415,7 +434,7 @@ class _Reader(TomlReader):
                 )
         propeller = profile.sections["propeller"].coefficients if "propeller" in profile.sections else {}
         if "phi_min" in propeller and profile.value("propeller.phi_min") >= profile.value("propeller.phi_max"):
-            self.problem("'propeller.phi_min' is not below phi_max", "propeller", "phi_min")
+            self.problem("'propeller.phi_min' is not below phi_max", "propeller", "phi_min", fix="check both")
 
 
 def actuator_fields(one: Input) -> dict[str, Field]:

@@ -7,7 +7,7 @@ from pathlib import Path
 __all__ = ["render"]
 
 
-def render(folder: Path, *, pdf: bool = False) -> list[Path]:
+def render(folder: Path | str, *, pdf: bool = False) -> list[Path]:
     """Write the report of the run in ``folder`` into it: report.html, report.md and figures/*.svg.
 
     pdf  write figures/*.pdf too, which takes nearly as long again
@@ -17,6 +17,7 @@ def render(folder: Path, *, pdf: bool = False) -> list[Path]:
 
     Raises OptionError for a folder that is no run folder or cannot be read, OutputError where it cannot be written.
     """
+    folder = Path(folder)
     from . import html, load, markdown
     from .kinds import KINDS
     from .output import write

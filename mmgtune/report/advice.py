@@ -91,7 +91,9 @@ def after_sweep(data: Mapping[str, Any]) -> Advice:
     widest = max((number(run.get("a_r")) or 0.0 for run in data["runs"]), default=0.0)
     if chosen is not None and chosen == widest:
         wider = ",".join(f"{chosen + step:.2g}" for step in (0.0, 0.1, 0.2))
-        items.append(("The widest range did best: try wider ones", f"mmgtune sweep {profile} {trials} --ar {wider}"))
+        same = chosen_in(data.get("command") or "", "sweep")
+        reason = "The widest range did best: try wider ones"
+        items.append((reason, f"mmgtune sweep {profile} {trials} --ar {wider}{same}"))
     if data.get("command"):
         items.append(("Repeat this sweep", again(data["command"])))
     return tuple(items)
@@ -141,6 +143,33 @@ def again(command: str) -> str:
         return clean(command)
     named = any(word in ("--out", "-o") or word.startswith("--out=") for word in words)
     return shlex.join([*words, "--force"] if named else words)
+
+
+_SAID_ANEW = ("-p", "--profile", "-t", "--trials", "--ar", "-o", "--out")
+"""Options with a value that a command which varies another says itself."""
+
+_OF_THE_RUN = ("--force", "--resume", "--json", "-q", "--quiet", "--dry-run", "--no-report")
+"""Flags that were about that run alone."""
+
+
+def chosen_in(command: str, name: str) -> str:
+    """What was chosen in a command that was given before, each with a space before it, to vary ranges alone.
+
+    "" of anything but the command ``name``: a run of the library or of a fleet.
+    """
+    try:
+        words = shlex.split(clean(command))
+    except ValueError:  # no command of a shell
+        return ""
+    if words[:2] != ["mmgtune", name]:
+        return ""
+    kept, rest = [], iter(words[2:])
+    for word in rest:
+        if word in _SAID_ANEW:
+            next(rest, None)
+        elif word not in _OF_THE_RUN and word.partition("=")[0] not in _SAID_ANEW:
+            kept.append(word)
+    return "".join(f" {shlex.quote(word)}" for word in kept)
 
 
 def of_the_day(tag: str) -> bool:

@@ -21,6 +21,14 @@ FASTEST_THRUSTER = 100.0
 """Revolutions [1/s] that no thruster makes, not even a model's."""
 
 
+FASTEST_GEAR = 8.0 * DEG
+"""Rudder rate [rad/s] that no steering gear of a ship reaches; of a model they are quicker as all its times are."""
+
+SLOWEST_MODEL = 3.0
+"""Revolutions [1/s] of a ship's shaft that few exceed.  By Froude's law all rates grow with the root of the scale,
+those of shafts and gears alike, so that a faster shaft tells a model and how much quicker its gear may be."""
+
+
 def control_findings(trial: Trial, where: str) -> list[Finding]:
     """Findings on inputs and directions of a trial that can be used."""
     found = []
@@ -86,10 +94,11 @@ def _steering(trial: Trial) -> BoolArray:
 
 
 def _rudder_speed(trial: Trial, name: str, where: str) -> Finding | None:
-    """Orders jump in one sample.  Steering gears follow the size of a ship as its yaw rate does, so that tells them."""
+    """Orders jump in one sample.  Steering gears follow the size of a ship as its yaw rate and its shaft do."""
     step, rate = fastest_change(trial.t, trial.columns[name])
     yaw = np.abs(trial.r[np.isfinite(trial.r)])
-    if step < 4.9 * DEG or rate < 8.0 * DEG or rate < 8.0 * np.percentile(yaw, 95.0):
+    quick = FASTEST_GEAR * max(1.0, float(np.percentile(np.abs(trial.n), 99.0)) / SLOWEST_MODEL)
+    if step < 4.9 * DEG or rate < quick or rate < 8.0 * np.percentile(yaw, 95.0):
         return None
     return Finding(
         "warning",

@@ -10,7 +10,7 @@ from typing import Self
 
 from ..displayed import Plotted, inert
 from ..errors import Problem, TrialError, among, closest
-from ..resources import folder, looked_for, profile_names, taken, trial_set_names
+from ..resources import folder, looked_for, must_be_name, profile_names, taken, trial_set_names
 from .index_trial import IndexTrial, has_index_trials, read_index_trials
 from .model import Trial
 from .parquet import id_in, read_trial
@@ -207,6 +207,7 @@ def files_of(path: Path) -> list[Path]:
 
 def find_trials(name: str | Path) -> Path:
     """The folder or file of a data set given by path or bundled name; TrialError if there is none."""
+    must_be_name(name, "data set", TrialError)
     if found := taken(name, Path(name).exists(), folder("trials") / str(name)):
         return found
     names = trial_set_names()

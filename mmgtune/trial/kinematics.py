@@ -11,12 +11,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray
 from ..physics.frame import to_earth
 from ..units import DEG, KNOT
 
 IN_EARTH_AXES = "in earth axes, u north and v east"
 IN_DEGREES = "with the heading in degrees"
+TO_PORT = "with v positive to port"
+SWAPPED = "with x east and y north"
+IN_KNOTS = "with velocities in knots"
 FITS = 0.1
 """Share of the distance run by which velocities may miss the positions."""
 
@@ -83,6 +86,52 @@ def halfway(psi: FloatArray) -> FloatArray:
     return np.where(np.abs(np.diff(psi)) > 3.0, psi[1:], middle(psi))
 
 
+@dataclass(frozen=True)
+class _Ways:
+    """What positions and velocities say of the way made between samples, (n_intervals,) each.
+
+    moved       (n_intervals, 2) between positions [m]
+    psi, u, v   in the middle of each interval, and its length dt [s]
+    usable      where all of them are known
+    window      intervals that are looked at together, enough for noise not to matter
+    """
+
+    moved: FloatArray
+    psi: FloatArray
+    u: FloatArray
+    v: FloatArray
+    dt: FloatArray
+    usable: BoolArray
+    window: int
+
+    def rotated(self, angle: FloatArray, v: FloatArray, scale: float = 1.0) -> FloatArray:
+        """(n_intervals, 2) the way by velocities in ship axes."""
+        return scale * np.column_stack(to_earth(angle, self.u, v)) * self.dt[:, None]
+
+    def misfit(self, steps: FloatArray) -> float:
+        """Of ways (n_intervals, 2) from those moved."""
+        return _misfit(self.moved, steps, self.usable, self.window)
+
+
+def _ways(columns: Mapping[str, FloatArray]) -> _Ways | None:
+    """None where the ship hardly moves or nothing can be compared."""
+    dt = np.diff(columns["t"])
+    moved = np.column_stack([np.diff(columns["x"]), np.diff(columns["y"])])
+    psi, u, v = halfway(columns["psi"]), middle(columns["u"]), middle(columns["v"])
+    usable = np.isfinite(moved).all(axis=1) & np.isfinite(psi) & np.isfinite(u) & np.isfinite(v)
+    if usable.sum() < 10:
+        return None
+    noise = max(white_noise(columns["x"]), white_noise(columns["y"]))
+    speed = np.hypot(u, v)
+    step = float(np.median(speed[usable] * dt[usable]))
+    shortest = max(5, len(dt) // 50)
+    longest = max(shortest, len(dt) // 4)
+    if step <= 0.0 or 40.0 * noise > step * longest:
+        return None
+    window = int(np.clip(np.ceil(40.0 * noise / step), shortest, longest))
+    return _Ways(moved, psi, u, v, dt, usable, window)
+
+
 def position_misfits(columns: Mapping[str, FloatArray]) -> dict[str, float]:
     """How badly the velocities explain the positions, by the way they are read: 0 perfectly, 1 not at all.
 
@@ -90,33 +139,52 @@ def position_misfits(columns: Mapping[str, FloatArray]) -> dict[str, float]:
     measured and integrated displacement, over the displacement; windows are long enough for noise not to matter.
     Empty where the ship hardly moves or nothing can be compared.  Needs t, x, y, psi, u and v, (n_samples,) each.
     """
-    dt = np.diff(columns["t"])
-    moved = np.column_stack([np.diff(columns["x"]), np.diff(columns["y"])])
-    psi, u, v = halfway(columns["psi"]), middle(columns["u"]), middle(columns["v"])
-    usable = np.isfinite(moved).all(axis=1) & np.isfinite(psi) & np.isfinite(u) & np.isfinite(v)
-    if usable.sum() < 10:
+    ways = _ways(columns)
+    if ways is None:
         return {}
-    noise = max(white_noise(columns["x"]), white_noise(columns["y"]))
-    speed = np.hypot(u, v)
-    step = float(np.median(speed[usable] * dt[usable]))
-    shortest = max(5, len(dt) // 50)
-    longest = max(shortest, len(dt) // 4)
-    if step <= 0.0 or 40.0 * noise > step * longest:
-        return {}
-    window = int(np.clip(np.ceil(40.0 * noise / step), shortest, longest))
-
-    def rotated(angle: FloatArray, v: FloatArray, scale: float = 1.0) -> FloatArray:
-        return scale * np.column_stack(to_earth(angle, u, v)) * dt[:, None]
-
+    psi, v = ways.psi, ways.v
     readings = {
-        "": rotated(psi, v),
-        IN_EARTH_AXES: np.column_stack([u, v]) * dt[:, None],
-        "with v positive to port": rotated(psi, -v),
-        IN_DEGREES: rotated(psi * DEG, v),
-        "with x east and y north": rotated(psi, v)[:, ::-1],
-        "with velocities in knots": rotated(psi, v, KNOT),
+        "": ways.rotated(psi, v),
+        IN_EARTH_AXES: np.column_stack([ways.u, v]) * ways.dt[:, None],
+        TO_PORT: ways.rotated(psi, -v),
+        IN_DEGREES: ways.rotated(psi * DEG, v),
+        SWAPPED: ways.rotated(psi, v)[:, ::-1],
+        IN_KNOTS: ways.rotated(psi, v, KNOT),
     }
-    return {name: _misfit(moved, steps, usable, window) for name, steps in readings.items()}
+    return {name: ways.misfit(steps) for name, steps in readings.items()}
+
+
+@dataclass(frozen=True)
+class Lever:
+    """Where from midship positions would have to be measured to fit velocities of midship best.
+
+    x, y    forward and to starboard [m]
+    misfit  what is left, as of ``position_misfits``
+    """
+
+    x: float
+    y: float
+    misfit: float
+
+    @property
+    def likely(self) -> bool:
+        """Whether antennas stand there: ships are long, and in a steady turn a lever to the side is any error of u."""
+        return abs(self.y) < 0.5 * abs(self.x) + 3.0
+
+
+def lever_of(columns: Mapping[str, FloatArray]) -> Lever | None:
+    """The point of the ship that positions are of, by least squares; None where the ship hardly moves or turns."""
+    ways, psi = _ways(columns), columns["psi"]
+    if ways is None:
+        return None
+    turned = [np.diff(np.column_stack(to_earth(psi, x, y)), axis=0) for x, y in ((1.0, 0.0), (0.0, 1.0))]
+    logged = ways.rotated(ways.psi, ways.v)
+    known = ways.usable & np.isfinite(turned[0]).all(axis=1)
+    design = np.column_stack([part[known].ravel() for part in turned])
+    if np.linalg.matrix_rank(design) < 2:
+        return None
+    x, y = np.linalg.lstsq(design, (ways.moved - logged)[known].ravel(), rcond=None)[0]
+    return Lever(float(x), float(y), ways.misfit(logged + x * turned[0] + y * turned[1]))
 
 
 def _misfit(moved: FloatArray, steps: FloatArray, usable: np.ndarray, window: int) -> float:

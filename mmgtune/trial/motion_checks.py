@@ -9,12 +9,44 @@ from ..arrays import BoolArray, FloatArray
 from ..inputs import INPUTS
 from ..units import DEG
 from .finding import Finding
-from .kinematics import FITS, IN_DEGREES, IN_EARTH_AXES, position_misfits, turning
+from .kinematics import (
+    FITS,
+    IN_DEGREES,
+    IN_EARTH_AXES,
+    IN_KNOTS,
+    SWAPPED,
+    TO_PORT,
+    lever_of,
+    position_misfits,
+    turning,
+)
 from .model import Trial
 from .schema import LARGEST_YAW_RATE, MOTION
 
 REPEATED = 0.05
 """Share of samples that repeat the one before, and that do not, from which a channel is taken for one of few digits."""
+
+SMALL = 0.02
+"""Share of the level of a channel up to which the step of its last digit may be that of an instrument."""
+
+USUAL = (
+    "give velocities over ground (not through the water), in ship axes, in m/s, and both velocities and positions at "
+    "midship, not at an antenna or at the centre of gravity"
+)
+"""What to do where no one reading of velocities and positions makes them agree."""
+
+MENDED = {
+    IN_EARTH_AXES: "turn 'u' and 'v' into ship axes: u cos(psi) + v sin(psi) and v cos(psi) - u sin(psi)",
+    TO_PORT: "change the sign of 'v': positive to starboard",
+    SWAPPED: "swap 'x' and 'y': x is north and y is east",
+    IN_KNOTS: "multiply 'u' and 'v' by 0.5144: they are in m/s",
+}
+"""What makes of a reading that fits the one that is asked for."""
+
+OF_MIDSHIP = "give positions of midship: [antenna] of the map says where they were measured"
+
+FREER = 2.0
+"""What the misfit counts of a reading that has two numbers to choose, among those that have none."""
 
 
 def motion_findings(trial: Trial, where: str) -> list[Finding]:
@@ -29,26 +61,37 @@ def motion_findings(trial: Trial, where: str) -> list[Finding]:
 
 
 def _gaps(trial: Trial, where: str) -> list[Finding]:
-    found = []
-    for name, values in trial.columns.items():
-        missing = np.isnan(values)
-        if name in MOTION and missing.any():
-            edges = np.flatnonzero(np.diff(np.concatenate([[0], missing.astype(int), [0]])))
-            begins, ends = edges[::2], edges[1::2]
-            k = int(np.argmax(ends - begins))
-            # A gap lasts from the last sample before it to the first one after it, if there is one.
-            lasts = trial.t[min(ends[k], trial.n_samples - 1)] - trial.t[begins[k] - 1]
-            found.append(
-                Finding(
-                    "warning",
-                    f"'{name}' has gaps: {missing.sum()} of {len(values)} samples; "
-                    f"the longest has {ends[k] - begins[k]} samples, {lasts:.3g} s",
-                    f"{where}, column '{name}', row {begins[k]}",
-                    "samples in gaps count in no comparison",
-                    code="gaps",
-                )
-            )
-    return found
+    """One finding for all columns: sensors that fail together would fill pages."""
+    missing = {name: np.isnan(values) for name, values in trial.columns.items() if name in MOTION}
+    missing = {name: rows for name, rows in missing.items() if rows.any()}
+    if not missing:
+        return []
+    longest = {name: _longest(rows) for name, rows in missing.items()}
+    worst = max(longest, key=lambda name: longest[name][1] - longest[name][0])
+    begins, ends = longest[worst]
+    # A gap lasts from the last sample before it to the first one after it, if there is one.
+    lasts = trial.t[min(ends, trial.n_samples - 1)] - trial.t[begins - 1]
+    counts = sorted({int(rows.sum()) for rows in missing.values()})
+    many = f"{counts[0]}" if len(counts) == 1 else f"{counts[0]} to {counts[-1]}"
+    *names, last = (f"'{name}'" for name in missing)
+    told = f"{', '.join(names)} and {last} have gaps" if names else f"{last} has gaps"
+    return [
+        Finding(
+            "warning",
+            f"{told}: {many} of {trial.n_samples} samples; the longest has {ends - begins} samples, {lasts:.3g} s",
+            f"{where}, column '{worst}', row {begins}",
+            "samples in gaps count in no comparison",
+            code="gaps",
+        )
+    ]
+
+
+def _longest(missing: BoolArray) -> tuple[int, int]:
+    """First row of the longest gap, and the row behind it."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], missing.astype(int), [0]])))
+    begins, ends = edges[::2], edges[1::2]
+    k = int(np.argmax(ends - begins))
+    return int(begins[k]), int(ends[k])
 
 
 def full_turns(psi: FloatArray) -> BoolArray:
@@ -114,11 +157,27 @@ def spikes(values: FloatArray, share: float) -> npt.NDArray[np.intp]:
 
 
 def _digit(values: FloatArray) -> float:
-    """The usual step of a channel that often repeats its value, because few digits are logged; 0 for any other."""
-    steps = np.abs(np.diff(values[np.isfinite(values)]))
+    """The usual step of a channel that often repeats its value, because few digits are logged; 0 for any other.
+
+    Of one that hardly ever moves, as revolutions logged in halves, it is what all values are whole multiples of.
+    """
+    known = values[np.isfinite(values)]
+    steps = np.abs(np.diff(known))
     moving = steps[steps > 0.0]
     few = REPEATED * len(steps) < len(moving) < (1.0 - REPEATED) * len(steps)  # one that rests but for spikes is none
-    return float(np.median(moving)) if few else 0.0
+    return float(np.median(moving)) if few else _quantum(known)
+
+
+def _quantum(known: FloatArray) -> float:
+    """The step that all values (n,) are whole multiples of, where it is small beside them; else 0."""
+    found = np.unique(known)
+    level = float(np.median(np.abs(known)))
+    step = float(np.min(np.diff(found), initial=np.inf))
+    # The same number worked out in two ways, and a spike that happens to be a multiple: 0 among revolutions.
+    if not 1e-6 * level < step < SMALL * level:
+        return 0.0
+    of = known / step
+    return step if np.max(np.abs(of - np.round(of))) < 0.01 else 0.0
 
 
 def _yaw(trial: Trial, where: str) -> list[Finding]:
@@ -158,18 +217,24 @@ def _positions(trial: Trial, where: str) -> list[Finding]:
         return []
     # Small angles in degrees read as earth axes do; headings surely in degrees make a trial unusable.
     del misfits[IN_DEGREES]
-    fitting = sorted((miss, name) for name, miss in misfits.items() if miss < min(FITS, 0.5 * asked))
-    if fitting:
-        fits = "they fit if read " + " or ".join(name for _, name in fitting)
-    else:
-        fits = f"nor do they fit if read in earth axes ({100 * misfits[IN_EARTH_AXES]:.0f} %)"
+    enough = min(FITS, 0.5 * asked)
+    fitting = [(miss, f"if read {name}", MENDED[name]) for name, miss in misfits.items() if miss < enough]
+    lever = lever_of(trial.columns)
+    if lever is not None and lever.likely and FREER * lever.misfit < enough:
+        place = f"if they are of a point about {lever.x:.2g} m forward and {lever.y:.2g} m to starboard of midship"
+        fitting.append((FREER * lever.misfit, place, OF_MIDSHIP))
+    fitting.sort()
+    fits = "they fit " + ", or ".join(words for _, words, _ in fitting)
+    fix = "; or ".join(fix for _, _, fix in fitting)
+    if not fitting:
+        fits, fix = f"nor do they fit if read in earth axes ({100 * misfits[IN_EARTH_AXES]:.0f} %)", USUAL
     return [
         Finding(
             "warning",
             "u, v and heading do not integrate to the positions",
             f"{where}, columns 'x', 'y', 'psi', 'u' and 'v'",
             f"read in ship axes they miss by {100 * asked:.0f} % of the distance; {fits}",
-            "give velocities over ground (not through the water), in ship axes, at midship, in m/s",
+            fix,
             "contradicted",
         )
     ]

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from .model import Trial
-from .schema import ATTRIBUTES
+from .schema import ATTRIBUTES, FEWEST_SAMPLES
 from .smoothing import FEWEST
 
 
@@ -54,7 +54,7 @@ def cuts(
         if more and at == len(whole):  # what follows may join it, or begin another
             return pieces, first
         last = int(whole[at]) if at < len(whole) else len(t) - 1
-        if last > first + 1:  # two samples are no motion
+        if last - first + 1 >= FEWEST_SAMPLES:
             pieces.append((first, last))
     return pieces, len(t)
 

@@ -26,10 +26,11 @@ class LogInstead(TrialError):
 def refuse_log(path: Path, names: Collection[str], *, facts: bool) -> None:
     """Raise LogInstead for a Parquet file that nobody meant for a trial.
 
-    names  of its columns: few are those of a trial, and there are others
+    names  of its columns: few are those of a trial, in capitals or not, and there are others
     facts  whether it says of itself that it is a trial
     """
-    held = sum(name in names for name in REQUIRED)
+    small = {name.strip().lower() for name in names}
+    held = sum(name in small for name in REQUIRED)
     if not facts and 2 * held < len(REQUIRED) and len(names) > held:
         raise LogInstead(instead(path, [path]))
 

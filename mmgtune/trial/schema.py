@@ -118,6 +118,9 @@ ATTRIBUTES = {name: "v_m" if name == "v" else name for name in REQUIRED}
 CHANNELS = STATES
 """Motion channels in the order of ``Trial.motion``."""
 
+FILE_CHANNELS = tuple(name for state in CHANNELS for name, of in ATTRIBUTES.items() if of == state)
+"""The same as files and people name them: sway is ``v``."""
+
 RUDDERS = tuple(name for name, one in INPUTS.items() if one.role == "rudder")
 
 LARGEST = {"s": 1e11, "m": 1e9, "rad": 1e6, "deg": 1e6, "m/s": 1e4, "rad/s": 1e4, "1/s": 1e5}
@@ -128,6 +131,9 @@ def impossible(values: FloatArray, unit: str) -> BoolArray:
     """Which values (n,) are beyond what anything about a ship can be; NaN is not."""
     return np.asarray(np.abs(values) > LARGEST.get(unit, np.inf))
 
+
+FEWEST_SAMPLES = 3
+"""Samples without which there is no motion: of two there is one step, and no index, rate or turn to be read."""
 
 SHORTEST_STEP = 1e-7
 """Time [s] between samples below which stamps cannot be seconds."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import shlex
 from collections.abc import Collection, Mapping
 
 import numpy as np
@@ -9,8 +11,10 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import Problem, closest
 from .kinematics import FITS, IN_DEGREES, position_misfits, turning
+from .raw_logs import import_commands
 from .schema import (
     COLUMNS,
+    FEWEST_SAMPLES,
     LARGEST,
     LARGEST_RUDDER,
     MAIN_INPUTS,
@@ -32,14 +36,20 @@ def unusable(columns: Mapping[str, FloatArray], where: str, reported: Collection
     """
     problems = missing_columns(columns, where, reported)
     samples = max((len(values) for values in columns.values()), default=0)
-    if samples < 2:
-        what = "the trial has no samples" if samples == 0 else "the trial has one sample"
-        return [*problems, Problem(what, where, "a motion needs two or more", "write the whole record")]
+    if samples < FEWEST_SAMPLES:
+        return [*problems, too_short(samples, where)]
     with np.errstate(all="ignore"):
         problems += _time(columns, where) + _values(columns, where) + _rudder(columns, where)
         problems += _dead(columns, where)
         damaged = any(impossible(values, _unit(name)).any() for name, values in columns.items())
         return problems if damaged else problems + in_degrees(columns, where)
+
+
+def too_short(samples: int, where: str) -> Problem:
+    """The problem of a record with too few samples to be a motion."""
+    count = {0: "no samples", 1: "one sample"}.get(samples, f"{samples} samples")
+    why = f"a motion needs {FEWEST_SAMPLES} or more"
+    return Problem(f"the trial has {count}", where, why, "write the whole record, or take the file out of the folder")
 
 
 def increasing(t: FloatArray) -> bool:
@@ -64,7 +74,21 @@ def unusable_part(columns: Mapping[str, FloatArray], where: str, before: float, 
 def missing_columns(columns: Collection[str], where: str, reported: Collection[str] = ()) -> list[Problem]:
     """Required columns that are not there; ``columns`` by their name in the file, ``reported`` as above."""
     others = [name for name in columns if name not in REQUIRED]
-    return [
+    missing = [name for name in REQUIRED if name not in columns and name not in reported]
+    renames = renamed(missing, others)
+    geographic = [name for name in others if _GEOGRAPHIC.match(name)] if {"x", "y"} <= {*missing} - {*renames} else []
+    problems = []
+    if renames:
+        what = f"columns are called otherwise: {', '.join(renames.values())}"
+        why = "names of columns count letter by letter, small letters and capitals apart"
+        fix = ", ".join(f"{other} to {name}" for name, other in renames.items())
+        problems.append(Problem(what, where, why, f"rename {fix}"))
+    if geographic:
+        what = f"positions are in latitude and longitude: {', '.join(geographic)}"
+        why = "trials have x and y, north and east of a local origin [m]; importing makes them"
+        problems.append(Problem(what, where, why, import_commands(shlex.quote(where))))
+    said = {*renames, *(("x", "y") if geographic else ())}
+    return problems + [
         Problem(
             f"column '{name}' is missing",
             where,
@@ -72,8 +96,18 @@ def missing_columns(columns: Collection[str], where: str, reported: Collection[s
             closest(name, others) if others else f"add it, in {column.unit}",
         )
         for name, column in REQUIRED.items()
-        if name not in columns and name not in reported
+        if name in missing and name not in said
     ]
+
+
+_GEOGRAPHIC = re.compile(r"(lat|lon|lng)(itude|gitude)?($|[^a-z])", re.IGNORECASE)
+"""Names of columns that hold degrees of latitude and longitude."""
+
+
+def renamed(missing: Collection[str], others: Collection[str]) -> dict[str, str]:
+    """The column that each missing one is there as, written in capitals or with spaces around it."""
+    written = {other.strip().lower(): other for other in others}
+    return {name: written[name] for name in missing if name in written}
 
 
 def _time(columns: Mapping[str, FloatArray], where: str, before: float = -np.inf, first_row: int = 0) -> list[Problem]:

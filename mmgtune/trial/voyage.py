@@ -19,8 +19,8 @@ from .footer import rows_of
 from .metadata import facts_of
 from .parquet import another_digest, layout_of, numbers, unreadable
 from .raw_logs import refuse_log
-from .schema import METADATA_KEY
-from .unusable import missing_columns, unusable_part
+from .schema import FEWEST_SAMPLES, METADATA_KEY
+from .unusable import missing_columns, too_short, unusable_part
 
 VOYAGE = "voyage"
 """What a trial's manoeuvre says where it is none: the ship went about her business."""
@@ -157,8 +157,8 @@ def open_voyage(path: Path | str) -> Voyage:
     facts, problems = facts_of(metadata.get(METADATA_KEY), path, layout.names)
     problems = problems + layout.problems
     problems += missing_columns(layout.wanted, where, reported=layout.names)
-    if not problems and n_rows < 2:
-        problems.append(Problem("the trial has fewer than two samples", where, "a motion needs two or more"))
+    if not problems and n_rows < FEWEST_SAMPLES:
+        problems.append(too_short(n_rows, where))
     if problems:
         raise TrialError(*problems)
     begins, ends = _ends(file, path, groups)

@@ -18,8 +18,9 @@ from .result import VoyageValidation
 RESULT = "voyages.json"
 
 
-def write_voyages(result: VoyageValidation, folder: Path) -> dict[str, Any]:
+def write_voyages(result: VoyageValidation, folder: Path | str) -> dict[str, Any]:
     """Write the windows, those that are drawn and, last, the result.  Returns its document."""
+    folder = Path(folder)
     if result.table is not None:
         write_table(folder / "windows.parquet", result.columns(), GROUP_ROWS)
         write_table(folder / "drawn.parquet", _drawn(result), GROUP_ROWS)

@@ -20,6 +20,7 @@ from ..fitting.run import facts_of_profile
 from ..given import trials_of
 from ..objective import spread
 from ..options import VoyageOptions
+from ..options.choice import must_be
 from ..predictor import PhysicsPredictor, Predictor, Uncertain, draught_of, profile_of
 from ..provenance import made_by
 from ..threads import blas_on_one_thread
@@ -124,7 +125,7 @@ def validate_voyages(
     options: VoyageOptions = VoyageOptions(),
     *,
     hooks: Hooks | None = None,
-    folder: Path | None = None,
+    folder: Path | str | None = None,
     resume: bool = False,
     command: str = "",
 ) -> VoyageValidation:
@@ -140,6 +141,8 @@ def validate_voyages(
     another run; OutputError where the folder cannot be written to; TrialError for what is wrong with a file, and where
     no window could be cut.
     """
+    folder = None if folder is None else Path(folder)
+    must_be(options, VoyageOptions)
     began = time.perf_counter()
     if options.manoeuvres:
         why = "a voyage is no turning circle and no zigzag"

@@ -3,8 +3,11 @@
 import pytest
 import typer
 
+from mmgtune import resources
 from mmgtune.cli import app
 from tests.command import typed
+
+TRIAL = resources.folder("trials") / "suzaku" / "turn_p35.parquet"
 
 
 @pytest.mark.parametrize(
@@ -38,8 +41,36 @@ from tests.command import typed
         (("plan",), ("argument MODEL is missing (mmgtune plan)", "Particles of posterior", "mmgtune plan runs/bands")),
         (("trials", "make", "suzaku"), ("--out is missing (mmgtune trials make)", "Folder for", "mmgtune trials make")),
         (("fit", "--metod", "x"), ("unknown option --metod (mmgtune fit)", "none is called that", "'--method'")),
+        (
+            ("posterior", "--resume"),
+            ("unknown option --resume", "these have it: diagnose, fit, fleet run", "fix: mmgtune posterior --help"),
+        ),
+        (
+            ("leave-out", "--method", "cma-es"),
+            ("unknown option --method", "these have it: fit, sweep", "fix: mmgtune leave-out --help lists them"),
+        ),
         (("--zzz",), ("unknown option --zzz (mmgtune)", "options", "mmgtune --help lists them")),
         (("fit", "more"), ("'more' is one word too many (mmgtune fit)", "takes options alone", "write mmgtune fit ")),
+        (("fit", "ship", "logs"), ("'ship logs' are words", "takes options", "write mmgtune fit -p ship -t logs")),
+        (("fit", "a.parquet"), ("'a.parquet' is one word", "takes options", "write mmgtune fit -t a.parquet")),
+        (
+            ("fit", "-p", str(TRIAL), "-t", "suzaku"),
+            ("a trial, not a ship profile", "TOML files", f"--trials {TRIAL}"),
+        ),
+        (
+            ("predict", "suzaku", "--turn", "35", "--rpm", "1e9"),
+            ("1e+09 rpm (--rpm)", "times the 106 rpm of the profile's approach", "less than 530 rpm"),
+        ),
+        (
+            ("predict", "suzaku", "--speed", "500 kn"),
+            ("500 kn (--speed)", "a Froude number of 9 ", "a speed below 27.7 kn"),
+        ),
+        (
+            ("predict", "suzaku", "--stop", "--astern", "1e6"),
+            ("1e+06 rpm (--astern)", "the 106 rpm", "less than 530 rpm"),
+        ),
+        (("simulate", "--turn", "35", "--speed", "500kn"), ("500 kn (--speed)", "Froude", "a speed below")),
+        (("simulate", "--turn", "35", "--rpm", "1e9"), ("1e+09 rpm (--rpm)", "times the", "less than")),
         (("report", "a", "b"), ("'b' is one word too many", "takes argument RUN", "write mmgtune report ")),
         (
             ("fit", "--starts", "many"),

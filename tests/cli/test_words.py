@@ -122,3 +122,10 @@ def test_how_long_a_diagnosis_may_still_take(monkeypatch):
 @pytest.mark.parametrize(("seconds", "words"), [(0.2, "1 s"), (42.0, "42 s"), (330.0, "5.5 min"), (7200.0, "2 h")])
 def test_times_in_words(seconds, words):
     assert in_time(seconds) == words
+
+
+@pytest.mark.parametrize("command", [("fit",), ("fleet", "run")])
+def test_flags_that_turn_something_off_show_no_default(tmp_path, command):
+    text = " ".join(run(*command, "--help", cwd=tmp_path, env={"COLUMNS": "160"}).out.replace("│", " ").split())
+    assert "--no-" in text
+    assert "default: True" not in text

@@ -145,7 +145,7 @@ def test_starboard_circle_is_wider_than_port_where_the_slipstream_makes_it_so():
         (SMALL + "\n[propeller]\npitch = 0.8\n", "unknown key 'propeller.pitch'"),
         (SMALL + '\n[above_water]\nA_T = "100 m^2"\n', "[above_water] lacks A_L"),
         (SMALL.replace('id = "coaster"', ""), "'ship.id' is missing or no id"),
-        (SMALL.replace("C_b = 0.737", "C_b = nan"), "is impossible"),
+        (SMALL.replace("C_b = 0.737", "C_b = nan"), "'particulars.C_b' is nan"),
         (SMALL.replace("[approach]", "[aproach]"), "unknown key 'aproach'"),
         ("schema = 1\nship = 3\nparticulars = []\n", "section [ship] is missing"),
     ],

@@ -98,8 +98,24 @@ def test_commands_of_a_sweep_work_when_pasted(tmp_path: Path, monkeypatch: pytes
     assert run("sweep", *QUICKLY, "--ar", "0.1,0.2", "--out", "a run", cwd=tmp_path).code == 0
     commands = commands_of(tmp_path / "a run")
     assert {shlex.split(one)[1] for one in commands} >= {"sweep", "simulate"}
+    (wider,) = [one for one in commands if "--ar 0.2,0.3,0.4" in one]
+    assert wider.endswith(" --ar 0.2,0.3,0.4 --method least-squares --starts 1 --targets hull.R_0,rudder.a_H")
     for command in commands:
         paste(command, tmp_path, tmp_path, ("simulate",))
+
+
+@pytest.mark.parametrize(
+    ("command", "kept"),
+    [
+        ("mmgtune sweep -p a -t b --ar=0.2 --starts 4 --out x --force -q --fix 'wake.*'", " --starts 4 --fix 'wake.*'"),
+        ("mmgtune sweep", ""),
+        ("mmgtune fleet run f.toml --out x", ""),
+        ("", ""),
+        ("mmgtune sweep 'half", ""),
+    ],
+)
+def test_what_was_chosen_stays(command: str, kept: str) -> None:
+    assert advice.chosen_in(command, "sweep") == kept
 
 
 def test_commands_of_a_comparison_of_profiles_work_when_pasted(more: dict[str, Path], tmp_path: Path) -> None:

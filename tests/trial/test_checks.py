@@ -36,7 +36,7 @@ def in_earth_axes(trial: Trial) -> Trial:
 @pytest.mark.parametrize("name", trial_set_names())
 def test_the_bundled_trials_are_sound(name: str) -> None:
     for trial in load_trials(name).trials.values():
-        gaps = [f for f in check_trial(trial) if "has gaps" in f.what]
+        gaps = [f for f in check_trial(trial) if "gaps" in f.what]
         assert [f.severity for f in check_trial(trial) if f not in gaps] in ([], ["note"])
         assert not gaps or name == "voyages"
 
@@ -84,6 +84,29 @@ def test_velocities_against_positions(change: Any, reading: str, zigzag: bool, s
     only(change(start), reading)
 
 
+def test_the_fix_is_of_the_reading_that_fits() -> None:
+    start = made(seed=1)
+    knots = replace(start, u=start.u * 1.944, v_m=start.v_m * 1.944)
+    for trial, fix in (
+        (replace(start, x=start.y, y=start.x), "swap 'x' and 'y'"),
+        (replace(start, v_m=-start.v_m), "change the sign of 'v'"),
+        (knots, "multiply 'u' and 'v' by 0.5144"),
+        (in_earth_axes(start), "turn 'u' and 'v' into ship axes"),
+        (replace(start, u=start.u * 0.6), "both velocities and positions at midship, not at an antenna"),
+    ):
+        (finding,) = [one for one in check_trial(trial) if one.code == "contradicted"]
+        assert finding.fix.startswith(fix) or fix in finding.fix
+        assert ("over ground" in finding.fix) == (fix.startswith("both"))
+
+
+def test_positions_of_an_antenna_are_told() -> None:
+    start = made(seed=1, angle=35.0 * DEG)
+    forward = replace(start, x=start.x + 25.0 * np.cos(start.psi), y=start.y + 25.0 * np.sin(start.psi))
+    (finding,) = [one for one in check_trial(forward) if one.severity == "warning"]
+    assert "they fit if they are of a point about 25 m forward" in finding.why
+    assert finding.fix.startswith("give positions of midship: [antenna]")
+
+
 @SEEDS
 @pytest.mark.parametrize("kind", [{}, {"zigzag": True}, {"angle": -10 * DEG}])
 def test_rudder_of_the_other_sign(seed: int | None, kind: dict[str, Any]) -> None:
@@ -126,6 +149,26 @@ def test_the_last_of_few_digits_is_no_spike(name: str, step: float) -> None:
     coarse = changed(made(seed=1), name, printed)
     assert "spikes" not in said(coarse)
     assert f"'{name}' has 1 spikes" in said(with_value(coarse, name, 300, 60.0 * step + 900.0 * (name == "x")))
+
+
+def test_one_step_of_revolutions_logged_in_halves_is_no_spike() -> None:
+    steady = with_value(made(n=106.0 / 60.0), "n", 246, 105.5 / 60.0)
+    only(steady)
+    only(with_value(steady, "n", 300, 106.5 / 60.0))
+    only(with_value(steady, "n", 300, 0.0), "'n' has 1 spikes")
+
+
+def test_the_steering_gear_of_a_model_is_quick() -> None:
+    """A model of 3 m: its shaft makes 10 turns a second, its rudder 20 deg/s, and orders jump there too."""
+    model = {"n": 10.0, "speed": 0.4, "dt": 0.5, "lag": 8.0}
+    only(made(rudder_rate=20.0 * DEG, **model))
+    only(made(rudder_rate=1e9, angle=35.0 * DEG, **model), "these may be orders, not positions")
+    only(made(rudder_rate=20.0 * DEG, **{**model, "n": 1.7}), "these may be orders, not positions")
+
+
+def test_gaps_of_all_columns_are_one_warning() -> None:
+    trial = with_value(with_value(made(), "x", slice(40, 50), np.nan), "r", [41, 42], np.nan)
+    only(trial, "'x' and 'r' have gaps: 2 to 10 of 500 samples; the longest has 10 samples, 11 s (")
 
 
 def test_directions_in_degrees() -> None:

@@ -96,7 +96,7 @@ def test_other_files_in_the_folder_are_left_alone(tmp_path):
         ('"3.01 L"', '"3.01"', "no unit"),
         ('"3.01 L"', '"3.01 deg"', "unit 'deg'"),
         ('"3.01 L"', '"-3.01 L"', "no ship does that"),
-        ('"3.01 L"', '"nan L"', "not a number"),
+        ('"3.01 L"', '"nan L"', "not a finite number"),
         ('"3.01 L"', '"1e999 m"', "one number"),
         ('"0.1 L"', '"0 L"', "tolerance of advance"),
         ('"0.1 L"', '"10 m"', "different units"),

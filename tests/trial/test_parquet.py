@@ -54,7 +54,7 @@ names = st.text("abcdefghijklmnopqrstuvwxyz_0123456789", min_size=1, max_size=12
 @st.composite
 def trials(draw: st.DrawFn) -> Trial:
     """Any numbers that a file may hold: gaps in the motion, uneven time, extremes of what a ship and a float may be."""
-    samples = draw(st.integers(2, 12))
+    samples = draw(st.integers(3, 12))
 
     def column(low: float, high: float, gaps: bool = False) -> np.ndarray:
         number = st.floats(low, high)
@@ -273,3 +273,21 @@ def test_one_bad_file_raises_a_trial_error_only(tmp_path: Path) -> None:
 def test_importing_trials_imports_nothing_heavy() -> None:
     code = "import sys, mmgtune.trial; sys.exit(bool({'pandas', 'pyarrow'} & set(sys.modules)))"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_columns_in_capitals_are_told_in_one_problem(tmp_path: Path) -> None:
+    columns = {name.upper(): values for name, values in made().columns.items()}
+    (problem,) = problems_of(write_raw(tmp_path / "a.parquet", columns))
+    assert "rename T to t, X to x, Y to y, PSI to psi" in problem
+    some = made().columns
+    some["Delta"] = some.pop("delta")
+    assert "rename Delta to delta" in problems_of(write_raw(tmp_path / "b.parquet", some))[0]
+
+
+def test_latitude_and_longitude_lead_to_the_import(tmp_path: Path) -> None:
+    columns = made().columns
+    columns["lat"], columns["Longitude"] = columns.pop("x"), columns.pop("y")
+    (problem,) = problems_of(write_raw(tmp_path / "a.parquet", columns))
+    assert "positions are in latitude and longitude: lat, Longitude" in problem
+    assert "mmgtune trials map" in problem
+    assert "mmgtune trials import" in problem
