@@ -182,10 +182,11 @@ def test_layouts(tmp_path, change, keys):
     close(imported(log, propose_map([log]).text), imported(write_csv(tmp_path / "plain.csv", columns)), 1e-8)
 
 
-def test_lines_above_and_a_line_of_units(tmp_path):
+@pytest.mark.parametrize("turns", ["U/min", "1/min", "r/min", "min-1"])
+def test_lines_above_and_a_line_of_units(tmp_path, turns):
     columns = logged(turn())
     path = tmp_path / "log.csv"
-    units = "s;m;m;°;kn;kn;°/min;U/min;°"
+    units = f"s;m;m;°;kn;kn;°/min;{turns};°"
     frame = pd.DataFrame(columns).to_csv(index=False, sep=";")
     head, _, body = frame.partition("\n")
     path.write_text(f"Ship X\n\nrun 3; 2024\n{head}\n{units}\n{body}", encoding="utf-8")
