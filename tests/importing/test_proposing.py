@@ -11,6 +11,7 @@ from mmgtune.errors import LogError
 from mmgtune.importing import import_logs, load_map, parse_map, propose_map
 from mmgtune.importing.proposing.sampling import heading, sample_of
 from mmgtune.importing.proposing.words import quantity_named, unit_named
+from mmgtune.trial import load_trials
 from mmgtune.units import KNOT
 from tests.command import run
 from tools.map_disguises import SETS, bundled_logs, disguised, equal, judged, plain_logs
@@ -120,6 +121,26 @@ def test_columns_of_marin_in_another_language(tmp_path):
         "n": ("Toeren", "rpm", None), "delta": ("Roerhoek", "deg", "port"),
     }  # fmt: skip
     assert (found.axes, found.time.column, found.time.format) == ("earth", "Datum/Zeit", "dmy")
+
+
+@pytest.mark.parametrize("head", ["", "A,A,A,A,A,A,A,A\n"])
+def test_a_circle_at_a_degree_a_second_without_names(tmp_path, head):
+    """North is the slope of east then, times the yaw rate of about 1 deg/s, but no velocity in any unit."""
+    trial = load_trials("suzaku")["turn_p35"]
+    columns = (
+        trial.t, trial.x, trial.y, np.degrees(trial.psi) % 360.0, np.hypot(trial.u, trial.v_m) / KNOT,
+        60.0 * np.degrees(trial.r), 60.0 * trial.n, np.degrees(trial.delta),
+    )  # fmt: skip
+    path = tmp_path / "log.csv"
+    path.write_text(head + "".join(",".join(f"{one:.3f}" for one in row) + "\n" for row in zip(*columns, strict=True)))
+    proposal = propose_map([path])
+    guesses = proposal.guesses
+    assert {name: one.column for name, one in guesses.items()} == {
+        "t": 0, "x": 1, "y": 2, "psi": 3, "u": 4, "r": 5, "n": 6, "delta": 7,
+    }  # fmt: skip
+    units = {name: guesses[name].keys["unit"] for name in ("u", "r", "n", "delta")}
+    assert units == {"u": "kn", "r": "deg/min", "n": "rpm", "delta": "deg"}
+    assert [row[1] for row in proposal.table()] == [f"column {k + 1}" for k in (0, 1, 2, 3, 4, 5, 6, 7)]
 
 
 # what is asked
