@@ -123,17 +123,21 @@ def test_columns_of_marin_in_another_language(tmp_path):
     assert (found.axes, found.time.column, found.time.format) == ("earth", "Datum/Zeit", "dmy")
 
 
-@pytest.mark.parametrize("head", ["", "A,A,A,A,A,A,A,A\n"])
-def test_a_circle_at_a_degree_a_second_without_names(tmp_path, head):
-    """North is the slope of east then, times the yaw rate of about 1 deg/s, but no velocity in any unit."""
+def circle(path, head="", turns=60.0):
+    """A log of a circle at about 1 deg/s without names; ``turns`` times the revolutions per second."""
     trial = load_trials("suzaku")["turn_p35"]
     columns = (
         trial.t, trial.x, trial.y, np.degrees(trial.psi) % 360.0, np.hypot(trial.u, trial.v_m) / KNOT,
-        60.0 * np.degrees(trial.r), 60.0 * trial.n, np.degrees(trial.delta),
+        60.0 * np.degrees(trial.r), turns * trial.n, np.degrees(trial.delta),
     )  # fmt: skip
-    path = tmp_path / "log.csv"
     path.write_text(head + "".join(",".join(f"{one:.3f}" for one in row) + "\n" for row in zip(*columns, strict=True)))
-    proposal = propose_map([path])
+    return path
+
+
+@pytest.mark.parametrize("head", ["", "A,A,A,A,A,A,A,A\n"])
+def test_a_circle_at_a_degree_a_second_without_names(tmp_path, head):
+    """North is the slope of east then, times the yaw rate of about 1 deg/s, but no velocity in any unit."""
+    proposal = propose_map([circle(tmp_path / "log.csv", head)])
     guesses = proposal.guesses
     assert {name: one.column for name, one in guesses.items()} == {
         "t": 0, "x": 1, "y": 2, "psi": 3, "u": 4, "r": 5, "n": 6, "delta": 7,
@@ -144,6 +148,12 @@ def test_a_circle_at_a_degree_a_second_without_names(tmp_path, head):
 
 
 # what is asked
+
+
+def test_revolutions_that_no_ship_has_are_asked(tmp_path):
+    """Without a name, and with 0.008 ship lengths a turn: of an engine before its gear, or none at all."""
+    proposal = propose_map([circle(tmp_path / "log.csv", turns=180.0)])
+    assert "columns.n.unit" in proposal.asks
 
 
 def still(columns):
