@@ -31,6 +31,9 @@ from .units import DEG, KNOT, parse
 ORDERED = "rk4"
 """How manoeuvres given as orders are simulated, at steps of their own."""
 
+APPROACH = 0.5
+"""Ship lengths straight ahead before an order, rounded up to a sample: as ``predict`` and stated indices have it."""
+
 RADIANS = 2.0
 """A plain number of degrees below this is likely meant as radians."""
 
@@ -207,22 +210,26 @@ def _on_orders(predictor: Predictor, options: SimulateOptions) -> list[Motion]:
     # Models are quicker than ships: sample ten times per ship length travelled, once a second at most.
     sample = min(1.0, round(L / V / 10.0, 1) or 0.1)
     longest = max(600.0, 150.0 * L / V)
+    at = sample * math.ceil(APPROACH * L / V / sample - 1e-9)
     sailings = [
-        Sailing(helmsman, name, speed, n, longest=longest, sample=sample) for name, helmsman in _orders(options)
+        Sailing(helmsman, name, speed, n, longest=longest, sample=sample) for name, helmsman in _orders(options, at)
     ]
     return run_manoeuvres(model, sailings, theta=predictor.theta.repeat(len(sailings), axis=1))
 
 
-def _orders(options: SimulateOptions) -> list[tuple[str, Helmsman]]:
-    """The manoeuvres asked for by name, both hard turns where none is.  Raises OptionError."""
+def _orders(options: SimulateOptions, at: float = 0.0) -> list[tuple[str, Helmsman]]:
+    """The manoeuvres asked for by name, ordered at time ``at`` [s]; both hard turns where none is.
+
+    Raises OptionError for orders that make no sense.
+    """
     orders: list[tuple[str, Helmsman]] = []
     turns = options.turn or (() if options.zigzag else ("35", "-35"))
     for text in turns:
         angle = rudder_angle(text)
-        orders.append((turn_name(angle), TurningOrder(angle)))
+        orders.append((turn_name(angle), TurningOrder(angle, at)))
     for text in options.zigzag:
         rudder, heading = zigzag_angles(text)
-        orders.append((zigzag_name(rudder, heading), ZigzagOrder(rudder * DEG, heading * DEG)))
+        orders.append((zigzag_name(rudder, heading), ZigzagOrder(rudder * DEG, heading * DEG, at)))
     return orders
 
 

@@ -141,6 +141,11 @@ def canonical(unit: str) -> str:
     return _SYNONYMS.get(unit.lower(), unit)
 
 
+def is_unit(text: str) -> bool:
+    """Whether a text is a unit and no number with one: "1/min" as well as "rpm"."""
+    return any(canonical(text) in known for known in _FACTORS.values())
+
+
 def factors(unit: str) -> dict[str, float]:
     """Units a quantity in ``unit`` may be written in, and what a number in each is multiplied by.
 

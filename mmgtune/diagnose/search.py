@@ -101,7 +101,7 @@ def search(
     base = base_fit(bench)
     if not np.isfinite(base.chi2):
         problem = bench.problem_of(base.names).with_offsets(base.offsets)
-        hold_simulated(bench.model.profile, problem, base.unit, [trial.id for trial in bench.trials])
+        hold_simulated(bench.model.profile, problem, base.unit, bench.trials)
     at_end = {name for name, z in zip(base.names, base.unit, strict=True) if z <= 0.0 or z >= 1.0}
     hypotheses = [*hypotheses, *(one for one in in_place if set(one.instead) <= at_end)]
     found = Found(base, base)

@@ -31,6 +31,9 @@ from .weighing import Weight
 
 SCHEMA = 1
 
+STOPPED = "The fit was stopped before its end: this is of its best so far, not of an optimum."
+"""What the verdict of one begins with."""
+
 MISSED = 3.0
 """J of a sample on trials not used for tuning, over that on those that were, from which a fit misses them."""
 
@@ -164,7 +167,10 @@ class FitResult(Plotted):
         return words_of(self.options.make_integrator())
 
     def verdict(self) -> str:
-        """The result in one sentence."""
+        """The result in one sentence, after one that says so where the fit was stopped."""
+        return f"{STOPPED} {self._verdict()}" if self.interrupted else self._verdict()
+
+    def _verdict(self) -> str:
         tests = [c for c in self.compared if c.role == "test"]
         chosen = tests or [c for c in self.compared if c.role == "tune"]
         if not chosen:

@@ -22,7 +22,7 @@ from ..profile import ShipProfile
 from ..provenance import made_by as made_by
 from ..stated import IndexComparison, compare_stated, possible
 from ..threads import blas_on_one_thread
-from ..trial import Coverage, TrialSet, oddities
+from ..trial import Coverage, Trial, TrialSet, oddities
 from .box import Box, choose_targets, make_box
 from .certificate import certify
 from .checkpoint import EVERY, Checkpoint
@@ -315,9 +315,9 @@ def _fit(
     )
 
 
-def _tuned_on(trials: TrialSet) -> list[str]:
+def _tuned_on(trials: TrialSet) -> list[Trial]:
     """Tune trials that have a motion, a case of the problem each."""
-    return [name for name in trials.tune if name in trials.trials]
+    return [trials.trials[name] for name in trials.tune if name in trials.trials]
 
 
 def edge_ridge(problem: FitProblem, options: FitOptions, before: FloatArray) -> float:

@@ -158,8 +158,11 @@ def import_logs(
 
 
 def _name(template: str, log: Path) -> str:
-    written = template.replace("{stem}", log.stem).replace("{parent}", true_path(log).parent.name)
-    return re.sub(r"[^\w.-]+", "_", written).strip("._") or "trial"
+    return re.sub(r"[^\w.-]+", "_", _written(template, log)).strip("._") or "trial"
+
+
+def _written(template: str, log: Path) -> str:
+    return template.replace("{stem}", log.stem).replace("{parent}", true_path(log).parent.name)
 
 
 def _trials(log: Path, log_map: LogMap, step: float | None) -> list[tuple[Trial, dict[str, Any]]]:
@@ -359,6 +362,7 @@ def _trial(id: str, piece: Piece, notes: list[str], log_map: LogMap, cut_from: s
         id=id,
         ship=log_map.ship,
         manoeuvre=piece.follows or log_map.manoeuvre.replace("{parent}", true_path(record.path).parent.name),
+        group=_written(log_map.group, record.path) if log_map.group else "",
         source=log_map.source,
         **required,
         extra={name: values for name, values in kept.items() if known_column(name)},

@@ -29,7 +29,7 @@ TABLES = {
         "cut",
     ),
     "log": ("format", "delimiter", "encoding", "decimal", "skip", "header", "fields", "missing", "sheet", "variable"),
-    "trial": ("ship", "id", "manoeuvre", "source", "note", "noise"),
+    "trial": ("ship", "id", "manoeuvre", "group", "source", "note", "noise"),
     "time": ("column", "format", "unit", "scale", "recover", "step"),
     "velocity": ("axes", "point", "shifted"),
     "antenna": ("x", "y"),
@@ -125,6 +125,7 @@ class LogMap:
     shifted     "earth-axes" where velocities were moved to midship already, but along earth axes; else None
     antenna     (2,) position of the antenna from midship, forward and to starboard; None where positions are of midship
     projection  of latitude and longitude; origin: (2,) its centre, latitude and longitude [deg], None: the first fix
+    group       what trials have in common with others, such as the day; may name the log and its folder, as ``id`` does
     step        time step of the trials, None: the log's own median; gap: steps beyond which a hole is not bridged
     """
 
@@ -155,6 +156,7 @@ class LogMap:
     ship: str = ""
     id: str = "{stem}"
     manoeuvre: str = ""
+    group: str = ""
     source: str = "measured"
     note: str = ""
     some: tuple[tuple[str, LogMap], ...] = ()

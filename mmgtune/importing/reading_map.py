@@ -185,6 +185,7 @@ class _Reader(TomlReader):
             ship=self.text_of("trial", trial, "ship"),
             id=self.id(trial),
             manoeuvre=self.text_of("trial", trial, "manoeuvre"),
+            group=self.text_of("trial", trial, "group"),
             source=self.choice("trial", trial, "source", SOURCES) or "measured",
             note=self.text_of("trial", trial, "note"),
             noise=self.noise(trial),

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from ..arrays import FloatArray, IntArray
 from ..errors import LogError, Problem
+from ..units import is_unit
 from .degrees import degrees
 from .mapping import LogMap
 
@@ -95,6 +96,9 @@ class BadCells:
     text: str = ""
 
 
+_WITH_UNIT = re.compile(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?\s*([^\d\s].*)")
+
+
 class Cells:
     """Turns cells into numbers and remembers what could not be turned."""
 
@@ -147,7 +151,7 @@ class Cells:
             if re.fullmatch(r"[-+]?\d*,\d+([eE][-+]?\d+)?", bad.text):
                 fix = 'decimal = "," in [log], if the comma is the decimal sign'
                 problems.append(Problem("numbers with a comma in them", place, cells, fix))
-            elif match := re.fullmatch(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?\s*([^\d\s].*)", bad.text):
+            elif match := None if is_unit(bad.text) else _WITH_UNIT.fullmatch(bad.text):
                 fix = "write the column in one unit, as plain numbers, and say the unit in the map"
                 problems.append(Problem(f"a cell has a unit of its own, '{match.group(1)}'", place, cells, fix))
             elif bad.count > 0.5 * n_rows:

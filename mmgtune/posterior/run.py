@@ -175,7 +175,7 @@ def posterior(
 
 
 def _lost(ship: ShipProfile, trials: Sequence[Trial]) -> ProfileError:
-    return runs_away(ship, [trial.id for trial in trials], "with any coefficients that are likely")
+    return runs_away(ship, trials, "with any coefficients that are likely")
 
 
 def sound(data: Windowed, mode: Mode, temper: float, n: int, seed: int) -> tuple[FloatArray, float]:

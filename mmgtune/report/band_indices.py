@@ -28,30 +28,33 @@ def indices_table(run: Mapping[str, Any], level: float, several: bool) -> Table 
     """All indices of a run, None of one that has none.
 
     level    percent that bands hold
-    several  whether there is a band
+    several  whether there is a band; without one nothing is said of bands
     """
     measured = any(number(row["measured"]) is not None for row in run["indices"])
     rows = []
     for row in run["indices"]:
         lengths = row["over_L"]
-        band = f"{shown(row['low'], 3)} to {shown(row['high'], 3)}" if several else NONE
         line: list[str | Cell] = [
             f"{row['words']} [{row['unit']}]",
             banded(row),
             banded(lengths) if lengths else NONE,
-            band,
         ]
+        if several:
+            line.append(f"{shown(row['low'], 3)} to {shown(row['high'], 3)}")
         if measured:
             line.append(Cell(shown(row["measured"]), _tone(row) if several else ""))
-        never = row["particles"] - row["reached"]
-        line.append(Cell(str(never), "bad") if never else "0")
+        if several:
+            never = row["particles"] - row["reached"]
+            line.append(Cell(str(never), "bad") if never else "0")
         rows.append(cells(*line))
     if not rows:
         return None
-    heads = ["index", "mean ± half the band", "in ship lengths", f"band of {shown(level, 3)} %"]
+    heads = ["index", "mean ± half the band" if several else "foretold", "in ship lengths"]
+    heads += [f"band of {shown(level, 3)} %"] if several else []
     heads += ["measured"] if measured else []
-    heads.append("never reach it")
-    caption = f"Indices of {clean(run['id'])}; particles that never reach one count as beyond all others"
+    heads += ["never reach it"] if several else []
+    caption = f"Indices of {clean(run['id'])}"
+    caption += "; particles that never reach one count as beyond all others" if several else ""
     return Table(f"indices-{clean(run['id'])}", caption, tuple(heads), tuple(rows), numeric=range(1, len(heads)))
 
 

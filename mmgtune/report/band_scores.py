@@ -8,6 +8,13 @@ from typing import Any
 from .blocks import Prose, Section, Table, cells
 from .wording import NONE, clean, number, shown
 
+MEANING_OF_ONE = (
+    "L_fit is the mean squared distance from what was measured over the noise that a trial states (Wakita et al., "
+    "eq. 29); L_Eucl is the same distance, of velocities in m/s and rad/s (eq. 30); CRPS is the mean distance over the "
+    "states, in their spread over the trials. Measured samples have the noise of their sensors."
+)
+"""What scores of one run are, which has no band."""
+
 MEANING = (
     "L_fit is the mean squared distance of a particle from what was measured over the noise that a trial states "
     "(Wakita et al., eq. 29); "

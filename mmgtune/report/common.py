@@ -39,6 +39,14 @@ def warnings(data: Mapping[str, Any]) -> tuple[str, ...]:
     return tuple(text for text in found if not (said and text.endswith("trials are generated, not measured.")))
 
 
+STOPPED = "The training was stopped before its end."
+
+
+def of_training(data: Mapping[str, Any], verdict: str) -> str:
+    """The headline of a training: first of all that it was stopped, where it was."""
+    return f"{STOPPED} {verdict}" if data["interrupted"] else verdict
+
+
 def doubts(record: Mapping[str, Any]) -> tuple[str, ...]:
     """Which numbers of a profile may be wrong, in sentences; records of older versions do not say."""
     return tuple(f"{clean(words)}." for words in in_words(record.get("doubts") or ()))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from .blocks import Card, Page, Prose, Section, Table, cells
-from .common import picture, rms_errors
+from .common import of_training, picture, rms_errors
 from .learned_motions import block
 from .learning_page import (
     MEANING,
@@ -42,7 +42,7 @@ def build(record: LearningRecord) -> Page:
     return Page(
         title=f"Ensemble of {clean(data['ship'])}",
         eyebrow=f"{clean(data['ship'])} · ensemble of {networks} of {data['layers']} × {data['width']} units",
-        verdict=_verdict(record),
+        verdict=of_training(data, _verdict(record)),
         banners=(banner,) if generated else (),
         warnings=("The training was stopped early; --resume continues it.",) if data["interrupted"] else (),
         cards=_cards(record),

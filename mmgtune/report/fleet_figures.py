@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
@@ -15,6 +16,35 @@ ROWS = 40
 
 PALE, FULL = 0.12, 0.95
 """How dense the smallest and the largest error are drawn."""
+
+
+@dataclass(frozen=True)
+class _Density:
+    """How dense errors [m] are drawn, by their logarithm about the middle; where all are alike, as that is."""
+
+    low: float
+    high: float
+
+    @classmethod
+    def of(cls, known: Sequence[float]) -> _Density:
+        """That of errors above 0."""
+        return cls(min(known), max(known)) if known else cls(math.nan, math.nan)
+
+    @property
+    def middle(self) -> float:
+        return math.sqrt(self.low) * math.sqrt(self.high)
+
+    @property
+    def ends(self) -> tuple[float, ...]:
+        """Errors that a legend shows: the smallest, that in the middle and the largest."""
+        return () if math.isnan(self.low) else (self.low, self.middle, self.high)
+
+    def __call__(self, error: float) -> float:
+        if math.isnan(self.low):
+            return PALE
+        span = max(math.log(self.high / self.low), math.log(2.0))
+        share = 0.5 + math.log(max(error, 1e-12) / self.middle) / span
+        return PALE + (FULL - PALE) * min(max(share, 0.0), 1.0)
 
 
 def ships_over_time(
@@ -31,16 +61,13 @@ def ships_over_time(
     rows = {ship: k for k, ship in enumerate(ships)}
     columns = {date: k for k, date in enumerate(dates)}
     known = [value for value in errors.values() if value is not None and value > 0.0]
-    low, high = (math.log(min(known)), math.log(max(known))) if known else (0.0, 1.0)
-    span = max(high - low, math.log(2.0))
+    dense = _Density.of(known)
     marks: list[Mark] = []
     for (ship, date), value in errors.items():
         if value is None or ship not in rows or date not in columns:
             continue
-        share = (math.log(max(value, 1e-12)) - low) / span
-        density = PALE + (FULL - PALE) * min(max(share, 0.0), 1.0)
         k, row = columns[date], rows[ship]
-        marks.append(Bar((k - 0.47, k + 0.47), (row - 0.44, row + 0.44), "before", round(density, 3)))
+        marks.append(Bar((k - 0.47, k + 0.47), (row - 0.44, row + 0.44), "before", round(dense(value), 3)))
     # Dark under the diamonds: they stand on squares of every density, in light and dark.
     for places, look in ((failed, FAILED), (changed, UNDER), (changed, CHANGED)):
         at = [(columns[date], rows[ship]) for ship, date in places if ship in rows and date in columns]
@@ -52,16 +79,8 @@ def ships_over_time(
     names = tuple((float(k), clean(ship)[:14]) for ship, k in rows.items())
     y = Axis("", len(ships) - 0.4, -0.6, ticks=names, grid=False)
     panel = Panel(tuple(marks), x, y, shape=-(18.0 * len(ships) + 60.0))
-    middle = math.exp(0.5 * (low + high)) if known else None
-    legend: list[Any] = [
-        (f"{shown(value, 3)} m off track", ("before", density))
-        for value, density in (
-            (min(known, default=None), PALE),
-            (middle, 0.5 * (PALE + FULL)),
-            (max(known, default=None), FULL),
-        )
-        if value is not None
-    ]
+    swatches = {f"{shown(value, 3)} m off track": ("before", dense(value)) for value in dense.ends}
+    legend: list[Any] = list(swatches.items())
     legend += [("a change began", CHANGED)] if changed else []
     legend += [("could not run", FAILED)] if failed else []
     return Figure("ships", "Error of the model as given, a square for each ship and date", (panel,), tuple(legend))

@@ -11,7 +11,7 @@ from typing import Any
 from . import learned_motions
 from .advice import shortest
 from .blocks import Block, Card, Commands, Page, Prose, Section, Table, cells
-from .common import picture, rms_errors
+from .common import of_training, picture, rms_errors
 from .learning_page import made_section
 from .load import Kind
 from .plot import Axis, Figure, Line, Look, Mark, Panel, Rule, model_look
@@ -50,7 +50,7 @@ def build(record: HybridRecord) -> Page:
     return Page(
         title=f"{clean(data['ship'])}: a network beside the model of forces",
         eyebrow=f"{clean(data['ship'])} · hybrid: a network beside the model of forces",
-        verdict=_verdict(data),
+        verdict=of_training(data, _verdict(data)) if data["gained"] else _verdict(data),
         banners=(banner,) if sources == ["generated"] else (),
         warnings=("The training was stopped early; --resume continues it.",) if data["interrupted"] else (),
         cards=_cards(data),

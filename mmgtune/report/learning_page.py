@@ -12,7 +12,7 @@ from ..inputs import INPUTS
 from . import learned_motions
 from .advice import shortest
 from .blocks import Card, Commands, Fold, Page, Prose, Section, Table, cells
-from .common import picture, rms_errors
+from .common import of_training, picture, rms_errors
 from .load import Kind
 from .plot import Axis, Dots, Figure, Line, Look, Mark, Panel
 from .tables import pairs
@@ -65,7 +65,7 @@ def build(record: LearningRecord) -> Page:
     return Page(
         title=f"Networks of {clean(data['ship'])}: type {clean(data['type'])}",
         eyebrow=f"{clean(data['ship'])} · networks of type {clean(data['type'])}: {clean(data['recipe'])}",
-        verdict=_verdict(record),
+        verdict=of_training(data, _verdict(record)),
         banners=(banner,) if generated else (),
         warnings=("The training was stopped early; --resume continues it.",) if data["interrupted"] else (),
         cards=_cards(record),

@@ -56,7 +56,7 @@ def build(record: LeaveOutRecord) -> Page:
         assumptions(data),
         provenance(data),
     ]
-    stopped = f"Stopped after {len(data['parts'])} of {data.get('n_parts')} parts; --resume goes on."
+    stopped = "The scores are of the parts that were finished; --resume goes on."
     return Page(
         title=f"{ship}: trials left out in turn",
         eyebrow=f"{ship} · {count(len(data['parts']), 'fit')}, each without some of the trials",
@@ -73,6 +73,13 @@ def _whole(data: Mapping[str, Any]) -> Mapping[str, Any] | None:
 
 
 def _verdict(data: Mapping[str, Any]) -> str:
+    """The answer; first of all that it is not the whole one, where the run was stopped."""
+    if not data.get("interrupted"):
+        return _answer(data)
+    return f"Stopped before its end, after {len(data['parts'])} of {data.get('n_parts')} parts. {_answer(data)}"
+
+
+def _answer(data: Mapping[str, Any]) -> str:
     row = _whole(data)
     if row is None:
         return "No trial with time series was left out." if data["parts"] else "No part was finished."

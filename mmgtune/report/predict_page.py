@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import fans, motion_block, motions
 from .band_indices import banded, indices_table
-from .band_scores import MEANING, SCORE_HEADS, score_cells
+from .band_scores import MEANING, MEANING_OF_ONE, known_scores, score_cells
 from .blocks import Block, Card, Fold, Page, Prose, Section, Table, cells
 from .common import doubts, picture
 from .load import Kind, columns_in
@@ -106,13 +106,15 @@ def build(record: PredictRecord) -> Page:
     rest = [run for run in record.runs if run not in record.drawn()]
     if rest:
         blocks = tuple(table for run in rest if (table := indices_table(run, record.level, record.several)))
-        said = Prose((f"{count(len(rest), 'run')} are not drawn: those whose bands hold more, or that diverged.",))
+        why = "those whose bands hold more, or that diverged" if record.several else "the last, or those that diverged"
+        said = Prose((f"{count(len(rest), 'run')} are not drawn: {why}.",))
         sections.append(Section("rest", "Other runs", (said, *(blocks and (Fold("Indices", blocks),)))))
     sources = {run["trial"]["source"] for run in record.runs if run["trial"]}
     banner = "The trials are generated, not measured: this says how the method works, not how a real ship moves."
+    members = count(data["particles"], "particle") if record.several else "one model, no band"
     return Page(
         title="Prediction",
-        eyebrow=f"{clean(data['model']['id'])} · {count(data['particles'], 'particle')}",
+        eyebrow=f"{clean(data['model']['id'])} · {members}",
         verdict=_verdict(record),
         banners=(banner,) if sources == {"generated"} else (),
         warnings=(*(f"{clean(note)}." for note in data["notes"]), *doubts(data)),
@@ -182,7 +184,7 @@ def _off(record: PredictRecord) -> list[Card]:
     place_off, heading_off = (sum(values) / len(values) for values in squares.values())
     note = f"root mean square, mean of {count(len(squares['place']), 'trial')}"
     return [
-        Card("The mean is off track by", f"{shown(place_off, 3)} m", note=note),
+        Card("The mean is off track by" if record.several else "Off track by", f"{shown(place_off, 3)} m", note=note),
         Card("Off heading by", f"{shown(heading_off, 2)}°", note=note),
     ]
 
@@ -267,31 +269,29 @@ def _scores(record: PredictRecord) -> Section:
             "Below the diagonal bands are too narrow, above it wider than needed; all states and samples together."
         )
         blocks.append(picture(drawn, "Calibration", caption))
-    blocks.append(_scores_table(record.data["runs"], scores))
-    blocks.append(Prose((MEANING,)))
+    blocks.append(_scores_table(record, scores))
+    blocks.append(Prose((MEANING if record.several else MEANING_OF_ONE,)))
     return Section("scores", "Scores", tuple(blocks))
 
 
-def _scores_table(runs: Sequence[Mapping[str, Any]], whole: Mapping[str, Any]) -> Table:
-    """Scores of each run and of all."""
-    rows = [cells(clean(run["id"]), *score_cells(run["scores"])) for run in runs if run["scores"]]
-    rows.append(cells("all", *score_cells(whole)))
-    return Table(
-        "scores-table",
-        "Whether the bands held what was measured",
-        ("run", *SCORE_HEADS),
-        tuple(rows),
-        numeric=range(1, 1 + len(SCORE_HEADS)),
-    )
+def _scores_table(record: PredictRecord, whole: Mapping[str, Any]) -> Table:
+    """Scores of each run and of all, those that there are."""
+    rows = [[clean(run["id"]), *score_cells(run["scores"])] for run in record.runs if run["scores"]]
+    rows.append(["all", *score_cells(whole)])
+    heads, kept = known_scores(rows, 1)
+    caption = "Whether the bands held what was measured" if record.several else "How far off what was measured"
+    lines = tuple(cells(*row) for row in kept)
+    return Table("scores-table", caption, ("run", *heads), lines, numeric=range(1, 1 + len(heads)))
 
 
 def _made(record: PredictRecord) -> Section:
     data = record.data
     made, model = data["provenance"], data["model"]
+    drawn = "drawn" if data["drawn"] else "the members the model has"
     items = [
         ("model", f"{clean(model['name'])}; {clean(model['method'])}"),
         ("profile's hash (SHA-256)", clean(model["sha256"] or NONE)),
-        ("particles", f"{data['particles']}, " + ("drawn" if data["drawn"] else "the members the model has")),
+        *([("particles", f"{data['particles']}, {drawn}")] if record.several else []),
         ("command", clean(made["command"] or NONE)),
         ("made by", f"mmgtune {clean(made['mmgtune'])}, {clean(made['created'])}"),
         ("time", f"{shown(data['wall_s'], 3)} s"),

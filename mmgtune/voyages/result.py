@@ -24,6 +24,9 @@ from .where import ByFeature, most_telling, where_it_lives
 CLASSES = ("optimal", "satisfactory", "sub-optimal")
 """By cVDM, as Mathioudakis et al. call them; a window that diverged is sub-optimal."""
 
+STOPPED = "Stopped before its end: this is of the windows scored by then."
+"""What the verdict of a validation begins with that is not of all voyages."""
+
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 """Of each measure that are told."""
 
@@ -214,7 +217,10 @@ class VoyageValidation(Displayed):
         return Comparison(first, second, int(both.sum()), better, mean, interval)
 
     def verdict(self) -> str:
-        """The answer in a sentence."""
+        """The answer in a sentence, after one that says so where it is not of all voyages."""
+        return f"{STOPPED} {self._verdict()}" if self.interrupted else self._verdict()
+
+    def _verdict(self) -> str:
         if self.table is None:
             return "No window could be scored."
         name = next(iter(self.predictors))

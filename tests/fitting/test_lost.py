@@ -48,6 +48,24 @@ def test_a_fit_of_a_ship_that_runs_away_says_where(wild, options):
     assert "mmgtune validate" in problem.fix
 
 
+@pytest.mark.parametrize(
+    ("column", "factor", "said"),
+    [("n", 60.0, "divide 'n' by 60"), ("t", 1000.0, "check sign, scale and bias of 'r' against 'psi'")],
+)
+def test_what_is_odd_in_the_trials_is_said_too(column, factor, said):
+    """The profile is good: revolutions are per minute, or times in milliseconds."""
+    trials = load_trials("suzaku")
+    few = {name: replace(trials.trials[name], **{column: factor * getattr(trials.trials[name], column)})
+           for name in ("turn_p35", "turn_m40")}  # fmt: skip
+    with pytest.raises(ProfileError, match="runs away on turn_p35, turn_m40") as error:
+        fit("suzaku", replace(trials, trials=few, tune=tuple(few), test=()), QUICK)
+    first, *odd = error.value.problems
+    assert first.why.startswith("the trials may be wrong")
+    fixes = [one.fix for one in odd]
+    assert said in fixes
+    assert len(set(fixes)) == len(fixes) <= 3
+
+
 def test_so_does_the_question_what_trials_tell(wild):
     with pytest.raises(ProfileError, match="with the values of the profile"):
         fit(wild, "suzaku", replace(QUICK, identifiable=True))

@@ -221,6 +221,8 @@ def test_a_stop_keeps_the_best_so_far(suzaku, noisy):
     result = fit(suzaku.profile, noisy, FitOptions(), hooks=Hooks(stop=stop))
     assert result.interrupted
     assert result.J_before > result.J
+    assert result.verdict().startswith("The fit was stopped before its end: ")
+    assert replace(result, interrupted=False).verdict().startswith("On 4 trials not used for tuning")
 
 
 @pytest.fixture(scope="module")

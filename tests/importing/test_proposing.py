@@ -11,6 +11,7 @@ from mmgtune.errors import LogError
 from mmgtune.importing import import_logs, load_map, parse_map, propose_map
 from mmgtune.importing.proposing.sampling import heading, sample_of
 from mmgtune.importing.proposing.words import quantity_named, unit_named
+from mmgtune.trial import load_trials
 from mmgtune.units import KNOT
 from tests.command import run
 from tools.map_disguises import SETS, bundled_logs, disguised, equal, judged, plain_logs
@@ -122,7 +123,37 @@ def test_columns_of_marin_in_another_language(tmp_path):
     assert (found.axes, found.time.column, found.time.format) == ("earth", "Datum/Zeit", "dmy")
 
 
+def circle(path, head="", turns=60.0):
+    """A log of a circle at about 1 deg/s without names; ``turns`` times the revolutions per second."""
+    trial = load_trials("suzaku")["turn_p35"]
+    columns = (
+        trial.t, trial.x, trial.y, np.degrees(trial.psi) % 360.0, np.hypot(trial.u, trial.v_m) / KNOT,
+        60.0 * np.degrees(trial.r), turns * trial.n, np.degrees(trial.delta),
+    )  # fmt: skip
+    path.write_text(head + "".join(",".join(f"{one:.3f}" for one in row) + "\n" for row in zip(*columns, strict=True)))
+    return path
+
+
+@pytest.mark.parametrize("head", ["", "A,A,A,A,A,A,A,A\n"])
+def test_a_circle_at_a_degree_a_second_without_names(tmp_path, head):
+    """North is the slope of east then, times the yaw rate of about 1 deg/s, but no velocity in any unit."""
+    proposal = propose_map([circle(tmp_path / "log.csv", head)])
+    guesses = proposal.guesses
+    assert {name: one.column for name, one in guesses.items()} == {
+        "t": 0, "x": 1, "y": 2, "psi": 3, "u": 4, "r": 5, "n": 6, "delta": 7,
+    }  # fmt: skip
+    units = {name: guesses[name].keys["unit"] for name in ("u", "r", "n", "delta")}
+    assert units == {"u": "kn", "r": "deg/min", "n": "rpm", "delta": "deg"}
+    assert [row[1] for row in proposal.table()] == [f"column {k + 1}" for k in (0, 1, 2, 3, 4, 5, 6, 7)]
+
+
 # what is asked
+
+
+def test_revolutions_that_no_ship_has_are_asked(tmp_path):
+    """Without a name, and with 0.008 ship lengths a turn: of an engine before its gear, or none at all."""
+    proposal = propose_map([circle(tmp_path / "log.csv", turns=180.0)])
+    assert "columns.n.unit" in proposal.asks
 
 
 def still(columns):
@@ -182,10 +213,11 @@ def test_layouts(tmp_path, change, keys):
     close(imported(log, propose_map([log]).text), imported(write_csv(tmp_path / "plain.csv", columns)), 1e-8)
 
 
-def test_lines_above_and_a_line_of_units(tmp_path):
+@pytest.mark.parametrize("turns", ["U/min", "1/min", "r/min", "min-1"])
+def test_lines_above_and_a_line_of_units(tmp_path, turns):
     columns = logged(turn())
     path = tmp_path / "log.csv"
-    units = "s;m;m;°;kn;kn;°/min;U/min;°"
+    units = f"s;m;m;°;kn;kn;°/min;{turns};°"
     frame = pd.DataFrame(columns).to_csv(index=False, sep=";")
     head, _, body = frame.partition("\n")
     path.write_text(f"Ship X\n\nrun 3; 2024\n{head}\n{units}\n{body}", encoding="utf-8")

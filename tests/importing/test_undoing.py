@@ -187,6 +187,19 @@ def test_rows_of_another_kind_of_log(tmp_path):
     assert "have 10 fields, and the map is for rows of 9" in answer
 
 
+def test_what_logs_have_in_common_is_in_their_trials(tmp_path):
+    """A folder a day, and one log that is of another loading."""
+    logs = [tmp_path / day / name for day, name in (("may_3", "a.csv"), ("may_4", "b.csv"), ("may_4", "c.csv"))]
+    for log in logs:
+        log.parent.mkdir(exist_ok=True)
+        write_csv(log, logged(turn()))
+    text = MAP + '[trial]\ngroup = "{parent}"\n[[logs]]\nname = "c*"\ntrial = { group = "ballast" }\n'
+    trials = import_logs(logs, parse_map(text), tmp_path / "out").trials
+    assert [trial.group for trial in trials] == ["may_3", "may_4", "ballast"]
+    assert [read_trial(tmp_path / "out" / f"{name}.parquet").group for name in "abc"] == ["may_3", "may_4", "ballast"]
+    assert imported(logs[0]).group == ""
+
+
 def test_logs_that_differ_by_name(tmp_path):
     logs = [write_csv(tmp_path / name, logged(turn())) for name in ("a_tc_1.csv", "a_zz_1.csv", "rest.csv")]
     text = MAP + (

@@ -60,6 +60,19 @@ def test_a_profile_and_a_hybrid_say_that_they_have_no_band(tmp_path):
     assert turn["indices"][0]["half_width"] is None
 
 
+@pytest.mark.parametrize("asked", [("--turn", "35"), ("--trials", "suzaku")])
+def test_the_report_of_a_model_without_a_band_says_so_once_and_speaks_of_none(tmp_path, asked):
+    ended = run("predict", "suzaku", *asked, "--out", "run", cwd=tmp_path)
+    assert ended.code == 0, ended.err
+    lines = (tmp_path / "run" / "report.md").read_text(encoding="utf-8").splitlines()
+    told = [line for line in lines if "there is no band" not in line]
+    assert len(told) == len(lines) - 1
+    assert told[2] == "suzaku · one model, no band"
+    spoken = "\n".join(told[3:])
+    assert not [word for word in ("particle", "band", "never reach it", "holds", "L\\_Maha") if word in spoken]
+    assert "| index | foretold | in ship lengths |" in spoken
+
+
 def test_trials_and_their_scores(tmp_path):
     ended = run("predict", "suzaku_fam", "-t", "suzaku", "--restart", "100", cwd=tmp_path)
     assert ended.code == 0, ended.err

@@ -13,12 +13,13 @@ from mmgtune.errors import OptionError
 from mmgtune.manoeuvres import turning_indices, zigzag_indices
 from mmgtune.model import Model
 from mmgtune.networks import NetworkPredictor
-from mmgtune.options import PredictOptions
+from mmgtune.options import PredictOptions, SimulateOptions
 from mmgtune.orders import TurningOrder, ZigzagOrder, run_manoeuvre
 from mmgtune.predicting import predict, write_prediction
 from mmgtune.predictor import PhysicsPredictor, Prediction, as_predictor
 from mmgtune.profile import load_profile
 from mmgtune.report import render
+from mmgtune.simulating import simulate
 from mmgtune.trial import TrialSet, load_trials
 from mmgtune.units import DEG
 from tests.networks.made import network
@@ -103,6 +104,21 @@ def test_a_single_run_has_the_indices_of_a_helmsman_at_fine_steps(kvlcc2):
     assert not found.has_band
     assert "no band" in found.notes[0]
     assert turn.index("advance_m", 0.9).half is None
+
+
+@pytest.mark.parametrize("ship", ["suzaku", "kvlcc2_l7"])
+def test_simulate_gives_the_same_turn_and_nearly_the_same_zigzag(ship):
+    """Of a ship that is not yet at her steady speed when the order comes, so that the approach has to be as long."""
+    found = predict(ship, options=PredictOptions(turn=("35",), zigzag=("20/20",))).to_dict("")["runs"]
+    simulated = simulate(ship, options=SimulateOptions(turn=("35",), zigzag=("20/20",)))
+    turn, zigzag = (row["indices"] for row in simulated.rows())
+    for own, indices, keys, tolerance in (
+        (found[0], turn, ("advance_m", "tactical_diameter_m", "time_90_s", "time_360_s"), 5e-4),
+        # Her helmsman reverses the rudder when he next looks, not at the moment that she passes the heading.
+        (found[1], zigzag, ("overshoot_1_deg", "overshoot_2_deg", "period_s"), 0.02),
+    ):
+        means = {row["index"]: row["mean"] for row in own["indices"]}
+        assert [indices[key] for key in keys] == pytest.approx([means[key] for key in keys], rel=tolerance)
 
 
 def test_without_orders_the_usual_manoeuvres(kvlcc2):

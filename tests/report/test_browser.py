@@ -290,6 +290,23 @@ def test_printing(browser: Any, fit_folder: Path) -> None:
         assert visit.page.locator("#tracks-static svg").first.is_visible()
 
 
+def test_heads_of_tables_are_printed_with_their_rows(browser: Any, fit_folder: Path) -> None:
+    """On every page that a table goes over, and never alone at the end of one."""
+    style = "([name, property]) => getComputedStyle(document.querySelector(name))[property]"
+    wanted = {
+        ("#trials-table thead", "display"): "table-header-group",
+        ("#trials-table thead", "breakInside"): "avoid",
+        ("#trials-table thead", "breakAfter"): "avoid",
+        ("#trials-table caption", "breakAfter"): "avoid",
+        ("#trials-table tbody tr", "breakBefore"): "avoid",
+        ("#trials-table tbody tr:nth-child(2)", "breakBefore"): "auto",
+        ("#trials-table thead button", "display"): "contents",  # else chromium repeats none
+    }
+    with Visit(browser, fit_folder / "report.html") as visit:
+        visit.page.emulate_media(media="print")
+        assert {key: visit.page.evaluate(style, list(key)) for key in wanted} == wanted
+
+
 def test_colour_scheme_can_change_while_open(browser: Any, fit_folder: Path) -> None:
     drawn = "document.querySelector('.track > canvas').toDataURL()"
     with Visit(browser, fit_folder / "report.html", color_scheme="light") as visit:

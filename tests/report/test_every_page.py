@@ -71,6 +71,11 @@ def test_screens(browser: Any, runs: dict[str, Path], name: str, tmp_path: Path)
         assert page.evaluate(OVERFLOW) == 0
         if rules:
             assert axe.violations(page, rules) == []
+        page.set_viewport_size({"width": 360, "height": 800})
+        for size in ("150%", "200%"):  # the letters a reader has chosen in the browser
+            page.evaluate(f"document.documentElement.style.fontSize = '{size}'")
+            page.wait_for_timeout(60)
+            assert page.evaluate(OVERFLOW) == 0, size
         text = page.locator("body").inner_text()
         assert not re.search(r"[−-]0\.0+\s%|\d{5,}\s%|NaN|undefined", text)
         assert visit.complaints == []

@@ -15,6 +15,7 @@ from mmgtune.report import (
     check_page,
     confidence,
     diagnosis_page,
+    fleet_figures,
     html,
     models_page,
     motion_block,
@@ -286,3 +287,21 @@ def test_scores_of_bands_that_no_model_has_are_left_out() -> None:
 def test_spreads_have_units_that_people_read() -> None:
     assert models_page.spread_words("psi", math.radians(30.0)) == ("spread of heading", "30.00 deg")
     assert models_page.spread_words("x", 211.6) == ("spread of position north", "211.6 m")
+
+
+@pytest.mark.parametrize(
+    ("errors", "densities", "said"),
+    [
+        ((92.1, 92.1), [0.535, 0.535], ["92.1 m off track"]),
+        ((92.1, 92.11), [0.535, 0.535], ["92.1 m off track"]),
+        ((12.5, 40.5), [0.12, 0.95], ["12.5 m off track", "22.5 m off track", "40.5 m off track"]),
+    ],
+)
+def test_errors_of_a_fleet_that_are_alike_are_drawn_in_the_middle(
+    errors: tuple[float, float], densities: list[float], said: list[str]
+) -> None:
+    found = {("suzaku", date): error for date, error in zip(("a", "b"), errors, strict=True)}
+    figure = fleet_figures.ships_over_time(["suzaku"], ["a", "b"], found, [], [])
+    drawn = [mark.alpha for mark in figure.panels[0].marks if isinstance(mark, Bar)]
+    assert drawn == pytest.approx(densities, abs=1e-3)
+    assert [label for label, _ in figure.legend] == said

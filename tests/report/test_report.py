@@ -233,6 +233,24 @@ def test_a_page_is_one_entry(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
         render(empty)
 
 
+@pytest.mark.parametrize(
+    ("name", "file", "first"),
+    [
+        ("leave-out", "leave_out.json", "# Stopped before its end, after "),
+        ("learning", "learning.json", "# The training was stopped before its end. "),
+    ],
+)
+def test_the_first_line_says_that_a_run_was_stopped(
+    more: dict[str, Path], tmp_path: Path, name: str, file: str, first: str
+) -> None:
+    folder = shutil.copytree(more[name], tmp_path / "run")
+    data = json.loads((folder / file).read_text(encoding="utf-8"))
+    (folder / file).write_text(json.dumps({**data, "interrupted": True}), encoding="utf-8")
+    render(folder)
+    line = (folder / "report.md").read_text(encoding="utf-8").splitlines()[0]
+    assert line.startswith(first)
+
+
 def test_left_out_trials_are_drawn_and_the_worst_is_named(more: dict[str, Path], tmp_path: Path) -> None:
     folder = more["leave-out"]
     data = json.loads((folder / "leave_out.json").read_text(encoding="utf-8"))

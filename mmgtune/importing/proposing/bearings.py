@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,7 +19,9 @@ OFF = 30.0 * DEG
 """How far course and heading may differ on average: by drift, and by a compass that is off."""
 SPEEDS = (0.005, 40.0)
 """Speeds over the ground [m/s] that ships and models have."""
-FACTORS = (1.0, 1.0 / KNOT, 3.6, 60.0, 1.0 / DEG, 60.0 / DEG, DEG)
+LENGTHS = (1.0, 1.0 / KNOT, 3.6)
+"""What a velocity is of the slope of a position in metres: in m/s, kn or km/h."""
+FACTORS = (*LENGTHS, 60.0, 1.0 / DEG, 60.0 / DEG, DEG)
 """What a rate is of a slope, in other units."""
 TURNED = 2e-4
 """Circular variance of a course, of 1 degree, below which nothing is told by it."""
@@ -75,7 +77,7 @@ def tracks(
     means = {k: windows.mean(columns[k]) for k in among}
     moving = [k for k in among if np.nanstd(slopes[k]) > 0.0 or abs(np.nanmean(slopes[k])) > 0.0]
     rates = _rates(moving, slopes, means)
-    whole, derived = {a for a, _ in rates}, {b for _, b in rates}
+    whole = {a for a, _ in rates}
     found: dict[Track, tuple[float, str]] = {}
     for i, j in itertools.combinations(moving, 2):
         for geographic in _kinds(i, j, sample, slopes, columns):
@@ -83,7 +85,8 @@ def tracks(
             narrow = float(np.cos(np.nanmedian(columns[i]) * DEG)) if geographic else 1.0
             for reading, score, words in _of_pair(i, j, a, b * narrow, geographic, moving, means, windows, said):
                 # What is the rate of something else is no position.
-                score -= 0.4 * sum(k in derived for k in (i, j, reading.psi)) - 0.2 * (reading.psi in whole)
+                derived = sum(_derived(k, (i, j), rates) for k in (i, j, reading.psi))
+                score -= 0.4 * derived - 0.2 * (reading.psi in whole)
                 score += sum(0.15 if said[k] in (*_PLACES, "") else -0.3 for k in (i, j) if said[k])
                 if score > found.get(reading, (0.3, ""))[0]:
                     found[reading] = score, words
@@ -94,9 +97,22 @@ def tracks(
 _PLACES = ("x", "y", "latitude", "longitude")
 
 
-def _rates(moving: Sequence[int], slopes: dict[int, FloatArray], means: dict[int, FloatArray]) -> set[tuple[int, int]]:
-    """Pairs of a column and its rate: the one is the other's slope, but for a factor between units and a constant."""
-    found = set()
+def _derived(k: int, pair: tuple[int, int], rates: Mapping[tuple[int, int], float]) -> bool:
+    """Whether a column is the rate of another, where two are read as the position.
+
+    On a circle north is the slope of east but for the yaw rate, which is 1 deg/s on some: of each other, positions have
+    rates in units of length alone.
+    """
+    return any(b == k and not (a in pair and k in pair and factor not in LENGTHS) for (a, b), factor in rates.items())
+
+
+def _rates(
+    moving: Sequence[int], slopes: dict[int, FloatArray], means: dict[int, FloatArray]
+) -> dict[tuple[int, int], float]:
+    """Pairs of a column and its rate: the one is the other's slope, but for a constant and for a factor between units,
+    which stands beside them.
+    """
+    found = {}
     for a, b in itertools.permutations(moving, 2):
         known = np.isfinite(slopes[a]) & np.isfinite(means[b])
         if known.sum() < 9:
@@ -105,8 +121,9 @@ def _rates(moving: Sequence[int], slopes: dict[int, FloatArray], means: dict[int
         size = float(np.sqrt((slope @ slope) * (rate @ rate)))
         if size > 0.0 and abs(slope @ rate) > 0.97 * size:
             factor = abs(float(slope @ rate)) / float(slope @ slope)
-            if min(abs(np.log(factor / one)) for one in FACTORS) < 0.04:
-                found.add((a, b))
+            nearest = min(FACTORS, key=lambda one: abs(np.log(factor / one)))
+            if abs(np.log(factor / nearest)) < 0.04:
+                found[a, b] = nearest
     return found
 
 

@@ -15,6 +15,9 @@ from .look import Look
 from .orders import rudders, shafts
 from .words import LOG_SPEED, ORDER, OTHER, ROLL
 
+WAY = (0.01, 0.04)
+"""Ship lengths that ships make with each turn of the propeller."""
+
 
 def rudder(find: Finder) -> None:
     weights: dict[tuple[int, bool], float] = defaultdict(float)
@@ -128,20 +131,16 @@ def _shaft(
     fits = {unit: float(np.median(ways[column, unit])) for unit in ("rpm", "rps") if ways.get((column, unit))}
     sizes = {unit: abs(np.log(way / 0.02)) for unit, way in fits.items() if way > 0.0}
     seen = min(sizes, key=lambda one: sizes[one], default="")
-    words = (
-        ["its name says so"]
-        if find.said[column].startswith("n")
-        else ["it stays the same over long times, as revolutions do"]
-    )
-    confidence = SURE if find.said[column].startswith("n") else LIKELY
+    named = find.said[column].startswith("n")
+    words = ["its name says so"] if named else ["it stays the same over long times, as revolutions do"]
+    confidence = SURE if named else LIKELY
     if said in ("rpm", "rps"):
         unit = said
         words.append(f"in {said}, as its name says")
-    elif seen and sizes[seen] < np.log(12.0):
+    elif seen and sizes[seen] < np.log(12.0) and (named or WAY[0] <= fits[seen] <= WAY[1]):
         unit = seen
-        words.append(
-            f"in {seen}: she makes some {fits[seen]:.2g} of her length with each turn then, ships 0.01 to 0.04"
-        )
+        ships = f"ships {WAY[0]:g} to {WAY[1]:g}"
+        words.append(f"in {seen}: she makes some {fits[seen]:.2g} of her length with each turn then, {ships}")
     else:
         unit = f'{MARK} "rpm" or "rps": which is {find.shown(column)} in?'
         confidence = ASKED

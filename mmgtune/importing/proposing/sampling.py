@@ -64,8 +64,10 @@ class Sample:
         return name if find_column(name, self.names) == k else k + 1
 
     def shown(self, k: int) -> str:
-        """A column for people."""
-        return f"'{self.names[k].strip()[:60]}'" if self.names[k].strip() else f"column {k + 1}"
+        """A column for people, by its number where it has no name or shares it."""
+        name = self.names[k].strip()
+        alone = name and sum(one.strip() == name for one in self.names) == 1
+        return f"'{name[:60]}'" if alone else f"column {k + 1}"
 
 
 def sample_of(path: Path) -> Sample:

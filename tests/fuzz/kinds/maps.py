@@ -48,6 +48,7 @@ FITTING = (
     ("log", "header", ("false", "true")),
     ("log", "encoding", ('"utf-16"', '"cp1252"', '"utf-8-sig"', '"cp037"', '"utf-7"', '"iso2022_jp"')),
     ("trial", "id", ('"{stem}-{parent}"', '"../../x"', '"."', '"{x}"')),
+    ("trial", "group", ('"{parent}"', '""', '"day\\n3"', "3")),
     ("trial", "noise", ('{ x = "0.5 m" }', '{ u = "1e300 m/s" }')),
     ("columns.x", 'column = "north"\nunit = "m"\nrecover', ('"print-resolution"',)),
     ("columns.psi", 'column = "heading"\nunit = "deg"\nrecover', ('"yaw-rate"',)),
