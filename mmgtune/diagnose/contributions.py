@@ -137,9 +137,18 @@ class Aside:
 
 def contributions(bench: Workbench, found: Found, unseen: Unseen) -> list[Contribution]:
     """That of each cause; a cause that is alone, or stands beside none but a finer integration step, brings all."""
-    if len(found.causes) < 2:
+    return _brought(bench, found, _fewer(bench, found), unseen)
+
+
+def _fewer(bench: Workbench, found: Found) -> list[Point]:
+    """What was found without one of its causes or another; nothing where there is but one."""
+    return [without(bench, found.final, cause) for cause in found.causes] if len(found.causes) > 1 else []
+
+
+def _brought(bench: Workbench, found: Found, fewer: Sequence[Point], unseen: Unseen) -> list[Contribution]:
+    """Contributions from fits without one cause or another."""
+    if not fewer:
         return [Contribution(1.0) for _ in found.causes]
-    fewer = [without(bench, found.final, cause) for cause in found.causes]
     seen = [share_lost(found.base.chi2, point.chi2, found.final.chi2) for point in fewer]
     asked = [k for k, share in enumerate(seen) if share < WORTH_ASKING]
     held_out = dict(zip(asked, _held_out(found, [fewer[k] for k in asked], unseen), strict=True))
@@ -159,7 +168,8 @@ def set_aside(
     -> the traces, and what each cause that stays brings
     """
     traces: list[Aside] = []
-    brought = contributions(bench, found, unseen)
+    fewer = _fewer(bench, found)
+    brought = _brought(bench, found, fewer, unseen)
     if unseen.test and len(brought) == 1 and not before.structured:
         brought = [_alone(found, unseen)]
     while any(one.unnoticed for one in brought):
@@ -169,9 +179,10 @@ def set_aside(
         step = step_of(found, cause)
         p_value = step.refits[0].p_value if step else 0.0
         traces.append(Aside(cause, {name: sizes[name] for name in cause.names}, p_value, brought[k]))
-        found.final = without(bench, found.final, cause)
+        found.final = fewer[k] if fewer else without(bench, found.final, cause)
         del found.causes[k]
-        brought = contributions(bench, found, unseen)
+        fewer = _fewer(bench, found)
+        brought = _brought(bench, found, fewer, unseen)
     return traces, brought
 
 

@@ -379,6 +379,11 @@ class Diagnosis(Plotted):
         return fits and self.gain.missed
 
     @property
+    def leaves_open(self) -> bool:
+        """Whether the log of the inputs leaves so much open that a cause may hide in it."""
+        return self.leftover.left_open > OPEN
+
+    @property
     def explains_all(self) -> bool:
         """Whether the causes leave so little of the error beyond noise, on held-out trials too, that a cause whose form
         is a little off would leave as much."""
@@ -426,7 +431,7 @@ class Diagnosis(Plotted):
                 else "No cause was found by then."
             )
             return f"The search was stopped before its end, so nothing can be concluded. {told}"
-        if self.verdict == "none" and self.leftover.left_open > OPEN:
+        if self.verdict == "none" and self.leaves_open:
             return (
                 f"No cause shows. The re-tuned model leaves {_of_noise(self.leftover.left_open)} of the sensors "
                 "besides, no more than what revolutions and rudder angle did between two samples of their log leaves "

@@ -129,7 +129,8 @@ def _looked_at(
     asked = [*known, *in_place]
     judge = Judge(bench, profile, options, provenance, hooks, known, asked, unseen, before, traces, choice, differing)
     result, found = judge.answer(found, brought)
-    left_out = not_looked_for(profile, options.effects) if result.verdict != "none" else []
+    doubtful = result.verdict != "none" or result.leaves_open
+    left_out = not_looked_for(profile, options.effects) if doubtful else []
     warnings = (*odd, *result.warnings, *left_out, *(narrow_box(bench, found) if not hooks.stop() else ()))
     return replace(result, warnings=warnings)
 
