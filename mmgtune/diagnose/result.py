@@ -106,7 +106,7 @@ class Cause:
             return True
         fields = [*self.effect.parameters.items()]
         directions = {name for (_, before), (name, _) in pairwise(fields) if before.chart == "polar"}
-        nulls = {name: field.null for name, field in fields if name not in directions}
+        nulls = {name: field.null for name, field in fields if name not in {*directions, *self.effect.form}}
         known = {name.rpartition(".")[2]: one for name, one in self.estimates.items()}
         return any(
             not (-math.inf if one.low is None else one.low)

@@ -346,6 +346,11 @@ def test_values_of_runs_that_leave_a_shape_are_not_believed(runs, excess, struct
     ("tag", "estimated", "sized"),
     [
         ("wave-drift", {"force": (0.0, 82e3), "direction": (0.2, 1.0)}, False),  # 36 +- 46 kN: its direction is no size
+        (
+            "wave-drift",
+            {"force": (0.0, 82e3), "direction": (0.2, 1.0), "turning": (0.1, 0.2)},
+            False,
+        ),  # nor is its form
         ("wave-drift", {"force": (20e3, 82e3), "direction": (-1.0, 1.0)}, True),
         ("antenna", {"x": (-34.0, -30.0), "y": (-0.1, 0.1)}, True),
         ("rpm-scale", {"factor": (0.955, 1.001)}, False),
