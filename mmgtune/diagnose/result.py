@@ -522,12 +522,13 @@ class Diagnosis(Plotted):
 
     def _gained(self, them: str, where: str) -> str:
         """What adding the causes removes of the error on held-out trials, in a sentence."""
-        share = self.gain.share_removed[0]
+        share, low, _ = self.gain.share_removed
         if share <= 0.0:
             return f"Adding {them} removes none of the error {where}: what else was left open counts for more there."
         imitated = share < IMITATED and self.options.leeway > 0.0 and self.choice is None
         hull = f"what a hull that is {100.0 * self.options.leeway:.3g} % off would leave of the error"
-        return f"Adding {them} removes {_percent(share)} of {hull if imitated else 'the error'} {where}."
+        few = ", of which there are too few to be sure" if low < TOLD <= share else ""
+        return f"Adding {them} removes {_percent(share)} of {hull if imitated else 'the error'} {where}{few}."
 
     def _assumptions(self) -> list[dict[str, Any]]:
         """What the profile assumes, and what the search believed beforehand."""
