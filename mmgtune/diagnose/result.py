@@ -52,9 +52,10 @@ ALL, ALL_HELD_OUT = 0.998, 0.98
 OPEN = 0.3
 """Variance beyond noise that is spoken of where the log of the inputs leaves it open, as a share of the noise."""
 
-BEYOND_OPEN = 3.0
+BEYOND_OPEN, AT_ALL = 5.0, 0.2
 """Squared error on trials left out in turn, over noise and what the logged inputs leave open, from which causes are not
-believed that fit all of them together."""
+believed that fit all of them together, and share of the error that they remove at least: where they change nothing it is
+of the targets, which too few trials tell."""
 
 BENT = 1.0
 """Variance beyond noise, as a share of it, that a cause with values of each run may leave where it has a shape: such
@@ -307,8 +308,7 @@ class Diagnosis(Plotted):
         if self.interrupted:
             return "interrupted"
         bends = any(cause.runs for cause in self.causes)  # where it was found that explains much of anything
-        far = self.gain.held_out == "each" and self.gain.left**2 > BEYOND_OPEN * (1.0 + self.leftover.left_open)
-        fails = self.gain.remains and (self.leftover.noticed or self.gain.worse or bends or far)
+        fails = self.gain.remains and (self.leftover.noticed or self.gain.worse or bends or self._misses_each)
         fails = fails or bool(self.unclear)
         shaped = self.leftover.structured or bool(self.leftover.offsets) or self.misses_test
         if shaped if not self.causes else fails or self._mostly_left:
@@ -377,6 +377,13 @@ class Diagnosis(Plotted):
         is wrong all the same."""
         fits = not (self.causes or self.leftover.structured or self.leftover.offsets or self.choice)
         return fits and self.gain.missed
+
+    @property
+    def _misses_each(self) -> bool:
+        """Whether the others tell a run that is left out far worse than its noise with the causes, yet otherwise."""
+        if self.gain.held_out != "each" or self.gain.share_removed[0] < AT_ALL:
+            return False
+        return self.gain.left**2 > BEYOND_OPEN * (1.0 + self.leftover.left_open)
 
     @property
     def leaves_open(self) -> bool:

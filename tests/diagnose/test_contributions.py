@@ -366,27 +366,21 @@ def test_whether_the_size_of_a_cause_is_told(tag, estimated, sized):
 
 
 @pytest.mark.parametrize(
-    ("held_out", "left", "open_", "believed"),
+    ("held_out", "share", "left", "open_", "misses"),
     [
-        ("each", 52.0, 383.0, False),  # the blade stuck for a minute in two runs of five
-        ("each", 30.0, 383.0, True),  # no more than logs of a sample a second leave open
-        ("each", 1.5, 0.0, True),
-        ("test", 52.0, 0.0, True),  # said beside the answer
+        ("each", 0.55, 52.0, 383.0, True),  # the blade stuck for a minute in two runs of five
+        ("each", 0.55, 30.0, 383.0, False),  # no more than logs of a sample a second leave open
+        ("each", -0.08, 2.3, 0.0, False),  # two turns and two zigzags: the targets are known too badly without one
+        ("each", 0.55, 1.5, 0.0, False),
+        ("test", 0.55, 52.0, 0.0, False),  # said beside the answer
     ],
 )
-def test_what_tells_no_run_from_the_others_is_not_believed(held_out, left, open_, believed):
+def test_what_tells_no_run_from_the_others_is_not_believed(held_out, share, left, open_, misses):
     seen = SimpleNamespace(
-        interrupted=False,
-        causes=[SimpleNamespace(runs=None)],
-        gain=SimpleNamespace(held_out=held_out, remains=True, left=left, worse=False),
-        leftover=SimpleNamespace(noticed=False, structured=False, offsets={}, left_open=open_),
-        unclear="",
-        misses_test=False,
-        _mostly_left=False,
-        between=(),
-        groups=(),
+        gain=SimpleNamespace(held_out=held_out, left=left, share_removed=(share, 0.0, 1.0)),
+        leftover=SimpleNamespace(left_open=open_),
     )
-    assert Diagnosis.verdict.fget(seen) == ("found" if believed else "unexplained")
+    assert Diagnosis._misses_each.fget(seen) is misses
 
 
 @pytest.mark.parametrize(
