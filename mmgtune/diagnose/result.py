@@ -54,8 +54,8 @@ OPEN = 0.3
 
 BEYOND_OPEN, AT_ALL = 5.0, 0.2
 """Squared error on trials left out in turn, over noise and what the logged inputs leave open, from which causes are not
-believed that fit all of them together, and share of the error that they remove at least: where they change nothing it is
-of the targets, which too few trials tell."""
+believed that fit all of them together, and share of the error that they remove at least: where they change nothing, the
+targets are to blame, which too few trials tell."""
 
 BENT = 1.0
 """Variance beyond noise, as a share of it, that a cause with values of each run may leave where it has a shape: such
