@@ -48,16 +48,18 @@ def test_a_pipe_that_nobody_writes_into(line: tuple[str, ...], tmp_path: Path) -
 def test_what_is_written_into_a_pipe_is_read(tmp_path: Path) -> None:
     path = tmp_path / "pipe"
     os.mkfifo(path)
-    late = threading.Event()
+    opened, late = threading.Event(), threading.Event()
 
     def write() -> None:
         with path.open("wb") as file:
+            opened.set()
             late.wait(5.0)
             file.write(b"x" * 500_000)
 
     kept = os.open(path, os.O_RDONLY | os.O_NONBLOCK)  # the writer can open it
     writer = threading.Thread(target=write)
     writer.start()
+    assert opened.wait(30.0)  # else nobody writes, which is refused
     threading.Timer(0.5, late.set).start()
     try:
         assert content(path, PROFILE_BYTES, ProfileError) == b"x" * 500_000
