@@ -122,4 +122,5 @@ def kin_among(refits: Sequence[Refit]) -> list[Refit]:
     than noise it has another form than the true cause, and form is all that tells such effects apart."""
     best = refits[0]
     akin = [refit for refit in refits[1:] if refit.hypothesis.tag in best.hypothesis.effect.akin]
-    return [max(akin, key=lambda refit: refit.gain)] if akin and akin[0].gain >= AKIN * best.gain else []
+    nearest = max(akin, key=lambda refit: refit.gain, default=best)
+    return [nearest] if nearest is not best and nearest.gain >= AKIN * best.gain else []
