@@ -10,7 +10,7 @@ from .profile import ShipProfile, load_profile
 from .trial import IndexTrial, Trial, TrialSet, load_trials
 
 ShipGiven = ShipProfile | str | Path
-TrialsGiven = TrialSet | Trial | IndexTrial | Sequence[Trial | IndexTrial] | Sequence[Trial] | str | Path
+TrialsGiven = TrialSet | Trial | IndexTrial | Sequence[Trial | IndexTrial] | str | Path
 
 
 def ship_of(given: ShipGiven) -> ShipProfile:

@@ -25,14 +25,12 @@ from .physics.constants import GRAVITY
 from .predictor import PhysicsPredictor, Predictor, as_predictor, profile_of
 from .profile import Approach, ShipProfile
 from .simulation import Motion, as_trial
+from .steering import APPROACH, STEP
 from .trial import Coverage, write_trial
 from .units import DEG, KNOT, parse
 
 ORDERED = "rk4"
 """How manoeuvres given as orders are simulated, at steps of their own."""
-
-APPROACH = 0.5
-"""Ship lengths straight ahead before an order, rounded up to a sample: as ``predict`` and stated indices have it."""
 
 RADIANS = 2.0
 """A plain number of degrees below this is likely meant as radians."""
@@ -210,7 +208,8 @@ def _on_orders(predictor: Predictor, options: SimulateOptions) -> list[Motion]:
     # Models are quicker than ships: sample ten times per ship length travelled, once a second at most.
     sample = min(1.0, round(L / V / 10.0, 1) or 0.1)
     longest = max(600.0, 150.0 * L / V)
-    at = sample * math.ceil(APPROACH * L / V / sample - 1e-9)
+    # The approach of ``predict`` and stated indices, rounded up to a sample.
+    at = sample * math.ceil(APPROACH * STEP * L / V / sample - 1e-9)
     sailings = [
         Sailing(helmsman, name, speed, n, longest=longest, sample=sample) for name, helmsman in _orders(options, at)
     ]
