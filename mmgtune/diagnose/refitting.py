@@ -12,7 +12,7 @@ from ..arrays import BoolArray, FloatArray
 from ..fitting.box import base_of
 from .base_fit import unnoticed
 from .hypotheses import Hypothesis
-from .linear import Linear, inwards, typical
+from .linear import SMALL, Linear, inwards, typical
 from .refit import ENOUGH, Refit
 from .runs import spread_key
 from .screening import ChanceScores, Score, evidence, told_by
@@ -54,6 +54,9 @@ ROUGH = 4
 
 MOST_STEPS, ALL_STEPS = 10, 30
 """Further steps of a refit where much is left, and of the best few."""
+
+LONG_WAYS = 3
+"""How often what would fit best, were it gone on with, is: along a narrow valley steps are short."""
 
 UNLIKE_SIDES = 5.0
 """What a term that only a hull of two unlike sides has must explain besides: on turns to one side it is like the term
@@ -166,6 +169,7 @@ class Refitting:
         else:
             self._renew(ranked)
             chosen = self._likely(named) if self.strong or self.given else named[:REFITTED]
+            chosen += [] if self.strong else self._well_formed(named, chosen)
             chosen += terms[: (2 if self.strong else 1) * TERMS_REFITTED]
         fitted = self._fitted([s for s in chosen if s.power > 0.0])
         fitted += self._fitted(self._of_runs_worth(order, [end for _, end in fitted], quick=quick))
@@ -205,6 +209,43 @@ class Refitting:
             chi2[k] = min(end.chi2 for end in ends)
         kept = {*np.argsort(chi2)[:LIKELY].tolist(), *range(REFITTED // 2)}
         return [score for k, score in enumerate(named) if k in kept]
+
+    def _well_formed(self, named: Sequence[Score], chosen: Sequence[Score]) -> list[Score]:
+        """Named hypotheses, best scores first, that do as well as the best by the form of their effect, but for those
+        chosen anyhow."""
+        there = {score.hypothesis.names for score in chosen}
+        enough = max([ENOUGH, *(score.score for score in named[REFITTED - 1 : REFITTED])])
+        others = [s for s in named if s.power > 0.0 and s.hypothesis.effect.form and s.hypothesis.names not in there]
+        return [score for score in others if self._by_form(score) > enough]
+
+    def _by_form(self, score: Score) -> float:
+        """Fall of chi-squared that a hypothesis promises together with the form of its effect, about a small size: what
+        its score says is that of the formula."""
+        bench, point, own = self.bench, self.point, score.hypothesis.names
+        forms = [name for name in bench.believed.form_of(score.hypothesis.effect) if name not in point.names]
+        null = bench.null(own)
+        small = SMALL * np.where(null > 0.5, -1.0, 1.0) * self._typical(score.hypothesis)
+        problem = bench.problem_of((*point.names, *own, *forms), point.integrator).with_offsets(point.offsets)
+        here = np.concatenate([point.unit, null, bench.null(forms)])
+        at = [len(point.names) + k for k in range(len(own) + len(forms))]
+        moved = np.repeat(here[:, None], 2 + len(at), axis=1)
+        moved[at[: len(own)], 1 + np.arange(len(own))] += small
+        moved[at[: len(own)], 1 + len(own) :] += small[:, None]
+        deviations = np.array([bench.believed.forms[name] for name in forms])
+        moved[at[len(own) :], 2 + len(own) + np.arange(len(forms))] += deviations * SMALL
+        runs = problem.residuals(moved).T
+        if not np.isfinite(runs).all():
+            return 0.0
+        values = bench.noise.apply(runs)
+        plain, formed = (
+            values[:, 1 : 1 + len(own)] - values[:, :1],
+            values[:, 2 + len(own) :] - values[:, [1 + len(own)]],
+        )
+        columns = self.linear.retuned(np.column_stack([plain, formed / SMALL]) / SMALL)
+        believed = np.diag([0.0] * len(own) + [1.0] * len(forms))
+        normal = columns.T @ columns + believed
+        along = columns.T @ self.linear.residual
+        return float(along @ np.linalg.lstsq(normal, along, rcond=1e-12)[0])
 
     def _promising(
         self, point: Point, named: Sequence[Score], starts: Mapping[int, FloatArray]
@@ -267,19 +308,25 @@ class Refitting:
         """Hypotheses refitted, those that promise much to the end."""
         rough = self._all_rough(chosen)
         n = self.bench.problem.n_residuals
-        gains = sorted((self.point.chi2 - end.chi2 for end in rough), reverse=True)
+        gains = sorted((self.point.chi2 - end.foreseen for end in rough), reverse=True)
         enough = min([WORTH_GOING_ON * gains[0], *gains[FEW - 1 : FEW]]) if gains else 0.0
         left = min((end.chi2 for end in rough), default=self.point.chi2) - n
         ends = []
         for score, end in zip(chosen, rough, strict=True):
             self._go_on()
-            gain = self.point.chi2 - end.chi2
+            gain = self.point.chi2 - end.foreseen
             hopeless = score.hypothesis.by and self.strong and end.chi2 - n > HOPELESS * max(left, 0.0)
             if not hopeless and gain >= enough and gain > 0.5 * ENOUGH * score.inflation:
                 end = self._on(score, end, MOST_STEPS if self.strong else ALL_STEPS)
             ends.append(end)
         best = sorted(range(len(ends)), key=lambda k: ends[k].chi2)[:FEW] if self.strong else []
         for k in best:  # where little is known the others may take for ever, and are out of the question
+            self._go_on()
+            ends[k] = self._on(chosen[k], ends[k], ALL_STEPS)
+        for _ in range(LONG_WAYS):
+            k = min(range(len(ends)), key=lambda k: ends[k].foreseen, default=0)
+            if not ends or min(end.chi2 for end in ends) - ends[k].foreseen < ENOUGH:
+                break
             self._go_on()
             ends[k] = self._on(chosen[k], ends[k], ALL_STEPS)
         self.known.ends.update((score.hypothesis.names, end) for score, end in zip(chosen, ends, strict=True))
@@ -345,7 +392,7 @@ class Refitting:
         else:
             ends = self._steps(self.point, score, self._starts(self.point, score, SIZES[:1]), ROUGH)
             ends += self._from_one_for_all(score)
-        return min(ends, key=lambda end: end.chi2)
+        return min(ends, key=lambda end: end.foreseen)
 
     def _from_one_for_all(self, score: Score) -> list[Point]:
         """A few steps with values that differ between runs, from one value for all where that is fitted: they cannot do

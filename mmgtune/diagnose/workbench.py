@@ -45,6 +45,7 @@ class Point:
     chi2     sum of squared whitened residuals, of offsets over their deviations, and of what differs between runs over
              its spread
     spreads  of that, by ``runs.spread_key``, in the unit cube
+    promised how much further it would fall, by the linear problem of the last step
     """
 
     names: tuple[str, ...]
@@ -53,6 +54,12 @@ class Point:
     chi2: float
     integrator: Integrator
     spreads: Mapping[str, float] = field(default_factory=dict)
+    promised: float = 0.0
+
+    @property
+    def foreseen(self) -> float:
+        """Chi-squared that a fit gone on with from here would end at, as far as that can be seen."""
+        return self.chi2 - self.promised
 
 
 class _How(TypedDict, total=False):
@@ -200,8 +207,10 @@ class Workbench:
             trusting=True,
             hopeless=hopeless,
         )
+        method = problem.integrator
         return [
-            Point(names, end.unit, end.offsets, self._total(end, beliefs), problem.integrator, spreads) for end in ends
+            Point(names, end.unit, end.offsets, self._total(end, beliefs), method, spreads, end.promised)
+            for end in ends
         ]
 
     def _total(self, end: LeastSquaresResult, beliefs: tuple[FloatArray, FloatArray] | None) -> float:

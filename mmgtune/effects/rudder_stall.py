@@ -1,4 +1,4 @@
-"""The rudder stalls: beyond an inflow angle its force grows no more."""
+"""The rudder stalls: beyond an inflow angle its force grows less, no more, or falls."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -20,13 +20,19 @@ class RudderStall(NamedTuple):
     """See the parameters below."""
 
     angle: Lanes
+    slope: Lanes
 
 
 def rudder_stall(state: State, around: Surroundings, found: Any, components: Any, p: Any, e: RudderStall) -> Force:
-    """Force that reduces the rudder's by sin(angle) / sin|alpha_R| where |alpha_R| is larger than the angle."""
+    """Force that makes the rudder's that of an inflow angle alpha' where |alpha_R| is larger than the angle.
+
+    alpha' = angle + slope (|alpha_R| - angle): with no slope the force grows no more, and stalls differ in what they
+    leave of it (assumption).
+    """
     limit = np.minimum(e.angle, np.pi)
     alpha = np.abs(found.rudder.alpha_R)
-    lost = where(alpha > limit, sin(limit) / np.maximum(np.abs(sin(alpha)), 1e-12) - 1.0, 0.0)
+    felt = limit + e.slope * (alpha - limit)
+    lost = where(alpha > limit, sin(felt) / np.maximum(np.abs(sin(alpha)), 1e-12) - 1.0, 0.0)
     lost = np.minimum(lost, 0.0)
     force = found.rudder.force
     return Force(X=lost * force.X, Y=lost * force.Y, N=lost * force.N)
@@ -57,8 +63,16 @@ EFFECT = ForceEffect(
             bounds=lambda _: (1.0 / (60.0 * DEG), 1.0 / (8.0 * DEG)),
             typical=lambda _: 1.0 / (25.0 * DEG) - 1.0 / (60.0 * DEG),
             bounds_source="from 8 deg to an angle no rudder reaches",
-        )
+        ),
+        "slope": Parameter(
+            "share of its slope that the force keeps beyond that angle; negative where it falls",
+            low=-3.0,
+            high=1.0,
+            bounds=lambda _: (-2.0, 0.9),
+            bounds_source="from a force that falls twice as fast as it rose to one that hardly stalls",
+        ),
     },
+    form={"slope": 0.5},
     of_parts=("rudder",),
     variants=(("angle",),),
     unvisited=unvisited,

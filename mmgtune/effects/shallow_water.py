@@ -156,6 +156,7 @@ EFFECT = FactorsEffect(
     variants=(("depth",), ("measured",)),
     unvisited=unvisited,
     rough=True,
+    akin=("loading",),
     sentence=lambda v: (
         f"The depth measured in the trials acts on the ship, her draught over it times {v['measured']}"
         if "measured" in v

@@ -57,6 +57,8 @@ class LeastSquaresResult(Brief):
     offsets     (n_cases, 6) of the initial states; zero where these are held
     J           what ``FitProblem.costs`` gives there: J and the terms beside it, without the prior of the offsets
     converged   whether it stopped by itself
+    promised    what is minimised would fall by so much further, by the linear problem of the last step; 0 where that
+                was not asked
     """
 
     unit: FloatArray
@@ -64,6 +66,7 @@ class LeastSquaresResult(Brief):
     J: float
     iterations: int
     converged: bool
+    promised: float = 0.0
 
 
 def _asked(problem: FitProblem, starts: FloatArray, *given: Any, **named: Any) -> list[Any]:
@@ -76,13 +79,16 @@ def _asked(problem: FitProblem, starts: FloatArray, *given: Any, **named: Any) -
 
 
 def _noted(ends: list[LeastSquaresResult]) -> list[Any]:
-    return [[end.unit.tolist(), end.offsets.tolist(), float(end.J), end.iterations, end.converged] for end in ends]
+    return [
+        [end.unit.tolist(), end.offsets.tolist(), float(end.J), end.iterations, end.converged, end.promised]
+        for end in ends
+    ]
 
 
 def _recalled(noted: list[Any]) -> list[LeastSquaresResult]:
     return [
-        LeastSquaresResult(np.array(unit), np.array(offsets).reshape(-1, 6), J, iterations, converged)
-        for unit, offsets, J, iterations, converged in noted
+        LeastSquaresResult(np.array(unit), np.array(offsets).reshape(-1, 6), *numbers)
+        for unit, offsets, *numbers in noted
     ]
 
 
@@ -198,6 +204,7 @@ def solve(
     quiet = np.zeros(n_starts, dtype=int)
     last_stop = np.full(n_starts, np.inf)
     converged = np.zeros(n_starts, dtype=bool)
+    further = np.zeros(n_starts)
     running = np.isfinite(J)
     for _ in range(max_iterations):
         rows = np.flatnonzero(running)
@@ -208,6 +215,7 @@ def solve(
         promised = np.full(len(rows), np.inf)
         if trusting:
             promised[:] = [promised_by(at, z[:, row], own) for at, row, own in zip(linear, rows, scales, strict=True)]
+            further[rows] = promised
         going = (iterations[rows] < FIRST_STEPS) | (value[rows] - promised <= hopeless)
         running[rows[~going]] = False
         if not going.any():
@@ -242,6 +250,7 @@ def solve(
             best = int(np.argmin(values[i]))
             gain = value[row] - values[i, best]
             if gain > 0.0:
+                further[row] = max(further[row] - gain, 0.0)
                 bent, k = divmod(best, len(DAMPINGS))
                 z[:, row], d[:, row] = tried[:, i, bent, k], moved[:, i, bent, k]
                 J[row], value[row] = costs[i, best], values[i, best]
@@ -262,7 +271,9 @@ def solve(
                 else:
                     converged[row], running[row] = True, False
     return [
-        LeastSquaresResult(z[:, k].copy(), d[:, k].copy(), float(J[k]), int(iterations[k]), bool(converged[k]))
+        LeastSquaresResult(
+            z[:, k].copy(), d[:, k].copy(), float(J[k]), int(iterations[k]), bool(converged[k]), float(further[k])
+        )
         for k in range(n_starts)
     ]
 

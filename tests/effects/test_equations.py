@@ -154,6 +154,18 @@ def test_a_stalled_rudder_keeps_the_force_of_the_angle_it_stalled_at(added, delt
     assert not unchanged.any()
 
 
+@pytest.mark.parametrize("delta", [0.5, -0.5])
+@pytest.mark.parametrize("slope", [0.4, -0.8])
+def test_beyond_its_stall_the_force_of_a_rudder_grows_less_or_falls(added, delta, slope):
+    force, found = added("rudder-stall", {"angle": 0.2, "slope": slope}, control=Control(1.7, delta))
+    alpha = abs(found.rudder.alpha_R[0])
+    left = math.sin(0.2 + slope * (alpha - 0.2)) / math.sin(alpha)
+    assert left < 1.0
+    np.testing.assert_allclose(force, [(left - 1.0) * axis[0] for axis in found.rudder.force])
+    unchanged, _ = added("rudder-stall", {"slope": slope}, control=Control(1.7, delta))
+    assert not unchanged.any()
+
+
 def test_a_propeller_pushes_the_stern_aside_by_a_share_of_its_thrust(added):
     force, found = added("propeller-walk", {"share": 0.05}, control=Control(1.7, 0.3))
     n, D_P, K_T = (float(np.squeeze(getattr(found.propeller, name))) for name in ("n", "D_P", "K_T"))
@@ -216,6 +228,21 @@ def test_a_biased_compass_turns_the_axes_and_not_the_track():
     assert effect.inverse(seen, e) == pytest.approx(MOVING)
     alone = effect.function(MOVING, effect.params(0.0, 0.05))
     assert alone == pytest.approx(MOVING._replace(psi=MOVING.psi + 0.05))
+
+
+@pytest.mark.parametrize("heading", [0.0, 0.7, 2.4, -1.9])
+def test_a_table_of_deviation(heading):
+    """Semicircular and quadrantal; half of it with velocities in the axes shown, half of it of the heading alone."""
+    effect = find_effect("compass-deviation")
+    B, C, D, E = 0.03, -0.02, 0.015, 0.01
+    half = [0.5 * one for one in (B, C, D, E)]
+    state = MOVING._replace(psi=heading)
+    seen = effect.function(state, effect.params(*half, *half))
+    s, c = math.sin(heading), math.cos(heading)
+    deviation = B * s + C * c + D * math.sin(2.0 * heading) + E * math.cos(2.0 * heading)
+    assert seen.psi == pytest.approx(heading + deviation)
+    assert earth(seen._replace(psi=heading + 0.5 * deviation)) == pytest.approx(earth(state))
+    assert effect.inverse(seen, effect.params(*half, *half)) == pytest.approx(state)
 
 
 @pytest.mark.parametrize(
@@ -312,7 +339,8 @@ def test_shallow_water(numbers):
 def test_loading(numbers):
     """Ratios of the formulas of Inoue, Hirano & Kijima 1981."""
     effect = find_effect("loading")
-    found = effect.function(numbers, effect.params(1.1, 0.2, 0.95))
+    of = effect.params(1.1, 0.2, 0.95, *[0.0] * 5)
+    found = effect.function(numbers, of)
     c = 0.737 * 13.5 / 83.0
 
     def derivatives(d, tau):
@@ -330,6 +358,12 @@ def test_loading(numbers):
         assert found[f"hull.{name}"] == pytest.approx(numbers[f"hull.{name}"] * new[name] / old[name], rel=1e-3), name
     assert found["particulars.d"] == pytest.approx(1.1 * 3.8)
     assert found["particulars.C_b"] == pytest.approx(0.95 * 0.737)
+    assert found["particulars.m_y_"] == numbers["particulars.m_y_"]
+    change = math.log(1.1) + 0.2
+    more = effect.function(numbers, of._replace(N_v=0.5, inertia=-1.0))
+    assert more["hull.N_v"] == pytest.approx(found["hull.N_v"] * math.exp(0.5 * change))
+    assert more["particulars.m_y_"] == pytest.approx(numbers["particulars.m_y_"] * math.exp(-change))
+    assert more["hull.Y_v"] == found["hull.Y_v"]
 
 
 def test_factors_on_polynomials(numbers):

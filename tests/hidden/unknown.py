@@ -56,7 +56,9 @@ UNKNOWN: dict[str, Unknown] = {
         "hull Y and N less by magnitude tanh((|v'| - 0.15)/0.1) beyond", "-", (-0.2, 0.15, 0.25)
     ),
     "unknown-tug": Unknown("a tug at the bow pushes to starboard from 60 s to 180 s", "N", (6e3, -1e4, 1.5e4)),
-    "unknown-deviation-quadrantal": Unknown("heading logged + magnitude sin(2 psi)", "rad", _degrees(1.5, 2.5, 4.0)),
+    "unknown-deviation-quadrantal": Unknown(
+        "heading logged + magnitude sin(2 psi)", "rad", _degrees(1.5, 2.5, 4.0), "compass-deviation"
+    ),
     "unknown-easting-scale": Unknown("y logged times 1 + magnitude", "-", (-0.04, 0.03, 0.05)),
     "unknown-position-step": Unknown(
         "positions logged + magnitude to the north-east from 150 s on", "m", (5.0, 8.0, 12.0)
