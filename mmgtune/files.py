@@ -39,8 +39,8 @@ def atomic(path: Path, overwrite: bool = True) -> Iterator[Path]:
 @contextlib.contextmanager
 def half(path: Path) -> Iterator[Path]:
     """A temporary file beside ``path``, gone when the block ends.  Raises OutputError where the system refuses."""
+    make_folder(path.parent)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
         os.close(handle)
     except OSError as error:
@@ -54,6 +54,16 @@ def half(path: Path) -> Iterator[Path]:
     finally:
         part.unlink(missing_ok=True)
         _PARTS.discard(part)
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder and those it lies in, where they are not there.  Raises OutputError where the system refuses."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise cannot_write(folder, error) from error
+    except RecursionError:
+        raise cannot_write(folder, OSError("too many folders lie in each other")) from None
 
 
 def abandon() -> None:

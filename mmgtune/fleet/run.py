@@ -12,7 +12,7 @@ from typing import Any
 
 from ..displayed import Displayed
 from ..errors import OptionError, OutputError, Problem
-from ..files import alone_in, cannot_write, exists, remove_left_overs, write_text
+from ..files import alone_in, exists, make_folder, remove_left_overs, write_text
 from ..options import FleetOptions
 from ..options.choice import must_be
 from ..provenance import made_by
@@ -122,10 +122,7 @@ def _prepare(out: Path, resume: bool, jobs: Sequence[Job]) -> None:
     """Raises OutputError for a folder that holds something else, another fleet among it, or results that were not asked
     for.
     """
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise cannot_write(out, error) from error
+    make_folder(out)
     if any(out.iterdir()) and not resume:
         problem = exists(out)
         fix = "add resume=True to run what is not done there yet, or choose another folder"
