@@ -111,7 +111,7 @@ def load_network(path: str | Path) -> Trained:
     except FileNotFoundError as error:
         fix = f"give a file that mmgtune learn has written, or a bundled name: {', '.join(network_names())}"
         raise NetworkError(Problem("no such trained model", where, looked_for(where, "model"), fix)) from error
-    except (OSError, SafetensorError, ValueError, TypeError, MemoryError) as error:
+    except (OSError, SafetensorError, ValueError, TypeError, AttributeError, MemoryError) as error:
         raise NetworkError(Problem("the network cannot be read", where, brief(reason(error)), FIX)) from error
     if any(one.dtype.kind != "f" for one in arrays):
         raise NetworkError(Problem("the network holds arrays that are no numbers", where, "", FIX))
