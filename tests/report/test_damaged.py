@@ -44,3 +44,15 @@ def test_a_damaged_sweep(tmp_path):
         (folder / "sweep.json").write_text(json.dumps({**data, **wrong}))
         with pytest.raises(OptionError, match="no report can be made"):
             render(folder)
+
+
+def test_half_a_character(tmp_path):
+    """JSON can name halves of characters, and no file of a report can hold one; whole ones may be written so."""
+    folder = fake_run.make_sweep(tmp_path / "run")
+    text = (folder / "sweep.json").read_text()
+    data = json.loads(text)
+    (folder / "sweep.json").write_text(json.dumps({**data, "command": "mmgtune sweep -p \U0001f6a2"}))
+    render(folder)
+    (folder / "sweep.json").write_text(json.dumps({**data, "command": "mmgtune sweep -p \ud83d"}))
+    with pytest.raises(OptionError, match="cannot be read"):
+        render(folder)
