@@ -43,7 +43,7 @@ def half(path: Path) -> Iterator[Path]:
     try:
         handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
         os.close(handle)
-    except OSError as error:
+    except (OSError, ValueError) as error:  # the latter for a zero byte in the name
         raise cannot_write(path, error) from error
     part = Path(name)
     _PARTS.add(part)
@@ -60,10 +60,10 @@ def make_folder(folder: Path) -> None:
     """Make a folder and those it lies in, where they are not there.  Raises OutputError where the system refuses."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
+    except (OSError, ValueError) as error:
         raise cannot_write(folder, error) from error
     except RecursionError:
-        raise cannot_write(folder, OSError("too many folders lie in each other")) from None
+        raise cannot_write(folder, ValueError("too many folders lie in each other")) from None
 
 
 def abandon() -> None:
@@ -91,7 +91,10 @@ def hold_regular(path: Path) -> None:
 
     For what is read more than once, or not from its beginning to its end.
     """
-    mode = path.stat().st_mode
+    try:
+        mode = path.stat().st_mode
+    except ValueError as error:  # a zero byte in its name
+        raise OSError(str(error)) from error
     if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
         raise OSError("it is a pipe, a socket or a device, not a file")
 
@@ -168,8 +171,8 @@ def exists(path: Path) -> Problem:
     )
 
 
-def cannot_write(path: Path, error: OSError) -> OutputError:
-    """The error for a path the system does not let us write."""
+def cannot_write(path: Path, error: OSError | ValueError) -> OutputError:
+    """The error for a path the system does not let us write, or that can be none."""
     return OutputError(
         Problem(
             what="cannot write the output",

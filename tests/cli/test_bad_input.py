@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmgtune.errors import OptionError, OutputError
+from mmgtune.errors import LogError, OptionError, OutputError
 from mmgtune.files import write_text
 from mmgtune.fitting import prepare
 from mmgtune.fitting.checkpoint import Checkpoint
+from mmgtune.importing import propose_map
 from mmgtune.profile import load_profile
 from mmgtune.resources import folder
 from mmgtune.trial import read_trial, write_trial
@@ -217,6 +218,14 @@ def test_folders_in_folders_beyond_measure(tmp_path):
     deep = 1500 * "a/"
     refused(run("fit", "--no-report", "--out", deep, cwd=tmp_path), "cannot write the output", "too many folders")
     assert not list(tmp_path.iterdir())
+
+
+def test_names_with_a_zero_byte(tmp_path):
+    """The command line cannot hold one; files and programs that name others can."""
+    with pytest.raises(OutputError, match="cannot write the output"):
+        write_text(tmp_path / "a\0b", "")
+    with pytest.raises(LogError, match="cannot be opened"):
+        propose_map(["a\0b"])
 
 
 def test_read_only_folder(tmp_path, monkeypatch):
