@@ -23,6 +23,7 @@ from .files import hold_regular
 from .model import Model
 from .predictor import PhysicsPredictor, Sampling
 from .profile import ShipProfile, parse_profile, with_effects
+from .resources import must_be_name
 from .tables import write_table
 from .trial.parquet import numbers as plain_numbers
 
@@ -139,6 +140,7 @@ def load_particles(path: Path | str) -> Particles:
     import pyarrow as pa
     import pyarrow.parquet as pq
 
+    must_be_name(path, "file of particles", ProfileError)
     path = Path(path)
     try:
         hold_regular(path)

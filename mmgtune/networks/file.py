@@ -13,7 +13,7 @@ from .. import limits
 from ..errors import NetworkError, Problem, brief, reason
 from ..files import atomic, hold_regular
 from ..profile import parse_profile
-from ..resources import folder, looked_for, network_names, taken
+from ..resources import folder, looked_for, must_be_name, network_names, taken
 from .ensemble import Ensemble, Part
 from .feedforward import Layers, Standards
 from .hybrid import Hybrid
@@ -91,6 +91,7 @@ def load_network(path: str | Path) -> Trained:
     """
     from safetensors import SafetensorError, safe_open
 
+    must_be_name(path, "trained model", NetworkError)
     path = taken(path, Path(path).exists(), folder("ship_profiles") / f"{path}{SUFFIX}") or Path(path)
     where = str(path)
     try:
