@@ -18,6 +18,7 @@ from ..errors import OptionError, Problem, reason
 from ..inputs import INPUTS, Role
 from ..physics.quantities import STATES
 from ..resources import looked_for
+from ..trial.footer import rows_of
 from .forces import NO_SHIP, Ship
 from .wording import Channel, clean, input_channel
 
@@ -269,8 +270,11 @@ def _parquet(path: Path) -> dict[str, Any]:
 
     try:
         with pq.ParquetFile(path) as file:
+            rows_of(file.metadata, path.stat().st_size, str(path), OptionError)
             table = file.read()
         return {name: _column(table.column(name)) for name in table.column_names}
+    except OptionError:
+        raise
     except Exception as error:
         raise _problem("the run's data cannot be read", path, reason(error), "run the fit again") from error
 

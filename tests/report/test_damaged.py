@@ -2,6 +2,9 @@
 
 import json
 
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 from mmgtune.errors import OptionError
@@ -55,4 +58,12 @@ def test_half_a_character(tmp_path):
     render(folder)
     (folder / "sweep.json").write_text(json.dumps({**data, "command": "mmgtune sweep -p \ud83d"}))
     with pytest.raises(OptionError, match="cannot be read"):
+        render(folder)
+
+
+def test_motions_that_expand_without_end(tmp_path):
+    data, history, motions = fake_run.edited()
+    folder = fake_run.write_fit(tmp_path / "run", data, history, motions)
+    pq.write_table(pa.table({"x": np.zeros(3_000_000)}), folder / "motions.parquet")
+    with pytest.raises(OptionError, match="expands far beyond what it can hold"):
         render(folder)
