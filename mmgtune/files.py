@@ -26,7 +26,7 @@ def atomic(path: Path, overwrite: bool = True) -> Iterator[Path]:
 
     Raises OutputError where ``path`` exists and ``overwrite`` is false, or the system refuses to write.
     """
-    if not overwrite and path.exists():
+    if not overwrite and os.path.lexists(path):  # a link to nowhere would be replaced too
         raise OutputError(exists(path))
     with half(path) as part:
         yield part
@@ -156,7 +156,7 @@ def write_text(path: Path, text: str, overwrite: bool = True) -> Path:
 
 def refuse_existing(paths: Iterable[Path]) -> None:
     """Raises OutputError with each of these outputs that is already there."""
-    found = [exists(path) for path in dict.fromkeys(paths) if path.exists()]
+    found = [exists(path) for path in dict.fromkeys(paths) if os.path.lexists(path)]
     if found:
         raise OutputError(*found)
 
