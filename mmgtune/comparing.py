@@ -78,7 +78,6 @@ class Comparison(Displayed):
         path = folder / FILE
         if not overwrite:
             refuse_existing([path])
-        folder.mkdir(parents=True, exist_ok=True)
         return write_text(path, json.dumps(self.to_dict(), indent=1) + "\n", overwrite)
 
 

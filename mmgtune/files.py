@@ -26,7 +26,7 @@ def atomic(path: Path, overwrite: bool = True) -> Iterator[Path]:
 
     Raises OutputError where ``path`` exists and ``overwrite`` is false, or the system refuses to write.
     """
-    if not overwrite and path.exists():
+    if not overwrite and os.path.lexists(path):  # a link to nowhere would be replaced too
         raise OutputError(exists(path))
     with half(path) as part:
         yield part
@@ -39,11 +39,11 @@ def atomic(path: Path, overwrite: bool = True) -> Iterator[Path]:
 @contextlib.contextmanager
 def half(path: Path) -> Iterator[Path]:
     """A temporary file beside ``path``, gone when the block ends.  Raises OutputError where the system refuses."""
+    make_folder(path.parent)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
         os.close(handle)
-    except OSError as error:
+    except (OSError, ValueError) as error:  # the latter for a zero byte in the name
         raise cannot_write(path, error) from error
     part = Path(name)
     _PARTS.add(part)
@@ -54,6 +54,16 @@ def half(path: Path) -> Iterator[Path]:
     finally:
         part.unlink(missing_ok=True)
         _PARTS.discard(part)
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder and those it lies in, where they are not there.  Raises OutputError where the system refuses."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except (OSError, ValueError) as error:
+        raise cannot_write(folder, error) from error
+    except RecursionError:
+        raise cannot_write(folder, ValueError("too many folders lie in each other")) from None
 
 
 def abandon() -> None:
@@ -81,7 +91,10 @@ def hold_regular(path: Path) -> None:
 
     For what is read more than once, or not from its beginning to its end.
     """
-    mode = path.stat().st_mode
+    try:
+        mode = path.stat().st_mode
+    except ValueError as error:  # a zero byte in its name
+        raise OSError(str(error)) from error
     if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
         raise OSError("it is a pipe, a socket or a device, not a file")
 
@@ -143,7 +156,7 @@ def write_text(path: Path, text: str, overwrite: bool = True) -> Path:
 
 def refuse_existing(paths: Iterable[Path]) -> None:
     """Raises OutputError with each of these outputs that is already there."""
-    found = [exists(path) for path in dict.fromkeys(paths) if path.exists()]
+    found = [exists(path) for path in dict.fromkeys(paths) if os.path.lexists(path)]
     if found:
         raise OutputError(*found)
 
@@ -158,8 +171,8 @@ def exists(path: Path) -> Problem:
     )
 
 
-def cannot_write(path: Path, error: OSError) -> OutputError:
-    """The error for a path the system does not let us write."""
+def cannot_write(path: Path, error: OSError | ValueError) -> OutputError:
+    """The error for a path the system does not let us write, or that can be none."""
     return OutputError(
         Problem(
             what="cannot write the output",

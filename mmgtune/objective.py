@@ -26,6 +26,9 @@ PAPER_CHANNELS = ("x", "y", "psi")
 SAME = 1e-12
 """Share of a state within which it does not vary: what is left is the rounding of whoever wrote it."""
 
+LEAST = 1e-100
+"""Size [SI] up to which a state stays at 0: squares of such numbers are 0."""
+
 DIVIDES = "L_MSE divides by the spread of each state"
 """Why each state of trials has to vary."""
 
@@ -87,7 +90,7 @@ def spread(trials: Sequence[Trial]) -> dict[str, float]:
     sigma = np.full(len(STATES), np.nan)
     for k in np.flatnonzero(~np.isnan(motion).all(axis=0)):
         least, most = np.nanmin(motion[:, k]), np.nanmax(motion[:, k])
-        if most - least > SAME * max(abs(least), abs(most)):
+        if most - least > max(LEAST, SAME * max(abs(least), abs(most))):
             sigma[k] = np.nanstd(motion[:, k : k + 1], axis=0)[0]
     return dict(zip(STATES, sigma.tolist(), strict=True))
 

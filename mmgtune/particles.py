@@ -23,7 +23,9 @@ from .files import hold_regular
 from .model import Model
 from .predictor import PhysicsPredictor, Sampling
 from .profile import ShipProfile, parse_profile, with_effects
+from .resources import must_be_name
 from .tables import write_table
+from .trial.footer import rows_of
 from .trial.parquet import numbers as plain_numbers
 
 FILE = "particles.parquet"
@@ -139,10 +141,12 @@ def load_particles(path: Path | str) -> Particles:
     import pyarrow as pa
     import pyarrow.parquet as pq
 
+    must_be_name(path, "file of particles", ProfileError)
     path = Path(path)
     try:
         hold_regular(path)
         with pq.ParquetFile(path, pre_buffer=False, page_checksum_verification=True) as file:
+            rows_of(file.metadata, path.stat().st_size, str(path), ProfileError)
             table = file.read(use_threads=False)
         raw = (table.schema.metadata or {})[KEY]
         facts = json.loads(raw)

@@ -51,7 +51,7 @@ class CheckFile(pytest.File):
     def collect(self) -> Iterator[CheckNode]:
         """One node per [[check]]."""
         from . import limits
-        from .errors import OptionError
+        from .errors import OptionError, brief
         from .toml_reading import toml_of
 
         try:
@@ -70,7 +70,7 @@ class CheckFile(pytest.File):
             wrong = [key for key, value in one.items() if key in KEYS and not _is(key, value)]
             if unknown or missing or wrong:
                 told = [f"unknown key '{key}'" for key in unknown] + [f"'{key}' is missing" for key in missing]
-                told += [f"'{key}' is {one[key]!r}, not {LIST if key == 'metrics' else 'text'}" for key in wrong]
+                told += [f"'{key}' is {brief(one[key])}, not {LIST if key == 'metrics' else 'text'}" for key in wrong]
                 raise self.CollectError(f"{self.path}, [[check]] {k}: {', '.join(told)}; keys: {', '.join(KEYS)}")
             yield CheckNode.from_parent(self, name=f"{Path(one['profile']).stem}-{Path(one['trials']).name}", asked=one)
 

@@ -41,7 +41,6 @@ def write_simulation(result: Simulated, rows: Sequence[Mapping[str, Any]], folde
             seen.add(trial.id)
         if motion.member == 0:
             _add(columns, motion.id, "simulated", motion.t, motion.states, motion.controls)
-    (folder / DRAWN).mkdir(parents=True, exist_ok=True)
     write_table(folder / DRAWN / "motions.parquet", _joined(columns))
     if result.ship is not None:
         write_text(folder / DRAWN / "profile.toml", result.ship.text)

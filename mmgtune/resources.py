@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from pathlib import Path
 
-from .errors import MmgtuneError, Problem, brief, kind_of
+from .errors import MmgtuneError, Problem, brief, kind_of, reason
 
 _PACKAGE = Path(__file__).resolve().parent
 
@@ -17,10 +17,17 @@ def folder(name: str) -> Path:
 
 
 def must_be_name(name: object, kind: str, error: type[MmgtuneError]) -> None:
-    """Raises an error of that class for what is neither a name nor a path; ``kind`` is what it would be the name of."""
+    """Raises an error of that class for what is neither a name nor a path; ``kind`` is what it would be the name of.
+
+    Names that no file can have are none either: too long ones, and those with a zero byte.
+    """
     if not isinstance(name, (str, Path)):
         why = f"a {kind} is found by a path or a bundled name, and {kind_of(name)} is neither"
         raise error(Problem(f"no name of a {kind}", brief(name), why, "give a text or a Path"))
+    try:
+        Path(name).exists()
+    except OSError as wrong:
+        raise error(Problem(f"no name of a {kind}", brief(str(name)), reason(wrong), "correct the path")) from wrong
 
 
 def taken(name: str | Path, there: bool, bundled: Path) -> Path | None:

@@ -109,6 +109,13 @@ def test_a_damaged_file_says_what_is_wrong(particles, tmp_path, change, words):
     assert all(problem.fix for problem in raised.value.problems)
 
 
+def test_a_file_that_expands_without_end_is_not_read(particles, tmp_path):
+    path = save_particles(replace(particles, values=np.full((2, 3_000_000), 0.01)), tmp_path / "particles.parquet")
+    assert path.stat().st_size < 200_000
+    with pytest.raises(ProfileError, match="expands far beyond what it can hold"):
+        load_particles(path)
+
+
 def test_reading_and_writing_load_no_pandas(particles, tmp_path):
     save_particles(particles, tmp_path / "particles.parquet")
     asked = (

@@ -89,6 +89,34 @@ def test_what_is_of_the_wrong_type_is_refused_in_words(call, what, fix):
     assert problem.why
 
 
+READERS = [
+    mmgtune.load_map,
+    mmgtune.load_network,
+    mmgtune.load_particles,
+    mmgtune.load_profile,
+    mmgtune.load_trials,
+    mmgtune.plan_fleet,
+    mmgtune.read_baseline,
+    mmgtune.read_particulars,
+    mmgtune.read_results,
+    mmgtune.read_trial,
+    mmgtune.render,
+    lambda name: mmgtune.propose_map([name]),
+    lambda name: mmgtune.import_logs([name], mmgtune.load_map("nmea-0183", preset=True), ".", dry_run=True),
+    lambda name: mmgtune.predict(SHIP, name),
+    lambda name: mmgtune.validate([name] if isinstance(name, str) else name, TRIALS),
+]
+
+
+@pytest.mark.parametrize("name", [None, 3.5, 300 * "a"], ids=["none", "number", "too long"])
+@pytest.mark.parametrize("read", READERS)
+def test_what_can_be_no_path_is_refused_in_words(read, name):
+    if read is READERS[-2] and name is None:
+        pytest.skip("no orders are orders of the options")
+    with pytest.raises(mmgtune.MmgtuneError):
+        read(name)
+
+
 def test_channels_of_a_motion_have_the_names_of_columns():
     motion = mmgtune.simulate("suzaku", TRIALS["turn_p35"])[0]
     assert np.array_equal(motion.channel("v"), motion.channel("v_m"))

@@ -15,7 +15,7 @@ from ..errors import OptionError, Problem, among
 from ..files import write_text
 from ..metrics import METRICS
 from ..options import SimulationOptions
-from ..resources import looked_for
+from ..resources import looked_for, must_be_name
 from .measuring import Values
 
 SCHEMA = 1
@@ -98,6 +98,7 @@ def write_baseline(baseline: Baseline, path: Path | str) -> None:
 
 def read_baseline(path: Path | str) -> Baseline:
     """The baseline in a file.  Raises OptionError with everything that is wrong in it."""
+    must_be_name(path, "baseline", OptionError)
     path = Path(path)
     again = "write it anew with update_baseline=True, or take it from the repository"
     try:

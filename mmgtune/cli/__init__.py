@@ -176,8 +176,8 @@ def _run() -> int:
 
 
 def _say_warning(message: Warning | str, *_where: Any) -> None:
-    """A warning of the program or a library in a line, without the place in the source."""
-    say(f"warning: {message}")
+    """A warning of the program or a library in a line, without the place in the source and what else it quotes."""
+    say(f"warning: {next(iter(str(message).strip().splitlines()), '')}")
 
 
 def _understand(arguments: list[str]) -> None:

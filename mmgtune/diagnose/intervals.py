@@ -73,8 +73,9 @@ def _told(bench: Workbench, point: Point, names: tuple[str, ...]) -> tuple[Float
     linear = linearise(bench, point, apart=names)
     Q, R = np.linalg.qr(linear.columns(names))
     by_block, by_trial = linear.chance(Q)
-    memory = max(1.0, float(np.sum(by_block**2)) / len(names))
-    noise = memory * np.eye(len(names)) + np.einsum("cdk,cdl->kl", by_trial, by_trial) / by_trial.shape[1]
+    told = len(R)  # directions of residuals: fewer than columns where there are fewer residuals
+    memory = max(1.0, float(np.sum(by_block**2)) / told)
+    noise = memory * np.eye(told) + np.einsum("cdk,cdl->kl", by_trial, by_trial) / by_trial.shape[1]
     size = np.array([unit_of(bench, name) for name in names])
     return R, noise, size
 

@@ -19,7 +19,7 @@ from ..fitting.least_squares import LeastSquaresResult, solve
 from ..fitting.one_sided import followers, tied
 from ..fitting.problem import FitProblem
 from ..model import Model
-from ..objective import Objective, cases_of
+from ..objective import LEAST, Objective, cases_of
 from ..options import DiagnoseOptions
 from ..profile import ShipProfile, with_all_effects
 from ..trial import Coverage, Held, Trial, visited_by
@@ -278,7 +278,7 @@ def noise_levels(trials: Sequence[Trial]) -> FloatArray:
     found = by_channel(trials, motion_noise)
     largest = np.nanmax([np.nanmax(np.abs(trial.motion), axis=0) for trial in trials], axis=0)
     speed = max(float(np.max(largest[3:5])), 1e-3)
-    scale = np.where(largest > 0.0, largest, [1.0, 1.0, 1.0, speed, speed, speed])
+    scale = np.where(largest > LEAST, largest, [1.0, 1.0, 1.0, speed, speed, speed])
     return np.asarray(np.maximum(found, 1e-6 * scale))
 
 

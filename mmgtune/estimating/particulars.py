@@ -14,7 +14,7 @@ from ..errors import Problem, ProfileError
 from ..physics.constants import GRAVITY
 from ..physics.quantities import ABOVE_WATER as GEOMETRY
 from ..profile.reading import APPROACH, IDENTIFIER, STEERING_GEAR
-from ..resources import particulars, particulars_names, taken
+from ..resources import must_be_name, particulars, particulars_names, taken
 from ..toml_reading import TomlReader, toml_of
 
 SCHEMA = 1
@@ -99,6 +99,7 @@ class Particulars:
 
 def read_particulars(path: str | Path) -> Particulars:
     """The particulars in a file, or bundled under a name.  Raises ProfileError with everything wrong in them."""
+    must_be_name(path, "file of particulars", ProfileError)
     path = taken(path, Path(path).exists(), particulars() / f"{path}.toml") or Path(path)
     try:
         text = limits.text(path, limits.PROFILE_BYTES, ProfileError)

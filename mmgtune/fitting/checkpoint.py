@@ -10,7 +10,6 @@ import json
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
-from zipfile import BadZipFile
 
 import numpy as np
 
@@ -58,11 +57,11 @@ class Checkpoint:
                 )
             )
         try:
-            with np.load(self.path, allow_pickle=False) as data:
-                identity = json.loads(str(data["identity"]))
-                sizes, costs = data["sizes"], data["costs"]
+            with self.path.open("rb") as file, np.load(file, allow_pickle=False) as data:
+                identity = dict(json.loads(str(data["identity"])))
+                sizes, costs = data["sizes"], data["costs"].astype(np.float64, casting="safe")
             parts = np.split(costs, np.cumsum(sizes)[:-1]) if len(sizes) else []
-        except (OSError, ValueError, KeyError, EOFError, BadZipFile) as error:
+        except Exception as error:  # the library raises what it comes across where a file is damaged
             raise OptionError(
                 Problem(
                     "the checkpoint cannot be read",

@@ -13,7 +13,16 @@ import numpy as np
 
 from ..backends import STATES
 from ..errors import OutputError, Problem
-from ..files import alone_in, cannot_write, exists, half, is_left_over, remove_left_overs, write_text
+from ..files import (
+    alone_in,
+    cannot_write,
+    exists,
+    half,
+    is_left_over,
+    make_folder,
+    remove_left_overs,
+    write_text,
+)
 from ..tables import write_table
 from .cmaes import Generation
 from .comparison import TrialComparison
@@ -56,7 +65,7 @@ def prepare(folder: Path, *, force: bool = False, resume: bool = False) -> Path:
     Raises OutputError as ``refuse_taken`` does, and where the folder cannot be written to.
     """
     refuse_taken(folder, force=force, resume=resume)
-    _make(folder)
+    make_folder(folder)
     if not os.access(folder, os.W_OK):
         raise cannot_write(folder, PermissionError(13, "permission denied"))
     with half(folder / "writable"):
@@ -91,13 +100,6 @@ def refuse_taken(folder: Path, *, force: bool = False, resume: bool = False) -> 
         )
 
 
-def _make(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise cannot_write(folder, error) from error
-
-
 @contextlib.contextmanager
 def claimed(folder: Path, *, force: bool = False, resume: bool = False) -> Iterator[Path]:
     """The folder made ready as by ``prepare``, and no other run's while the context lasts.
@@ -106,7 +108,7 @@ def claimed(folder: Path, *, force: bool = False, resume: bool = False) -> Itera
     """
     made = not folder.exists()
     if made:
-        _make(folder)
+        make_folder(folder)
     elif not folder.is_dir():
         prepare(folder)  # says what is wrong
     with alone_in(folder):

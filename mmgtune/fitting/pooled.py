@@ -24,6 +24,7 @@ import numpy as np
 from .. import limits
 from ..arrays import FloatArray
 from ..errors import OptionError, Problem, reason
+from ..resources import must_be_name
 from .box import Box
 from .information import Information
 from .terms import ScatterPrior
@@ -195,6 +196,7 @@ def read_sisters(path: Path, ship: str) -> SisterClass:
 
     Raises OptionError where there is none, or it cannot be told which.
     """
+    must_be_name(path, "prior", OptionError)
     file = path if path.is_file() else _chosen(path, ship)
     try:
         document = json.loads(limits.text(file, limits.RECORD_BYTES, OptionError))

@@ -61,7 +61,7 @@ def made_before(out: Path) -> dict[str, Any]:
     try:
         document = json.loads(limits.text(path, limits.RECORD_BYTES, OptionError))
         return {key: document[key] for key in ("mmgtune", "created", "command", "environment", "table")}
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
         fix = "give the folder that --out of mmgtune fleet run named; one that was stopped goes on with resume=True"
         raise OptionError(Problem("there is no record of a fleet", str(path), reason(error), fix)) from error
 
@@ -73,8 +73,8 @@ def _listed(out: Path) -> set[str]:
 def _jobs_of(out: Path) -> list[dict[str, Any]]:
     try:
         jobs = json.loads((out / JOBS).read_text(encoding="utf-8"))["jobs"]
-        return [{**one, "key": one["key"]} for one in jobs]
-    except (OSError, ValueError, KeyError, TypeError) as error:
+        return [{**one, "key": str(one["key"])} for one in jobs]
+    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
         fix = "remove that file and run the fleet again with resume=True: it is written anew"
         raise OptionError(Problem("the list of jobs cannot be read", str(out / JOBS), reason(error), fix)) from error
 

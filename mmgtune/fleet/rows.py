@@ -16,7 +16,7 @@ from typing import Any
 
 from ..errors import OptionError, Problem, reason
 from ..files import atomic
-from ..resources import looked_for
+from ..resources import looked_for, must_be_name
 from .commands import Facts
 from .job import Job
 
@@ -118,6 +118,7 @@ def _inside(folder: Path) -> list[Path]:
 
 def read(out: Path | str) -> list[dict[str, Any]]:
     """All rows with their ship and date, by these and name.  Raises OptionError where there is no such data set."""
+    must_be_name(out, "folder", OptionError)
     out = Path(out)
     import pyarrow as pa
     import pyarrow.dataset as ds

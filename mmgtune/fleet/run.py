@@ -12,10 +12,11 @@ from typing import Any
 
 from ..displayed import Displayed
 from ..errors import OptionError, OutputError, Problem
-from ..files import alone_in, cannot_write, exists, remove_left_overs, write_text
+from ..files import alone_in, exists, make_folder, remove_left_overs, write_text
 from ..options import FleetOptions
 from ..options.choice import must_be
 from ..provenance import made_by
+from ..resources import must_be_name
 from . import rows
 from .expanding import expand
 from .job import Job
@@ -80,7 +81,7 @@ class FleetPlan:
 def plan_fleet(table: FleetTable | Path | str, out: Path | str | None = None) -> FleetPlan:
     """The jobs of a table, and about how long they take.  Raises OptionError for what a run would refuse."""
     out = None if out is None else Path(out)
-    jobs = expand(read_table(table) if isinstance(table, (str, Path)) else table)
+    jobs = expand(table if isinstance(table, FleetTable) else read_table(table))
     there = frozenset(rows.done(out)) if out is not None else frozenset()
     return FleetPlan(tuple(jobs), there, reckon([job for job in jobs if job.key not in there]))
 
@@ -103,7 +104,7 @@ def run_fleet(
     if options.scheduler is None:
         prepare()
     out = Path(out).absolute()
-    read = read_table(table) if isinstance(table, (str, Path)) else table
+    read = table if isinstance(table, FleetTable) else read_table(table)
     jobs = expand(read)
     _prepare(out, resume, jobs)
     with alone_in(out):
@@ -122,10 +123,7 @@ def _prepare(out: Path, resume: bool, jobs: Sequence[Job]) -> None:
     """Raises OutputError for a folder that holds something else, another fleet among it, or results that were not asked
     for.
     """
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise cannot_write(out, error) from error
+    make_folder(out)
     if any(out.iterdir()) and not resume:
         problem = exists(out)
         fix = "add resume=True to run what is not done there yet, or choose another folder"
@@ -202,6 +200,7 @@ def _given_up(job: Job) -> Problem:
 
 def check_out(out: Path) -> None:
     """Raises OptionError where a folder is not that of a fleet."""
+    must_be_name(out, "folder", OptionError)
     if not (out / JOBS).is_file():
         fix = "give the folder that --out of mmgtune fleet run named"
         raise OptionError(Problem("this is not the folder of a fleet", str(out), f"it has no {JOBS}", fix))

@@ -12,6 +12,7 @@ from .. import limits
 from ..errors import OptionError, Problem, reason
 from ..limits import Limit
 from ..options import Options
+from ..resources import must_be_name
 from ..toml_reading import TomlReader, line_index, toml_of
 from .commands import COMMANDS
 
@@ -64,6 +65,7 @@ class FleetTable:
 
 def read_table(path: Path | str) -> FleetTable:
     """The table of a file.  Raises OptionError with everything that is wrong in it."""
+    must_be_name(path, "table of jobs", OptionError)
     path = Path(path)
     try:
         text = limits.text(path, TABLE_BYTES, OptionError)

@@ -16,6 +16,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import LogError, Problem
 from ..files import refuse_existing, true_path, write_text
+from ..resources import must_be_name
 from ..trial import Trial, write_trial
 from ..trial.schema import ATTRIBUTES, directions, known_column
 from ..trial.unusable import unusable
@@ -118,6 +119,8 @@ def import_logs(
     ``overwrite`` is false; nothing is written then.
     """
     out = Path(out)
+    for log in logs:
+        must_be_name(log, "log", LogError)
     if not dry_run and not overwrite:
         # Known before the work is done; parts of a log that is cut are found out later.
         refuse_existing(

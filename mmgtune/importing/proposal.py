@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import LogError, Problem
+from ..resources import must_be_name
 from .doubts import shifted_lever
 from .forms import form_of
 from .importer import Imported, import_logs
@@ -116,6 +117,8 @@ def propose_map(logs: Sequence[Path | str]) -> Proposal:
 
     Raises LogError where a log cannot be read, is no table, or where the logs are of different kinds.
     """
+    for one in logs:
+        must_be_name(one, "log", LogError)
     paths = tuple(dict.fromkeys(Path(one) for one in logs))
     forms = {path: form_of(path) for path in paths}
     if set(forms.values()) == {"nmea"}:

@@ -11,7 +11,7 @@ import numpy as np
 
 from .. import limits, units
 from ..errors import LogError, Problem, among, brief, closest, reason
-from ..resources import import_map_names, import_maps
+from ..resources import import_map_names, import_maps, must_be_name
 from ..toml_reading import TomlReader, finite, named, toml_of
 from ..trial.schema import COLUMNS, SOURCES, impossible, known_column
 from .checking_map import check
@@ -33,6 +33,7 @@ def load_map(name: str | Path, preset: bool = False) -> LogMap:
 
     Raises LogError with everything wrong in it.
     """
+    must_be_name(name, "map", LogError)
     path = import_maps() / f"{name}.toml" if preset else Path(name)
     if preset and str(name) not in import_map_names():
         raise LogError(Problem(f"no preset is called '{name}'", "--preset", **among(str(name), import_map_names())))

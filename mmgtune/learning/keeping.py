@@ -85,7 +85,7 @@ def load(path: Path, like: Progressed, identity: dict[str, Any]) -> Progressed:
 
     Raises OptionError where the file is damaged, or belongs to another training.
     """
-    from safetensors import SafetensorError, safe_open
+    from safetensors import safe_open
 
     jax = jax_module()
     leaves, tree = jax.tree.flatten(_trees(like))
@@ -93,25 +93,22 @@ def load(path: Path, like: Progressed, identity: dict[str, Any]) -> Progressed:
         with safe_open(path, framework="numpy") as file:
             numbers = json.loads((file.metadata() or {})["training"])
             arrays = [np.asarray(file.get_tensor(f"{k:05d}")) for k in range(len(leaves))]
-        recorded = numbers["identity"]
-    except (OSError, SafetensorError, ValueError, KeyError, TypeError) as error:
+        recorded = dict(numbers["identity"])
+        stood = (
+            float(numbers["best_score"]),
+            int(numbers["step"]),
+            float(numbers["factor"]),
+            int(numbers["lost"]),
+            list(numbers["curve"]),
+            list(numbers["events"]),
+        )
+    except Exception as error:  # the library raises what it comes across where a file is damaged
         raise _unreadable(path, reason(error)) from error
     differing(recorded, identity, path)
-    if any(a.shape != np.shape(b) for a, b in zip(arrays, leaves, strict=True)):
-        raise _unreadable(path, "its arrays have other shapes")
+    if any(a.shape != np.shape(b) or a.dtype != b.dtype for a, b in zip(arrays, leaves, strict=True)):
+        raise _unreadable(path, "its arrays have other shapes or types")
     parameters, state, mean, best = jax.tree.unflatten(tree, [jax.numpy.asarray(one) for one in arrays])
-    return Progressed(
-        parameters,
-        state,
-        mean,
-        best,
-        float(numbers["best_score"]),
-        int(numbers["step"]),
-        float(numbers["factor"]),
-        int(numbers["lost"]),
-        list(numbers["curve"]),
-        list(numbers["events"]),
-    )
+    return Progressed(parameters, state, mean, best, *stood)
 
 
 def _trees(now: Progressed) -> tuple[Any, ...]:

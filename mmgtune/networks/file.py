@@ -13,7 +13,7 @@ from .. import limits
 from ..errors import NetworkError, Problem, brief, reason
 from ..files import atomic, hold_regular
 from ..profile import parse_profile
-from ..resources import folder, looked_for, network_names, taken
+from ..resources import folder, looked_for, must_be_name, network_names, taken
 from .ensemble import Ensemble, Part
 from .feedforward import Layers, Standards
 from .hybrid import Hybrid
@@ -91,6 +91,7 @@ def load_network(path: str | Path) -> Trained:
     """
     from safetensors import SafetensorError, safe_open
 
+    must_be_name(path, "trained model", NetworkError)
     path = taken(path, Path(path).exists(), folder("ship_profiles") / f"{path}{SUFFIX}") or Path(path)
     where = str(path)
     try:
@@ -111,7 +112,7 @@ def load_network(path: str | Path) -> Trained:
     except FileNotFoundError as error:
         fix = f"give a file that mmgtune learn has written, or a bundled name: {', '.join(network_names())}"
         raise NetworkError(Problem("no such trained model", where, looked_for(where, "model"), fix)) from error
-    except (OSError, SafetensorError, ValueError, TypeError, MemoryError) as error:
+    except (OSError, SafetensorError, ValueError, TypeError, AttributeError, MemoryError) as error:
         raise NetworkError(Problem("the network cannot be read", where, brief(reason(error)), FIX)) from error
     if any(one.dtype.kind != "f" for one in arrays):
         raise NetworkError(Problem("the network holds arrays that are no numbers", where, "", FIX))

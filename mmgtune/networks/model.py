@@ -18,6 +18,13 @@ N_WIND = 2
 N_VELOCITIES = 3
 
 
+STEPS = (1e-3, 3600.0)
+"""Least and largest step [s] of a network: a run of hours has no more of the least than memory holds."""
+
+LENGTHS = (0.1, 1000.0)
+"""Least and largest length [m] of a ship."""
+
+
 @dataclass(frozen=True, eq=False)
 class Network:
     """Recurrent networks that give the accelerations of one ship, one member for each seed they were begun from.
@@ -114,10 +121,10 @@ def problems_of_ship(inputs: tuple[str, ...], step: float, L_pp: float) -> list[
     unknown = [name for name in inputs if name not in INPUTS]
     if unknown:
         found.append(f"no input is called {', '.join(unknown)}")
-    if not (np.isfinite(step) and step > 0.0):
-        found.append(f"the step is {step:g} s")
-    if not (np.isfinite(L_pp) and L_pp > 0.0):
-        found.append(f"the length is {L_pp:g} m")
+    if not STEPS[0] <= step <= STEPS[1]:
+        found.append(f"the step is {step:g} s, not {STEPS[0]:g} to {STEPS[1]:g} s")
+    if not LENGTHS[0] <= L_pp <= LENGTHS[1]:
+        found.append(f"the length is {L_pp:g} m, not {LENGTHS[0]:g} to {LENGTHS[1]:g} m")
     return found
 
 

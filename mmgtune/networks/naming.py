@@ -6,10 +6,11 @@ from pathlib import Path
 from typing import TypeVar
 
 from ..backends import Integrator
+from ..errors import ProfileError
 from ..given import ship_of
 from ..particles import FILE, ParticlePredictor, load_particles
 from ..profile import ShipProfile
-from ..resources import folder, taken
+from ..resources import folder, must_be_name, taken
 from .ensemble import Ensemble, EnsemblePredictor
 from .file import SUFFIX, Trained, load_network
 from .hybrid import Hybrid, HybridPredictor
@@ -40,6 +41,7 @@ def named_ship(
 
 def file_of(given: str | Path) -> Path | None:
     """The file of particles or of a trained model of that path or bundled name; None where no such is meant."""
+    must_be_name(given, "ship", ProfileError)
     inside = Path(given) / FILE
     if inside.is_file():
         return inside

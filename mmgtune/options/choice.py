@@ -103,6 +103,12 @@ def effects() -> Sequence[str]:
     return effect_tags()
 
 
+def unknown_effects(name: str, tags: Sequence[str]) -> list[Problem]:
+    """What is wrong with the tags of effects in an option: those that no effect has."""
+    known = effects() if tags else ()
+    return [Problem(f"unknown effect '{tag}'", name, **among(tag, known)) for tag in tags if tag not in known]
+
+
 def again(of: type[Options], name: str, default: Any = _UNSET, *, but: str = "") -> Any:
     """The field of another dataclass once more: same flag, same meaning, with a default of its own where one is given.
 

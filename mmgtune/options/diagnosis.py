@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..errors import Problem, among, closest
-from .choice import again, choice, effects
+from ..errors import Problem, closest
+from .choice import again, choice, effects, unknown_effects
 from .scoring import VOYAGES, WINDOW
 from .simulation import SimulationOptions
 from .tuning import CHANNELS, FitOptions
@@ -50,15 +50,7 @@ class DiagnoseOptions(SimulationOptions):
     def problems(self) -> list[Problem]:
         """What makes no sense, effects and channels that do not exist among it."""
         found = super().problems()
-        if self.effects:
-            from ..effects import effect_tags
-
-            known = effect_tags()
-            found += [
-                Problem(f"unknown effect '{tag}'", "effects", **among(tag, known))
-                for tag in self.effects
-                if tag not in known
-            ]
+        found += unknown_effects("effects", self.effects)
         for name in self.channels:
             if name not in (*CHANNELS, "v_m"):
                 why = "every channel counts by its own noise" if ":" in name else ""

@@ -37,7 +37,9 @@ class TrainingOptions(Options):
     validate_every: int = choice(
         25, "Updates between two validations; the last is always one.", least=1, most=1_000_000, panel=TRAINING
     )
-    step: float | None = choice(None, "Time between samples in training.", unit="s", above=0.0, panel=TRAINING)
+    step: float | None = choice(
+        None, "Time between samples in training.", unit="s", least=1e-3, most=3600, panel=TRAINING
+    )
     seed: int = choice(
         1, "Seed of the first network, and of which runs are kept back.", least=1, most=2**62, panel=REPRODUCE
     )

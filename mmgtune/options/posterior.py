@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .choice import REPRODUCE, choice, effects
+from ..errors import Problem
+from .choice import REPRODUCE, choice, effects, unknown_effects
 from .simulation import SimulationOptions
 
 
@@ -21,3 +22,7 @@ class PosteriorOptions(SimulationOptions):
         True, "Leave kinds and sides out in turn, to find how much the trials are to be believed.", flag="--leave-out"
     )
     seed: int = choice(1, "Seed of every random number, 1 or more.", panel=REPRODUCE, least=1, most=2**63 - 1)
+
+    def problems(self) -> list[Problem]:
+        """What makes no sense, effects that do not exist among it."""
+        return super().problems() + unknown_effects("without", self.without)

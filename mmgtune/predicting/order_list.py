@@ -23,6 +23,7 @@ from ..arrays import FloatArray
 from ..errors import OptionError, Problem, closest, reason
 from ..inputs import INPUTS
 from ..profile import Actuator
+from ..trial.schema import LARGEST, LARGEST_RUDDER, RUDDERS, SHORTEST_STEP
 
 TIME = "t"
 
@@ -90,11 +91,15 @@ def read_orders(path: Path, inputs: Sequence[str]) -> OrderList:
         fix = "name a CSV file, or trials with trials=DIR"
         raise OptionError(Problem("the list of orders cannot be read", str(path), why, fix)) from None
     # (line, cells) of what is not empty and no comment
-    rows = [
-        (k, [cell.strip() for cell in cells])
-        for k, cells in enumerate(csv.reader(text.split("\n")), 1)
-        if any(cell.strip() for cell in cells) and not cells[0].lstrip().startswith("#")
-    ]
+    try:
+        rows = [
+            (k, [cell.strip() for cell in cells])
+            for k, cells in enumerate(csv.reader(text.split("\n")), 1)
+            if any(cell.strip() for cell in cells) and not cells[0].lstrip().startswith("#")
+        ]
+    except csv.Error as error:
+        fix = "write a row a line, its cells divided by commas"
+        raise OptionError(Problem("the list of orders is no CSV file", str(path), reason(error), fix)) from None
     if len(rows) < 3:
         why = "a header, an order and a last row with the time of the end are needed"
         raise OptionError(Problem("the list of orders is too short", str(path), why, f"write {_example(inputs)}"))
@@ -102,7 +107,13 @@ def read_orders(path: Path, inputs: Sequence[str]) -> OrderList:
     columns = np.array([_cells(cells, names, f"{path}, line {k}") for k, cells in rows[1:]]).T
     ordered = {name: factor * column for name, factor, column in zip(names, factors, columns, strict=True)}
     t = ordered.pop(TIME)
-    late = [k for k in range(1, len(t)) if not t[k] > t[k - 1]]
+    for name, column in {TIME: t, **ordered}.items():
+        unit, most = _unit(name), LARGEST_RUDDER if name in RUDDERS else LARGEST[_unit(name)]
+        for k in np.flatnonzero(np.abs(column) > most)[:1]:
+            where = f"{path}, line {rows[1 + k][0]}, column '{name}'"
+            why = f"no ship is ordered more than {most:g} {unit}" if name != TIME else f"the limit is {most:g} s"
+            raise OptionError(Problem(f"{name} is {column[k]:g} {unit}", where, why, "correct the number or its unit"))
+    late = [k for k in range(1, len(t)) if not t[k] - t[k - 1] > SHORTEST_STEP]
     if late or math.isnan(t[0]):
         where = f"{path}, line {rows[1 + (late[0] if late else 0)][0]}, column 't'"
         raise OptionError(Problem("times of orders do not increase", where, fix="write them in order, one a row"))
@@ -116,7 +127,7 @@ def _header(cells: Sequence[str], inputs: Sequence[str], where: str) -> tuple[li
         name, opening, rest = cell.partition("[")
         name, unit = name.strip(), units.canonical(rest.rstrip().removesuffix("]"))
         place = f"{where}, column '{cell}'"
-        si = "s" if name == TIME else INPUTS[name].unit if name in inputs else ""
+        si = _unit(name) if name in (TIME, *inputs) else ""
         if not si:
             why = f"orders are for {', '.join(inputs)}"
             problems.append(Problem(f"nothing is driven by '{name}'", place, why, closest(name, [TIME, *inputs])))
@@ -136,6 +147,11 @@ def _header(cells: Sequence[str], inputs: Sequence[str], where: str) -> tuple[li
     if problems:
         raise OptionError(*problems)
     return names, factors
+
+
+def _unit(name: str) -> str:
+    """The SI unit of a column."""
+    return "s" if name == TIME else INPUTS[name].unit
 
 
 def _cells(cells: Sequence[str], names: Sequence[str], where: str) -> list[float]:

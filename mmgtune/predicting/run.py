@@ -17,7 +17,7 @@ from ..options import PredictOptions
 from ..options.choice import must_be
 from ..options.predicting import OF_TRIALS, ORDERS
 from ..predictor import PhysicsPredictor, Predictor, Sampling, Uncertain, as_predictor, particles_of
-from ..resources import trial_set_names
+from ..resources import must_be_name, trial_set_names
 from ..trial import Trial, TrialSet
 from ..validating import sigma_of
 from .asked import actuators_of, approach_of, asked
@@ -80,6 +80,7 @@ def _are_trials(given: str | Path | TrialSet | Sequence[Trial]) -> bool:
     """Whether what stands in the place of orders is trials: objects, a folder, a trial file or a bundled name."""
     if not isinstance(given, (str, Path)):
         return True
+    must_be_name(given, "list of orders", OptionError)
     path = Path(given)
     return path.is_dir() or path.suffix == ".parquet" or (not path.exists() and str(given) in trial_set_names())
 

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ..errors import OptionError
+from ..resources import must_be_name
+
 __all__ = ["render"]
 
 
@@ -17,6 +20,7 @@ def render(folder: Path | str, *, pdf: bool = False) -> list[Path]:
 
     Raises OptionError for a folder that is no run folder or cannot be read, OutputError where it cannot be written.
     """
+    must_be_name(folder, "run folder", OptionError)
     folder = Path(folder)
     from . import html, load, markdown
     from .kinds import KINDS

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import traceback
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -17,6 +18,7 @@ from ..errors import OptionError, Problem, reason
 from ..inputs import INPUTS, Role
 from ..physics.quantities import STATES
 from ..resources import looked_for
+from ..trial.footer import rows_of
 from .forces import NO_SHIP, Ship
 from .wording import Channel, clean, input_channel
 
@@ -30,6 +32,10 @@ _COLUMNS = ("t", *STATES)
 _ROLES: tuple[Role, ...] = ("rudder", "propeller", "thruster")
 _EVERY_SHIP = ("n", "delta")
 """Inputs of a run whose record does not name them: a ship with one propeller and one rudder."""
+
+
+_HALF = re.compile(r"\\u[dD][89a-fA-F]")
+"""What JSON writes halves of characters as, most of them beside their other half."""
 
 
 @dataclass(frozen=True)
@@ -166,7 +172,10 @@ def _read(path: Path, kind: Kind) -> dict[str, Any]:
     """A record file, with its schema, kind and needed keys checked."""
     again = "run the fit again, or give another folder"
     try:
-        data = json.loads(limits.text(path, limits.RECORD_BYTES, OptionError))
+        text = limits.text(path, limits.RECORD_BYTES, OptionError)
+        data = json.loads(text)
+        if _HALF.search(text):  # no file of a report could hold half a character: a ValueError
+            json.dumps(data, ensure_ascii=False).encode()
     except (OSError, ValueError, RecursionError) as error:
         raise _problem("the run's record cannot be read", path, reason(error), again) from error
     if not isinstance(data, dict) or data.get("kind") != kind.name:
@@ -261,8 +270,11 @@ def _parquet(path: Path) -> dict[str, Any]:
 
     try:
         with pq.ParquetFile(path) as file:
+            rows_of(file.metadata, path.stat().st_size, str(path), OptionError)
             table = file.read()
         return {name: _column(table.column(name)) for name in table.column_names}
+    except OptionError:
+        raise
     except Exception as error:
         raise _problem("the run's data cannot be read", path, reason(error), "run the fit again") from error
 

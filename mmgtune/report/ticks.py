@@ -10,7 +10,7 @@ from .wording import MINUS, shown
 def linear(low: float, high: float, most: int) -> list[tuple[float, str]]:
     """Round numbers from ``low`` to ``high``, at most about ``most``, all with as many decimals."""
     span = high - low
-    if not (math.isfinite(span) and span > 0.0):
+    if not 1e-290 < span < math.inf:  # beyond, powers of ten below have no digits left
         return [(low, shown(low, 3))]
     raw = span / max(most, 1)
     power = 10.0 ** math.floor(math.log10(raw))

@@ -17,6 +17,7 @@ from .. import limits
 from ..arrays import FloatArray
 from ..errors import Problem, TrialError, reason
 from ..files import atomic, hold_regular
+from ..resources import must_be_name
 from ..units import canonical, factors
 from .digest import DIGEST_KEY, digest
 from .footer import rows_of
@@ -36,6 +37,7 @@ def read_trial(path: Path | str) -> Trial:
     Columns the program does not know are kept in ``extra`` where they hold numbers, and named in ``ignored`` where
     they do not.  Raises TrialError with everything that is wrong in the file.
     """
+    must_be_name(path, "trial", TrialError)
     path = Path(path)
     held = _read(path)
     columns = held.columns

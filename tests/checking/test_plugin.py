@@ -71,6 +71,8 @@ def test_a_trial_that_is_gone_fails(project):
         (CHECK + 'base = "x"', "unknown key 'base'"),
         (CHECK + "backend = 3", "'backend' is 3, not text"),
         (CHECK.replace('"ship.toml"', "3"), "'profile' is 3, not text"),
+        pytest.param(CHECK.replace('"ship.toml"', "0x" + 5000 * "f"), "digits, not text", id="number of many digits"),
+        (CHECK.replace('"ship.toml"', '"a\\u0000b"'), "no such ship profile"),
         (CHECK + 'metrics = "rms_psi"', "'metrics' is 'rms_psi', not a list of names"),
         (CHECK.replace("ship.toml", "nowhere.toml"), "no such ship profile"),
         (CHECK.replace("check.json", "none.json"), "there is no baseline"),

@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmgtune.errors import OutputError
+from mmgtune.errors import LogError, OptionError, OutputError
 from mmgtune.files import write_text
 from mmgtune.fitting import prepare
 from mmgtune.fitting.checkpoint import Checkpoint
+from mmgtune.importing import propose_map
 from mmgtune.profile import load_profile
 from mmgtune.resources import folder
 from mmgtune.trial import read_trial, write_trial
@@ -213,6 +214,20 @@ def test_output_is_a_file(tmp_path):
     assert (tmp_path / "run").read_text() == "mine"
 
 
+def test_folders_in_folders_beyond_measure(tmp_path):
+    deep = 1500 * "a/"
+    refused(run("fit", "--no-report", "--out", deep, cwd=tmp_path), "cannot write the output", "too many folders")
+    assert not list(tmp_path.iterdir())
+
+
+def test_names_with_a_zero_byte(tmp_path):
+    """The command line cannot hold one; files and programs that name others can."""
+    with pytest.raises(OutputError, match="cannot write the output"):
+        write_text(tmp_path / "a\0b", "")
+    with pytest.raises(LogError, match="cannot be opened"):
+        propose_map(["a\0b"])
+
+
 def test_read_only_folder(tmp_path, monkeypatch):
     monkeypatch.setattr(os, "access", lambda path, mode: False)
     with pytest.raises(OutputError, match="cannot write the output"):
@@ -248,6 +263,26 @@ def test_broken_checkpoint(tmp_path):
     refused(
         run("fit", "--no-report", "--resume", "--out", "run", cwd=tmp_path), "checkpoint cannot be read", "delete it"
     )
+
+
+def test_damaged_checkpoints(tmp_path):
+    """A changed byte of the archive may say that it is encrypted, of a later version, or packed in an unknown way."""
+    checkpoint = Checkpoint(tmp_path, {"seed": 1})
+    checkpoint.save([np.arange(12.0)])
+    written = checkpoint.path.read_bytes()
+    listed = written.rindex(b"PK\x01\x02")
+    damaged = [written[: listed + at] + b"\x85" + written[listed + at + 1 :] for at in (6, 8, 10)]
+    for content in damaged:
+        checkpoint.path.write_bytes(content)
+        with pytest.raises(OptionError, match="checkpoint cannot be read"):
+            checkpoint.load()
+    good = {"identity": np.array('{"seed": 1}'), "sizes": np.array([2]), "costs": np.zeros(2)}
+    wrong = [{"identity": np.array(text)} for text in ("[1]", "null", 10_000 * "[")]
+    wrong += [{"sizes": np.array([1.5, 1.0])}, {"sizes": np.array(2)}, {"costs": np.array(["a", "b"])}]
+    for change in wrong:
+        np.savez(checkpoint.path, **{**good, **change})
+        with pytest.raises(OptionError, match="checkpoint cannot be read"):
+            checkpoint.load()
 
 
 def test_checkpoint_survives_a_failed_save(tmp_path, monkeypatch):

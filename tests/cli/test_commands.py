@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pytest
 
+from mmgtune.cli import _say_warning
 from mmgtune.trial import load_trials, read_trial, write_trial
 from tests.command import run
 
@@ -159,3 +160,10 @@ def test_report_of_no_run_is_refused(tmp_path):
     ended = run("report", ".", cwd=tmp_path)
     assert ended.code == 2
     assert "fix" in ended.err
+
+
+@pytest.mark.parametrize("text", ["one line\nTraceback (most recent call last):\n  in there", "\none line\n"])
+def test_of_a_warning_one_line_is_said(capsys, text):
+    """Numba quotes a traceback in what it says of a variable of the environment."""
+    _say_warning(text)
+    assert capsys.readouterr().err == "warning: one line\n"

@@ -160,3 +160,12 @@ def test_halves_of_files_are_removed_from_runs_in_a_run_too(tmp_path):
         path.touch()
     remove_left_overs(tmp_path)
     assert [path for path in (*left, kept) if path.exists()] == [kept]
+
+
+def test_a_link_to_nowhere_is_not_replaced_silently(tmp_path):
+    link = tmp_path / "ship.toml"
+    link.symlink_to("unmounted/ship.toml")
+    ended = run("profile", "copy", "suzaku", "ship.toml", cwd=tmp_path)
+    assert ended.code == 2
+    assert "the output exists already" in ended.err
+    assert link.is_symlink()

@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmgtune import DiagnoseOptions, diagnose, load_trials
+from mmgtune import DiagnoseOptions, FitOptions, diagnose, fit, load_trials
+from mmgtune.errors import OptionError
 from mmgtune.trial import Trial
 
 ATTRIBUTES = ("t", "x", "y", "psi", "u", "v_m", "r", "n", "delta")
@@ -36,3 +37,23 @@ def test_every_number_of_the_answer_is_one(made):
     said = json.loads(json.dumps(result.to_dict(), allow_nan=False))
     assert said["verdict"] in ("none", "found")
     assert "forces_before" not in said["evidence"] or made is not short
+
+
+def test_fewer_samples_than_coefficients():
+    """Ended in a ValueError of arrays of different shapes."""
+    trial = load_trials("suzaku").trials["turn_p35"]
+    few = replace(trial, **{name: getattr(trial, name)[80:83] for name in ATTRIBUTES})
+    result = diagnose("suzaku", [few], DiagnoseOptions(effects=("rudder-offset",)))
+    json.dumps(result.to_dict(), allow_nan=False)
+
+
+def test_a_channel_of_numbers_whose_squares_are_none():
+    """A warning of NumPy, and a J that was no number."""
+    trial = load_trials("suzaku").trials["turn_p35"]
+    tiny = replace(trial, u=np.full(trial.n_samples, 5e-324))
+    result = diagnose("suzaku", [tiny], DiagnoseOptions(effects=("rudder-offset",)))
+    json.dumps(result.to_dict(), allow_nan=False)
+    with pytest.raises(OptionError, match="do not vary in u"):
+        fit(
+            "suzaku", [replace(tiny, u=tiny.u * (np.arange(trial.n_samples) % 2))], FitOptions(objective="standardised")
+        )

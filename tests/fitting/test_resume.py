@@ -135,6 +135,9 @@ def test_a_journal_of_an_earlier_form_is_refused(tmp_path, in_three):
     (tmp_path / NAME).write_bytes(earlier + b"\n" + rest)
     with pytest.raises(OptionError, match="another version of this program"):
         leave_out("suzaku", "suzaku", IN_THREE, folder=tmp_path, resume=True)
+    (tmp_path / NAME).write_bytes(10_000 * b"[" + b"\n" + rest)
+    with pytest.raises(OptionError, match="it is damaged"):
+        leave_out("suzaku", "suzaku", IN_THREE, folder=tmp_path, resume=True)
 
 
 def test_a_changed_line_is_done_again_and_so_is_what_follows(tmp_path, in_three):

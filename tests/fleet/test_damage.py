@@ -94,3 +94,13 @@ def test_what_trials_say_that_is_not_what_was_written(content: bytes | None, cop
     document["H"][0].pop()
     path.write_bytes(json.dumps(document).encode() if content is None else content)
     refused(copied, path)
+
+
+@pytest.mark.parametrize("text", [10_000 * "[", '{"jobs": [{"key": [1]}]}', '{"jobs": [1]}', "[]"])
+@pytest.mark.parametrize("name", ["jobs.json", "fleet.json"])
+def test_lists_of_another_form(name: str, text: str, copied: Path) -> None:
+    path = copied / "out" / name
+    path.write_text(text, encoding="utf-8")
+    ended = command("fleet", "report", "out", cwd=copied)
+    keys = name == "jobs.json" and "key" in text  # keys of jobs that there are no results of
+    assert ended.code == (0 if keys else 2), ended.err

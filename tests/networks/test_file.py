@@ -12,6 +12,7 @@ import pytest
 from mmgtune import limits
 from mmgtune.errors import NetworkError, OutputError
 from mmgtune.networks import load_network, named_ship, save_network
+from mmgtune.networks.file import _described
 
 from .made import network
 
@@ -99,6 +100,10 @@ def test_the_unaltered_file_is_read(tmp_path):
         (lambda a, h, m: h.update(inputs="n"), "inputs of the network"),
         (lambda a, h, m: h.update(inputs=[1, 2]), "inputs of the network"),
         (lambda a, h, m: h.update(step=0.0), "step"),
+        (lambda a, h, m: h.update(step=1e-9), "the step is 1e-09 s"),
+        (lambda a, h, m: h.update(step=1e300), "the step is"),
+        (lambda a, h, m: h.update(L_pp=1e-300), "the length is"),
+        (lambda a, h, m: h.update(L_pp=1e300), "the length is"),
         (lambda a, h, m: h.update(step="soon"), "step of the network"),
         (lambda a, h, m: h.update(step=True), "step of the network"),
         (lambda a, h, m: h.update(L_pp=-1.0), "length"),
@@ -113,6 +118,21 @@ def test_the_unaltered_file_is_read(tmp_path):
 def test_what_does_not_fit_is_named(tmp_path, change, words):
     with pytest.raises(NetworkError, match=words):
         load_network(altered(tmp_path, change))
+
+
+@pytest.mark.parametrize("dtype", ["BF16", "F8_E5M2", "F8_E4M3"])
+def test_numbers_that_numpy_does_not_have(tmp_path, dtype):
+    """The library asks NumPy for a type of that name: an AttributeError."""
+    size = {"BF16": 2}.get(dtype, 1)
+    metadata = {"format": "mmgtune network", "schema": "1", "network": json.dumps(_described(network())[0])}
+    wanted = [f"{group}.{name}" for group, of in _described(network())[1].items() for name in of]
+    one = {"dtype": dtype, "shape": [1], "data_offsets": [0, size]}
+    places = {name: {**one, "data_offsets": [k * size, k * size + size]} for k, name in enumerate(wanted)}
+    header = json.dumps({"__metadata__": metadata, **places}).encode()
+    path = tmp_path / "model.safetensors"
+    path.write_bytes(len(header).to_bytes(8, "little") + header + bytes(size * len(wanted)))
+    with pytest.raises(NetworkError):
+        load_network(path)
 
 
 def test_damaged_and_foreign_files(tmp_path):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mmgtune.effects import discrepancy
-from mmgtune.errors import TrialError
+from mmgtune.errors import OptionError, TrialError
 from mmgtune.model import Model
 from mmgtune.options import PosteriorOptions
 from mmgtune.posterior import posterior
@@ -58,6 +58,11 @@ def test_what_is_left_out_of_the_room_is_not_there(ship):
     room = make_room(ship, without=("current", "discrepancy"))
     assert {"current", "discrepancy"}.isdisjoint(tags_of(room))
     assert "effects.current" not in room.profile.sections
+
+
+def test_an_effect_that_does_not_exist_cannot_be_left_out():
+    with pytest.raises(OptionError, match="did you mean 'current'"):
+        PosteriorOptions(without=("curent",))
 
 
 def test_the_force_of_a_measured_wind_has_room_where_it_acts(ship):

@@ -78,6 +78,12 @@ def test_a_turn_as_a_list_is_the_turn(suzaku, tmp_path):
         ("t [s], delta [deg]\n0, 5\n9, nan", "no number"),
         ("t [s], delta [deg]\n0, 5, 6\n9, 5", "3 cells"),
         ("t [s], delta [deg]\n0, 5\n1e9, 5", "too many"),
+        ("t [s], delta [deg]\n0, 5\n1e-9, 5", "do not increase"),
+        ("t [s], delta [deg]\n-1e308, 5\n1e308, 5", "column 't'"),
+        ("t [s], n [rpm]\n0, 1e300\n9, 5", "line 2, column 'n'"),
+        ("t [s], delta [rad]\n0, 0\n9, 35", "no ship is ordered more than 2 rad"),
+        ("t [s], delta [deg]\n0, 1e300\n9, 5", "line 2, column 'delta'"),
+        ('t [s], delta [deg]\n0, "' + 140_000 * "1" + '"\n9, 5', "no CSV file"),
     ],
 )
 def test_what_is_wrong_is_said_with_its_place(suzaku, tmp_path, text, said):

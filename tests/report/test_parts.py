@@ -22,6 +22,7 @@ from mmgtune.report import (
     motions,
     svg,
     tables,
+    ticks,
     tracks,
     wording,
 )
@@ -263,10 +264,15 @@ def test_a_section_of_tables_to_look_up_is_not_on_paper() -> None:
 
 
 def test_ticks_stay_inside_and_stagger() -> None:
-    ticks = tuple((float(k), f"{'' if k % 2 == 0 else chr(10)}0.0123–0.4567") for k in range(5))
-    panel = Panel((Line((0.0, 4.0), (1.0, 2.0), Look("after")),), Axis(low=-0.5, high=4.5, ticks=ticks), Axis(), "")
+    places = tuple((float(k), f"{'' if k % 2 == 0 else chr(10)}0.0123–0.4567") for k in range(5))
+    panel = Panel((Line((0.0, 4.0), (1.0, 2.0), Look("after")),), Axis(low=-0.5, high=4.5, ticks=places), Axis(), "")
     text = svg.inline(Figure("f", "f", (panel, panel)))
     assert text.count("0.0123–0.4567") == 10  # none is left out
+
+
+@pytest.mark.parametrize("ends", [(0.0, 5e-324), (0.0, 1e-300), (-1e308, 1e308), (1.0, 1.0)])
+def test_ticks_of_an_axis_without_length(ends: tuple[float, float]) -> None:
+    assert ticks.linear(*ends, 5) == [(ends[0], wording.shown(ends[0], 3))]
 
 
 def test_worst_trial_is_the_diverged_one() -> None:
