@@ -186,12 +186,13 @@ def set_aside(
     return traces, brought
 
 
-def alone_of(bench: Workbench, found: Found) -> Found:
-    """What was found with its first cause alone, all else refitted."""
+def with_only(bench: Workbench, found: Found, causes: Sequence[Hypothesis]) -> Found:
+    """What was found with some of its causes only, all else refitted."""
     final = found.final
-    for cause in found.causes[1:]:
-        final = without(bench, final, cause)
-    return replace(found, final=final, causes=found.causes[:1])
+    for cause in found.causes:
+        if cause not in causes:
+            final = without(bench, final, cause)
+    return replace(found, final=final, causes=list(causes))
 
 
 def _alone(found: Found, unseen: Unseen) -> Contribution:

@@ -80,9 +80,11 @@ class Gain(Brief):
     @property
     def remains(self) -> bool:
         """Whether the causes leave on held-out trials more than noise, and not much less than there was."""
-        after = float(self.excess[:, 1].sum())
-        left = after > RELEVANT * self.floor + 3.0 * self.chance + BAND * self.unsure
-        return left and self.share_removed[0] < MOST
+        return self.leaves_beside(BAND * self.unsure) and self.share_removed[0] < MOST
+
+    def leaves_beside(self, excused: float = 0.0) -> bool:
+        """Whether the causes leave on held-out trials more than noise and so much chi-squared."""
+        return float(self.excess[:, 1].sum()) > RELEVANT * self.floor + 3.0 * self.chance + excused
 
     @property
     def left(self) -> float:

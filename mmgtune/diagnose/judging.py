@@ -15,7 +15,7 @@ from ..options import DiagnoseOptions
 from ..profile import ShipProfile
 from ..trial import Coverage, Trial
 from .by_run import ByRun
-from .contributions import Aside, Contribution, alone_of, contributions
+from .contributions import Aside, Contribution, contributions, with_only
 from .detecting import detectability
 from .gain import J_of, held_out
 from .gathering import error_of, evidence
@@ -63,18 +63,19 @@ class Judge:
     differing: Sequence[Difference]
 
     def answer(self, found: Found, brought: Sequence[Contribution]) -> tuple[Diagnosis, Found]:
-        """The answer, and the causes it is about: those found, or the first of them where these are not believed and
-        it alone is.
+        """The answer, and the causes it is about: those found, or fewer of them where these are not believed and those
+        are.
 
         brought  what each cause contributes
         """
         result = self._compared(self._judged(found, brought), found)
-        if result.unclear and not self.hooks.stop():  # perhaps the first of them would have been believed alone
-            alone = alone_of(self.bench, found)
-            brought = contributions(self.bench, alone, self.unseen)
-            other = self._compared(self._judged(alone, brought, Doubted.of(result)), alone)
+        for causes, doubted in _fewer(result, found) if result.unclear and not self.hooks.stop() else []:
+            fewer = with_only(self.bench, found, causes)
+            brought = contributions(self.bench, fewer, self.unseen)
+            other = self._compared(self._judged(fewer, brought, doubted), fewer)
             if other.names_causes and other.explains_nearly_all:
-                result, found = other, alone
+                result, found = other, fewer
+                break
         if result.verdict == "unexplained" and not result.misses_test:
             result = replace(result, whereabouts=error_of(self.bench, found, result.leftover.offsets))
         elif result.verdict != "interrupted":
@@ -138,6 +139,17 @@ class Judge:
         )
         suggestion = _suggestion(self.bench, found, rivals)
         return replace(result, groups=groups, suggestion=suggestion, interrupted=self.hooks.stop())
+
+
+def _fewer(result: Diagnosis, found: Found) -> list[tuple[list[Hypothesis], Doubted | None]]:
+    """Which of the causes found may be believed without the others, and what is doubted then: those whose size is told,
+    where others act much like them, for these may stand for nothing; else the first alone."""
+    unsized = {cause.tag for cause in result.causes if not cause.sized}
+    sized = {one.tag for one in found.causes} - unsized
+    needless = [one for one in found.causes if one.tag in unsized and sized.intersection(one.effect.akin)]
+    rest = [one for one in found.causes if one not in needless]
+    first = (found.causes[:1], Doubted.of(result))
+    return [(rest, None), first] if needless else [first]
 
 
 def _first(found: Found) -> Point:

@@ -42,7 +42,7 @@ WINDOWS = (20.0, 60.0)
 """Times [s] over which channels are compared; slow errors stand out over long ones."""
 
 
-PAIRS = ("heading and yaw rate", "position and velocity")
+PAIRS = {"heading and yaw rate": ("psi", "r"), "position and velocity": ("x", "y", "u", "v_m")}
 """Channels that the same motion shows in."""
 
 BLOCK = 20.0
@@ -103,8 +103,10 @@ class Leftover(Brief):
         """Whether more is left than noise of the sensors could be."""
         if self.excess < NOTICED:
             return False
-        strong = [share for name, (_, share) in self.explained.items() if self.channels[name] > NOTICED]
-        return max(strong, default=0.0) > ALIKE or max(self.certainty.values(), default=0.0) > CERTAIN
+        noticed = {name for name, excess in self.channels.items() if excess > NOTICED}
+        strong = [share for name, (_, share) in self.explained.items() if name in noticed]
+        certain = [one for pair, one in self.certainty.items() if noticed.intersection(PAIRS[pair])]
+        return max(strong, default=0.0) > ALIKE or max(certain, default=0.0) > CERTAIN
 
 
 def leftover(bench: Workbench, point: Point) -> Leftover:
@@ -213,6 +215,7 @@ def _left_open(bench: Workbench, point: Point) -> FloatArray:
 def _alike(trials: Sequence[Trial], residuals: Sequence[FloatArray], window: float) -> dict[str, tuple[float, float]]:
     """Correlation over windows of what a level's residual gains with what its rate's adds up to, and that in standard
     errors (Fisher's transformation)."""
+    turning, moving = PAIRS
     pairs: dict[str, list[FloatArray]] = {pair: [] for pair in PAIRS}
     for trial, r in zip(trials, residuals, strict=True):
         dt = np.diff(trial.t)
@@ -222,9 +225,9 @@ def _alike(trials: Sequence[Trial], residuals: Sequence[FloatArray], window: flo
         north, east = to_earth(trial.psi, r[:, 3], r[:, 4])
         north, east = north - e_psi * way_east, east + e_psi * way_north
         for pair, level, rate in (
-            (PAIRS[0], e_psi, r[:, 5]),
-            (PAIRS[1], r[:, 0], north),
-            (PAIRS[1], r[:, 1], east),
+            (turning, e_psi, r[:, 5]),
+            (moving, r[:, 0], north),
+            (moving, r[:, 1], east),
         ):
             summed = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * dt)])
             pairs[pair].append(np.column_stack([level[n::n] - level[:-n:n], summed[n::n] - summed[:-n:n]]))
@@ -232,8 +235,8 @@ def _alike(trials: Sequence[Trial], residuals: Sequence[FloatArray], window: flo
     for pair, parts in pairs.items():
         both = np.concatenate(parts)
         both = np.asarray(both[np.isfinite(both).all(axis=1)])
-        moving = len(both) > 10 and bool(np.all(np.std(both, axis=0) > 0.0))
-        correlation = float(np.asarray(np.corrcoef(both.T))[0, 1]) if moving else 0.0
+        enough = len(both) > 10 and bool(np.all(np.std(both, axis=0) > 0.0))
+        correlation = float(np.asarray(np.corrcoef(both.T))[0, 1]) if enough else 0.0
         certainty = float(np.arctanh(min(correlation, 0.999999)) * np.sqrt(max(len(both) - 3, 1)))
         found[pair] = (correlation, certainty)
     return found

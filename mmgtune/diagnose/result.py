@@ -367,9 +367,15 @@ class Diagnosis(Plotted):
     @property
     def _told_by_none(self) -> bool:
         """Whether causes that only show in all trials together, those kept for testing among them, do not tell most of
-        the error of each from the others: nothing else is left to test them by."""
+        the error of each from the others: nothing else is left to test them by.
+
+        Nor does it speak for values of each run where next to nothing is told, though these may be uncertain enough to
+        excuse it.
+        """
         settled = self.together is not None and self.together.settled
-        return settled and bool(self.causes) and self.gain.share_removed[0] < TOLD
+        bends = any(cause.runs for cause in self.causes) and self.gain.leaves_beside()
+        share = self.gain.share_removed[0]
+        return bool(self.causes) and ((settled and share < TOLD) or (bends and share < AT_ALL))
 
     @property
     def misses_test(self) -> bool:
@@ -464,7 +470,7 @@ class Diagnosis(Plotted):
                 tags = " + ".join(dict.fromkeys(tag for tag, _ in self.contributions))
                 return (
                     f"Something is wrong that this program cannot name. The best partial explanation, {tags}, removes "
-                    f"{_percent(self.explained_share)} of the error it was found on, but {self.unclear}: it stands for "
+                    f"{self._explained} of the error it was found on, but {self.unclear}: it stands for "
                     "something else, or for more than these trials can tell apart."
                 )
             if self.causes and not self.leftover.noticed:
@@ -474,7 +480,7 @@ class Diagnosis(Plotted):
                 held_out = f"leaves {_percent(1.0 - share)} of it" if share > 0.0 else "errs more"
                 return (
                     f"Something is wrong that this program cannot name. The best of what is known, {tags}, would "
-                    f"remove {_percent(self.explained_share)} of the error {them} found on, but the model with it "
+                    f"remove {self._explained} of the error {them} found on, but the model with it "
                     f"{held_out} {where}."
                 )
             excess = self.leftover.unknown
@@ -494,7 +500,7 @@ class Diagnosis(Plotted):
                 told = f"the re-tuned model leaves {left}, and no known cause accounts for it."
                 return f"Something is wrong that this program does not know: {told} {offsets}".rstrip()
             tags = " + ".join(dict.fromkeys(cause.tag for cause in self.causes))
-            removed = f"{tags}, removes {_percent(self.explained_share)} of the error and leaves {left}."
+            removed = f"{tags}, removes {self._explained} of the error and leaves {left}."
             return (
                 "Something is wrong that this program does not know. "
                 f"The best of what is known, {removed} {offsets}".rstrip()
@@ -526,6 +532,11 @@ class Diagnosis(Plotted):
             f"{gained} What differs between runs was estimated there from the first {100.0 * self.gain.first_part:.0f} "
             "% of each run, and the rest was judged; the extended profile leaves it out."
         )
+
+    @property
+    def _explained(self) -> str:
+        """How much of the error the causes explain, in words: what is told by less has a share below zero."""
+        return _percent(self.explained_share) if self.explained_share > 0.0 else "none"
 
     def _gained(self, them: str, where: str) -> str:
         """What adding the causes removes of the error on held-out trials, in a sentence."""

@@ -22,6 +22,7 @@ class Scale(NamedTuple):
     d: float  # draught [m]
     U: float  # approach speed, or a tenth of sqrt(g L) where the profile has none [m/s]
     force: float  # 0.5 rho L d U^2 [N]
+    n: float  # revolutions of the propeller at the approach speed [1/s]; 0 where the profile has none
 
 
 @dataclass(frozen=True)

@@ -26,6 +26,7 @@ EFFECT = ActuatorEffect(
     function=rpm_scale,
     cites=(),
     fields={"factor": factor_about_one("revolutions over indicated revolutions", 0.3, 0.02, "thrust changes by half")},
+    akin=("engine-droop",),
     variants=(("factor",),),
     varies=("factor",),
     subject="scale of the revolutions",

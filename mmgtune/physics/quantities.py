@@ -85,6 +85,7 @@ class RudderOut(NamedTuple):
     alpha_R: Lanes  # effective inflow angle [rad]
     beta_R: Lanes  # effective drift angle at the rudder [rad]
     F_N: Lanes  # normal force [N]
+    delta: Lanes  # rudder angle, to starboard [rad]
 
 
 class Forces(Protocol):

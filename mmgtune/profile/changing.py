@@ -18,7 +18,8 @@ def scale_of(profile: ShipProfile) -> Scale:
     """The size of a ship, as bounds of effects are counted in."""
     L, d = profile.L_pp, profile.value("particulars.d")
     U = profile.approach.speed if profile.approach else 0.1 * (GRAVITY * L) ** 0.5
-    return Scale(L=L, d=d, U=U, force=0.5 * profile.value("particulars.rho") * L * d * U * U)
+    n = profile.approach.n if profile.approach else 0.0
+    return Scale(L=L, d=d, U=U, force=0.5 * profile.value("particulars.rho") * L * d * U * U, n=n)
 
 
 def missing_for(effect: Effect, profile: ShipProfile) -> list[str]:

@@ -7,8 +7,10 @@ import numpy as np
 from mmgtune.diagnose import DiagnoseOptions, diagnose
 from mmgtune.diagnose.separate import holds, menu
 from mmgtune.orders import run_manoeuvre
-from mmgtune.profile import load_profile
+from mmgtune.profile import load_profile, with_effects
+from mmgtune.simulation import simulate as sailed
 from mmgtune.trial import load_trials
+from tests.diagnose.sensors import logged
 from tests.hidden.cases import Case, null
 from tests.hidden.plant import WHITE, simulate, write
 
@@ -36,6 +38,30 @@ def test_a_slope_of_resistance_of_a_quarter_per_metre_per_second_is_within_reach
     found = result.to_dict()["causes"][0]["parameters"]["slope"]
     assert found["ci95"][0] < slope < found["ci95"][1]
     assert result.gain.share_removed[0] > 0.95
+
+
+def test_the_quadrantal_deviation_of_a_compass_is_found(tmp_path):
+    D = float(np.radians(2.5))
+    hidden = {"unknown-deviation-quadrantal": {"magnitude": D}}
+    result = said_of(hidden, tmp_path, "compass-deviation", "heading-bias", "current", "log-misalignment")
+    assert [cause.tag for cause in result.causes] == ["compass-deviation"]
+    found = result.to_dict()["causes"][0]["parameters"]
+    assert found["sine_of_twice"]["ci95"][0] < D < found["sine_of_twice"]["ci95"][1]
+    for name in ("sine", "cosine", "cosine_of_twice"):
+        assert abs(found[name]["value"]) < 0.1 * D, name
+
+
+def test_a_stall_that_leaves_the_force_some_of_its_slope_is_no_gain_of_the_rudder():
+    profile = load_profile("suzaku")
+    rng = np.random.default_rng(12)
+    trials = list(load_trials("suzaku").trials.values())
+    ship = with_effects(profile, {"rudder-stall": {"angle": 0.3, "slope": 0.6}}, "made")
+    made = [logged(trial, motion, rng) for trial, motion in zip(trials, sailed(ship, trials), strict=True)]
+    asked = ("rudder-stall", "rudder-gain", "rudder-offset", "flap", "propeller-walk")
+    result = diagnose(profile, made, DiagnoseOptions(effects=asked))
+    assert [cause.tag for cause in result.causes] == ["rudder-stall"]
+    found = result.to_dict()["causes"][0]["parameters"]["angle"]
+    assert found["ci95"][0] < 0.3 < found["ci95"][1]
 
 
 def test_one_trial_of_the_menu_changes_its_revolutions():

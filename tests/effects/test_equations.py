@@ -166,6 +166,21 @@ def test_beyond_its_stall_the_force_of_a_rudder_grows_less_or_falls(added, delta
     assert not unchanged.any()
 
 
+@pytest.mark.parametrize("control", [STEERED, Control(-1.2, 0.3)])
+def test_an_engine_under_load_turns_the_propeller_slower_than_the_log_says(suzaku, added, control):
+    """As if the log had said so; none astern, and none where the ship makes more way a turn than at the approach."""
+    loaded = MOVING._replace(u=1.0)
+    force, found = added("engine-droop", {"share": 0.3, "pivot": 1.75}, loaded, control=control)
+    n = control.n * (1.0 - 0.3 * (1.0 - 1.0 / control.n / 1.75)) if control.n > 0.0 else control.n
+    slower = forces(
+        lanes(loaded), lanes(Control(n, control.delta)), suzaku.components, suzaku.coefficients(suzaku.matrix())
+    )
+    expected = [after[0] - before[0] for after, before in zip(slower.total, found.total, strict=True)]
+    np.testing.assert_allclose(force, expected, atol=1e-6)
+    light, _ = added("engine-droop", {"share": 0.3, "pivot": 1.75}, MOVING._replace(u=3.5), control=control)
+    assert not light.any()
+
+
 def test_a_propeller_pushes_the_stern_aside_by_a_share_of_its_thrust(added):
     force, found = added("propeller-walk", {"share": 0.05}, control=Control(1.7, 0.3))
     n, D_P, K_T = (float(np.squeeze(getattr(found.propeller, name))) for name in ("n", "D_P", "K_T"))

@@ -165,6 +165,18 @@ def test_a_start_of_which_the_linear_problem_promises_too_little_is_given_up(pro
     assert going_on.J == whole.J
 
 
+def test_a_start_that_is_stopped_says_what_going_on_promises(problem):
+    start = problem.box.to_unit(problem.box.pre)[:, None]
+    (whole,) = solve(problem, start, tolerance=1e-9, trusting=True)
+    (stopped,) = solve(problem, start, max_iterations=2, tolerance=1e-9, trusting=True)
+    assert not stopped.converged
+    assert stopped.promised > 0.0
+    assert whole.J < stopped.J - stopped.promised < stopped.J
+    assert 0.0 <= whole.promised < 1e-6 * whole.J
+    (plain,) = solve(problem, start, max_iterations=2)
+    assert plain.promised == 0.0
+
+
 def test_derivatives_are_taken_along_to_another_point(problem):
     estimated = problem.estimated(np.full((len(problem.cases), 6), 0.1))
     here = np.full((len(problem.box), 1), 0.5)

@@ -180,6 +180,7 @@ LADDER: dict[str, Draw] = {
     "backlash": _degrees(_plain("play", (0.05, 0.3, 1.0, 2.5, 5.0))),
     "rudder-gain": _one_of(_factor("factor", _motion(0.12)), _sides),
     "governor-lag": _plain("time_constant", (0.5, 3.0, 15.0, 40.0, 80.0)),
+    "engine-droop": _plain("share", (0.005, 0.03, 0.12, 0.25, 0.4)),
     "steering-lag": _one_of(
         _plain("time_constant", (0.1, 0.3, 1.2, 4.0, 8.0)),
         _degrees(_plain("rate_limit", (100.0, 30.0, 8.0, 3.5, 2.0))),

@@ -261,6 +261,7 @@ def rates(s, t, z, gear, play, n_0, out):
     followed = z[8] if s.steering_lag > INSTANT else gear
     logged = logged_revolutions(n_0, u, v)
     n = s.rpm_scale * (z[9] if s.governor_lag > INSTANT else logged)
+    n *= 1.0 - s.engine_droop * min(max(1.0 - u / SPEED * n_0 / n, 0.0), 1.0)
     n *= 1.0 + s.unknown_rpm_hunting * np.sin(2.0 * np.pi * t / 60.0)
     X_H, Y_H, N_H = hull(s, t, U, v / U, r * s.L_pp / U)
     blade = blade_angle(s, followed, play) * (1.0 - s.unknown_rudder_torsion * (U / SPEED) ** 2)

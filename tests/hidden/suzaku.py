@@ -111,6 +111,7 @@ NULL: dict[str, dict[str, float]] = {
     "rudder-gain": {"factor": 1.0, "starboard": 1.0, "port": 1.0},
     "steering-lag": {"time_constant": 0.0, "rate_limit": np.inf},
     "governor-lag": {"time_constant": 0.0},
+    "engine-droop": {"share": 0.0},
     "rpm-scale": {"factor": 1.0},
     "flap": {"factor": 1.0},
     "clock-offset": {"seconds": 0.0},
@@ -174,6 +175,7 @@ def coefficients(ship: Mapping[str, float], effects: Parameters) -> np.void:
     p["dead_time"], p["half_play"] = e["dead-time"]["seconds"], 0.5 * e["backlash"]["play"]
     p["gain_stbd"], p["gain_port"] = e["rudder-gain"]["starboard"], e["rudder-gain"]["port"]
     p["governor_lag"] = e["governor-lag"]["time_constant"]
+    p["engine_droop"] = e["engine-droop"]["share"]
     p["rpm_scale"], p["flap_scale"] = e["rpm-scale"]["factor"], e["flap"]["factor"]
     p.update({f"current_{name}": value for name, value in e["current"].items()})
     p["wind_speed"], p["wind_direction"] = e["wind"]["speed"], e["wind"]["direction"]

@@ -78,4 +78,5 @@ def flapped_rudder(flow, ship, wake, propeller, delta, p):
         alpha_R=delta - arctan2(v_R, u_R),
         beta_R=beta_R,
         F_N=F_N,
+        delta=delta,
     )

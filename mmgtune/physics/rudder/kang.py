@@ -194,6 +194,7 @@ def one_of_two(side, flow, ship, behind, reaction, delta, other, pair, p):
         alpha_R=alpha_R,
         beta_R=flow.beta,
         F_N=F_N,
+        delta=delta,
     )
 
 

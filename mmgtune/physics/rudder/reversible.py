@@ -85,4 +85,5 @@ def reversible_rudder(flow, ship, wake, propeller, delta, p):
         alpha_R=delta - arctan2(v_R, u_R),
         beta_R=flow.beta - p.l_R_ * flow.r_,
         F_N=F_N,
+        delta=delta,
     )

@@ -71,4 +71,5 @@ def slip_rudder(flow, ship, wake, propeller, delta, p):
         alpha_R=alpha_R,
         beta_R=beta_R,
         F_N=F_N,
+        delta=delta,
     )

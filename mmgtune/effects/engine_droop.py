@@ -1,0 +1,86 @@
+"""The engine gives way under load: the log holds the revolutions ordered, and the propeller turns slower in a turn."""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..physics.elementary import where
+from ..physics.quantities import Force, Lanes, State, Surroundings
+from .effect import ForceEffect, Parameter, Scale
+from .visited import Visited
+
+SPEEDS = 0.1
+"""Share by which speed must vary to say what revolutions do under load."""
+
+AHEAD = 0.02
+"""Way per turn over the length of a ship whose profile has no approach: a pitch of six tenths of the diameter."""
+
+
+class EngineDroop(NamedTuple):
+    """See the parameters below."""
+
+    share: Lanes
+    pivot: Lanes
+
+
+def engine_droop(state: State, around: Surroundings, found: Any, components: Any, p: Any, e: EngineDroop) -> Force:
+    """Force by which propeller and rudder change where the propeller turns slower than the log says.
+
+    n (1 - share (1 - (u/n) / pivot)), with the way u/n that a ship makes in a turn of the propeller: as that falls the
+    advance ratio falls and the torque rises.  Linear in it, as torque curves nearly are, at once, and none where the
+    engine is loaded less than at the pivot, or goes astern (assumptions).
+    """
+    n = found.propeller.n
+    ahead = where(n > 0.0, n, 1.0)
+    load = np.minimum(np.maximum(1.0 - found.flow.u / (ahead * e.pivot), 0.0), 1.0)
+    slower = n * (1.0 - e.share * where(n > 0.0, load, 0.0))
+    propeller = components.propeller(found.flow, found.wake, slower, p.ship, p.propeller)
+    rudder = components.rudder(found.flow, p.ship, found.wake, propeller, found.rudder.delta, p.rudder)
+    before, behind = found.propeller.force, found.rudder.force
+    return Force(
+        X=propeller.force.X - before.X + rudder.force.X - behind.X,
+        Y=propeller.force.Y - before.Y + rudder.force.Y - behind.Y,
+        N=propeller.force.N - before.N + rudder.force.N - behind.N,
+    )
+
+
+def _pivot(ship: Scale) -> float:
+    return ship.U / ship.n if ship.n > 0.0 else AHEAD * ship.L
+
+
+def unvisited(found: Mapping[str, float], visited: Visited) -> str:
+    """A load that varies."""
+    if visited.varies(visited.speed) > SPEEDS:
+        return ""
+    return f"speeds that differ by {100.0 * SPEEDS:.0f} %"
+
+
+EFFECT = ForceEffect(
+    kind="effects.engine-droop",
+    tag="engine-droop",
+    title="engine under load",
+    params=EngineDroop,
+    function=engine_droop,
+    cites=(),
+    fields={
+        "share": Parameter(
+            "share of the logged revolutions lost where the ship makes no way",
+            low=-1e-12,
+            high=1.0,
+            bounds=lambda _: (0.0, 0.7),
+            typical=lambda _: 0.15,
+            bounds_source="from none to what stalls an engine",
+        ),
+        "pivot": Parameter("way per turn of the propeller at which none is lost", "m", low=0.0),
+    },
+    pivots={"pivot": _pivot},
+    akin=("rpm-scale",),
+    variants=(("share",),),
+    of_parts=("propeller", "rudder"),
+    unvisited=unvisited,
+    sentence=lambda v: (
+        "The engine gave way under load: with no way on the ship the propeller would turn slower than the log says by "
+        f"{v['share']} of its revolutions"
+    ),
+)
