@@ -210,7 +210,7 @@ def as_trial(ship: ShipProfile | Predictor, motion: Motion, *, with_forces: bool
     )
 
 
-KEPT_BACK = ("u", "v_m", "r", "v_", "r_", "jet", "D_P", "n")
+KEPT_BACK = ("u", "v_m", "r", "v_", "r_", "jet", "D_P", "n", "delta")
 """Parts of a breakdown that say nothing of their own beside the motion, the inputs and the others."""
 
 

@@ -29,12 +29,12 @@ def engine_droop(state: State, around: Surroundings, found: Any, components: Any
 
     n (1 - share (1 - (u/n) / pivot)), with the way u/n that a ship makes in a turn of the propeller: as that falls the
     advance ratio falls and the torque rises.  Linear in it, as torque curves nearly are, at once, and none where the
-    engine is loaded less than at the pivot, or goes astern (assumptions).
+    engine is loaded less than at the pivot, goes astern, or no pivot is given (assumptions).
     """
     n = found.propeller.n
-    ahead = where(n > 0.0, n, 1.0)
-    load = np.minimum(np.maximum(1.0 - found.flow.u / (ahead * e.pivot), 0.0), 1.0)
-    slower = n * (1.0 - e.share * where(n > 0.0, load, 0.0))
+    way = n * e.pivot
+    load = np.minimum(np.maximum(1.0 - found.flow.u / where(way > 0.0, way, 1.0), 0.0), 1.0)
+    slower = n * (1.0 - e.share * where(way > 0.0, load, 0.0))
     propeller = components.propeller(found.flow, found.wake, slower, p.ship, p.propeller)
     rudder = components.rudder(found.flow, p.ship, found.wake, propeller, found.rudder.delta, p.rudder)
     before, behind = found.propeller.force, found.rudder.force

@@ -245,21 +245,6 @@ def test_a_biased_compass_turns_the_axes_and_not_the_track():
     assert alone == pytest.approx(MOVING._replace(psi=MOVING.psi + 0.05))
 
 
-@pytest.mark.parametrize("heading", [0.0, 0.7, 2.4, -1.9])
-def test_a_table_of_deviation(heading):
-    """Semicircular and quadrantal; half of it with velocities in the axes shown, half of it of the heading alone."""
-    effect = find_effect("compass-deviation")
-    B, C, D, E = 0.03, -0.02, 0.015, 0.01
-    half = [0.5 * one for one in (B, C, D, E)]
-    state = MOVING._replace(psi=heading)
-    seen = effect.function(state, effect.params(*half, *half))
-    s, c = math.sin(heading), math.cos(heading)
-    deviation = B * s + C * c + D * math.sin(2.0 * heading) + E * math.cos(2.0 * heading)
-    assert seen.psi == pytest.approx(heading + deviation)
-    assert earth(seen._replace(psi=heading + 0.5 * deviation)) == pytest.approx(earth(state))
-    assert effect.inverse(seen, effect.params(*half, *half)) == pytest.approx(state)
-
-
 @pytest.mark.parametrize(
     ("tag", "value", "seen"),
     [

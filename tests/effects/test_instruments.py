@@ -124,14 +124,18 @@ def test_what_is_logged_of_a_steady_motion_leads_back(effect):
 
 
 def test_deviation_of_a_compass():
+    """Semicircular and quadrantal, each as a sine with a phase."""
     effect = find_effect("compass-deviation")
     state = State(0.0, 0.0, np.linspace(-7.0, 7.0, 50), 2.5, -0.3, 0.01)
-    e = effect.params(0.2, -0.1, 0.05, 0.02)
+    e = effect.params(0.1, -0.1, 0.05, 0.02, 0.05, 0.02, -0.03, 0.01)
     seen = effect.function(state, e)
-    B, C = 0.25, -0.08
-    size, phase = math.hypot(B, C), math.atan2(C, B)
-    np.testing.assert_allclose(seen.psi - state.psi, size * np.sin(state.psi + phase), atol=1e-12)
-    turned = math.hypot(0.2, 0.1) * np.sin(state.psi + math.atan2(-0.1, 0.2))
+
+    def harmonic(k, sine, cosine):
+        return math.hypot(sine, cosine) * np.sin(k * state.psi + math.atan2(cosine, sine))
+
+    turned = harmonic(1, 0.1, -0.1) + harmonic(2, 0.05, 0.02)
+    alone = harmonic(1, 0.05, 0.02) + harmonic(2, -0.03, 0.01)
+    np.testing.assert_allclose(seen.psi - state.psi, turned + alone, atol=1e-12)
     np.testing.assert_allclose(seen.u + 1j * seen.v_m, (2.5 - 0.3j) * np.exp(-1j * turned), atol=1e-12)
     np.testing.assert_allclose(effect.inverse(seen, e).psi, state.psi, atol=1e-12)
 
