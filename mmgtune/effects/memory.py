@@ -18,6 +18,7 @@ class Memory(NamedTuple):
     time_constant: Lanes
     sway: Lanes
     yaw: Lanes
+    share: Lanes
 
 
 def settled(found: Forces, e: Memory) -> tuple[Lanes, Lanes]:
@@ -28,8 +29,8 @@ def settled(found: Forces, e: Memory) -> tuple[Lanes, Lanes]:
 def memory(found: Forces, behind: tuple[Lanes, Lanes], h: Lanes, e: Memory) -> tuple[Force, tuple[Lanes, Lanes]]:
     """Hull side force and moment as first-order lags of the model's: dY/dt = (Y_H - Y) / T.
 
-    The time constant of each is the one of both and its own together (assumption: a lag of first order, as a wake that
-    is washed out).
+    The time constant of each is the one of both and its own together, and a share of the force lags, the rest being
+    there at once (assumptions: a lag of first order, as a wake that is washed out).
     -> Force that is added to the model's; dY/dt [N/s], dN/dt [N m/s].
     """
     hull = found.hull
@@ -39,8 +40,8 @@ def memory(found: Forces, behind: tuple[Lanes, Lanes], h: Lanes, e: Memory) -> t
     behind_Y, behind_N = Y - hull.Y, N - hull.N
     more = Force(
         X=0.0 * hull.X,
-        Y=np.minimum(T_Y / shortest, 1.0) * behind_Y,
-        N=np.minimum(T_N / shortest, 1.0) * behind_N,
+        Y=e.share * np.minimum(T_Y / shortest, 1.0) * behind_Y,
+        N=e.share * np.minimum(T_N / shortest, 1.0) * behind_N,
     )
     return more, (-behind_Y / np.maximum(T_Y, shortest), -behind_N / np.maximum(T_N, shortest))
 
@@ -83,7 +84,16 @@ EFFECT = LagEffect(
         "time_constant": _constant("the hull's side force and yaw moment"),
         "sway": _constant("the side force alone, beside that of both"),
         "yaw": _constant("the yaw moment alone, beside that of both"),
+        "share": Parameter(
+            "share of the force that follows so",
+            null=1.0,
+            low=-1e-12,
+            high=2.0,
+            bounds=lambda _: (0.2, 1.3),
+            bounds_source="a choice: with less there is hardly a memory",
+        ),
     },
+    form={"share": 0.3},
     variants=(("time_constant",), ("sway",), ("yaw",)),
     besides=("sway", "yaw"),
     rough=True,

@@ -190,14 +190,17 @@ def test_a_propeller_pushes_the_stern_aside_by_a_share_of_its_thrust(added):
 
 
 def test_memory_is_a_lag_of_first_order():
-    e = find_effect("memory").params(6.0, 0.0, 0.0)
+    e = find_effect("memory").params(6.0, 0.0, 0.0, 1.0)
     found = SimpleNamespace(hull=Force(1.0, 10.0, 100.0))
     assert find_effect("memory").start(found, e) == (10.0, 100.0)
     force, (Y_dot, N_dot) = find_effect("memory").function(found, (4.0, 130.0), 0.1, e)
     assert force == pytest.approx((0.0, -6.0, 30.0))
     assert (Y_dot, N_dot) == pytest.approx((1.0, -5.0))
+    half, rates = find_effect("memory").function(found, (4.0, 130.0), 0.1, e._replace(share=0.5))
+    assert half == pytest.approx((0.0, -3.0, 15.0))
+    assert rates == pytest.approx((1.0, -5.0))
     # A lag shorter than the step can follow acts in part.
-    short = find_effect("memory").params(0.25 * STIFF * 0.1, 0.0, 0.0)
+    short = find_effect("memory").params(0.25 * STIFF * 0.1, 0.0, 0.0, 1.0)
     force, _ = find_effect("memory").function(found, (4.0, 130.0), 0.1, short)
     assert force == pytest.approx((0.0, -1.5, 7.5))
 
