@@ -65,6 +65,9 @@ TOLD = 0.5
 """Share of the held-out error that causes must remove which were found once no trial was kept for testing, and several
 causes anyhow: what little there is any two or three would imitate."""
 
+LONG = 40
+"""Letters of a list of parameters that fit into a line of a table."""
+
 TOO_MANY = 4
 """Terms of a sum of causes from which it is not believed."""
 
@@ -199,9 +202,12 @@ class Candidate:
 
     @property
     def label(self) -> str:
-        """In a line."""
+        """In a line, of long lists the beginning."""
         each = f", by {IN_WORDS[self.by]}" if self.by else ""
-        return f"{self.effect} ({', '.join(self.parameters)}{each})"
+        names = ", ".join(self.parameters)
+        if len(names) > LONG:
+            names = f"{', '.join(self.parameters[:2])}, {len(self.parameters) - 2} more"
+        return f"{self.effect} ({names}{each})"
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""

@@ -121,8 +121,10 @@ def test_a_cause_in_a_channel_of_its_own_is_no_trace(error, own, form, trace):
     ("certainty", "left"), [(0.0, 0.25), (6.0, 4.0)], ids=["noise of a sensor", "the ship did move"]
 )
 def test_slow_noise_of_sensors_is_nothing_unknown(certainty, left):
-    found = Leftover(4.0, {"x": 4.0}, {}, {"heading and yaw rate": certainty}, {}, {}, slow=3.0)
+    found = Leftover(4.0, {"psi": 4.0}, {}, {"heading and yaw rate": certainty}, {}, {}, slow=3.0)
     assert found.unknown == pytest.approx(left)
+    elsewhere = replace(found, channels={"x": 4.0, "psi": 0.01})
+    assert elsewhere.unknown == pytest.approx(0.25)  # heading and yaw rate fit
 
 
 def test_what_uncertain_coefficients_bring_is_expected_of_held_out_trials(suzaku):
@@ -410,7 +412,11 @@ def test_a_cause_that_is_alone_is_a_trace_where_nothing_needs_it_and_it_does_har
         (*base.names, *cause.names), np.append(base.unit, bench.null(cause.names))[:, None], base.offsets
     )
     found = Found(base, final, [cause])
-    before = Leftover(9.0, {}, {}, {"r": 99.0}, {}, {}) if shaped else Leftover(0.0, {}, {}, {}, {}, {})
+    before = (
+        Leftover(9.0, {"r": 9.0}, {}, {"heading and yaw rate": 99.0}, {}, {})
+        if shaped
+        else Leftover(0.0, {}, {}, {}, {}, {})
+    )
     assert before.structured == shaped
     traces, brought = set_aside(bench, found, Unseen(bench, made[3:]), before)
     assert [one.hypothesis for one in traces] == ([] if stays else [cause])
