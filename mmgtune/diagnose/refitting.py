@@ -237,10 +237,8 @@ class Refitting:
         if not np.isfinite(runs).all():
             return 0.0
         values = bench.noise.apply(runs)
-        plain, formed = (
-            values[:, 1 : 1 + len(own)] - values[:, :1],
-            values[:, 2 + len(own) :] - values[:, [1 + len(own)]],
-        )
+        plain = values[:, 1 : 1 + len(own)] - values[:, :1]
+        formed = values[:, 2 + len(own) :] - values[:, 1 + len(own) : 2 + len(own)]
         columns = self.linear.retuned(np.column_stack([plain, formed / SMALL]) / SMALL)
         believed = np.diag([0.0] * len(own) + [1.0] * len(forms))
         normal = columns.T @ columns + believed

@@ -113,6 +113,6 @@ EFFECT = SensorEffect(
         tuple(_harmonics(_TURNED)),
         tuple(_harmonics(_ALONE, "_alone")),
     ),
-    besides=tuple(f"{name}_of_twice{suffix}" for name in ("sine", "cosine") for suffix in ("", "_alone")),
+    besides=("sine_of_twice", "cosine_of_twice", "sine_of_twice_alone", "cosine_of_twice_alone"),
     sentence=_sentence,
 )

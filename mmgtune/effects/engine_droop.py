@@ -10,9 +10,6 @@ from ..physics.quantities import Force, Lanes, State, Surroundings
 from .effect import ForceEffect, Parameter, Scale
 from .visited import Visited
 
-SPEEDS = 0.1
-"""Share by which speed must vary to say what revolutions do under load."""
-
 AHEAD = 0.02
 """Way per turn over the length of a ship whose profile has no approach: a pitch of six tenths of the diameter."""
 
@@ -50,10 +47,8 @@ def _pivot(ship: Scale) -> float:
 
 
 def unvisited(found: Mapping[str, float], visited: Visited) -> str:
-    """A load that varies."""
-    if visited.varies(visited.speed) > SPEEDS:
-        return ""
-    return f"speeds that differ by {100.0 * SPEEDS:.0f} %"
+    """Speeds that vary, and the load with them."""
+    return visited.lacking_speeds
 
 
 EFFECT = ForceEffect(

@@ -11,9 +11,6 @@ from ..physics.quantities import Flow, Force, Forces, Lanes, State, Surroundings
 from .effect import ForceEffect, Parameter, Scale
 from .visited import Visited
 
-SPEEDS = 0.1
-"""Share by which speed must vary to say how something grows with it."""
-
 
 class Resistance(NamedTuple):
     """See the parameters below."""
@@ -42,9 +39,7 @@ def _froude(ship: Scale) -> float:
 
 def unvisited(found: Mapping[str, float], visited: Visited) -> str:
     """More than one speed, for how the coefficient grows with it."""
-    if "slope" not in found or visited.varies(visited.speed) > SPEEDS:
-        return ""
-    return f"speeds that differ by {100.0 * SPEEDS:.0f} %"
+    return visited.lacking_speeds if "slope" in found else ""
 
 
 _WORDS = {"factor": "it was {} times as large", "slope": "its coefficient grew by {} per unit of Froude number"}

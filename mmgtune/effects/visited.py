@@ -12,6 +12,10 @@ MOMENT = 5.0
 """Time [s] that trials must stay beyond a value for it to count as visited."""
 
 
+SPEEDS = 0.1
+"""Share by which speed must vary to say how something changes with it."""
+
+
 @dataclass(frozen=True, eq=False)
 class Visited:
     """Samples of all trials, one after the other; NaN where a channel has a gap.
@@ -55,6 +59,11 @@ class Visited:
         """How far positive values (n,) vary, as a share of the highest; 0 without any."""
         low, high = self.span(values)
         return (high - low) / high if high > 0.0 else 0.0
+
+    @property
+    def lacking_speeds(self) -> str:
+        """What trials would have to visit to say how something changes with speed; "" where they do."""
+        return "" if self.varies(self.speed) > SPEEDS else f"speeds that differ by {100.0 * SPEEDS:.0f} %"
 
     @property
     def advance(self) -> FloatArray:
