@@ -65,6 +65,9 @@ that both sides have."""
 FIRST = 4
 """First steps of an effect with one side only, from each start: in the first of them the targets only follow."""
 
+FIRST_ALONE = 2
+"""The same where nothing else is free that could follow."""
+
 STARTS_KEPT = 2
 """Starts of a hypothesis that go on after a first step from each."""
 
@@ -171,6 +174,8 @@ class Refitting:
             chosen = self._likely(named) if self.strong or self.given else named[:REFITTED]
             chosen += [] if self.strong else self._well_formed(named, chosen)
             chosen += terms[: (2 if self.strong else 1) * TERMS_REFITTED]
+            if not self.strong:
+                chosen = [s for s in chosen if s in (*named[:3], *terms[:1]) or self._may_tell(s)]
         fitted = self._fitted([s for s in chosen if s.power > 0.0])
         fitted += self._fitted(self._of_runs_worth(order, [end for _, end in fitted], quick=quick))
         fitted += self._fitted(akin(order, fitted))
@@ -204,7 +209,8 @@ class Refitting:
         starts = {k: self._starts(point, named[k], SIZES) for k in asked}
         for k, those in (starts if self.every else self._promising(point, named, starts)).items():
             self._go_on()
-            ends = self._steps(point, named[k], those, FIRST if those.shape[1] > 1 else 1)
+            first = FIRST_ALONE if self.every else FIRST
+            ends = self._steps(point, named[k], those, first if those.shape[1] > 1 else 1)
             self.known.begun[named[k].hypothesis.names] = ends
             chi2[k] = min(end.chi2 for end in ends)
         kept = {*np.argsort(chi2)[:LIKELY].tolist(), *range(REFITTED // 2)}
@@ -217,6 +223,14 @@ class Refitting:
         enough = max([ENOUGH, *(score.score for score in named[REFITTED - 1 : REFITTED])])
         others = [s for s in named if s.power > 0.0 and s.hypothesis.effect.form and s.hypothesis.names not in there]
         return [score for score in others if self._by_form(score) > enough]
+
+    def _may_tell(self, score: Score) -> bool:
+        """Whether a refit may find what earns its price where little is left: the score does, or says little, as of
+        effects with one side only, whose slope at the null misleads, and of those with a form."""
+        hypothesis = score.hypothesis
+        earned = score.score / score.inflation - self._new(hypothesis) * self.bench.price
+        sided = bool(inwards(self.bench.null(hypothesis.names)).any())
+        return earned > 0.0 or sided or bool(hypothesis.effect.form)
 
     def _by_form(self, score: Score) -> float:
         """Fall of chi-squared that a hypothesis promises together with the form of its effect, about a small size: what

@@ -206,6 +206,7 @@ class Workbench:
             beliefs=beliefs,
             trusting=True,
             hopeless=hopeless,
+            slopes_by=problem.integrator.quicker,
         )
         method = problem.integrator
         return [

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from mmgtune.backends import Integrator
 from mmgtune.diagnose import DiagnoseOptions
 from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.hypotheses import known_causes
@@ -12,6 +13,7 @@ from mmgtune.diagnose.linear import linearise
 from mmgtune.diagnose.refitting import HARDLY_MORE, HOPELESS, Known, Refitting
 from mmgtune.diagnose.screening import scores
 from mmgtune.diagnose.workbench import make_workbench
+from mmgtune.fitting.least_squares import solve
 from mmgtune.profile import load_profile, with_effects
 from mmgtune.simulation import simulate
 from mmgtune.trial import load_trials
@@ -23,20 +25,25 @@ CURRENT = {"north": 0.08, "east": -0.06}
 NAMES = tuple(f"effects.current.{name}" for name in CURRENT)
 
 
-@pytest.fixture(scope="module")
-def look():
-    """A look at a ship in a current, coefficients as in the profile."""
+def first_look(hidden, effects):
+    """A first look at a ship with something hidden, coefficients as in the profile."""
     profile = load_profile("suzaku")
     rng = np.random.default_rng(7)
     trials = [load_trials("suzaku").trials[name] for name in ("turn_p35", "turn_m20", "zigzag_20")]
-    ship = with_effects(profile, {"current": CURRENT}, "made")
+    ship = with_effects(profile, hidden, "made") if hidden else profile
     made = [logged(trial, motion, rng) for trial, motion in zip(trials, simulate(ship, trials), strict=True)]
-    options = DiagnoseOptions(effects=("current", "heading-bias", "flap", "steering-lag"))
+    options = DiagnoseOptions(effects=effects)
     known = known_causes(profile, made, options)
     bench = make_workbench(profile, made, options, [name for one in known for name in one.names])
     point = base_fit(bench)
     linear = linearise(bench, point, [name for one in known for name in one.names])
     return Refitting(bench, point, linear, Known()), {s.hypothesis.names: s for s in scores(linear, known)}
+
+
+@pytest.fixture(scope="module")
+def look():
+    """A look at a ship in a current."""
+    return first_look({"current": CURRENT}, ("current", "heading-bias", "flap", "steering-lag"))
 
 
 def test_what_a_start_leaves_is_foretold_without_a_refit(look):
@@ -77,3 +84,41 @@ def test_beside_one_that_leaves_noise_others_are_given_up(look):
     assert refitting._hopeless < other.point.chi2 <= refitting.point.chi2
     known.outdate()
     assert refitting._hopeless == np.inf
+
+
+ALIKE = ("heading-bias", "gyro-scale", "gyro-bias", "speed-scale", "rpm-scale", "rudder-gain")
+"""Effects with two sides and no form."""
+
+
+def test_where_little_is_left_what_does_not_earn_its_price_is_not_refitted():
+    """But for the best three, and what a score says little of: a lag has one side only, a loading a form."""
+    refitting, by_names = first_look({}, (*ALIKE, "steering-lag", "loading"))
+    assert not refitting.strong
+    scored = sorted(by_names.values(), key=lambda score: -score.score)
+    price = refitting.bench.price
+    earns = {s.hypothesis.tag for s in scored if s.score / s.inflation > len(s.hypothesis.names) * price}
+    best = {s.hypothesis.tag for s in scored[:3]}
+    fitted = {refit.hypothesis.tag for refit in refitting.best(list(by_names.values()), quick=False)}
+    assert best <= fitted
+    assert {"steering-lag", "loading"} <= fitted
+    assert set(ALIKE) - best - earns
+    assert not fitted & (set(ALIKE) - best - earns)
+
+
+def test_derivatives_by_a_quicker_method_lead_to_the_same_end(look):
+    refitting, _ = look
+    bench, point = refitting.bench, refitting.point
+    names = (*point.names, *NAMES)
+    problem = bench.problem_of(names, point.integrator).with_offsets(point.offsets)
+    assert problem.integrator == Integrator("rk4")
+    start = np.concatenate([point.unit, bench.sub_box(NAMES).to_unit(list(CURRENT.values()))])[:, None]
+
+    def end_by(method):
+        (end,) = solve(problem, start, tolerance=0.01, trusting=True, slopes_by=method)
+        return end
+
+    plain, by_midpoint, by_euler = end_by(None), end_by(Integrator("midpoint")), end_by(Integrator("euler"))
+    assert abs(by_midpoint.J - plain.J) < 0.05
+    assert not np.array_equal(by_midpoint.unit, plain.unit)
+    assert by_euler.J == plain.J  # whose path is off by more than noise: derivatives are by the method of the problem
+    np.testing.assert_array_equal(by_euler.unit, plain.unit)

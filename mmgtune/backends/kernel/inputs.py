@@ -76,9 +76,9 @@ def looks_around(model: Model) -> bool:
 
 def actuate(model: Model, array: str, first: bool) -> list[str]:
     """What each actuator makes of what reaches it; at the first sample it has been at rest there."""
-    n_inputs = len(model.inputs)
+    n_inputs, actuators = len(model.inputs), model.acting(ActuatorEffect)
     lines = []
-    for level, effect in enumerate(model.acting(ActuatorEffect)):
+    for level, effect in enumerate(actuators):
         moved = model.arrangement.of_role(effect.of)
         acts, passes = [], []
         for k in range(n_inputs):
@@ -89,4 +89,19 @@ def actuate(model: Model, array: str, first: bool) -> list[str]:
             acts.append(f"{slot(array, target)} = {value}")
             passes.append(f"{slot(array, target)} = {end}")
         lines += [*where_present(effect, acts), "else:", *indented(each_lane(passes))]
-    return lines
+    if first or not actuators:
+        return lines
+    last = len(actuators) * n_inputs
+    through = [f"{slot(array, last + k)} = {slot(array, k)}" for k in range(n_inputs)]
+    return ["if steered:", *indented(lines), "else:", *indented(each_lane(through))]
+
+
+def carry(model: Model) -> list[str]:
+    """What acts at the end of a step acts at the beginning of the next; what is between, in blocks that have any."""
+    n_inputs, actuators = len(model.inputs), model.acting(ActuatorEffect)
+    last = len(actuators) * n_inputs
+    whole = [f"for k in range({(last + n_inputs) * WIDTH}):", "    now[k] = then[k]"]
+    if not actuators:
+        return whole
+    acting = [f"{slot('now', last + k)} = {slot('then', last + k)}" for k in range(n_inputs)]
+    return ["if steered:", *indented(whole), "else:", *indented(each_lane(acting))]

@@ -22,7 +22,7 @@ from ...effects import ActuatorEffect, FactorsEffect, FilterEffect, FlowEffect, 
 from ...model import Model
 from ...physics.quantities import STATES, Force, Surroundings
 from ..tuples import leaves, numbered
-from .inputs import actuate, looking, looks_around, sample, shifts_of
+from .inputs import actuate, carry, looking, looks_around, sample, shifts_of
 from .sensors import filtered, log_of, log_rows, settled
 from .stage import gaining, sees_forces, stage
 from .text import (
@@ -118,8 +118,7 @@ def kernel(
 {forces}
                 for l in range({W}):
 {finish}
-                for k in range({n_control} * {W}):
-                    now[k] = then[k]
+{carry}
 {look_on}
 {filters}
             for l in range({W}):
@@ -203,6 +202,7 @@ def kernel_source(model: Model) -> str:
         start_actuators=block_of(8, actuate(model, "now", first=True)),
         sample_then=block_of(16, sample(model, "then", "there", shifts)),
         actuators=block_of(16, actuate(model, "then", first=False)),
+        carry=block_of(16, carry(model)),
         n_own=N_STATES,
         loads="\n".join(_loads(model)),
         found_of=_found_of(model) if sees_forces(model) else "",
@@ -224,6 +224,8 @@ def rows_of(model: Model) -> int:
 def _present(model: Model, shifts: Sequence[str]) -> list[str]:
     """Which effects any lane of a block has, and whether any has a log that is shifted."""
     lines = [f"{flag_of(e)} = present[theta_of[block], {k}]" for k, e in enumerate(acting_in(model, IN_KERNEL))]
+    if model.acting(ActuatorEffect):
+        lines.append(f"steered = {any_of(model.acting(ActuatorEffect))}")
     if model.acting(FilterEffect):
         lines.append(f"filtering = {any_of(model.acting(FilterEffect))}")
     if model.acting(SensorEffect):
