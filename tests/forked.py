@@ -3,11 +3,13 @@
     python -m tests.forked
 
 Reads requests, a line of JSON each, and answers each with a line that holds the exit code.  A child is a process like
-any other: folder, environment, output and exit of its own.  Tests of the start itself use a new interpreter.
+any other: folder, environment and output of its own.  It does not take apart what was imported, which takes longer than
+most commands do.  Tests of the start and of the end use a new interpreter.
 """
 
 from __future__ import annotations
 
+import atexit
 import gc
 import io
 import json
@@ -68,7 +70,27 @@ def main() -> None:
             told.flush()
         else:
             return
-    run_module("mmgtune", run_name="__main__", alter_sys=True)
+    code = _ended()
+    atexit._run_exitfuncs()
+    for stream in (sys.stdout, sys.stderr):
+        if not stream.closed:
+            stream.flush()
+    os._exit(code & 0xFF)
+
+
+def _ended() -> int:
+    """Run the command in this child, and its exit code as an interpreter would have it."""
+    try:
+        run_module("mmgtune", run_name="__main__", alter_sys=True)
+    except SystemExit as end:
+        if end.code is None or isinstance(end.code, int):
+            return end.code or 0
+        print(end.code, file=sys.stderr)
+        return 1
+    except BaseException:
+        sys.excepthook(*sys.exc_info())  # type: ignore[arg-type]
+        return 1
+    return 0
 
 
 if __name__ == "__main__":
