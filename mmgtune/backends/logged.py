@@ -13,6 +13,9 @@ from ..physics.integration import between
 from ..physics.quantities import HELD, Surroundings
 from .cases import Cases
 
+AT_ONCE = 256
+"""Steps for which an input is read later in the log in one go."""
+
 
 class Logged:
     """Inputs and surroundings of n_cases * n_candidates lanes, candidates of a case side by side.
@@ -25,6 +28,7 @@ class Logged:
         self.cases = cases
         self.n_candidates = n_candidates
         self.shift = shift
+        self._read: dict[tuple[float, int], tuple[int, FloatArray]] = {}
 
     def per_lane(self, values: FloatArray) -> FloatArray:
         """(n_lanes,) of (n_cases,)."""
@@ -47,10 +51,20 @@ class Logged:
         value = self.per_lane(between(cases.controls[:, k - 1, column], cases.controls[:, k, column], f))
         if shift is None:
             return value
-        time = self.per_lane(between(cases.t[:, k - 1], cases.t[:, k], f)) + shift
-        late = time.reshape(len(cases), -1)
-        moved = [
-            np.interp(late[case], cases.t[case, :n], cases.controls[case, :n, column])
-            for case, n in enumerate(cases.n_samples)
-        ]
-        return np.where(shift == 0.0, value, np.concatenate(moved))
+        first, read = self._read.get((f, column), (k, value[:0]))
+        if not 0 <= k - first < len(read):
+            steps = AT_ONCE if f > 0.0 else 1  # a run begins once
+            first, read = self._read[f, column] = k, self._shifted(shift, column, f, slice(k, k + steps))
+        return np.where(shift == 0.0, value, read[k - first])
+
+    def _shifted(self, shift: FloatArray, column: int, f: float, steps: slice) -> FloatArray:
+        """An input read later in the log, (n_steps, n_lanes), at the share f of the steps that end at these samples."""
+        cases = self.cases
+        late = shift.reshape(len(cases), -1)
+        before = slice(steps.start - 1, steps.stop - 1)
+        found = []
+        for case, n in enumerate(cases.n_samples):
+            end = cases.t[case, steps]
+            time = between(cases.t[case, before][: len(end)], end, f)[:, None] + late[case]
+            found.append(np.interp(time, cases.t[case, :n], cases.controls[case, :n, column]))
+        return np.concatenate(found, axis=1)

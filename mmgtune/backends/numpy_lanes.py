@@ -243,17 +243,18 @@ class LaneModel:
 
     def acting_force(self, s: Any, control: Any, around: Surroundings, h: Any, p: Any) -> tuple[Force, list[Any]]:
         """Force on the ship, with those that effects and lags add, and the rates of what lags remember; p as above."""
-        state = State(*s[:N_STATES])
-        found = self.breakdown(state, control, around, p)
+        found = self.breakdown(State(*s[:N_STATES]), control, around, p)
+        return self.lagged(found, s[N_STATES:], h)
+
+    def lagged(self, found: Any, behind: Any, h: Any) -> tuple[Force, list[Any]]:
+        """The force of a breakdown with those that lags add, and the rates of what they remember."""
         total: Force = found.total
         slopes: list[Any] = []
-        at = N_STATES
         for one in self.lags:
-            behind = tuple(s[at : at + len(one.effect.states)])
-            more, own = self.of(one.effect.function)(found, behind, h, one.e)
+            at = len(slopes)
+            more, own = self.of(one.effect.function)(found, tuple(behind[at : at + len(one.effect.states)]), h, one.e)
             total = _sum(total, more)
             slopes += own
-            at += len(behind)
         return total, slopes
 
     def rates(self, s: Any, control: Any, around: Surroundings, h: Any) -> Any:
@@ -261,11 +262,15 @@ class LaneModel:
         state = State(*s[:N_STATES])
         p = self.here(around)
         total, slopes = self.acting_force(s, control, around, h, p)
-        rate = self.of(rates)(state, *self.water(state, around), total, p.ship)
+        return self.on.states([*self.under(total, state, around, p), *slopes])
+
+    def under(self, total: Force, state: State, around: Surroundings, p: Any) -> State:
+        """Time derivatives of the six states under a force; p the coefficients ``here``."""
+        rate: State = self.of(rates)(state, *self.water(state, around), total, p.ship)
         for moving in self.flows:
             if moving.effect.rate is not None:
                 rate = self.of(carried)(rate, *self.of(moving.effect.rate)(state, around, moving.e))
-        return self.on.states([*rate, *slopes])
+        return rate
 
     def sensed(self, state: State) -> State:
         """The state as it is logged, of a motion that has lasted."""

@@ -14,7 +14,7 @@ from ..backends.logged import Logged
 from ..backends.numpy_lanes import N_STATES
 from ..model import Model
 from ..networks.hybrid import N_MEMORY, Hybrid, HybridLanes
-from ..physics.quantities import State, Surroundings
+from ..physics.quantities import Force, State, Surroundings
 from ..predictor import cases_from
 from ..trial import Trial
 from .choosing import pieces_of
@@ -143,19 +143,29 @@ def thinned(counts: BoolArray, most: int) -> BoolArray:
 
 
 def _lagging(ship: LaneModel, control: FloatArray, of: Followed) -> FloatArray:
-    """Sample by sample, with what lags remember by Euler's method."""
-    found = np.empty((len(of.h), of.h.shape[1], 3))
-    behind: list[Any] = []
-    for k, states in enumerate(of.s[:, :N_STATES]):
-        acts, around = of.acts(control[k]), Surroundings(*of.around[k])
-        if not k:
-            behind = ship.behind(State(*states), acts, around)
+    """What lags remember is followed sample by sample, by Euler's method; the forces they follow are there before."""
+    state = State(*np.moveaxis(of.s[:, :N_STATES], 1, 0))
+    acts, around = of.acts(np.moveaxis(control, 1, 0)), Surroundings(*np.moveaxis(of.around, 1, 0))
+    p = ship.here(around)
+    found = ship.breakdown(state, acts, around, p)
+    totals = np.empty((3, *of.h.shape))
+    behind = ship.behind(_sample(state, 0), _sample(acts, 0), _sample(around, 0))
+    for k in range(len(of.h)):
         step = of.h[k] if k else of.h[min(1, len(of.h) - 1)]
-        rates = ship.rates([*states, *behind], acts, around, step)
-        found[k] = np.array(rates[3:N_STATES]).T
+        total, slopes = ship.lagged(_sample(found, k), behind, step)
+        for to, value in zip(totals, total, strict=True):
+            to[k] = value
         if k + 1 < len(of.h):
-            behind = [was + of.h[k + 1] * rate for was, rate in zip(behind, rates[N_STATES:], strict=True)]
-    return np.asarray(found[of.counts])
+            behind = [was + of.h[k + 1] * slope for was, slope in zip(behind, slopes, strict=True)]
+    rates = ship.under(Force(*totals), state, around, p)
+    return np.stack(np.broadcast_arrays(*rates[3:N_STATES]), axis=-1)[of.counts]
+
+
+def _sample(values: Any, k: int) -> Any:
+    """Sample k of named tuples of (T, n_lanes); what is one number for all stays."""
+    if hasattr(values, "_fields"):
+        return type(values)(*(_sample(value, k) for value in values))
+    return values[k] if np.ndim(values) == 2 else values
 
 
 def _shift(ship: LaneModel, cases: Cases) -> list[FloatArray | None]:
