@@ -138,8 +138,8 @@ class TomlReader:
             fix = fix or f'write a number with its unit: {key} = "{units.example(unit)}"'
             self.problem(f"'{shown}' is {written}", name, key, "only finite numbers can be simulated", fix)
         elif unit not in units.DIMENSIONLESS:
-            fix = f'write {key} = "{brief(written)} {unit}"'
-            self.problem(f"'{shown}' = {brief(written)} has no unit", name, key, fix=fix)
+            why, fix = "a number does not say what it is in", f'write {key} = "{brief(written)} {unit}"'
+            self.problem(f"'{shown}' = {brief(written)} has no unit", name, key, why, fix)
         elif isinstance(written, int) and finite(written) is None:
             self.problem(f"'{shown}' is {brief(written)}, more than a number can be", name, key, fix="write it shorter")
         else:

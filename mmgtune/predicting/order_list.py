@@ -135,7 +135,8 @@ def _header(cells: Sequence[str], inputs: Sequence[str], where: str) -> tuple[li
             problems.append(Problem(f"'{name}' is there twice", place, fix="leave one out"))
         elif not opening and name != TIME:
             shown = units.shown_in(si)[0]
-            problems.append(Problem(f"'{name}' has no unit", place, fix=f"write '{name} [{shown}]' or '{name} [{si}]'"))
+            why, fix = "a number does not say what it is in", f"write '{name} [{shown}]' or '{name} [{si}]'"
+            problems.append(Problem(f"'{name}' has no unit", place, why, fix))
         elif opening and unit not in units.factors(si):
             known = ", ".join(units.factors(si))
             problems.append(Problem(f"unit '{unit}' is no unit of '{name}'", place, f"it may be {known}", "write one"))

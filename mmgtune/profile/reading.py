@@ -29,6 +29,9 @@ REGRESSION = "Fujiwara, Ueno & Nimura 1998, regression on the geometry"
 DEFAULT = "default of the program"
 STEERING_GEAR = {"max_angle": Field("", "rad", low=0.0, high=1.6), "rate": Field("", "rad/s", low=0.0)}
 APPROACH = {"speed": Field("", "m/s", low=0.0), "n": Field("", "1/s")}
+ALMOST_ZERO = 1e-12
+"""Limits that are no farther from 0 let 0 itself in."""
+
 IDENTIFIER = re.compile(r"\w[\w. -]{0,79}")
 """What a ship's id may be."""
 VALUE_KEYS = ("value", "source", "assumption", "note", "bounds", "pre_determined", "stderr", "scatter", "warning")
@@ -342,13 +345,11 @@ class _Reader(TomlReader):
                 self.problem(f"'{name}' is {number}", kind, symbol, why, fix)
                 return False
             if (field.low is not None and number <= field.low) or (field.high is not None and number >= field.high):
-                low, high = ("" if end is None else f"{end:g}" for end in (field.low, field.high))
-                limits = f"above {low}" if not high else f"below {high}" if not low else f"between {low} and {high}"
                 self.problem(
                     f"'{name}' = {number:g} is impossible",
                     kind,
                     symbol,
-                    why=f"{field.label or symbol} must be {limits} {field.unit}",
+                    why=f"{field.label or symbol} must be {_limits(field)}",
                     fix="check number and unit",
                 )
                 return False
@@ -446,6 +447,17 @@ def limit_field(metric: str) -> Field:
     """What a limit of that metric is written in."""
     unit = METRICS[metric].unit
     return Field("", "-" if unit == "mixed" else unit, low=0.0)
+
+
+def _limits(field: Field) -> str:
+    """What a coefficient may be, in words."""
+    low, high, unit = field.low, field.high, f" {field.unit}" if field.unit else ""
+    words = []
+    if low is not None:
+        words.append("0 or more" if -ALMOST_ZERO <= low < 0.0 else f"above {low:g}{unit}")
+    if high is not None:
+        words.append("0 or less" if 0.0 < high <= ALMOST_ZERO else f"below {high:g}{unit}")
+    return " and ".join(words)
 
 
 def _may_be_infinite(field: Field) -> bool:

@@ -48,6 +48,22 @@ def test_refused(text, words):
     assert all(len(line) < 500 for line in str(error.value).splitlines())
 
 
+@pytest.mark.parametrize(
+    ("name", "written", "words"),
+    [
+        ("kappa", "-0.1", "must be 0 or more"),
+        ("C_w", '"0.1 1/rad^2"', "must be 0 or less"),
+        ("D_P", '"-1 m"', "must be above 0 m and below 20 m"),
+        ("max_angle", '"200 deg"', "must be above 0 rad and below 1.6 rad"),
+    ],
+)
+def test_what_is_impossible_is_told_with_what_is_not(name, written, words):
+    line = next(line for line in TEXT.splitlines() if line.startswith(f"{name} ="))
+    with pytest.raises(ProfileError, match="is impossible") as error:
+        parse_profile(changed(line, f"{name} = {written}"))
+    assert f"{words}\n" in str(error.value)
+
+
 def test_a_mark_at_the_beginning(tmp_path):
     (tmp_path / "ship.toml").write_text(TEXT, encoding="utf-8-sig")
     found = load_profile(tmp_path / "ship.toml")
