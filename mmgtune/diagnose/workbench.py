@@ -206,7 +206,6 @@ class Workbench:
             beliefs=beliefs,
             trusting=True,
             hopeless=hopeless,
-            slopes_by=problem.integrator.quicker,
         )
         method = problem.integrator
         return [

@@ -10,14 +10,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from ..arrays import BoolArray, FloatArray
-from ..backends import Integrator
 from ..displayed import Brief
 from .initial import LARGEST
 from .journal import remembered
@@ -46,10 +44,6 @@ SETTLED = 4
 
 FIRST_STEPS = 1
 """Steps before a start is given up for what the linear problem promises: far from its end that says little."""
-
-COARSE = 1.0
-"""Root mean square of the difference of residuals by two methods of integration, from which the quicker one is too
-coarse for derivatives: as large as noise, where residuals are in units of it."""
 
 AHEAD = 0.1
 """Share of a step at which its second derivative is taken."""
@@ -111,7 +105,6 @@ def solve(
     beliefs: tuple[FloatArray, FloatArray] | None = None,
     trusting: bool = False,
     hopeless: float = math.inf,
-    slopes_by: Integrator | None = None,
 ) -> list[LeastSquaresResult]:
     """Minimise J within the unit cube from every column of ``starts`` (n_targets, n_starts).
 
@@ -133,8 +126,6 @@ def solve(
                     their own)
     hopeless        a trusting start also ends, after its first steps, where all that the linear problem promises would
                     leave more of what is minimised than this
-    slopes_by       a quicker method of integration for derivatives, taken where its residuals, in units of noise, are
-                    close to the problem's own; None for the problem's own
     Returns a result per start, never above what it began with.
     """
     n_starts = starts.shape[1]
@@ -181,10 +172,8 @@ def solve(
         step = step - at
         return there.settling - 2.0 * float(gradient @ step) - float(step @ hessian @ step)
 
-    quicker = problem if slopes_by is None else problem.with_integrator(slopes_by)
-
-    def residuals_of(unit: FloatArray, offsets: FloatArray, of: FitProblem = problem) -> FloatArray:
-        found = of.residuals(unit, offsets).T
+    def residuals_of(unit: FloatArray, offsets: FloatArray) -> FloatArray:
+        found = problem.residuals(unit, offsets).T
         return found if whiten is None else whiten(found)
 
     def cost(unit: FloatArray, offsets: FloatArray) -> FloatArray:
@@ -193,22 +182,15 @@ def solve(
     def around(rows: npt.NDArray[np.intp]) -> list[_Linear]:
         """The quadratic models at the running starts: of derivatives taken there, or of the last ones where those
         foretold what came."""
-        nonlocal quicker
         anew = [row for row in rows if not told[row]]
         if anew:
-            made = zip(*_jacobians(quicker, z, d, np.array(anew), whiten), strict=True)
+            made = zip(*_jacobians(problem, z, d, np.array(anew), whiten), strict=True)
             for row, (at, off, slopes, by_offset) in zip(anew, made, strict=True):
                 models[row] = _Linear(problem, at, off, slopes, by_offset, holding=trusting)
-        again = [row for row in rows if told[row] or quicker is not problem]
+        again = [row for row in rows if told[row]]
         if again:
             offsets = d[:, again]
             residuals = residuals_of(z[:, again], offsets)
-            if anew and quicker is not problem:
-                by_quicker = np.column_stack([models[row].residuals for row in anew])
-                exact = residuals[:, [again.index(row) for row in anew]]
-                if _squares(by_quicker - exact).max() > COARSE**2 * len(exact):
-                    quicker = problem
-                    return around(rows)
             for k, row in enumerate(again):
                 models[row] = models[row].with_residuals(offsets[:, k], residuals[:, k])
         return [models[row] for row in rows]
@@ -257,7 +239,7 @@ def solve(
         if last.all():
             tried, moved = tried[:, :, :1], moved[:, :, :1]
         else:
-            _accelerate(partial(residuals_of, of=quicker), linear, z[:, rows], d[:, rows], damping[rows], tried, moved)
+            _accelerate(residuals_of, linear, z[:, rows], d[:, rows], damping[rows], tried, moved)
         unit = tried.reshape(len(z), -1)
         offsets = moved.reshape(len(problem.cases), unit.shape[1], 6)
         costs = cost(unit, offsets)
@@ -370,15 +352,13 @@ def _accelerate(
     Sethna 2012, arXiv:1201.5885).  A bend that is no smaller than the step is not to be trusted and left out.
     """
     step, shift = tried[:, :, 0] - z[:, :, None], moved[:, :, 0] - d[:, :, None]
-    near = np.concatenate([z[:, :, None], z[:, :, None] + AHEAD * step], axis=2)
-    offsets = np.concatenate([d[:, :, None], d[:, :, None] + AHEAD * shift], axis=2)
-    runs = residuals_of(near.reshape(len(z), -1), offsets.reshape(len(d), -1, 6))
-    runs = runs.reshape(len(runs), *near.shape[1:])
-    here, runs = runs[:, :, 0], runs[:, :, 1:]
+    near = (z[:, :, None] + AHEAD * step).reshape(len(z), -1)
+    runs = residuals_of(near, (d[:, :, None] + AHEAD * shift).reshape(len(d), near.shape[1], 6))
+    runs = runs.reshape(len(runs), *step.shape[1:])
     tried[:, :, 1], moved[:, :, 1] = tried[:, :, 0], moved[:, :, 0]
     for i, at in enumerate(linear):
         with np.errstate(invalid="ignore"):
-            ahead = (runs[:, i] - here[:, i, None]) / AHEAD
+            ahead = (runs[:, i] - at.residuals[:, None]) / AHEAD
             curved = (2.0 / AHEAD) * (ahead - at.slope(step[:, i], shift[:, i]))
         for k, factor in enumerate(DAMPINGS):
             if not np.isfinite(runs[:, i, k]).all():

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mmgtune.backends import Integrator
 from mmgtune.diagnose import DiagnoseOptions
 from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.hypotheses import known_causes
@@ -13,7 +12,6 @@ from mmgtune.diagnose.linear import linearise
 from mmgtune.diagnose.refitting import HARDLY_MORE, HOPELESS, Known, Refitting
 from mmgtune.diagnose.screening import scores
 from mmgtune.diagnose.workbench import make_workbench
-from mmgtune.fitting.least_squares import solve
 from mmgtune.profile import load_profile, with_effects
 from mmgtune.simulation import simulate
 from mmgtune.trial import load_trials
@@ -103,22 +101,3 @@ def test_where_little_is_left_what_does_not_earn_its_price_is_not_refitted():
     assert {"steering-lag", "loading"} <= fitted
     assert set(ALIKE) - best - earns
     assert not fitted & (set(ALIKE) - best - earns)
-
-
-def test_derivatives_by_a_quicker_method_lead_to_the_same_end(look):
-    refitting, _ = look
-    bench, point = refitting.bench, refitting.point
-    names = (*point.names, *NAMES)
-    problem = bench.problem_of(names, point.integrator).with_offsets(point.offsets)
-    assert problem.integrator == Integrator("rk4")
-    start = np.concatenate([point.unit, bench.sub_box(NAMES).to_unit(list(CURRENT.values()))])[:, None]
-
-    def end_by(method):
-        (end,) = solve(problem, start, tolerance=0.01, trusting=True, slopes_by=method)
-        return end
-
-    plain, by_midpoint, by_euler = end_by(None), end_by(Integrator("midpoint")), end_by(Integrator("euler"))
-    assert abs(by_midpoint.J - plain.J) < 0.05
-    assert not np.array_equal(by_midpoint.unit, plain.unit)
-    assert by_euler.J == plain.J  # whose path is off by more than noise: derivatives are by the method of the problem
-    np.testing.assert_array_equal(by_euler.unit, plain.unit)
