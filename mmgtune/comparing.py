@@ -12,7 +12,7 @@ import numpy as np
 from .arrays import FloatArray
 from .displayed import Displayed
 from .errors import OptionError, Problem
-from .files import refuse_existing, write_text
+from .files import path_of, refuse_existing, write_text
 from .given import ShipGiven, ship_of
 from .options import SimulateOptions
 from .physics.prime import force_unit, moment_unit
@@ -72,7 +72,7 @@ class Comparison(Displayed):
 
     def write(self, folder: Path | str, overwrite: bool = False) -> Path:
         """Write the record into a folder; its path.  Raises OutputError where there is one already."""
-        folder = Path(folder)
+        folder = path_of(folder)
         import json
 
         path = folder / FILE

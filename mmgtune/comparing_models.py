@@ -19,7 +19,7 @@ from typing import Any, TypeVar, cast
 from .bands import Pooled, WindowScore, pooled
 from .displayed import Brief, Displayed
 from .errors import OptionError, Problem, closest
-from .files import write_text
+from .files import path_of, write_text
 from .given import TrialsGiven, trials_of
 from .inputs import INPUTS
 from .options import CompareModelsOptions
@@ -305,7 +305,7 @@ def write_model_comparison(
 
     notes  what a reader of the errors must know
     """
-    folder = Path(folder)
+    folder = path_of(folder)
     pieces = list(result.data.trials.values())[:MOST]
     names = write_motions({one.name: one.predictor for one in result.models}, pieces, folder)
     document = {

@@ -11,13 +11,21 @@ import tempfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from .errors import OutputError, Problem, reason
+from .errors import OptionError, OutputError, Problem, brief, kind_of, reason
 
 _PARTS: set[Path] = set()
 """Temporary files of this process."""
 
 _LEFT = re.compile(r"\..+\.[a-z0-9_]{8}\.part")
 """What ``atomic`` calls its temporary files."""
+
+
+def path_of(given: object) -> Path:
+    """The path that a text or a Path gives.  Raises OptionError for what is neither."""
+    if isinstance(given, (str, os.PathLike)):
+        return Path(given)
+    why = f"files and folders are given as a text or a Path, and {kind_of(given)} is neither"
+    raise OptionError(Problem("no path", brief(given), why, "write where the file or folder is to be"))
 
 
 @contextlib.contextmanager

@@ -18,7 +18,7 @@ import numpy as np
 from .arrays import FloatArray
 from .displayed import Displayed
 from .errors import OptionError, Problem
-from .files import write_text
+from .files import path_of, write_text
 from .given import ShipGiven, ship_of
 from .inputs import INPUTS
 from .networks import named_ship
@@ -183,7 +183,7 @@ def overrated(scores: FloatArray, truth: FloatArray) -> float:
 
 def write_heading_study(result: HeadingStudy, folder: Path | str, command: str = "") -> dict[str, Any]:
     """Write the record into a run folder.  Returns it; raises OutputError."""
-    folder = Path(folder)
+    folder = path_of(folder)
     document = {**result.to_dict(command), "out": str(folder)}
     write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
     return document

@@ -19,7 +19,7 @@ from .backends import Integrator
 from .components import split_name
 from .effects import FilterEffect, FlowEffect, SensorEffect
 from .errors import OptionError, Problem, ProfileError, reason
-from .files import hold_regular
+from .files import hold_regular, path_of
 from .model import Model
 from .predictor import PhysicsPredictor, Sampling
 from .profile import ShipProfile, parse_profile, with_effects
@@ -129,7 +129,7 @@ def save_particles(particles: Particles, path: Path | str, overwrite: bool = Fal
 
     Raises OutputError where the file exists and ``overwrite`` is false, or the system refuses to write.
     """
-    path = Path(path)
+    path = path_of(path)
     facts = {"schema": SCHEMA, "profile": particles.profile.text, "facts": dict(particles.facts)}
     columns = dict(zip(particles.names, particles.values, strict=True))
     write_table(path, columns, overwrite=overwrite, metadata={KEY: json.dumps(facts, allow_nan=False).encode()})

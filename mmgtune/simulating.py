@@ -13,7 +13,7 @@ from .circumstances import notes_on
 from .displayed import Plotted, inert
 from .errors import OptionError, Problem, reason
 from .evaluation import TrialRecord, evaluate
-from .files import refuse_existing
+from .files import path_of, refuse_existing
 from .given import ShipGiven, TrialsGiven, list_of
 from .manoeuvres.summary import criteria_of, indices_of
 from .model import Model
@@ -84,7 +84,7 @@ class Simulated(Plotted, Sequence[Motion]):
 
         Raises OutputError where one is there already, OptionError for forces of a predictor that has none.
         """
-        folder = Path(folder)
+        folder = path_of(folder)
         several = self.predictor.n_members > 1
         ids = [f"{motion.id}_{motion.member}" if several else motion.id for motion in self.motions]
         paths = [folder / f"{id}.parquet" for id in ids]

@@ -76,6 +76,9 @@ SHIP, TRIALS = mmgtune.load_profile("suzaku"), mmgtune.load_trials("suzaku")
         (lambda: mmgtune.simulate(SHIP, ["turn_p35"]), "a str in the list of trials", "[TRIALS['turn_p35']]"),
         (lambda: mmgtune.simulate(SHIP, TRIALS, QUICK), "a FitOptions is no SimulateOptions", "SimulateOptions(...)"),
         (lambda: mmgtune.run_manoeuvre(SHIP, 35), "an int is no helmsman", "TurningOrder(radians(35))"),
+        (lambda: mmgtune.TurningOrder("35 deg"), "'35 deg', not a number", "math.radians(35.0) for 35 deg"),
+        (lambda: mmgtune.estimate(5), "no name of a file of particulars (5)", "a text or a Path"),
+        (lambda: mmgtune.write_trial("turn.parquet", TRIALS["turn_p35"]), "no path (Trial(turn_p35", "where the file"),
         (lambda: mmgtune.load_trials(5), "no name of a data set (5)", "a text or a Path"),
         (lambda: mmgtune.load_profile(None), "no name of a ship profile (None)", "a text or a Path"),
     ],
@@ -123,6 +126,15 @@ NO_PATHS = {"none": None, "number": 3.5, "too long": 300 * "a"}
 def test_what_can_be_no_path_is_refused_in_words(read, name):
     with pytest.raises(mmgtune.MmgtuneError):
         read(name)
+
+
+WRITERS = sorted(name for name in mmgtune.__all__ if re.match("write_|save_", name))
+
+
+@pytest.mark.parametrize("name", WRITERS)
+def test_nothing_is_written_where_there_is_no_path(name):
+    with pytest.raises(mmgtune.MmgtuneError, match=r"no path \(3\.5\)"):
+        getattr(mmgtune, name)(None, 3.5)
 
 
 def test_channels_of_a_motion_have_the_names_of_columns():

@@ -12,7 +12,7 @@ from typing import Any
 from .. import limits
 from ..backends import Integrator
 from ..errors import OptionError, Problem, among
-from ..files import write_text
+from ..files import path_of, write_text
 from ..metrics import METRICS
 from ..options import SimulationOptions
 from ..resources import looked_for, must_be_name
@@ -92,14 +92,14 @@ class Baseline:
 
 def write_baseline(baseline: Baseline, path: Path | str) -> None:
     """Write the file, replacing one that is there.  Raises OutputError where the system refuses."""
-    path = Path(path)
+    path = path_of(path)
     write_text(path, json.dumps(baseline.to_dict(), indent=1, allow_nan=False) + "\n")
 
 
 def read_baseline(path: Path | str) -> Baseline:
     """The baseline in a file.  Raises OptionError with everything that is wrong in it."""
     must_be_name(path, "baseline", OptionError)
-    path = Path(path)
+    path = path_of(path)
     again = "write it anew with update_baseline=True, or take it from the repository"
     try:
         data = json.loads(limits.text(path, limits.RECORD_BYTES, OptionError))

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from ..files import write_text
+from ..files import path_of, write_text
 from ..fitting.folder import motions_table
 from ..fitting.journal import finished
 from ..tables import write_table
@@ -22,7 +22,7 @@ def write_diagnosis(result: Diagnosis, folder: Path | str) -> dict[str, Any]:
 
     Where a cause is of the day, such as a current, ``calm.toml`` is the profile without it, for predictions.
     """
-    folder = Path(folder)
+    folder = path_of(folder)
     extended = result.extended_profile()
     write_text(folder / "profile.toml", extended.text)
     calm = calm_profile(extended)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import ProfileError
+from ..files import path_of
 from ..fitting.extending import with_width
 from ..fitting.journal import journalled
 from ..fitting.run import Hooks, identity_of, in_pieces, make_provenance
@@ -59,7 +60,7 @@ def diagnose(
     Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to, ProfileError
     where the simulation of a trial runs away wherever the targets are.
     """
-    folder = None if folder is None else Path(folder)
+    folder = None if folder is None else path_of(folder)
     must_be(options, DiagnoseOptions)
     profile = ship_of(profile)
     options = with_width(profile, options)

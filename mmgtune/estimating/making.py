@@ -77,7 +77,7 @@ def estimate(ship: Particulars | str | Path, options: EstimateOptions = Estimate
     impossible number, as it may far outside its range.
     """
     must_be(options, EstimateOptions)
-    found = read_particulars(ship) if isinstance(ship, (str, Path)) else ship
+    found = ship if isinstance(ship, Particulars) else read_particulars(ship)
     return _Estimate(found, options).profile()
 
 

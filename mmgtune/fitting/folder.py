@@ -20,6 +20,7 @@ from ..files import (
     half,
     is_left_over,
     make_folder,
+    path_of,
     remove_left_overs,
     write_text,
 )
@@ -125,7 +126,7 @@ def claimed(folder: Path, *, force: bool = False, resume: bool = False) -> Itera
 
 def write_run(result: FitResult, folder: Path | str) -> dict[str, Any]:
     """Write a run folder; the result last, so that its presence means the rest is there.  Returns its document."""
-    folder = Path(folder)
+    folder = path_of(folder)
     write_text(folder / "profile.toml", result.tuned_text())
     write_table(folder / "history.parquet", _history(result.history))
     inputs = [one.name for one in result.profile.arrangement.inputs]

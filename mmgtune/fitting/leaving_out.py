@@ -16,7 +16,7 @@ from ..bands import Pooled
 from ..circumstances import notes_on
 from ..displayed import Displayed
 from ..evaluation import TrialRecord, evaluate
-from ..files import write_text
+from ..files import path_of, write_text
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..inputs import INPUTS
 from ..model import Model
@@ -240,7 +240,7 @@ def leave_out(
     Every fit starts from the fit to all runs; that one takes the starts of the options.
     Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to.
     """
-    folder = None if folder is None else Path(folder)
+    folder = None if folder is None else path_of(folder)
     must_be(options, LeaveOutOptions)
     profile, trials = ship_of(profile), trials_of(trials)
     profile, options = settled(profile, options, trials)

@@ -13,6 +13,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..backends import STATES, Backend, Integrator, get_backend
 from ..errors import OptionError, Problem
+from ..files import path_of
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..model import Model
 from ..objective import Objective, cases_of, make_objective, spread
@@ -197,7 +198,7 @@ def fit(
     Raises OptionError for choices that make no sense, OutputError where the checkpoint cannot be written, ProfileError
     where the simulation of a tune trial runs away wherever the targets are.
     """
-    checkpoint_folder = None if checkpoint_folder is None else Path(checkpoint_folder)
+    checkpoint_folder = None if checkpoint_folder is None else path_of(checkpoint_folder)
     must_be(options, FitOptions)
     profile, trials = ship_of(profile), trials_of(trials)
     profile, options = settled(profile, options, trials)

@@ -12,7 +12,7 @@ from typing import Any
 
 from ..displayed import Displayed
 from ..errors import OptionError, OutputError, Problem
-from ..files import alone_in, exists, make_folder, remove_left_overs, write_text
+from ..files import alone_in, exists, make_folder, path_of, remove_left_overs, write_text
 from ..options import FleetOptions
 from ..options.choice import must_be
 from ..provenance import made_by
@@ -80,7 +80,7 @@ class FleetPlan:
 
 def plan_fleet(table: FleetTable | Path | str, out: Path | str | None = None) -> FleetPlan:
     """The jobs of a table, and about how long they take.  Raises OptionError for what a run would refuse."""
-    out = None if out is None else Path(out)
+    out = None if out is None else path_of(out)
     jobs = expand(table if isinstance(table, FleetTable) else read_table(table))
     there = frozenset(rows.done(out)) if out is not None else frozenset()
     return FleetPlan(tuple(jobs), there, reckon([job for job in jobs if job.key not in there]))
@@ -103,7 +103,7 @@ def run_fleet(
     must_be(options, FleetOptions)
     if options.scheduler is None:
         prepare()
-    out = Path(out).absolute()
+    out = path_of(out).absolute()
     read = table if isinstance(table, FleetTable) else read_table(table)
     jobs = expand(read)
     _prepare(out, resume, jobs)

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import OptionError, Problem, among
-from ..files import refuse_existing, write_text
+from ..files import path_of, refuse_existing, write_text
 from ..inputs import INPUTS
 from ..model import Model
 from ..options import MakeOptions
@@ -79,7 +79,7 @@ def make_trials(ship: str, out: Path | str, options: MakeOptions = MakeOptions()
     if scale != 1.0:
         profile = froude_scaled(profile, scale, id=f"{ship}_{LENGTH:g}m", name=f"VecTwin ship, {LENGTH:g} m")
     plans = [plan for name, plan in PLANS.items() if not options.sets or name in options.sets]
-    out = Path(out)
+    out = path_of(out)
     own = out / f"{profile.id}.toml" if scale != 1.0 else None
     folders = [out / plan.name for plan in plans]
     if not force:

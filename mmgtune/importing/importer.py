@@ -15,7 +15,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import LogError, Problem
-from ..files import refuse_existing, true_path, write_text
+from ..files import path_of, refuse_existing, true_path, write_text
 from ..resources import must_be_name
 from ..trial import Trial, write_trial
 from ..trial.schema import ATTRIBUTES, directions, known_column
@@ -118,7 +118,7 @@ def import_logs(
     Raises LogError with everything wrong in any of the logs, and OutputError where a file exists already and
     ``overwrite`` is false; nothing is written then.
     """
-    out = Path(out)
+    out = path_of(out)
     for log in logs:
         must_be_name(log, "log", LogError)
     if not dry_run and not overwrite:

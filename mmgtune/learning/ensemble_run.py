@@ -19,6 +19,7 @@ import numpy as np
 from ..backends.compiled import cores
 from ..backends.twins import jax_module
 from ..errors import OptionError, Problem
+from ..files import path_of
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..networks.ensemble import Ensemble, EnsemblePredictor, Part
 from ..networks.feedforward import Layers, Standards
@@ -114,7 +115,7 @@ def learn_ensemble(
     resume  go on with what is there: the result is that of a run without a stop, bit for bit
     Raises what ``ensemble_task`` does, and OptionError where JAX is missing.
     """
-    folder = None if folder is None else Path(folder)
+    folder = None if folder is None else path_of(folder)
     must_be(options, EnsembleOptions)
     began = time.perf_counter()
     needed()

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ..arrays import FloatArray
-from ..files import write_text
+from ..files import path_of, write_text
 from ..networks import EnsemblePredictor, HybridPredictor, NetworkPredictor, save_network
 from ..objective import spread
 from ..predictor import Predictor, as_predictor
@@ -183,7 +183,7 @@ def _short(value: float, name: str) -> float:
 
 def write_learned(result: Learned | LearnedHybrid | LearnedEnsemble, folder: Path | str) -> dict[str, Any]:
     """Write a run folder, the record last; checkpoints stay where the training was stopped.  Returns the record."""
-    folder = Path(folder)
+    folder = path_of(folder)
     if isinstance(result, LearnedHybrid):
         save_network(result.hybrid, folder / MODEL, overwrite=True)
         document, name = hybrid_document(result), HYBRID_RESULT

@@ -13,6 +13,7 @@ import numpy as np
 
 from ..backends import STATES
 from ..errors import OptionError, Problem
+from ..files import path_of
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..model import Model
 from ..networks.hybrid import Hybrid, HybridPredictor
@@ -103,7 +104,7 @@ def learn_hybrid(
     resume  go on with what is there: the result is that of a run without a stop, bit for bit
     Raises OptionError for too few runs or trials from which nothing can be learned, and where JAX is missing.
     """
-    folder = None if folder is None else Path(folder)
+    folder = None if folder is None else path_of(folder)
     must_be(options, HybridOptions)
     began = time.perf_counter()
     needed()

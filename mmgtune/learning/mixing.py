@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import OptionError, Problem, reason
-from ..files import write_text
+from ..files import path_of, write_text
 from ..fitting.run import made_by
 from ..given import TrialsGiven, trials_of
 from ..networks import (
@@ -91,7 +91,7 @@ class LearnedMixture:
 
     def write(self, folder: Path | str) -> dict[str, Any]:
         """Write the model and the record into a run folder.  Returns the record; raises OutputError."""
-        folder = Path(folder)
+        folder = path_of(folder)
         document = {**self.to_dict(), "out": str(folder)}
         save_network(self.model, folder / MODEL, overwrite=True)
         write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")

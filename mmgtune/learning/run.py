@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import OptionError, Problem
+from ..files import path_of
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..networks import Network, NetworkPredictor
 from ..networks.recurrent import Scales, Weights
@@ -109,7 +110,7 @@ def learn_rnn(
     resume  go on with what is there: the result is that of a run without a stop, bit for bit
     Raises what ``make_task`` does, and OptionError where JAX is missing.
     """
-    folder = None if folder is None else Path(folder)
+    folder = None if folder is None else path_of(folder)
     must_be(options, LearnOptions)
     began = time.perf_counter()
     needed()

@@ -11,7 +11,7 @@ import numpy as np
 
 from .. import limits
 from ..errors import NetworkError, Problem, brief, reason
-from ..files import atomic, hold_regular
+from ..files import atomic, hold_regular, path_of
 from ..profile import parse_profile
 from ..resources import folder, looked_for, must_be_name, network_names, taken
 from .ensemble import Ensemble, Part
@@ -33,7 +33,7 @@ def save_network(network: Trained, path: Path | str, *, overwrite: bool = False)
     """Write networks, with the profile where there is one, whole or not at all.  Raises OutputError."""
     from safetensors.numpy import save
 
-    path = Path(path)
+    path = path_of(path)
     header, groups = _described(network)
     arrays = {
         f"{group}.{name}": np.ascontiguousarray(values, dtype=np.float32)

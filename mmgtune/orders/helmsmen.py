@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from numbers import Real
 from typing import Protocol
 
-from ..errors import OptionError, Problem
+from ..errors import OptionError, Problem, brief
 
 RUDDER_MOST, HEADING_MOST = 1.6, 2.0 * math.pi
 """Rudder angle and check heading [rad] beyond which degrees are meant."""
 
 
 def in_radians(angle: float, name: str, most: float) -> None:
-    """Raises OptionError where an angle [rad] is so large that it must be in degrees."""
+    """Raises OptionError where an angle [rad] is no number, or so large that it must be in degrees."""
+    if not isinstance(angle, Real):
+        what, fix = f"the {name} is {brief(angle)}, not a number", "write math.radians(35.0) for 35 deg"
+        raise OptionError(Problem(what, "", "orders are in radians", fix))
     if not abs(angle) <= most:
         fix = f"write math.radians({angle:g}) if {angle:g} deg is meant"
         raise OptionError(Problem(f"the {name} is {angle:g} rad", "", "orders are in radians", fix))

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from ..files import write_text
+from ..files import path_of, write_text
 from ..particles import FILE, save_particles
 from .run import Posterior
 
@@ -18,7 +18,7 @@ def write_posterior(result: Posterior, folder: Path | str, overwrite: bool = Fal
 
     Returns the document.  Raises OutputError where a file is there already and ``overwrite`` is false.
     """
-    folder = Path(folder)
+    folder = path_of(folder)
     save_particles(result.particles, folder / FILE, overwrite)
     document = {**result.to_dict(), "out": str(folder)}
     write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n", overwrite)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..backends import STATES
-from ..files import write_text
+from ..files import path_of, write_text
 from ..tables import write_table
 from .result import Predicted
 
@@ -30,7 +30,7 @@ def write_prediction(
 
     Returns the record; raises OutputError.
     """
-    folder = Path(folder)
+    folder = path_of(folder)
     document = {**result.to_dict(command), "out": str(folder)}
     _write(folder / BANDS, _bands(result), ("run", "variable", "t", *FAN, "measured"))
     _write(folder / TRACKS, _tracks(result, ("x", "y"), DRAWN, POINTS), ("run", "particle", "t", "x", "y"))

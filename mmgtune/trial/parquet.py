@@ -16,7 +16,7 @@ import numpy as np
 from .. import limits
 from ..arrays import FloatArray
 from ..errors import Problem, TrialError, reason
-from ..files import atomic, hold_regular
+from ..files import atomic, hold_regular, path_of
 from ..resources import must_be_name
 from ..units import canonical, factors
 from .digest import DIGEST_KEY, digest
@@ -76,7 +76,7 @@ def write_trial(trial: Trial, path: Path | str, overwrite: bool = False) -> Path
     import pyarrow as pa
     import pyarrow.parquet as pq
 
-    path = Path(path)
+    path = path_of(path)
     values = trial.columns
     fields = [
         pa.field(name, pa.float64(), metadata={"unit": known.unit} if (known := known_column(name)) else None)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..backends import STATES
-from ..files import write_text
+from ..files import path_of, write_text
 from ..fitting.journal import finished
 from ..tables import write_table
 from ..trial.parquet import GROUP_ROWS
@@ -20,7 +20,7 @@ RESULT = "voyages.json"
 
 def write_voyages(result: VoyageValidation, folder: Path | str) -> dict[str, Any]:
     """Write the windows, those that are drawn and, last, the result.  Returns its document."""
-    folder = Path(folder)
+    folder = path_of(folder)
     if result.table is not None:
         write_table(folder / "windows.parquet", result.columns(), GROUP_ROWS)
         write_table(folder / "drawn.parquet", _drawn(result), GROUP_ROWS)

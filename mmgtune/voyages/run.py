@@ -15,6 +15,7 @@ from ..backends import Cases
 from ..bands import Pooled
 from ..circumstances import acts_on_surroundings, extremes, notes
 from ..errors import OptionError, Problem, TrialError
+from ..files import path_of
 from ..fitting.journal import journalled, remembered
 from ..fitting.run import facts_of_profile
 from ..given import trials_of
@@ -141,7 +142,7 @@ def validate_voyages(
     another run; OutputError where the folder cannot be written to; TrialError for what is wrong with a file, and where
     no window could be cut.
     """
-    folder = None if folder is None else Path(folder)
+    folder = None if folder is None else path_of(folder)
     must_be(options, VoyageOptions)
     began = time.perf_counter()
     if options.manoeuvres:
