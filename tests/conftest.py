@@ -52,10 +52,10 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if item.get_closest_marker("browser"):  # once more where chromium was stuck
             item.add_marker(pytest.mark.flaky(reruns=1, only_rerun=["TargetClosedError", "TimeoutError"]))
-        of_module, file = _has_one_of_its_module(item), times.file_of(item.nodeid)
-        if of_module and not item.get_closest_marker("xdist_group"):
+        shared, file = _shared(item), times.file_of(item.nodeid)
+        if "module" in shared and not item.get_closest_marker("xdist_group"):
             item.add_marker(pytest.mark.xdist_group(file))
-        if max(taken.get(item.nodeid, 0.0), taken.get(file, 0.0) if of_module else 0.0) >= times.SLOW:
+        if max(taken.get(item.nodeid, 0.0), taken.get(file, 0.0) if shared else 0.0) >= times.SLOW:
             item.add_marker("slow")
         group = item.get_closest_marker("xdist_group")
         together.setdefault(group.args[0] if group else item.nodeid, []).append(item)
@@ -83,10 +83,12 @@ def pytest_collection_finish(session: pytest.Session) -> None:
         get_backend("compiled").run(model, model.matrix(), turn(model, 20.0, 1.0))
 
 
-def _has_one_of_its_module(item: pytest.Item) -> bool:
-    """Whether a test has a fixture that is made once for its module, which another worker would make again."""
+def _shared(item: pytest.Item) -> set[str]:
+    """Scopes of the fixtures of a test that are made once for several, which another worker would make again; those of
+    this file are made in no time."""
     fixtures = item._fixtureinfo.name2fixturedefs if isinstance(item, pytest.Function) else {}
-    return any(one.scope == "module" for found in fixtures.values() for one in found)
+    own = [one for found in fixtures.values() for one in found if one.baseid not in ("", "tests")]
+    return {one.scope for one in own if one.scope != "function"}
 
 
 def _profiles() -> list[object]:

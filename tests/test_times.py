@@ -20,7 +20,7 @@ def test_what_took_long_is_written(tmp_path, monkeypatch):
         ("tests/a.py::one[x@y]@tests/a.py", "call", 0.15),
         ("tests/a.py::one[x@y]@tests/a.py", "teardown", 0.1),
         ("tests/a.py::two", "setup", 0.01),
-        ("tests/a.py::two", "call", 0.1),
+        ("tests/a.py::two", "call", 0.05),
         ("tests/b.py::three@group", "call", 3.0),
     ):
         writer.pytest_runtest_logreport(SimpleNamespace(nodeid=name, when=when, duration=seconds))

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-SLOW = 0.2
+SLOW = 0.1
 """Seconds from which a test is slow, and listed."""
 
 FILE = Path(__file__).with_name("times.json")
