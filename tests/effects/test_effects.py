@@ -8,6 +8,7 @@ import pytest
 
 from mmgtune.backends import Integrator, get_backend, pad
 from mmgtune.backends.compiled import Compiled
+from mmgtune.backends.logged import AT_ONCE
 from mmgtune.backends.whole import whole_of
 from mmgtune.components import COMPONENTS
 from mmgtune.effects import FactorsEffect, effects, find_effect
@@ -235,6 +236,14 @@ def test_clock_offset_is_the_shift_of_the_log(ship):
     acted[0, :-3] = cases.controls[0, 3:]
     shifted = pad([cases.t[0]], [acted[0]], [cases.initial[0]])
     assert np.allclose(states(late, cases)[0, 0, :190], states(Model(ship), shifted)[0, 0, :190], atol=1e-9)
+
+
+def test_a_late_log_is_read_alike_from_end_to_end(ship):
+    """On NumPy it is read a part at a time; this run is longer than a part."""
+    late = Model(with_effects(ship, {"clock-offset": {"seconds": 1.3}}, "test"))
+    cases = zigzag_like(late, AT_ONCE + 40)
+    compiled, reference = (states(late, cases, backend=name) for name in ("compiled", "numpy"))
+    assert np.max(np.abs(compiled - reference) / (1.0 + np.abs(reference))) < 1e-9
 
 
 def test_sensors_undo_what_they_do(ship):
