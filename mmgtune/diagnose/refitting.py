@@ -65,9 +65,6 @@ that both sides have."""
 FIRST = 4
 """First steps of an effect with one side only, from each start: in the first of them the targets only follow."""
 
-FIRST_ALONE = 2
-"""The same where nothing else is free that could follow."""
-
 STARTS_KEPT = 2
 """Starts of a hypothesis that go on after a first step from each."""
 
@@ -167,15 +164,16 @@ class Refitting:
         order = sorted(ranked, key=lambda score: -score.score)
         named = [s for s in order if not s.hypothesis.effect.one_of_many and not s.hypothesis.by]
         terms = [s for s in order if s.hypothesis.effect.one_of_many]
+        top = named[:3] + terms[:1]
         if quick:
-            chosen = named[:3] + terms[:1]
+            chosen = top
         else:
             self._renew(ranked)
             chosen = self._likely(named) if self.strong or self.given else named[:REFITTED]
             chosen += [] if self.strong else self._well_formed(named, chosen)
             chosen += terms[: (2 if self.strong else 1) * TERMS_REFITTED]
             if not self.strong:
-                chosen = [s for s in chosen if s in (*named[:3], *terms[:1]) or self._may_tell(s)]
+                chosen = [s for s in chosen if s in top or self._may_tell(s)]
         fitted = self._fitted([s for s in chosen if s.power > 0.0])
         fitted += self._fitted(self._of_runs_worth(order, [end for _, end in fitted], quick=quick))
         fitted += self._fitted(akin(order, fitted))
@@ -209,8 +207,7 @@ class Refitting:
         starts = {k: self._starts(point, named[k], SIZES) for k in asked}
         for k, those in (starts if self.every else self._promising(point, named, starts)).items():
             self._go_on()
-            first = FIRST_ALONE if self.every else FIRST
-            ends = self._steps(point, named[k], those, first if those.shape[1] > 1 else 1)
+            ends = self._steps(point, named[k], those, FIRST if those.shape[1] > 1 else 1)
             self.known.begun[named[k].hypothesis.names] = ends
             chi2[k] = min(end.chi2 for end in ends)
         kept = {*np.argsort(chi2)[:LIKELY].tolist(), *range(REFITTED // 2)}

@@ -1,7 +1,6 @@
 """What one cause would do in the place of re-tuning, and causes that lose parameters that earn nothing."""
 
 import importlib
-import re
 
 import numpy as np
 import pytest
@@ -42,8 +41,7 @@ def test_water_that_the_hull_took_up_is_told(tmp_path):
     assert found.share > 0.9
     assert 1.0 - found.share < 0.01 * (1.0 - found.next_share)
     assert "one cause alone removes" in found.sentence
-    depth = re.search(r"If so: the ship sailed in shallow water, as if (\S+) m deep", found.sentence)
-    assert float(depth[1]) == pytest.approx(9.0, abs=0.1)
+    assert "If so: the ship sailed in shallow water, as if 8.9" in found.sentence
 
 
 def test_neither_of_the_ship_of_the_profile_nor_of_one_unlike_her_in_many_ways(tmp_path):
