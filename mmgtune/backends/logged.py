@@ -53,18 +53,19 @@ class Logged:
             return value
         first, read = self._read.get((f, column), (k, value[:0]))
         if not 0 <= k - first < len(read):
-            steps = AT_ONCE if f > 0.0 else 1  # a run begins once
-            first, read = self._read[f, column] = k, self._shifted(shift, column, f, slice(k, k + steps))
+            end = min(k + AT_ONCE, cases.t.shape[1]) if f > 0.0 else k + 1  # a run begins once
+            first, read = k, self._shifted(shift, column, f, k, end)
+            self._read[f, column] = first, read
         return np.where(shift == 0.0, value, read[k - first])
 
-    def _shifted(self, shift: FloatArray, column: int, f: float, steps: slice) -> FloatArray:
-        """An input read later in the log, (n_steps, n_lanes), at the share f of the steps that end at these samples."""
+    def _shifted(self, shift: FloatArray, column: int, f: float, first: int, end: int) -> FloatArray:
+        """An input read later in the log, (end - first, n_lanes), at the share f of the steps that end at samples from
+        first to before end."""
         cases = self.cases
         late = shift.reshape(len(cases), -1)
-        before = slice(steps.start - 1, steps.stop - 1)
-        found = []
-        for case, n in enumerate(cases.n_samples):
-            end = cases.t[case, steps]
-            time = between(cases.t[case, before][: len(end)], end, f)[:, None] + late[case]
-            found.append(np.interp(time, cases.t[case, :n], cases.controls[case, :n, column]))
-        return np.concatenate(found, axis=1)
+        time = between(cases.t[:, first - 1 : end - 1], cases.t[:, first:end], f)
+        moved = [
+            np.interp(time[case][:, None] + late[case], cases.t[case, :n], cases.controls[case, :n, column])
+            for case, n in enumerate(cases.n_samples)
+        ]
+        return np.concatenate(moved, axis=1)

@@ -99,7 +99,7 @@ def write_baseline(baseline: Baseline, path: Path | str) -> None:
 def read_baseline(path: Path | str) -> Baseline:
     """The baseline in a file.  Raises OptionError with everything that is wrong in it."""
     must_be_name(path, "baseline", OptionError)
-    path = path_of(path)
+    path = Path(path)
     again = "write it anew with update_baseline=True, or take it from the repository"
     try:
         data = json.loads(limits.text(path, limits.RECORD_BYTES, OptionError))

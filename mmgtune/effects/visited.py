@@ -11,7 +11,6 @@ from ..arrays import FloatArray
 MOMENT = 5.0
 """Time [s] that trials must stay beyond a value for it to count as visited."""
 
-
 SPEEDS = 0.1
 """Share by which speed must vary to say how something changes with it."""
 

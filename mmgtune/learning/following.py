@@ -153,12 +153,11 @@ def _lagging(ship: LaneModel, control: FloatArray, of: Followed) -> FloatArray:
     for k in range(len(of.h)):
         step = of.h[k] if k else of.h[min(1, len(of.h) - 1)]
         total, slopes = ship.lagged(_sample(found, k), behind, step)
-        for to, value in zip(totals, total, strict=True):
-            to[k] = value
+        totals[:, k] = _stacked(total)
         if k + 1 < len(of.h):
             behind = [was + of.h[k + 1] * slope for was, slope in zip(behind, slopes, strict=True)]
     rates = ship.under(Force(*totals), state, around, p)
-    return np.stack(np.broadcast_arrays(*rates[3:N_STATES]), axis=-1)[of.counts]
+    return _stacked(rates[3:N_STATES])[:, of.counts].T
 
 
 def _sample(values: Any, k: int) -> Any:

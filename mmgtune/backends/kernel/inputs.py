@@ -74,6 +74,13 @@ def looks_around(model: Model) -> bool:
     return bool(looking(model))
 
 
+def acting_slots(model: Model) -> range:
+    """Where what acts stands among inputs as logged and as each actuator leaves them: behind the last of these."""
+    n_inputs = len(model.inputs)
+    first = n_inputs * len(model.acting(ActuatorEffect))
+    return range(first, first + n_inputs)
+
+
 def actuate(model: Model, array: str, first: bool) -> list[str]:
     """What each actuator makes of what reaches it; at the first sample it has been at rest there."""
     n_inputs, actuators = len(model.inputs), model.acting(ActuatorEffect)
@@ -91,17 +98,15 @@ def actuate(model: Model, array: str, first: bool) -> list[str]:
         lines += [*where_present(effect, acts), "else:", *indented(each_lane(passes))]
     if first or not actuators:
         return lines
-    last = len(actuators) * n_inputs
-    through = [f"{slot(array, last + k)} = {slot(array, k)}" for k in range(n_inputs)]
+    through = [f"{slot(array, acting)} = {slot(array, logged)}" for logged, acting in enumerate(acting_slots(model))]
     return ["if steered:", *indented(lines), "else:", *indented(each_lane(through))]
 
 
 def carry(model: Model) -> list[str]:
     """What acts at the end of a step acts at the beginning of the next; what is between, in blocks that have any."""
-    n_inputs, actuators = len(model.inputs), model.acting(ActuatorEffect)
-    last = len(actuators) * n_inputs
-    whole = [f"for k in range({(last + n_inputs) * WIDTH}):", "    now[k] = then[k]"]
-    if not actuators:
+    last = acting_slots(model)
+    whole = [f"for k in range({last.stop * WIDTH}):", "    now[k] = then[k]"]
+    if not model.acting(ActuatorEffect):
         return whole
-    acting = [f"{slot('now', last + k)} = {slot('then', last + k)}" for k in range(n_inputs)]
+    acting = [f"{slot('now', k)} = {slot('then', k)}" for k in last]
     return ["if steered:", *indented(whole), "else:", *indented(each_lane(acting))]

@@ -22,7 +22,7 @@ from ...effects import ActuatorEffect, FactorsEffect, FilterEffect, FlowEffect, 
 from ...model import Model
 from ...physics.quantities import STATES, Force, Surroundings
 from ..tuples import leaves, numbered
-from .inputs import actuate, carry, looking, looks_around, sample, shifts_of
+from .inputs import acting_slots, actuate, carry, looking, looks_around, sample, shifts_of
 from .sensors import filtered, log_of, log_rows, settled
 from .stage import gaining, sees_forces, stage
 from .text import (
@@ -171,8 +171,6 @@ def kernel(
 def kernel_source(model: Model) -> str:
     """Python text of the simulator for the arrangement, components and effects of ``model``."""
     sensors, filters = model.acting(SensorEffect), model.acting(FilterEffect)
-    levels = len(model.acting(ActuatorEffect))
-    n_inputs = len(model.inputs)
     n_states = N_STATES + sum(len(lag.states) for lag in model.acting(LagEffect))
     shifts = shifts_of(model)
     n_around = len(Surroundings._fields)
@@ -182,7 +180,7 @@ def kernel_source(model: Model) -> str:
         imports="\n".join(_imports(model)),
         n_rows=rows_of(model),
         n_states=n_states,
-        n_control=n_inputs * (1 + levels),
+        n_control=acting_slots(model).stop,
         arrays="".join(f"    {name} = carray(stack({n} * {WIDTH}), ({n} * {WIDTH},))\n" for name, n in _arrays(model)),
         look_on=block_of(16, look_on if looks_around(model) else []),
         W=WIDTH,

@@ -5,22 +5,18 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from ...effects import ActuatorEffect, FactorsEffect, FlowEffect, ForceEffect, LagEffect
+from ...effects import FactorsEffect, FlowEffect, ForceEffect, LagEffect
 from ...model import Model
 from ...physics.quantities import STATES, Force
 from ..tuples import leaves
-from .inputs import AROUND, surround
+from .inputs import AROUND, acting_slots, surround
 from .text import N_STATES, WIDTH, any_of, each_lane, indented, name_of, slot, tuple_of, where_present
 
 
 def stage(model: Model) -> list[str]:
     """A stage of a step: velocity of the water, forces of the components, those of effects, and where that leads."""
     lines = [*surround(model), *_flows(model), *_factors(model)]
-    levels, n_inputs = len(model.acting(ActuatorEffect)), len(model.inputs)
-    control = ", ".join(
-        f"between({slot('now', levels * n_inputs + k)}, {slot('then', levels * n_inputs + k)}, at)"
-        for k in range(n_inputs)
-    )
+    control = ", ".join(f"between({slot('now', k)}, {slot('then', k)}, at)" for k in acting_slots(model))
     own = [f"control = Control({control})", "state = state_of(z, l)", *_water(model), *_coefficients(model)]
     own.append("found = forces(through_water(state, u_c, v_c), control, components, coefficients)")
     if not sees_forces(model):
