@@ -238,6 +238,7 @@ def _stepped(predictor: Predictor, member: int, sailing: Sailing) -> Motion:
     driven = {"propeller": sailing.n, "rudder": 0.0, "thruster": 0.0}
     now = np.array([driven[INPUTS[name].role] for name in predictor.inputs])
     under_way = stepper_of(predictor, member, state, now)
+    helmsman = sailing.helmsman_of_its_own()
     sample = sailing.sample
     steps = max(1, math.ceil(sample / LONGEST_STEP - 1e-9))
     states, controls = [state], [now]
@@ -245,13 +246,13 @@ def _stepped(predictor: Predictor, member: int, sailing: Sailing) -> Motion:
     for i in range(round(sailing.longest / sample)):
         for k in range(steps):
             t = i * sample + k * sample / steps
-            driven["rudder"] = sailing.helmsman.order(t, float(state[2] - sailing.heading))
+            driven["rudder"] = helmsman.order(t, float(state[2] - sailing.heading))
             then = np.array([driven[INPUTS[name].role] for name in predictor.inputs])
             state, now = under_way.step(now, then, sample / steps), then
         states.append(state)
         controls.append(now)
         diverged = not bool(np.isfinite(state).all())
-        if diverged or sailing.helmsman.finished(float(state[2] - sailing.heading)):
+        if diverged or helmsman.finished(float(state[2] - sailing.heading)):
             break
     times: FloatArray = sample * np.arange(len(states), dtype=np.float64)
     return Motion("run", times, np.array(states), np.array(controls), diverged, tuple(predictor.inputs), member)

@@ -221,6 +221,13 @@ def _mean(values: Sequence[float]) -> float | None:
     return float(mean) if np.isfinite(mean) else None
 
 
+def _share_gone(before: float, after: float) -> float:
+    """Of an error; of none, nothing is."""
+    if before == 0.0:
+        return 0.0 if after == 0.0 else -np.inf
+    return 1.0 - after / before
+
+
 def improvement(
     before: Sequence[TrialScore],
     after: Sequence[TrialScore],
@@ -231,7 +238,7 @@ def improvement(
 
     before, after  scores of the same trials by two models
     """
-    share = 1.0 - measure(after) / measure(before)
+    share = _share_gone(measure(before), measure(after))
     old, new = by_run(before), by_run(after)
     runs = list(old)
     if len(runs) < 3:
@@ -242,6 +249,6 @@ def improvement(
         chosen = rng.integers(len(runs), size=len(runs))
         a = measure([score for k in chosen for score in new[runs[k]]])
         b = measure([score for k in chosen for score in old[runs[k]]])
-        drawn.append(1.0 - a / b)
+        drawn.append(_share_gone(b, a))
     low, high = np.percentile(drawn, [2.5, 97.5])
     return share, (float(low), float(high))

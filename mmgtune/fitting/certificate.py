@@ -16,6 +16,9 @@ from .problem import FitProblem
 TOLERANCE = 1e-4
 """Relative difference of J within which two ends count as the same optimum."""
 
+LEAST_J = 1e-12
+"""J below which all are the same: of trials that the profile itself has made."""
+
 
 @dataclass(frozen=True)
 class ActiveBound:
@@ -87,14 +90,15 @@ def certify(
     ridge, anchor  weight of the squared distance from a point of the cube, 0 where the fit is not regularised.  The
                    cost is J with that added, here as in the search
 
-    Agreement is relative to J, or to a 1e-9th of J before tuning where J is smaller than that (noise-free trials).
+    Agreement is relative to J, or to a 1e-9th of J before tuning where J is smaller than that (noise-free trials), but
+    never to less than LEAST_J.
     """
 
     def cost(value: float, at: FloatArray) -> float:
         return value + ridge * float(np.sum((at - anchor) ** 2))
 
     J = cost(J, unit)
-    floor = max(J, 1e-9 * J_before)
+    floor = max(J, 1e-9 * J_before, LEAST_J)
     residuals, jacobian = problem.central_jacobian(unit)
     if ridge > 0.0:
         residuals = np.concatenate([residuals, np.sqrt(ridge) * (unit - anchor)])

@@ -15,6 +15,7 @@ from ..arrays import FloatArray
 from ..bands import Pooled
 from ..circumstances import notes_on
 from ..displayed import Displayed
+from ..errors import OptionError, Problem
 from ..evaluation import TrialRecord, evaluate
 from ..files import path_of, write_text
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
@@ -61,10 +62,20 @@ def leaving_out(trials: TrialSet, folds: int = 0) -> Iterator[tuple[tuple[str, .
     """Ids of the tune trials left out and of the others, in turn; windows of a run go together.
 
     folds  number of parts the runs are dealt out to; 0 for a part of its own for each run
+
+    Raises OptionError where all of them are one part: nothing would be left to fit to.
     """
     run_of = {name: trials.trials[name].run for name in trials.tune} | {name: name for name in trials.tune_stated}
     runs = list(dict.fromkeys(run_of.values()))
     n_parts = min(folds or len(runs), len(runs))
+    if n_parts < 2:
+        why = "what is scored would be what was fitted to"
+        if len(runs) > 1:
+            raise OptionError(
+                Problem("all runs are one part", "folds", why, "write folds=2 or more, or 0 for each run")
+            )
+        what = f"only {', '.join(runs) or 'no run'} to tune to, and leaving it out leaves none"
+        raise OptionError(Problem(what, "trials", why, "give two runs or more, or fit and validate on another run"))
     for k in range(n_parts):
         part = set(runs[k::n_parts])
         out = tuple(name for name in run_of if run_of[name] in part)

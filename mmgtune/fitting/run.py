@@ -103,12 +103,13 @@ class Setting:
         left = [name for name in self.box.names if name not in names]
         return replace(self, box=boxed(self.model, left, self.a_r, self.sisters))
 
-    def problem(self, ids: Sequence[str] = ()) -> FitProblem:
+    def problem(self, ids: Sequence[str] | None = None) -> FitProblem:
         """The problem of fitting the tune trials, or the trials ``ids``.
 
         Raises OptionError where the window leaves one without a sample.
         """
-        ids = ids or (*self.trials.tune, *self.trials.tune_stated)
+        if ids is None:
+            ids = (*self.trials.tune, *self.trials.tune_stated)
         chosen = [self.trials.trials[name] for name in ids if name in self.trials.trials]
         stated = [self.trials.stated[name] for name in ids if name in self.trials.stated]
         terms = (*self.terms, StatedIndices(stated)) if stated else self.terms
@@ -116,10 +117,10 @@ class Setting:
         sigma = self.deviations(ids) if self.estimated and chosen else None
         return FitProblem.of(self.model, cases, self.box, self.backend, self.integrator, sigma, terms)
 
-    def deviations(self, ids: Sequence[str] = ()) -> FloatArray:
+    def deviations(self, ids: Sequence[str] | None = None) -> FloatArray:
         """Deviations (n_trials, 6) of the measured initial states."""
         scales = np.array([self.objective.scales[name] for name in STATES])
-        ids = ids or self.trials.tune
+        ids = self.trials.tune if ids is None else ids
         return deviations([self.trials.trials[name] for name in ids if name in self.trials.trials], scales)
 
 
@@ -168,7 +169,9 @@ def boxed(model: Model, names: Sequence[str], a_r: float | None, sisters: Pooled
     return box if sisters is None else with_sisters(box, sisters)
 
 
-def make_problem(profile: ShipProfile, trials: TrialSet, options: FitOptions, ids: Sequence[str] = ()) -> FitProblem:
+def make_problem(
+    profile: ShipProfile, trials: TrialSet, options: FitOptions, ids: Sequence[str] | None = None
+) -> FitProblem:
     """The problem of fitting ``profile`` to the tune trials, or to the trials ``ids``.
 
     Raises OptionError for targets, box, channels or window that make no sense.

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..displayed import Plotted
-from ..files import write_text
+from ..files import path_of, write_text
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..options import SweepOptions
 from ..options.choice import must_be
@@ -223,7 +223,7 @@ def sweep(
     resume  continue the sweep in the folder that was stopped: what is finished there is read back
     Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to.
     """
-    folder = None if folder is None else Path(folder)
+    folder = None if folder is None else path_of(folder)
     must_be(options, SweepOptions)
     profile, trials = ship_of(profile), trials_of(trials)
     profile, options = settled(profile, options, trials)
@@ -301,7 +301,7 @@ def _leave_one_out(
     total, compared = 0.0, list[TrialComparison]()
     start, before = run.unit[:, None], run.box.to_unit(run.box.pre)
     setting = make_setting(profile, trials, run.options)
-    whole = setting.problem(())
+    whole = setting.problem()
     ridge = edge_ridge(whole.with_weight(run.beside.weight.s2) if run.beside else whole, run.options, before)
     for left_out, others in leaving_out(trials):
         if hooks.stop():

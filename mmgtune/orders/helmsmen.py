@@ -4,13 +4,40 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from numbers import Real
+from numbers import Integral, Real
 from typing import Protocol
 
 from ..errors import OptionError, Problem, brief
 
 RUDDER_MOST, HEADING_MOST = 1.6, 2.0 * math.pi
 """Rudder angle and check heading [rad] beyond which degrees are meant."""
+
+
+def is_number(value: object, *, least: float = -math.inf, above: float = -math.inf) -> bool:
+    """Whether a value is a finite number, not below one limit and above the other."""
+    return isinstance(value, Real) and math.isfinite(value) and float(value) >= least and float(value) > above
+
+
+def positive(**given: float) -> None:
+    """Raises OptionError for the first of some lengths of time [s] that is not above 0."""
+    for name, value in given.items():
+        if not is_number(value, above=0.0):
+            raise OptionError(Problem(f"{name} is {brief(value)}", name, "it is in seconds", "give a number above 0"))
+
+
+def whole(least: int, **given: int) -> None:
+    """Raises OptionError for the first of some numbers of orders that is less, or not whole."""
+    for name, value in given.items():
+        if not isinstance(value, Integral) or value < least:
+            raise OptionError(Problem(f"{name} is {brief(value)}", name, fix=f"give a whole number, {least} or more"))
+
+
+def started(at: float) -> None:
+    """Raises OptionError for a time of the first order [s] before the start."""
+    if not is_number(at, least=0.0):
+        raise OptionError(
+            Problem(f"the first order is given at {brief(at)}", "at", "it is in seconds", "give 0 or more")
+        )
 
 
 def in_radians(angle: float, name: str, most: float) -> None:
@@ -24,7 +51,7 @@ def in_radians(angle: float, name: str, most: float) -> None:
 
 
 class Helmsman(Protocol):
-    """Turns time and heading into rudder orders; may remember what it has seen."""
+    """Turns time and heading into rudder orders; may remember what it has seen: each simulation has its own copy."""
 
     def order(self, t: float, heading: float) -> float:
         """Rudder ordered [rad] at time t [s] and heading off the approach course [rad]."""
@@ -44,8 +71,12 @@ class TurningOrder:
     until: float = math.radians(540.0)
 
     def __post_init__(self) -> None:
-        """Raises OptionError for an angle that must be degrees."""
+        """Raises OptionError for an angle that must be degrees, and for times that make no sense."""
         in_radians(self.angle, "rudder angle", RUDDER_MOST)
+        started(self.at)
+        if not is_number(self.until, above=0.0):
+            why = "it ends where the heading has changed by so much"
+            raise OptionError(Problem(f"until is {brief(self.until)}", "until", why, "write math.radians(540.0)"))
 
     def order(self, t: float, heading: float) -> float:
         """See ``Helmsman``."""
@@ -58,7 +89,10 @@ class TurningOrder:
 
 @dataclass
 class ZigzagOrder:
-    """Rudder [rad] put over to the other side whenever the heading passes ``heading`` [rad]; ``legs`` orders in all."""
+    """Rudder [rad] put over to the other side whenever the heading passes ``heading`` [rad].
+
+    After ``legs`` orders it is over where the next would be given.
+    """
 
     rudder: float
     heading: float
@@ -68,9 +102,11 @@ class ZigzagOrder:
     _given: int = 0
 
     def __post_init__(self) -> None:
-        """Raises OptionError for angles that must be degrees."""
+        """Raises OptionError for angles that must be degrees, and for what makes no sense."""
         in_radians(self.rudder, "rudder angle", RUDDER_MOST)
         in_radians(self.heading, "check heading", HEADING_MOST)
+        started(self.at)
+        whole(1, legs=self.legs)
 
     def order(self, t: float, heading: float) -> float:
         """See ``Helmsman``."""
@@ -98,6 +134,13 @@ class SpiralOrder:
     at: float = 20.0
     _t: float = 0.0
 
+    def __post_init__(self) -> None:
+        """Raises OptionError for an angle that must be degrees, and for what makes no sense."""
+        in_radians(self.rudder, "rudder angle", RUDDER_MOST)
+        positive(hold=self.hold)
+        whole(2, steps=self.steps)
+        started(self.at)
+
     def order(self, t: float, heading: float) -> float:
         """See ``Helmsman``."""
         self._t = t
@@ -114,6 +157,10 @@ class Weave:
     """Rudder orders of changing size and sign every ``hold`` seconds: excites everything a little."""
 
     hold: float
+
+    def __post_init__(self) -> None:
+        """Raises OptionError for a time that is not above 0."""
+        positive(hold=self.hold)
 
     def order(self, t: float, heading: float) -> float:
         """See ``Helmsman``."""

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..arrays import FloatArray
-from ..errors import OptionError, Problem, kind_of
+from ..errors import OptionError, Problem, brief, kind_of
 from ..inputs import Role
+from ..limits import TRIAL_SAMPLES
 from ..model import Model
 from ..profile import ShipProfile
 from ..simulation import Motion
-from .helmsmen import Helmsman
+from .helmsmen import Helmsman, is_number, positive
 
 FINE = 0.01
 """Step of the integration, fourth-order Runge-Kutta, as a share of the time the ship takes for its own length."""
@@ -50,13 +52,28 @@ class Sailing:
     engine: Callable[[float], float] | None = None
 
     def __post_init__(self) -> None:
-        """Raises OptionError for a helmsman that cannot steer, such as a bare angle."""
+        """Raises OptionError for a helmsman that cannot steer, such as a bare angle, and for numbers that are none."""
         lacking = [name for name in ("order", "finished") if not callable(getattr(self.helmsman, name, None))]
         if lacking:
             what = f"{kind_of(self.helmsman)} is no helmsman"
             why = f"it has no {' and no '.join(lacking)}: how the rudder is moved is not known"
             fix = "give orders, such as TurningOrder(radians(35)) or ZigzagOrder(radians(10))"
             raise OptionError(Problem(what, "helmsman", why, fix))
+        positive(longest=self.longest, sample=self.sample, **({} if self.step is None else {"step": self.step}))
+        TRIAL_SAMPLES.hold(self.longest / self.sample, "sample", OptionError)
+        if not (self.speed is None or is_number(self.speed, above=0.0)):
+            what = f"the approach speed is {brief(self.speed)}"
+            raise OptionError(Problem(what, "speed", "it is in m/s", "give a number above 0"))
+        if not (self.n is None or is_number(self.n)):
+            what = f"the revolutions are {brief(self.n)}"
+            raise OptionError(Problem(what, "n", "they are in 1/s", "give a number: rpm / 60"))
+        if not is_number(self.heading):
+            what = f"the approach heading is {brief(self.heading)}"
+            raise OptionError(Problem(what, "heading", "it is in radians", "write math.radians(90.0) for 90 deg"))
+
+    def helmsman_of_its_own(self) -> Helmsman:
+        """A copy of the helmsman, who may remember what he has seen, for one simulation."""
+        return copy(self.helmsman)
 
     def approach(self, profile: ShipProfile) -> tuple[float, float]:
         """Speed [m/s] and revolutions [1/s] of the approach.  Raises OptionError where they are not known."""
@@ -71,7 +88,7 @@ class Sailing:
             )
         U_0 = self.speed if self.speed is not None else profile.approach.speed  # type: ignore[union-attr]
         n_0 = self.n if self.n is not None else profile.approach.n  # type: ignore[union-attr]
-        if not (U_0 > 0.0 and math.isfinite(U_0)):
+        if not U_0 > 0.0:
             raise OptionError(Problem(f"the approach speed is {U_0:g} m/s", "speed", fix="give a speed above 0"))
         return U_0, n_0
 
@@ -81,6 +98,7 @@ class Watch:
 
     def __init__(self, sailing: Sailing, model: Model):
         self.sailing = sailing
+        self.helmsman = sailing.helmsman_of_its_own()
         self.U_0, self.n_0 = sailing.approach(model.profile)
         longest = sailing.step or min(LONGEST_STEP, FINE * model.L_pp / self.U_0)
         self.steps = max(1, math.ceil(sailing.sample / longest - 1e-9))
@@ -98,7 +116,7 @@ class Watch:
         if self.over:
             return 0.0, self.n_0, 0.0
         sample, k = divmod(step, self.steps)
-        rudder = sailing.helmsman.order(sample * sailing.sample + k * self.h, float(shown[2]) - sailing.heading)
+        rudder = self.helmsman.order(sample * sailing.sample + k * self.h, float(shown[2]) - sailing.heading)
         share = 1.0 if sailing.engine is None else sailing.engine(math.hypot(state[3], state[4]) / self.U_0)
         return rudder, self.n_0 * share, 0.0
 
@@ -114,7 +132,7 @@ class Watch:
     def look(self, sound: bool) -> None:
         """Whether the manoeuvre is over with this sample."""
         self.diverged = not sound
-        done = self.sailing.helmsman.finished(float(self.states[-1][2] - self.sailing.heading))
+        done = self.helmsman.finished(float(self.states[-1][2] - self.sailing.heading))
         self.over = self.diverged or done or len(self.states) > self.samples
 
     def motion(self, model: Model) -> Motion:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -43,7 +43,6 @@ SAMPLE = 0.1
 class Candidate:
     """A trial that can be sailed.
 
-    helmsman  makes one anew: a helmsman remembers what he has seen
     approach  speed and revolutions before the order
     longest   time after which it ends in any case [s]
     astern    whether the propeller is reversed from the start, and the trial over where the ship has no way left
@@ -52,7 +51,7 @@ class Candidate:
     id: str
     kind: str
     words: str
-    helmsman: Callable[[], Helmsman]
+    helmsman: Helmsman
     approach: Approach
     longest: float
     astern: bool = False
@@ -61,7 +60,7 @@ class Candidate:
         """What is simulated."""
         sample = min(1.0, SAMPLE * L_pp / self.approach.speed)
         return Sailing(
-            self.helmsman(),
+            self.helmsman,
             self.id,
             self.approach.speed,
             self.approach.n,
@@ -102,20 +101,14 @@ def _turning(profile: ShipProfile, approach: Approach, at: str) -> Iterator[Cand
         for angle in (size * DEG, -size * DEG):
             if not _reached(profile, angle):
                 continue
-
-            def turn(angle: float = angle) -> Helmsman:
-                return TurningOrder(angle, at=0.5 * unit)
-
+            turn = TurningOrder(angle, at=0.5 * unit)
             words = f"turn, {size:.0f} deg to {_side(angle)}{at}"
             yield Candidate(turn_name(angle) + suffix, "turn", words, turn, approach, LONGEST * unit)
     for size in ZIGZAGS:
         for angle in (size * DEG, -size * DEG):
             if not _reached(profile, angle) or not _reached(profile, -angle):
                 continue
-
-            def zigzag(angle: float = angle) -> Helmsman:
-                return ZigzagOrder(angle, abs(angle), at=0.5 * unit)
-
+            zigzag = ZigzagOrder(angle, abs(angle), at=0.5 * unit)
             words = f"zigzag {size:.0f}/{size:.0f}, {_side(angle)} first{at}"
             name = zigzag_name(math.copysign(size, angle), size) + suffix
             yield Candidate(name, "zigzag", words, zigzag, approach, LONGEST * unit)
@@ -125,20 +118,17 @@ def _others(profile: ShipProfile, approach: Approach) -> Iterator[Candidate]:
     unit = profile.L_pp / approach.speed
     most = min(LARGEST_SPIRAL, _most(profile))
     for side in (most, -most):
-
-        def spiral(side: float = side) -> Helmsman:
-            return SpiralOrder(side, HOLD * unit, at=0.5 * unit)
-
+        spiral = SpiralOrder(side, HOLD * unit, at=0.5 * unit)
         words = f"spiral from {most / DEG:.0f} deg to {_side(side)}"
         name = f"spiral_{'p' if side > 0.0 else 'm'}{most / DEG:.0f}"
         yield Candidate(name, "spiral", words, spiral, approach, 1.1 * 9.0 * HOLD * unit)
     propeller = profile.sections["propeller"].component.tag if "propeller" in profile.sections else ""
     if propeller in ASTERN:
-        yield Candidate("stop", "stop", "crash stop", Straight, approach, LONGEST * unit, astern=True)
-    yield Candidate("straight", "straight", "straight run", Straight, approach, SHORT * unit)
+        yield Candidate("stop", "stop", "crash stop", Straight(), approach, LONGEST * unit, astern=True)
+    yield Candidate("straight", "straight", "straight run", Straight(), approach, SHORT * unit)
     if _reached(profile, 25.0 * DEG) and _reached(profile, -25.0 * DEG):
         words = "rudder orders of changing size every two ship lengths"
-        yield Candidate("weave", "weave", words, lambda: Weave(2.0 * unit), approach, 30.0 * unit)
+        yield Candidate("weave", "weave", words, Weave(2.0 * unit), approach, 30.0 * unit)
 
 
 def _until_stopped(found: Motion) -> Motion:

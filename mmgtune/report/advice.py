@@ -31,6 +31,13 @@ def shortest(path: str, kind: str) -> str:
     return clean(place.stem if place.parent == resources.folder(kind) else path)
 
 
+def _several(data: Mapping[str, Any]) -> bool:
+    """Whether more than one run was tuned to."""
+    results, stated = data.get("trial_results") or (), data.get("stated") or ()
+    runs = {row.get("run") or row["id"] for row in results if row.get("role") == "tune"}
+    return len(runs | {row["trial"] for row in stated if row.get("role") == "tune"}) > 1
+
+
 def after_fit(data: Mapping[str, Any]) -> Advice:
     """(reason, command) pairs that follow from a fit."""
     profile, trials = _inputs(data)
@@ -43,10 +50,10 @@ def after_fit(data: Mapping[str, Any]) -> Advice:
         this = f" (this run: a_r = {shown(a_r)})" if a_r is not None else ""
         reason = f"{bound} at a bound: see what other ranges do on trials that were not tuned on{this}"
         items.append((reason, f"mmgtune sweep {profile} {trials}{method}"))
-    elif data.get("stated") and data.get("J_test") is None:
+    elif data.get("stated") and _several(data) and data.get("J_test") is None:
         reason = "Leave each trial out in turn, to see how the fit does on trials it was not tuned on"
         items.append((reason, f"mmgtune leave-out {profile} {trials}"))
-    elif data.get("J_test") is None:
+    elif data.get("J_test") is None and _several(data):
         reason = "No test set: leave each trial out in turn, to see how the fit does on trials it was not tuned on"
         items.append((reason, f"mmgtune leave-out {profile} {trials}{same}"))
     if data.get("misses"):
