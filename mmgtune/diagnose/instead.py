@@ -26,6 +26,9 @@ NEARLY = 0.85
 OF_OTHERS = 1.0 / 3.0
 """Share of what it leaves of that, over what the next best of another effect leaves, at most."""
 
+MATTERS = 1.0 - (1.0 - NEARLY) / OF_OTHERS
+"""Share of what re-tuning removes that a cause must promise to be followed to its end: less changes no answer."""
+
 ALSO, FAR_LESS = 0.75, 0.02
 """Share of what re-tuning removes beyond which another effect does much the same, as any does of a ship that is unlike
 her profile in many ways; and the share of what that one leaves that the best may leave then."""
@@ -36,8 +39,9 @@ class Instead:
     """A cause that does alone, all coefficients being the profile's, most of what re-tuning does.
 
     words       the cause as a sentence without its full stop
-    share       of the fall of chi-squared by re-tuning that it brings; next_share: that of the next best effect
-    next_effect its tag, "" for none
+    share       of the fall of chi-squared by re-tuning that it brings
+    next_effect tag of the next best effect, "" where none was worth following to its end
+    next_share  that it brings
     """
 
     effect: str
@@ -49,11 +53,13 @@ class Instead:
     @property
     def sentence(self) -> str:
         """What re-tuning may stand for."""
-        other = f", the next best, {self.next_effect}, {100.0 * self.next_share:.0f} %" if self.next_effect else ""
+        other = f"no other promises more than {100.0 * MATTERS:.0f} %"
+        if self.next_effect:
+            other = f"the next best, {self.next_effect}, {100.0 * self.next_share:.0f} %"
         words = self.words[0].lower() + self.words[1:]
         return (
             "Re-tuning may stand for a cause: with all coefficients as the profile has them, one cause alone removes "
-            f"{100.0 * self.share:.3g} % of what re-tuning removes{other}. If so: {words}."
+            f"{100.0 * self.share:.3g} % of what re-tuning removes, {other}. If so: {words}."
         )
 
     def to_dict(self) -> dict[str, Any]:
@@ -63,7 +69,7 @@ class Instead:
             "sentence": self.words,
             "share": self.share,
             "next_effect": self.next_effect or None,
-            "next_share": self.next_share,
+            "next_share": self.next_share if self.next_effect else None,
         }
 
 
@@ -83,7 +89,8 @@ def instead_of_tuning(bench: Workbench, tuned: Point, hypotheses: Sequence[Hypot
     asked = [one for one in hypotheses if not (one.by or one.effect.one_of_many)]
     linear = linearise(bench, as_it_is, [name for one in asked for name in one.bases])
     try:
-        fits = Refitting(bench, as_it_is, linear, Known(), every=True).best(scores(linear, asked), quick=False)
+        refitting = Refitting(bench, as_it_is, linear, Known(), every=True, enough=as_it_is.chi2 - MATTERS * fall)
+        fits = refitting.best(scores(linear, asked), quick=False)
     except Stopped:
         return None
     fits.sort(key=lambda fit: -fit.gain)
@@ -91,6 +98,8 @@ def instead_of_tuning(bench: Workbench, tuned: Point, hypotheses: Sequence[Hypot
         return None
     best = fits[0]
     other = next((fit for fit in fits if fit.hypothesis.tag != best.hypothesis.tag), None)
+    if other and other.gain < MATTERS * fall:  # it may not have been followed to its end
+        other = None
     next_gain = other.gain if other else 0.0
     if fall - best.gain > (FAR_LESS if next_gain > ALSO * fall else OF_OTHERS) * (fall - next_gain):
         return None

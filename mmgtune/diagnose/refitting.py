@@ -132,6 +132,7 @@ class Refitting:
     known   refits there are within the look
     given   what is known so far without leeway, None where nothing has any or little is left without it either
     every   whether every hypothesis makes first steps: where nothing is re-tuned derivatives foretell little
+    enough  chi-squared from which on no refit is of use
     """
 
     bench: Workbench
@@ -140,6 +141,7 @@ class Refitting:
     known: Known
     given: Given | None = None
     every: bool = False
+    enough: float = math.inf
 
     @property
     def strong(self) -> bool:
@@ -149,7 +151,7 @@ class Refitting:
     @property
     def _hopeless(self) -> float:
         """Chi-squared from which on refits are given up here."""
-        return hopeless_beside(self.bench, self.known.least)
+        return min(self.enough, hopeless_beside(self.bench, self.known.least))
 
     @property
     def _before(self) -> Point:
@@ -324,12 +326,15 @@ class Refitting:
         for score, end in zip(chosen, rough, strict=True):
             self._go_on()
             gain = self.point.chi2 - end.foreseen
-            hopeless = score.hypothesis.by and self.strong and end.chi2 - n > HOPELESS * max(left, 0.0)
+            far = bool(score.hypothesis.by) and self.strong and end.chi2 - n > HOPELESS * max(left, 0.0)
+            hopeless = far or end.foreseen > self.enough
             if not hopeless and gain >= enough and gain > 0.5 * ENOUGH * score.inflation:
                 end = self._on(score, end, MOST_STEPS if self.strong else ALL_STEPS)
             ends.append(end)
         best = sorted(range(len(ends)), key=lambda k: ends[k].chi2)[:FEW] if self.strong else []
         for k in best:  # where little is known the others may take for ever, and are out of the question
+            if ends[k].foreseen > self.enough:
+                continue
             self._go_on()
             ends[k] = self._on(chosen[k], ends[k], ALL_STEPS)
         for _ in range(LONG_WAYS):
@@ -390,6 +395,9 @@ class Refitting:
             ends = [end] if self.known.good else self._steps(end, score, end.unit[:, None], ROUGH)
         elif names in self.known.begun:
             before = self._before
+            nearest = min(self.known.begun[names], key=lambda end: end.foreseen)
+            if nearest.foreseen > self.enough:
+                return nearest
             null = origin(self.bench, before, names)
             begun = sorted(self.known.begun[names], key=lambda end: end.chi2)
             away = [end for end in begun if np.any(end.unit[-len(null) :] != null)]  # at the null there is no way on
