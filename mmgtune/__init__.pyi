@@ -26,6 +26,7 @@ from .fitting import SweepResult as SweepResult
 from .fitting import fit as fit
 from .fitting import leave_out as leave_out
 from .fitting import sweep as sweep
+from .fitting import write_left_out as write_left_out
 from .fitting import write_run as write_run
 from .fleet import FleetPlan as FleetPlan
 from .fleet import FleetRun as FleetRun
@@ -84,6 +85,7 @@ from .particles import load_particles as load_particles
 from .particles import save_particles as save_particles
 from .planning import TrialPlan as TrialPlan
 from .planning import plan_trial as plan_trial
+from .planning import write_plan as write_plan
 from .posterior import Posterior as Posterior
 from .posterior import posterior as posterior
 from .posterior import write_posterior as write_posterior

@@ -11,8 +11,9 @@ import numpy as np
 
 from .arrays import FloatArray
 from .displayed import Displayed
+from .documents import write_json
 from .errors import OptionError, Problem
-from .files import path_of, refuse_existing, write_text
+from .files import path_of, refuse_existing
 from .given import ShipGiven, ship_of
 from .options import SimulateOptions
 from .physics.prime import force_unit, moment_unit
@@ -73,18 +74,16 @@ class Comparison(Displayed):
     def write(self, folder: Path | str, overwrite: bool = False) -> Path:
         """Write the record into a folder; its path.  Raises OutputError where there is one already."""
         folder = path_of(folder)
-        import json
 
         path = folder / FILE
-        if not overwrite:
-            refuse_existing([path])
-        return write_text(path, json.dumps(self.to_dict(), indent=1) + "\n", overwrite)
+        refuse_existing([path], overwrite)
+        return write_json(self.to_dict(), path, overwrite)
 
 
 def compare(a: ShipGiven, b: ShipGiven) -> Comparison:
     """Two profiles: objects, paths or bundled names.
 
-    Forces are at the approach speed and revolutions of the first, in the prime system of each.
+    Forces are at the approach speed of the first, with the revolutions of each, in the prime system of each.
     Raises OptionError where they are driven by different inputs.
     """
     ships = ship_of(a), ship_of(b)
@@ -207,7 +206,10 @@ def _over_rudder(ships: tuple[ShipProfile, ShipProfile], U: float) -> dict[str, 
 
 
 def _manoeuvres(ships: tuple[ShipProfile, ShipProfile]) -> dict[str, Any]:
-    """Standard manoeuvres of both: indices that both have, and tracks of the turns in lengths of the ship."""
+    """Standard manoeuvres of both: indices that both have, and tracks of the turns in lengths of the ship.
+
+    One that diverged has none.
+    """
     if any(ship.approach is None or ship.steering_gear is None for ship in ships):
         return {"indices": [], "tracks": {}}
     options = SimulateOptions(turn=TURNS, zigzag=ZIGZAGS)
@@ -222,7 +224,7 @@ def _manoeuvres(ships: tuple[ShipProfile, ShipProfile]) -> dict[str, Any]:
     tracks: dict[str, Any] = {}
     motions: dict[str, Any] = {}
     for key, one, ship in zip("ab", both, ships, strict=True):
-        for motion in one:
+        for motion in (motion for motion in one if not motion.diverged):
             every = slice(None, None, max(1, len(motion.t) // POINTS))
             columns = {"t": motion.t, **dict(zip(STATES, motion.states.T, strict=True))}
             motions.setdefault(motion.id, {})[key] = {

@@ -7,7 +7,6 @@ what was measured: distances from the particles, CRPS, coverage, width.
 
 from __future__ import annotations
 
-import json
 import math
 import time
 from collections.abc import Mapping, Sequence
@@ -18,8 +17,9 @@ from typing import Any, TypeVar, cast
 
 from .bands import Pooled, WindowScore, pooled
 from .displayed import Brief, Displayed
+from .documents import write_json
 from .errors import OptionError, Problem, closest
-from .files import path_of, write_text
+from .files import path_of, refuse_existing
 from .given import TrialsGiven, trials_of
 from .inputs import INPUTS
 from .options import CompareModelsOptions
@@ -299,13 +299,21 @@ def _only(data: TrialSet, only: Sequence[str]) -> TrialSet:
 
 
 def write_model_comparison(
-    result: ModelComparison, folder: Path | str, command: str = "", notes: Sequence[str] = ()
+    result: ModelComparison,
+    folder: Path | str,
+    command: str = "",
+    notes: Sequence[str] = (),
+    *,
+    overwrite: bool = False,
 ) -> dict[str, Any]:
-    """Write the record into a run folder, and the motions of whole trials.  Returns it; raises OutputError.
+    """Write the record into a run folder, and the motions of whole trials.  Returns it.
 
     notes  what a reader of the errors must know
+
+    Raises OutputError where one is there already and ``overwrite`` is false, or the system refuses to write.
     """
     folder = path_of(folder)
+    refuse_existing([folder / RESULT], overwrite)
     pieces = list(result.data.trials.values())[:MOST]
     names = write_motions({one.name: one.predictor for one in result.models}, pieces, folder)
     document = {
@@ -315,5 +323,5 @@ def write_model_comparison(
         "inputs": [INPUTS[name].to_dict() for name in names],
         "out": str(folder),
     }
-    write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+    write_json(document, folder / RESULT)
     return document

@@ -5,9 +5,9 @@ from __future__ import annotations
 import contextlib
 import os
 import re
+import secrets
 import stat
 import sys
-import tempfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
@@ -40,7 +40,6 @@ def atomic(path: Path, overwrite: bool = True) -> Iterator[Path]:
         yield part
         with part.open("rb") as file:
             os.fsync(file.fileno())
-        os.chmod(part, 0o644)
         os.replace(part, path)
 
 
@@ -49,11 +48,10 @@ def half(path: Path) -> Iterator[Path]:
     """A temporary file beside ``path``, gone when the block ends.  Raises OutputError where the system refuses."""
     make_folder(path.parent)
     try:
-        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
-        os.close(handle)
+        part = path.parent / f".{path.name}.{secrets.token_hex(4)}.part"
+        os.close(os.open(part, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o644))  # less where the user's mask says so
     except (OSError, ValueError) as error:  # the latter for a zero byte in the name
         raise cannot_write(path, error) from error
-    part = Path(name)
     _PARTS.add(part)
     try:
         yield part
@@ -162,8 +160,10 @@ def write_text(path: Path, text: str, overwrite: bool = True) -> Path:
     return path
 
 
-def refuse_existing(paths: Iterable[Path]) -> None:
-    """Raises OutputError with each of these outputs that is already there."""
+def refuse_existing(paths: Iterable[Path], overwrite: bool = False) -> None:
+    """Raises OutputError with each of these outputs that is already there, unless they are to be replaced."""
+    if overwrite:
+        return
     found = [exists(path) for path in dict.fromkeys(paths) if os.path.lexists(path)]
     if found:
         raise OutputError(*found)
@@ -175,7 +175,7 @@ def exists(path: Path) -> Problem:
         what="the output exists already",
         where=str(path),
         why="results are never overwritten silently",
-        fix="choose another folder, or add force=True to replace it",
+        fix="choose another folder, or add overwrite=True to replace it",
     )
 
 

@@ -6,7 +6,6 @@ her there; what counts is the integral of the absolute errors of heading and of 
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -17,8 +16,9 @@ import numpy as np
 
 from .arrays import FloatArray
 from .displayed import Displayed
+from .documents import write_json
 from .errors import OptionError, Problem
-from .files import path_of, write_text
+from .files import path_of, refuse_existing
 from .given import ShipGiven, ship_of
 from .inputs import INPUTS
 from .networks import named_ship
@@ -181,11 +181,17 @@ def overrated(scores: FloatArray, truth: FloatArray) -> float:
     return float(np.mean(scores < truth))
 
 
-def write_heading_study(result: HeadingStudy, folder: Path | str, command: str = "") -> dict[str, Any]:
-    """Write the record into a run folder.  Returns it; raises OutputError."""
+def write_heading_study(
+    result: HeadingStudy, folder: Path | str, command: str = "", *, overwrite: bool = False
+) -> dict[str, Any]:
+    """Write the record into a run folder.  Returns it.
+
+    Raises OutputError where one is there already and ``overwrite`` is false, or the system refuses to write.
+    """
     folder = path_of(folder)
+    refuse_existing([folder / RESULT], overwrite)
     document = {**result.to_dict(command), "out": str(folder)}
-    write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+    write_json(document, folder / RESULT)
     return document
 
 

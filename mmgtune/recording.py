@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from .files import write_text
+from .documents import write_json
+from .files import path_of, refuse_existing, write_text
 from .inputs import INPUTS
 from .physics.quantities import STATES
 from .predictor import Predictor, profile_of
@@ -59,11 +59,17 @@ def write_simulation(result: Simulated, rows: Sequence[Mapping[str, Any]], folde
     )
 
 
-def write_validation(result: Validation, data: TrialSet, folder: Path, command: str) -> dict[str, Any]:
+def write_validation(
+    result: Validation, data: TrialSet, folder: Path | str, command: str = "", *, overwrite: bool = False
+) -> dict[str, Any]:
     """Write validate.json, and the motions of the first member of each predictor.  Returns the document.
 
     data  the trials the predictors were scored on
+
+    Raises OutputError where a result is there already and ``overwrite`` is false, or the system refuses to write.
     """
+    folder = path_of(folder)
+    refuse_existing([folder / "validate.json"], overwrite)
     restart = result.options.restart
     pieces = list((data.in_windows(restart) if restart else data).trials.values())[:MOST]
     names = write_motions({one.name: one.predictor for one in result.profiles}, pieces, folder)
@@ -122,4 +128,4 @@ def _joined(columns: Mapping[str, list[Any]]) -> dict[str, Any]:
 
 
 def _write(path: Path, document: Mapping[str, Any]) -> None:
-    write_text(path, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+    write_json(document, path)

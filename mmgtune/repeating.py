@@ -84,7 +84,7 @@ def repeat(
     *,
     theta: FloatArray | None = None,
 ) -> list[Repeated]:
-    """Repeat each trial that is a turning circle or a zigzag without gaps; others are left out.
+    """Repeat each trial that is a turning circle or a zigzag without gaps, begun with way on; others are left out.
 
     ship, trials  objects, paths or bundled names; ``ship`` may be any predictor, ``trials`` a list of trials
     theta  (n_rows, n_members) coefficients of a profile or model, its own where None
@@ -102,10 +102,11 @@ def repeat(
     for trial in list_of(trials):
         track = track_if_whole(trial)
         kind = "other" if track is None else manoeuvre_kind(track)
-        if track is not None and kind in read:
-            given += [(trial.id, kind, read[kind](predictor.L_pp, trial, track))] * predictor.n_members
+        order = read[kind](predictor.L_pp, trial, track) if track is not None and kind in read else None
+        if order is not None:
+            given += [(trial.id, kind, order)] * predictor.n_members
     members = [k % predictor.n_members for k in range(len(given))]
-    motions = steered(predictor, members, [order.sailing() for _, _, order in given])
+    motions = steered(predictor, members, [order.sailing for _, _, order in given])
     return [
         Repeated(id, kind, order.words, order.measured.to_dict(), order.again(motion), member)
         for (id, kind, order), motion, member in zip(given, motions, members, strict=True)
@@ -153,13 +154,13 @@ class _Order:
 
     words     of the order
     measured  indices of the trial
-    sailing   the same manoeuvre anew, with a helmsman of its own
+    sailing   the same manoeuvre anew
     read      indices of a track of it
     """
 
     words: str
     measured: TurningIndices | ZigzagIndices
-    sailing: Callable[[], Sailing]
+    sailing: Sailing
     read: Callable[[Track], TurningIndices | ZigzagIndices]
 
     def again(self, motion: Motion) -> dict[str, Any]:
@@ -170,23 +171,22 @@ class _Order:
             return {}
 
 
-_Read = Callable[[float, Trial, Track], _Order]
+_Read = Callable[[float, Trial, Track], _Order | None]
 
 
-def _turn(L_pp: float, trial: Trial, track: Track) -> _Order:
+def _turn(L_pp: float, trial: Trial, track: Track) -> _Order | None:
     measured = turning_indices(track, L_pp)
     angle = _signed(measured.rudder_angle, measured.direction)
     until = float(np.max(np.abs(track.psi - track.psi[0]))) + 5.0 * DEG
     words = f"{measured.rudder_angle / DEG:.3g} deg to {measured.direction}"
+    if not measured.approach_speed > 0.0:
+        return None
     at = measured.execute_time, measured.approach_speed
-
-    def sailing() -> Sailing:
-        return _sailing(L_pp, track, *at, lambda begin: TurningOrder(angle, begin, until))
-
+    sailing = _sailing(L_pp, track, *at, lambda begin: TurningOrder(angle, begin, until))
     return _Order(words, measured, sailing, lambda again: turning_indices(again, L_pp))
 
 
-def _zigzag(L_pp: float, trial: Trial, track: Track) -> _Order:
+def _zigzag(L_pp: float, trial: Trial, track: Track) -> _Order | None:
     measured = zigzag_indices(track, L_pp, ordered_angles(trial))
     angle = _signed(measured.rudder_held, measured.direction)
     heading = measured.heading_angle or measured.rudder_angle
@@ -194,10 +194,9 @@ def _zigzag(L_pp: float, trial: Trial, track: Track) -> _Order:
     words = f"{measured.rudder_angle / DEG:.3g}/{heading / DEG:.3g} to {measured.direction} first"
     at = measured.execute_time[0], measured.approach_speed
     nominal = measured.rudder_angle, heading
-
-    def sailing() -> Sailing:
-        return _sailing(L_pp, track, *at, lambda begin: ZigzagOrder(angle, heading, begin, legs))
-
+    if not measured.approach_speed > 0.0:
+        return None
+    sailing = _sailing(L_pp, track, *at, lambda begin: ZigzagOrder(angle, heading, begin, legs))
     return _Order(words, measured, sailing, lambda again: zigzag_indices(again, L_pp, nominal))
 
 

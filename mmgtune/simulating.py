@@ -20,7 +20,7 @@ from .model import Model
 from .networks import named_ship
 from .options import SimulateOptions
 from .options.choice import must_be
-from .orders import Helmsman, Sailing, TurningOrder, ZigzagOrder, run_manoeuvres
+from .orders import Helmsman, Sailing, TurningOrder, ZigzagOrder, run_manoeuvres, sample_of
 from .physics.constants import GRAVITY
 from .predictor import PhysicsPredictor, Predictor, as_predictor, profile_of
 from .profile import Approach, ShipProfile
@@ -82,15 +82,17 @@ class Simulated(Plotted, Sequence[Motion]):
     def write(self, folder: Path | str, *, with_forces: bool = False, overwrite: bool = False) -> list[Path]:
         """Write every run as a trial file, with its number in the name where there are several members.
 
+        One that diverged is no trial, and is left out.
+
         Raises OutputError where one is there already, OptionError for forces of a predictor that has none.
         """
         folder = path_of(folder)
         several = self.predictor.n_members > 1
-        ids = [f"{motion.id}_{motion.member}" if several else motion.id for motion in self.motions]
+        motions = [motion for motion in self.motions if not motion.diverged]
+        ids = [f"{motion.id}_{motion.member}" if several else motion.id for motion in motions]
         paths = [folder / f"{id}.parquet" for id in ids]
-        if not overwrite:
-            refuse_existing(paths)
-        for id, motion, path in zip(ids, self.motions, paths, strict=True):
+        refuse_existing(paths, overwrite)
+        for id, motion, path in zip(ids, motions, paths, strict=True):
             trial = as_trial(self.predictor, replace(motion, id=id), with_forces=with_forces)
             write_trial(trial, path, overwrite=overwrite)
         return paths
@@ -111,6 +113,7 @@ class Simulated(Plotted, Sequence[Motion]):
         ship, L_pp = self.ship, self.predictor.L_pp
         V = ship.approach.speed if ship and ship.approach else float(motion.states[0, 3])
         track = None if motion.diverged else motion.track()
+        measured = record.measured.indices if record else None
         return {
             "id": motion.id,
             **({"member": motion.member} if self.predictor.n_members > 1 else {}),
@@ -118,10 +121,10 @@ class Simulated(Plotted, Sequence[Motion]):
             "duration_s": float(motion.t[-1]),
             "integrator": record.method if record else ORDERED,
             "indices": record.indices if record else indices_of(track, L_pp) if track else {},
-            "measured": record.measured.indices if record else None,
+            "measured": measured,
             "measures": record.measures if record and not motion.diverged else None,
             "unvisited": unvisited(ship, [motion]) if ship else [],
-            "criteria": [criterion.to_dict() for criterion in criteria_of(track, L_pp, V)] if track else [],
+            "criteria": [criterion.to_dict() for criterion in criteria_of(track, L_pp, V, measured)] if track else [],
         }
 
 
@@ -205,8 +208,7 @@ def _on_orders(predictor: Predictor, options: SimulateOptions) -> list[Motion]:
     n = None if options.rpm is None else revolutions(options.rpm)
     possible_approach(speed, n, ship.L_pp, ship.approach)
     L, V = ship.L_pp, speed or (ship.approach.speed if ship.approach else 1.0)
-    # Models are quicker than ships: sample ten times per ship length travelled, once a second at most.
-    sample = min(1.0, round(L / V / 10.0, 1) or 0.1)
+    sample = sample_of(L, V)
     longest = max(600.0, 150.0 * L / V)
     # The approach of ``predict`` and stated indices, rounded up to a sample.
     at = sample * math.ceil(APPROACH * STEP * L / V / sample - 1e-9)
@@ -217,19 +219,19 @@ def _on_orders(predictor: Predictor, options: SimulateOptions) -> list[Motion]:
 
 
 def _orders(options: SimulateOptions, at: float = 0.0) -> list[tuple[str, Helmsman]]:
-    """The manoeuvres asked for by name, ordered at time ``at`` [s]; both hard turns where none is.
+    """The manoeuvres asked for by name, each once, ordered at time ``at`` [s]; both hard turns where none is.
 
     Raises OptionError for orders that make no sense.
     """
-    orders: list[tuple[str, Helmsman]] = []
+    orders: dict[str, Helmsman] = {}
     turns = options.turn or (() if options.zigzag else ("35", "-35"))
     for text in turns:
         angle = rudder_angle(text)
-        orders.append((turn_name(angle), TurningOrder(angle, at)))
+        orders[turn_name(angle)] = TurningOrder(angle, at)
     for text in options.zigzag:
         rudder, heading = zigzag_angles(text)
-        orders.append((zigzag_name(rudder, heading), ZigzagOrder(rudder * DEG, heading * DEG, at)))
-    return orders
+        orders[zigzag_name(rudder, heading)] = ZigzagOrder(rudder * DEG, heading * DEG, at)
+    return [*orders.items()]
 
 
 def turn_name(angle: float) -> str:

@@ -19,7 +19,7 @@ from .manoeuvres import Track, manoeuvre_kind, zigzag_indices
 from .manoeuvres.summary import indices_of
 from .model import Model
 from .physics.quantities import UNKNOWN, Force, State, Surroundings
-from .predictor import Predictor, as_predictor, cases_from, draught_of, portions, profile_of
+from .predictor import PhysicsPredictor, Predictor, as_predictor, cases_from, draught_of, portions, profile_of
 from .profile import ShipProfile
 from .trial import Trial
 from .trial.schema import ATTRIBUTES, FILE_CHANNELS, MAIN_INPUTS
@@ -122,19 +122,24 @@ def motions(predictor: Predictor, trials: Sequence[Trial], offsets: FloatArray |
 
 
 def breakdown(
-    ship: ShipGiven | Model, states: FloatArray, controls: FloatArray, around: FloatArray | None = None
+    ship: ShipGiven | Model,
+    states: FloatArray,
+    controls: FloatArray,
+    around: FloatArray | None = None,
+    theta: FloatArray | None = None,
 ) -> Any:
     """Forces and intermediates along a run, by the very functions the simulation uses.
 
     ship object, path or bundled name, states (n_samples, 6), controls (n_samples, n_inputs), around
-    (n_samples, n_surroundings) or None as in ``Motion``
+    (n_samples, n_surroundings) or None as in ``Motion``, theta (n_rows,) coefficients, the profile's own where None
     -> the breakdown of the profile's arrangement, of arrays (n_samples,).
 
     Effects of the profile have acted; forces they add are in the total only.  What depends on the past is left out:
     lags count as settled.
     """
     model = ship if isinstance(ship, Model) else Model(ship_of(ship))
-    lanes = LaneModel(model, np.repeat(model.matrix(), len(states), axis=1))
+    own = model.matrix() if theta is None else theta[:, None]
+    lanes = LaneModel(model, np.repeat(own, len(states), axis=1))
     logged = model.arrangement.control(*controls.T)
     control = lanes.moved([], logged, None, np.zeros(len(states)))[-1]
     measured = UNKNOWN if around is None else Surroundings(*around.T)
@@ -166,7 +171,6 @@ def trial_indices(trial: Trial, L_pp: float) -> dict[str, Any]:
     track = track_if_whole(trial)
     if track is None:
         return {}
-    track = track_of(trial)
     if manoeuvre_kind(track) == "zigzag":
         return zigzag_indices(track, L_pp, ordered_angles(trial)).to_dict()
     return indices_of(track, L_pp)
@@ -181,11 +185,16 @@ def as_trial(ship: ShipProfile | Predictor, motion: Motion, *, with_forces: bool
     profile = ship if isinstance(ship, ShipProfile) else profile_of(ship)
     id = profile.id if profile else str(getattr(ship, "id", ship.name))
     by = f"profile '{id}', sha256 {profile.sha256}" if profile else f"predictor '{id}'"
+    of: ShipProfile | Model | None = profile
+    theta: FloatArray | None = None
+    if isinstance(ship, PhysicsPredictor):
+        of, theta = ship.model, ship.theta[:, motion.member]
+        by += "" if np.array_equal(theta, ship.model.matrix()[:, 0]) else ", with other coefficients"
     extra: dict[str, FloatArray] = {}
     if with_forces:
-        if profile is None:
+        if of is None:
             raise OptionError(Problem(f"'{id}' has no forces", "with_forces", "only a ship profile has them"))
-        extra = _columns(breakdown(profile, motion.states, motion.controls, motion.around))
+        extra = _columns(breakdown(of, motion.states, motion.controls, motion.around, theta))
     own = {name: motion.controls[:, k] for k, name in enumerate(motion.inputs) if name not in MAIN_INPUTS}
     x, y, psi, u, v_m, r = motion.states.T
     return Trial(

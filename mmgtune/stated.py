@@ -16,7 +16,7 @@ from .backends import get_backend
 from .errors import OptionError, Problem
 from .manoeuvres.on_lanes import LaneRecord, stopping, turning, zigzag
 from .model import Model
-from .predictor import Predictor, profile_of
+from .predictor import PhysicsPredictor, Predictor
 from .profile import ShipProfile
 from .steering import APPROACH, Orders, steer
 from .trial import IndexTrial
@@ -166,13 +166,12 @@ def compare_stated(
     return found
 
 
-def model_of(predictor: Predictor) -> ShipProfile:
-    """The profile of a predictor.  Raises OptionError where it has none: only a profile can be steered on lanes."""
-    profile = profile_of(predictor)
-    if profile is None:
+def physics_of(predictor: Predictor) -> PhysicsPredictor:
+    """A predictor that can be steered on lanes.  Raises OptionError where it has no profile."""
+    if not isinstance(predictor, PhysicsPredictor):
         what = f"'{predictor.name}' is no ship profile"
         raise OptionError(Problem(what, predictor.name, "trials given as indices are steered by a profile's gear"))
-    return profile
+    return predictor
 
 
 def _march(model: Model, theta: FloatArray, trials: Sequence[IndexTrial], backend: str) -> list[FloatArray]:

@@ -179,4 +179,7 @@ def in_time(seconds: float) -> str:
     if seconds < 99.5:
         return f"{max(1.0, seconds):.2g} s"
     minutes = seconds / 60.0
-    return f"{minutes:.2g} min" if minutes < 99.5 else f"{minutes / 60.0:.2g} h"
+    if minutes < 99.5:
+        return f"{minutes:.2g} min"
+    hours = minutes / 60.0
+    return f"{hours:.2g} h" if hours < 99.5 else f"{hours:.0f} h"

@@ -21,7 +21,7 @@ from .options.choice import must_be
 from .predictor import PhysicsPredictor, Predictor, as_predictor, particles_of, profile_of, words_of
 from .profile.doubts import Doubt
 from .repeating import Repeated, document, repeat
-from .stated import IndexComparison, compare_stated, model_of, possible
+from .stated import IndexComparison, compare_stated, physics_of, possible
 from .trial import Trial, TrialSet, oddities
 from .validation import L_MSE, TrialScore, score, summary, window_scores
 
@@ -208,15 +208,14 @@ def bands_of(predictor: Predictor, pieces: Sequence[Trial], sigma: Mapping[str, 
 
 
 def _stated(predictor: Predictor, data: TrialSet, backend: str) -> tuple[IndexComparison, ...]:
-    """What a profile makes of the indices that are stated; of a predictor with several members its first."""
+    """What a model makes of the indices that are stated; of a predictor with several members its first."""
     trials = list(data.stated.values())
     if not trials:
         return ()
-    profile = model_of(predictor)
-    possible(profile, trials)
+    ship = physics_of(predictor)
+    possible(ship.model.profile, trials)
     roles = {one.id: data.role(one.id) for one in trials}
-    model = Model(profile)
-    return tuple(compare_stated(model, {"simulated": model.matrix()[:, 0]}, trials, roles, backend))
+    return tuple(compare_stated(ship.model, {"simulated": ship.theta[:, 0]}, trials, roles, backend))
 
 
 def _called(given: Scorable) -> str:

@@ -7,6 +7,7 @@ import pytest
 
 from mmgtune.backends import get_backend, get_ready_backend
 from mmgtune.backends.compiled import Compiled
+from mmgtune.errors import OptionError
 from mmgtune.model import Model
 from mmgtune.orders import (
     Sailing,
@@ -133,3 +134,53 @@ def test_a_simulator_that_would_have_to_be_compiled_is_not_asked(monkeypatch):
     monkeypatch.setattr(Compiled, "_is_there", lambda self, model: False)
     assert get_ready_backend(model) is None
     assert np.isfinite(run_manoeuvre(model, TurningOrder(0.5), longest=30.0).states).all()
+
+
+@pytest.mark.parametrize("order", HELMSMEN)
+def test_an_order_sailed_twice_is_the_same_twice(order):
+    """What a helmsman remembers is of one simulation."""
+    helmsman = order()
+    first, again = (run_manoeuvre("suzaku", helmsman, longest=200.0) for _ in range(2))
+    assert np.array_equal(first.states, again.states)
+    assert np.array_equal(first.controls, again.controls)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "what"),
+    [
+        ({"sample": 0.0}, "sample is 0"),
+        ({"sample": -1.0}, "sample is -1"),
+        ({"step": 0.0}, "step is 0"),
+        ({"longest": math.nan}, "longest is nan"),
+        ({"longest": 1e12}, "too many"),
+        ({"speed": "12 kn"}, "approach speed is '12 kn'"),
+        ({"speed": 0.0}, "approach speed is 0"),
+        ({"n": math.nan}, "revolutions are nan"),
+        ({"heading": "north"}, "heading is 'north'"),
+    ],
+)
+def test_what_cannot_be_sailed_is_refused_in_words(wrong, what):
+    with pytest.raises(OptionError, match=what) as caught:
+        run_manoeuvre("suzaku", TurningOrder(0.6), **wrong)
+    (problem,) = caught.value.problems
+    assert problem.where in wrong
+    assert problem.fix
+
+
+@pytest.mark.parametrize(
+    "order",
+    [
+        lambda: SpiralOrder(20.0, 60.0),
+        lambda: SpiralOrder(0.3, 60.0, steps=1),
+        lambda: SpiralOrder(0.3, 0.0),
+        lambda: ZigzagOrder(0.2, 0.2, legs=0),
+        lambda: ZigzagOrder(0.2, 0.2, legs=2.5),
+        lambda: TurningOrder(0.6, at=-1.0),
+        lambda: TurningOrder(0.6, until=0.0),
+        lambda: Weave(0.0),
+    ],
+)
+def test_orders_that_make_no_sense_are_refused(order):
+    with pytest.raises(OptionError) as caught:
+        order()
+    assert caught.value.problems[0].fix

@@ -137,6 +137,27 @@ def test_nothing_is_written_where_there_is_no_path(name):
         getattr(mmgtune, name)(None, 3.5)
 
 
+@pytest.mark.parametrize("name", WRITERS)
+def test_nothing_is_replaced_unless_that_is_asked_for(name):
+    assert inspect.signature(getattr(mmgtune, name)).parameters["overwrite"].default is False
+
+
+def test_a_result_is_not_replaced_in_silence(tmp_path):
+    result = mmgtune.compare("suzaku", "suzaku_fam")
+    baseline = mmgtune.record_baseline("suzaku", TRIALS["turn_p35"])
+    predicted = mmgtune.predict("suzaku", options=mmgtune.PredictOptions(turn=("35",)))
+    for write in (
+        lambda **how: result.write(tmp_path / "compare", **how),
+        lambda **how: mmgtune.write_baseline(baseline, tmp_path / "check.json", **how),
+        lambda **how: mmgtune.write_prediction(predicted, tmp_path / "predict", **how),
+    ):
+        write()
+        with pytest.raises(mmgtune.MmgtuneError, match="exists already") as caught:
+            write()
+        assert "overwrite=True" in caught.value.problems[0].fix
+        write(overwrite=True)
+
+
 def test_channels_of_a_motion_have_the_names_of_columns():
     motion = mmgtune.simulate("suzaku", TRIALS["turn_p35"])[0]
     assert np.array_equal(motion.channel("v"), motion.channel("v_m"))
@@ -153,7 +174,7 @@ def test_channels_of_a_motion_have_the_names_of_columns():
 def test_folders_are_texts_or_paths(tmp_path):
     kept = str(tmp_path / "checkpoint")
     (tmp_path / "checkpoint").mkdir()
-    result = mmgtune.fit("suzaku", TRIALS["turn_p35"], QUICK, checkpoint_folder=kept)
+    result = mmgtune.fit("suzaku", TRIALS["turn_p35"], QUICK, folder=kept)
     mmgtune.write_run(result, str(tmp_path / "run"))
     assert mmgtune.render(str(tmp_path / "run"))[0] == tmp_path / "run" / "report.html"
     assert mmgtune.simulate("suzaku", TRIALS["turn_p35"]).write(str(tmp_path / "simulated"))

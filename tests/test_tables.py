@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import stat
+import sys
+
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
@@ -32,6 +36,18 @@ def test_truths_of_any_number(tmp_path, n):
     truths = np.arange(n) % 3 == 0
     write_table(tmp_path / "some.parquet", {"truth": truths, "text": np.full(n, "x", dtype=object)}, 5)
     assert pq.read_table(tmp_path / "some.parquet")["truth"].to_pylist() == truths.tolist()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there is no mask of permissions")
+@pytest.mark.parametrize(("mask", "mode"), [(0o022, 0o644), (0o077, 0o600), (0o002, 0o644)])
+def test_files_are_as_private_as_the_user_has_them(tmp_path, mask, mode):
+    """Nobody else may ever write to them: compiled kernels are among them."""
+    before = os.umask(mask)
+    try:
+        write_table(tmp_path / "some.parquet", COLUMNS)
+    finally:
+        os.umask(before)
+    assert stat.S_IMODE((tmp_path / "some.parquet").stat().st_mode) == mode
 
 
 def test_a_file_that_is_there_stays(tmp_path):

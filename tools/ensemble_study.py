@@ -70,7 +70,7 @@ class Study:
             resume = any(folder.glob(CHECKPOINTS))
             hooks = Hooks(on_progress=lambda *told: self.tell(name, *told), stop=lambda: self.stopped)
             result = learn_ensemble(SHIP, self.data, options, hooks=hooks, folder=folder, resume=resume)
-            document = write_learned(result, folder)
+            document = write_learned(result, folder, overwrite=True)
             if result.interrupted:
                 return None
             row = {"name": name, "loss": [one["score"] for one in document["members"]]}

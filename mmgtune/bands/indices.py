@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray
+from ..documents import finite
 from .quantiles import central, quantiles
 
 
@@ -76,13 +77,9 @@ def index_band(values: FloatArray, level: float, *, endless: bool = True) -> Ind
     return IndexBand(
         mean=float(of.mean()) if len(of) else None,
         deviation=float(of.std(ddof=1)) if len(of) > 1 else None,
-        low=_finite(float(first[0])),
-        median=_finite(middle),
-        high=_finite(float(last[2])),
+        low=finite(float(first[0])),
+        median=finite(middle),
+        high=finite(float(last[2])),
         reached=int(known.sum()),
         particles=len(values),
     )
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None

@@ -205,6 +205,7 @@ def pooled(scores: Sequence[WindowScore], sigma: Mapping[str, float]) -> Pooled:
     maha = np.concatenate([one.maha for one in scores])
     several = scores[0].particles > 1
     held = bool(measured.any())
+    varying = measured & (spread > 0.0)  # what never changes has nothing to be counted in
     return Pooled(
         windows=len(scores),
         lost=sum(one.particles - one.diverged < min(one.particles, 2) for one in scores),
@@ -215,9 +216,9 @@ def pooled(scores: Sequence[WindowScore], sigma: Mapping[str, float]) -> Pooled:
         L_Maha=_mean(maha),
         singular=int((np.isfinite(eucl) & ~np.isfinite(maha)).sum()),
         correlation=_correlation(scores),
-        CRPS=float(np.mean(score[measured] / spread[measured])) if held else None,
+        CRPS=float(np.mean(score[varying] / spread[varying])) if varying.any() else None,
         coverage=tuple(float(of[measured].mean()) if held and several else None for of in inside),
-        sharpness=float(np.mean(width[measured] / spread[measured])) if held and several else None,
+        sharpness=float(np.mean(width[varying] / spread[varying])) if varying.any() and several else None,
         widest=widest(scores[0].particles),
         CRPS_by_state={name: float(score[k]) for k, name in enumerate(names) if measured[k]},
         coverage_by_state={

@@ -11,8 +11,9 @@ from typing import Any
 
 from .. import limits
 from ..backends import Integrator
+from ..documents import finite_values, write_json
 from ..errors import OptionError, Problem, among
-from ..files import path_of, write_text
+from ..files import path_of
 from ..metrics import METRICS
 from ..options import SimulationOptions
 from ..resources import looked_for, must_be_name
@@ -79,21 +80,22 @@ class Baseline:
             "schema": SCHEMA,
             "kind": KIND,
             "made_by": self.made_by,
-            "profile": {"id": self.ship, "sha256": self.sha256, "coefficients": _finite(self.coefficients)},
+            "profile": {"id": self.ship, "sha256": self.sha256, "coefficients": finite_values(self.coefficients)},
             "integrator": self.integrator,
             "substeps": self.substeps,
             "backend": self.backend,
             "tolerances": {name: dict(of) for name, of in self.tolerances.items()},
             "trials": {
-                name: {"sha256": trial.sha256, "metrics": _finite(trial.metrics)} for name, trial in self.trials.items()
+                name: {"sha256": trial.sha256, "metrics": finite_values(trial.metrics)}
+                for name, trial in self.trials.items()
             },
         }
 
 
-def write_baseline(baseline: Baseline, path: Path | str) -> None:
-    """Write the file, replacing one that is there.  Raises OutputError where the system refuses."""
+def write_baseline(baseline: Baseline, path: Path | str, *, overwrite: bool = False) -> None:
+    """Write the file.  Raises OutputError where one is there and ``overwrite`` is false, or the system refuses."""
     path = path_of(path)
-    write_text(path, json.dumps(baseline.to_dict(), indent=1, allow_nan=False) + "\n")
+    write_json(baseline.to_dict(), path, overwrite)
 
 
 def read_baseline(path: Path | str) -> Baseline:
@@ -139,10 +141,6 @@ def _parsed(data: dict[str, Any]) -> Baseline:
             name: Recorded(str(of["sha256"]), _with_infinity(of["metrics"])) for name, of in data["trials"].items()
         },
     )
-
-
-def _finite(values: Mapping[str, float]) -> dict[str, float | None]:
-    return {name: value if math.isfinite(value) else None for name, value in values.items()}
 
 
 def _with_infinity(values: Mapping[str, float | None]) -> dict[str, float]:

@@ -11,7 +11,7 @@ from ..evaluation import TrialRecord, records
 from ..metrics import METRICS, RELATIVE
 from ..model import Model
 from ..objective import default_scales
-from ..predictor import Predictor, as_predictor
+from ..predictor import PhysicsPredictor, Predictor, as_predictor
 from ..profile import ShipProfile
 from ..stated import compare_stated, possible
 from ..trial import IndexTrial, Trial
@@ -49,17 +49,19 @@ def measure(
 
 
 def measure_stated(
-    model: Model, trials: Sequence[IndexTrial], names: Sequence[str], backend: str = "compiled"
+    ship: PhysicsPredictor, trials: Sequence[IndexTrial], names: Sequence[str], backend: str = "compiled"
 ) -> dict[str, Values]:
     """Errors of stated indices as a profile's own helmsman makes them, by trial and metric; see ``measure``.
 
+    ship  its first member is asked
+
     Raises OptionError for trials the ship cannot be asked for.
     """
-    possible(model.profile, trials)
+    possible(ship.model.profile, trials)
     roles = {one.id: "other" for one in trials}
     found: dict[str, Values] = {one.id: {} for one in trials}
-    now = {"now": model.matrix()[:, 0]}
-    compared = compare_stated(model, now, trials, roles, backend) if trials else []
+    now = {"now": ship.theta[:, 0]}
+    compared = compare_stated(ship.model, now, trials, roles, backend) if trials else []
     for one in compared:
         value = one.simulated["now"]
         if one.name not in names:

@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import Any, Literal
 
 from ..displayed import Displayed
+from ..documents import finite
 from ..errors import Problem
 from ..metrics import METRICS
 from ..profile.doubts import Doubt
@@ -221,8 +222,3 @@ class CheckReport(Displayed):
             "next": self.next,
             "wall_s": self.wall_s,
         }
-
-
-def finite(value: float | None) -> float | None:
-    """The number for JSON, None where it is none."""
-    return value if value is not None and math.isfinite(value) else None

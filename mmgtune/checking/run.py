@@ -12,7 +12,7 @@ from ..backends import Integrator
 from ..errors import OptionError, Problem, among
 from ..given import ShipGiven, TrialsGiven, trials_of
 from ..metrics import METRICS
-from ..predictor import Predictor
+from ..predictor import PhysicsPredictor, Predictor
 from ..profile.doubts import in_words
 from ..trial import TrialSet
 from .baseline import Baseline, Recorded, read_baseline, write_baseline
@@ -168,7 +168,7 @@ def update_baseline(
         report = check(profile, trials, before, names=names, integrator=integrator, backend=backend)
     chosen = integrator or Integrator()
     now = record_baseline(profile, trials, metrics, before=before, integrator=chosen, backend=backend)
-    write_baseline(now, file)
+    write_baseline(now, file, overwrite=True)
     return report
 
 
@@ -179,11 +179,12 @@ def _measured(ship: Subject, trials: TrialSet, names: Sequence[str], backend: st
     """
     (found,) = measure(ship.predictor, list(trials.trials.values()), names)
     stated = list(trials.stated.values())
-    if stated and ship.model is None:
+    physics = ship.predictor if isinstance(ship.predictor, PhysicsPredictor) else None
+    if stated and physics is None:
         what = f"{len(stated)} trials state indices alone, and '{ship.predictor.name}' is no profile"
         why = "a trained model knows neither approach nor steering gear"
         raise OptionError(Problem(what, stated[0].id, why, "give trials that are time series"))
-    return found | (measure_stated(ship.model, stated, names, backend) if ship.model else {})
+    return found | (measure_stated(physics, stated, names, backend) if physics else {})
 
 
 def called(profile: object, trials: object, baseline: object) -> tuple[str, str, str | None]:

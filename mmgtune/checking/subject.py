@@ -7,13 +7,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ..backends import Integrator
 from ..errors import OptionError, Problem
 from ..given import ShipGiven
 from ..model import Model
 from ..networks import named_ship
 from ..networks.naming import file_of
-from ..predictor import Predictor, as_predictor, profile_of
+from ..predictor import PhysicsPredictor, Predictor, as_predictor
 from ..profile.doubts import Doubt
 
 
@@ -24,7 +26,7 @@ class Subject:
     id      of the ship
     sha256  of the profile, or of the file of a trained model
     path    of either, "" where there is none
-    model   with its coefficients, None of a trained model
+    model   with its coefficients, None of a trained model and of coefficients that are not those of a profile
     """
 
     id: str
@@ -49,15 +51,17 @@ def subject_of(given: ShipGiven | Predictor, integrator: Integrator, backend: st
     """
     found: Any = named_ship(given, integrator)
     predictor = as_predictor(found, integrator=integrator, backend=backend)
-    profile = profile_of(predictor)
-    if profile is not None:
+    if predictor.n_members != 1:
+        of = "parameter vectors" if isinstance(predictor, PhysicsPredictor) else "networks"
+        what = f"'{predictor.name}' has {predictor.n_members} {of}, a check is of one model"
+        raise OptionError(Problem(what, str(given)[:200], "", "check a profile, a hybrid or a network of one seed"))
+    if isinstance(predictor, PhysicsPredictor):
+        profile = predictor.model.profile
         path = str(profile.path or "")
         doubts = tuple(profile.doubts())
         model = Model(profile)
-        return Subject(profile.id, model.L_pp, profile.sha256, path, profile.limits, doubts, model, predictor)
-    if predictor.n_members != 1:
-        what = f"'{predictor.name}' has {predictor.n_members} networks, a check is of one model"
-        raise OptionError(Problem(what, str(given)[:200], "", "check a profile, a hybrid or a network of one seed"))
+        own = model if np.array_equal(model.matrix(), predictor.theta) else None
+        return Subject(profile.id, model.L_pp, profile.sha256, path, profile.limits, doubts, own, predictor)
     file = file_of(given) if isinstance(given, (str, Path)) else None
     digest = hashlib.sha256(file.read_bytes()).hexdigest() if file else ""
     id = str(getattr(predictor, "id", predictor.name))

@@ -71,7 +71,7 @@ def command(
     else:
         with claimed(run.out, force=run.force):
             result = compare_models(names[:-1], names[-1], options)
-            document = write_model_comparison(result, run.out, c.command_line())
+            document = write_model_comparison(result, run.out, c.command_line(), overwrite=True)
             render(run.out)
     if json:
         c.print_json(document)

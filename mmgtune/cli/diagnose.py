@@ -106,7 +106,7 @@ def command(
         result = diagnose(
             ship, data, options, hooks=progress.hooks(), folder=folder, resume=run.resume, command=c.command_line()
         )
-        document = write_diagnosis(result, folder)
+        document = write_diagnosis(result, folder, overwrite=True)
         progress.saved(result.interrupted)
         if not no_report:
             render(folder)

@@ -77,11 +77,11 @@ def command(
             data,
             options,
             hooks=progress.hooks(),
-            checkpoint_folder=folder,
+            folder=folder,
             resume=run.resume,
             command=c.command_line(),
         )
-        document = write_run(result, folder)
+        document = write_run(result, folder, overwrite=True)
         progress.saved(result.interrupted)
         if bands and not result.interrupted:
             drawn = posterior(result.tuned_profile(), data, options.posterior_options(), command=c.command_line())

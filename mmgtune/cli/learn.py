@@ -140,7 +140,7 @@ def _train(
     with claimed(folder, force=run.force, resume=run.resume), Progress(run.quiet, folder) as progress:
         hooks = Hooks(on_progress=progress.on_share, stop=lambda: progress.stopped)
         result = learn(ship, data, options, hooks=hooks, folder=folder, resume=run.resume, command=c.command_line())
-        document = write_learned(result, folder)
+        document = write_learned(result, folder, overwrite=True)
         progress.saved(result.interrupted)
         if not no_report:
             render(folder)

@@ -61,12 +61,14 @@ def command(
     folder = run.out or c.default_out(given)
     with claimed(folder, force=run.force):
         result = learn_mixture(given, network, trials, options, command=c.command_line())
-        document = result.write(folder)
+        document = result.write(folder, overwrite=True)
         if trials is not None and not no_report:
             several = {"model of forces": given, "networks": network}
             if 0.0 < document["share"] < 1.0:
                 several[f"mixture ({document['share']:g})"] = str(folder / MODEL)
-            write_model_comparison(compare_models(several, trials), folder, c.command_line(), notes(document))
+            write_model_comparison(
+                compare_models(several, trials), folder, c.command_line(), notes(document), overwrite=True
+            )
             render(folder)
     if json:
         c.print_json(document)

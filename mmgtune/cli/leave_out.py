@@ -58,7 +58,7 @@ def command(
         result = work(
             ship, data, options, hooks=progress.hooks(), folder=folder, resume=run.resume, command=c.command_line()
         )
-        document = write_left_out(result, folder)
+        document = write_left_out(result, folder, overwrite=True)
         progress.saved(result.interrupted)
         if not no_report:
             render(folder)

@@ -58,7 +58,7 @@ def command(
         from ..report import render
 
         with claimed(run.out, force=run.force):
-            document = write_plan(plan_trial(model, question, options), run.out, c.command_line())
+            document = write_plan(plan_trial(model, question, options), run.out, c.command_line(), overwrite=True)
             render(run.out)
     if json:
         c.print_json(document)

@@ -65,7 +65,9 @@ def command(
 
         with claimed(run.out, force=run.force):
             result = predict(model, orders, trials, options)
-            document = write_prediction(result, run.out, c.command_line(), keep_particles=keep_particles)
+            document = write_prediction(
+                result, run.out, c.command_line(), keep_particles=keep_particles, overwrite=True
+            )
             if not no_report:
                 render(run.out)
     if json:

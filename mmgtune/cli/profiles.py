@@ -114,8 +114,7 @@ def copy(
     source = find_profile(profile)
     load_profile(source)  # what could not be read need not be copied
     target = file / source.name if file.is_dir() else file
-    if not force:
-        refuse_existing([target])
+    refuse_existing([target], force)
     write_text(target, source.read_text(encoding="utf-8"), overwrite=force)
     c.show(f"wrote {target}")
 
@@ -154,8 +153,7 @@ def new(
     from ..files import refuse_existing, write_text
     from ..units import KNOT
 
-    if not force:
-        refuse_existing([file])
+    refuse_existing([file], force)
     asked = particulars == "particulars" and not Path(particulars).exists()
     ship = estimate(_asked() if asked else read_particulars(particulars), options)
     write_text(file, ship.text, overwrite=force)

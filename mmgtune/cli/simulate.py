@@ -71,6 +71,9 @@ def command(
     notes = list(result.notes)
     if trials is None and isinstance(result.predictor, Uncertain):
         notes += _add_bands(rows, result.predictor, options)
+    if out is not None:
+        lost = [motion.id for motion in result.motions if motion.diverged]
+        notes += [f"{', '.join(dict.fromkeys(lost))}: diverged, so no trial of it is written"] if lost else []
     files = result.write(out, with_forces=forces, overwrite=force) if out is not None else []
     if out is not None and not no_report:
         write_simulation(result, rows, out, c.command_line())

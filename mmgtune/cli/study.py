@@ -60,7 +60,7 @@ def heading_keeping(
     else:
         with claimed(run.out, force=run.force):
             result = study_heading_keeping(models, truth, options)
-            document = write_heading_study(result, run.out, c.command_line())
+            document = write_heading_study(result, run.out, c.command_line(), overwrite=True)
             render(run.out)
     if json:
         c.print_json(document)

@@ -254,7 +254,7 @@ def make(
     """
     from ..generating import make_trials
 
-    made = make_trials(ship, out, options, force=force)
+    made = make_trials(ship, out, options, overwrite=force)
     if json:
         c.print_json(made.to_dict())
         return

@@ -87,7 +87,7 @@ def command(
     result = validate(names[:-1], names[-1], ValidateOptions(**options.shared_with(ValidateOptions)))
     if run.out is not None:
         with claimed(run.out, force=run.force):
-            write_validation(result, load_trials(names[-1]), run.out, c.command_line())
+            write_validation(result, load_trials(names[-1]), run.out, c.command_line(), overwrite=True)
             if not no_report:
                 render(run.out)
     if json:

@@ -51,7 +51,7 @@ def on_voyages(
         except TrialError:
             c.say(f"what is done so far is kept: once the voyages are mended, --resume --out {folder} goes on")
             raise
-        document = write_voyages(result, folder)
+        document = write_voyages(result, folder, overwrite=True)
         progress.saved(result.interrupted)
         if not no_report:
             render(folder)

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ..documents import finite
 from ..effects import Effect
 from ..fitting.box import AT
 from ..trial import Trial
@@ -152,8 +153,8 @@ class ByRun:
         return {
             "by": self.by,
             "unit": self.unit,
-            "least": _finite(min(sizes)),
-            "largest": _finite(max(sizes)),
+            "least": finite(min(sizes)),
+            "largest": finite(max(sizes)),
             "values": [self._row(k) for k in range(len(self.groups))],
         }
 
@@ -163,13 +164,13 @@ class ByRun:
         return {
             "group": name_of(self.groups[k]),
             "trials": list(self.trials[k]),
-            "size": _finite(value),
+            "size": finite(value),
             "size_stderr": error,
             "direction_deg": None if direction is None else math.degrees(direction[0]),
             "direction_stderr_deg": None if direction is None or direction[1] is None else math.degrees(direction[1]),
             "parameters": {
                 name: {
-                    "value": _finite(one.value),
+                    "value": finite(one.value),
                     "stderr": one.stderr,
                     "ci95": [one.low, one.high],
                     "unit": self.effect.parameters[name].unit,
@@ -177,10 +178,6 @@ class ByRun:
                 for name, one in self.values[k].items()
             },
         }
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None
 
 
 def _degrees(angle: float, error: float | None) -> str:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
-from ..files import path_of, write_text
+from ..documents import write_json
+from ..files import path_of, refuse_existing, write_text
 from ..fitting.folder import motions_table
 from ..fitting.journal import finished
 from ..tables import write_table
@@ -17,12 +17,15 @@ RESULT = "diagnosis.json"
 CALM = "calm.toml"
 
 
-def write_diagnosis(result: Diagnosis, folder: Path | str) -> dict[str, Any]:
+def write_diagnosis(result: Diagnosis, folder: Path | str, *, overwrite: bool = False) -> dict[str, Any]:
     """Write the extended profile, the held-out motions and, last, the result.  Returns its document.
 
     Where a cause is of the day, such as a current, ``calm.toml`` is the profile without it, for predictions.
+
+    Raises OutputError where a result is there already and ``overwrite`` is false, or the system refuses to write.
     """
     folder = path_of(folder)
+    refuse_existing([folder / RESULT], overwrite)
     extended = result.extended_profile()
     write_text(folder / "profile.toml", extended.text)
     calm = calm_profile(extended)
@@ -33,7 +36,7 @@ def write_diagnosis(result: Diagnosis, folder: Path | str) -> dict[str, Any]:
     inputs = [one.name for one in result.profile.arrangement.inputs]
     write_table(folder / "motions.parquet", motions_table(result.gain.compared, inputs))
     document = {**result.to_dict(), "out": str(folder)}
-    write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+    write_json(document, folder / RESULT)
     if not result.interrupted:
         finished(folder)
     return document

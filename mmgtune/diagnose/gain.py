@@ -11,8 +11,9 @@ import numpy as np
 from ..arrays import FloatArray
 from ..backends import STATES
 from ..displayed import Brief
+from ..documents import finite
 from ..fitting.box import group_of
-from ..fitting.comparison import TrialComparison, finite
+from ..fitting.comparison import TrialComparison
 from ..fitting.least_squares import fit_offsets
 from ..fitting.problem import FitProblem
 from ..model import Model

@@ -9,8 +9,8 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..backends import STATES
+from ..documents import finite
 from ..fitting.box import group_of
-from ..fitting.comparison import finite
 from ..model import Model
 from ..trial import Trial
 from ..trial.smoothing import FEWEST

@@ -9,8 +9,8 @@ from itertools import pairwise
 from typing import Any
 
 from ..displayed import Brief, Plotted
+from ..documents import finite, finite_values
 from ..effects import Effect
-from ..fitting.comparison import finite, finite_values
 from ..options import DiagnoseOptions
 from ..profile import ShipProfile, tuned, with_effects
 from ..trial import Coverage

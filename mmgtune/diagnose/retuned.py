@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..components import split_name
-from ..fitting.comparison import finite
+from ..documents import finite
 from .intervals import NORMAL, covariance
 from .workbench import Point, Workbench
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..fitting.comparison import finite
+from ..documents import finite
 from ..trial import Trial, measured_wind
 from ..units import DEG
 from .evidence import FEWEST_BLOCKS, ResidualForces, share_explained

@@ -11,6 +11,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..backends import STATES
 from ..displayed import inert
+from ..documents import finite
 from ..evaluation import TrialRecord, evaluate
 from ..objective import Objective
 from ..simulation import Motion
@@ -141,13 +142,3 @@ def rounded(value: float, digits: int) -> str:
     """A number with significant digits, never as a power of ten where it is large."""
     text = f"{value:#.{digits}g}"
     return (f"{float(text):.0f}" if "e+" in text else text).rstrip(".")
-
-
-def finite(value: float | None) -> float | None:
-    """The number, or None where JSON has no word for it."""
-    return value if value is not None and np.isfinite(value) else None
-
-
-def finite_values(values: Mapping[str, float]) -> dict[str, float | None]:
-    """Numbers by name for JSON."""
-    return {name: finite(value) for name, value in values.items()}

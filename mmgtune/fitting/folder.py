@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import os
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
@@ -12,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..backends import STATES
+from ..documents import write_json
 from ..errors import OutputError, Problem
 from ..files import (
     alone_in,
@@ -21,6 +21,7 @@ from ..files import (
     is_left_over,
     make_folder,
     path_of,
+    refuse_existing,
     remove_left_overs,
     write_text,
 )
@@ -124,9 +125,13 @@ def claimed(folder: Path, *, force: bool = False, resume: bool = False) -> Itera
             raise
 
 
-def write_run(result: FitResult, folder: Path | str) -> dict[str, Any]:
-    """Write a run folder; the result last, so that its presence means the rest is there.  Returns its document."""
+def write_run(result: FitResult, folder: Path | str, *, overwrite: bool = False) -> dict[str, Any]:
+    """Write a run folder; the result last, so that its presence means the rest is there.  Returns its document.
+
+    Raises OutputError where a result is there already and ``overwrite`` is false, or the system refuses to write.
+    """
     folder = path_of(folder)
+    refuse_existing([folder / RESULT], overwrite)
     write_text(folder / "profile.toml", result.tuned_text())
     write_table(folder / "history.parquet", _history(result.history))
     inputs = [one.name for one in result.profile.arrangement.inputs]
@@ -140,7 +145,7 @@ def write_run(result: FitResult, folder: Path | str) -> dict[str, Any]:
 
 def write_document(document: dict[str, Any], folder: Path) -> None:
     """Write the document of a fit, anew where something is added to it."""
-    write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+    write_json(document, folder / RESULT)
 
 
 def _history(history: Iterable[Generation]) -> dict[str, Any]:

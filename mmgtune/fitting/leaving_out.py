@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,9 +14,10 @@ from ..arrays import FloatArray
 from ..bands import Pooled
 from ..circumstances import notes_on
 from ..displayed import Displayed
+from ..documents import finite, finite_values, write_json
 from ..errors import OptionError, Problem
 from ..evaluation import TrialRecord, evaluate
-from ..files import path_of, write_text
+from ..files import path_of, refuse_existing
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..inputs import INPUTS
 from ..model import Model
@@ -33,7 +33,7 @@ from ..tables import write_table
 from ..threads import blas_on_one_thread
 from ..trial import Coverage, Trial, TrialSet, oddities
 from ..validation import L_MSE, TrialScore, by_manoeuvre, improvement, off_by, score_of
-from .comparison import TrialComparison, finite, finite_values
+from .comparison import TrialComparison
 from .extending import held_words, settled, tune_trials
 from .folder import motions_table
 from .journal import finished, journalled
@@ -261,11 +261,16 @@ def leave_out(
         return _leave_out(profile, trials, options, hooks, provenance)
 
 
-def write_left_out(result: LeftOut, folder: Path) -> dict[str, Any]:
-    """Write the result, and the motions of the trials left out.  Returns its document."""
+def write_left_out(result: LeftOut, folder: Path | str, *, overwrite: bool = False) -> dict[str, Any]:
+    """Write the result, and the motions of the trials left out.  Returns its document.
+
+    Raises OutputError where a result is there already and ``overwrite`` is false, or the system refuses to write.
+    """
+    folder = path_of(folder)
+    refuse_existing([folder / RESULT], overwrite)
     write_table(folder / "motions.parquet", motions_table(result.compared, result.inputs))
     document = {**result.to_dict(), "out": str(folder)}
-    write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+    write_json(document, folder / RESULT)
     if not result.interrupted:
         finished(folder)
     return document

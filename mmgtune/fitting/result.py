@@ -12,6 +12,7 @@ from ..arrays import FloatArray
 from ..circumstances import notes_on
 from ..components import split_name
 from ..displayed import Plotted
+from ..documents import finite, finite_values
 from ..model import Model, Tie
 from ..options import FitOptions
 from ..predictor import words_of
@@ -22,7 +23,7 @@ from ..trial import Coverage
 from .box import Box, width_words
 from .certificate import Certificate
 from .cmaes import Generation, Restart
-from .comparison import TrialComparison, finite, finite_values, off_in_words, total
+from .comparison import TrialComparison, off_in_words, total
 from .extending import held_words
 from .identifiability import Identifiability
 from .least_squares import LeastSquaresResult

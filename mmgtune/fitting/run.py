@@ -186,35 +186,35 @@ def fit(
     options: FitOptions = FitOptions(),
     *,
     hooks: Hooks = Hooks(),
-    checkpoint_folder: Path | str | None = None,
+    folder: Path | str | None = None,
     resume: bool = False,
     more_starts: tuple[Mapping[str, float], ...] = (),
     command: str = "",
 ) -> FitResult:
     """Fine-tune the targets of ``profile`` within their box to the tune trials, and look at the test trials.
 
-    profile, trials    objects, paths or bundled names
-    checkpoint_folder  where the fit saves its state; None for nowhere
-    resume             continue the fit saved there
-    more_starts        coefficient sets to start least squares from besides, such as the optimum of a smaller box
-    command            what to call this fit in its provenance
+    profile, trials  objects, paths or bundled names
+    folder       where the fit saves its state; None for nowhere
+    resume       continue the fit saved there
+    more_starts  coefficient sets to start least squares from besides, such as the optimum of a smaller box
+    command      what to call this fit in its provenance
     Raises OptionError for choices that make no sense, OutputError where the checkpoint cannot be written, ProfileError
     where the simulation of a tune trial runs away wherever the targets are.
     """
-    checkpoint_folder = None if checkpoint_folder is None else path_of(checkpoint_folder)
+    folder = None if folder is None else path_of(folder)
     must_be(options, FitOptions)
     profile, trials = ship_of(profile), trials_of(trials)
     profile, options = settled(profile, options, trials)
     provenance = make_provenance(profile, trials, command)
-    if checkpoint_folder is None:
+    if folder is None:
         return _fit(profile, trials, options, hooks, None, resume, more_starts, provenance)
     identity = identity_of(profile, trials, options, provenance)
     if options.sisters is not None:
         identity["sisters"] = read_sisters(options.sisters, profile.id).sha256
-    checkpoint = Checkpoint(checkpoint_folder, identity)
+    checkpoint = Checkpoint(folder, identity)
     if resume and checkpoint.path.is_file():
         checkpoint.load()  # says first what is wrong with the larger part
-    with journalled(checkpoint_folder, identity, hooks.stop, resume=resume):
+    with journalled(folder, identity, hooks.stop, resume=resume):
         return _fit(profile, trials, options, hooks, checkpoint, resume, more_starts, provenance)
 
 

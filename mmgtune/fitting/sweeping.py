@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -11,14 +10,15 @@ from typing import Any
 import numpy as np
 
 from ..displayed import Plotted
-from ..files import path_of, write_text
+from ..documents import finite_values, write_json
+from ..files import path_of
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..options import SweepOptions
 from ..options.choice import must_be
 from ..profile import ShipProfile
 from ..trial import TrialSet
 from .box import A_R
-from .comparison import TrialComparison, compare, finite_values, off_document, off_in_words
+from .comparison import TrialComparison, compare, off_document, off_in_words
 from .extending import settled
 from .folder import write_run
 from .journal import finished, journalled
@@ -231,10 +231,7 @@ def sweep(
     with journalled(folder, identity, hooks.stop, resume=resume):
         swept = _sweep(profile, trials, options, hooks, folder, resume, command)
     if folder is not None:
-        write_text(
-            folder / RESULT,
-            json.dumps({**swept.to_dict(), "out": str(folder)}, indent=1, allow_nan=False, ensure_ascii=False) + "\n",
-        )
+        write_json({**swept.to_dict(), "out": str(folder)}, folder / RESULT)
         if not swept.interrupted:
             finished(folder)
     return swept
@@ -262,13 +259,13 @@ def _sweep(
             options.at(a_r),
             hooks=_named(hooks, a_r),
             more_starts=tuple(run.theta for run in runs[-1:]),
-            checkpoint_folder=own,
+            folder=own,
             resume=resume,
             command=command,
         )
         runs.append(result)
         if own is not None:
-            write_run(result, own)
+            write_run(result, own, overwrite=True)
         if hooks.stop():
             break
     left_out: list[tuple[float, tuple[TrialComparison, ...]]] = []

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..documents import write_json
 from ..errors import OptionError, Problem
 from ..options import CheckOptions, DiagnoseOptions, FitOptions, Options, SweepOptions, ValidateOptions
 
@@ -83,7 +84,7 @@ def _fit(task: Task, folder: Path) -> tuple[str, Facts]:
 
     trials = load_trials(task.trials)
     result = fit(task.ship, trials, task.options, command=task.label)
-    document = write_run(result, folder)
+    document = write_run(result, folder, overwrite=True)
     told = information_of(result, trials)
     if told is not None:
         write_text(folder / INFORMATION, json.dumps(told.to_dict(), allow_nan=False) + "\n")
@@ -134,8 +135,9 @@ def _sweep(task: Task, folder: Path) -> tuple[str, Facts]:
 
     result = sweep(task.ship, load_trials(task.trials), task.options, folder=folder, command=task.label)
     found, recommended = result.to_dict(), result.recommended()
-    best = folder / folder_name(recommended["a_r"]) / "fit.json"
-    if not best.is_file():
+    width = recommended["a_r"]
+    best = None if width is None else folder / folder_name(width) / "fit.json"
+    if best is None or not best.is_file():
         return "sweep.json", Facts("good", recommended["sentence"])
     document = json.loads(best.read_text(encoding="utf-8"))
     answer = "no" if found["overfitting"].get("found") else "good"
@@ -159,7 +161,7 @@ def _diagnose(task: Task, folder: Path) -> tuple[str, Facts]:
     from ..diagnose import diagnose, write_diagnosis
 
     result = diagnose(task.ship, _trials_or_voyages(task.trials), task.options, folder=folder, command=task.label)
-    document = write_diagnosis(result, folder)
+    document = write_diagnosis(result, folder, overwrite=True)
     errors = _errors(document["trial_results"])
     return "diagnosis.json", Facts(
         "good" if result.verdict == "none" else "no",
@@ -189,10 +191,10 @@ def _validate(task: Task, folder: Path) -> tuple[str, Facts]:
 
         options = VoyageOptions(**task.options.shared_with(ValidateOptions))
         result = validate_voyages([task.ship], load_voyages(task.trials), options, folder=folder, command=task.label)
-        written = write_voyages(result, folder)
+        written = write_voyages(result, folder, overwrite=True)
         return "voyages.json", Facts("good", written["verdict"])
     data = load_trials(task.trials)
-    document = write_validation(validate([task.ship], data, task.options), data, folder, task.label)
+    document = write_validation(validate([task.ship], data, task.options), data, folder, task.label, overwrite=True)
     (scored,) = document["profiles"]
     errors = [rms_errors(document, row) for row in scored["trials"]]
     track, heading = ([one[k] for one in errors if one[k] is not None] for k in (0, 1))
@@ -214,7 +216,6 @@ def _mean(values: Sequence[float | None]) -> float | None:
 
 def _check(task: Task, folder: Path) -> tuple[str, Facts]:
     from .. import checking
-    from ..files import write_text
     from ..provenance import made_by
     from ..trial import load_trials
 
@@ -226,7 +227,7 @@ def _check(task: Task, folder: Path) -> tuple[str, Facts]:
     data = load_trials(task.trials)
     report = checking.check(task.ship, data, recorded, names=names, integrator=integrator, **how)
     document = {**report.to_dict(), **made_by(task.label), "out": str(folder)}
-    write_text(folder / "check.json", json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+    write_json(document, folder / "check.json")
     if report.verdict == "not comparable":
         lost = [item.reason for item in report.items if item.status == "not comparable" and item.reason]
         why = "; ".join(dict.fromkeys(lost))

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from .. import limits
+from ..documents import write_json
 from ..errors import OptionError, Problem, reason
-from ..files import write_text
 from . import rows as result_rows
 from .changes import FEWEST, LEVEL, SURE, Course
 from .pooling import classes_of, write_classes
@@ -51,7 +51,7 @@ def write_record(out: Path, made: Mapping[str, Any]) -> dict[str, Any]:
         "ranking": _ranking(rows),
         "classes": [{"name": one["name"], **(one["pooled"] or {})} for one in classes],
     }
-    write_text(out / RECORD, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+    write_json(document, out / RECORD)
     return document
 
 

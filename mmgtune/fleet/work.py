@@ -16,6 +16,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
+from ..documents import write_json
 from ..errors import MmgtuneError, OptionError, Problem, TrialError, cannot_write_reason
 from ..files import write_text
 from . import rows
@@ -83,7 +84,7 @@ def attempted(job: Job, out: Path, report: bool = True) -> tuple[str, Facts]:
 
             render(here)
         _says(here / record, str(final))
-        write_text(here / DOCUMENT, json.dumps(job.to_dict(), indent=1, ensure_ascii=False) + "\n")
+        write_json(job.to_dict(), here / DOCUMENT)
         _replace(here, final)
     finally:
         shutil.rmtree(here, ignore_errors=True)

@@ -64,7 +64,7 @@ class Made:
         return {"schema": 1, "ship": self.ship, "profile": profile, "sets": [dict(one) for one in self.sets]}
 
 
-def make_trials(ship: str, out: Path | str, options: MakeOptions = MakeOptions(), *, force: bool = False) -> Made:
+def make_trials(ship: str, out: Path | str, options: MakeOptions = MakeOptions(), *, overwrite: bool = False) -> Made:
     """Make sets of trials of a ship in ``out``, each in a folder of its own with the truth in ``truth``.
 
     At full scale the profile of the ship is written beside them.  The same seed makes the same trials, whichever
@@ -82,8 +82,7 @@ def make_trials(ship: str, out: Path | str, options: MakeOptions = MakeOptions()
     out = path_of(out)
     own = out / f"{profile.id}.toml" if scale != 1.0 else None
     folders = [out / plan.name for plan in plans]
-    if not force:
-        refuse_existing([*folders, *([own] if own else [])])
+    refuse_existing([*folders, *([own] if own else [])], overwrite)
     if own:
         write_text(own, profile.text)
     rows = []

@@ -11,7 +11,6 @@ from .text import binary, start_of
 from .workbook import OLD
 
 _WORDS = {b"PAR1": "a Parquet file", b"PK\x03\x04": "a workbook or another archive", b"MATLAB": "a MATLAB file"}
-_WIDE = (b"\xff\xfe", b"\xfe\xff")
 
 
 def form_of(log: Path) -> str:

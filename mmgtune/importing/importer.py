@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import json
 import re
 from collections import Counter
 from collections.abc import Sequence
@@ -14,8 +13,9 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray
+from ..documents import write_json
 from ..errors import LogError, Problem
-from ..files import path_of, refuse_existing, true_path, write_text
+from ..files import path_of, refuse_existing, true_path
 from ..resources import must_be_name
 from ..trial import Trial, write_trial
 from ..trial.schema import ATTRIBUTES, directions, known_column
@@ -149,14 +149,11 @@ def import_logs(
     if dry_run:
         return Imported(tuple(trials), tuple(quality), (), log_map.name)
     files = [out / f"{trial.id}.parquet" for trial in trials]
-    if not overwrite:
-        refuse_existing(files)
+    refuse_existing(files, overwrite)
     for trial, path in zip(trials, files, strict=True):
         write_trial(trial, path, overwrite)
     imported = Imported(tuple(trials), tuple(quality), tuple(files), log_map.name)
-    write_text(
-        out / REPORT, json.dumps(imported.to_dict(), indent=1, ensure_ascii=False, allow_nan=False) + "\n", overwrite
-    )
+    write_json(imported.to_dict(), out / REPORT, overwrite)
     return imported
 
 

@@ -18,6 +18,7 @@ import numpy as np
 
 from ..backends.compiled import cores
 from ..backends.twins import jax_module
+from ..documents import finite
 from ..errors import OptionError, Problem
 from ..files import path_of
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
@@ -30,7 +31,7 @@ from .choosing import Single
 from .ensemble import EnsembleAim, MemberStandards, Trainable, first_member
 from .keeping import Kept
 from .provenance import provenance_of, travelling
-from .run import Hooks, finite, identity_of, scored
+from .run import Hooks, identity_of, scored
 from .task import EnsembleTask, ensemble_task
 from .training import Plan, Progressed, Trainer, needed
 

@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from ..arrays import FloatArray
-from ..files import path_of, write_text
-from ..networks import EnsemblePredictor, HybridPredictor, NetworkPredictor, save_network
+from ..documents import write_json
+from ..files import path_of, refuse_existing
+from ..networks import (
+    Ensemble,
+    EnsemblePredictor,
+    Hybrid,
+    HybridPredictor,
+    Network,
+    NetworkPredictor,
+    save_network,
+)
 from ..objective import spread
 from ..predictor import Predictor, as_predictor
 from ..simulation import simulate
@@ -181,20 +189,25 @@ def _short(value: float, name: str) -> float:
     return round(value, 2) if name.endswith("_m") else float(f"{value:.5g}")
 
 
-def write_learned(result: Learned | LearnedHybrid | LearnedEnsemble, folder: Path | str) -> dict[str, Any]:
-    """Write a run folder, the record last; checkpoints stay where the training was stopped.  Returns the record."""
+def write_learned(
+    result: Learned | LearnedHybrid | LearnedEnsemble, folder: Path | str, *, overwrite: bool = False
+) -> dict[str, Any]:
+    """Write a run folder, the record last; checkpoints stay where the training was stopped.  Returns the record.
+
+    Raises OutputError where a record is there already and ``overwrite`` is false, or the system refuses to write.
+    """
     folder = path_of(folder)
+    network: Network | Hybrid | Ensemble
     if isinstance(result, LearnedHybrid):
-        save_network(result.hybrid, folder / MODEL, overwrite=True)
-        document, name = hybrid_document(result), HYBRID_RESULT
+        network, document, name = result.hybrid, hybrid_document(result), HYBRID_RESULT
     elif isinstance(result, LearnedEnsemble):
-        save_network(result.ensemble, folder / MODEL, overwrite=True)
-        document, name = ensemble_document(result), ENSEMBLE_RESULT
+        network, document, name = result.ensemble, ensemble_document(result), ENSEMBLE_RESULT
     else:
-        save_network(result.network, folder / MODEL, overwrite=True)
-        document, name = document_of(result), RESULT
+        network, document, name = result.network, document_of(result), RESULT
+    refuse_existing([folder / name], overwrite)
+    save_network(network, folder / MODEL, overwrite=True)
     document["out"] = str(folder)
-    write_text(folder / name, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+    write_json(document, folder / name)
     if not result.interrupted:
         for path in folder.glob(CHECKPOINTS):
             path.unlink()

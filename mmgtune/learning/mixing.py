@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ..documents import finite, write_json
 from ..errors import OptionError, Problem, reason
-from ..files import path_of, write_text
+from ..files import path_of, refuse_existing
 from ..fitting.run import made_by
 from ..given import TrialsGiven, trials_of
 from ..networks import (
@@ -32,7 +32,6 @@ from ..profile.changing import joined
 from ..trial import Trial, TrialSet
 from ..validation import L_MSE, by_manoeuvre, score
 from .choosing import pieces_of
-from .run import finite
 
 RESULT, MODEL = "mixture.json", "model.safetensors"
 
@@ -89,12 +88,16 @@ class LearnedMixture:
             "provenance": self.provenance,
         }
 
-    def write(self, folder: Path | str) -> dict[str, Any]:
-        """Write the model and the record into a run folder.  Returns the record; raises OutputError."""
+    def write(self, folder: Path | str, *, overwrite: bool = False) -> dict[str, Any]:
+        """Write the model and the record into a run folder.  Returns the record.
+
+        Raises OutputError where one is there already and ``overwrite`` is false, or the system refuses to write.
+        """
         folder = path_of(folder)
+        refuse_existing([folder / RESULT], overwrite)
         document = {**self.to_dict(), "out": str(folder)}
         save_network(self.model, folder / MODEL, overwrite=True)
-        write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+        write_json(document, folder / RESULT)
         return document
 
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from ..documents import finite
 from ..errors import OptionError, Problem
 from ..files import path_of
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
@@ -198,8 +199,3 @@ def scored(
     if not trials:
         return ()
     return tuple(score(predictor, pieces_of(trials, restart), sigma))
-
-
-def finite(value: float) -> float | None:
-    """A number for JSON, which knows no infinite ones."""
-    return float(value) if np.isfinite(value) else None

@@ -57,12 +57,12 @@ class Criterion:
 
 def first_overshoot_limit(L: float, V: float) -> float:
     """Largest first overshoot of the 10/10 zigzag [deg]; MSC.137(76), 5.3.3.1."""
-    return _between(L / V, 10.0, 5.0 + 0.5 * (L / V), 20.0)
+    return _between(L, V, 10.0, 5.0, 0.5, 20.0)
 
 
 def second_overshoot_limit(L: float, V: float) -> float:
     """Largest second overshoot of the 10/10 zigzag [deg]; MSC.137(76), 5.3.3.2."""
-    return _between(L / V, 25.0, 17.5 + 0.75 * (L / V), 40.0)
+    return _between(L, V, 25.0, 17.5, 0.75, 40.0)
 
 
 def check_turning(
@@ -105,9 +105,11 @@ def check_zigzag(indices: ZigzagIndices, L: float, V: float) -> tuple[Criterion,
     return ()
 
 
-def _between(ratio: float, short: float, sloped: float, long: float) -> float:
-    """The limit for L/V below 10 s, between, and from 30 s on."""
-    return short if ratio < 10.0 else (long if ratio >= 30.0 else sloped)
+def _between(L: float, V: float, short: float, base: float, slope: float, long: float) -> float:
+    """The limit for L/V below 10 s, between, and from 30 s on, as for a ship at rest."""
+    if L >= 30.0 * V:
+        return long
+    return short if L < 10.0 * V else base + slope * (L / V)
 
 
 def _is_zigzag(indices: ZigzagIndices, degrees: float) -> bool:
@@ -125,6 +127,8 @@ def _unfit(at_start: bool, approach_speed: float, V: float) -> str:
     """Why no criterion can be judged on the trial, or ""."""
     if at_start:
         return "the record begins with the rudder already over"
+    if not V > 0.0:
+        return "the test speed is 0"
     if abs(approach_speed / V - 1.0) > SPEED_TOLERANCE:
         return f"approach at {approach_speed:.2f} m/s, test speed {V:.2f} m/s"
     return ""

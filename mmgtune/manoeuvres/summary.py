@@ -33,11 +33,16 @@ def _angles(indices: Mapping[str, Any]) -> tuple[float, float] | None:
     return None if rudder is None or check is None else (rudder * DEG, check * DEG)
 
 
-def criteria_of(track: Track, L_pp: float, V: float) -> tuple[Criterion, ...]:
-    """Criteria of IMO MSC.137(76) for the manoeuvre shown; L_pp [m], V test speed [m/s]."""
+def criteria_of(
+    track: Track, L_pp: float, V: float, measured: Mapping[str, Any] | None = None
+) -> tuple[Criterion, ...]:
+    """Criteria of IMO MSC.137(76) for the manoeuvre shown; L_pp [m], V test speed [m/s].
+
+    measured  as in ``indices_of``
+    """
     kind = manoeuvre_kind(track)
     if kind == "turning":
         return check_turning(turning_indices(track, L_pp), L_pp, V)
     if kind == "zigzag":
-        return check_zigzag(zigzag_indices(track, L_pp), L_pp, V)
+        return check_zigzag(zigzag_indices(track, L_pp, _angles(measured or {})), L_pp, V)
     return ()

@@ -85,6 +85,8 @@ def draw_tracks(view: View, *trials: str, ax: Axes | None = None) -> Any:
 def draw_histories(view: View, *trials: str, channels: Sequence[str] = (), ax: Any = None) -> Any:
     """See ``displayed.Plots.histories``."""
     motions = view.motions() if view.motions else {}
+    if not motions:
+        raise _nothing()
     (name,) = _named(motions, trials) if trials else [*motions][:1]
     lines = motions[name]
     shown = [_channel(one, lines) for one in channels or _usual(lines)]
@@ -160,12 +162,16 @@ def _named(motions: Mapping[str, Any], trials: Sequence[str]) -> list[str]:
     return list(trials)
 
 
+def _nothing() -> OptionError:
+    return OptionError(Problem("there is nothing to draw", "plot", "no trial is a time series"))
+
+
 def _grid(amount: int, cell: tuple[float, float]) -> list[Any]:
     """Axes in rows of up to four, on a figure that a notebook shows."""
     import matplotlib.pyplot as plt
 
     if not amount:
-        raise OptionError(Problem("there is nothing to draw", "plot", "no trial is a time series"))
+        raise _nothing()
     columns = amount if amount <= 3 else 2 if amount == 4 else 3 if amount in (5, 6, 9) else 4
     rows = -(-amount // columns)
     size = (cell[0] * columns, cell[1] * rows + 0.4)

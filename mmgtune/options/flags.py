@@ -6,8 +6,9 @@ import re
 
 from .choice import Choice, Options, choices
 
-FLAGS: dict[str, str] = {}
-"""The flag of every field of every dataclass of options; commands add what they have to themselves."""
+FLAGS: dict[str, str] = {"overwrite": "--force"}
+"""The flag of every field of every dataclass of options, and of what functions that write are asked; commands add what
+they have to themselves."""
 
 
 def flags_of(of: type[Options]) -> dict[str, Choice]:

@@ -16,7 +16,7 @@ from ..model import Model
 from ..simulation import Motion
 from .helmsmen import Helmsman, SpiralOrder, Straight, TurningOrder, Weave, ZigzagOrder, in_radians
 from .ordering import order_by_order, serves
-from .sailing import LONGEST_STEP, Sailing, Watch
+from .sailing import LONGEST_STEP, Sailing, Watch, sample_of
 from .stepping import step_by_step
 
 __all__ = [
@@ -31,6 +31,7 @@ __all__ = [
     "in_radians",
     "run_manoeuvre",
     "run_manoeuvres",
+    "sample_of",
 ]
 
 

@@ -28,6 +28,14 @@ ROLES: tuple[Role, ...] = ("rudder", "propeller", "thruster")
 """What orders are given to, in the order in which a watch gives them."""
 
 
+def sample_of(L_pp: float, speed: float) -> float:
+    """Time between samples [s] of a simulated manoeuvre: ten per ship length travelled, one a second at least.
+
+    L_pp [m], speed [m/s].  Models are quicker than ships.
+    """
+    return min(1.0, round(L_pp / speed / 10.0, 1) or 0.1)
+
+
 @dataclass(frozen=True, eq=False)
 class Sailing:
     """A manoeuvre to be simulated: who steers, from what approach, and for how long.
@@ -60,7 +68,7 @@ class Sailing:
             fix = "give orders, such as TurningOrder(radians(35)) or ZigzagOrder(radians(10))"
             raise OptionError(Problem(what, "helmsman", why, fix))
         positive(longest=self.longest, sample=self.sample, **({} if self.step is None else {"step": self.step}))
-        TRIAL_SAMPLES.hold(self.longest / self.sample, "sample", OptionError)
+        TRIAL_SAMPLES.hold(self.longest / self.sample, "longest", OptionError)
         if not (self.speed is None or is_number(self.speed, above=0.0)):
             what = f"the approach speed is {brief(self.speed)}"
             raise OptionError(Problem(what, "speed", "it is in m/s", "give a number above 0"))

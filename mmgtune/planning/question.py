@@ -78,7 +78,11 @@ def _manoeuvre(words: str) -> tuple[str, str]:
         raise OptionError(Problem(f"unknown manoeuvre '{kind[:60]}'", "question", **among(kind, MANOEUVRES)))
     side = re.search(r"\s*(?:to )?(port|starboard)(?: first)?$", f" {rest}")
     if side:
-        rest = f" {rest}"[: side.start()].strip().lstrip("+-")
+        rest = f" {rest}"[: side.start()].strip()
+        if rest.startswith("-" if side[1] == "starboard" else "+"):
+            what, fix = f"the sign and the side contradict each other: '{words.strip()[:60]}'", "leave out one of them"
+            raise OptionError(Problem(what, "question", "angles to starboard are positive", fix))
+        rest = rest.lstrip("+-")
         rest = f"-{rest}" if side[1] == "port" else rest
     rest = rest.removesuffix(" deg")
     if (kind == "stop") == bool(rest):

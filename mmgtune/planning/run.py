@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import time
 from collections.abc import Mapping
@@ -16,8 +15,9 @@ from ..arrays import FloatArray
 from ..backends import get_backend
 from ..bands import IndexBand, index_band
 from ..displayed import Displayed
+from ..documents import write_json
 from ..errors import OptionError, Problem, ProfileError
-from ..files import write_text
+from ..files import path_of, refuse_existing
 from ..networks import named_ship
 from ..options import PlanOptions, PredictOptions
 from ..options.choice import must_be
@@ -195,10 +195,15 @@ def plan_trial(model: str | Path | Particles, question: str, options: PlanOption
     )
 
 
-def write_plan(result: TrialPlan, folder: Path, command: str = "") -> dict[str, Any]:
-    """Write the record into a run folder.  Returns it; raises OutputError."""
+def write_plan(result: TrialPlan, folder: Path | str, command: str = "", *, overwrite: bool = False) -> dict[str, Any]:
+    """Write the record into a run folder.  Returns it.
+
+    Raises OutputError where one is there already and ``overwrite`` is false, or the system refuses to write.
+    """
+    folder = path_of(folder)
+    refuse_existing([folder / RESULT], overwrite)
     document = {**result.to_dict(command), "out": str(folder)}
-    write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+    write_json(document, folder / RESULT)
     return document
 
 

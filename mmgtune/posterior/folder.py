@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
-from ..files import path_of, write_text
+from ..documents import write_json
+from ..files import path_of
 from ..particles import FILE, save_particles
 from .run import Posterior
 
@@ -21,5 +21,5 @@ def write_posterior(result: Posterior, folder: Path | str, overwrite: bool = Fal
     folder = path_of(folder)
     save_particles(result.particles, folder / FILE, overwrite)
     document = {**result.to_dict(), "out": str(folder)}
-    write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n", overwrite)
+    write_json(document, folder / RESULT, overwrite)
     return document

@@ -13,6 +13,7 @@ from ..backends import pad
 from ..errors import OptionError, TrialError
 from ..evaluation import Measured, TrialRecord
 from ..manoeuvres.summary import indices_of
+from ..orders import sample_of
 from ..predictor import Predictor, cases_from, draught_of, portions
 from ..simulation import Motion
 from ..trial import Trial
@@ -25,8 +26,7 @@ from .result import Foretold
 
 def on_orders(predictor: Predictor, orders: OrderList, approach: Approach) -> Foretold:
     """All particles through a list of orders, from straight ahead.  Raises OptionError for one that takes too long."""
-    # As often as a simulated manoeuvre: ten samples per ship length travelled, one a second at least.
-    step = min(1.0, round(predictor.L_pp / approach.speed / 10.0, 1) or 0.1)
+    step = sample_of(predictor.L_pp, approach.speed)
     limits.ORDERS_STEPS.hold(orders.duration / step * predictor.n_members, str(orders.path), OptionError)
     t, controls = orders.carried_out(tuple(predictor.inputs), actuators_of(predictor), approach.n, step)
     initial = np.array([0.0, 0.0, 0.0, approach.speed, 0.0, 0.0])

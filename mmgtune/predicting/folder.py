@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..backends import STATES
-from ..files import path_of, write_text
+from ..documents import write_json
+from ..files import path_of, refuse_existing
 from ..tables import write_table
 from .result import Predicted
 
@@ -24,19 +24,26 @@ DRAWN, POINTS = 40, 150
 
 
 def write_prediction(
-    result: Predicted, folder: Path | str, command: str = "", *, keep_particles: bool = False
+    result: Predicted,
+    folder: Path | str,
+    command: str = "",
+    *,
+    keep_particles: bool = False,
+    overwrite: bool = False,
 ) -> dict[str, Any]:
     """Write the record, the bands and some tracks into a run folder; all particles too where they are to be kept.
 
-    Returns the record; raises OutputError.
+    Returns the record.  Raises OutputError where one is there already and ``overwrite`` is false, or the system refuses
+    to write.
     """
     folder = path_of(folder)
+    refuse_existing([folder / RESULT], overwrite)
     document = {**result.to_dict(command), "out": str(folder)}
     _write(folder / BANDS, _bands(result), ("run", "variable", "t", *FAN, "measured"))
     _write(folder / TRACKS, _tracks(result, ("x", "y"), DRAWN, POINTS), ("run", "particle", "t", "x", "y"))
     if keep_particles:
         _write(folder / PATHS, _tracks(result, STATES), ("run", "particle", "t", *STATES, "diverged"))
-    write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+    write_json(document, folder / RESULT)
     return document
 
 

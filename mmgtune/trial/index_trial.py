@@ -305,6 +305,9 @@ class _Table:
             why = "rudder to starboard is positive" if order else ""
             self.wrong(f"order is {brief(order)}", "order", why, f'write order = "{example}", or "{example} to port"')
             return 0.0, None, None
+        if said[4] == "starboard" and angles[0] < 0.0:
+            why = "its sign says port, its words say starboard"
+            self.wrong(f"order is '{order}'", "order", why, "leave the sign out, or the side")
         rudder = angles[0] if said[4] != "port" else -abs(angles[0])
         if not 0.0 < abs(rudder) <= 90.0 * DEG or (numbers == 2 and not 0.0 < angles[1] <= 90.0 * DEG):
             self.wrong(f"order is '{order}'", "order", "angles of manoeuvres lie between 0 and 90 deg")

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..backends import STATES
-from ..files import path_of, write_text
+from ..documents import write_json
+from ..files import path_of, refuse_existing
 from ..fitting.journal import finished
 from ..tables import write_table
 from ..trial.parquet import GROUP_ROWS
@@ -18,14 +18,18 @@ from .result import VoyageValidation
 RESULT = "voyages.json"
 
 
-def write_voyages(result: VoyageValidation, folder: Path | str) -> dict[str, Any]:
-    """Write the windows, those that are drawn and, last, the result.  Returns its document."""
+def write_voyages(result: VoyageValidation, folder: Path | str, *, overwrite: bool = False) -> dict[str, Any]:
+    """Write the windows, those that are drawn and, last, the result.  Returns its document.
+
+    Raises OutputError where a result is there already and ``overwrite`` is false, or the system refuses to write.
+    """
     folder = path_of(folder)
+    refuse_existing([folder / RESULT], overwrite)
     if result.table is not None:
         write_table(folder / "windows.parquet", result.columns(), GROUP_ROWS)
         write_table(folder / "drawn.parquet", _drawn(result), GROUP_ROWS)
     document = {**result.to_dict(), "out": str(folder)}
-    write_text(folder / RESULT, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+    write_json(document, folder / RESULT)
     if not result.interrupted:
         finished(folder)
     return document

@@ -12,6 +12,7 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray
 from ..bands import Pooled
 from ..displayed import Displayed
+from ..documents import finite
 from ..measures import UNITS
 from ..options import VoyageOptions
 from ..predictor import Predictor, profile_of
@@ -114,8 +115,8 @@ class Comparison:
             "first": self.first,
             "second": self.second,
             "windows": self.windows,
-            "share_second_better": _json(self.better),
-            "cVDM_difference": _json(self.difference),
+            "share_second_better": finite(self.better),
+            "cVDM_difference": finite(self.difference),
             "cVDM_difference_ci95": list(self.ci95) if self.ci95 else None,
         }
 
@@ -249,13 +250,13 @@ class VoyageValidation(Displayed):
             "options": self.options.to_dict(),
             "window_s": self.options.window,
             "gap_s": self.options.gap,
-            "r_max": {"rad_per_s": _json(self.r_max), "from": self.r_max_from},
+            "r_max": {"rad_per_s": finite(self.r_max), "from": self.r_max_from},
             "classes": {
                 "names": list(CLASSES),
                 "cVDM_limits": list(self.options.classes),
                 "rudder_moves_from_rad": MOVED,
             },
-            "sigma": {name: _json(value) for name, value in self.sigma.items()},
+            "sigma": {name: finite(value) for name, value in self.sigma.items()},
             "sigma_from": self.sigma_from,
             "integrator": self.options.integrator,
             "substeps": self.options.substeps,
@@ -290,11 +291,11 @@ class VoyageValidation(Displayed):
             **found,
             "classes": self.classes(name),
             "diverged": int(scored.diverged.sum()),
-            "J": _json(float(scored.J.sum())),
-            "L_MSE": _json(sum(parts.values())),
-            "L_MSE_by_state": {key: _json(value) for key, value in parts.items()},
+            "J": finite(float(scored.J.sum())),
+            "L_MSE": finite(sum(parts.values())),
+            "L_MSE_by_state": {key: finite(value) for key, value in parts.items()},
             "measures": {measure: _distribution(scored, measure) for measure in ALL_MEASURES},
-            "cVDM_parts": {part: _json(_mean(values)) for part, values in scored.parts.items()},
+            "cVDM_parts": {part: finite(_mean(values)) for part, values in scored.parts.items()},
             "tells_most": most.feature.name if most else None,
             "where": [one.to_dict() for one in self.where[name]],
             **({"bands": self.bands[name].to_dict()} if name in self.bands else {}),
@@ -305,7 +306,7 @@ class VoyageValidation(Displayed):
         return {
             "window": self.table.ids[one.place],
             "role": one.role,
-            "cVDM": {name: _json(float(model.cVDM[one.place])) for name, model in self.table.models.items()},
+            "cVDM": {name: finite(float(model.cVDM[one.place])) for name, model in self.table.models.items()},
         }
 
     def columns(self) -> dict[str, Any]:
@@ -355,17 +356,13 @@ def _distribution(scored: ModelTable, measure: str) -> dict[str, Any]:
     """Mean over windows that did not diverge, and quantiles over all."""
     values = scored.measures[measure]
     there = values[~np.isnan(values)]
-    found: dict[str, Any] = {"unit": UNITS[measure], "mean": _json(_mean(values))}
+    found: dict[str, Any] = {"unit": UNITS[measure], "mean": finite(_mean(values))}
     for share in QUANTILES:
         key = "median" if share == 0.5 else f"q{100.0 * share:02.0f}"
-        found[key] = _json(float(np.quantile(there, share, method="lower"))) if len(there) else None
+        found[key] = finite(float(np.quantile(there, share, method="lower"))) if len(there) else None
     return found
 
 
 def _mean(values: FloatArray) -> float:
     some: BoolArray = np.isfinite(values)
     return float(values[some].mean()) if some.any() else float("nan")
-
-
-def _json(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
+from ..documents import finite
 from .drawing_anew import Draws
 from .features import FEATURES, QUANTILES, Feature
 from .table import WindowTable
@@ -40,15 +41,15 @@ class Bin:
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
         return {
-            "low": _json(self.low),
-            "high": _json(self.high),
+            "low": finite(self.low),
+            "high": finite(self.high),
             "name": self.name,
             "windows": self.windows,
             "diverged": self.diverged,
-            "cVDM_mean": _json(self.mean),
+            "cVDM_mean": finite(self.mean),
             "cVDM_ci95": list(self.ci95) if self.ci95 else None,
-            "cVDM_median": _json(self.median),
-            "parts": {name: _json(value) for name, value in self.parts.items()},
+            "cVDM_median": finite(self.median),
+            "parts": {name: finite(value) for name, value in self.parts.items()},
         }
 
 
@@ -74,7 +75,7 @@ class ByFeature:
             "feature": self.feature.name,
             "words": self.feature.words,
             "unit": self.feature.unit,
-            "explained": _json(self.explained),
+            "explained": finite(self.explained),
             "bins": [one.to_dict() for one in self.bins],
         }
 
@@ -146,7 +147,3 @@ def _bin(table: WindowTable, model: str, some: BoolArray, draws: Draws, low: flo
 def most_telling(found: Sequence[ByFeature]) -> ByFeature | None:
     """The feature that explains most; None where none is known."""
     return found[0] if found else None
-
-
-def _json(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None

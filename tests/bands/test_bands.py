@@ -172,6 +172,17 @@ def test_windows_together_are_the_mean_over_their_samples():
     assert found.to_dict()["coverage_90"] == found.covers(0.9)
 
 
+def test_what_never_changes_is_counted_in_nothing():
+    found = window(normal((40, 30, 6)), normal((30, 6), seed=3))
+    still = pooled([found], {**ONE, "v_m": 0.0})
+    others = [of for name, of in still.CRPS_by_state.items() if name != "v_m"]
+    assert pytest.approx(np.mean(others)) == still.CRPS
+    assert still.sharpness is not None
+    assert np.isfinite(still.sharpness)
+    nothing = pooled([found], dict.fromkeys(ONE, 0.0))
+    assert (nothing.CRPS, nothing.sharpness) == (None, None)
+
+
 def test_bands_that_are_right_are_found_right():
     found = pooled([window(normal((99, 3000, 6)), normal((3000, 6), seed=2))], ONE)
     np.testing.assert_allclose(found.coverage, LEVELS, atol=0.02)

@@ -119,7 +119,9 @@ def test_how_long_a_diagnosis_may_still_take(monkeypatch):
     assert left.words("comparing the causes with their rivals") == ""
 
 
-@pytest.mark.parametrize(("seconds", "words"), [(0.2, "1 s"), (42.0, "42 s"), (330.0, "5.5 min"), (7200.0, "2 h")])
+@pytest.mark.parametrize(
+    ("seconds", "words"), [(0.2, "1 s"), (42.0, "42 s"), (330.0, "5.5 min"), (7200.0, "2 h"), (5e5, "139 h")]
+)
 def test_times_in_words(seconds, words):
     assert in_time(seconds) == words
 

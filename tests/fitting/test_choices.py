@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from mmgtune.errors import OptionError
-from mmgtune.fitting import FitOptions, LeaveOutOptions, fit, leave_out, make_problem
+from mmgtune.fitting import FitOptions, LeaveOutOptions, fit, leave_out, make_problem, plan_leave_out
 from mmgtune.fitting.leaving_out import leaving_out
+from mmgtune.fitting.run import make_setting
+from mmgtune.simulation import as_trial, simulate
 from mmgtune.trial import TrialSet, write_trial
 from tests.command import run
 
@@ -84,6 +86,29 @@ def test_windows_of_a_run_are_left_out_together(clean):
         assert not set(out) & set(others)
         assert {*out, *others} == set(cut.tune)
     assert len(list(leaving_out(cut, 2))) == 2
+
+
+def test_nothing_is_left_out_where_nothing_would_be_left(suzaku, clean):
+    """A fit to no trial would be one to all: it is refused, and never scored as if it had not seen them."""
+    (turn, *_) = clean.tune
+    alone = TrialSet({turn: clean.trials[turn]}, (turn,), (), "suzaku")
+    for data, folds, said in ((alone, 0, "only turn"), (clean, 1, "all runs are one part")):
+        with pytest.raises(OptionError, match=said):
+            leave_out(suzaku.profile, data, LeaveOutOptions(folds=folds))
+        with pytest.raises(OptionError, match=said):
+            plan_leave_out(suzaku.profile, data, LeaveOutOptions(folds=folds))
+    setting = make_setting(suzaku.profile, clean, QUICK)
+    assert len(setting.problem().cases) == len(clean.tune)
+    assert len(setting.problem([turn]).cases) == 1
+
+
+def test_trials_of_the_profile_itself_leave_nothing_to_tune(suzaku, clean):
+    made = [as_trial(suzaku.profile, one) for one in simulate(suzaku, list(clean.trials.values())[:3])]
+    found = fit(suzaku.profile, made, QUICK)
+    assert found.J_before == found.J == 0.0
+    assert found.certificate.starts_agreeing == found.certificate.starts
+    (row, *_) = leave_out(suzaku.profile, made, LeaveOutOptions(starts=1)).rows()
+    assert row["share_removed"] == 0.0
 
 
 def test_left_out_runs_are_scored_by_coefficients_that_never_saw_them(suzaku, noisy):

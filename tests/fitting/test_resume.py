@@ -243,12 +243,12 @@ def test_nothing_is_lost_between_the_end_of_a_run_and_its_result(tmp_path, monke
         raise KeyboardInterrupt
 
     options = FitOptions(targets=FEW, starts=1)
-    whole = mmgtune.fit("suzaku", "suzaku", options, checkpoint_folder=tmp_path)
+    whole = mmgtune.fit("suzaku", "suzaku", options, folder=tmp_path)
     with monkeypatch.context() as patched:
         patched.setattr(run_folder, "write_text", killed)
         with pytest.raises(KeyboardInterrupt):
             mmgtune.write_run(whole, tmp_path)
-    resumed = mmgtune.fit("suzaku", "suzaku", options, checkpoint_folder=tmp_path, resume=True)
+    resumed = mmgtune.fit("suzaku", "suzaku", options, folder=tmp_path, resume=True)
     assert same(resumed.to_dict()) == same(whole.to_dict())
     mmgtune.write_run(resumed, tmp_path)
     assert {path.name for path in tmp_path.iterdir()} == {

@@ -235,7 +235,7 @@ def test_resumed_equals_not_interrupted(data, small, tmp_path, after):
     write_learned(first, tmp_path)
     assert list(tmp_path.glob("training-*"))
     second = learn_ensemble(SHIP, data, SMALL, folder=tmp_path, resume=True)
-    write_learned(second, tmp_path)
+    write_learned(second, tmp_path, overwrite=True)
     assert not second.interrupted
     assert not list(tmp_path.glob("training-*"))
     np.testing.assert_array_equal(weights(second), weights(small))

@@ -93,7 +93,7 @@ def test_resumed_equals_not_interrupted(tmp_path, after):
     write_learned(first, tmp_path)
     assert list(tmp_path.glob("training-*"))
     second = learn_rnn("suzaku", "suzaku", options, folder=tmp_path, resume=True)
-    write_learned(second, tmp_path)
+    write_learned(second, tmp_path, overwrite=True)
     assert not second.interrupted
     assert not list(tmp_path.glob("training-*"))
     whole = learn_rnn("suzaku", "suzaku", options)

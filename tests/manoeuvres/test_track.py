@@ -83,7 +83,7 @@ def test_yawing_to_and_fro_on_course_is_no_turning():
 
 def test_counter_order_is_not_the_zero_crossing():
     track = zigzag()
-    for order, time in zip(find_executes(track)[1:], order_times(10.4 * DEG), strict=False):
+    for order, time in zip(find_executes(track)[1:], order_times(10.4 * DEG), strict=True):
         assert track.t[order.index] == pytest.approx(time, abs=0.5)
         assert abs(track.delta[order.index]) == pytest.approx(10.0 * DEG, abs=0.3 * DEG)
 

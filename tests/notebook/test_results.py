@@ -15,6 +15,7 @@ import mmgtune
 from mmgtune.errors import OptionError, TrialError
 from mmgtune.fleet import FleetRun
 from mmgtune.notebook.kinds import KINDS
+from mmgtune.trial.index_trial import IndexTrial, Stated
 
 HOSTILE = "<img src=x onerror=alert(1)>\"'&amp;\u202e\x9b31m$x_1$"
 """A name as a log may have it: marks of HTML and of mathematics, a turned direction, a control code."""
@@ -213,6 +214,15 @@ def test_pictures_hold_what_they_are_of(fitted, trials, plt):
     rooms = fitted.plot.coefficients()
     assert [label.get_text() for label in rooms.get_yticklabels()] == list(fitted.theta)
     assert dir(fitted.plot) == ["coefficients", "histories", "tracks"]
+
+
+def test_trials_that_are_indices_alone_have_no_picture(plt):
+    stated = {"advance": Stated(240.0, 12.0)}
+    delivery = IndexTrial("delivery", "suzaku", "turning", 0.6, None, None, stated)
+    found = mmgtune.validate("suzaku", [delivery])
+    for draw in (found.plot.histories, found.plot.tracks):
+        with pytest.raises(OptionError, match="nothing to draw"):
+            draw()
 
 
 def test_what_there_is_no_picture_of(trials, plt):

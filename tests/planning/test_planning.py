@@ -112,6 +112,8 @@ def test_questions_as_people_write_them(ship, text, index, manoeuvre):
         ("stopping time, stop", "astern"),
         ("stopping time, stop 5", "no angle"),
         ("advance, turn fast", "fast"),
+        ("advance, turn -20 deg to starboard", "contradict"),
+        ("advance, turn +20 deg to port", "contradict"),
     ],
 )
 def test_what_is_no_question_says_what_is_near(ship, text, words):

@@ -322,7 +322,7 @@ def test_a_prediction_of_which_nothing_is_left(kvlcc2, tmp_path):
             return Prediction(np.full((*shape, 6), np.nan), np.ones(shape[:2], dtype=bool))
 
     lost = Lost(scattered(kvlcc2, 2))
-    for found in (predict(lost, options=TURN), predict(lost, trials=two_trials())):
-        document = write_prediction(found, tmp_path / found.runs[0].manoeuvre)
+    for name, found in {"orders": predict(lost, options=TURN), "trials": predict(lost, trials=two_trials())}.items():
+        document = write_prediction(found, tmp_path / name)
         assert document["runs"][0]["diverged"] == 2
-        assert render(tmp_path / found.runs[0].manoeuvre)
+        assert render(tmp_path / name)

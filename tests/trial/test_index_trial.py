@@ -83,6 +83,7 @@ def test_other_files_in_the_folder_are_left_alone(tmp_path):
     [
         ('"35 deg"', '"35"', "order is"),
         ('"35 deg"', '"20/20 deg"', "order is"),
+        ('"35 deg"', '"-35 deg to starboard"', "its sign says port"),
         ('"35 deg"', '"350 deg"', "between 0 and 90 deg"),
         ('"turning"', '"spiral"', "spiral"),
         ('manoeuvre = "turning"', "", "no manoeuvre"),

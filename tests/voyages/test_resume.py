@@ -61,7 +61,7 @@ def test_a_stopped_validation_goes_on_behind_the_last_finished_voyage(logs, tmp_
     monkeypatch.setattr(running, "windows_of", lambda trials: scored.append(len(trials)) or real(trials))
     resumed = validate_voyages(profiles, logs, options, folder=tmp_path, resume=True)
     assert sum(scored) == resumed.logs[2].windows + len(resumed.drawn)  # those of c alone, and those that are drawn
-    write_voyages(resumed, tmp_path)
+    write_voyages(resumed, tmp_path, overwrite=True)
     assert not (tmp_path / NAME).exists()
     same(tmp_path, tmp_path / "whole")
 

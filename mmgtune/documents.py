@@ -1,0 +1,26 @@
+"""Results as JSON: the numbers it has words for, and documents written whole or not at all."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from .files import write_text
+
+
+def finite(value: float | None) -> float | None:
+    """The number, or None where JSON has no word for it."""
+    return float(value) if value is not None and math.isfinite(value) else None
+
+
+def finite_values(values: Mapping[str, float | None]) -> dict[str, float | None]:
+    """The same of numbers by name."""
+    return {name: finite(value) for name, value in values.items()}
+
+
+def write_json(document: Mapping[str, Any], path: Path, overwrite: bool = True) -> Path:
+    """Write a document; its path.  Raises ValueError for a number that is not finite, OutputError as ``write_text``."""
+    return write_text(path, json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n", overwrite)

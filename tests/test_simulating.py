@@ -1,0 +1,109 @@
+"""What ``simulate`` says and writes: of each member by its own coefficients, and of what has no end."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import mmgtune
+from mmgtune.errors import OptionError
+from mmgtune.options import SimulateOptions
+from mmgtune.predictor import PhysicsPredictor
+from mmgtune.simulation import as_trial, breakdown
+from mmgtune.stated import compare_stated
+from mmgtune.trial import TrialSet
+from mmgtune.trial.index_trial import IndexTrial, Stated
+
+TURN = mmgtune.load_trials("suzaku")["turn_p35"]
+
+
+@pytest.fixture(scope="module")
+def otherwise(suzaku):
+    """The profile's own coefficients and, second, another damping of the yaw rate."""
+    theta = np.repeat(suzaku.matrix(), 2, axis=1)
+    theta[suzaku.rows["hull.N_r"], 1] *= 1.5
+    return PhysicsPredictor(suzaku, theta)
+
+
+@pytest.fixture(scope="module")
+def lost(suzaku):
+    """A ship that leaves the world of ships as soon as she drifts."""
+    theta = suzaku.matrix()
+    theta[suzaku.rows["hull.X_vvvv"]] = 1e9
+    return PhysicsPredictor(suzaku, theta)
+
+
+def test_forces_are_those_of_the_member(suzaku, otherwise):
+    own, other = mmgtune.simulate(otherwise, TURN).motions
+    written = as_trial(otherwise, other, with_forces=True)
+    forces = breakdown(suzaku, other.states, other.controls, other.around, otherwise.theta[:, 1])
+    assert np.array_equal(written.extra["hull_N"], forces.hull.N)
+    assert not np.allclose(forces.hull.N, breakdown(suzaku, other.states, other.controls, other.around).hull.N)
+    assert written.note.endswith(", with other coefficients.")
+    assert as_trial(otherwise, own).note == as_trial(suzaku.profile, own).note
+
+
+def test_stated_indices_are_held_against_the_coefficients_of_the_predictor(suzaku, otherwise):
+    stated = {"advance": Stated(200.0, 5.0)}
+    trial = IndexTrial("delivery", "suzaku", "turning", math.radians(35.0), None, None, stated)
+    data = TrialSet({}, (), (), "", stated={trial.id: trial}, tune_stated=(trial.id,))
+    ship = replace(otherwise, theta=otherwise.theta[:, 1:])
+    (said,) = mmgtune.validate([ship], data).profiles[0].stated
+    (right,) = compare_stated(suzaku, {"simulated": ship.theta[:, 0]}, [trial], {trial.id: "tune"})
+    (usual,) = compare_stated(suzaku, {"simulated": suzaku.matrix()[:, 0]}, [trial], {trial.id: "tune"})
+    assert said.simulated == right.simulated != usual.simulated
+    checked = mmgtune.record_baseline(ship, data, ("advance",))
+    assert checked.trials[trial.id].metrics["advance"] == pytest.approx(
+        100.0 * (right.simulated["simulated"] / right.stated - 1.0)
+    )
+    assert checked.coefficients == {}  # they are not the profile's
+
+
+def test_a_check_is_of_one_member(otherwise):
+    with pytest.raises(OptionError, match="2 parameter vectors"):
+        mmgtune.record_baseline(otherwise, "suzaku")
+
+
+def test_criteria_of_a_zigzag_are_those_of_its_order(suzaku):
+    rows = {row["id"]: row for row in mmgtune.simulate("suzaku", "suzaku").rows()}
+    assert [one["name"] for one in rows["zigzag_20"]["criteria"]] == ["first overshoot 20/20"]
+    names = [one["name"] for one in rows["zigzag_10"]["criteria"]]
+    assert names == ["initial turning distance", "first overshoot 10/10", "second overshoot 10/10"]
+    assert all(one["passed"] is not None for one in rows["zigzag_10"]["criteria"])
+
+
+def test_a_start_from_rest_is_judged_by_nothing(suzaku):
+    rest = replace(TURN, u=np.zeros(TURN.n_samples), v_m=np.zeros(TURN.n_samples))
+    approach = replace(suzaku.profile, approach=None)
+    (row,) = mmgtune.simulate(approach, [rest]).rows()
+    assert {one["reason"] for one in row["criteria"]} == {"the test speed is 0"}
+    assert mmgtune.repeat("suzaku", [rest, TURN])[0].id == TURN.id
+
+
+def test_what_diverged_is_not_written(suzaku, lost, tmp_path):
+    drifting = replace(TURN, id="drifting", v_m=np.full(TURN.n_samples, 2.0))
+    both = PhysicsPredictor(suzaku, np.column_stack([suzaku.matrix(), lost.theta]))
+    simulated = mmgtune.simulate(both, [drifting])
+    assert [motion.diverged for motion in simulated] == [False, True]
+    assert [path.name for path in simulated.write(tmp_path)] == ["drifting_0.parquet"]
+    assert mmgtune.read_trial(tmp_path / "drifting_0.parquet").source == "generated"
+
+
+def test_a_manoeuvre_asked_for_twice_is_made_once(tmp_path):
+    asked = SimulateOptions(turn=("35", "35", "-35"), zigzag=("10/10", "10/10"))
+    simulated = mmgtune.simulate("suzaku", options=asked)
+    assert [motion.id for motion in simulated] == ["turn_p35", "turn_m35", "zigzag_p10_10"]
+    assert len(simulated.write(tmp_path)) == 3
+
+
+def test_a_comparison_with_a_ship_that_diverges_is_written(tmp_path):
+    wild = mmgtune.load_profile("suzaku")
+    sections = dict(wild.sections)
+    hull = sections["hull"]
+    far = replace(hull.coefficients["X_vvvv"], value=1e9)
+    sections["hull"] = replace(hull, coefficients={**hull.coefficients, "X_vvvv": far})
+    found = mmgtune.compare("suzaku", replace(wild, sections=sections))
+    assert set(found.data["manoeuvres"]["motions"]["turn_p35"]) == {"a"}
+    assert "NaN" not in found.write(tmp_path).read_text()
+    mmgtune.render(tmp_path)
