@@ -111,12 +111,16 @@ class HeadingStudy(Displayed):
         }
 
 
+Simulator = str | Path | Predictor
+"""What is judged beside the true system."""
+
+
 def study_heading_keeping(
-    models: Sequence[str | Path | Predictor], truth: ShipGiven, options: HeadingOptions = HeadingOptions()
+    models: Simulator | Sequence[Simulator], truth: ShipGiven, options: HeadingOptions = HeadingOptions()
 ) -> HeadingStudy:
     """Judge every pair of gains in the true system and in each simulator.
 
-    models  names or paths of profiles and trained networks, or predictors
+    models  name or path of a profile or of trained networks, or a predictor; or several of these
     truth   profile of the true system; its actuators and propeller are those of the simulators too
     Raises OptionError for a truth without approach or actuators, and for a model that is driven otherwise or cannot be
     steered on lanes.
@@ -124,13 +128,14 @@ def study_heading_keeping(
     must_be(options, HeadingOptions)
     began = time.perf_counter()
     ship = ship_of(truth)
-    known = [as_predictor(named_ship(one)) for one in models]
+    several = list(models) if isinstance(models, Sequence) and not isinstance(models, str) else [models]
+    known = [as_predictor(named_ship(one)) for one in several]
     for one in known:
         _agrees(one, ship)
     gains = options.gain_step * np.arange(1.0, int(options.gain_most / options.gain_step + 1e-9) + 1.0)
     true = kept(as_predictor(ship), ship, gains, options)[0]
     judged: list[Judged] = []
-    for given, simulator in zip(models, (_many(one, options) for one in known), strict=True):
+    for given, simulator in zip(several, (_many(one, options) for one in known), strict=True):
         taken = simulator.name in {ship.id, *(one.name for one in judged)}  # a tuned ship has the id of the true one
         name = str(given) if taken and isinstance(given, (str, Path)) else simulator.name
         judged.append(Judged(name, simulator.method, kept(simulator, ship, gains, options)))

@@ -107,8 +107,10 @@ class ParticlePredictor(PhysicsPredictor):
     def drawn(self, n: int, seed: int, sampling: Sampling = "TS-infinity") -> PhysicsPredictor:
         """n particles, none twice where there are as many.
 
-        Raises OptionError for TS1: coefficients of a ship do not change from step to step.
+        Raises OptionError for less than one, and for TS1: coefficients of a ship do not change from step to step.
         """
+        if n < 1:
+            raise OptionError(Problem(f"{n} particles", "particles", fix="write 1 or more"))
         if sampling != "TS-infinity":
             why = "a particle is a ship, and keeps to her coefficients"
             raise OptionError(

@@ -78,7 +78,7 @@ def test_the_ship_gets_to_her_heading():
 
 
 def test_the_truth_promises_what_it_delivers():
-    result = study_heading_keeping(["esso_osaka_3m"], "esso_osaka_3m", FEW)
+    result = study_heading_keeping("esso_osaka_3m", "esso_osaka_3m", FEW)  # one need not be a list
     np.testing.assert_array_equal(result.models[0].scores[0], result.truth)
     assert overrated(result.truth, result.truth) == 0.0
     assert overrated(0.9 * result.truth, result.truth) == 1.0

@@ -41,6 +41,8 @@ def test_they_are_drawn_once_each_and_the_same_again(particles):
     assert predictor.drawn(100, 1).n_members == 100
     with pytest.raises(OptionError, match="each step"):
         predictor.drawn(5, 1, "TS1")
+    with pytest.raises(OptionError, match="0 particles"):
+        predictor.drawn(0, 1)
 
 
 def test_the_day_of_the_trials_is_not_the_ship(particles):
