@@ -137,7 +137,7 @@ def _by_voyage(one: Difference) -> list[str]:
 def _of_runs(one: ByRun) -> list[str]:
     """A line for each run, or group of runs, with its 95 % interval."""
     rows = one.table()
-    widths = [max(len(row[k]) for row in rows) for k in range(3)]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return [
         "  " + "   ".join(word.ljust(width) for word, width in zip(row, widths, strict=True)).rstrip() for row in rows
     ]
@@ -169,8 +169,11 @@ def summary(result: Diagnosis, folder: str, report: bool) -> str:
         lines.append(f"{where}: {before:.4g} -> {after:.4g}; 95 % interval of the share removed: {removed}.")
     elif before is not None:
         lines.append(f"{where}: {before:.4g}, re-tuned without a cause.")
-    for cause in result.causes:
-        lines += ["", *_of_runs(cause.runs)] if cause.runs and not result.interrupted else []
+    by_run = [cause.runs for cause in result.causes if cause.runs and not result.interrupted]
+    if by_run and not result.names_causes:
+        lines += ["", "By run, as the best partial explanation has it:"]
+    for runs in by_run:
+        lines += ["", *_of_runs(runs)]
     if result.whereabouts:
         lines += ["", *result.whereabouts.sentences()]
     for one in result.differing:

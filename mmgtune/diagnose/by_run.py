@@ -7,6 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from ..documents import finite
 from ..effects import Effect
 from ..fitting.box import AT
@@ -14,6 +16,9 @@ from ..trial import Trial
 from .intervals import NORMAL, Estimate
 from .runs import IN_WORDS, groups_of, name_of
 from .wording import quantity, range_in_words
+
+ALIKE = 0.2
+"""Difference from the mean of all runs, over that, up to which values with a direction are much the same."""
 
 CERTAIN = 3.0
 """Standard errors from which the value of a run is other than none at all."""
@@ -112,6 +117,8 @@ class ByRun:
         sizes = [self.size(k)[0] for k in (shown or range(len(self.groups)))]
         others = len(self.groups) - len(shown)
         text = f"The {subject} differed from {word} to {word}: "
+        if self._much_alike:
+            text = f"The {subject} was much the same in each {word}: "
         if len(shown) == 1 and others:
             value, error = self.size(shown[0])
             size = quantity(value, None if error is None else NORMAL * error, self.unit) + self._of_what
@@ -120,6 +127,16 @@ class ByRun:
             text += range_in_words(min(sizes), max(sizes), self.unit) + self._of_what
             text += f", and none shows in {others} of {len(self.groups)}" if shown and others else ""
         return text + self._within()
+
+    @property
+    def _much_alike(self) -> bool:
+        """Whether what has a direction differs little beside its mean."""
+        pair = next((pair for pair in self.effect.told_as if set(pair) <= set(self.variant)), None)
+        if pair is None:
+            return False
+        values = np.array([[one[name].value for name in pair] for one in self.values])
+        mean = values.mean(axis=0)
+        return bool(np.hypot(*(values - mean).T).max() < ALIKE * np.hypot(*mean))
 
     @property
     def _of_what(self) -> str:
@@ -136,15 +153,15 @@ class ByRun:
             told.append(quantity(most, None, self.effect.parameters[pair[0]].unit))
         return f", and changed within a {IN_WORDS[self.by]} by up to {' and '.join(told)}" if told else ""
 
-    def table(self) -> list[tuple[str, str, str]]:
-        """Group, size and direction in words, the first row heads."""
-        rows = [(IN_WORDS[self.by], "size", "direction")]
+    def table(self) -> list[tuple[str, ...]]:
+        """Group, size and, where it has one, direction in words, the first row heads."""
+        rows: list[tuple[str, ...]] = [(IN_WORDS[self.by], self.effect.subject or self.effect.title)]
+        rows[0] += ("direction",) if self.towards(0) is not None else ()
         for k, label in enumerate(self.groups):
             value, error = self.size(k)
             direction = self.towards(k)
-            where = "" if direction is None else _degrees(*direction)
-            size = quantity(value, None if error is None else NORMAL * error, self.unit)
-            rows.append((name_of(label), size, where))
+            size = quantity(value, None if error is None else NORMAL * error, self.unit) + self._of_what
+            rows.append((name_of(label), size, *(() if direction is None else (_degrees(*direction),))))
         return rows
 
     def to_dict(self) -> dict[str, Any]:

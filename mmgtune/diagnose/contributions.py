@@ -20,6 +20,8 @@ from .gain import INDICES, measured
 from .hypotheses import Hypothesis
 from .intervals import Estimate, estimates
 from .leftover import Leftover
+from .linear import typical
+from .refit import WORTH
 from .search import Found, step_of, without
 from .unseen import Beside, Unseen
 from .workbench import Point, Workbench
@@ -40,8 +42,9 @@ SMALL, WORTH_ASKING = 0.05, 0.3
 """Share of the fall of chi-squared on the trials looked at up to which a cause may be a trace, and up to which held-out
 trials are asked whether it does any good."""
 
-FORM, FORM_IF_ROUGH = 0.0005, 0.003
-"""Share of the error that a cause leaves whose form is 2 % off, and one whose formula is no better than 5 %."""
+FORM, FORM_IF_ROUGH, FORM_OF_TERM = 0.0005, 0.003, 0.02
+"""Share of the error that a cause leaves whose form is 2 % off, one whose formula is no better than 5 %, and, to values
+that differ from run to run and bend to all that is left, one of many terms, which is the nearest to what there is."""
 
 HARDLY_SEEN = 0.005
 """Share of the fall of chi-squared up to which a cause has to remove more than ``FORM`` on held-out trials, and
@@ -68,6 +71,7 @@ class Contribution:
     own      by channel, such a share of the error in that channel alone
     whole    whether it removes nearly all of what the others leave, which no form of theirs would let it
     bends    whether it has values of each run, which bend to what is elsewhere, on held-out trials too
+    slight   whether it is alone and of a size that is not worth speaking of
 
     Where ``seen`` is enough to tell that it is no trace, the others are not asked for: NaN and empty.
     """
@@ -80,6 +84,7 @@ class Contribution:
     own: Mapping[str, float] = field(default_factory=dict)
     whole: bool = False
     bends: bool = False
+    slight: bool = False
 
     @property
     def harmful(self) -> bool:
@@ -102,7 +107,7 @@ class Contribution:
         Nor is it more than a trace where the others, a little off in their form, would leave as much.
         """
         if self.channels is None or self.indices is None:
-            return False
+            return self.slight
         if self.harmful:
             return True
         shown = self.seen if self.bends else max(self.share, self.seen)
@@ -172,6 +177,8 @@ def set_aside(
     brought = _brought(bench, found, fewer, unseen)
     if unseen.test and len(brought) == 1 and not before.structured:
         brought = [_alone(found, unseen)]
+    if len(brought) == 1 and size_of(bench, found.final, found.causes[0]) < WORTH:
+        brought = [replace(brought[0], slight=True)]
     while any(one.unnoticed for one in brought):
         k = min((i for i, one in enumerate(brought) if one.unnoticed), key=lambda i: brought[i].seen)
         cause = found.causes[k]
@@ -184,6 +191,13 @@ def set_aside(
         fewer = _fewer(bench, found)
         brought = _brought(bench, found, fewer, unseen)
     return traces, brought
+
+
+def size_of(bench: Workbench, point: Point, cause: Hypothesis) -> float:
+    """Largest distance of a parameter of a cause from its null, in typical sizes."""
+    unit = dict(zip(point.names, point.unit, strict=True))
+    null = bench.null(cause.names)
+    return float(max(abs(unit[name] - z) / typical(bench, name) for name, z in zip(cause.names, null, strict=True)))
 
 
 def with_only(bench: Workbench, found: Found, causes: Sequence[Hypothesis]) -> Found:
@@ -244,6 +258,8 @@ def _of(
     }
     scale = max(float(removed[0]), abs(float(removed[1])))  # all together may remove less than one, or nothing
     form = FORM_IF_ROUGH if any(one.rough for one in found.causes) else FORM
+    if cause.by and any(one.effect.one_of_many for one in found.causes):
+        form = FORM_OF_TERM
     own = {}
     for k, name in enumerate(STATES):
         by_all, by_one = errors[0, k] - errors[2, k], errors[1, k] - errors[2, k]

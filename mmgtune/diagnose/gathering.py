@@ -13,6 +13,7 @@ from ..documents import finite
 from ..fitting.box import group_of
 from ..model import Model
 from ..trial import Trial
+from ..trial.set_checks import oddest
 from ..trial.smoothing import FEWEST
 from .evidence import ResidualForces, can_be_explained, explain_forces, noise_share, residual_forces, short_horizon
 from .leftover import Leftover, residuals_of
@@ -50,7 +51,9 @@ def error_of(bench: Workbench, found: Found, offsets: Mapping[str, float]) -> Wh
         left = sum(_excess_by_run(bench, refit.point).values())
         removable[tag] = max(removable.get(tag, 0.0), min(1.0, 1.0 - left / whole))
     ranked = dict(sorted(removable.items(), key=lambda one: -one[1]))
-    return whereabouts(_forces(bench, found.base), by_run, ranked, offsets)
+    odd = oddest({trial.id: trial for trial in bench.trials}, bench.model.L_pp)
+    of_runs = {trial.run: odd[trial.id] for trial in bench.trials if trial.id in odd}
+    return whereabouts(_forces(bench, found.base), by_run, ranked, offsets, of_runs)
 
 
 def _excess_by_run(bench: Workbench, point: Point) -> dict[str, float]:

@@ -8,8 +8,9 @@ such as when between two samples an order was given, moves the ship without bein
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.special import stdtr
@@ -19,6 +20,7 @@ from ..backends import STATES
 from ..displayed import Brief
 from ..physics.frame import to_earth
 from ..trial import Trial
+from ..trial.in_parts import changes_within
 from ..trial.kinematics import rounding_noise
 from ..units import DEG
 from .evidence import FEWEST_BLOCKS, share_explained
@@ -58,6 +60,9 @@ OFF = 0.5
 FEWEST_RUNS = 3
 """Runs it takes for that."""
 
+WANDERS, MINUTE = 1.5, 60.0
+"""Deviation of the fading part of noise over its white one, and time [s] it fades in, from which it may be no noise."""
+
 BY_CHANCE = 1e-3
 """Probability that the means of runs are as much alike by chance (Student's test) from which it is none."""
 
@@ -74,6 +79,8 @@ class Leftover(Brief):
     certainty  the same in standard errors
     explained  by channel, the largest share one quantity explains, and which
     offsets    by channel, what its log shows more than the model in every run alike [rad, m/s or rad/s]
+    changed    channels, "u" and "r", whose factor changes within trials, by their ids: of those alone whose noise as
+               estimated lasts so long that it hides that
     left_open  variance beyond that noise that what the logged inputs leave open accounts for, as a share of it
     slow       variance that the noise as estimated has in a part that fades slowly, as a share of the white one: part
                of ``excess``, and noise of the sensors where what is left has no structure
@@ -87,6 +94,7 @@ class Leftover(Brief):
     offsets: dict[str, float]
     left_open: float = 0.0
     slow: float = 0.0
+    changed: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     @property
     def unknown(self) -> float:
@@ -133,6 +141,29 @@ def leftover(bench: Workbench, point: Point) -> Leftover:
         offsets=offsets_of(residuals, level),
         left_open=float(np.mean(list(excused.values()))),
         slow=float(np.mean([_slow(bench, name, level[STATES.index(name)], value) for name, value in excess.items()])),
+        changed=_changed(bench),
+    )
+
+
+def _changed(bench: Workbench) -> dict[str, tuple[str, ...]]:
+    """See ``Leftover``."""
+    step = float(np.median(np.concatenate([np.diff(trial.t) for trial in bench.trials])))
+    found: dict[str, tuple[str, ...]] = {}
+    for name, noise in bench.noise.channels.items():
+        lasts = -step / math.log(noise.phi) if 0.0 < noise.phi < 1.0 else 0.0
+        if noise.fading < WANDERS**2 * noise.white or lasts < MINUTE:
+            continue
+        ids = tuple(trial.id for trial in bench.trials if name in changes_within(trial))
+        found |= {name: ids} if ids else {}
+    return found
+
+
+def change_in_words(name: str, ids: Sequence[str]) -> str:
+    """A log whose factor changes as a sentence without its full stop."""
+    where = f"{', '.join(ids[:-1])} and {ids[-1]}" if len(ids) > 1 else ids[0]
+    return (
+        f"the log of the {LOGGED[name]} has another factor from some time on in {where}, which a model takes for noise "
+        "that lasts for minutes"
     )
 
 

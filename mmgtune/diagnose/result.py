@@ -20,7 +20,7 @@ from .contributions import Contribution
 from .gain import MOST, Gain
 from .instead import Instead
 from .intervals import Estimate
-from .leftover import Leftover, in_words
+from .leftover import Leftover, change_in_words, in_words
 from .legs import Difference
 from .record import Record, kind_of, record_of
 from .retuned import Retuned
@@ -316,7 +316,7 @@ class Diagnosis(Plotted):
         bends = any(cause.runs for cause in self.causes)  # where it was found that explains much of anything
         fails = self.gain.remains and (self.leftover.noticed or self.gain.worse or bends or self._misses_each)
         fails = fails or bool(self.unclear)
-        shaped = self.leftover.structured or bool(self.leftover.offsets) or self.misses_test
+        shaped = self.leftover.structured or bool(self.leftover.offsets or self.leftover.changed) or self.misses_test
         if shaped if not self.causes else fails or self._mostly_left:
             return "found" if any(one.explained >= MOSTLY for one in self.between) else "unexplained"
         if self.groups:
@@ -384,10 +384,16 @@ class Diagnosis(Plotted):
         return bool(self.causes) and ((settled and share < TOLD) or (bends and share < AT_ALL))
 
     @property
+    def of_a_sensor(self) -> bool:
+        """Whether a log whose factor changes within trials shows, and no cause."""
+        return bool(self.leftover.changed) and not self.causes
+
+    @property
     def misses_test(self) -> bool:
         """Whether the model fits the trials looked at without any cause, and those kept for testing show that something
         is wrong all the same."""
-        fits = not (self.causes or self.leftover.structured or self.leftover.offsets or self.choice)
+        left = self.leftover
+        fits = not (self.causes or left.structured or left.offsets or left.changed or self.choice)
         return fits and self.gain.missed
 
     @property
@@ -502,6 +508,9 @@ class Diagnosis(Plotted):
                     f"but leaves an error {self.gain.left:,.3g} times the noise of the sensors on trials kept for "
                     "testing, more than coefficients known no better would."
                 )
+            if self.of_a_sensor:
+                told = "; ".join(change_in_words(*one) for one in self.leftover.changed.items())
+                return f"Something is wrong with a sensor, and no known cause shows: {told}."
             if not self.causes:
                 told = f"the re-tuned model leaves {left}, and no known cause accounts for it."
                 return f"Something is wrong that this program does not know: {told} {offsets}".rstrip()
@@ -548,7 +557,10 @@ class Diagnosis(Plotted):
         """What adding the causes removes of the error on held-out trials, in a sentence."""
         share, low, _ = self.gain.share_removed
         if share <= 0.0:
-            return f"Adding {them} removes none of the error {where}: what else was left open counts for more there."
+            return (
+                f"How much {'that' if them == 'it' else 'these'} would remove of the error {where} does not show: that "
+                "error is mostly of coefficients which the other trials leave open."
+            )
         imitated = share < IMITATED and self.options.leeway > 0.0 and self.choice is None
         hull = f"what a hull that is {100.0 * self.options.leeway:.3g} % off would leave of the error"
         few = ", of which there are too few to be sure" if low < TOLD <= share else ""
@@ -655,6 +667,7 @@ class Diagnosis(Plotted):
                 "slow_noise": self.leftover.slow,
                 "left_open_by_inputs": self.leftover.left_open,
                 "by_channel": self.leftover.channels,
+                "changed_within": {name: list(ids) for name, ids in self.leftover.changed.items()},
                 "share_explained_by_causes": self.explained_share,
                 "correlation": self.leftover.alike,
                 "largest_share_by_one_quantity": {

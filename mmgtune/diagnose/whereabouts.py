@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -54,6 +55,12 @@ FOLLOWS = 0.1
 
 ELSEWHERE = ("north", "east", "time")
 """Quantities that are of the place and the hour, not of the ship."""
+
+LITTLE = 0.01
+"""Share of the error up to which nothing is said to remove any."""
+
+MOST_OF_IT = 0.8
+"""Share of the error in runs whose logs warn of something, from which that is what to look at."""
 
 NEAR = 0.1
 """By this much one share must exceed another to be told from it."""
@@ -117,6 +124,7 @@ class Whereabouts:
                forces of both are averages over the time of a ship length, over 0.5 rho L d U^2, U the rms speed
     removable  by effect, the largest share of the error beyond noise that it alone removes when refitted
     offsets    by channel, what its log shows more than the model in every run alike [rad, m/s or rad/s]
+    odd        what the logs of runs warn of, by run, where these have most of the error
     """
 
     runs: Mapping[str, float]
@@ -128,6 +136,7 @@ class Whereabouts:
     histories: Sequence[Mapping[str, Any]]
     removable: Mapping[str, float]
     offsets: Mapping[str, float]
+    odd: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def strongest(self) -> tuple[str, str, float] | None:
@@ -145,6 +154,8 @@ class Whereabouts:
         if self.offsets:
             (first, *_) = self.offsets
             return f"the {LOGGED[first]} from a second sensor in the same runs"
+        if self.odd:
+            return f"the same without what is odd: {'; '.join(f'{what} ({run})' for run, what in self.odd.items())}"
         best = self.strongest
         return TELLS[best[1]] if best else REPEAT
 
@@ -185,7 +196,7 @@ class Whereabouts:
             )
         elif self.follows:
             found.append("No force follows any single quantity that was logged.")
-        if self.removable:
+        if self.removable and max(self.removable.values()) >= LITTLE:
             tag = next(iter(self.removable))
             most = _percent(self.removable[tag])
             found.append(
@@ -230,18 +241,22 @@ def whereabouts(
     by_run: Mapping[str, float],
     removable: Mapping[str, float],
     offsets: Mapping[str, float],
+    odd: Mapping[str, str] = MappingProxyType({}),
 ) -> Whereabouts:
     """Where the error lives.
 
     forces              residual forces of the trials that are long enough for these, with the trials
     by_run              error of the motion beyond noise, by run
     removable, offsets  see ``Whereabouts``
+    odd                 what the log of a run warns of, by run
     """
     whole = sum(max(value, 0.0) for value in by_run.values())
     runs = {name: max(value, 0.0) / whole for name, value in by_run.items()} if whole > 0.0 else {}
     runs = dict(sorted(runs.items(), key=lambda one: -one[1]))
+    share = sum(runs.get(run, 0.0) for run in odd)
+    odd = odd if share >= MOST_OF_IT else {}
     if not forces:
-        return Whereabouts(runs, {}, {}, {}, {}, {}, (), removable, offsets)
+        return Whereabouts(runs, {}, {}, {}, {}, {}, (), removable, offsets, odd)
     phase = [phases_of(found, trial) for found, trial in forces]
     ratio = [(found.force / np.maximum(found.noise, 1e-100)) ** 2 - 1.0 for found, _ in forces]
     every, excess = np.concatenate(phase), np.concatenate(ratio)
@@ -270,6 +285,7 @@ def whereabouts(
         tuple(_history(found, trial, _unit(forces), _ship_length(forces)) for found, trial in worst),
         removable,
         offsets,
+        odd,
     )
 
 

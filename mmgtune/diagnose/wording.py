@@ -23,10 +23,20 @@ def quantity(value: float, error: float | None, unit: str) -> str:
     return f"{value:.{digits}f} ± {error:.{digits}f}{word}"
 
 
+CLOSE, LITTLE = 0.1, 0.03
+"""Share of a range up to which its ends may be rounded, and share of them that a range worth more digits has."""
+
+
 def range_in_words(low: float, high: float, unit: str) -> str:
-    """From the least to the largest: "0.2 to 0.4 m/s"."""
+    """From the least to the largest: "0.2 to 0.4 m/s", with as many digits as tell them apart."""
     word, factor = _after_number(unit)
-    ends = [f"{float(f'{end * factor:.2g}'):g}" for end in (low, high)]  # 590, not 5.9e+02
+    apart = abs(high - low) * factor
+    ends = []
+    for end in (low * factor, high * factor):
+        short = float(f"{end:.2g}")  # 590, not 5.9e+02
+        if apart > LITTLE * abs(end) and abs(short - end) > CLOSE * apart:
+            short = round(end, max(0, -math.floor(math.log10(apart))))
+        ends.append(f"{short:g}")
     return f"{' to '.join(dict.fromkeys(ends))}{word}"
 
 

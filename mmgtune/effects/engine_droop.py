@@ -19,17 +19,18 @@ class EngineDroop(NamedTuple):
 
     share: Lanes
     pivot: Lanes
+    way: Lanes
 
 
 def engine_droop(state: State, around: Surroundings, found: Any, components: Any, p: Any, e: EngineDroop) -> Force:
     """Force by which propeller and rudder change where the propeller turns slower than the log says.
 
-    n (1 - share (1 - (u/n) / pivot)), with the way u/n that a ship makes in a turn of the propeller: as that falls the
-    advance ratio falls and the torque rises.  Linear in it, as torque curves nearly are, at once, and none where the
-    engine is loaded less than at the pivot, goes astern, or no pivot is given (assumptions).
+    n (1 - share (1 - (u/n) / (way pivot))), with the way u/n that a ship makes in a turn of the propeller: as that
+    falls the advance ratio falls and the torque rises.  Linear in it, as torque curves nearly are, at once, and none
+    where the engine is loaded less than at the pivot, goes astern, or no pivot is given (assumptions).
     """
     n = found.propeller.n
-    way = n * e.pivot
+    way = n * e.pivot * e.way
     load = np.minimum(np.maximum(1.0 - found.flow.u / where(way > 0.0, way, 1.0), 0.0), 1.0)
     slower = n * (1.0 - e.share * where(way > 0.0, load, 0.0))
     propeller = components.propeller(found.flow, found.wake, slower, p.ship, p.propeller)
@@ -68,7 +69,16 @@ EFFECT = ForceEffect(
             bounds_source="from none to what stalls an engine",
         ),
         "pivot": Parameter("way per turn of the propeller at which none is lost", "m", low=0.0),
+        "way": Parameter(
+            "factor on that way: an approach of the profile may be another than that of the trials",
+            low=0.0,
+            null=1.0,
+            bounds=lambda _: (0.5, 1.5),
+            typical=lambda _: 0.1,
+            bounds_source="half of it either way",
+        ),
     },
+    form={"way": 0.15},
     pivots={"pivot": _pivot},
     akin=("rpm-scale",),
     variants=(("share",),),

@@ -17,27 +17,22 @@ def of_runs(cause: Mapping[str, Any]) -> list[Block]:
         return []
     unit, factor = read_as(clean(found["unit"]))
     head = "size" if found["unit"] in DIMENSIONLESS else f"size [{unit}]"
+    directed = any(number(row["direction_deg"]) is not None for row in found["values"])
     rows = []
     for row in found["values"]:
         direction = number(row["direction_deg"])
-        rows.append(
-            cells(
-                clean(row["group"]),
-                shown(None if row["size"] is None else factor * row["size"], 3),
-                _half(row["size_stderr"], factor),
-                NONE if direction is None else f"{direction:.0f}°",
-                _half(row["direction_stderr_deg"], 1.0),
-            )
-        )
+        size = shown(None if row["size"] is None else factor * row["size"], 3), _half(row["size_stderr"], factor)
+        where = (NONE if direction is None else f"{direction:.0f}°", _half(row["direction_stderr_deg"], 1.0))
+        rows.append(cells(clean(row["group"]), *size, *(where if directed else ())))
     what = f"{clean(cause['effect']).capitalize()} of each {clean(found['by'])}, with its 95 % half width"
     return [
         Prose((clean(cause["sentence"]) + ".",)),
         Table(
             f"{clean(cause['effect'])}-of-runs",
             what,
-            (clean(found["by"]), head, "±", "direction", "± [°]"),
+            (clean(found["by"]), head, "±", *(("direction", "± [°]") if directed else ())),
             tuple(rows),
-            (1, 2, 3, 4),
+            (1, 2, 3, 4) if directed else (1, 2),
         ),
     ]
 

@@ -9,6 +9,7 @@ from ..physics.constants import GRAVITY
 from ..physics.frame import to_earth
 from ..units import DEG
 from .finding import Finding
+from .in_parts import part_findings
 from .kinematics import halfway, middle
 from .model import Trial
 from .motion_checks import spikes
@@ -40,6 +41,7 @@ def cross_findings(trial: Trial, where: str, L_pp: float | None, contradicted: b
     found = [*changes.values(), *_speed(trial, where, L_pp), *_revolutions(trial, where, L_pp)]
     if not contradicted:
         found += way_by_axis(trial, where)
+        found += part_findings(trial, where)
         if not {"x", "y"} & changes.keys():
             found += jump_findings(trial, where)
     return [*found, *_rudder(trial, where)]

@@ -34,16 +34,21 @@ def check_trials(trials: Mapping[str, Trial], L_pp: float | None = None) -> dict
     return found
 
 
-def oddities(trials: Mapping[str, Trial], L_pp: float | None = None) -> list[str]:
-    """A sentence for results, where trials they are made of have something odd that ``check_trials`` warns of.
+def oddest(trials: Mapping[str, Trial], L_pp: float | None = None) -> dict[str, str]:
+    """By trial, what is oddest of all that ``check_trials`` warns of; nothing of those where nothing is odd.
 
-    Gaps are not odd: what falls into them counts in no comparison, and results say that themselves.
+    Gaps are not: what falls into them counts in no comparison, and results say that themselves.
     """
-    worst = {
+    return {
         name: odd[0].what
         for name, findings in check_trials(trials, L_pp).items()
         if (odd := [one for one in findings if one.severity == "warning" and one.code != "gaps"])
     }
+
+
+def oddities(trials: Mapping[str, Trial], L_pp: float | None = None) -> list[str]:
+    """A sentence for results, where trials they are made of have something odd; see ``oddest``."""
+    worst = oddest(trials, L_pp)
     if not worst:
         return []
     told = "; ".join(f"{what} ({name})" for name, what in list(worst.items())[:NAMED])

@@ -430,7 +430,7 @@ def test_a_cause_that_is_alone_is_a_trace_where_nothing_needs_it_and_it_does_har
         ((0.96, 0.0, 0.999), "Adding it removes 96 % of the error on trials not used, of which there are too few"),
         ((0.96, 0.9, 0.99), "Adding it removes 96 % of the error on trials not used."),
         ((0.4, 0.0, 0.9), "a hull that is 5 % off"),
-        ((-0.1, -0.5, 0.6), "none of the error"),
+        ((-0.1, -0.5, 0.6), "of the error on trials not used does not show"),
     ],
 )
 def test_how_sure_a_gain_is_stands_beside_it(removed, said):
