@@ -24,7 +24,7 @@ from .instead import instead_of_tuning
 from .intervals import Estimate, estimates
 from .leftover import Leftover, leftover
 from .legs import Difference
-from .refit import Refit, kin_among
+from .refit import WORTH, Refit, kin_among
 from .result import Candidate, Cause, Diagnosis, Doubted, Trace
 from .retuned import retuned
 from .search import Found, Step, rivals_of, step_of
@@ -108,7 +108,7 @@ class Judge:
             theta=theta,
             retuned=alone,
             coverage=coverage,
-            warnings=tuple(coverage_notes(bench.model, bench.targets, coverage)),
+            warnings=(*coverage_notes(bench.model, bench.targets, coverage), *_too_small(bench, found)),
             noise=_noise(bench),
             chi2=(
                 _first(found).chi2 / max(1, bench.problem.n_residuals),
@@ -156,6 +156,18 @@ def _first(found: Found) -> Point:
     """The model re-tuned before anything was put right."""
     as_given = found.held is None and found.finer_step is None
     return found.base if as_given else found.steps[0].base
+
+
+def _too_small(bench: Workbench, found: Found) -> list[str]:
+    """What the last look saw beyond chance, and did not believe since it is little and has rivals."""
+    last = found.steps[-1] if found.steps else None
+    if last is None or last.accepted or not last.refits or not last.rivals or last.refits[0].size >= WORTH:
+        return []
+    if last.refits[0].by_chance(bench.options.level) or last.refits[0].unvisited:
+        return []
+    tags = dict.fromkeys(refit.hypothesis.tag for refit in (last.refits[0], *last.rivals))
+    told = f"Something shows beyond chance that is too small to be told: {' or '.join(tags)}."
+    return [f"{told} Of the first of them it would be less than a {1.0 / WORTH:.0f}th of what is worth speaking of."]
 
 
 def _targets_of(bench: Workbench, point: Point) -> dict[str, float]:

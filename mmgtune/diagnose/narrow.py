@@ -32,11 +32,11 @@ def narrow_box(bench: Workbench, found: Found) -> list[str]:
     """Warnings of a diagnosis whose re-tuned model, any cause apart, would fit about as well in a wider box.
 
     Targets at the end of their box are let go further; nothing is said where that explains little of what was found, or
-    takes many of them.
+    of what is left where nothing was, or takes many of them.
     """
     base = found.base
     at_end = [name for name, z in zip(base.names, base.unit, strict=True) if z <= 0.0 or z >= 1.0]
-    explained = base.chi2 - found.final.chi2
+    explained = base.chi2 - (found.final.chi2 if found.causes else bench.problem.n_residuals)
     if not at_end or explained < ENOUGH or any(cause.instead for cause in found.causes):
         return []
     wide = _let_go(bench, at_end)
@@ -61,7 +61,8 @@ def narrow_box(bench: Workbench, found: Found) -> list[str]:
     if not 0 < len(gone) <= FEW or gained < AS_MUCH * explained:
         return []
     share = f"{min(gained / explained, 1.0):.0%}"
-    what = f"with {', '.join(gone)} the profile's value, outside, the model explains {share} of what the causes do"
+    of = "what the causes do" if found.causes else "what it leaves beyond noise"
+    what = f"with {', '.join(gone)} the profile's value, outside, the model explains {share} of {of}"
     room = WIDER * (A_R if bench.options.a_r is None else bench.options.a_r)
     way = f"if the ship may differ so much, as by fouling, look again with a_r={room:g}"
     return [f"the box of the targets may be too narrow: {what}; {way}"]

@@ -23,13 +23,14 @@ from ..units import DEG
 from .local import Mode, Windowed, find_mode, particles_about
 
 BASE = 3.0
-"""Variance of residuals even where the model fits to the noise: what generated ships with a hidden effect call for."""
+"""Variance of residuals even where the model fits to the noise, and nothing left out says otherwise: what generated
+ships with a hidden effect call for."""
 
 SHARED = 2.0
 """Weight of what is above the noise, over what one number a channel and run gives."""
 
-GRID = (1.0, 3.0, 10.0, 30.0, 100.0)
-"""Factors on the variance that left-out groups choose among."""
+GRID = (1.0 / 3.0, 1.0, 3.0, 10.0, 30.0, 100.0)
+"""Factors on the variance that left-out groups choose among; with the first the noise is what it is."""
 
 CIRCLE = 150.0
 """Change of heading [deg] from which a trial shows a turn to that side."""
