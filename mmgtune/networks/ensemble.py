@@ -263,11 +263,11 @@ class EnsemblePredictor:
             raise OptionError(Problem(f"unknown sampling '{sampling}'", "sampling", **among(str(sampling), SAMPLINGS)))
         if n < 1:
             raise OptionError(Problem(f"{n} particles", "particles", fix="write 1 or more"))
-        return ParticlePredictor(self.ensemble, n, seed, sampling)
+        return DrawnMembers(self.ensemble, n, seed, sampling)
 
 
 @dataclass(frozen=True, eq=False)
-class ParticlePredictor:
+class DrawnMembers:
     """Particles of an ensemble; see ``Predictor``, ``Steerable``, ``Paired`` and ``Fleet``.
 
     TS-infinity gives each particle one member for its whole path, TS1 another at each step (eq. 28; Chua et al. 2018).

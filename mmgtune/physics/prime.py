@@ -24,8 +24,3 @@ def force_unit(rho, L, d, U):
 def moment_unit(rho, L, d, U):
     """Denominator of moments [N m] at the reference speed U [m/s]."""
     return 0.5 * rho * L * L * d * U * U
-
-
-def yaw_rate_unit(L, U):
-    """Denominator of yaw rates [rad/s]."""
-    return U / L

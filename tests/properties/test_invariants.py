@@ -110,7 +110,6 @@ def test_prime_system_round_trip(L, d, U, rho, value):
         prime.inertia_unit(rho, L, d),
         prime.force_unit(rho, L, d, U),
         prime.moment_unit(rho, L, d, U),
-        prime.yaw_rate_unit(L, U),
     ):
         assert unit > 0.0
         assert value * unit / unit == pytest.approx(value, rel=1e-14)
