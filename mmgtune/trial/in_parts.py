@@ -36,6 +36,9 @@ habit of a sensor."""
 PART, LASTS = 0.15, 0.5
 """Share of the turning or way that each part has at least, and share of the change between any halves of the two."""
 
+FAR = 1e9
+"""Way in a stride [m] that no ship makes: nothing can be told of such a log."""
+
 KNOWN = 0.9
 """Share of the intervals that must be known: what gaps leave has noise that grows."""
 
@@ -57,7 +60,8 @@ def changes_within(trial: Trial) -> dict[str, Change]:
     if len(dt) < 4 * STRIDES:
         return {}
     bounds = np.linspace(0, len(dt), STRIDES + 1).astype(np.intp)[:-1]
-    found = {"r": _yaw(trial, dt, bounds), "u": _way(trial, dt, bounds)}
+    with np.errstate(all="ignore"):
+        found = {"r": _yaw(trial, dt, bounds), "u": _way(trial, dt, bounds)}
     return {name: one._replace(row=int(bounds[one.row])) for name, one in found.items() if one is not None}
 
 
@@ -131,6 +135,8 @@ def _change(
     instead  (n_rows, n) what it may follow all the time in the place of a change, each alone
     enough   sum of |a| before and behind at least
     """
+    if not max(float(np.abs(one).max()) for one in (a, b, others, *instead)) < FAR:
+        return None
     axes = len(a) // STRIDES
     stride = np.tile(np.arange(STRIDES), axes)
 
@@ -154,7 +160,7 @@ def _change(
         own = summed(parts)
         own = own - Q @ (Q.T @ own)
         square = own.T @ own
-        if np.linalg.cond(square) > 1e8:
+        if not np.linalg.cond(square) < 1e8:  # of a ship at rest it is no number
             continue
         factors = np.linalg.solve(square, own.T @ rest_b)
         squares = float(np.sum((rest_b - own @ factors) ** 2))

@@ -63,6 +63,13 @@ def _moved(trial, x, y):
     return trial.x + north, trial.y + east
 
 
+@pytest.mark.parametrize("size", [0.0, 1e-300, 1e8, 1e120])
+@pytest.mark.parametrize("names", [("u", "v_m"), ("x", "y"), ("r", "psi"), ("u", "v_m", "r", "psi", "x", "y")])
+def test_ships_at_rest_and_beyond_the_world_say_nothing(size, names):
+    odd = {name: size * np.sign(getattr(TURN, name)) for name in names}
+    assert changes_within(replace(TURN, **odd)) == {}
+
+
 def test_a_short_record_says_nothing():
     cut = {name: getattr(ZIGZAG, name)[:100] for name in ("t", "x", "y", "psi", "u", "v_m", "r", "n", "delta")}
     assert changes_within(replace(ZIGZAG, **cut, extra={})) == {}
