@@ -149,11 +149,19 @@ class Trace:
         """What it is, and why it is no more than that."""
         harmful = self.contribution.harmful
         why = "held-out trials are told no better with it" if harmful else "nothing that would be noticed"
-        return f"Trace, {why}, and in no profile: {self.cause.sentence}."
+        return f"Trace, {why}, and in no profile: {self.words}."
+
+    @property
+    def words(self) -> str:
+        """The cause as a sentence without its full stop; its name where its size is not told."""
+        effect = self.cause.effect
+        if effect is None or self.cause.sized:
+            return self.cause.sentence
+        return f"{effect.title}, of a size that is not told"
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
-        return {**self.cause.to_dict(), "contribution": self.contribution.to_dict()}
+        return {**self.cause.to_dict(), "sentence": self.words, "contribution": self.contribution.to_dict()}
 
 
 @dataclass(frozen=True)

@@ -161,3 +161,5 @@ def test_two_days_of_several_runs_are_told_apart_by_day(tmp_path):
 def test_a_range_is_told_in_plain_numbers():
     assert range_in_words(586e3, 661e3, "N") == "590 to 660 kN"
     assert range_in_words(0.2, 0.4, "m/s") == "0.2 to 0.4 m/s"
+    assert range_in_words(0.947, 1.027, "-") == "0.95 to 1.03"
+    assert range_in_words(0.3499, 0.3505, "m/s") == "0.35 m/s"

@@ -424,6 +424,25 @@ def test_a_cause_that_is_alone_is_a_trace_where_nothing_needs_it_and_it_does_har
     assert stays or traces[0].contribution.harmful
 
 
+@pytest.mark.parametrize(("degrees", "trace"), [(0.04, True), (0.3, False)])
+def test_a_cause_that_is_alone_and_slight_is_a_trace(suzaku, degrees, trace):
+    """A rudder's zero of a few hundredths of a degree may be beyond doubt, and nobody would notice it."""
+    profile, trials = suzaku.profile, load_trials("suzaku")
+    rng = np.random.default_rng(5)
+    sailed = [trials.trials[name] for name in ("turn_p35", "turn_m20", "zigzag_20")]
+    motions = simulate_trials(profile, sailed, integrator=Integrator("rk4"))
+    made = [logged(trial, motion, rng) for trial, motion in zip(sailed, motions, strict=True)]
+    made = [replace(one, delta=one.delta - degrees * DEG) for one in made]
+    cause = next(one for one in known_causes(profile, made, DiagnoseOptions()) if one.tag == "rudder-offset")
+    bench = make_workbench(profile, made, DiagnoseOptions(), cause.names)
+    base = base_fit(bench)
+    start = np.append(base.unit, bench.null(cause.names))[:, None]
+    found = Found(base, bench.refit((*base.names, *cause.names), start, base.offsets), [cause])
+    traces, brought = set_aside(bench, found, Unseen(bench, []), Leftover(0.0, {}, {}, {}, {}, {}))
+    assert [one.hypothesis for one in traces] == ([cause] if trace else [])
+    assert [one.slight for one in brought] == ([] if trace else [False])
+
+
 @pytest.mark.parametrize(
     ("removed", "said"),
     [

@@ -98,7 +98,11 @@ def test_parts_of_a_run_are_told():
 
 
 def test_without_a_trial_long_enough_for_forces_the_runs_are_told():
-    found = whereabouts([], {"a": 4.0, "b": 1.0}, {"wind": 0.1}, {})
+    found = whereabouts([], {"a": 4.0, "b": 1.0}, {"wind": 0.1}, {}, {"b": "spikes"})
+    assert found.odd == {}  # most of the error is elsewhere
+    odd = whereabouts([], {"a": 4.0, "b": 1.0}, {"wind": 0.001}, {}, {"a": "'v' is to port"})
+    assert odd.suggestion == "the same without what is odd: 'v' is to port (a)"
+    assert not any("wind" in one for one in odd.sentences())  # it would remove nothing
     assert found.runs == {"a": 0.8, "b": 0.2}
     assert found.strongest is None
     assert "80 % of the error is in 1 of 2 runs: a." in found.sentences()
