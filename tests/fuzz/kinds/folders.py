@@ -102,7 +102,7 @@ def _lines(tree: Any) -> bytes:
     """A journal of sums and entries, whatever was made of them."""
     rows = [one if isinstance(one, list) else [one] for one in (tree if isinstance(tree, list) else [tree])]
     text = (" ".join(part if isinstance(part, str) else json.dumps(part) for part in row).strip() for row in rows)
-    return "".join(f"{line}\n" for line in text).encode()
+    return "".join(f"{line}\n" for line in text).encode(errors="surrogateescape")
 
 
 def make(rng: np.random.Generator) -> Files:
