@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from ..trial import Trial
 from ..trial.set_checks import oddest
 from ..trial.smoothing import FEWEST
 from .evidence import ResidualForces, can_be_explained, explain_forces, noise_share, residual_forces, short_horizon
-from .leftover import Leftover, residuals_of
+from .leftover import LOGGED, Leftover, residuals_of
 from .search import Found
 from .whereabouts import Whereabouts, whereabouts
 from .workbench import Point, Workbench
@@ -41,8 +42,8 @@ def evidence(bench: Workbench, found: Found, before: Leftover, left: Leftover) -
     return shown
 
 
-def error_of(bench: Workbench, found: Found, offsets: Mapping[str, float]) -> Whereabouts:
-    """Where the error of the model without any cause lives, and what of it is an offset of a log."""
+def error_of(bench: Workbench, found: Found, told: Leftover) -> Whereabouts:
+    """Where the error of the model without any cause lives, what of it is an offset of a log, and what logs warn of."""
     by_run = _excess_by_run(bench, found.base)
     whole = sum(by_run.values())
     removable: dict[str, float] = {}
@@ -53,7 +54,9 @@ def error_of(bench: Workbench, found: Found, offsets: Mapping[str, float]) -> Wh
     ranked = dict(sorted(removable.items(), key=lambda one: -one[1]))
     odd = oddest({trial.id: trial for trial in bench.trials}, bench.model.L_pp)
     of_runs = {trial.run: odd[trial.id] for trial in bench.trials if trial.id in odd}
-    return whereabouts(_forces(bench, found.base), by_run, ranked, offsets, of_runs)
+    where = whereabouts(_forces(bench, found.base), by_run, ranked, told.offsets, of_runs)
+    changed = {trial: f"the factor of the {LOGGED[name]} changes" for name, of in told.changed.items() for trial in of}
+    return replace(where, odd=changed) if changed else where
 
 
 def _excess_by_run(bench: Workbench, point: Point) -> dict[str, float]:

@@ -77,7 +77,7 @@ class Judge:
                 result, found = other, fewer
                 break
         if result.verdict == "unexplained" and not result.misses_test:
-            result = replace(result, whereabouts=error_of(self.bench, found, result.leftover.offsets))
+            result = replace(result, whereabouts=error_of(self.bench, found, result.leftover))
         elif result.verdict != "interrupted":
             result = replace(result, moved=tuple(retuned(self.bench, found.final)))
         if result.verdict == "none" and self.choice is None:

@@ -142,6 +142,8 @@ def _cards(record: DiagnosisRecord) -> tuple[Card, ...]:
     left = beyond_noise(data["unexplained"]["share_of_noise_variance"])
     structured = data["unexplained"]["structured"]
     note = "looks like something that happened" if structured else "what is left looks like noise"
+    if data["unexplained"].get("changed_within"):
+        note = "as far as what a sensor did is taken for noise"
     if data["unexplained"].get("best_known") and not structured:
         note = "with what comes closest in place, on the trials it was found on"
     cards.append(Card("Left beyond the sensors' noise", left, note=note, tone="bad" if structured else ""))
