@@ -86,15 +86,15 @@ def _yaw(trial: Trial, dt: FloatArray, bounds: IntArray) -> Change | None:
     turned, rate = np.diff(trial.psi), middle(trial.r)
     turned = np.where(np.abs(turned) > 3.0, np.nan, turned)  # a full turn
     logged = rate * dt
-    late = [np.diff(trial.r)]  # a rate or a heading that follows late
+    late = np.diff(trial.r)  # a rate or a heading that follows late
     course = trial.psi[0] + np.concatenate([[0.0], np.cumsum(np.nan_to_num(logged))])
     deviating = [np.diff(of(k * course)) for k in (1, 2) for of in (np.sin, np.cos)]  # a compass
-    known = np.isfinite(turned) & np.isfinite(logged) & np.isfinite(late[0])
+    known = np.isfinite(turned) & np.isfinite(logged)
     if known.mean() < KNOWN:
         return None
-    a, b, T, *rest = _sums(known, bounds, logged, turned, dt, *late, *deviating)
+    a, b, T, late, *deviating = _sums(known, bounds, logged, turned, dt, late, *deviating)
     off = np.column_stack([T, T * np.linspace(-1.0, 1.0, STRIDES)])  # a zero error, and one that grows
-    return _change(a, b, off, [np.column_stack(rest[:1]), np.column_stack(rest[1:])], enough=TURNED)
+    return _change(a, b, off, [late[:, None], np.column_stack(deviating)], enough=TURNED)
 
 
 def _way(trial: Trial, dt: FloatArray, bounds: IntArray) -> Change | None:

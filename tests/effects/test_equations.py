@@ -179,6 +179,8 @@ def test_an_engine_under_load_turns_the_propeller_slower_than_the_log_says(suzak
     np.testing.assert_allclose(force, expected, atol=1e-6)
     light, _ = added("engine-droop", {"share": 0.3, "pivot": 1.75}, MOVING._replace(u=3.5), control=control)
     assert not light.any()
+    farther, _ = added("engine-droop", {"share": 0.3, "pivot": 1.4, "way": 1.25}, loaded, control=control)
+    np.testing.assert_allclose(farther, force, atol=1e-6)  # the way is a factor on the pivot
 
 
 def test_a_propeller_pushes_the_stern_aside_by_a_share_of_its_thrust(added):
