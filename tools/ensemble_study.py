@@ -6,8 +6,9 @@ FOLDER keeps the made trials, the models and the checkpoints.  The study can be 
 SIGTERM, and goes on where it was when it is called again with the same options; what is known so far is written after
 each model.  Sizes are the paper's unless options say otherwise: 15 members of 3 x 256 units, windows of 100 s.
 
-Models: one ensemble a repeat (section 5.3), and as many single networks without initial-state networks as there are
-members, whose fit is held against that of the first ensemble's members (section 5.2).
+Models: the ensembles of all repeats (section 5.3), which share no network and are trained at once, and as many single
+networks without initial-state networks as an ensemble has members, whose fit is held against that of the first
+ensemble's (section 5.2).
 """
 
 from __future__ import annotations
@@ -17,6 +18,9 @@ import json
 import signal
 import sys
 import time
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -57,7 +61,7 @@ class Study:
     def options(self, seed: int, **other: Any) -> EnsembleOptions:
         """Of a training."""
         given = self.given
-        every = max(1, min(given.steps, 250))
+        every = max(1, min(given.steps, given.every))
         own = {"members": given.members, "width": given.width, "layers": given.layers, "steps": given.steps}
         own |= {"rate": given.rate, "horizon": given.horizon, "initial": given.initial, "validate_every": every}
         return EnsembleOptions(**{**own, "seed": seed, "restart": 100.0, **other})
@@ -87,42 +91,43 @@ class Study:
 
     def run(self) -> None:
         """Everything that is not there yet."""
-        first = self.model("repeat-1", self.options(1))
-        if first is None:
-            return
-        self.scored(1, first)
+        given = self.given
         single = self.model("as-observed", self.options(101, initial=0))
-        if single is None:
+        of_all = self.model("repeats", self.options(1, members=given.members * given.repeats)) if single else None
+        if single is None or of_all is None:
             return
+        first = of_all.only(list(range(given.members)))
         self.found["L_fit"] = {
-            "with_initial_state_network": fits(first, self.data, self.truth, self.given.horizon),
-            "as_observed": fits(single, self.data, self.truth, self.given.horizon),
+            "with_initial_state_network": fits(first, self.data, self.truth, given.horizon),
+            "as_observed": fits(single, self.data, self.truth, given.horizon),
         }
-        self.write()
-        for repeat in range(2, self.given.repeats + 1):
-            model = self.model(f"repeat-{repeat}", self.options(repeat))
-            if model is None:
-                return
-            self.scored(repeat, model)
-
-    def scored(self, repeat: int, model: Ensemble) -> None:
-        """Scores of a repeat by set, number of members and sampling."""
-        rows = self.found.setdefault("scores", [])
-        for name, folder in SETS.items():
-            trials = list(load_trials(self.trials / folder / "truth").trials.values())
-            pieces = [one for one in pieces_of(trials, 100.0) if one.duration >= 99.0]
-            for n in [*(size for size in SIZES if size < model.n_members), model.n_members]:
-                some = EnsemblePredictor(model.only(list(range(n))))
-                for sampling in SAMPLINGS:
-                    drawn = some.drawn(self.given.particles, repeat, sampling)
-                    found = pooled(window_scores(drawn, pieces), spread(trials)).to_dict()
-                    rows.append({"repeat": repeat, "set": name, "members": n, "sampling": sampling, **found})
+        of_repeat = partial(scored, self.folder, given.members, given.particles)
+        with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
+            for rows in pool.map(of_repeat, range(1, given.repeats + 1)):
+                self.found.setdefault("scores", []).extend(rows)
+        self.found["complete"] = True
         self.write()
 
     def write(self) -> None:
         """What is known so far."""
-        self.found["complete"] = "L_fit" in self.found and len(self.found["models"]) == self.given.repeats + 1
         write_text(self.given.out, json.dumps(self.found, indent=1, allow_nan=False) + "\n")
+
+
+def scored(folder: Path, members: int, particles: int, repeat: int) -> list[dict[str, Any]]:
+    """Scores of a repeat by set, number of members and sampling."""
+    networks = load_network(folder / "repeats" / "model.safetensors")
+    assert isinstance(networks, Ensemble)
+    first = members * (repeat - 1)
+    rows = []
+    for name, of in SETS.items():
+        trials = list(load_trials(folder / "vectwin" / of / "truth").trials.values())
+        pieces = [one for one in pieces_of(trials, 100.0) if one.duration >= 99.0]
+        for n in [*(size for size in SIZES if size < members), members]:
+            some = EnsemblePredictor(networks.only(list(range(first, first + n))))
+            for sampling in SAMPLINGS:
+                found = pooled(window_scores(some.drawn(particles, repeat, sampling), pieces), spread(trials)).to_dict()
+                rows.append({"repeat": repeat, "set": name, "members": n, "sampling": sampling, **found})
+    return rows
 
 
 def fits(model: Ensemble, data: TrialSet, truth: TrialSet, horizon: int) -> list[float]:
@@ -152,7 +157,7 @@ def main() -> None:
     usual = EnsembleOptions().to_dict()
     for name in ("members", "layers", "width", "steps", "horizon", "initial"):
         parser.add_argument(f"--{name}", type=int, default=usual[name])
-    for name, default in {"repeats": 5, "particles": 100}.items():
+    for name, default in {"repeats": 5, "particles": 100, "every": 250}.items():
         parser.add_argument(f"--{name}", type=int, default=default)
     parser.add_argument("--rate", type=float, default=usual["rate"])
     study = Study((given := parser.parse_args()).folder, given)

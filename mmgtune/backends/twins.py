@@ -56,6 +56,11 @@ def jax_module() -> Any:
     return jax
 
 
+def accelerated() -> bool:
+    """Whether JAX computes on a GPU or the like.  Raises OptionError where JAX is missing."""
+    return bool(jax_module().default_backend() != "cpu")
+
+
 def twin(function: F) -> F:
     """A pure function of the equations on JAX; the same one whenever it is asked for.
 

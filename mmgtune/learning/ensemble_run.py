@@ -1,7 +1,7 @@
 """An ensemble of feed-forward networks trained on trials: what ``mmgtune learn ensemble`` does.
 
-Members are trained side by side in threads, each on a core of its own: under ``vmap`` those of 64 units and more take
-longer than one after the other, since the compiler's products of stacked matrices are slower than plain ones.
+Members are trained side by side: on an accelerator under one compiled step (``Together``), on a processor in threads,
+each on a core of its own, since there members of 64 units and more take longer under ``vmap`` than one after the other.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import time
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -17,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from ..backends.compiled import cores
-from ..backends.twins import jax_module
+from ..backends.twins import accelerated, jax_module
 from ..documents import finite
 from ..errors import OptionError, Problem
 from ..files import path_of
@@ -33,6 +34,7 @@ from .keeping import Kept
 from .provenance import provenance_of, travelling
 from .run import Hooks, identity_of, scored
 from .task import EnsembleTask, ensemble_task
+from .together import Together
 from .training import Plan, Progressed, Trainer, needed
 
 
@@ -172,33 +174,47 @@ def _members(task: EnsembleTask, hooks: Hooks, kept: Kept) -> list[EnsembleMembe
     """The networks side by side; those that an earlier run has trained are read."""
     options = task.options
     aim = EnsembleAim(task)
-    trainer = Trainer(aim, Plan(options.steps, options.batch, options.rate, options.validate_every), alone=True)
+    plan = Plan(options.steps, options.batch, options.rate, options.validate_every)
+    trainer = Trainer(aim, plan, alone=not accelerated())
     lock, done = Lock(), [0] * options.members
 
-    def trained(k: int) -> EnsembleMember | None:
-        seed = task.seed(k)
-        weights, standards = first_member(task, seed)
+    def begun(k: int) -> tuple[Trainer, MemberStandards, Progressed]:
+        weights, standards = first_member(task, task.seed(k))
         own = trainer.on(aim.of(standards))
         now = kept.begun(k, own.begin(_single(weights)))
-
-        def told(one: Progressed) -> None:
-            kept.keep(k, one)
-            row = one.curve[-1]
-            words = f"member {k + 1} of {options.members}, loss {row['loss']:.4g}, watched {row['score']:.4g}"
-            with lock:
-                done[k] = one.step
-                hooks.on_progress(sum(done), options.members * options.steps, words)
-
         done[k] = now.step
-        if now.step < options.steps and not hooks.stop():
-            now = own.run(now, seed, on_validation=told, stop=hooks.stop)
+        return own, standards, now
+
+    def told(k: int, one: Progressed) -> None:
+        kept.keep(k, one)
+        row = one.curve[-1]
+        words = f"member {k + 1} of {options.members}, loss {row['loss']:.4g}, watched {row['score']:.4g}"
+        with lock:
+            done[k] = one.step
+            hooks.on_progress(sum(done), options.members * options.steps, words)
+
+    def ended(k: int, standards: MemberStandards, now: Progressed) -> EnsembleMember | None:
         if not now.curve:
             return None
         mean = jax_module().tree.map(lambda one: np.asarray(one, dtype=np.float64), now.mean)
-        return EnsembleMember(seed, mean, standards, now.step, tuple(now.curve), tuple(now.events))
+        return EnsembleMember(task.seed(k), mean, standards, now.step, tuple(now.curve), tuple(now.events))
 
+    def alone(k: int) -> EnsembleMember | None:
+        own, standards, now = begun(k)
+        if now.step < options.steps and not hooks.stop():
+            now = own.run(now, task.seed(k), on_validation=partial(told, k), stop=hooks.stop)
+        return ended(k, standards, now)
+
+    def together() -> list[EnsembleMember | None]:
+        owns, standards, nows = zip(*map(begun, range(options.members)), strict=True)
+        seeds = [task.seed(k) for k in range(options.members)]
+        ends = Together(owns).run(nows, seeds, on_validation=told, stop=hooks.stop)
+        return list(map(ended, range(options.members), standards, ends))
+
+    if accelerated():
+        return [one for one in together() if one is not None]
     with ThreadPoolExecutor(min(cores(), options.members), "member") as pool:
-        return [one for one in pool.map(trained, range(options.members)) if one is not None]
+        return [one for one in pool.map(alone, range(options.members)) if one is not None]
 
 
 def _single(weights: Trainable) -> Any:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ..backends.twins import accelerated
 from ..documents import finite
 from ..errors import OptionError, Problem
 from ..files import path_of
@@ -27,6 +29,7 @@ from .keeping import Kept
 from .provenance import provenance_of, travelling
 from .starting import first_weights, scales_of
 from .task import Material, Task, make_task
+from .together import Together
 from .training import Plan, Progressed, Trainer, needed
 
 
@@ -164,27 +167,41 @@ def identity_of(task: Material) -> dict[str, Any]:
 
 
 def _members(trainer: Trainer, task: Task, hooks: Hooks, kept: Kept) -> list[Member]:
-    """The networks one after the other; those that an earlier run has trained are read."""
+    """The networks one after the other, on an accelerator at once; those that an earlier run has trained are read."""
     options = task.options
+    seeds = [options.seed + k for k in range(options.seeds)]
+    done = [0] * len(seeds)
+
+    def begun(k: int) -> Progressed:
+        first = trainer.begin(_single(first_weights(len(task.inputs), options.width, seeds[k])))
+        now = kept.begun(seeds[k], first)
+        done[k] = now.step
+        return now
+
+    def told(k: int, one: Progressed) -> None:
+        kept.keep(seeds[k], one)
+        row, done[k] = one.curve[-1], one.step
+        words = f"seed {k + 1} of {options.seeds}, loss {row['loss']:.4g}, L_MSE of validation {row['score']:.4g}"
+        hooks.on_progress(sum(done), task.updates, words)
+
+    def one_by_one() -> Iterator[Progressed]:
+        for k, seed in enumerate(seeds):
+            now = begun(k)
+            if now.step < options.steps:
+                now = trainer.run(now, seed, on_validation=partial(told, k), stop=hooks.stop)
+            yield now
+            if hooks.stop():
+                return
+
+    def at_once() -> list[Progressed]:
+        nows = list(map(begun, range(len(seeds))))
+        return Together([trainer] * len(seeds)).run(nows, seeds, on_validation=told, stop=hooks.stop)
+
     found = []
-    for k in range(options.seeds):
-        seed = options.seed + k
-        first = trainer.begin(_single(first_weights(len(task.inputs), options.width, seed)))
-        now = kept.begun(seed, first)
-
-        def told(one: Progressed, seed: int = seed, k: int = k) -> None:
-            kept.keep(seed, one)
-            row = one.curve[-1]
-            words = f"seed {k + 1} of {options.seeds}, loss {row['loss']:.4g}, L_MSE of validation {row['score']:.4g}"
-            hooks.on_progress(k * options.steps + one.step, task.updates, words)
-
-        if now.step < options.steps:
-            now = trainer.run(now, seed, on_validation=told, stop=hooks.stop)
+    for seed, now in zip(seeds, at_once() if accelerated() else one_by_one(), strict=False):  # fewer where stopped
         if np.isfinite(now.best_score):
             best = Weights(*(np.asarray(one, dtype=np.float64) for one in now.best))
             found.append(Member(seed, best, now.best_score, now.step, tuple(now.curve), tuple(now.events)))
-        if hooks.stop():
-            break
     return found
 
 

@@ -94,7 +94,10 @@ class Progressed:
 class Trainer:
     """One compiled step, for any number of seeds.
 
-    alone  whether a step keeps to one core, for trainings side by side in threads
+    traced   the step as JAX traces it: (weights, optimiser, mean, starts, factor, past, data) -> the first three anew,
+             loss, norm of the gradient, whether both are finite
+    update   the same compiled
+    alone    whether a step keeps to one core, for trainings side by side in threads
     """
 
     def __init__(self, aim: Aim, plan: Plan, *, alone: bool = False):
@@ -116,6 +119,7 @@ class Trainer:
             found = jax.tree.map(lambda a, b: jax.numpy.where(sound, a, b), (new, moved, kept), old)
             return *found, loss, norm, sound
 
+        self.traced = update
         self.update = jax.jit(update, compiler_options={"xla_cpu_multi_thread_eigen": False} if alone else None)
 
     def on(self, aim: Aim) -> Trainer:
@@ -145,14 +149,19 @@ class Trainer:
         Raises OptionError where no step ever had a finite loss.
         """
         plan, last = self.plan, until or self.plan.steps
-        good = _copy(now)
+        good = copied(now)
         losses: list[float] = []
         largest = 0.0
         while now.step < last:
             starts = batch(self.aim.starts, plan.batch, seed, now.step)
-            past = min((1.0 + now.step) / (10.0 + now.step), AVERAGE)
             now.parameters, now.state, now.mean, loss, norm, sound = self.update(
-                now.parameters, now.state, now.mean, starts, np.float32(now.factor), np.float32(past), self.aim.data
+                now.parameters,
+                now.state,
+                now.mean,
+                starts,
+                np.float32(now.factor),
+                np.float32(past(now.step)),
+                self.aim.data,
             )
             now.step += 1
             if bool(sound):
@@ -162,22 +171,34 @@ class Trainer:
             else:
                 now.lost += 1
             if now.lost >= LOST:
-                now = self._gone_back(now, good, "no finite gradient for some steps in a row")
+                now = self.gone_back(now, good)
                 losses, largest = [], 0.0
                 continue
             if now.step % plan.every == 0 or now.step == last:
-                judged = self.aim.judged(now.mean)
-                score = judged["score"]
-                loss = float(np.mean(losses)) if losses else math.nan
-                now.curve.append({"step": now.step, "loss": loss, "norm": largest, **judged})
+                if self.validated(now, losses, largest):
+                    good = copied(now)
                 losses, largest = [], 0.0
-                if score < now.best_score:
-                    now.best, now.best_score = now.mean, score
-                if math.isfinite(score) and not now.lost:
-                    good = _copy(now)
                 on_validation(now)
                 if stop():
                     break
+        self.ended(now, last)
+        return now
+
+    def validated(self, now: Progressed, losses: list[float], largest: float) -> bool:
+        """Whether a training can go back to where it stands now, which is judged and written down.
+
+        losses, largest  of the steps since the last validation: losses, and the largest norm of a gradient
+        """
+        judged = self.aim.judged(now.mean)
+        score = judged["score"]
+        loss = float(np.mean(losses)) if losses else math.nan
+        now.curve.append({"step": now.step, "loss": loss, "norm": largest, **judged})
+        if score < now.best_score:
+            now.best, now.best_score = now.mean, score
+        return math.isfinite(score) and not now.lost
+
+    def ended(self, now: Progressed, last: int) -> None:
+        """Raises OptionError where a training came to its last step, and no step ever had a finite loss."""
         if not math.isfinite(now.best_score) and now.step >= last:
             raise OptionError(
                 Problem(
@@ -187,10 +208,10 @@ class Trainer:
                     FIX,
                 )
             )
-        return now
 
-    def _gone_back(self, now: Progressed, good: Progressed, why: str) -> Progressed:
-        """The last good state again, at half the rate; the steps count on."""
+    def gone_back(self, now: Progressed, good: Progressed) -> Progressed:
+        """The last good state again, at half the rate; the steps count on.  Raises OptionError after ``BACK`` times."""
+        why = "no finite gradient for some steps in a row"
         if len(now.events) >= BACK:
             raise OptionError(
                 Problem(
@@ -200,13 +221,18 @@ class Trainer:
                     FIX,
                 )
             )
-        back = _copy(good)
+        back = copied(good)
         back.events = [
             *now.events,
             {"step": now.step, "why": why, "back_to": good.step, "rate_factor": 0.5 * now.factor},
         ]
         back.step, back.factor, back.lost = now.step, 0.5 * now.factor, 0
         return back
+
+
+def past(step: int) -> float:
+    """Weight of the past in the running mean of the weights at a step: the mean of what there is, at first."""
+    return min((1.0 + step) / (10.0 + step), AVERAGE)
 
 
 def batch(starts: IntArray, size: int, seed: int, step: int) -> IntArray:
@@ -232,7 +258,7 @@ def optax_module() -> Any:
     return optax
 
 
-def _copy(one: Progressed) -> Progressed:
+def copied(one: Progressed) -> Progressed:
     """The same with lists of its own; arrays are never written into."""
     return Progressed(
         one.parameters,

@@ -101,6 +101,16 @@ def test_resumed_equals_not_interrupted(tmp_path, after):
     assert [one.to_dict() for one in second.members] == [one.to_dict() for one in whole.members]
 
 
+def test_under_one_compiled_step_networks_become_the_same(monkeypatch):
+    """As on a GPU, here on a processor: to the rounding of single precision."""
+    options = replace(SMALL, seeds=2)
+    one_by_one = learn_rnn("suzaku", "suzaku", options)
+    monkeypatch.setattr(runs, "accelerated", lambda: True)
+    at_once = learn_rnn("suzaku", "suzaku", options)
+    np.testing.assert_allclose(weights(at_once), weights(one_by_one), atol=2e-5)
+    assert [one.score for one in at_once.members] == pytest.approx([one.score for one in one_by_one.members], rel=1e-3)
+
+
 def test_a_checkpoint_of_another_training_or_damaged_is_refused(tmp_path):
     hooks = Hooks(stop=lambda: True)
     learn_rnn("suzaku", "suzaku", SMALL, hooks=hooks, folder=tmp_path)
