@@ -15,6 +15,12 @@ from ..errors import Problem, among, near_to
 Mistyped: type[Exception] = next(one for one in typer.BadParameter.__mro__ if one.__name__ == "UsageError")
 """What Typer raises; releases keep it at different places."""
 
+_SPOKEN = {"help": "write mmgtune --help, or mmgtune fit --help of a command", "version": "write mmgtune --version"}
+"""What to write for commands that other programs have."""
+
+_GIVEN = ("-p", "--profile", "-t", "--trials")
+"""Options that some commands take as words."""
+
 _NUMBERS = {"int": "a whole number", "float": "a number"}
 """What to give, by the word for it in what Typer says."""
 
@@ -43,7 +49,7 @@ def problem_of(error: Any) -> Problem | None:
         what = f"the value is not {takes}" if takes else error.message.rstrip(".")
         return Problem(what, _named(error.param), f"it sets this: {_help(error.param)}", fix)
     if message.startswith("No such command") and (name := re.search("'(.*?)'", message)):
-        return Problem(f"unknown command '{name[1]}'", path, **among(name[1], [*ctx.command.commands]))
+        return Problem(f"unknown command '{name[1]}'", path, **_meant(name[1], ctx))
     if extra := re.search(r"extra arguments?(?:\(s\))? \((.*)\)", message):
         takes = ", ".join(_named(one) for one in ctx.command.params if one.param_type_name == "argument")
         why = f"{path} takes {takes or 'options alone'}"
@@ -67,12 +73,27 @@ def as_options(words: list[str], ctx: Any) -> str:
 
 
 def _are_trials(word: str) -> bool:
-    return word.endswith(".parquet") or Path(word).is_dir()
+    from ..particles import FILE  # what it takes along is not needed for help
+
+    return Path(word).name != FILE and (word.endswith(".parquet") or Path(word).is_dir())
+
+
+def _meant(name: str, ctx: Any) -> dict[str, str]:
+    """Why a command is unknown, and what to write: one that another group has, or the nearest."""
+    found = among(name, [*ctx.command.commands])
+    elsewhere = [path for path, _ in _commands(ctx.find_root().command) if path.split()[-1] == name]
+    if elsewhere:
+        return {**found, "fix": f"write mmgtune {' or mmgtune '.join(elsewhere)}"}
+    return {**found, "fix": _SPOKEN.get(name, found["fix"])}
 
 
 def _unknown_option(name: str, ctx: Any) -> Problem:
     """Only near spellings are proposed; of an option that other commands have it is said which."""
     path, known = path_of(ctx), _flags(ctx.command)
+    takes = [_named(one) for one in ctx.command.params if one.param_type_name == "argument"]
+    if name in _GIVEN and takes:
+        why = f"{path} takes {', '.join(takes)}, with no option before"
+        return Problem(f"unknown option {name}", path, why, f"write {_example(ctx) or f'{path} --help'}")
     why = f"{path} has {len(known)} options, and none is called that"
     elsewhere = [others for others, command in _commands(ctx.find_root().command) if name in _flags(command)]
     if elsewhere:
