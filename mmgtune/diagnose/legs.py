@@ -18,7 +18,7 @@ from typing import Any, Literal
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from ..fitting.least_squares import flat_where_lost
+from ..fitting.quadratic import flat_where_lost
 from . import noise as noises
 from .intervals import NORMAL
 from .linear import STEP, basis, blocks_of, offset_derivatives

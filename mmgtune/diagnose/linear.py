@@ -16,8 +16,8 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..backends import STATES
 from ..fitting.box import base_of, parameter_of
-from ..fitting.least_squares import flat_where_lost
 from ..fitting.problem import FitProblem
+from ..fitting.quadratic import flat_where_lost
 from ..profile import scale_of
 from .inputs import wander
 from .workbench import Point, Workbench

@@ -26,8 +26,9 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..backends import STATES
-from .least_squares import LeastSquaresResult, flat_where_lost, solve
+from .least_squares import LeastSquaresResult, solve
 from .problem import FitProblem
+from .quadratic import flat_where_lost
 
 ROUNDS = 8
 """Fits at most."""

@@ -19,9 +19,11 @@ from mmgtune.fitting import (
     make_problem,
     sweep,
 )
+from mmgtune.fitting.bounded import bounded_step, bounded_steps
 from mmgtune.fitting.box import make_box
 from mmgtune.fitting.cmaes import from_box, search, to_box
-from mmgtune.fitting.least_squares import bounded_step, bounded_steps, solve
+from mmgtune.fitting.least_squares import solve
+from mmgtune.fitting.quadratic import Quadratic
 from mmgtune.trial import load_trials
 from tests.fitting.conftest import make_set
 
@@ -137,8 +139,8 @@ def test_many_small_bounded_steps_at_once_are_those_one_by_one():
 def test_derivatives_that_foretold_a_step_serve_the_next_to_the_same_end(problem, monkeypatch):
     """With initial states estimated, as in a diagnosis."""
     made = []
-    jacobians = least_squares._jacobians
-    monkeypatch.setattr(least_squares, "_jacobians", lambda *given: made.append(1) or jacobians(*given))
+    models = least_squares._Minimised.models
+    monkeypatch.setattr(least_squares._Minimised, "models", lambda *given: made.append(1) or models(*given))
     estimated = problem.estimated(np.full((len(problem.cases), 6), 0.1))
     start = estimated.box.to_unit(estimated.box.pre)[:, None]
 
@@ -181,13 +183,14 @@ def test_derivatives_are_taken_along_to_another_point(problem):
     estimated = problem.estimated(np.full((len(problem.cases), 6), 0.1))
     here = np.full((len(problem.box), 1), 0.5)
     offsets = np.zeros((len(problem.cases), 1, 6))
-    at, _, slopes, by_offset = (one[0] for one in least_squares._jacobians(estimated, here, offsets, np.array([0])))
+    _, slopes, by_offset = (one[0] for one in estimated.jacobians(here, offsets))
+    at = offsets[:, 0]
     there = at + 0.01
     residuals = estimated.residuals(here + 0.05, there[:, None])[0]
-    model = least_squares._Linear(estimated, at, estimated.residuals(here, at[:, None])[0], slopes, by_offset, True)
+    model = Quadratic(estimated, at, estimated.residuals(here, at[:, None])[0], slopes, by_offset, True)
     along, anew = (
         model.with_residuals(there, residuals),
-        least_squares._Linear(estimated, there, residuals, slopes, by_offset, True),
+        Quadratic(estimated, there, residuals, slopes, by_offset, True),
     )
     for name in ("hessian", "gradient", "settling"):
         np.testing.assert_allclose(getattr(along, name), getattr(anew, name), rtol=1e-12)

@@ -34,9 +34,7 @@ UNKNOWN: dict[str, Unknown] = {
         "current to 046 deg, magnitude (t / 300 s - 1)", "m/s", (0.2, 0.3, 0.45), "current"
     ),
     "unknown-current-rotating": Unknown("current turning clockwise once in 900 s", "m/s", (0.2, 0.3, 0.45), "current"),
-    "unknown-current-south": Unknown(
-        "current to the east, only south of the start", "m/s", (0.2, 0.3, 0.4), "current"
-    ),
+    "unknown-current-south": Unknown("current to the east, only south of the start", "m/s", (0.2, 0.3, 0.4), "current"),
     "unknown-gust": Unknown("wind from 230 deg, magnitude sin^2(pi t / 300 s)", "m/s", (9.0, 12.0, 15.0)),
     "unknown-log-quadratic": Unknown("u logged + magnitude u (1 - u/U0)", "-", (-0.15, 0.12, 0.2), "speed-scale"),
     "unknown-bank": Unknown("suction to a bank in the east, growing with y", "N", (6e3, 1.2e4, 2.0e4)),
