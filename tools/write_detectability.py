@@ -9,7 +9,7 @@ import math
 from pathlib import Path
 
 from mmgtune.diagnose import Diagnosis, diagnose
-from mmgtune.diagnose.result import Detectability
+from mmgtune.diagnose.causes import Detectability
 from mmgtune.files import write_text
 from mmgtune.profile import load_profile
 from mmgtune.trial import load_trials

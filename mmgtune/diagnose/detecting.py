@@ -8,10 +8,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..fitting.box import parameter_of
+from .causes import Detectability
 from .hypotheses import Hypothesis
 from .linear import Linear, typical
 from .refit import ENOUGH, WORTH
-from .result import Detectability
 from .screening import NEVER, angles
 from .search import Step
 from .workbench import Workbench

@@ -15,6 +15,7 @@ from ..options import DiagnoseOptions
 from ..profile import ShipProfile
 from ..trial import Coverage, Trial
 from .by_run import ByRun
+from .causes import Candidate, Cause, Trace
 from .contributions import Aside, Contribution, contributions, with_only
 from .detecting import detectability
 from .gain import J_of, held_out
@@ -25,7 +26,7 @@ from .intervals import Estimate, estimates
 from .leftover import Leftover, leftover
 from .legs import Difference
 from .refit import WORTH, Refit, kin_among
-from .result import Candidate, Cause, Diagnosis, Doubted, Trace
+from .result import Diagnosis, Doubted
 from .retuned import retuned
 from .search import Found, Step, rivals_of, step_of
 from .separate import Suggestion, suggest

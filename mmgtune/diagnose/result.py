@@ -5,32 +5,27 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any
 
-from ..displayed import Brief, Plotted
-from ..documents import finite, finite_values
-from ..effects import Effect
+from ..displayed import Plotted
+from ..documents import finite_values
 from ..options import DiagnoseOptions
 from ..profile import ShipProfile, tuned, with_effects
 from ..trial import Coverage
 from . import beliefs, winds
-from .by_run import ByRun
+from .causes import Candidate, Cause, Detectability, Trace
 from .contributions import Contribution
 from .gain import MOST, Gain
 from .instead import Instead
-from .intervals import Estimate
 from .leftover import Leftover, change_in_words, in_words
 from .legs import Difference
 from .record import Record, kind_of, record_of
 from .retuned import Retuned
 from .retuned import in_words as moved_in_words
-from .runs import IN_WORDS
 from .separate import Suggestion
 from .together import Together
 from .voyages import Choice
 from .whereabouts import Whereabouts
-from .wording import parameters_in_words
 
 SCHEMA = 1
 VERDICTS = ("none", "found", "not-separable", "unexplained", "interrupted")
@@ -65,103 +60,11 @@ TOLD = 0.5
 """Share of the held-out error that causes must remove which were found once no trial was kept for testing, and several
 causes anyhow: what little there is any two or three would imitate."""
 
-LONG = 40
-"""Letters of a list of parameters that fit into a line of a table."""
-
 TOO_MANY = 4
 """Terms of a sum of causes from which it is not believed."""
 
 NEEDED = 0.15
 """Share of the fall of chi-squared that the terms of a sum must lose, one left out at a time, all added up."""
-
-
-@dataclass(frozen=True, eq=False)
-class Cause:
-    """An effect that was found, with the sizes of its parameters; ``effect`` None for what is none.
-
-    words      what it is then: the integration step where they are empty
-    estimates  of what is the same in all runs
-    runs       what differs between them, None where nothing does
-    """
-
-    tag: str
-    effect: Effect | None
-    estimates: Mapping[str, Estimate]
-    p_value: float
-    gain_test: float | None
-    runs: ByRun | None = None
-    words: str = ""
-
-    @property
-    def sentence(self) -> str:
-        """The cause in words."""
-        if self.effect is None and self.words:
-            return self.words
-        if self.effect is None:
-            return "The integration step of the simulation is too coarse"
-        if self.runs is not None:
-            return self.runs.sentence
-        return self.effect.sentence(parameters_in_words(self.effect, self.estimates))
-
-    @property
-    def sized(self) -> bool:
-        """Whether the interval of any of its parameters leaves out the value at which it is absent."""
-        if self.effect is None or not self.estimates:
-            return True
-        fields = [*self.effect.parameters.items()]
-        directions = {name for (_, before), (name, _) in pairwise(fields) if before.chart == "polar"}
-        nulls = {name: field.null for name, field in fields if name not in {*directions, *self.effect.form}}
-        known = {name.rpartition(".")[2]: one for name, one in self.estimates.items()}
-        return any(
-            not (-math.inf if one.low is None else one.low)
-            <= nulls[name]
-            <= (math.inf if one.high is None else one.high)
-            for name, one in known.items()
-            if name in nulls
-        )
-
-    def to_dict(self) -> dict[str, Any]:
-        """For JSON; values in the unit named, interval ends null where infinite."""
-        fields = self.effect.parameters if self.effect else {}
-        return {
-            "effect": self.tag,
-            "parameters": {
-                name: {"value": finite(e.value), "ci95": [e.low, e.high], "unit": fields[name].unit}
-                for full, e in self.estimates.items()
-                for name in [full.rpartition(".")[2]]
-            },
-            "p_value": self.p_value,
-            "gain_test": self.gain_test,
-            "by_run": self.runs.to_dict() if self.runs else None,
-            "sentence": self.sentence,
-        }
-
-
-@dataclass(frozen=True, eq=False)
-class Trace:
-    """A cause that is statistically there, and without which a user would notice nothing."""
-
-    cause: Cause
-    contribution: Contribution
-
-    @property
-    def sentence(self) -> str:
-        """What it is, and why it is no more than that."""
-        harmful = self.contribution.harmful
-        why = "held-out trials are told no better with it" if harmful else "nothing that would be noticed"
-        return f"Trace, {why}, and in no profile: {self.words}."
-
-    @property
-    def words(self) -> str:
-        """The cause as a sentence without its full stop; its name where its size is not told."""
-        effect = self.cause.effect
-        if effect is None or self.cause.sized:
-            return self.cause.sentence
-        return f"{effect.title}, of a size that is not told"
-
-    def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
-        return {**self.cause.to_dict(), "sentence": self.words, "contribution": self.contribution.to_dict()}
 
 
 @dataclass(frozen=True)
@@ -188,78 +91,6 @@ class Doubted:
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
         return {"effects": list(self.effects), "why": self.why}
-
-
-@dataclass(frozen=True)
-class Candidate:
-    """A hypothesis that was looked at: score and refit at the first look; J on the test trials.
-
-    gain       fall of chi-squared by the refit; of one that was given up, as far as it had come
-    unvisited  what the trials would have to visit for it to be believed, "" where they do
-    by         what has a value of its own: "" for one for all, else a grouping of runs
-    """
-
-    effect: str
-    parameters: tuple[str, ...]
-    score: float
-    gain: float
-    p_value: float
-    J_test: float | None
-    unvisited: str = ""
-    by: str = ""
-
-    @property
-    def label(self) -> str:
-        """In a line, of long lists the beginning."""
-        each = f", by {IN_WORDS[self.by]}" if self.by else ""
-        names = ", ".join(self.parameters)
-        if len(names) > LONG:
-            names = f"{', '.join(self.parameters[:2])}, {len(self.parameters) - 2} more"
-        return f"{self.effect} ({names}{each})"
-
-    def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
-        return {
-            "effect": self.effect,
-            "parameters": list(self.parameters),
-            "by": self.by or None,
-            "score": self.score,
-            "gain": self.gain,
-            "p_value": self.p_value,
-            "J_test": self.J_test,
-            "unvisited": self.unvisited,
-        }
-
-
-@dataclass(frozen=True, repr=False)
-class Detectability(Brief):
-    """What these trials could tell of a hypothesis, before looking at what they do tell.
-
-    share    of its signature that re-tuning does not imitate
-    power    length of that, in deviations of the noise, for a typical size
-    limit    size from which it would be found, by parameter, in the parameter's unit
-    twins    effects its signature is closest to, with the angle between [deg]
-    """
-
-    effect: str
-    parameters: tuple[str, ...]
-    share: float
-    power: float
-    limit: dict[str, float | None]
-    units: dict[str, str]
-    twins: tuple[tuple[str, float], ...]
-
-    def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
-        return {
-            "effect": self.effect,
-            "parameters": list(self.parameters),
-            "share_surviving": self.share,
-            "power": self.power,
-            "detection_limit": self.limit,
-            "units": self.units,
-            "twins": [{"effect": tag, "angle_deg": angle} for tag, angle in self.twins],
-        }
 
 
 @dataclass(frozen=True, eq=False)
@@ -464,87 +295,19 @@ class Diagnosis(Plotted):
                 else "No cause was found by then."
             )
             return f"The search was stopped before its end, so nothing can be concluded. {told}"
-        if self.verdict == "none" and self.leaves_open:
-            return (
-                f"No cause shows. The re-tuned model leaves {_of_noise(self.leftover.left_open)} of the sensors "
-                "besides, no more than what revolutions and rudder angle did between two samples of their log leaves "
-                "open: inputs logged more often would tell more."
-            )
         if self.verdict == "none":
-            alone = ", ".join(dict.fromkeys(one.cause.tag for one in self.traces if one.contribution.harmful))
-            none = (
-                f"what alone shows, {alone}, tells held-out trials worse"
-                if alone
-                else "no cause that was looked for shows"
-            )
-            if far := moved_in_words(self.moved):
-                return f"Re-tuning is all it takes: with {far}, the model fits these trials to their noise, and {none}."
-            instead = f" {self.instead.sentence}" if self.instead else ""
-            return (
-                "Nothing is wrong beyond the noise of the measurements: the re-tuned model fits these trials, and "
-                f"{none}.{instead}"
-            )
+            return self._of_none()
         where = "on trials not used" if self.gain.held_out == "test" else f"on {self.gain.words}"
         if self.verdict == "unexplained":
-            if self.unclear:
-                tags = " + ".join(dict.fromkeys(tag for tag, _ in self.contributions))
-                return (
-                    f"Something is wrong that this program cannot name. The best partial explanation, {tags}, removes "
-                    f"{self._explained} of the error it was found on, but {self.unclear}: it stands for "
-                    "something else, or for more than these trials can tell apart."
-                )
-            if self.causes and not self.leftover.noticed:
-                tags = " + ".join(dict.fromkeys(cause.tag for cause in self.causes))
-                them = "it was" if len(self.causes) == 1 else "they were"
-                share = self.gain.share_removed[0]
-                held_out = f"leaves {_percent(1.0 - share)} of it" if share > 0.0 else "errs more"
-                return (
-                    f"Something is wrong that this program cannot name. The best of what is known, {tags}, would "
-                    f"remove {self._explained} of the error {them} found on, but the model with it "
-                    f"{held_out} {where}."
-                )
-            excess = self.leftover.unknown
-            left = (
-                f"{_of_noise(excess)} of the measurements besides"
-                if excess < LARGE
-                else f"an error {math.sqrt(1.0 + excess):,.0f} times the noise of the sensors"
-            )
-            offsets = " ".join(f"{in_words(*one)}." for one in self.leftover.offsets.items())
-            if self.misses_test:
-                return (
-                    "Something is wrong that this program does not know: the re-tuned model fits the trials looked at, "
-                    f"but leaves an error {self.gain.left:,.3g} times the noise of the sensors on trials kept for "
-                    "testing, more than coefficients known no better would."
-                )
-            if self.of_a_sensor:
-                told = "; ".join(change_in_words(*one) for one in self.leftover.changed.items())
-                return f"Something is wrong with a sensor, and no known cause shows: {told}."
-            if not self.causes:
-                told = f"the re-tuned model leaves {left}, and no known cause accounts for it."
-                return f"Something is wrong that this program does not know: {told} {offsets}".rstrip()
-            tags = " + ".join(dict.fromkeys(cause.tag for cause in self.causes))
-            removed = f"{tags}, removes {self._explained} of the error and leaves {left}."
-            return (
-                "Something is wrong that this program does not know. "
-                f"The best of what is known, {removed} {offsets}".rstrip()
-            )
-        unsure = {tag for group in self.groups for tag in group}
-        text, doubtful = (
-            " ".join(f"{cause.sentence}." for cause in self.causes if (cause.tag in unsure) == asked)
-            for asked in (False, True)
-        )
-        if self.groups:
-            groups = "; ".join(" or ".join(group) for group in self.groups)
-            which = "what else there was" if text else "which it was"
-            text = f"{text} These trials cannot tell {which}: {groups}. If the first: {doubtful}".lstrip()
+            return self._of_the_unknown(where)
+        named = self._of_the_named()
         if all(cause.effect is None for cause in self.causes):
             before, after = self.chi2
             return (
-                f"{text} With that put right no other cause shows: the error of the re-tuned model falls from "
+                f"{named} With that put right no other cause shows: the error of the re-tuned model falls from "
                 f"{math.sqrt(before):.2g} to {math.sqrt(after):.2g} times the noise of the measurements."
             )
-        them = "it" if len(self.causes) == 1 else "them"
-        gained = f"{text} {self._gained(them, where)}"
+        gained = f"{named} {self._gained('it' if len(self.causes) == 1 else 'them', where)}"
         if self.doubted:
             gained = f"{gained} {self.doubted.sentence}"
         if not any(cause.runs for cause in self.causes):
@@ -555,6 +318,80 @@ class Diagnosis(Plotted):
             f"{gained} What differs between runs was estimated there from the first {100.0 * self.gain.first_part:.0f} "
             "% of each run, and the rest was judged; the extended profile leaves it out."
         )
+
+    def _of_none(self) -> str:
+        """That no cause shows, and what re-tuning took or the log of the inputs leaves open."""
+        if self.leaves_open:
+            return (
+                f"No cause shows. The re-tuned model leaves {_of_noise(self.leftover.left_open)} of the sensors "
+                "besides, no more than what revolutions and rudder angle did between two samples of their log leaves "
+                "open: inputs logged more often would tell more."
+            )
+        alone = ", ".join(dict.fromkeys(one.cause.tag for one in self.traces if one.contribution.harmful))
+        none = (
+            f"what alone shows, {alone}, tells held-out trials worse" if alone else "no cause that was looked for shows"
+        )
+        if far := moved_in_words(self.moved):
+            return f"Re-tuning is all it takes: with {far}, the model fits these trials to their noise, and {none}."
+        instead = f" {self.instead.sentence}" if self.instead else ""
+        return (
+            "Nothing is wrong beyond the noise of the measurements: the re-tuned model fits these trials, and "
+            f"{none}.{instead}"
+        )
+
+    def _of_the_unknown(self, where: str) -> str:
+        """That something is wrong, the best that is known of it, and how much is left."""
+        tags = " + ".join(dict.fromkeys(cause.tag for cause in self.causes))
+        if self.unclear:
+            summed = " + ".join(dict.fromkeys(tag for tag, _ in self.contributions))
+            return (
+                f"Something is wrong that this program cannot name. The best partial explanation, {summed}, removes "
+                f"{self._explained} of the error it was found on, but {self.unclear}: it stands for "
+                "something else, or for more than these trials can tell apart."
+            )
+        if self.causes and not self.leftover.noticed:
+            them = "it was" if len(self.causes) == 1 else "they were"
+            share = self.gain.share_removed[0]
+            held_out = f"leaves {_percent(1.0 - share)} of it" if share > 0.0 else "errs more"
+            return (
+                f"Something is wrong that this program cannot name. The best of what is known, {tags}, would "
+                f"remove {self._explained} of the error {them} found on, but the model with it {held_out} {where}."
+            )
+        if self.misses_test:
+            return (
+                "Something is wrong that this program does not know: the re-tuned model fits the trials looked at, "
+                f"but leaves an error {self.gain.left:,.3g} times the noise of the sensors on trials kept for "
+                "testing, more than coefficients known no better would."
+            )
+        if self.of_a_sensor:
+            told = "; ".join(change_in_words(*one) for one in self.leftover.changed.items())
+            return f"Something is wrong with a sensor, and no known cause shows: {told}."
+        excess = self.leftover.unknown
+        left = (
+            f"{_of_noise(excess)} of the measurements besides"
+            if excess < LARGE
+            else f"an error {math.sqrt(1.0 + excess):,.0f} times the noise of the sensors"
+        )
+        told = (
+            f"The best of what is known, {tags}, removes {self._explained} of the error and leaves {left}."
+            if self.causes
+            else f"the re-tuned model leaves {left}, and no known cause accounts for it."
+        )
+        offsets = "".join(f" {in_words(*one)}." for one in self.leftover.offsets.items())
+        return f"Something is wrong that this program does not know{'.' if self.causes else ':'} {told}{offsets}"
+
+    def _of_the_named(self) -> str:
+        """The causes, those last of which the trials cannot tell which it is."""
+        unsure = {tag for group in self.groups for tag in group}
+        sure, doubtful = (
+            " ".join(f"{cause.sentence}." for cause in self.causes if (cause.tag in unsure) == asked)
+            for asked in (False, True)
+        )
+        if not self.groups:
+            return sure
+        groups = "; ".join(" or ".join(group) for group in self.groups)
+        which = "what else there was" if sure else "which it was"
+        return f"{sure} These trials cannot tell {which}: {groups}. If the first: {doubtful}".lstrip()
 
     @property
     def _explained(self) -> str:

@@ -12,13 +12,13 @@ import pytest
 from mmgtune.backends import Integrator
 from mmgtune.diagnose import DiagnoseOptions, Diagnosis, diagnose
 from mmgtune.diagnose.base_fit import base_fit
+from mmgtune.diagnose.causes import Cause
 from mmgtune.diagnose.contributions import Contribution, set_aside, takes_the_rest
 from mmgtune.diagnose.gain import BAND, expected, held_out
 from mmgtune.diagnose.hypotheses import known_causes
 from mmgtune.diagnose.intervals import Estimate
 from mmgtune.diagnose.leftover import Leftover
 from mmgtune.diagnose.record import ANSWERS, kind_of, record_of
-from mmgtune.diagnose.result import Cause
 from mmgtune.diagnose.search import Found
 from mmgtune.diagnose.unseen import Unseen
 from mmgtune.diagnose.workbench import make_workbench
