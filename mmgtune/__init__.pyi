@@ -38,6 +38,8 @@ from .generating import make_trials as make_trials
 from .heading_keeping import HeadingStudy as HeadingStudy
 from .heading_keeping import study_heading_keeping as study_heading_keeping
 from .heading_keeping import write_heading_study as write_heading_study
+from .hooks import Hooks as Hooks
+from .hooks import until_interrupted as until_interrupted
 from .importing import import_logs as import_logs
 from .importing import load_map as load_map
 from .importing import propose_map as propose_map

@@ -27,7 +27,7 @@ from .profile import Approach, ShipProfile
 from .simulation import Motion, as_trial
 from .steering import APPROACH, STEP
 from .trial import Coverage, write_trial
-from .units import DEG, KNOT, parse
+from .units import DEG, KNOT, parse, with_known_unit, with_point
 
 ORDERED = "rk4"
 """How manoeuvres given as orders are simulated, at steps of their own."""
@@ -260,7 +260,12 @@ def rudder_angle(text: str) -> float:
 
 def approach_speed(text: str) -> float:
     """The speed [m/s] of "12 kn".  Raises OptionError."""
-    return _quantity(text, "speed", "m/s", '"12 kn"')
+    speed = _quantity(text, "speed", "m/s", '"12 kn"')
+    if not speed > 0.0:
+        raise OptionError(
+            Problem(f"the approach speed is {text}", "speed", "manoeuvres begin ahead", "give a speed above 0")
+        )
+    return speed
 
 
 def revolutions(text: str) -> float:
@@ -334,11 +339,16 @@ def _plain(text: str) -> float | None:
 
 
 def _quantity(text: str, name: str, unit: str, such_as: str) -> float:
+    what = f"'{text[:80]}' cannot be read"
+    if (pointed := with_point(text)) is not None:
+        raise OptionError(Problem(what, name, "numbers have a decimal point here", f'write {name}="{pointed}"'))
     try:
-        return parse(text, unit)[0]
+        numbers = parse(with_known_unit(text), unit)
     except ValueError as error:
-        what = f"'{text[:80]}' cannot be read"
         raise OptionError(Problem(what, name, reason(error), f"write {name}={such_as}")) from None
+    if len(numbers) != 1:
+        raise OptionError(Problem(what, name, f"it is {len(numbers)} numbers, not one", f"write {name}={such_as}"))
+    return numbers[0]
 
 
 def _signed(angle: float) -> str:

@@ -135,6 +135,12 @@ def with_point(text: str) -> str | None:
     return f"{match[1]}.{match[2]}{match[3] or ''}" if match else None
 
 
+def with_known_unit(text: str) -> str:
+    """ "15 kn" for "15 knots": a quantity with its unit by the name known here; other texts as they are."""
+    match = _QUANTITY.match(text[:LONGEST])
+    return f"{match[1]} {canonical(match[2])}" if match and match[2] else text
+
+
 def canonical(unit: str) -> str:
     """A unit by the name the program knows it by; unknown ones as they are."""
     unit = unit.strip()

@@ -1,5 +1,6 @@
 """Choices as a program gives them: of their kind, and within what a machine can do."""
 
+import json
 import math
 from types import SimpleNamespace
 
@@ -64,7 +65,10 @@ def test_of_a_kind_that_does():
         starts=np.int64(3), a_r=1, restart=np.float32(100.0), targets=["R_0"], window=[0, math.inf], every=None
     )
     assert found.starts == 3
-    SweepOptions(widths=[0.2, 1])
+    assert (type(found.starts), type(found.restart)) == (int, float)
+    json.dumps(found.to_dict())
+    widths = SweepOptions(widths=[np.float32(0.25), 1]).widths
+    assert [type(width) for width in widths] == [float, int]
 
 
 @pytest.mark.parametrize(

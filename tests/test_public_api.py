@@ -2,6 +2,7 @@
 
 import inspect
 import re
+import signal
 from dataclasses import replace
 
 import numpy as np
@@ -156,6 +157,19 @@ def test_a_result_is_not_replaced_in_silence(tmp_path):
             write()
         assert "overwrite=True" in caught.value.problems[0].fix
         write(overwrite=True)
+
+
+def test_ctrl_c_ends_a_fit_with_the_best_so_far():
+    """As the stop button of a notebook does; a second time it is Python's own interrupt, as before and after."""
+    own = signal.getsignal(signal.SIGINT)
+    with mmgtune.until_interrupted() as hooks:
+        signal.raise_signal(signal.SIGINT)
+        result = mmgtune.fit(SHIP, TRIALS, QUICK, hooks=hooks)
+        with pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+    assert result.interrupted
+    assert np.isfinite(result.J)
+    assert signal.getsignal(signal.SIGINT) is own
 
 
 def test_channels_of_a_motion_have_the_names_of_columns():

@@ -87,7 +87,7 @@ def command(
     from ..fitting import claimed, refuse_taken
     from ..report import render
 
-    failing = split(fail_on)
+    failing = split(fail_on, "fail_on")
     unknown = [word for word in failing if word not in VERDICTS]
     if unknown:
         raise OptionError(

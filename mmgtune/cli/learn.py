@@ -129,7 +129,8 @@ def _train(
 ) -> None:
     """Say what would be done, or train, write the run folder and print what was found."""
     from ..fitting import claimed
-    from ..learning import Hooks, write_learned
+    from ..hooks import Hooks
+    from ..learning import write_learned
     from ..report import render
 
     ship, data = c.load(profile, trials)

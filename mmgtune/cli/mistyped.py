@@ -5,12 +5,15 @@ from __future__ import annotations
 import inspect
 import re
 import shlex
+import sys
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import typer
 
 from ..errors import Problem, among, near_to
+from ..units import with_point
 
 Mistyped: type[Exception] = next(one for one in typer.BadParameter.__mro__ if one.__name__ == "UsageError")
 """What Typer raises; releases keep it at different places."""
@@ -21,7 +24,7 @@ _SPOKEN = {"help": "write mmgtune --help, or mmgtune fit --help of a command", "
 _GIVEN = ("-p", "--profile", "-t", "--trials")
 """Options that some commands take as words."""
 
-_NUMBERS = {"int": "a whole number", "float": "a number"}
+_NUMBERS = {"int": "a whole number", "float": "a number", "number": "a number"}
 """What to give, by the word for it in what Typer says."""
 
 
@@ -46,6 +49,8 @@ def problem_of(error: Any) -> Problem | None:
     if kind == "BadParameter" and error.param is not None:
         takes = next((words for kind, words in _NUMBERS.items() if f"valid {kind}" in message), "")
         fix = f"give {takes}" if takes else f"write {example}"
+        if takes == "a number" and (meant := _as_number(error.param.opts)):
+            fix = f"write {meant}"
         what = f"the value is not {takes}" if takes else error.message.rstrip(".")
         return Problem(what, _named(error.param), f"it sets this: {_help(error.param)}", fix)
     if message.startswith("No such command") and (name := re.search("'(.*?)'", message)):
@@ -124,6 +129,18 @@ def path_of(ctx: Any) -> str:
         names.insert(0, ctx.info_name)
         ctx = ctx.parent
     return " ".join(["mmgtune", *names])
+
+
+def _as_number(flags: list[str]) -> str:
+    """The option as typed with a number that is plainly meant: "30 %" for 0.3, "0,5" for 0.5; "" where none is."""
+    typed = [(flag, value) for flag, value in pairwise(sys.argv[1:]) if flag in flags]
+    typed += [(word.partition("=")[0], word.partition("=")[2]) for word in sys.argv[1:] if word.split("=")[0] in flags]
+    for flag, value in typed:
+        if percent := re.fullmatch(r"\s*([0-9]+(?:[.,][0-9]+)?)\s*%\s*", value):
+            return f"{flag} {float(percent[1].replace(',', '.')) / 100.0:g}"
+        if pointed := with_point(value):
+            return f"{flag} {pointed}"
+    return ""
 
 
 def _named(parameter: Any) -> str:

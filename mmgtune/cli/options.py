@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import wraps
@@ -199,7 +200,7 @@ def _read(of: type[Options], given: dict[str, Any]) -> dict[str, Any]:
     for name, value in given.items():
         parts = _parts(hints[name])
         if parts == (str, ...):
-            read[name] = split(value)
+            read[name] = split(value, name)
         elif parts == (float, ...):
             read[name] = numbers_of(value, name)
         elif parts is not None:
@@ -217,8 +218,19 @@ def _parts(hint: Any) -> tuple[Any, ...] | None:
     return None
 
 
-def split(values: list[str] | None) -> tuple[str, ...]:
-    """Values of an option that may be repeated and may hold commas."""
+_ONE_OR_TWO = re.compile(r"([-+]?[0-9]+),([0-9])")
+
+
+def split(values: list[str] | None, name: str) -> tuple[str, ...]:
+    """Values of an option that may be repeated and may hold commas.
+
+    Raises OptionError for "35,5", which is 35.5 where numbers have a decimal comma.
+    """
+    for value in values or ():
+        if both := _ONE_OR_TWO.fullmatch(value.strip()):
+            why = "a comma stands between values, and numbers have a decimal point"
+            fix = f'write {name}={both[1]}.{both[2]}, or {name}="{both[1]}, {both[2]}" for two'
+            raise OptionError(Problem(f"'{value}' may be one number or two", name, why, fix))
     return tuple(part.strip() for value in values or () for part in value.split(",") if part.strip())
 
 

@@ -17,8 +17,8 @@ from . import interrupts
 from .output import harmless, say
 
 if TYPE_CHECKING:
-    from ..fitting import Hooks
     from ..fitting.cmaes import Search
+    from ..hooks import Hooks
 
 LINE_EVERY = 5.0
 """Seconds between two lines where stderr is no terminal."""
@@ -58,7 +58,7 @@ class Progress:
 
     def hooks(self) -> Hooks:
         """What to hand to the fit."""
-        from ..fitting import Hooks
+        from ..hooks import Hooks
 
         return Hooks(on_phase=self._on_phase, on_generation=self._on_generation, stop=self._asked)
 

@@ -30,11 +30,12 @@ def on_voyages(
 ) -> None:
     """Score profiles on voyages, write the run folder and print what was found."""
     from ..fitting import claimed
+    from ..hooks import Hooks
     from ..networks import named_ship
     from ..predictor import profile_of
     from ..report import render
     from ..trial import load_voyages
-    from ..voyages import Hooks, validate_voyages, write_voyages
+    from ..voyages import validate_voyages, write_voyages
 
     ships = [named_ship(name) for name in profiles]
     data = load_voyages(trials)

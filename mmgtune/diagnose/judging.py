@@ -10,7 +10,7 @@ import numpy as np
 
 from ..backends import STATES
 from ..fitting.one_sided import coverage_notes, followers
-from ..fitting.run import Hooks
+from ..hooks import Hooks
 from ..options import DiagnoseOptions
 from ..profile import ShipProfile
 from ..trial import Coverage, Trial

@@ -13,8 +13,9 @@ from ..errors import ProfileError
 from ..files import path_of
 from ..fitting.extending import with_width
 from ..fitting.journal import journalled
-from ..fitting.run import Hooks, identity_of, in_pieces, make_provenance
+from ..fitting.run import identity_of, in_pieces, make_provenance
 from ..given import ShipGiven, TrialsGiven, ship_of
+from ..hooks import Hooks
 from ..model import Model
 from ..options import DiagnoseOptions
 from ..options.choice import must_be
@@ -55,6 +56,7 @@ def diagnose(
     Of voyages, logs of hours, a bounded number of windows is looked at, and what differs from one to the next is told.
 
     profile, trials  objects, paths or bundled names
+    hooks   what is told on the way, and what ends it: see ``until_interrupted`` for Ctrl-C
     folder  where each finished refit is noted at once; None for nowhere
     resume  continue what was stopped in the folder
     Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to, ProfileError

@@ -1,5 +1,6 @@
 """Calibration: search, least squares, certificate, identifiability, sweep and run folders."""
 
+from ..hooks import Hooks
 from ..options import METHODS, FitOptions, LeaveOutOptions, SweepOptions
 from .folder import claimed, prepare, refuse_taken, write_document, write_run
 from .information import Information
@@ -8,7 +9,7 @@ from .leaving_out import BandsLeftOut, LeftOut, leave_out, write_left_out
 from .planning import Plan, plan_fit, plan_leave_out, plan_sweep
 from .pooled import CLASSES, FEWEST, SisterClass, pooled
 from .result import FitResult
-from .run import Hooks, fit, in_pieces, make_problem
+from .run import fit, in_pieces, make_problem
 from .sweeping import SweepResult, sweep
 
 __all__ = [

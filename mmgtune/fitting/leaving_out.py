@@ -19,6 +19,7 @@ from ..errors import OptionError, Problem
 from ..evaluation import TrialRecord, evaluate
 from ..files import path_of, refuse_existing
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
+from ..hooks import Hooks
 from ..inputs import INPUTS
 from ..model import Model
 from ..objective import spread
@@ -41,7 +42,6 @@ from .least_squares import solve
 from .one_sided import coverage_notes
 from .robust import weigh_down
 from .run import (
-    Hooks,
     edge_ridge,
     hold_directions,
     identity_of,
@@ -245,6 +245,7 @@ def leave_out(
     """Fit by least squares without each part of the runs in turn, and score the runs left out.
 
     profile, trials  objects, paths or bundled names
+    hooks   what is told on the way, and what ends it: see ``until_interrupted`` for Ctrl-C
     folder  where each finished fit is noted at once; None for nowhere
     resume  continue what was stopped in the folder
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,7 @@ from ..backends import STATES, Backend, Integrator, get_backend
 from ..errors import OptionError, Problem
 from ..files import path_of
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
+from ..hooks import Hooks
 from ..model import Model
 from ..objective import Objective, cases_of, make_objective, spread
 from ..options import FitOptions, Options, TuningOptions
@@ -55,20 +56,6 @@ EXACT = 1e-8
 
 LOOSE = 1e-3
 """The same where indices are stated, in squared tolerances: a few numbers are met exactly by many sets."""
-
-
-@dataclass(frozen=True)
-class Hooks:
-    """What the caller wants to hear and to say while a fit runs.
-
-    on_phase       called with a few words when a new part of the work begins
-    on_generation  called after each generation of CMA-ES
-    stop           asked often; True ends the fit with the best so far
-    """
-
-    on_phase: Callable[[str], None] = lambda _: None
-    on_generation: Callable[[Search], None] = lambda _: None
-    stop: Callable[[], bool] = lambda: False
 
 
 def in_pieces(trials: TrialSet, options: TuningOptions) -> TrialSet:
@@ -194,6 +181,7 @@ def fit(
     """Fine-tune the targets of ``profile`` within their box to the tune trials, and look at the test trials.
 
     profile, trials  objects, paths or bundled names
+    hooks        what is told on the way, and what ends it: see ``until_interrupted`` for Ctrl-C
     folder       where the fit saves its state; None for nowhere
     resume       continue the fit saved there
     more_starts  coefficient sets to start least squares from besides, such as the optimum of a smaller box

@@ -13,6 +13,7 @@ from ..displayed import Plotted
 from ..documents import finite_values, write_json
 from ..files import path_of
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
+from ..hooks import Hooks
 from ..options import SweepOptions
 from ..options.choice import must_be
 from ..profile import ShipProfile
@@ -26,7 +27,7 @@ from .least_squares import fit_offsets, solve
 from .leaving_out import leaving_out
 from .result import FitResult
 from .robust import weigh_down
-from .run import Hooks, edge_ridge, fit, identity_of, in_pieces, make_problem, make_provenance, make_setting
+from .run import edge_ridge, fit, identity_of, in_pieces, make_problem, make_provenance, make_setting
 
 RESULT = "sweep.json"
 
@@ -219,6 +220,7 @@ def sweep(
     """Fit at every half width; each fit also starts from the optimum of the narrower boxes, so J never rises with a_r.
 
     profile, trials  objects, paths or bundled names
+    hooks   what is told on the way, and what ends it: see ``until_interrupted`` for Ctrl-C
     folder  where each finished fit is written at once, in a sub-folder of its own; None for nowhere
     resume  continue the sweep in the folder that was stopped: what is finished there is read back
     Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to.

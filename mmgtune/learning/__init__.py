@@ -16,12 +16,13 @@ following, known     runs where a hybrid takes them; what coefficients and effec
 selecting, reading   terms chosen by what they explain on unseen runs: what a network says, in known terms
 """
 
+from ..hooks import Hooks
 from .ensemble_run import LearnedEnsemble, learn_ensemble
 from .folder import write_learned
 from .hybrid_run import LearnedHybrid, learn_hybrid
 from .mixing import LearnedMixture, learn_mixture
 from .reading import Reading, read_network
-from .run import Hooks, Learned, learn_rnn
+from .run import Learned, learn_rnn
 
 __all__ = [
     "Hooks",

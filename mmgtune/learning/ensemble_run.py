@@ -23,6 +23,7 @@ from ..documents import finite
 from ..errors import OptionError, Problem
 from ..files import path_of
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
+from ..hooks import Hooks
 from ..networks.ensemble import Ensemble, EnsemblePredictor, Part
 from ..networks.feedforward import Layers, Standards
 from ..options.choice import must_be
@@ -32,7 +33,7 @@ from .choosing import Single
 from .ensemble import EnsembleAim, MemberStandards, Trainable, first_member
 from .keeping import Kept
 from .provenance import provenance_of, travelling
-from .run import Hooks, identity_of, scored
+from .run import identity_of, scored
 from .task import EnsembleTask, ensemble_task
 from .together import Together
 from .training import Plan, Progressed, Trainer, needed
@@ -114,6 +115,7 @@ def learn_ensemble(
     """Train an ensemble on the trials that tune, and score it on those that test.
 
     ship    profile that names the ship, her length and what drives her; her coefficients play no part
+    hooks   what is told on the way, and what ends it: see ``until_interrupted`` for Ctrl-C
     folder  for checkpoints; None for none
     resume  go on with what is there: the result is that of a run without a stop, bit for bit
     Raises what ``ensemble_task`` does, and OptionError where JAX is missing.

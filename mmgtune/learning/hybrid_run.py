@@ -15,6 +15,7 @@ from ..backends import STATES
 from ..errors import OptionError, Problem
 from ..files import path_of
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
+from ..hooks import Hooks
 from ..model import Model
 from ..networks.hybrid import Hybrid, HybridPredictor
 from ..networks.residual import Ranges, ResidualWeights
@@ -31,7 +32,6 @@ from .hybrid import HybridAim, ResidualLoss, first_residual, ranges_of
 from .keeping import Kept
 from .provenance import provenance_of, travelling
 from .refitting import refitted, tuned_names
-from .run import Hooks
 from .samples import Samples, samples_of
 from .splitting import Split, fold_runs, split_runs
 from .training import Plan, Progressed, Trainer, needed
@@ -100,6 +100,7 @@ def learn_hybrid(
     """Train a network on what a profile leaves of the trials that tune; keep it only where it helps unseen runs.
 
     ship    profile, as tuned; its coefficients stay
+    hooks   what is told on the way, and what ends it: see ``until_interrupted`` for Ctrl-C
     folder  for checkpoints; None for none
     resume  go on with what is there: the result is that of a run without a stop, bit for bit
     Raises OptionError for too few runs or trials from which nothing can be learned, and where JAX is missing.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from ..fitting import FitOptions, fit
-from ..fitting import Hooks as FitHooks
+from ..hooks import Hooks
 from ..profile import ShipProfile, tuned
 from ..trial import Trial, TrialSet
 
@@ -50,5 +50,5 @@ def refitted(
         regularise=PULL,
     )
     data = TrialSet({one.id: one for one in trials}, tuple(one.id for one in trials), (), ship=profile.id)
-    found = fit(at_start, data, options, hooks=FitHooks(stop=stop))
+    found = fit(at_start, data, options, hooks=Hooks(stop=stop))
     return tuned(profile, found.theta, {}, dict(profile.provenance))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -16,6 +16,7 @@ from ..documents import finite
 from ..errors import OptionError, Problem
 from ..files import path_of
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
+from ..hooks import Hooks
 from ..networks import Network, NetworkPredictor
 from ..networks.recurrent import Scales, Weights
 from ..options.choice import must_be
@@ -31,18 +32,6 @@ from .starting import first_weights, scales_of
 from .task import Material, Task, make_task
 from .together import Together
 from .training import Plan, Progressed, Trainer, needed
-
-
-@dataclass(frozen=True)
-class Hooks:
-    """What the caller wants to hear and to say while networks are trained.
-
-    on_progress  called after each validation with updates done, updates in all, and where the training stands in words
-    stop         asked after each validation; True ends the training with the best so far
-    """
-
-    on_progress: Callable[[int, int, str], None] = lambda *_: None
-    stop: Callable[[], bool] = lambda: False
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,6 +99,7 @@ def learn_rnn(
     """Train networks on the trials that tune, choose by runs kept back, and score those that test.
 
     ship    profile that names the ship, her length and what drives her; her coefficients play no part
+    hooks   what is told on the way, and what ends it: see ``until_interrupted`` for Ctrl-C
     folder  for checkpoints; None for none
     resume  go on with what is there: the result is that of a run without a stop, bit for bit
     Raises what ``make_task`` does, and OptionError where JAX is missing.

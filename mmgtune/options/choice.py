@@ -145,8 +145,15 @@ class Options:
         return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in chosen.items())})"
 
     def __post_init__(self) -> None:
-        """Raises OptionError with everything that makes no sense; it names fields."""
-        problems = self._of_other_kinds() or self.problems()
+        """Raises OptionError with everything that makes no sense; it names fields.
+
+        Numbers of other libraries become Python's, which every writer of documents knows.
+        """
+        problems = self._of_other_kinds()
+        if not problems:
+            for one in fields(self):
+                object.__setattr__(self, one.name, _pythons(getattr(self, one.name)))
+            problems = self.problems()
         if problems:
             raise OptionError(*problems)
 
@@ -222,6 +229,16 @@ def _of_another_kind(name: str, value: Any, hint: Any) -> list[Problem]:
         return []
     such = f": {_part(value, kind)}" if kind is str and isinstance(value, (int, float)) else ""
     return [Problem(f"{name} is {_short(value)}", name, fix=f"give {words}{such}")]
+
+
+def _pythons(value: Any) -> Any:
+    """A number of NumPy's as one of Python's, also within a tuple; everything else as it is."""
+    if isinstance(value, (list, tuple)):
+        same = [_pythons(part) for part in value]
+        return value if all(a is b for a, b in zip(same, value, strict=True)) else tuple(same)
+    if type(value) in (bool, int, float) or not isinstance(value, Real):
+        return value
+    return int(value) if isinstance(value, Integral) else float(value)
 
 
 def _part(value: Any, kind: type) -> str:

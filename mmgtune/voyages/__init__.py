@@ -8,9 +8,10 @@ where      by which features the error goes; drawing_anew: intervals
 result     what was found; folder: written
 """
 
+from ..hooks import Hooks
 from ..options import VoyageOptions
 from .folder import write_voyages
 from .result import VoyageValidation
-from .run import Hooks, validate_voyages
+from .run import validate_voyages
 
 __all__ = ["Hooks", "VoyageOptions", "VoyageValidation", "validate_voyages", "write_voyages"]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -19,6 +19,7 @@ from ..files import path_of
 from ..fitting.journal import journalled, remembered
 from ..fitting.run import facts_of_profile
 from ..given import trials_of
+from ..hooks import Hooks
 from ..objective import spread
 from ..options import VoyageOptions
 from ..options.choice import must_be
@@ -45,18 +46,6 @@ EACH = 2
 
 BANDED = 200
 """Windows at most on which bands are held against what was measured, evenly among all."""
-
-
-@dataclass
-class Hooks:
-    """What the caller wants to hear and to say while it goes on.
-
-    on_progress  called with rows done, rows in all, and the voyage's id
-    stop         asked often; True ends the run with the windows scored by then
-    """
-
-    on_progress: Callable[[int, int, str], None] = lambda *_: None
-    stop: Callable[[], bool] = lambda: False
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,6 +123,7 @@ def validate_voyages(
 
     profiles  as for ``validate``
     voyages   logs of hours and days, or the path of a file or a folder; they are never held whole
+    hooks     what is told on the way, and what ends it: see ``until_interrupted`` for Ctrl-C
     folder    where each finished voyage is noted at once; None for nowhere
     resume    continue what was stopped in the folder; a predictor without a profile counts as the same by its name
 
