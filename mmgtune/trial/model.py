@@ -38,7 +38,7 @@ class Trial(Plotted):
     group      what it has in common with other runs, such as the day or the loading; "" where the file does not say
     cut_from   name of the run that this and other trials were cut from, "" where it is a run of its own
 
-    Raises ValueError where arrays differ in length or ``extra`` repeats a required column.
+    Raises TrialError for arrays without numbers or of other lengths than ``t``, and for ``extra`` that repeats a field.
     """
 
     id: str
@@ -67,7 +67,7 @@ class Trial(Plotted):
     group: str = ""
 
     def __post_init__(self) -> None:
-        shape = (len(self.t),)
+        shape = (np.size(self.t),)
         for name in ATTRIBUTES.values():
             object.__setattr__(self, name, _frozen(name, getattr(self, name), shape))
         motion = np.column_stack([getattr(self, name) for name in CHANNELS])
@@ -77,7 +77,9 @@ class Trial(Plotted):
             object.__setattr__(self, name, column)
         repeated = sorted(set(self.extra) & {*ATTRIBUTES, *ATTRIBUTES.values()})
         if repeated:
-            raise ValueError(f"extra columns repeat required ones: {', '.join(repeated)}")
+            why = "these columns are fields of their own"
+            fix = "leave them out of extra"
+            raise TrialError(Problem(f"extra columns repeat required ones: {', '.join(repeated)}", "extra", why, fix))
         extra = {name: _frozen(name, values, shape) for name, values in self.extra.items()}
         object.__setattr__(self, "extra", extra)
 
@@ -146,8 +148,13 @@ class Trial(Plotted):
 
 
 def _frozen(name: str, values: object, shape: tuple[int, ...]) -> FloatArray:
-    column = np.array(values, dtype=np.float64)
+    try:
+        column = np.array(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        why, fix = "a trial has a number for each sample", f"give {name} as numbers, NaN in gaps"
+        raise TrialError(Problem(f"{name} holds what is no number", name, why, fix)) from None
     if column.shape != shape:
-        raise ValueError(f"{name} has shape {column.shape}, t has {shape[0]} samples")
+        what = f"{name} has shape {column.shape}, t has {shape[0]} samples"
+        raise TrialError(Problem(what, name, "a trial has a number for each sample", f"give {shape[0]} numbers"))
     column.setflags(write=False)
     return column

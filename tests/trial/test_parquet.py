@@ -104,9 +104,13 @@ def test_arrays_are_read_only_and_of_one_length() -> None:
     assert np.array_equal(trial.motion[:, 4], trial.v_m)
     assert trial.duration == pytest.approx(499.0)
     assert trial.label == "turn_p20 (turning, ketch)"
-    with pytest.raises(ValueError, match="delta has shape"):
+    with pytest.raises(TrialError, match="delta has shape"):
         replace(trial, delta=trial.delta[1:])
-    with pytest.raises(ValueError, match="repeat required ones: v"):
+    with pytest.raises(TrialError, match="delta holds what is no number"):
+        replace(trial, delta=["hard over"] * 500)
+    with pytest.raises(TrialError, match="t has shape"):
+        replace(trial, t=3.0)
+    with pytest.raises(TrialError, match="repeat required ones: v"):
         replace(trial, extra={"v": trial.v_m})
 
 
