@@ -126,7 +126,7 @@ def plain_logs(path: Path, preset: str, pattern: str) -> list[Plain]:
     log_map = load_map(preset, preset=True)
     found = []
     for log in sorted(path.glob(pattern)):
-        record = _records(log, log_map.of(log))[0]
+        (record, *_), _ = _records(log, log_map.of(log))
         series = record.series
         columns = {
             "t": series["x"].t,

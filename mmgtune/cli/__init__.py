@@ -5,6 +5,8 @@ Nothing heavy is imported until a command runs, so that ``mmgtune --help`` is qu
 
 from __future__ import annotations
 
+import os
+import re
 import sys
 import tempfile
 import traceback
@@ -57,7 +59,7 @@ class Commands(TyperGroup):
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Read what stands before the name of the command."""
         try:
-            return super().parse_args(ctx, args)
+            return super().parse_args(ctx, [at_home(one) for one in args])
         except mistyped.Mistyped as error:
             raise _as_ours(error) from error
 
@@ -71,6 +73,14 @@ class Commands(TyperGroup):
             raise RuntimeError(f"the end of a file came too early: {error}") from error
         except BrokenPipeError as error:  # of a file: those of the streams are ReaderGone
             raise OutputError(Problem(cannot_write_reason(error))) from error
+
+
+def at_home(argument: str) -> str:
+    """An argument with the home folder for its tilde, which shells leave where it is quoted or stands behind "="."""
+    option, tilde, rest = argument.partition("~")
+    if tilde and rest[:1] in ("", "/", os.sep) and re.fullmatch(r"(--[\w-]+=)?", option):
+        return option + os.path.expanduser(tilde + rest)
+    return argument
 
 
 def _as_ours(error: Exception) -> Exception:

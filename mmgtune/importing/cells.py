@@ -27,7 +27,11 @@ def table_of(
     """
     wanted = columns_named(log_map, list(names), path, where)
     order = list(wanted)
-    cells, stamps, collector = Cells(log_map), Stamps(log_map.time, path), Collector([TIME, *order[1:]])
+    cells, stamps, collector = (
+        Cells(log_map),
+        Stamps(log_map.time, path, log_map.decimal),
+        Collector([TIME, *order[1:]]),
+    )
     rows = first + np.arange(len(columns[0]) if columns else 0, dtype=np.int64)
     values = [
         stamps.of(columns[wanted[TIME]], rows),

@@ -41,7 +41,7 @@ def check(made: LogMap, reader: TomlReader) -> None:
         reader.problem("'log.fields' is 0", "log", "fields", fix="write how many fields a row has")
     if made.fields and made.header:
         reader.problem("'log.fields' is for logs without a header", "log", "fields", "columns have names there")
-    text = ("delimiter", "encoding", "decimal")
+    text = ("delimiter", "encoding")  # texts in cells may have decimal commas wherever they stand
     meaningless = {
         "csv": (("sheet", "variable"), "text"),
         "parquet": ((*text, "skip", "header", "fields", "sheet", "variable"), "Parquet"),

@@ -14,6 +14,7 @@ from ..errors import LogError, Problem
 from ..trial.schema import impossible
 from .dates import ORDERS, Dates, is_date, order_told
 from .mapping import TimeSource
+from .numerals import numbers_in
 
 DAY = 86400.0
 OUTLIERS = 3
@@ -24,10 +25,10 @@ ISO = r"\d{4}-?\d{2}-?\d{2}[T ](?!.*[A-Ya-z]{2}$)"
 
 
 class Stamps:
-    """Turns time cells into numbers, block by block."""
+    """Turns time cells into numbers, block by block; ``decimal`` is the sign in them."""
 
-    def __init__(self, source: TimeSource, path: Path):
-        self.source, self.path = source, path
+    def __init__(self, source: TimeSource, path: Path, decimal: str = "."):
+        self.source, self.path, self.decimal = source, path, decimal
         self.format = source.format
         self.notes: list[str] = []
         self.origin: Any = None
@@ -59,7 +60,7 @@ class Stamps:
         if self.format is None:
             self.format = self._seen(text)
         if self.format == "number":
-            return np.asarray(pd.to_numeric(text, errors="coerce").to_numpy(dtype=np.float64, na_value=np.nan))
+            return numbers_in(text, self.decimal)
         if self.format == "clock":
             return self._clock(text)
         if self.format in ("date", *ORDERS):

@@ -18,6 +18,8 @@ from .motion import moved
 TO_PORT = "with v positive to port"
 CLEAR = 4.0
 """How many times worse every other reading must fit."""
+FEWEST_OVER = 50
+"""Samples with the rudder over from which a side is told."""
 
 
 class NoYawRate(LogError):
@@ -40,12 +42,23 @@ class RudderEvidence:
     @property
     def side(self) -> int:
         """1 where she turns towards positive rudder to starboard, -1 to port, 0 where that is in doubt."""
-        sure = (abs(self.gain) >= 8.0 and abs(self.agreement) >= 0.3) or (
-            abs(self.gain) >= 4.0 and abs(self.agreement) >= 0.9
-        )
-        if self.samples < 50 or not sure:
-            return 0
-        return int(np.sign(self.gain)) if np.sign(self.gain) == np.sign(self.agreement) else 0
+        return 0 if self.doubt else int(np.sign(self.gain))
+
+    @property
+    def doubt(self) -> str:
+        """Why the side is in doubt, "" where it is not."""
+        if self.samples < FEWEST_OVER:
+            return f"the rudder is over, under way ahead, in {self.samples} samples; {FEWEST_OVER} are needed"
+        gain, agreement = abs(self.gain), abs(self.agreement)
+        if not ((gain >= 8.0 and agreement >= 0.3) or (gain >= 4.0 and agreement >= 0.9)):
+            least = 4 if agreement >= 0.9 else 8
+            if gain < least:
+                # A ship that turns to one side throughout does not show that it is the rudder she turns by.
+                return f"yaw acceleration per rudder angle {self.gain:+.1f} standard errors; {least} are needed"
+            return "she turns to either side of it"
+        if np.sign(self.gain) != np.sign(self.agreement):
+            return "yaw acceleration per rudder angle and yaw rate speak for opposite sides"
+        return ""
 
     def __str__(self) -> str:
         return (
@@ -60,7 +73,7 @@ def rudder_evidence(t: FloatArray, columns: dict[str, FloatArray]) -> RudderEvid
     ahead = np.isfinite(r) & np.isfinite(delta) & (columns["u"] > 0.0) & (columns["n"] > 0.0)
     over = ahead & (np.abs(delta) > 2.0 * DEG)
     size = float(np.mean(np.abs(r[over]))) if over.any() else 0.0
-    if over.sum() < 50 or size == 0.0:
+    if over.sum() < FEWEST_OVER or size == 0.0:
         return RudderEvidence(0.0, 0.0, int(over.sum()))
     agreement = float(np.mean(np.sign(delta[over]) * r[over])) / size
     # First order: r grows with the rudder and dies away with itself.  Over strides long enough to see through noise.

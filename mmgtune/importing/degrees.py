@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray
+from .numerals import numbers_in
 
 _SIGN, _SIDE = r"([-+]?)", r"([NSEWnsew]?)"
 ANGLE = (
@@ -29,22 +30,16 @@ def degrees(texts: Any) -> FloatArray:
     parts = short.str.extract(ANGLE)
     plain = short.str.fullmatch(r"[-+]?[\d.,]*").fillna(True).to_numpy(dtype=bool)
     side = (parts[0].fillna("") + parts[5].fillna("")).str.upper()
-    whole, minutes, seconds = (_number(parts[k]) for k in (2, 3, 4))
+    whole, minutes, seconds = (numbers_in(parts[k], ",") for k in (2, 3, 4))
     compact = short.str.extract(_COMPACT)
     both = (compact[0].fillna("") + compact[3].fillna("")).str.upper()
     in_one = (both.str.len() == 1).to_numpy(dtype=bool, na_value=False) & compact[1].notna().to_numpy(dtype=bool)
     side = side.where(~in_one, both)
-    whole, minutes = np.where(in_one, _number(compact[1]), whole), np.where(in_one, _number(compact[2]), minutes)
+    whole = np.where(in_one, numbers_in(compact[1], ","), whole)
+    minutes = np.where(in_one, numbers_in(compact[2], ","), minutes)
     seconds = np.where(in_one, 0.0, seconds)
     right = np.isfinite(whole) & ~(minutes >= 60.0) & ~(seconds >= 60.0) & ~plain
     right &= (side.str.len() <= 1).to_numpy(dtype=bool, na_value=False)
     size = whole + np.nan_to_num(minutes) / 60.0 + np.nan_to_num(seconds) / 3600.0
     negative = side.isin(["S", "W"]).to_numpy(dtype=bool) | (parts[1] == "-").to_numpy(dtype=bool, na_value=False)
     return np.where(right, np.where(negative, -size, size), np.nan)
-
-
-def _number(texts: Any) -> FloatArray:
-    import pandas as pd
-
-    numbers = pd.to_numeric(texts.str.replace(",", ".", regex=False), errors="coerce")
-    return np.asarray(numbers.to_numpy(dtype=np.float64, na_value=np.nan))

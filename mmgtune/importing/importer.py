@@ -38,6 +38,7 @@ from .proposing.elsewhere import yaw_rate_elsewhere
 from .quality import quality_of, quality_text, same_units_throughout
 from .quantities import MEASURED
 from .record import Record, record_of, time_in_seconds
+from .sides import as_cells_say
 from .table import Table
 from .text import binary, read_text, start_of
 from .workbook import read_workbook
@@ -167,7 +168,8 @@ def _written(template: str, log: Path) -> str:
 
 def _trials(log: Path, log_map: LogMap, step: float | None) -> list[tuple[Trial, dict[str, Any]]]:
     """The trials of one log with their quality.  Raises LogError."""
-    records = [part for record in _records(log, log_map) for part in cut_at_jumps(record, log_map, step)]
+    read, log_map = _records(log, log_map)
+    records = [part for record in read for part in cut_at_jumps(record, log_map, step)]
     made = []
     short = 0
     for record in records:
@@ -202,8 +204,8 @@ def _trials(log: Path, log_map: LogMap, step: float | None) -> list[tuple[Trial,
     return found
 
 
-def _records(log: Path, log_map: LogMap) -> list[Record]:
-    """A log in the program's units, in parts where its clock was set back."""
+def _records(log: Path, log_map: LogMap) -> tuple[list[Record], LogMap]:
+    """A log in the program's units, in parts where its clock was set back, and the map with what its cells say."""
     form = log_map.format or form_of(log)
     content = start_of(log)
     if form == "nmea":
@@ -211,11 +213,12 @@ def _records(log: Path, log_map: LogMap) -> list[Record]:
             raise LogError(
                 Problem("the log is binary, not NMEA 0183", str(log), fix="convert it with its logger's software")
             )
-        return read_nmea(log, log_map)
+        return read_nmea(log, log_map), log_map
     if form == "csv":
         refuse_binary(log, content, log_map)
     readers = {"csv": read_text, "parquet": read_parquet, "xlsx": read_workbook, "mat": read_matlab}
     table = readers[form](log, log_map)
+    log_map = as_cells_say(log_map, table.sided, table.headers)
     _drop_duplicates(table)
     line = put_right(time_in_seconds(table, log_map), log_map.time, table.place)
     table.columns = {name: values[line.keep] for name, values in table.columns.items()}
@@ -230,7 +233,7 @@ def _records(log: Path, log_map: LogMap) -> list[Record]:
         record = record_of(table, log_map, t, slice(first, last))
         record.notes += [*table.notes, *line.notes]
         records.append(record)
-    return records
+    return records, log_map
 
 
 def _drop_duplicates(table: Table) -> None:

@@ -33,7 +33,7 @@ def read_parquet(path: Path, log_map: LogMap) -> Table:
         rows_of(file.metadata, path.stat().st_size, str(path), LogError)
         wanted = columns_named(log_map, names, path, str(path))
         order = list(wanted)
-        collector, cells, stamps = Collector(order), Cells(log_map), Stamps(log_map.time, path)
+        collector, cells, stamps = Collector(order), Cells(log_map), Stamps(log_map.time, path, log_map.decimal)
         row = 1
         _readable(file.schema_arrow, wanted, path)
         columns = sorted({names[k] for k in wanted.values()})

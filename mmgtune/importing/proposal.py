@@ -94,7 +94,8 @@ class Proposal:
             lines.append(f"answer {'it' if len(self.asks) == 1 else f'these {len(self.asks)}'} in {name}, then import")
         elif not self.problems:
             lines.append(f"the map imports all {len(self.logs)} logs, as {self.imported} trials")
-        lines.append(f"next: mmgtune trials import {_given(self.logs)} --map {quote(name)} -o trials --dry-run")
+        lead = f"next: mend what is refused, in {name} or in the logs; then " if self.problems else "next: "
+        lines.append(f"{lead}mmgtune trials import {_given(self.logs)} --map {quote(name)} -o trials --dry-run")
         return lines
 
     def map(self, path: Path = Path("map")) -> LogMap:

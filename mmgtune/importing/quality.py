@@ -74,6 +74,7 @@ def quality_of(
             "gain_standard_errors": evidence.gain,
             "n_samples": evidence.samples,
             "side": {1: "starboard", -1: "port", 0: "in doubt"}[evidence.side],
+            "doubt": evidence.doubt,
         },
         "controls": {name: _changes(trial, name) for name in log_map.inputs},
         "notes": notes,
@@ -133,7 +134,10 @@ def quality_text(quality: dict[str, Any], common: Set[str] = frozenset(), told: 
         if positions["rounding_x_m"] is not None and positions["rounding_y_m"] is not None:
             said += f"; rounding alone {positions['rounding_x_m']:.3g} and {positions['rounding_y_m']:.3g} m"
         lines.append(said)
-    lines.append(f"  rudder    turns the ship to its side: {rudder['side']}, agreement {rudder['agreement']:+.2f}")
+    doubt = f": {rudder['doubt']}" if rudder["doubt"] else ""
+    lines.append(
+        f"  rudder    turns the ship to its side: {rudder['side']}{doubt}, agreement {rudder['agreement']:+.2f}"
+    )
     by_input = []
     for name, changes in q["controls"].items():
         unit = shown_in(INPUTS[name].unit)[0]

@@ -15,6 +15,8 @@ from ..errors import LogError, Problem
 from ..units import is_unit
 from .degrees import degrees
 from .mapping import LogMap
+from .numerals import number_in, numbers_in
+from .sides import SIGNED, sided, takes_side
 
 MOST_ROWS = 1_000_000
 """Rows kept of one log; of longer ones every second, fourth, ... row, so that memory stays bounded."""
@@ -31,6 +33,7 @@ class Table:
     headers  the log's name of each quantity's column
     clock    whether ``t`` was printed as a date or clock, so that it is in s already
     stated   units that the cells of a quantity say themselves, such as 52°06.00001'N
+    sided    quantities whose cells say the side themselves, such as 35.0S; those to starboard are positive
     notes    what was done or dropped while reading, in sentences
     """
 
@@ -43,6 +46,7 @@ class Table:
     unit: str = "line"
     notes: list[str] = field(default_factory=list)
     stated: dict[str, str] = field(default_factory=dict)
+    sided: tuple[str, ...] = ()
 
     def place(self, row: int) -> str:
         """Where a row is in the file."""
@@ -96,7 +100,7 @@ class BadCells:
     text: str = ""
 
 
-_WITH_UNIT = re.compile(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?\s*([^\d\s].*)")
+_WITH_UNIT = re.compile(r"[-+]?[\d.,]+(?:[eE][-+]?\d+)?\s*([^\d\s].*)")
 
 
 class Cells:
@@ -104,34 +108,34 @@ class Cells:
 
     def __init__(self, log_map: LogMap):
         self.missing = {"", "-", "--", "nan", "na", "n/a", "null", "none", *(one.lower() for one in log_map.missing)}
-        self.numbers = self._numbers(log_map.missing)
+        self.decimal = log_map.decimal
+        self.numbers = [one for text in log_map.missing if (one := number_in(text, self.decimal)) is not None]
         self.bad: dict[str, BadCells] = {}
         self.stated: dict[str, str] = {}
-
-    @staticmethod
-    def _numbers(texts: tuple[str, ...]) -> list[float]:
-        found = []
-        for one in texts:
-            try:
-                found.append(float(one))
-            except ValueError:
-                continue
-        return found
+        self.sided: set[str] = set()
+        self.plain: dict[str, int] = {}
 
     def of(self, name: str, values: Any, rows: IntArray) -> FloatArray:
         """Numbers (n_rows,) of a pandas column, NaN where a cell holds none."""
         import pandas as pd
 
+        side_said = False
         if pd.api.types.is_numeric_dtype(values.dtype) and not pd.api.types.is_bool_dtype(values.dtype):
             numbers = values.to_numpy(dtype=np.float64, na_value=np.nan)
         else:
             text = values.astype("string").str.strip()
-            numbers = pd.to_numeric(text, errors="coerce").to_numpy(dtype=np.float64, na_value=np.nan)
+            # One text in it leaves a column of numbers as texts, decimal commas and all.
+            numbers = numbers_in(text, self.decimal)
             if name in ("latitude", "longitude") and np.isnan(numbers).any():
                 written = degrees(text)
                 # One way of writing in a column: a plain number among others is of no known unit.
                 if np.isfinite(written).any():
                     numbers, self.stated[name] = written, "deg"
+            elif takes_side(name) and np.isnan(numbers).any():
+                with_side = sided(text, self.decimal)
+                # Zeros alone say no side.
+                if (np.isfinite(with_side) & np.isnan(numbers)).any():
+                    numbers, side_said = with_side, True
             wrong = np.isnan(numbers) & ~text.str.lower().isin(self.missing).to_numpy() & text.notna().to_numpy()
             if wrong.any():
                 k = int(np.flatnonzero(wrong)[0])
@@ -139,18 +143,35 @@ class Cells:
                 bad.count += int(wrong.sum())
         for number in self.numbers:
             numbers = np.where(numbers == number, np.nan, numbers)
+        if side_said:
+            self.sided.add(name)
+        elif (plain := np.flatnonzero(np.abs(numbers) > 0.0)).size:
+            self.plain.setdefault(name, int(rows[plain[0]]))
         return np.asarray(numbers)
 
     def judge(self, table: Table, log_map: LogMap, n_rows: int) -> None:
         """Note cells that are no numbers.  Raises LogError where they say that the log is to be read differently."""
         problems = []
         table.stated |= self.stated
+        table.sided = tuple(name for name in table.columns if name in self.sided)
+        no_side, plainly = "only some cells of the column say a side, such as 10 P", "those to starboard positive"
+        for name in self.sided & set(self.plain):  # a long log, read in blocks that differ
+            place = f"{table.path}, {table.unit} {self.plain[name]}, column '{table.headers[name]}'"
+            fix = f"write the column as plain numbers, {plainly}"
+            problems.append(Problem(no_side, place, "here a number has none", fix))
         for name, bad in self.bad.items():
             place = f"{table.path}, {table.unit} {bad.row}, column '{table.headers[name]}'"
-            cells = f"{bad.count} cells of {n_rows} are no numbers, the first is '{bad.text}'"
-            if re.fullmatch(r"[-+]?\d*,\d+([eE][-+]?\d+)?", bad.text):
+            what = "say no side or are no numbers" if name in self.sided else "are no numbers"
+            cells = f"{bad.count} cells of {n_rows} {what}, the first is '{bad.text}'"
+            if name in self.sided and bad.count > 0.5 * n_rows:
+                fix = f"write the column as plain numbers, {plainly}"
+                problems.append(Problem(no_side, place, cells, fix))
+            elif re.fullmatch(r"[-+]?\d*,\d+([eE][-+]?\d+)?", bad.text):
                 fix = 'decimal = "," in [log], if the comma is the decimal sign'
                 problems.append(Problem("numbers with a comma in them", place, cells, fix))
+            elif takes_side(name) and SIGNED.fullmatch(bad.text):
+                fix = f"write the column as plain numbers, {plainly}, and remove the sides"
+                problems.append(Problem("a cell has both a sign and a side", place, cells, fix))
             elif match := None if is_unit(bad.text) else _WITH_UNIT.fullmatch(bad.text):
                 fix = "write the column in one unit, as plain numbers, and say the unit in the map"
                 problems.append(Problem(f"a cell has a unit of its own, '{match.group(1)}'", place, cells, fix))

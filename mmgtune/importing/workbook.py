@@ -17,6 +17,7 @@ from ..errors import LogError, Problem, among, brief, reason
 from ..limits import LOG_COLUMNS, SHEET_BYTES, SHEET_CELLS, SHEET_ROWS
 from .cells import table_of
 from .mapping import LogMap
+from .numerals import number_in
 from .table import Table
 
 ENTRIES = 2000
@@ -73,18 +74,24 @@ def read_workbook(path: Path, log_map: LogMap) -> Table:
 
 
 def sheet_of(path: Path, wanted: str) -> Sheet:
-    """A sheet by name, or the first that holds rows of numbers where ``wanted`` is "".  Raises LogError."""
+    """A sheet by name, or the first that holds rows of numbers where ``wanted`` is "".  Raises LogError.
+
+    Where none does, the first whose cells are numbers written as texts, else the last.
+    """
     with _opened(path) as book:
         names = tuple(one.title for one in book.worksheets)
         if wanted and wanted not in names:
             place = f"{path}, [log] sheet of the map"
             raise LogError(Problem(f"the workbook has no sheet '{wanted[:80]}'", place, **among(wanted, names)))
-        found = None
+        found, of_texts = None, None
         for one in book.worksheets:
             if wanted in ("", one.title):
                 found = Sheet(one.title, _rows(one, path), names)
                 if wanted or sum(any(isinstance(cell, float | int) for cell in row) for row in found.rows) > 1:
                     return found
+                if of_texts is None and sum(any(_numeric(cell) for cell in row) for row in found.rows) > 1:
+                    of_texts = found
+        found = of_texts or found
         if found is None:
             raise LogError(Problem("the workbook has no sheet with cells", str(path), fix="give another file"))
         return found
@@ -172,9 +179,6 @@ def _formula(path: Path, sheet: str, names: list[str], empty: list[str]) -> str:
     return ""
 
 
-def _numeric(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
+def _numeric(cell: Any) -> bool:
+    """Whether a cell is a text that is a number, with a decimal point or comma."""
+    return isinstance(cell, str) and number_in(cell, ",") is not None

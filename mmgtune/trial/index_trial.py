@@ -18,6 +18,7 @@ from ..errors import Problem, TrialError, among, brief, closest, reason
 from ..limits import NAME
 from ..toml_reading import TomlReader, finite, toml_of
 from ..units import DEG
+from .raw_logs import map_instead
 from .schema import SOURCES
 
 SCHEMA = 1
@@ -182,7 +183,14 @@ def has_index_trials(path: Path) -> bool:
 
     Raises TrialError where it cannot be read.
     """
-    return "trial" in _data(path)[0]
+    data = _data(path)[0]
+    # A map of logs has a table [trial] too, for what their trials have in common; it goes with what it says of a log.
+    return "trial" in data and not is_map(data)
+
+
+def is_map(data: Mapping[str, Any]) -> bool:
+    """Whether parsed TOML is a map that makes trials of logs."""
+    return "columns" in data or "log" in data
 
 
 def read_index_trials(path: Path) -> tuple[list[IndexTrial], list[Problem]]:
@@ -191,6 +199,8 @@ def read_index_trials(path: Path) -> tuple[list[IndexTrial], list[Problem]]:
         data, text = _data(path)
     except TrialError as error:
         return [], list(error.problems)
+    if is_map(data):
+        return [], [map_instead(path)]
     reader = TomlReader(data, text, str(path))
     reader.schema(SCHEMA)
     reader.unknown("", data, ("schema", "trial"))

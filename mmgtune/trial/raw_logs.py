@@ -56,6 +56,12 @@ def instead(path: Path, found: Sequence[Path]) -> Problem:
     return Problem(what, str(path), WHY, import_commands(_as_argument(path, found)))
 
 
+def map_instead(path: Path) -> Problem:
+    """The problem of a map where trials are expected: it makes them of logs."""
+    fix = f"mmgtune trials import LOG... --map {shlex.quote(str(path))} -o imported, and give the folder imported"
+    return Problem(f"'{path.name}' is a map of logs, not a trial", str(path), WHY, fix)
+
+
 def import_commands(argument: str) -> str:
     """What makes trials of logs: find out what the columns are, then import.  ``argument`` names them for a shell."""
     return (

@@ -10,6 +10,7 @@ import time
 import pytest
 
 from mmgtune import columns
+from mmgtune.cli import at_home
 from mmgtune.effects import effect_tags
 from mmgtune.units import in_time
 from tests.command import run
@@ -131,3 +132,24 @@ def test_flags_that_turn_something_off_show_no_default(tmp_path, command):
     text = " ".join(run(*command, "--help", cwd=tmp_path, env={"COLUMNS": "160"}).out.replace("│", " ").split())
     assert "--no-" in text
     assert "default: True" not in text
+
+
+@pytest.mark.parametrize(
+    ("typed", "read"),
+    [
+        ("~", "/home/jo"), ("~/map.toml", "/home/jo/map.toml"), ("--out=~/a ~b", "--out=/home/jo/a ~b"),
+        ("~$log.xlsx", "~$log.xlsx"), ("./~/map.toml", "./~/map.toml"), ("--set=a~/b", "--set=a~/b"),
+        ("a ~/b", "a ~/b"),
+    ],
+)  # fmt: skip
+def test_the_tilde_is_the_home_folder(typed, read, monkeypatch):
+    monkeypatch.setenv("HOME", "/home/jo")
+    assert at_home(typed) == read
+
+
+def test_quoted_tildes_make_no_folder_of_that_name(tmp_path):
+    (tmp_path / "home").mkdir()
+    ended = run("profile", "copy", "suzaku", "~/own.toml", cwd=tmp_path, env={"HOME": str(tmp_path / "home")})
+    assert ended.code == 0, ended.err
+    assert (tmp_path / "home" / "own.toml").is_file()
+    assert not (tmp_path / "~").exists()

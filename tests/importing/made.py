@@ -68,6 +68,17 @@ def write_csv(path: Path, columns: Mapping[str, object], **how: object) -> Path:
     return path
 
 
+def printed(columns: Mapping[str, np.ndarray], decimal: str = ".", digits: int = 9) -> dict[str, list[str]]:
+    """Numbers as texts with so many decimals."""
+    return {name: [f"{one:.{digits}f}".replace(".", decimal) for one in column] for name, column in columns.items()}
+
+
+def with_sides(angles: np.ndarray, form: str = "{size}{side}", sides: str = "PS") -> list[str]:
+    """Angles as an indicator prints them: 35.0S, 0.1P."""
+    port, starboard = sides.split() if " " in sides else sides
+    return [form.format(size=f"{abs(one):.9f}", side=starboard if one > 0.0 else port) for one in angles]
+
+
 def imported(log: Path, text: str = MAP, **options: object) -> Trial:
     """The one trial a log becomes, read back from its file."""
     out = log.parent / "out"

@@ -13,12 +13,14 @@ import pandas as pd
 import pytest
 import scipy.io
 
-from mmgtune.importing import matlab, workbook
+from mmgtune.importing import matlab, propose_map, workbook
 from mmgtune.importing.dates import Dates
 from mmgtune.importing.degrees import degrees
+from mmgtune.importing.proposing.sampling import sample_of
+from mmgtune.importing.sides import sided
 from mmgtune.limits import MATLAB_BYTES, SHEET_BYTES
 
-from .made import MAP, close, imported, logged, refusal, said, turn, write_csv
+from .made import MAP, close, imported, logged, printed, refusal, said, turn, with_sides, write_csv
 
 UNITLESS = MAP.replace('column = "time"\nunit = "s"', 'column = "time"')
 START = "2024-05-01 23:57:00"
@@ -155,6 +157,47 @@ def test_positions_in_degrees_and_minutes(tmp_path, columns):
     assert trial.y == pytest.approx(columns["east"], abs=1e-3)
 
 
+# sides
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("35.0S", 35.0), ("0.1 P", -0.1), ("p10", -10.0), ("STBD 5", 5.0), ("5,5 StB", 5.5), ("12 BB", -12.0),
+        ("3 Port", -3.0), (".5S", 0.5), ("Stb. 5", 5.0), ("0.0", 0.0), ("0P", 0.0),
+        ("10", np.nan), ("-3P", np.nan), ("P 3 S", np.nan),
+        ("P", np.nan), ("5 SE", np.nan), ("5N", np.nan), ("", np.nan), ("1" * 5000, np.nan), (None, np.nan),
+    ],
+)  # fmt: skip
+def test_sides(text, value):
+    found = sided(pd.Series([text], dtype="string"), ",")
+    assert found == pytest.approx([value], abs=1e-12, nan_ok=True)
+
+
+@pytest.mark.parametrize(
+    ("form", "sides"), [("{size}{side}", "PS"), ("{side} {size}", "Port Stbd"), ("{size} {side}", "BB StB")]
+)
+def test_rudder_and_yaw_rate_with_sides(tmp_path, columns, plain, form, sides):
+    """Nothing of the map says to which side they count, and nothing is asked."""
+    sided_ones = {name: with_sides(columns[name], form, sides) for name in ("rudder", "rate")}
+    log = write_csv(tmp_path / "log.csv", {**columns, **sided_ones})
+    text = MAP.replace('"deg", positive = "starboard"', '"deg"').replace(
+        '"deg/min", positive = "starboard"', '"deg/min"'
+    )
+    close(imported(log, text), plain, 1e-7)
+    proposal = propose_map([log])
+    assert (proposal.problems, proposal.asks, proposal.imported) == ((), (), 1)
+    close(imported(log, proposal.text), plain, 1e-7)
+    assert "its cells say the side" in proposal.guesses["delta"].evidence
+
+
+def test_a_wind_from_the_bow_with_its_side(tmp_path, columns):
+    wind = np.full(len(columns["time"]), -45.0)
+    log = write_csv(tmp_path / "log.csv", {**columns, "wind": with_sides(wind)})
+    trial = imported(log, MAP + 'wind_dir_app = { column = "wind", unit = "deg", direction = "from" }\n')
+    assert np.degrees(trial.extra["wind_dir_app"]) == pytest.approx(315.0)
+
+
 # workbooks
 
 
@@ -188,6 +231,14 @@ def test_workbook(tmp_path, columns, plain):
         numbered = numbered.replace(f'column = "{name}"', f"column = {k}")
     close(imported(path, numbered), plain)
     assert "rows of 8" in refusal(lambda: imported(path, numbered.replace("= 9\n[", "= 8\n[")))
+
+
+@pytest.mark.parametrize("decimal", [".", ","])
+def test_workbook_of_texts(tmp_path, columns, plain, decimal):
+    path = tmp_path / "log.xlsx"
+    path.write_bytes(book(as_rows(printed(columns, decimal)), others=("cover",)))
+    close(imported(path, MAP if decimal == "." else MAP + '[log]\ndecimal = ","\n'), plain, 1e-6)
+    assert sample_of(path).layout.get("decimal", ".") == decimal
 
 
 def test_workbook_with_dates(tmp_path, columns, plain):

@@ -109,6 +109,33 @@ def test_rudder_sign_of_the_bundled_trials(name, sign):
     assert evidence.side in (0, int(sign))
 
 
+@pytest.mark.parametrize(
+    ("agreement", "gain", "samples", "side", "doubt"),
+    [
+        (1.0, 155.0, 391, 1, ""),
+        (-1.0, -4.5, 391, -1, ""),
+        (1.0, 2.5, 391, 0, "yaw acceleration per rudder angle +2.5 standard errors; 4 are needed"),
+        (0.5, 7.0, 391, 0, "yaw acceleration per rudder angle +7.0 standard errors; 8 are needed"),
+        (1.0, 155.0, 49, 0, "in 49 samples; 50 are needed"),
+        (0.1, 155.0, 391, 0, "to either side"),
+        (1.0, -20.0, 391, 0, "speak for opposite sides"),
+    ],
+)
+def test_a_side_in_doubt_says_why(agreement, gain, samples, side, doubt):
+    evidence = conventions.RudderEvidence(agreement, gain, samples)
+    assert evidence.side == side
+    assert doubt in evidence.doubt
+    assert bool(doubt) == bool(evidence.doubt)
+
+
+def test_the_report_says_why_the_side_is_in_doubt(log, columns):
+    # A rudder that stands, and a ship that turns to its side all the time.
+    columns["rudder"][:] = 20.0
+    columns["rate"] = np.abs(columns["rate"]) + 1.0
+    columns["heading"] = np.mod(np.cumsum(columns["rate"]) / 60.0, 360.0)
+    assert "turns the ship to its side: in doubt: yaw acceleration per rudder angle" in said(write_csv(log, columns))
+
+
 def test_v_to_port_is_found(tmp_path):
     trial = suzaku("turn_p35")
     columns = logged(trial)

@@ -7,11 +7,25 @@ import numpy as np
 import pytest
 
 from mmgtune.errors import OutputError
-from mmgtune.importing import import_logs, load_map, parse_map
+from mmgtune.importing import import_logs, load_map, parse_map, propose_map
 from mmgtune.importing.nmea import checksum
 from mmgtune.trial import read_trial
 from mmgtune.units import DEG
-from tests.importing.made import MAP, close, imported, logged, nmea, refusal, said, sentence, suzaku, turn, write_csv
+from tests.importing.made import (
+    MAP,
+    close,
+    imported,
+    logged,
+    nmea,
+    printed,
+    refusal,
+    said,
+    sentence,
+    suzaku,
+    turn,
+    with_sides,
+    write_csv,
+)  # fmt: skip
 
 
 def refused(log, *words, text=MAP):
@@ -104,6 +118,64 @@ def test_decimal_commas(log, columns):
     # Commas between fields too: nothing can tell them apart.
     log.write_text("\n".join(line.replace(";", ",") for line in log.read_text().splitlines()))
     refused(log, "more fields than the header", "decimal")
+
+
+COMMAS = MAP + '[log]\ndecimal = ","\n'
+
+
+@pytest.mark.parametrize("text", ["---", "-", "Sensor aus", "row of units"])
+def test_decimal_commas_beside_texts(log, columns, text):
+    written = printed(columns, ",")
+    if text == "row of units":
+        units = ("s", "m", "m", "deg", "kn", "kn", "deg/min", "rpm", "deg")
+        written = {name: [unit, *column] for unit, (name, column) in zip(units, written.items(), strict=True)}
+        close(imported(write_csv(log, written, sep=";"), COMMAS), turn(), 1e-6)
+        return
+    written["rate"][30] = text
+    report = said(write_csv(log, written, sep=";"), COMMAS)
+    assert "gap       r: 1 samples from 30 to 30 s" in report
+    assert "numbers with a comma" in refusal(lambda: imported(log))
+    proposal = propose_map([log])
+    assert (proposal.problems, proposal.imported) == ((), 1)
+
+
+def test_no_value_as_a_number_with_a_decimal_comma(log, columns):
+    written = printed(columns, ",")
+    written["rate"][30], written["rate"][31] = "-999,00", "off"
+    report = said(write_csv(log, written, sep=";"), COMMAS.replace("[log]", '[log]\nmissing = ["-999,0"]'))
+    assert "gap       r: 2 samples from 30 to 31 s" in report
+
+
+@pytest.mark.parametrize(
+    ("cells", "words"),
+    [
+        (lambda size: with_sides(size, "-{size}{side}"), "both a sign and a side"),
+        (
+            lambda size: [*with_sides(size)[:10], *(f"{one:.2f}" for one in size[10:])],
+            "only some cells of the column say",
+        ),
+        (lambda size: with_sides(size, "{size} x{side}"), "a unit of its own, 'x"),
+    ],
+)
+def test_sides_that_cannot_be_read(log, columns, cells, words):
+    columns["rudder"] = cells(columns["rudder"])
+    refused(write_csv(log, columns), words, "column 'rudder'")
+
+
+def test_sides_that_come_late_in_a_long_log(log, columns, monkeypatch):
+    monkeypatch.setattr("mmgtune.importing.text.BLOCK", 100)
+    size = columns["rudder"]
+    columns["rudder"] = [*(f"{one:.9f}" for one in size[:100]), *with_sides(size[100:])]
+    refused(write_csv(log, columns), "only some cells of the column say a side", "here a number has none")
+
+
+def test_sides_against_those_of_the_map(log, columns):
+    columns["rudder"] = with_sides(columns["rudder"])
+    text = MAP.replace('"rudder", unit = "deg", positive = "starboard"', '"rudder", unit = "deg", positive = "port"')
+    answer = refusal(lambda: imported(write_csv(log, columns), text))
+    assert "the map says 'rudder' is positive to port" in answer
+    assert "line 16" in answer
+    assert "remove 'positive' from [columns.delta]" in answer
 
 
 def test_channel_without_numbers(log, columns):

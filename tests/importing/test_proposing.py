@@ -16,7 +16,7 @@ from mmgtune.units import KNOT
 from tests.command import run
 from tools.map_disguises import SETS, bundled_logs, disguised, equal, judged, plain_logs
 
-from .made import MAP, close, imported, logged, nmea, refusal, turn, write_csv
+from .made import MAP, close, imported, logged, nmea, refusal, suzaku, turn, write_csv
 
 DATA = Path(os.environ.get("MMGTUNE_DATA", Path(__file__).parents[2].parent / "shared" / "data"))
 
@@ -95,7 +95,8 @@ def test_columns_of_marin_in_another_language(tmp_path):
 
     log = sorted((DATA / "kvlcc2-marin").glob("*zz_20*.dat"))[0]
     log_map = load_map("simman-marin", preset=True)
-    series = _records(log, log_map.of(log))[0].series
+    (record, *_), _ = _records(log, log_map.of(log))
+    series = record.series
     t = series["x"].t
     stamps = [pd.Timestamp("2008-04-14 23:58:00") + pd.Timedelta(seconds=float(one)) for one in t]
     columns = {
@@ -173,6 +174,31 @@ def test_what_does_not_show_is_asked(tmp_path):
     assert 'fix: write positive = "starboard" or "port"' in said
     line = proposal.text[: proposal.text.index("delta = {")].count("\n") + 1
     assert f"line {line}" in said
+
+
+@pytest.mark.parametrize(
+    ("name", "side", "expected"),
+    [
+        ("Rudder", "S", ("starboard", "sure")), ("Rudder", "P", ("starboard", "likely")),
+        ("CH 9", "S", (None, "asked")), ("Lat 2", "S", (None, "asked")),
+    ],
+)  # fmt: skip
+def test_cells_that_say_starboard_or_south(tmp_path, name, side, expected):
+    """S alone is starboard where the name speaks of a rudder; elsewhere it may be south, and is no rudder to port."""
+    columns = logged(suzaku("turn_p35"))
+    columns[name] = [f"{abs(one):.2f}{side}" for one in columns.pop("rudder")]
+    guess = propose_map([write_csv(tmp_path / "log.csv", columns)]).guesses["delta"]
+    assert (guess.keys.get("positive"), guess.confidence) == expected
+    assert ("she turns to the other one" in " ".join(guess.evidence)) == (expected[1] == "likely")
+
+
+def test_no_import_is_proposed_before_what_it_is_refused_with_is_mended(tmp_path):
+    columns = logged(turn())
+    columns["rudder"] = [f"{one:.3f} x" if k % 3 == 0 else one for k, one in enumerate(columns["rudder"])]
+    proposal = propose_map([write_csv(tmp_path / "log.csv", columns)])
+    *_, refused, following = proposal.lines("m.toml")
+    assert refused.startswith("the import would be refused: ")
+    assert following.startswith("next: mend what is refused, in m.toml or in the logs; then mmgtune trials import ")
 
 
 def test_answers_make_the_map_whole(tmp_path):

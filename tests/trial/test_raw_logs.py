@@ -11,6 +11,7 @@ from mmgtune.errors import TrialError
 from mmgtune.trial import load_trials, load_voyages
 from tests.command import run
 
+PRESET = (resources.import_maps() / "simman-marin.toml").read_text(encoding="utf-8")
 LOG = "time,x,y\n0,0,0\n1,2,0\n"
 
 
@@ -45,6 +46,21 @@ def test_a_folder_of_logs_is_answered_with_commands(folder):
 def test_so_is_a_single_log(folder, load):
     with pytest.raises(TrialError, match=r"mmgtune trials map '.*a\.csv' -o map\.toml"):
         load(folder / "a.csv")
+
+
+@pytest.mark.parametrize("of", [PRESET, 'schema = 1\n[log]\ndecimal = ","\n[trial]\nship = "a"\n[columns]\n'])
+def test_a_map_beside_logs_is_no_trial(of, folder):
+    (folder / "map.toml").write_text(of)
+    with pytest.raises(TrialError) as caught:
+        load_trials(folder)
+    (problem,) = caught.value.problems
+    assert problem.what == "the folder holds logs, not trials"
+    with pytest.raises(TrialError) as caught:
+        load_trials(folder / "map.toml")
+    (problem,) = caught.value.problems
+    assert problem.what == "'map.toml' is a map of logs, not a trial"
+    (importing,) = commands(problem.fix)
+    assert importing[-4:] == ["--map", f"{folder}/map.toml", "-o", "imported"]
 
 
 def test_a_file_that_only_is_called_parquet_too(tmp_path):

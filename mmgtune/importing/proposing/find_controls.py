@@ -39,14 +39,16 @@ def rudder(find: Finder) -> None:
         "wind_speed_app",
         "wind_dir_app",
     )
+    names = [name for name, item in INPUTS.items() if item.role == "rudder"]
     for look in find.looks:
-        for one in rudders(look, find.pool(*not_rudders), find.units_said):
+        # Degrees with N, S, E or W are no angles of a rudder; S alone would look like one, of the wrong sign.
+        pool = [k for k in find.pool(*not_rudders) if k not in look.sample.written or find.said[k] in names]
+        for one in rudders(look, pool, find.units_said):
             weights[one.column, one.degrees] += one.weight
             if one.evidence.side:
                 sides[one.column].append(one.evidence.side)
             if one.weight > strongest.get(one.column, (0.0, ""))[0]:
                 strongest[one.column] = one.weight, str(one.evidence)
-    names = [name for name, item in INPUTS.items() if item.role == "rudder"]
     named = {k for k, _ in weights if find.said[k] in names}
     pairs = {find.said[k]: k for k in named if find.said[k] != "delta"}
     if len(pairs) == 2:
@@ -80,10 +82,16 @@ def _rudder(
         words.append(f"in {own['unit']}{more}")
     else:
         words.append(f"in {own['unit']} by its size")
-    if max(starboard, port) > 4 * min(starboard, port):
+    confidence = SURE if clear else LIKELY
+    if find.says_side(column):
+        own["positive"] = "starboard"
+        words.append("its cells say the side")
+        if port > starboard:
+            words.append("but she turns to the other one: are the sides those of a wheel that turns the other way?")
+            confidence = LIKELY
+    elif max(starboard, port) > 4 * min(starboard, port):
         own["positive"] = "starboard" if starboard > port else "port"
         words.append(f"positive to {own['positive']} in {max(starboard, port)} of {len(find.looks)} logs")
-        confidence = SURE if clear else LIKELY
     else:
         own["positive"] = f'{MARK} "starboard" or "port": to which side does a positive angle turn the ship?'
         confidence = ASKED

@@ -11,6 +11,7 @@ from ... import units
 from ...inputs import INPUTS
 from ..digits import print_step
 from ..quantities import known_quantity, meaning, quantity_of
+from ..sides import takes_side
 from .finder import FEW_DIGITS, Finder
 from .guess import ASKED, LIKELY, MARK, Guess
 
@@ -33,9 +34,12 @@ def by_name(find: Finder) -> None:
         words = ["by its name alone: the motion does not show it"]
         if quantity.points:
             own["direction"] = f'{MARK} "from" or "to": does it say where it comes from, or where it goes?'
-        if name in INPUTS and INPUTS[name].role == "rudder":
+        if find.says_side(k) and takes_side(name):
+            own["positive"] = quantity.positive[0]
+            words.append("its cells say the side")
+        elif name in INPUTS and INPUTS[name].role == "rudder":
             own["positive"] = f'{MARK} "starboard" or "port": to which side does a positive angle turn the ship?'
-        if name == "r":
+        elif name == "r":
             own["positive"] = f'{MARK} "starboard" or "port": to which side is it positive?'
         asked = any(str(one).startswith(MARK) for one in own.values())
         find.add(Guess(name, k, own, tuple(words), ASKED if asked else LIKELY))

@@ -76,6 +76,10 @@ class Finder:
         if guess.column is not None:
             self.used.add(guess.column)
 
+    def says_side(self, k: int) -> bool:
+        """Whether the cells of a column say the side themselves."""
+        return any(k in sample.sided for sample in self.samples)
+
     def pool(self, *not_said: str) -> list[int]:
         """Columns that are nothing yet, whose behaviour can be looked at, and whose names say none of some words."""
         left = [k for k in self.numeric if k not in self.used and self.said[k] not in not_said]

@@ -19,9 +19,11 @@ from ..clock import CLOCK
 from ..degrees import degrees
 from ..forms import form_of, refuse_binary
 from ..mapping import LogMap, TimeSource
+from ..numerals import numbers_in
 from ..parquet_log import is_text, shortened
+from ..sides import sided, takes_side
 from ..text import PEEK, Lines, start_of
-from .words import known_unit
+from .words import known_unit, quantity_named
 
 ROWS = 60_000
 """Rows of a log that are looked at."""
@@ -43,6 +45,7 @@ class Sample:
     texts    columns as pandas has them, (n_rows,)
     numbers  (n_rows,) of every column, NaN where a cell is no number
     written  columns whose cells are positions in degrees and minutes
+    sided    columns whose cells say the side, such as 35.0S; starboard is positive
     """
 
     path: Path
@@ -52,6 +55,7 @@ class Sample:
     texts: list[Any]
     numbers: list[FloatArray]
     written: frozenset[int] = frozenset()
+    sided: frozenset[int] = frozenset()
     notes: list[str] = field(default_factory=list)
 
     def reference(self, k: int) -> str | int:
@@ -86,29 +90,55 @@ def sample_of(path: Path) -> Sample:
 
 def _made(path: Path, layout: dict[str, Any], names: Sequence[str], units: Sequence[str], texts: list[Any]) -> Sample:
     """A sample of columns as they are printed."""
-    import pandas as pd
-
     LOG_COLUMNS.hold(len(names), str(path), LogError)
-    comma = layout.get("decimal") == ","
-    numbers, written = [], set()
+    texts = [one if _holds_numbers(one) or _holds_dates(one) else one.astype("string").str.strip() for one in texts]
+    # A table whose cells are texts, exported from somewhere, may have decimal commas in them.
+    if layout["format"] != "csv" and any(_has_commas(one) for one in texts):
+        layout["decimal"] = ","
+    decimal = layout.get("decimal", ".")
+    numbers, written, with_side = [], set(), set()
     for k, text in enumerate(texts):
-        if pd.api.types.is_numeric_dtype(text.dtype) and not pd.api.types.is_bool_dtype(text.dtype):
+        if _holds_numbers(text):
             found = text.to_numpy(dtype=np.float64, na_value=np.nan)
-        elif pd.api.types.is_datetime64_any_dtype(text.dtype):
+        elif _holds_dates(text):
             found = np.full(len(text), np.nan)
         else:
-            text = text.astype("string").str.strip()
-            bare = text.str.replace(",", ".", regex=False) if comma else text
-            found = pd.to_numeric(bare, errors="coerce").to_numpy(dtype=np.float64, na_value=np.nan)
+            found = numbers_in(text, decimal)
             clock = bool(len(text)) and text.str.fullmatch(CLOCK).fillna(False).mean() > 0.5
-            if len(text) and np.isfinite(found).mean() < 0.5 and not clock:
-                angles = degrees(text)
-                if np.isfinite(angles).mean() > 0.5:
+            plain = float(np.isfinite(found).mean()) if len(text) else 1.0
+            named = takes_side(quantity_named(names[k]))
+            if plain < (1.0 if named else 0.5) and not clock:
+                angles, sides = degrees(text), sided(text, decimal)
+                told = [float(np.isfinite(one).mean()) for one in (angles, sides)]
+                # S alone is south to one column and starboard to another: its name tells.
+                if told[1] > max(0.5, plain) and (told[1] > told[0] or named):
+                    found = sides
+                    with_side.add(k)
+                elif told[0] > 0.5 > plain:
                     found = angles
                     written.add(k)
         with np.errstate(over="ignore"):
             numbers.append(np.where(np.abs(found) < 1e14, found, np.nan))
-    return Sample(path, layout, tuple(names), tuple(units), texts, numbers, frozenset(written))
+    return Sample(path, layout, tuple(names), tuple(units), texts, numbers, frozenset(written), frozenset(with_side))
+
+
+def _holds_numbers(column: Any) -> bool:
+    import pandas as pd
+
+    return pd.api.types.is_numeric_dtype(column.dtype) and not pd.api.types.is_bool_dtype(column.dtype)
+
+
+def _holds_dates(column: Any) -> bool:
+    import pandas as pd
+
+    return bool(pd.api.types.is_datetime64_any_dtype(column.dtype))
+
+
+def _has_commas(column: Any) -> bool:
+    """Whether a column holds numbers with a decimal comma, as texts."""
+    if _holds_numbers(column) or _holds_dates(column) or not len(column):
+        return False
+    return bool(column.str.fullmatch(_COMMA.pattern).fillna(False).mean() > 0.2)
 
 
 def _of_text(path: Path) -> Sample:

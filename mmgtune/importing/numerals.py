@@ -1,0 +1,28 @@
+"""Numbers as logs print them, to floats."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..arrays import FloatArray
+
+
+def numbers_in(texts: Any, decimal: str) -> FloatArray:
+    """Numbers (n_rows,) of a pandas column of texts, NaN where one is none.
+
+    decimal  "." or ",": where it is a comma, a point is understood too, as programs that print both do
+    """
+    import pandas as pd
+
+    bare = texts.str.replace(",", ".", regex=False) if decimal == "," else texts
+    return np.asarray(pd.to_numeric(bare, errors="coerce").to_numpy(dtype=np.float64, na_value=np.nan))
+
+
+def number_in(text: str, decimal: str) -> float | None:
+    """The number of one text, None where it is none."""
+    try:
+        return float(text.replace(",", ".") if decimal == "," else text)
+    except ValueError:
+        return None
