@@ -17,6 +17,7 @@ from .backends import STATES, Cases, Integrator, LaneModel, get_backend, pad
 from .displayed import Brief
 from .errors import OptionError, Problem, brief, kind_of
 from .foreign import RETURNED, hold_described, hold_predicted, lacking
+from .given import Found, ship_of
 from .model import Model
 from .physics.quantities import State, Surroundings
 from .profile import ShipProfile
@@ -279,17 +280,19 @@ class PhysicsPredictor(Brief):
 
 
 def as_predictor(
-    ship: Predictor | ShipProfile | Model,
+    ship: Predictor | ShipProfile | Model | Found,
     *,
     theta: FloatArray | None = None,
     integrator: Integrator = Integrator(),
     backend: str = "compiled",
 ) -> Predictor:
-    """A profile or model as a predictor; a predictor as it is, ``integrator`` and ``backend`` being its own affair.
+    """A profile or model, or the profile of a result, as a predictor; a predictor as it is, which has its own ways.
 
     theta  (n_rows, n_members) coefficients of a profile or model, its own where None
     Raises OptionError for anything else, and for coefficients of something that has none of that kind.
     """
+    if isinstance(ship, Found):
+        ship = ship_of(ship)
     if isinstance(ship, ShipProfile):
         ship = Model(ship)
     if isinstance(ship, Model):

@@ -2,13 +2,17 @@
 
 import inspect
 import re
+import sys
 from dataclasses import replace
+from typing import get_type_hints
 
 import numpy as np
 import pandas
 import pytest
 
 import mmgtune
+from mmgtune.networks import Ensemble, Hybrid, Mixture, Network
+from mmgtune.predictor import as_predictor
 
 
 def test_everything_listed_can_be_had_twice():
@@ -25,7 +29,11 @@ def test_from_profile_to_verdict(tmp_path):
     assert "4 of 4 of these trials improve" in result.verdict()
     motion = mmgtune.simulate(result.tuned_profile(), [trials.trials["turn_p35"]])[0]
     assert not motion.diverged
+    assert mmgtune.Model(result).profile.text == result.tuned_profile().text
+    (of_result,) = mmgtune.validate(result, trials["turn_p35"]).profiles
+    assert (of_result.name, of_result.predictor.model.profile.text) == ("suzaku", result.tuned_profile().text)
     mmgtune.write_run(result, tmp_path / "run")
+    assert mmgtune.load_profile(tmp_path / "run").text == result.tuned_profile().text
     report = mmgtune.render(tmp_path / "run")[0]
     assert report.name == "report.html"
     off = re.match(
@@ -90,6 +98,59 @@ def test_what_is_of_the_wrong_type_is_refused_in_words(call, what, fix):
     assert what in str(problem)
     assert fix in problem.fix
     assert problem.why
+
+
+@pytest.mark.parametrize(
+    ("found", "in_place_of"),
+    [
+        (mmgtune.FitResult, mmgtune.ShipProfile),
+        (mmgtune.Diagnosis, mmgtune.ShipProfile),
+        (mmgtune.Posterior, mmgtune.Particles),
+        (mmgtune.Learned, Network),
+        (mmgtune.LearnedHybrid, Hybrid),
+        (mmgtune.LearnedEnsemble, Ensemble),
+        (mmgtune.LearnedMixture, Mixture | Hybrid | Network),
+    ],
+)
+def test_a_result_stands_for_the_ship_it_found(found, in_place_of):
+    assert get_type_hints(found.as_ship, vars(sys.modules[found.__module__]))["return"] == in_place_of
+
+
+class AResult:
+    """As results are that a ship came out of."""
+
+    written_by = "write_run"
+
+    def __init__(self, ship):
+        self.ship = ship
+
+    def as_ship(self):
+        return self.ship
+
+
+def test_a_result_goes_wherever_a_ship_does():
+    turn = TRIALS["turn_p35"]
+    tuned = AResult(SHIP)
+    assert mmgtune.validate([tuned, SHIP], turn).profiles[1].name == "suzaku (2)"
+    assert mmgtune.simulate(tuned, turn)[0].id == "turn_p35"
+    assert mmgtune.score(tuned, turn)[0].J == mmgtune.score(SHIP, turn)[0].J
+    assert mmgtune.compare(tuned, "suzaku_fam").profiles[0] == "suzaku"
+    assert mmgtune.fit(tuned, turn, QUICK).profile is SHIP
+    assert as_predictor(tuned).name == "suzaku"
+    name = "hull.Y_v"
+    particles = mmgtune.Particles(SHIP, (name,), np.array([[1.0, 1.1]]) * SHIP.value(name), {})
+    for several in (AResult(particles), particles):
+        assert mmgtune.simulate(several, turn).predictor.drawn(2, 1).n_members == 2
+    with pytest.raises(mmgtune.MmgtuneError, match="an AResult is no ship profile"):
+        mmgtune.fit(AResult(particles), turn, QUICK)
+
+
+def test_a_result_is_no_folder_before_it_is_written():
+    for name in mmgtune.__all__:
+        assert getattr(getattr(mmgtune, name), "written_by", "write_run") in mmgtune.__all__
+    with pytest.raises(mmgtune.MmgtuneError, match="no name of a run folder") as caught:
+        mmgtune.render(AResult(SHIP))
+    assert "mmgtune.write_run(RESULT, FOLDER)" in caught.value.problems[0].fix
 
 
 READERS = [
