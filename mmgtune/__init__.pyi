@@ -114,3 +114,5 @@ from .validation import score as score
 from .voyages import VoyageValidation as VoyageValidation
 from .voyages import validate_voyages as validate_voyages
 from .voyages import write_voyages as write_voyages
+
+__version__: str

@@ -13,6 +13,7 @@ import pytest
 import mmgtune
 from mmgtune.networks import Ensemble, Hybrid, Mixture, Network
 from mmgtune.predictor import as_predictor
+from mmgtune.provenance import own_version
 
 
 def test_everything_listed_can_be_had_twice():
@@ -54,6 +55,20 @@ def test_a_manoeuvre_of_a_bundled_ship_and_its_forces():
     assert mmgtune.breakdown("suzaku", motion.states, motion.controls).total.X.shape == motion.t.shape
 
 
+def test_orders_alone_are_carried_out_and_one_is_a_list_of_one():
+    order = mmgtune.TurningOrder(0.6)
+    (alone,) = mmgtune.run_manoeuvres("suzaku", order)
+    (listed,) = mmgtune.run_manoeuvres("suzaku", [order])
+    (sailed,) = mmgtune.run_manoeuvres("suzaku", mmgtune.Sailing(order))
+    assert np.array_equal(alone.states, listed.states)
+    assert np.array_equal(alone.states, sailed.states)
+
+
+def test_the_version_is_that_of_the_distribution():
+    assert mmgtune.__version__ == own_version()
+    assert "__version__" not in mmgtune.__all__
+
+
 QUICK = mmgtune.FitOptions(method="least-squares", starts=1)
 
 
@@ -84,7 +99,14 @@ SHIP, TRIALS = mmgtune.load_profile("suzaku"), mmgtune.load_trials("suzaku")
         (lambda: mmgtune.simulate(SHIP, ["turn_p35"]), "a str in the list of trials", "[TRIALS['turn_p35']]"),
         (lambda: mmgtune.simulate(SHIP, TRIALS, QUICK), "a FitOptions is no SimulateOptions", "SimulateOptions(...)"),
         (lambda: mmgtune.run_manoeuvre(SHIP, 35), "an int is no helmsman", "TurningOrder(radians(35))"),
+        (lambda: mmgtune.run_manoeuvres(SHIP, [35]), "an int is no helmsman", "TurningOrder(radians(35))"),
         (lambda: mmgtune.TurningOrder("35 deg"), "'35 deg', not a number", "math.radians(35.0) for 35 deg"),
+        (lambda: SHIP.value("rudder.epsi"), "no number 'rudder.epsi'", "did you mean 'rudder.eps"),
+        (lambda: SHIP.value("L_pp"), "no number 'L_pp'", "write 'particulars.L_pp'"),
+        (lambda: SHIP.value("rudders.epsilon"), "no number 'rudders.epsilon'", "did you mean 'rudder.eps"),
+        (lambda: TRIALS[0], "no trial 0", "or list(TRIALS)[0]"),
+        (lambda: TRIALS["turn_p3"], "no trial 'turn_p3'", "did you mean 'turn_p35'"),
+        (lambda: TRIALS.plot(), "no picture is named", ".plot.tracks() or .plot.histories()"),
         (lambda: mmgtune.estimate(5), "no name of a file of particulars (5)", "a text or a Path"),
         (lambda: mmgtune.write_trial("turn.parquet", TRIALS["turn_p35"]), "no path (Trial(turn_p35", "where the file"),
         (lambda: mmgtune.load_trials(5), "no name of a data set (5)", "a text or a Path"),
@@ -141,7 +163,7 @@ def test_a_result_goes_wherever_a_ship_does():
     particles = mmgtune.Particles(SHIP, (name,), np.array([[1.0, 1.1]]) * SHIP.value(name), {})
     for several in (AResult(particles), particles):
         assert mmgtune.simulate(several, turn).predictor.drawn(2, 1).n_members == 2
-    with pytest.raises(mmgtune.MmgtuneError, match="an AResult is no ship profile"):
+    with pytest.raises(mmgtune.MmgtuneError, match="AResult is no ship profile"):
         mmgtune.fit(AResult(particles), turn, QUICK)
 
 
@@ -151,6 +173,16 @@ def test_a_result_is_no_folder_before_it_is_written():
     with pytest.raises(mmgtune.MmgtuneError, match="no name of a run folder") as caught:
         mmgtune.render(AResult(SHIP))
     assert "mmgtune.write_run(RESULT, FOLDER)" in caught.value.problems[0].fix
+
+
+@pytest.mark.parametrize("wrong", [{"speed": 7.5}, {"turn": (-35,)}, {"turn": -35}, {"rpm": 106}])
+def test_the_fix_of_a_number_in_place_of_a_text_is_taken(wrong):
+    with pytest.raises(mmgtune.MmgtuneError) as caught:
+        mmgtune.PredictOptions(**wrong)
+    (name,) = wrong
+    text = re.search(r"'(.*)'", caught.value.problems[0].fix)[1]
+    options = {"turn": ("10",), name: (text,) if name == "turn" else text}
+    assert mmgtune.predict("suzaku", options=mmgtune.PredictOptions(**options)).runs
 
 
 READERS = [

@@ -37,7 +37,7 @@ TRIAL = resources.folder("trials") / "suzaku" / "turn_p35.parquet"
         (("simulate", "--zigzag", "20"), ("is not a zigzag (--zigzag)", "with a stroke between", "such as 20/20")),
         (("report", "nowhere"), ("no such run folder (nowhere)", "there is no 'nowhere' in ", "give the folder")),
         (
-            ("report", TRIAL),
+            ("report", str(TRIAL)),
             ("this is a file, not a run folder", "of the whole folder", f"give the folder: {TRIAL.parent}"),
         ),
         (("trials", "import", "a.csv"), ("(--map, --preset)", "what the columns of a log mean", "mmgtune trials map")),
