@@ -33,6 +33,10 @@ def _attached():  # type: ignore[no-untyped-def]
 
 
 def __getattr__(name: str) -> object:
+    if name == "__version__":
+        from .provenance import own_version
+
+        return own_version()
     get, _, names = _attached()
     return names if name == "__all__" else get(name)
 

@@ -1,5 +1,6 @@
 """What the package exports, by where it is defined; ``__init__.py`` imports a name when it is first used."""
 
+from .backends import Cases as Cases
 from .checking import CheckReport as CheckReport
 from .checking import check as check
 from .checking import read_baseline as read_baseline
@@ -115,3 +116,5 @@ from .validation import score as score
 from .voyages import VoyageValidation as VoyageValidation
 from .voyages import validate_voyages as validate_voyages
 from .voyages import write_voyages as write_voyages
+
+__version__: str

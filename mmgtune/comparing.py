@@ -92,7 +92,9 @@ def compare(a: ShipGiven, b: ShipGiven) -> Comparison:
         raise OptionError(
             Problem("the ships are arranged differently", "profiles", titles, "compare profiles of a kind")
         )
-    names = [Path(one).stem if isinstance(one, (str, Path)) else one.id for one in (a, b)]
+    names = [
+        Path(one).stem if isinstance(one, (str, Path)) else ship.id for one, ship in zip((a, b), ships, strict=True)
+    ]
     if names[0] == names[1]:
         names = [f"{name} ({k})" for k, name in enumerate(names, 1)]
     U = scale_of(ships[0]).U

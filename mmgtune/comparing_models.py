@@ -138,6 +138,8 @@ class ModelComparison(Displayed):
     sigma   what L_MSE divides differences of each state by [SI]
     """
 
+    written_by = "write_model_comparison"
+
     models: tuple[Compared, ...]
     data: TrialSet
     trials: str

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Protocol
 
+from .errors import OptionError, Problem
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
@@ -128,6 +130,12 @@ class Plots:
 
     def __dir__(self) -> list[str]:
         return list(_display().plots(self._of))
+
+    def __call__(self, *_: object, **__: object) -> Any:
+        """Raises OptionError: there are several pictures, and each has a name."""
+        there = " or ".join(f".plot.{name}()" for name in _display().plots(self._of))
+        why = "each picture has a name" if there else f"there is no picture of a {type(self._of).__name__}"
+        raise OptionError(Problem("no picture is named", "plot", why, f"write {there}" if there else "see summary()"))
 
     def tracks(self, *trials: str, ax: Axes | None = None) -> Any:
         """Tracks on the water, north up, measured and simulated.

@@ -4,22 +4,41 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any, Protocol, runtime_checkable
 
 from .errors import OptionError, Problem, TrialError, brief, kind_of
 from .profile import ShipProfile, load_profile
 from .trial import IndexTrial, Trial, TrialSet, load_trials
 
-ShipGiven = ShipProfile | str | Path
+
+@runtime_checkable
+class Found(Protocol):
+    """A result that a ship came out of: it stands for her wherever a ship is wanted."""
+
+    def as_ship(self) -> Any:
+        """Her profile, particles of her, or what was trained."""
+        ...
+
+
+ShipGiven = ShipProfile | Found | str | Path
 TrialsGiven = TrialSet | Trial | IndexTrial | Sequence[Trial | IndexTrial] | str | Path
 
 
 def ship_of(given: ShipGiven) -> ShipProfile:
-    """A profile, or the one of that path or bundled name.  Raises ProfileError, OptionError for anything else."""
-    if isinstance(given, ShipProfile):
-        return given
+    """A profile, the one of that path or bundled name, or the one that a fit or a diagnosis found.
+
+    Raises ProfileError, OptionError for anything else.
+    """
+    found = given.as_ship() if isinstance(given, Found) else given
+    if isinstance(found, ShipProfile):
+        return found
     if isinstance(given, (str, Path)):
         return load_profile(given)
     fix = "load a profile with load_profile(NAME)"
+    if found is not given:
+        fix = (
+            "simulation, scoring and prediction take it; give a profile here, as load_profile(NAME) or a fit returns it"
+        )
     if isinstance(given, (TrialSet, Trial, IndexTrial)):
         fix = "give the ship first, then the trials"
     raise OptionError(Problem(f"{kind_of(given)} is no ship profile", brief(given), "a ship is wanted here", fix))

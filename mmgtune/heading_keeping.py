@@ -86,6 +86,8 @@ class HeadingStudy(Displayed):
     truth  (n, n) scores of the true system [rad s], proportional gain first
     """
 
+    written_by = "write_heading_study"
+
     gains: FloatArray
     truth: FloatArray
     true_ship: str

@@ -8,6 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from .errors import among
+
 Role = Literal["propeller", "rudder", "thruster"]
 """What an input moves: helmsmen order rudders, engines turn propellers, and effects act on inputs of one role."""
 
@@ -57,3 +59,11 @@ INPUTS: dict[str, Input] = {
     )
 }
 """Every input there is, by name."""
+
+
+def meant_by(name: str) -> dict[str, str]:
+    """Why and fix of a name that is none of ``INPUTS``: by what people call an input, or by the names there are."""
+    meant = [one.name for one in INPUTS.values() if str(name).lower() in (one.role, one.words, one.words.split()[0])]
+    if not meant:
+        return among(str(name), tuple(INPUTS))
+    return {"why": f"inputs have the names of columns of trials: {', '.join(INPUTS)}", "fix": f"write '{meant[0]}'"}

@@ -23,12 +23,12 @@ from .files import hold_regular, path_of
 from .model import Model
 from .predictor import PhysicsPredictor, Sampling
 from .profile import ShipProfile, parse_profile, with_effects
-from .resources import must_be_name
+from .resources import PARTICLES, must_be_name
 from .tables import write_table
 from .trial.footer import rows_of
 from .trial.parquet import numbers as plain_numbers
 
-FILE = "particles.parquet"
+FILE = PARTICLES
 """What the file is called in a run folder."""
 
 KEY = b"mmgtune_particles"

@@ -15,7 +15,9 @@ import numpy as np
 from .arrays import BoolArray, FloatArray, IntArray
 from .backends import STATES, Cases, Integrator, LaneModel, get_backend, pad
 from .displayed import Brief
-from .errors import OptionError, Problem, kind_of
+from .errors import OptionError, Problem, brief, kind_of
+from .foreign import RETURNED, hold_described, hold_predicted, lacking
+from .given import Found, ship_of
 from .model import Model
 from .physics.quantities import State, Surroundings
 from .profile import ShipProfile
@@ -39,7 +41,7 @@ class Prediction:
 
 @runtime_checkable
 class Predictor(Protocol):
-    """Turns cases into states.
+    """Turns cases into states: what a model of your own has to have to be scored, checked and simulated as others are.
 
     name       what to call it
     L_pp       length of the ship between perpendiculars [m]
@@ -64,8 +66,21 @@ class Predictor(Protocol):
     def method(self) -> str: ...
 
     def predict(self, cases: Cases) -> Prediction:
-        """All members on every case, each from ``cases.initial``; never raises for a run that diverges."""
+        """All members on every case, each from ``cases.initial``; never raises for a run that diverges.
+
+        -> ``Prediction(states, diverged)``: arrays (n_cases, n_members, T, 6) with a state for each sample of
+        ``cases.t``, and (n_cases, n_members) of truth values.  There is an axis of members even where there is one.
+        """
         ...
+
+
+def predicted(predictor: Predictor, cases: Cases) -> Prediction:
+    """What a predictor that anyone may have written makes of cases.
+
+    Raises OptionError for states or marks of another shape than ``Prediction`` has, and for states that are not finite
+    in a run that is not marked.
+    """
+    return Prediction(*hold_predicted(predictor, cases, predictor.predict(cases)))
 
 
 class Stepper(Protocol):
@@ -166,7 +181,7 @@ class Restarted:
 
     def step(self, now: FloatArray, then: FloatArray, h: float) -> FloatArray:
         """See ``Stepper``; NaN throughout once it diverged."""
-        found = self.predictor.predict(pad([np.array([0.0, h])], [np.array([now, then])], [self.state]))
+        found = predicted(self.predictor, pad([np.array([0.0, h])], [np.array([now, then])], [self.state]))
         lost = bool(found.diverged[0, self.member])
         self.state = np.full(6, np.nan) if lost else np.array(found.states[0, self.member, 1])
         return self.state
@@ -265,33 +280,43 @@ class PhysicsPredictor(Brief):
 
 
 def as_predictor(
-    ship: Predictor | ShipProfile | Model,
+    ship: Predictor | ShipProfile | Model | Found,
     *,
     theta: FloatArray | None = None,
     integrator: Integrator = Integrator(),
     backend: str = "compiled",
 ) -> Predictor:
-    """A profile or model as a predictor; a predictor as it is, ``integrator`` and ``backend`` being its own affair.
+    """A profile or model, or the profile of a result, as a predictor; a predictor as it is, which has its own ways.
 
     theta  (n_rows, n_members) coefficients of a profile or model, its own where None
     Raises OptionError for anything else, and for coefficients of something that has none of that kind.
     """
+    if isinstance(ship, Found):
+        ship = ship_of(ship)
     if isinstance(ship, ShipProfile):
         ship = Model(ship)
     if isinstance(ship, Model):
         return PhysicsPredictor(ship, ship.matrix() if theta is None else theta, integrator, backend)
-    if not isinstance(ship, Predictor):
-        raise OptionError(
-            Problem(
-                f"{kind_of(ship)} is no ship",
-                repr(ship)[:60],
-                "a ship profile, a model or a predictor is needed",
-                "load a profile with load_profile(NAME)",
-            )
-        )
+    if isinstance(ship, type) or not isinstance(ship, Predictor):
+        raise OptionError(_no_ship(ship))
+    hold_described(ship)
     if theta is not None:
         raise OptionError(Problem("coefficients are given for a predictor", ship.name, "only a profile has them"))
     return ship
+
+
+def _no_ship(given: object) -> Problem:
+    """The problem of what is neither a profile nor a predictor, though it may be meant as one."""
+    if isinstance(given, type):
+        what = f"the class {given.__name__} is no ship"
+        return Problem(what, "", "a ship profile, a model or a predictor is needed", f"make one: {given.__name__}(...)")
+    gone = lacking(given)
+    if gone:
+        why = f"a predictor has {', '.join(gone)} too; see help(mmgtune.Predictor)"
+        fix = f"add {', '.join(gone)}" + (f"; predict(cases) returns {RETURNED}" if "predict" in gone else "")
+        return Problem(f"{kind_of(given)} is not yet a predictor: it lacks {', '.join(gone)}", brief(given), why, fix)
+    why = "a ship profile, a model or a predictor is needed"
+    return Problem(f"{kind_of(given)} is no ship", brief(given), why, "load a profile with load_profile(NAME)")
 
 
 def profile_of(predictor: Predictor) -> ShipProfile | None:

@@ -9,6 +9,15 @@ from .errors import MmgtuneError, Problem, brief, kind_of, reason
 
 _PACKAGE = Path(__file__).resolve().parent
 
+PROFILE, PARTICLES, MODEL = "profile.toml", "particles.parquet", "model.safetensors"
+"""What a run folder holds of a ship: a fit or diagnosis her profile, others particles of her or a trained model."""
+
+_BESIDE = "calm.toml"
+"""What a diagnosis may leave beside her profile."""
+
+DOCUMENTS = (".html", ".json", ".jsonl", ".md", ".npz", ".pdf", ".svg")
+"""How names of files end that runs leave behind and that hold no ship."""
+
 
 def folder(name: str) -> Path:
     """The folder ``ship_profiles`` or ``trials``: package data where installed, the checkout's own otherwise."""
@@ -23,7 +32,11 @@ def must_be_name(name: object, kind: str, error: type[MmgtuneError]) -> None:
     """
     if not isinstance(name, (str, Path)):
         why = f"a {kind} is found by a path or a bundled name, and {kind_of(name)} is neither"
-        raise error(Problem(f"no name of a {kind}", brief(name), why, "give a text or a Path"))
+        writer = getattr(name, "written_by", "")
+        fix = (
+            f"write it first: mmgtune.{writer}(RESULT, FOLDER), and give FOLDER" if writer else "give a text or a Path"
+        )
+        raise error(Problem(f"no name of a {kind}", brief(name), why, fix))
     try:
         Path(name).exists()
     except OSError as wrong:
@@ -46,6 +59,23 @@ def taken(name: str | Path, there: bool, bundled: Path) -> Path | None:
         words = f"'{name}' is {path.resolve()}, not what is bundled under that name, which is {bundled}"
         warnings.warn(words, stacklevel=1)
     return path
+
+
+def in_run(name: str | Path, file: str) -> Path | None:
+    """One of the files that a run folder holds of a ship, None where it is not there or might not be the one meant.
+
+    A folder in which several profiles lie is no run folder.
+    """
+    path = Path(name) / file
+    if not path.is_file():
+        return None
+    others = {one.name for one in path.parent.glob("*.toml")} - {PROFILE, _BESIDE}
+    return None if file == PROFILE and others else path
+
+
+def ship_in(name: str | Path) -> Path | None:
+    """What a run folder holds of a ship, whichever it is; particles and trained models before a profile."""
+    return next(filter(None, (in_run(name, file) for file in (PARTICLES, MODEL, PROFILE))), None)
 
 
 def looked_for(name: str | Path, kind: str = "") -> str:

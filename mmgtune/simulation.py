@@ -19,7 +19,16 @@ from .manoeuvres import Track, manoeuvre_kind, zigzag_indices
 from .manoeuvres.summary import indices_of
 from .model import Model
 from .physics.quantities import UNKNOWN, Force, State, Surroundings
-from .predictor import PhysicsPredictor, Predictor, as_predictor, cases_from, draught_of, portions, profile_of
+from .predictor import (
+    PhysicsPredictor,
+    Predictor,
+    as_predictor,
+    cases_from,
+    draught_of,
+    portions,
+    predicted,
+    profile_of,
+)
 from .profile import ShipProfile
 from .trial import Trial
 from .trial.schema import ATTRIBUTES, FILE_CHANNELS, MAIN_INPUTS
@@ -112,7 +121,7 @@ def motions(predictor: Predictor, trials: Sequence[Trial], offsets: FloatArray |
         if offsets is not None:
             start = [trial.motion[0] + own for trial, own in zip(some, offsets[portion], strict=True)]
         cases = cases_from(some, inputs, draught_of(predictor), initial=start)
-        found = predictor.predict(cases)
+        found = predicted(predictor, cases)
         for i, trial in enumerate(some):
             controls = np.array(cases.controls[i, : trial.n_samples])  # copies: a view would hold all of them
             around = np.array(cases.around[i, : trial.n_samples]) if cases.around[i].any() else None

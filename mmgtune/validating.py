@@ -222,7 +222,8 @@ def _called(given: Scorable) -> str:
     """What to call something scored that was given without a name."""
     if isinstance(given, (str, Path)):
         return str(given)
-    return given.profile.id if isinstance(given, Model) else getattr(given, "id", "") or getattr(given, "name", "?")
+    ship = named_ship(given)
+    return ship.profile.id if isinstance(ship, Model) else getattr(ship, "id", "") or getattr(ship, "name", "?")
 
 
 def _told_apart(names: Sequence[str]) -> list[str]:

@@ -17,7 +17,7 @@ from .given import ShipGiven, TrialsGiven, list_of
 from .model import Model
 from .networks import named_ship
 from .objective import spread, varying
-from .predictor import Predictor, as_predictor, cases_from, draught_of, portions
+from .predictor import Predictor, as_predictor, cases_from, draught_of, portions, predicted
 from .trial import Trial
 
 DRAWS = 2000
@@ -146,7 +146,7 @@ def window_scores(predictor: Predictor, trials: Sequence[Trial]) -> list[WindowS
     found = []
     for portion in portions([trial.n_samples for trial in trials], predictor.n_members):
         some = trials[portion]
-        made = predictor.predict(cases_from(some, tuple(predictor.inputs), draught_of(predictor)))
+        made = predicted(predictor, cases_from(some, tuple(predictor.inputs), draught_of(predictor)))
         for i, trial in enumerate(some):
             states, truth = made.states[i, :, 1 : trial.n_samples], trial.motion[1:]
             facts = trial.id, trial.whole, trial.run, trial.manoeuvre

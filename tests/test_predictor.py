@@ -2,8 +2,10 @@
 
 import json
 import math
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,7 +20,7 @@ from mmgtune.evaluation import evaluate
 from mmgtune.metrics import METRICS
 from mmgtune.options import ValidateOptions
 from mmgtune.orders import TurningOrder, ZigzagOrder, run_manoeuvre
-from mmgtune.predictor import AT_ONCE, Prediction, Restarted, Steerable, as_predictor, portions
+from mmgtune.predictor import AT_ONCE, Prediction, Restarted, Steerable, as_predictor, portions, predicted
 from mmgtune.profile import with_effects
 from mmgtune.repeating import repeat
 from mmgtune.simulation import as_trial, simulate
@@ -176,6 +178,104 @@ def test_one_that_loses_itself_is_marked(sailed):
     assert document["J"] is None
     assert [one["simulated"] is None for one in document["manoeuvres"]["runs"]] == 2 * [False, True, False]
     assert measure(Lost(), list(sailed.trials.values()), ["J", "MMD"])[1]["turn"] == {"J": math.inf, "MMD": math.inf}
+
+
+@dataclass
+class Still:
+    """A predictor of one member, which stays where it is; ``spoil`` makes something else of what it returns."""
+
+    spoil: Callable = lambda found: found
+    name: str = "still"
+    L_pp: float = 83.0
+    n_members: int = 1
+    inputs: tuple[str, ...] = ("n", "delta")
+    method: str = "none"
+
+    def predict(self, cases):
+        states = np.repeat(cases.initial[:, None, None], cases.t.shape[1], axis=2)
+        return self.spoil(Prediction(states, np.zeros(states.shape[:2], dtype=bool)))
+
+
+def with_nan_behind_the_end(found):
+    found.states[0, :, 3:] = np.nan
+    return found
+
+
+@pytest.mark.parametrize(
+    ("spoil", "what", "fix"),
+    [
+        (lambda found: None, "predict of Still returns None", "mmgtune.Prediction(states, diverged)"),
+        (lambda found: found.states, "predict of Still returns a ndarray", "mmgtune.Prediction(states, diverged)"),
+        (lambda found: replace(found, states=found.states[:, 0]), "shape (1, 4, 6)", "return states[:, None]"),
+        (lambda found: replace(found, states=found.states[:, :, :3]), "shape (1, 1, 3, 6)", "each sample of cases.t"),
+        (lambda found: replace(found, states=found.states.astype(str)), "an array of str", "each sample of cases.t"),
+        (lambda found: replace(found, diverged=found.diverged[:, 0]), "diverged of predict of Still", "dtype=bool"),
+        (lambda found: replace(found, diverged=np.zeros((1, 1))), "an array of float64", "dtype=bool"),
+        (with_nan_behind_the_end, "not finite in case 0, member 0", "isfinite(states)"),
+    ],
+)
+def test_a_prediction_of_another_form_is_refused_and_not_scored(spoil, what, fix):
+    cases = pad([np.arange(4.0)], [np.zeros((4, 2))], [np.zeros(6)])
+    with pytest.raises(OptionError) as caught:
+        predicted(Still(spoil), cases)
+    (problem,) = caught.value.problems
+    assert what in problem.what
+    assert fix in problem.fix
+    assert problem.why
+
+
+def test_a_prediction_may_be_anything_behind_the_end_and_where_it_is_lost():
+    long, short = np.arange(4.0), np.arange(3.0)
+    cases = pad([short, long], [np.zeros((3, 2)), np.zeros((4, 2))], [np.zeros(6)] * 2)
+    found = predicted(Still(with_nan_behind_the_end), cases)
+    assert np.isnan(found.states[0, 0, 3]).all()
+    lost = Prediction(np.full((2, 1, 4, 6), np.nan), np.ones((2, 1), dtype=bool))
+    assert predicted(Still(lambda _: lost), cases).states is lost.states
+    huge = Prediction(np.full((2, 1, 4, 6), 1e308), np.zeros((2, 1), dtype=bool))
+    assert predicted(Still(lambda _: huge), cases).states is huge.states
+
+
+def test_wherever_predictors_are_taken_their_form_is_looked_at(sailed):
+    wrong, trials = Still(lambda found: replace(found, states=found.states[:, 0])), [*sailed.trials.values()]
+    for take in (
+        lambda: mmgtune.validate(wrong, sailed),
+        lambda: mmgtune.simulate(wrong, sailed),
+        lambda: mmgtune.score(wrong, sailed),
+        lambda: mmgtune.predict(wrong, trials=sailed),
+        lambda: mmgtune.predict(wrong, options=mmgtune.PredictOptions(turn=("35",), speed="12 kn", rpm="100")),
+        lambda: short_horizon(wrong, trials),
+        lambda: repeat(wrong, trials),
+    ):
+        with pytest.raises(OptionError, match="states of predict of Still"):
+            take()
+
+
+@pytest.mark.parametrize(
+    ("wrong", "what", "fix"),
+    [
+        (Still(inputs=("rudder",)), "driven by 'rudder', which no trial has", "write 'delta'"),
+        (Still(inputs=("n", "delat")), "driven by 'delat', which no trial has", "'delta'"),
+        (Still(inputs="n"), "'inputs' of a Still is 'n'", "('n', 'delta')"),
+        (Still(L_pp="83 m"), "'L_pp' of a Still is '83 m'", "in metres"),
+        (Still(n_members=0), "'n_members' of a Still is 0", "how many predictions"),
+        (Still(name=None), "'name' of a Still is None", "give it a name"),
+        (Still, "the class Still is no ship", "Still(...)"),
+        (SimpleNamespace(name="mine", L_pp=83.0, predict=lambda cases: None), "it lacks n_members, inputs", "method"),
+        (SimpleNamespace(name="mine", L_pp=83.0, n_members=1, method="", inputs=()), "lacks predict", "Prediction("),
+    ],
+)
+def test_what_is_not_yet_a_predictor_is_told_what_it_lacks(wrong, what, fix, sailed):
+    with pytest.raises(OptionError) as caught:
+        mmgtune.validate(wrong, sailed)
+    (problem,) = caught.value.problems
+    assert what in problem.what
+    assert fix in problem.fix
+    assert problem.why
+
+
+def test_inputs_of_a_trial_have_the_names_of_columns(sailed):
+    with pytest.raises(mmgtune.MmgtuneError, match="'rudder' is no input of a ship"):
+        sailed["turn"].inputs(["rudder"])
 
 
 @pytest.mark.parametrize("wrong", ["suzaku", 3.0, None])

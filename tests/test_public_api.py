@@ -3,13 +3,18 @@
 import inspect
 import re
 import signal
+import sys
 from dataclasses import replace
+from typing import get_type_hints
 
 import numpy as np
 import pandas
 import pytest
 
 import mmgtune
+from mmgtune.networks import Ensemble, Hybrid, Mixture, Network
+from mmgtune.predictor import as_predictor
+from mmgtune.provenance import own_version
 
 
 def test_everything_listed_can_be_had_twice():
@@ -26,7 +31,11 @@ def test_from_profile_to_verdict(tmp_path):
     assert "4 of 4 of these trials improve" in result.verdict()
     motion = mmgtune.simulate(result.tuned_profile(), [trials.trials["turn_p35"]])[0]
     assert not motion.diverged
+    assert mmgtune.Model(result).profile.text == result.tuned_profile().text
+    (of_result,) = mmgtune.validate(result, trials["turn_p35"]).profiles
+    assert (of_result.name, of_result.predictor.model.profile.text) == ("suzaku", result.tuned_profile().text)
     mmgtune.write_run(result, tmp_path / "run")
+    assert mmgtune.load_profile(tmp_path / "run").text == result.tuned_profile().text
     report = mmgtune.render(tmp_path / "run")[0]
     assert report.name == "report.html"
     off = re.match(
@@ -45,6 +54,20 @@ def test_from_profile_to_verdict(tmp_path):
 def test_a_manoeuvre_of_a_bundled_ship_and_its_forces():
     motion = mmgtune.run_manoeuvre("suzaku", mmgtune.TurningOrder(0.6), longest=60.0)
     assert mmgtune.breakdown("suzaku", motion.states, motion.controls).total.X.shape == motion.t.shape
+
+
+def test_orders_alone_are_carried_out_and_one_is_a_list_of_one():
+    order = mmgtune.TurningOrder(0.6)
+    (alone,) = mmgtune.run_manoeuvres("suzaku", order)
+    (listed,) = mmgtune.run_manoeuvres("suzaku", [order])
+    (sailed,) = mmgtune.run_manoeuvres("suzaku", mmgtune.Sailing(order))
+    assert np.array_equal(alone.states, listed.states)
+    assert np.array_equal(alone.states, sailed.states)
+
+
+def test_the_version_is_that_of_the_distribution():
+    assert mmgtune.__version__ == own_version()
+    assert "__version__" not in mmgtune.__all__
 
 
 QUICK = mmgtune.FitOptions(method="least-squares", starts=1)
@@ -77,7 +100,14 @@ SHIP, TRIALS = mmgtune.load_profile("suzaku"), mmgtune.load_trials("suzaku")
         (lambda: mmgtune.simulate(SHIP, ["turn_p35"]), "a str in the list of trials", "[TRIALS['turn_p35']]"),
         (lambda: mmgtune.simulate(SHIP, TRIALS, QUICK), "a FitOptions is no SimulateOptions", "SimulateOptions(...)"),
         (lambda: mmgtune.run_manoeuvre(SHIP, 35), "an int is no helmsman", "TurningOrder(radians(35))"),
+        (lambda: mmgtune.run_manoeuvres(SHIP, [35]), "an int is no helmsman", "TurningOrder(radians(35))"),
         (lambda: mmgtune.TurningOrder("35 deg"), "'35 deg', not a number", "math.radians(35.0) for 35 deg"),
+        (lambda: SHIP.value("rudder.epsi"), "no number 'rudder.epsi'", "did you mean 'rudder.eps"),
+        (lambda: SHIP.value("L_pp"), "no number 'L_pp'", "write 'particulars.L_pp'"),
+        (lambda: SHIP.value("rudders.epsilon"), "no number 'rudders.epsilon'", "did you mean 'rudder.eps"),
+        (lambda: TRIALS[0], "no trial 0", "or list(TRIALS)[0]"),
+        (lambda: TRIALS["turn_p3"], "no trial 'turn_p3'", "did you mean 'turn_p35'"),
+        (lambda: TRIALS.plot(), "no picture is named", ".plot.tracks() or .plot.histories()"),
         (lambda: mmgtune.estimate(5), "no name of a file of particulars (5)", "a text or a Path"),
         (lambda: mmgtune.write_trial("turn.parquet", TRIALS["turn_p35"]), "no path (Trial(turn_p35", "where the file"),
         (lambda: mmgtune.load_trials(5), "no name of a data set (5)", "a text or a Path"),
@@ -91,6 +121,69 @@ def test_what_is_of_the_wrong_type_is_refused_in_words(call, what, fix):
     assert what in str(problem)
     assert fix in problem.fix
     assert problem.why
+
+
+@pytest.mark.parametrize(
+    ("found", "in_place_of"),
+    [
+        (mmgtune.FitResult, mmgtune.ShipProfile),
+        (mmgtune.Diagnosis, mmgtune.ShipProfile),
+        (mmgtune.Posterior, mmgtune.Particles),
+        (mmgtune.Learned, Network),
+        (mmgtune.LearnedHybrid, Hybrid),
+        (mmgtune.LearnedEnsemble, Ensemble),
+        (mmgtune.LearnedMixture, Mixture | Hybrid | Network),
+    ],
+)
+def test_a_result_stands_for_the_ship_it_found(found, in_place_of):
+    assert get_type_hints(found.as_ship, vars(sys.modules[found.__module__]))["return"] == in_place_of
+
+
+class AResult:
+    """As results are that a ship came out of."""
+
+    written_by = "write_run"
+
+    def __init__(self, ship):
+        self.ship = ship
+
+    def as_ship(self):
+        return self.ship
+
+
+def test_a_result_goes_wherever_a_ship_does():
+    turn = TRIALS["turn_p35"]
+    tuned = AResult(SHIP)
+    assert mmgtune.validate([tuned, SHIP], turn).profiles[1].name == "suzaku (2)"
+    assert mmgtune.simulate(tuned, turn)[0].id == "turn_p35"
+    assert mmgtune.score(tuned, turn)[0].J == mmgtune.score(SHIP, turn)[0].J
+    assert mmgtune.compare(tuned, "suzaku_fam").profiles[0] == "suzaku"
+    assert mmgtune.fit(tuned, turn, QUICK).profile is SHIP
+    assert as_predictor(tuned).name == "suzaku"
+    name = "hull.Y_v"
+    particles = mmgtune.Particles(SHIP, (name,), np.array([[1.0, 1.1]]) * SHIP.value(name), {})
+    for several in (AResult(particles), particles):
+        assert mmgtune.simulate(several, turn).predictor.drawn(2, 1).n_members == 2
+    with pytest.raises(mmgtune.MmgtuneError, match="AResult is no ship profile"):
+        mmgtune.fit(AResult(particles), turn, QUICK)
+
+
+def test_a_result_is_no_folder_before_it_is_written():
+    for name in mmgtune.__all__:
+        assert getattr(getattr(mmgtune, name), "written_by", "write_run") in mmgtune.__all__
+    with pytest.raises(mmgtune.MmgtuneError, match="no name of a run folder") as caught:
+        mmgtune.render(AResult(SHIP))
+    assert "mmgtune.write_run(RESULT, FOLDER)" in caught.value.problems[0].fix
+
+
+@pytest.mark.parametrize("wrong", [{"speed": 7.5}, {"turn": (-35,)}, {"turn": -35}, {"rpm": 106}])
+def test_the_fix_of_a_number_in_place_of_a_text_is_taken(wrong):
+    with pytest.raises(mmgtune.MmgtuneError) as caught:
+        mmgtune.PredictOptions(**wrong)
+    (name,) = wrong
+    text = re.search(r"'(.*)'", caught.value.problems[0].fix)[1]
+    options = {"turn": ("10",), name: (text,) if name == "turn" else text}
+    assert mmgtune.predict("suzaku", options=mmgtune.PredictOptions(**options)).runs
 
 
 READERS = [

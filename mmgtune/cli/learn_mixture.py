@@ -53,9 +53,9 @@ def command(
     from ..comparing_models import compare_models, write_model_comparison
     from ..fitting import claimed
     from ..learning import learn_mixture
-    from ..learning.mixing import MODEL
     from ..networks import named_ship
     from ..report import render
+    from ..resources import MODEL
 
     given = named_ship(model)
     folder = run.out or c.default_out(given)

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from ..errors import OptionError, Problem
 from . import common as c
 
 
@@ -26,5 +27,8 @@ def command(
     """
     from ..report import render
 
+    if run.is_file():
+        what, why = "this is a file, not a run folder", "a report is made of the whole folder, and written into it"
+        raise OptionError(Problem(what, str(run), why, f"give the folder: {run.parent}"))
     for path in render(run, pdf=pdf):
         c.show(str(path))

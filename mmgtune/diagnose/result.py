@@ -112,6 +112,8 @@ class Diagnosis(Plotted):
     choice    windows of voyages that were looked at, None for trials; differing: what differs between the voyages
     """
 
+    written_by = "write_diagnosis"
+
     profile: ShipProfile
     options: DiagnoseOptions
     causes: tuple[Cause, ...]
@@ -443,6 +445,10 @@ class Diagnosis(Plotted):
     def kept(self) -> Mapping[str, float]:
         """Targets beside the named causes: where none is, tuned without any."""
         return self.theta if self.named else self.retuned
+
+    def as_ship(self) -> ShipProfile:
+        """The extended profile: what the result stands for where a ship is wanted."""
+        return self.extended_profile()
 
     def extended_profile(self) -> ShipProfile:
         """The profile with re-tuned targets and the named causes, each in its own section.

@@ -122,6 +122,8 @@ class LeftOut(Displayed):
     inputs   names of what drives the ship
     """
 
+    written_by = "write_left_out"
+
     thetas: tuple[dict[str, float], ...]
     parts: tuple[tuple[str, ...], ...]
     before: tuple[TrialScore, ...]

@@ -85,6 +85,8 @@ class FitResult(Plotted):
     interrupted  stopped by the user; the values are the best so far
     """
 
+    written_by = "write_run"
+
     profile: ShipProfile
     options: FitOptions
     box: Box
@@ -287,6 +289,10 @@ class FitResult(Plotted):
                 }
             )
         return rows
+
+    def as_ship(self) -> ShipProfile:
+        """The tuned profile: what the result stands for where a ship is wanted."""
+        return self.tuned_profile()
 
     def tuned_profile(self) -> ShipProfile:
         """The tuned profile, ready to simulate; in its provenance windows stand as the trials they were cut from."""

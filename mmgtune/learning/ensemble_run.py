@@ -83,6 +83,8 @@ class LearnedEnsemble:
             of neither, those of the trials learned from: "learned"
     """
 
+    written_by = "write_learned"
+
     ensemble: Ensemble
     members: tuple[EnsembleMember, ...]
     task: EnsembleTask
@@ -95,6 +97,10 @@ class LearnedEnsemble:
     def role(self) -> str:
         """The trials it is judged by first."""
         return next(role for role in ("test", "validation", "learned") if role in self.scores)
+
+    def as_ship(self) -> Ensemble:
+        """What was trained: what the result stands for where a ship is wanted."""
+        return self.ensemble
 
     def __repr__(self) -> str:
         """In a line."""

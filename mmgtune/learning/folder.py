@@ -21,6 +21,7 @@ from ..networks import (
 )
 from ..objective import spread
 from ..predictor import Predictor, as_predictor
+from ..resources import MODEL
 from ..simulation import simulate
 from ..trial import Trial
 from ..validation import score, summary
@@ -34,7 +35,6 @@ from .run import Learned
 RESULT = "learning.json"
 HYBRID_RESULT = "hybrid.json"
 ENSEMBLE_RESULT = "ensemble.json"
-MODEL = "model.safetensors"
 
 POINTS = 200
 """Points of a drawn motion, about."""

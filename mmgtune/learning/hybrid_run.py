@@ -60,6 +60,8 @@ class LearnedHybrid:
     scores   of the trials held out, before and after
     """
 
+    written_by = "write_learned"
+
     hybrid: Hybrid
     penalty: float | None
     step: int
@@ -80,6 +82,10 @@ class LearnedHybrid:
     def gained(self) -> bool:
         """Whether the network does better than none."""
         return self.penalty is not None
+
+    def as_ship(self) -> Hybrid:
+        """What was trained: what the result stands for where a ship is wanted."""
+        return self.hybrid
 
     def __repr__(self) -> str:
         """In a line."""

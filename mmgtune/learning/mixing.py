@@ -29,11 +29,12 @@ from ..options.learning import MixtureOptions
 from ..predictor import Predictor
 from ..profile import ShipProfile
 from ..profile.changing import joined
+from ..resources import MODEL
 from ..trial import Trial, TrialSet
 from ..validation import L_MSE, by_manoeuvre, score
 from .choosing import pieces_of
 
-RESULT, MODEL = "mixture.json", "model.safetensors"
+RESULT = "mixture.json"
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,6 +73,10 @@ class LearnedMixture:
     def share(self) -> float:
         """Of the networks."""
         return self.model.share if isinstance(self.model, Mixture) else float(isinstance(self.model, Network))
+
+    def as_ship(self) -> Mixture | Hybrid | Network:
+        """What was trained: what the result stands for where a ship is wanted."""
+        return self.model
 
     def __repr__(self) -> str:
         """In a line."""

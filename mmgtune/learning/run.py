@@ -72,6 +72,8 @@ class Learned:
     scores   of the trials that chose and of those held out, in windows, by role: "validation", "test"
     """
 
+    written_by = "write_learned"
+
     network: Network
     members: tuple[Member, ...]
     task: Task
@@ -79,6 +81,10 @@ class Learned:
     provenance: dict[str, Any]
     interrupted: bool
     wall_s: float
+
+    def as_ship(self) -> Network:
+        """What was trained: what the result stands for where a ship is wanted."""
+        return self.network
 
     def __repr__(self) -> str:
         """In a line."""

@@ -13,7 +13,7 @@ from .. import limits
 from ..errors import NetworkError, Problem, brief, reason
 from ..files import atomic, hold_regular, path_of
 from ..profile import parse_profile
-from ..resources import folder, looked_for, must_be_name, network_names, taken
+from ..resources import MODEL, folder, in_run, looked_for, must_be_name, network_names, taken
 from .ensemble import Ensemble, Part
 from .feedforward import Layers, Standards
 from .hybrid import Hybrid
@@ -84,7 +84,7 @@ def _described(model: Trained) -> tuple[dict[str, Any], dict[str, dict[str, Any]
 
 
 def load_network(path: str | Path) -> Trained:
-    """Read a network, a hybrid, an ensemble or a mixture: a path or a bundled name.
+    """Read a network, a hybrid, an ensemble or a mixture: a path, a run folder or a bundled name.
 
     Raises NetworkError for a file that is none, is damaged, or does not fit together; ProfileError for a hybrid whose
     profile this version cannot read.
@@ -92,7 +92,8 @@ def load_network(path: str | Path) -> Trained:
     from safetensors import SafetensorError, safe_open
 
     must_be_name(path, "trained model", NetworkError)
-    path = taken(path, Path(path).exists(), folder("ship_profiles") / f"{path}{SUFFIX}") or Path(path)
+    bundled = folder("ship_profiles") / f"{path}{SUFFIX}"
+    path = in_run(path, MODEL) or taken(path, Path(path).exists(), bundled) or Path(path)
     where = str(path)
     try:
         hold_regular(path)

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TypeVar
+from typing import TypeVar, cast
 
 from ..backends import Integrator
 from ..errors import ProfileError
-from ..given import ship_of
-from ..particles import FILE, ParticlePredictor, load_particles
+from ..given import Found, ship_of
+from ..particles import FILE, ParticlePredictor, Particles, load_particles
 from ..profile import ShipProfile
-from ..resources import folder, must_be_name, taken
+from ..resources import MODEL, folder, in_run, must_be_name, taken
 from .ensemble import Ensemble, EnsemblePredictor
 from .file import SUFFIX, Trained, load_network
 from .hybrid import Hybrid, HybridPredictor
 from .mixture import Mixture, MixturePredictor
+from .model import Network
 from .predicting import NetworkPredictor
 
 Other = TypeVar("Other")
@@ -24,13 +25,19 @@ TrainedPredictor = NetworkPredictor | HybridPredictor | EnsemblePredictor | Mixt
 def named_ship(
     given: str | Path | Other, integrator: Integrator = Integrator()
 ) -> ShipProfile | TrainedPredictor | ParticlePredictor | Other:
-    """The profile, the particles or the network of a path or bundled name; anything else as it is.
+    """The profile, the particles or the network of a path or bundled name, or those that a result has found.
 
     integrator  of particles and of a hybrid; networks alone have a step of their own
-    A run folder with particles is meant by them.  Raises ProfileError or NetworkError.
+    Anything else is returned as it is.  A run folder is meant by its particles or trained model, else by its profile.
+    Raises ProfileError or NetworkError.
     """
     if not isinstance(given, (str, Path)):
-        return given
+        found = given.as_ship() if isinstance(given, Found) else given
+        if isinstance(found, Particles):
+            return found.predictor(integrator)
+        if isinstance(found, (Network, Hybrid, Ensemble, Mixture)):
+            return predictor_of(found, integrator)
+        return cast(Other, found)
     path = file_of(given)
     if path is None:
         return ship_of(given)
@@ -42,10 +49,10 @@ def named_ship(
 def file_of(given: str | Path) -> Path | None:
     """The file of particles or of a trained model of that path or bundled name; None where no such is meant."""
     must_be_name(given, "ship", ProfileError)
-    inside = Path(given) / FILE
-    if inside.is_file():
+    inside = in_run(given, FILE) or in_run(given, MODEL)
+    if inside is not None:
         return inside
-    if str(given).endswith(inside.suffix):
+    if str(given).endswith(Path(FILE).suffix):
         return Path(given)
     bundled = folder("ship_profiles") / f"{given}{SUFFIX}"
     return taken(given, str(given).endswith(SUFFIX), bundled)

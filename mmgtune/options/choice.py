@@ -32,7 +32,7 @@ class Choice:
     values  words it may be, empty for any
     names   the words that it, or each part of it, may be, asked for when they are shown or completed; None for any
     called  what it is called where a word is wrong
-    unit    of a number, for messages
+    unit    of a number, or one that a text has to name; for messages
     least, above, most, below  limits of a number: from, more than, up to, less than
     """
 
@@ -169,8 +169,8 @@ class Options:
         hints: dict[str, Any] = _hints(type(self))  # type: ignore[arg-type]  # classes can be hashed
         return [
             problem
-            for name in choices(type(self))
-            for problem in _of_another_kind(name, getattr(self, name), hints[name])
+            for name, known in choices(type(self)).items()
+            for problem in _of_another_kind(name, getattr(self, name), hints[name], known.unit)
         ]
 
     def to_dict(self) -> dict[str, Any]:
@@ -209,8 +209,11 @@ def _hints(of: Any) -> dict[str, Any]:
     return get_type_hints(of)
 
 
-def _of_another_kind(name: str, value: Any, hint: Any) -> list[Problem]:
-    """The problem of a value that is not of the type of its field; a list does for a tuple, None where it may be."""
+def _of_another_kind(name: str, value: Any, hint: Any, unit: str = "") -> list[Problem]:
+    """The problem of a value that is not of the type of its field; a list does for a tuple, None where it may be.
+
+    unit  that a text has to have, "" where it needs none
+    """
     kinds = get_args(hint) if isinstance(hint, UnionType) else (hint,)
     if value is None and NoneType in kinds:
         return []
@@ -227,8 +230,9 @@ def _of_another_kind(name: str, value: Any, hint: Any) -> list[Problem]:
     known, words = _KINDS[kind]
     if isinstance(value, known) and (kind is bool or not isinstance(value, bool)):
         return []
-    such = f": {_part(value, kind)}" if kind is str and isinstance(value, (int, float)) else ""
-    return [Problem(f"{name} is {_short(value)}", name, fix=f"give {words}{such}")]
+    such = f": {_part(value, kind, unit)}" if kind is str and isinstance(value, (int, float)) else ""
+    of = " with its unit" if kind is str and unit else ""
+    return [Problem(f"{name} is {_short(value)}", name, fix=f"give {words}{of}{such}")]
 
 
 def _pythons(value: Any) -> Any:
@@ -241,9 +245,9 @@ def _pythons(value: Any) -> Any:
     return int(value) if isinstance(value, Integral) else float(value)
 
 
-def _part(value: Any, kind: type) -> str:
+def _part(value: Any, kind: type, unit: str = "") -> str:
     """A value as it might have been meant."""
-    return _short(str(value) if kind is str else value)
+    return _short(f"{value} {unit}".rstrip() if kind is str else value)
 
 
 def _short(value: Any) -> str:

@@ -25,7 +25,9 @@ class SimulateOptions(SimulationOptions):
     zigzag: tuple[str, ...] = choice(
         (), "Zigzag RUDDER/HEADING (deg), such as 20/20 or -10/10; repeatable.", panel=MANOEUVRE
     )
-    speed: str | None = choice(None, 'Approach speed, such as "12 kn". Default: the profile\'s.', panel=MANOEUVRE)
+    speed: str | None = choice(
+        None, 'Approach speed, such as "12 kn". Default: the profile\'s.', unit="m/s", panel=MANOEUVRE
+    )
     rpm: str | None = choice(
         None, 'Propeller revolutions: 106 (1/min) or "1.77 1/s". Default: the profile\'s.', panel=MANOEUVRE
     )

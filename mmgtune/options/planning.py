@@ -26,7 +26,9 @@ class PlanOptions(SimulationOptions):
         panel=MANOEUVRE,
     )
     half_speed: bool = choice(True, "Also turns and zigzags at half the approach speed.", panel=MANOEUVRE)
-    speed: str | None = choice(None, 'Approach speed, such as "12 kn". Default: the profile\'s.', panel=MANOEUVRE)
+    speed: str | None = choice(
+        None, 'Approach speed, such as "12 kn". Default: the profile\'s.', unit="m/s", panel=MANOEUVRE
+    )
     rpm: str | None = choice(
         None, 'Propeller revolutions: 106 (1/min) or "1.77 1/s". Default: the profile\'s.', panel=MANOEUVRE
     )

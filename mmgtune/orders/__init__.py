@@ -5,7 +5,7 @@ The rudder depends on the motion here, so the inputs of these runs are known as 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
@@ -60,23 +60,29 @@ def run_manoeuvre(
 
 
 def run_manoeuvres(
-    ship: ShipGiven | Model, sailings: Sequence[Sailing], *, theta: FloatArray | None = None
+    ship: ShipGiven | Model,
+    sailings: Sailing | Helmsman | Sequence[Sailing | Helmsman],
+    *,
+    theta: FloatArray | None = None,
 ) -> list[Motion]:
     """Simulate manoeuvres given as orders, side by side, each with a helmsman and steps of its own.
 
     The order goes to every rudder, the revolutions to every propeller, each moved by its actuator in the profile;
     thrusters rest.
 
-    ship   object, path or bundled name
-    theta  (n_rows, n_sailings) coefficients, those of the profile where None
-    Raises OptionError where the profile has no approach condition and none is given.
+    ship      object, path or bundled name
+    sailings  one or several; orders alone are carried out from the profile's approach
+    theta     (n_rows, n_sailings) coefficients, those of the profile where None
+    Raises OptionError for what is no order, and where the profile has no approach condition and none is given.
     """
-    if not sailings:
+    given = list(sailings) if isinstance(sailings, Iterable) else [sailings]
+    several = [one if isinstance(one, Sailing) else Sailing(one) for one in given]
+    if not several:
         return []
     model = ship if isinstance(ship, Model) else Model(ship_of(ship))
     if theta is None:
-        theta = np.repeat(model.matrix()[:, :1], len(sailings), axis=1)
-    watches = [Watch(sailing, model) for sailing in sailings]
+        theta = np.repeat(model.matrix()[:, :1], len(several), axis=1)
+    watches = [Watch(sailing, model) for sailing in several]
     backend = get_ready_backend(model)
     quick = [k for k, watch in enumerate(watches) if backend and serves(watch)]
     if backend and quick:

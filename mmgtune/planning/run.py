@@ -79,6 +79,8 @@ class TrialPlan(Displayed):
     notes   what to know, in sentences
     """
 
+    written_by = "write_plan"
+
     particles: Particles
     model: str
     question: Question

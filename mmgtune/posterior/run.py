@@ -41,6 +41,8 @@ class Posterior(Plotted):
                 distribution is Gaussian
     """
 
+    written_by = "write_posterior"
+
     room: Room
     particles: Particles
     sized: Sized
@@ -53,6 +55,10 @@ class Posterior(Plotted):
     def __repr__(self) -> str:
         """In a line."""
         return f"Posterior({self.particles.profile.id}: {len(self.particles)} particles of {len(self.room)} numbers)"
+
+    def as_ship(self) -> Particles:
+        """The particles: what the result stands for where a ship is wanted."""
+        return self.particles
 
     def warnings(self) -> list[str]:
         """What a reader must know before trusting the bands."""

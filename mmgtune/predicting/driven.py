@@ -14,7 +14,7 @@ from ..errors import OptionError, TrialError
 from ..evaluation import Measured, TrialRecord
 from ..manoeuvres.summary import indices_of
 from ..orders import sample_of
-from ..predictor import Predictor, cases_from, draught_of, portions
+from ..predictor import Predictor, cases_from, draught_of, portions, predicted
 from ..simulation import Motion
 from ..trial import Trial
 from ..validation import window_scores
@@ -30,7 +30,7 @@ def on_orders(predictor: Predictor, orders: OrderList, approach: Approach) -> Fo
     limits.ORDERS_STEPS.hold(orders.duration / step * predictor.n_members, str(orders.path), OptionError)
     t, controls = orders.carried_out(tuple(predictor.inputs), actuators_of(predictor), approach.n, step)
     initial = np.array([0.0, 0.0, 0.0, approach.speed, 0.0, 0.0])
-    found = predictor.predict(pad([t], [controls], [initial]))
+    found = predicted(predictor, pad([t], [controls], [initial]))
     states, diverged = found.states[0], found.diverged[0]
     motions = [
         Motion(orders.path.stem, t, one, controls, bool(lost), tuple(predictor.inputs), k)
@@ -49,7 +49,7 @@ def on_trials(predictor: Predictor, trials: Sequence[Trial], restart: float | No
     inputs = tuple(predictor.inputs)
     for portion in portions([trial.n_samples for trial in trials], predictor.n_members):
         some = trials[portion]
-        found = predictor.predict(cases_from(some, inputs, draught_of(predictor)))
+        found = predicted(predictor, cases_from(some, inputs, draught_of(predictor)))
         for i, trial in enumerate(some):
             states = np.array(found.states[i, :, : trial.n_samples])  # a copy: a view would hold all of them
             yield replace(

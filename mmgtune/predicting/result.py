@@ -118,6 +118,8 @@ class Predicted(Plotted):
     notes      what to know, in sentences
     """
 
+    written_by = "write_prediction"
+
     name: str
     predictor: Predictor
     runs: tuple[Foretold, ...]

@@ -12,7 +12,7 @@ from ..backends import Cases, get_backend
 from ..backends.numpy_lanes import NumpyLanes
 from ..manoeuvres.on_lanes import LaneRecord, stopping, turning, zigzag
 from ..networks import HybridPredictor
-from ..predictor import Paired, PhysicsPredictor, Predictor, portions
+from ..predictor import Paired, PhysicsPredictor, Predictor, portions, predicted
 from ..profile import Actuator
 from ..steering import APPROACH, Lanes, ModelLanes, Orders, Steered, steer_lanes
 from ..units import DEG
@@ -68,7 +68,7 @@ class MemberLanes:
             return self.predictor.paired(cases, own)
         states = np.empty((len(cases), cases.t.shape[1], 6))
         for part in portions([cases.t.shape[1]] * len(cases), self.predictor.n_members):
-            found = self.predictor.predict(_some(cases, part))
+            found = predicted(self.predictor, _some(cases, part))
             rows = np.arange(part.stop - part.start)
             lost = found.diverged[rows, own[part]]
             states[part] = np.where(lost[:, None, None], np.nan, found.states[rows, own[part]])

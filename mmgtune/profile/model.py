@@ -10,6 +10,7 @@ from typing import Any
 
 from ..components import ARRANGEMENTS, Arrangement, Component, split_name
 from ..displayed import Brief, Displayed
+from ..errors import Problem, ProfileError, among
 from ..inputs import INPUTS
 from ..physics.actuation import moved
 from ..units import DIMENSIONLESS
@@ -149,9 +150,20 @@ class ShipProfile(Displayed):
         return f"ShipProfile({self.id}: {parts}{more})"
 
     def coefficient(self, name: str) -> Coefficient:
-        """The coefficient called 'section.symbol'; KeyError if there is none."""
+        """The coefficient called 'section.symbol'.  Raises ProfileError if there is none."""
         section, symbol = split_name(name)
-        return self.sections[section].coefficients[symbol]
+        found = self.sections[section].coefficients.get(symbol) if section in self.sections else None
+        if found is None:
+            raise ProfileError(Problem(f"no number '{name}'", str(self.path or self.id), **self._meant_by(name)))
+        return found
+
+    def _meant_by(self, name: str) -> dict[str, str]:
+        """Why and fix of a name that no number has: symbols alone are not names, others may be misspelt."""
+        known = [f"{kind}.{symbol}" for kind, section in self.sections.items() for symbol in section.coefficients]
+        same = [f"'{one}'" for one in known if split_name(one)[1] == name]
+        if same:
+            return {"why": "numbers are called SECTION.SYMBOL", "fix": f"write {' or '.join(same)}"}
+        return among(name, known)
 
     def names(self) -> list[str]:
         """Every 'section.symbol' that holds one number, in order."""
@@ -163,10 +175,11 @@ class ShipProfile(Displayed):
         ]
 
     def value(self, name: str) -> float:
-        """The number called 'section.symbol'."""
+        """The number called 'section.symbol'.  Raises ProfileError where there is none, or it is a table."""
         value = self.coefficient(name).value
         if isinstance(value, tuple):
-            raise KeyError(f"{name} is a table")
+            why, fix = "it has several numbers", f"write coefficient('{name}').value"
+            raise ProfileError(Problem(f"'{name}' is a table", str(self.path or self.id), why, fix))
         return value
 
     def written(self, name: str) -> str:

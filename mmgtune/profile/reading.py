@@ -17,7 +17,18 @@ from ..errors import Problem, ProfileError, among, brief, near_to, reason
 from ..inputs import Input
 from ..metrics import METRICS
 from ..physics.regressions.fujiwara1998 import wind_harmonics
-from ..resources import folder, looked_for, must_be_name, network_names, profile_names, taken
+from ..resources import (
+    DOCUMENTS,
+    PROFILE,
+    folder,
+    in_run,
+    looked_for,
+    must_be_name,
+    network_names,
+    profile_names,
+    ship_in,
+    taken,
+)
 from ..toml_reading import TomlReader, toml_of
 from .changing import missing_for
 from .model import ABSENT, Actuator, Approach, Coefficient, Section, ShipProfile, SteeringGear
@@ -38,17 +49,24 @@ VALUE_KEYS = ("value", "source", "assumption", "note", "bounds", "pre_determined
 
 
 def find_profile(name: str | Path) -> Path:
-    """The file of a profile given by path or by the name of a bundled one; ProfileError if there is none."""
+    """The file of a profile given by path or by the name of a bundled one; of a run folder the profile in it.
+
+    Raises ProfileError if there is none.
+    """
     must_be_name(name, "ship profile", ProfileError)
     path = Path(name)
     if found := taken(name, path.is_file(), folder("ship_profiles") / f"{name}.toml"):
         return found
     names = profile_names()
     fix = f"give a path to a TOML file, or a bundled name: {', '.join(names)}"
+    if inside := in_run(path, PROFILE):
+        return inside
     if path.is_dir():
         there = sorted(one.name for one in path.glob("*.toml"))[:3]
         fix = f"name one of its files ({', '.join(there)}), or " * bool(there) + fix
         why = "a ship is one file" if there else "it is no run folder with a model in it"
+        if other := ship_in(path):
+            why = f"it holds {other.name}, which only simulation, scoring and prediction take"
         raise ProfileError(Problem("the profile is a folder, not a file", str(name), why, fix=fix))
     trained = network_names()
     fix += f"; where trained models do: {', '.join(trained)}" if trained else ""
@@ -61,11 +79,19 @@ def find_profile(name: str | Path) -> Path:
 
 
 def load_profile(name: str | Path) -> ShipProfile:
-    """Read and validate a profile by path or bundled name.  Raises ProfileError with everything wrong in it."""
+    """Read and validate a profile by path, run folder or bundled name.
+
+    Raises ProfileError with everything wrong in it.
+    """
     path = find_profile(name)
     if path.suffix == ".parquet":
         what, why = "this is a trial, not a ship profile", "profiles are TOML files, trials are Parquet files"
         raise ProfileError(Problem(what, str(path), why, f"give it with trials={shlex.quote(str(name))}"))
+    if path.suffix in DOCUMENTS:
+        what, why = "this is a document, not a ship profile", f"profiles are TOML files, and runs write {path.suffix}"
+        beside = ship_in(path.parent)
+        fix = f"give what lies beside it: {shlex.quote(str(beside))}" if beside else "name the TOML file of the profile"
+        raise ProfileError(Problem(what, str(path), why, fix))
     try:
         text = limits.text(path, limits.PROFILE_BYTES, ProfileError)
     except (OSError, ValueError) as error:

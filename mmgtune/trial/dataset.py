@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Self
 
 from ..displayed import Plotted, inert
-from ..errors import Problem, TrialError, among, closest
+from ..errors import Problem, TrialError, among, brief, closest, kind_of
 from ..resources import folder, looked_for, must_be_name, profile_names, taken, trial_set_names
 from .index_trial import IndexTrial, has_index_trials, read_index_trials
 from .model import Trial
@@ -64,7 +64,12 @@ class TrialSet(Plotted):
         found = self.trials.get(name) or self.stated.get(name)
         if found is None:
             known = [*self.trials, *self.stated]
-            raise TrialError(Problem(f"no trial '{name}'", str(self.path or ""), **among(str(name), known)))
+            said = among(str(name), known)
+            if not isinstance(name, str):
+                such = f"['{known[0]}']" if known else "[ID]"
+                why = f"a trial is had by its id, and {kind_of(name)} is none"
+                said = {"why": why, "fix": f"write {such} for the trial of that id, or list(TRIALS)[{brief(name)}]"}
+            raise TrialError(Problem(f"no trial {brief(name)}", str(self.path or ""), **said))
         return found
 
     @property

@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..displayed import Plotted, inert
 from ..errors import Problem, TrialError
-from ..inputs import INPUTS
+from ..inputs import INPUTS, meant_by
 from .schema import ATTRIBUTES, CHANNELS
 
 
@@ -117,8 +117,12 @@ class Trial(Plotted):
     def inputs(self, names: Sequence[str]) -> FloatArray:
         """(n_samples, n_inputs) what drove the ship, by names of ``inputs.INPUTS``.
 
-        Raises TrialError where the trial has not logged one of them, or with gaps.
+        Raises TrialError for another name, and where the trial has not logged one of them, or with gaps.
         """
+        unknown = [name for name in names if name not in INPUTS]
+        if unknown:
+            where = str(self.path or self.id)
+            raise TrialError(*(Problem(f"'{name}' is no input of a ship", where, **meant_by(name)) for name in unknown))
         have = self.columns
         lacking = [name for name in names if name not in have or not np.isfinite(have[name]).all()]
         if lacking:

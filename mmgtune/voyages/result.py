@@ -137,6 +137,8 @@ class VoyageValidation(Displayed):
     interrupted  stopped by the user; everything is of the windows scored by then
     """
 
+    written_by = "write_voyages"
+
     predictors: Mapping[str, Predictor]
     trials: str
     logs: tuple[Log, ...]

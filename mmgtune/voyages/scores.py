@@ -11,7 +11,7 @@ from ..arrays import BoolArray, FloatArray
 from ..backends import STATES, Cases
 from ..measures import distances
 from ..objective import make_objective
-from ..predictor import Predictor, cases_from
+from ..predictor import Predictor, cases_from, predicted
 from ..trial import Trial
 from .features import features_of, padded
 
@@ -80,7 +80,7 @@ def score_windows(predictor: Predictor, windows: Windows, cases: Cases) -> tuple
 
     Each sample of each channel after the first counts where it was measured, as in ``evaluation``.
     """
-    found = predictor.predict(cases)
+    found = predicted(predictor, cases)
     members = [_score(predictor, windows, found.states[:, k], found.diverged[:, k]) for k in range(predictor.n_members)]
     return _mean_over(members), found.states[:, 0]
 

@@ -36,6 +36,10 @@ TRIAL = resources.folder("trials") / "suzaku" / "turn_p35.parquet"
         (("simulate", "--turn", "hard"), ("'hard' cannot be read (--turn)", "not a number with a unit", "--turn 35")),
         (("simulate", "--zigzag", "20"), ("is not a zigzag (--zigzag)", "with a stroke between", "such as 20/20")),
         (("report", "nowhere"), ("no such run folder (nowhere)", "there is no 'nowhere' in ", "give the folder")),
+        (
+            ("report", str(TRIAL)),
+            ("this is a file, not a run folder", "of the whole folder", f"give the folder: {TRIAL.parent}"),
+        ),
         (("trials", "import", "a.csv"), ("(--map, --preset)", "what the columns of a log mean", "mmgtune trials map")),
         (("trials", "make", "suzuku", "-o", "x"), ("'suzuku' (ship)", "known here", "")),
         (("plan",), ("argument MODEL is missing (mmgtune plan)", "Particles of posterior", "mmgtune plan runs/bands")),

@@ -211,8 +211,8 @@ def test_where_there_is_none_those_that_are_bundled_are_named(tmp_path):
     (tmp_path / "folder.safetensors").mkdir()
     with pytest.raises(NetworkError, match=r"(?s)a folder is no trained model.*has written"):
         load_network(tmp_path / "folder.safetensors")
-    (tmp_path / "folder.safetensors" / "model.safetensors").touch()
-    with pytest.raises(NetworkError, match=r"(?s)give the file in it: .*model\.safetensors"):
+    (tmp_path / "folder.safetensors" / "older.safetensors").touch()
+    with pytest.raises(NetworkError, match=r"(?s)give the file in it: .*older\.safetensors"):
         load_network(tmp_path / "folder.safetensors")
 
 

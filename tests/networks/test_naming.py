@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from mmgtune.networks import save_network
+from mmgtune.errors import ProfileError
+from mmgtune.networks import load_network, named_ship, save_network
 from mmgtune.profile import load_profile
 from mmgtune.trial import load_trials, write_trial
 from tests.command import run
@@ -34,6 +35,18 @@ def test_validate_and_simulate_take_them(models):
     assert ids == ["suzaku", "suzaku type 1", "suzaku hybrid"]
     for name in ("rnn", "hybrid"):
         assert run("simulate", "-p", f"{name}.safetensors", "--trials", "trials", cwd=models).code == 0
+
+
+def test_a_folder_of_a_training_is_its_model(models):
+    for name in ("rnn", "hybrid"):
+        model = load_network(models / f"{name}.safetensors")
+        save_network(model, models / name / "model.safetensors")
+        by_folder, by_file = named_ship(models / name), named_ship(models / f"{name}.safetensors")
+        assert type(by_folder) is type(by_file)
+        assert by_folder.name == by_file.name == named_ship(model).name
+        assert type(load_network(models / name)) is type(model)
+        with pytest.raises(ProfileError, match=r"is a folder.*(?s:.*)it holds model\.safetensors"):
+            load_profile(models / name)
 
 
 def test_trials_of_another_ship_are_told(models):

@@ -118,3 +118,34 @@ def test_units(text, unit, value):
 def test_what_is_no_speed(text):
     with pytest.raises(ValueError):
         units.parse(text, "m/s")
+
+
+def a_run(folder, *more):
+    """A run folder with a tuned profile, and files that are empty."""
+    folder.mkdir(parents=True)
+    (folder / "profile.toml").write_text(load_profile("suzaku").text, encoding="utf-8")
+    for name in more:
+        (folder / name).touch()
+    return folder
+
+
+def test_a_run_folder_is_taken_for_the_profile_in_it(tmp_path):
+    run = a_run(tmp_path / "diagnosed", "calm.toml", "diagnosis.json", "particles.parquet")
+    assert load_profile(run).path == run / "profile.toml"
+    assert load_profile(str(run)).text == load_profile("suzaku").text
+    several = a_run(tmp_path / "ships", "other.toml")
+    with pytest.raises(ProfileError, match="is a folder, not a file") as caught:
+        load_profile(several)
+    assert "other.toml, profile.toml" in caught.value.problems[0].fix
+
+
+@pytest.mark.parametrize("name", ["fit.json", "report.html", "report.md", "history.jsonl"])
+def test_a_document_of_a_run_is_no_profile_and_the_one_beside_it_is_named(tmp_path, name):
+    run = a_run(tmp_path / "fit", name)
+    with pytest.raises(ProfileError, match="this is a document, not a ship profile") as caught:
+        load_profile(run / name)
+    assert str(run / "profile.toml") in caught.value.problems[0].fix
+    (tmp_path / name).touch()
+    with pytest.raises(ProfileError) as caught:
+        load_profile(tmp_path / name)
+    assert caught.value.problems[0].fix == "name the TOML file of the profile"

@@ -10,7 +10,7 @@ import numpy as np
 from ...arrays import BoolArray, FloatArray
 from ...backends import Integrator
 from ...model import Model
-from ...predictor import Predictor, as_predictor, cases_from, draught_of, portions
+from ...predictor import Predictor, as_predictor, cases_from, draught_of, portions, predicted
 from ...profile import ShipProfile
 from ...trial import Trial
 from .smoothing import Smoothed, smooth
@@ -97,10 +97,11 @@ def short_horizon(
         some = windows[portion]
         parts = [part for _, part in some]
         start = [motions[i].states[part.start] for i, part in some]
-        found = predictor.predict(
+        found = predicted(
+            predictor,
             cases_from(
                 [trials[i] for i, _ in some], predictor.inputs, draught_of(predictor), parts=parts, initial=start
-            )
+            ),
         )
         diverged += int(found.diverged[:, member].sum())
         for k, (i, part) in enumerate(some):
