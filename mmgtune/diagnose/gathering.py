@@ -48,6 +48,8 @@ def error_of(bench: Workbench, found: Found, told: Leftover) -> Whereabouts:
     whole = sum(by_run.values())
     removable: dict[str, float] = {}
     for refit in found.steps[0].refits if found.steps and whole > 0.0 else ():
+        if refit.hypothesis.by:  # what is told is of one value for all runs
+            continue
         tag = refit.hypothesis.tag
         left = sum(_excess_by_run(bench, refit.point).values())
         removable[tag] = max(removable.get(tag, 0.0), min(1.0, 1.0 - left / whole))

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..fitting.problem import FitProblem
-from ..trial.kinematics import white_noise
+from ..trial.kinematics import FEW_VALUES, rounding_noise, white_noise
 from .winds import other_winds
 from .workbench import Point, Workbench
 
@@ -44,6 +44,7 @@ def changes(
     """Change of the residuals (n_residuals, DRAWS) at a position (n_targets,) in the box, by inputs alike in the log.
 
     The noise of revolutions and rudder angle is what second differences of the logs show; those far above it are bends.
+    What a log in whole degrees leaves out stays the same for as long as it shows the same.
     Where a wind blows it comes in gusts besides, and its force is of another shape.
 
     offsets  (n_cases, 6) of the initial states
@@ -94,9 +95,22 @@ def _otherwise(drawn: FloatArray, logged: FloatArray, n_samples: int, at: IntArr
     bend = np.zeros(len(kept))
     bend[1:-1] = np.abs(np.diff(kept, n=2))
     deviation = np.where(bend > CLEAR * level, np.hypot(level, BETWEEN * bend), level)
+    rounded = _rounded_off(values, logged, drawn)
     if at is None:
-        return deviation * drawn
+        return deviation * drawn + rounded
     changed = np.zeros_like(drawn)
     for into, one in zip(changed, drawn, strict=True):
         into[:n_samples] = np.interp(np.arange(n_samples), at, deviation * one[at])
-    return changed
+    return changed + rounded
+
+
+def _rounded_off(values: FloatArray, logged: FloatArray, drawn: FloatArray) -> FloatArray:
+    """What rounding may have left out of an input (T,), for each row of standard normal numbers (DRAWS, T).
+
+    Orders of a few angles are no rounded ones, though all are multiples of one.
+    """
+    step = rounding_noise(values) if len(np.unique(values)) >= FEW_VALUES else 0.0
+    if step == 0.0:
+        return np.zeros_like(drawn)
+    changes = np.concatenate([[True], np.diff(logged) != 0.0])
+    return np.asarray(step * drawn[:, np.flatnonzero(changes)][:, np.cumsum(changes) - 1])

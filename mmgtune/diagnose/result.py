@@ -246,8 +246,8 @@ class Diagnosis(Plotted):
 
     @property
     def leaves_open(self) -> bool:
-        """Whether the log of the inputs leaves so much open that a cause may hide in it."""
-        return self.leftover.left_open > OPEN
+        """Whether the log of the inputs leaves so much open that a cause may hide in it, and noise hides no more."""
+        return self.leftover.left_open > max(OPEN, self.leftover.slow)
 
     @property
     def explains_all(self) -> bool:

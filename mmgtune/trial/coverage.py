@@ -18,6 +18,12 @@ from ..units import DEG
 SLOW = 0.2
 """Speed below which drift and r L / U are not asked for, as a share of the largest: near rest they may be anything."""
 
+HARDLY_MEASURED = 0.1
+"""Share of its samples from which a channel counts as measured."""
+
+TURN = 5.0
+"""Time [s] either way over which the yaw rate is taken from headings where no rate was measured."""
+
 AT_REST = 0.02
 """Speed that is hardly any, as a share of the largest."""
 
@@ -44,6 +50,8 @@ class Sailed(Protocol):
     @property
     def t(self) -> FloatArray: ...
     @property
+    def psi(self) -> FloatArray: ...
+    @property
     def u(self) -> FloatArray: ...
     @property
     def v_m(self) -> FloatArray: ...
@@ -65,16 +73,35 @@ def visited_by(trials: Iterable[Sailed], L_pp: float) -> Visited:
 def _samples(trial: Sailed, L_pp: float) -> FloatArray:
     """(n_samples, 7) the fields of ``Visited``."""
     unknown = np.full(len(trial.t), np.nan)
-    r, n = (unknown if column is None else column for column in (trial.r, trial.n))
+    n = unknown if trial.n is None else trial.n
+    u, v_m = _measured(trial.u), _measured(trial.v_m)
+    r = unknown if trial.r is None else _measured(trial.r)
+    if np.isnan(r).all() and len(trial.t):
+        r = _slope(trial.psi, trial.t)
     step = np.diff(trial.t)
     seconds = np.concatenate([step[:1], step]) if len(step) else np.zeros(len(trial.t))
     seconds = np.minimum(seconds, 2.0 * float(np.median(seconds)))  # a pause of the log is no time spent anywhere
-    speed = np.hypot(trial.u, trial.v_m)
+    speed = np.hypot(u, 0.0 if np.isnan(v_m).all() else v_m)  # sway hardly counts where it was never measured
     fastest = float(np.max(speed[np.isfinite(speed)], initial=0.0))
     under_way = speed > max(SLOW * fastest, 1e-9)
     rate = np.where(under_way, r * L_pp / np.where(under_way, speed, 1.0), np.nan)
-    drift = np.where(under_way, np.arctan2(-trial.v_m, trial.u), np.nan)
-    return np.column_stack([seconds, trial.delta, speed, trial.u, rate, drift, n])
+    drift = np.where(under_way, np.arctan2(-v_m, u), np.nan)
+    return np.column_stack([seconds, trial.delta, speed, u, rate, drift, n])
+
+
+def _measured(values: FloatArray) -> FloatArray:
+    """A channel, or NaN throughout where it has hardly a sample: one at the beginning says where a run starts alone."""
+    known = np.isfinite(values)
+    return values if known.mean() > HARDLY_MEASURED else np.full(len(values), np.nan)
+
+
+def _slope(values: FloatArray, t: FloatArray) -> FloatArray:
+    """(n_samples,) rates of a channel over ``TURN`` seconds either way, where noise hardly shows; NaN at the ends."""
+    half = max(1, round(TURN / max(float(np.median(np.diff(t))), 1e-9))) if len(t) > 1 else 1
+    found = np.full(len(t), np.nan)
+    if len(t) > 2 * half:
+        found[half:-half] = (values[2 * half :] - values[: -2 * half]) / (t[2 * half :] - t[: -2 * half])
+    return found
 
 
 def _to(side: str, pair: tuple[float, float]) -> float:
@@ -110,8 +137,10 @@ class Coverage:
     def from_dict(cls, data: Mapping[str, Any]) -> Coverage | None:
         """From ``to_dict``; None where it is not one."""
         try:
+            unknown = (float("nan"), float("nan"))
             rudder, drift = (
-                (float(low) * DEG, float(high) * DEG) for low, high in (data["rudder_deg"], data["drift_deg"])
+                (float(low) * DEG, float(high) * DEG)
+                for low, high in (data["rudder_deg"], data.get("drift_deg", unknown))
             )
             rate, speed, ahead = (
                 (float(low), float(high)) for low, high in (data["yaw_rate"], data["speed_m_per_s"], data["u_m_per_s"])
@@ -122,7 +151,7 @@ class Coverage:
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON and profiles, rounded to what can be told: angles in degrees; empty where nothing is known."""
-        if not np.isfinite([*self.rudder, *self.rate, *self.drift, *self.speed, *self.ahead]).all():
+        if not np.isfinite([*self.rudder, *self.rate, *self.speed, *self.ahead]).all():
             return {}
 
         def rounded(pair: tuple[float, float], digits: int, factor: float = 1.0) -> list[float]:
@@ -131,7 +160,7 @@ class Coverage:
         return {
             "rudder_deg": rounded(self.rudder, 1, 1.0 / DEG),
             "yaw_rate": rounded(self.rate, 3),
-            "drift_deg": rounded(self.drift, 1, 1.0 / DEG),
+            **({"drift_deg": rounded(self.drift, 1, 1.0 / DEG)} if np.isfinite(self.drift).all() else {}),
             "speed_m_per_s": rounded(self.speed, 3),
             "u_m_per_s": rounded(self.ahead, 3),
             "sides": list(self.sides),

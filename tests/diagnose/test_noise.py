@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from mmgtune.diagnose.inputs import _rounded_off
 from mmgtune.diagnose.noise import ChannelNoise, NoiseModel, estimate
 
 CHANNELS, RUNS, SAMPLES = 6, 4, 400
@@ -69,3 +70,16 @@ def test_positions_may_wander_far_beyond_their_white_noise_where_the_rest_does_n
         assert found[channel].phi > naive[channel].phi
     else:
         assert found == naive
+
+
+def test_a_rudder_logged_in_whole_degrees_may_have_been_anywhere_between():
+    """For as long as it shows the same; orders of a few angles are not taken for that."""
+    drawn = np.random.default_rng(3).standard_normal((4, 400))
+    angle = 12.0 * np.sin(0.05 * np.arange(400.0)) + np.repeat([0.0, 3.0, -4.0, 7.0], 100)
+    rounded = np.round(angle)
+    left_out = _rounded_off(rounded, rounded, drawn)
+    stands = np.diff(rounded) == 0.0
+    assert np.all(np.diff(left_out)[:, stands] == 0.0)
+    assert np.std(left_out) == pytest.approx(1.0 / np.sqrt(12.0), rel=0.2)
+    for exact in (angle, np.where(angle > 0.0, 35.0, -35.0)):
+        assert not _rounded_off(exact, exact, drawn).any()

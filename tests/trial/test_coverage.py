@@ -104,6 +104,20 @@ def test_what_a_run_goes_to_beyond_is_told(turn):
     assert less.unvisited_by(seen) == []  # within 15 %
 
 
+def test_sides_and_speeds_are_told_without_yaw_rate_and_sway(turn):
+    """The first sample alone is there, from which a run begins."""
+    port = replace(turn, delta=-turn.delta, psi=-0.01 * np.maximum(turn.t - 20.0, 0.0), r=-turn.r)
+    first = np.where(turn.t > 0.0, np.nan, 0.0)
+    bare = replace(port, r=first, v_m=first)
+    seen = Coverage.of([bare], L)
+    assert seen.sides == Coverage.of([port], L).sides == ("port",)
+    assert seen.rate == pytest.approx((-0.01 * L / 2.0, 0.0))
+    assert seen.speed == pytest.approx((2.0, 2.0))
+    assert "drift_deg" not in seen.to_dict()
+    assert Coverage.from_dict(json.loads(json.dumps(seen.to_dict()))).to_dict() == seen.to_dict()
+    assert "cannot be told" in Coverage.of([replace(bare, u=first)], L).sentence
+
+
 def test_it_survives_json(turn):
     seen = Coverage.of([turn, mirrored(turn)], L)
     again = Coverage.from_dict(json.loads(json.dumps(seen.to_dict())))
