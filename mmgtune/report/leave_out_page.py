@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import advice, findings, measures, motion_block, tables, tables_of_motion
+from . import advice, findings, measures, motion_block, repeated, tables, tables_of_motion
 from .band_scores import SCORE_HEADS, score_cells
 from .blocks import Card, Commands, Fold, Nothing, Page, Picture, Prose, Section, Table, cells
 from .common import assumptions, doubts, generated_banner, picture, provenance, warnings
@@ -49,6 +49,7 @@ def build(record: LeaveOutRecord) -> Page:
         _motions(record),
         _scores(record),
         _indices(record),
+        _repeated(data),
         _bands(data),
         _stated(data),
         _coefficients(data),
@@ -152,6 +153,12 @@ def _motions(record: LeaveOutRecord) -> Section | None:
 def _indices(record: LeaveOutRecord) -> Section | None:
     table = tables_of_motion.index_errors(record.results)
     return None if table is None else Section("indices", "Manoeuvring indices of the trials left out", (table,))
+
+
+def _repeated(data: Mapping[str, Any]) -> Section | None:
+    """Manoeuvres repeated from their orders before tuning and as tuned to the others, where that was asked for."""
+    found = data.get("manoeuvres") or {}
+    return repeated.section({WORDS["before"]: found.get("before"), WORDS["after"]: found.get("left_out")})
 
 
 def _by_run(results: Sequence[Mapping[str, Any]]) -> list[tuple[str, str, float, float]]:

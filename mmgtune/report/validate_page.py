@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import advice, measures, motion_block, motions, tables
+from . import advice, measures, motion_block, motions, repeated, tables
 from .band_scores import bands_section
 from .blocks import Block, Card, Commands, Fold, Page, Section, Table, cells
 from .common import doubts, generated_banner, made_table, picture, rms_errors
@@ -53,7 +53,7 @@ def build(record: ValidationRecord) -> Page:
         _scores(record) if record.scored else None,
         bands_section(record.models, "these trials"),
         _stated(record),
-        _repeated(record),
+        repeated.section({one["called"]: one.get("manoeuvres") for one in record.models}),
         Section("next", "What to do next", (Commands(advice.after_validation(data)),)),
         _made(data),
     ]
@@ -215,22 +215,6 @@ def _stated(record: ValidationRecord) -> Section | None:
         if table is not None:
             blocks.append(replace(table, caption=f"{one['called']}: {table.caption}"))
     return Section("stated", "Stated indices", tuple(blocks)) if blocks else None
-
-
-def _repeated(record: ValidationRecord) -> Section | None:
-    """Manoeuvres that the models' own helmsmen repeat, where that was asked for."""
-    rows = []
-    for one in record.models:
-        for run in (one.get("manoeuvres") or {}).get("trials") or ():
-            for key, value in (run.get("simulated") or {}).items():
-                measured = number((run.get("measured") or {}).get(key))
-                rows.append(cells(clean(run.get("id", "")), one["called"], clean(key), shown(measured),
-                                  shown(value)))  # fmt: skip
-    if not rows:
-        return None
-    heads = ("trial", "model", "index", "measured", "simulated")
-    table = Table("repeated-table", "Manoeuvres repeated from their orders", heads, tuple(rows), (3, 4))
-    return Section("repeated", "Manoeuvres repeated", (table,))
 
 
 def _made(data: Mapping[str, Any]) -> Section:
