@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import advice, measures, motion_block, motions
+from . import advice, approaches, measures, motion_block, motions
 from .blocks import Block, Card, Cell, Commands, Fold, Page, Section, Table, cells
 from .common import doubts, made_table
 from .forces import NO_SHIP, Ship, ship_of
@@ -69,10 +69,19 @@ def build(record: SimulationRecord) -> Page:
         title=f"{ship}: simulation",
         eyebrow=f"{ship} · {count(len(record.runs), 'run')} simulated",
         verdict=_verdict(record, ship),
+        lead=_lead(record),
         warnings=(*lost, *(f"{sentence(note)}." for note in data["notes"]), *doubts(data)),
         cards=_cards(record),
         sections=tuple(section for section in sections if section is not None),
     )
+
+
+def _lead(record: SimulationRecord) -> tuple[str, ...]:
+    """From which approach the numbers are, and that none of them was measured."""
+    said = "All numbers are simulated, none is measured."
+    if record.measured:
+        said = "Numbers are simulated but where they are called measured."
+    return tuple(filter(None, (approaches.sentence(record.runs, ordered=not record.measured), said)))
 
 
 def _off(record: SimulationRecord) -> tuple[float | None, float | None]:
@@ -153,7 +162,9 @@ def _motions(record: SimulationRecord) -> Section | None:
         own = dict(record.motions[str(run["id"])])
         if "simulated" in own:
             own["simulated"] = record.ship.with_forces(own["simulated"])
-        note = f"{shown(run['duration_s'], 4)} s" + ("" if run["status"] == "ok" else f", {clean(run['status'])}")
+        note = f"{shown(run['duration_s'], 4)} s{approaches.in_caption(run)}" + (
+            "" if run["status"] == "ok" else f", {clean(run['status'])}"
+        )
         manoeuvres.append(motions.Manoeuvre(run_words(run["id"]), own, note=note))
     runs = [motions.Run("simulated", "simulated", LOOKS["after"])]
     if record.measured:

@@ -181,7 +181,9 @@ def _measures(record: VoyagesRecord) -> Section:
         numeric=(2, 3),
         about=(("J [–]", measures.J), ("L_MSE [–]", measures.L_MSE)),
     )
-    caption = "A curve further left is the better model; dashed: the limits of the classes."
+    caption = (
+        "A curve further left is the better model; dashed: the limits of the classes, which the strip on top shows."
+    )
     return Section(
         "measures",
         "How far off",

@@ -1,0 +1,63 @@
+"""What stands under headlines: on which terms the numbers of a page hold, and what its words mean."""
+
+from __future__ import annotations
+
+from html import escape
+from pathlib import Path
+
+import pytest
+
+from mmgtune.model import Model
+from mmgtune.options import PredictOptions, SimulateOptions
+from mmgtune.predicting import predict, write_prediction
+from mmgtune.profile import load_profile
+from mmgtune.recording import write_simulation
+from mmgtune.report import approaches, load, render
+from mmgtune.report.kinds import KINDS
+from mmgtune.simulating import simulate
+from tests.predicting.test_predict import scattered, two_trials
+
+
+def lead(folder: Path) -> str:
+    """Of the report of a run folder, which is rendered too."""
+    text = render(folder)[0].read_text(encoding="utf-8")
+    kind, record = load.find(folder, KINDS)
+    said = kind.build(record).lead
+    assert all(escape(one) in text for one in said)
+    return " ".join(said)
+
+
+def test_of_a_prediction_by_orders(tmp_path: Path) -> None:
+    options = PredictOptions(turn=("35",), speed="12 kn", rpm="200")
+    write_prediction(predict(scattered(Model(load_profile("suzaku")), 20), options=options), tmp_path)
+    said = lead(tmp_path)
+    assert said.startswith("Approach straight ahead at 6.17 m/s (12 kn) and 200 rpm. All numbers are simulated, none")
+    assert "± is half of the band that holds 90 % of 20 particles" in said
+    caption = "Indices of turn_p35, from 6.17 m/s (12 kn) and 200 rpm"
+    assert caption in (tmp_path / "report.html").read_text(encoding="utf-8")
+
+
+def test_of_a_prediction_on_trials(tmp_path: Path) -> None:
+    trials = two_trials()
+    write_prediction(predict("suzaku", trials=trials), tmp_path)
+    low, high = sorted(float(one.u[0]) for one in trials)
+    assert lead(tmp_path).startswith(f"Each run begins as measured, at {low:.3g} to {high:.3g} m/s")
+    assert "±" not in lead(tmp_path)
+
+
+def test_of_a_simulation(tmp_path: Path) -> None:
+    result = simulate("suzaku", None, SimulateOptions(turn=("35",), speed="5 m/s"))
+    assert result.rows()[0]["approach"] == pytest.approx({"speed_m_per_s": 5.0, "rpm": 106.0})
+    write_simulation(result, result.rows(), tmp_path, "")
+    assert lead(tmp_path) == (
+        "Approach straight ahead at 5 m/s (9.72 kn) and 106 rpm. All numbers are simulated, none is measured."
+    )
+
+
+def test_approaches_of_several_runs_and_of_older_records() -> None:
+    runs = [{"approach": {"speed_m_per_s": speed, "rpm": 106.0}} for speed in (3.0, 3.1)]
+    assert approaches.sentence(runs, ordered=False) == (
+        "Each run begins as measured, at 3 to 3.1 m/s (5.83 to 6.03 kn) and 106 rpm."
+    )
+    assert approaches.sentence([{"approach": None}, {}], ordered=True) == ""
+    assert approaches.in_caption({"approach": {"speed_m_per_s": 3.0}}) == ", from 3 m/s (5.83 kn)"
