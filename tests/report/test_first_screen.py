@@ -7,10 +7,13 @@ from pathlib import Path
 
 import pytest
 
+from mmgtune.checking import check, update_baseline
+from mmgtune.documents import write_json
 from mmgtune.model import Model
 from mmgtune.options import PredictOptions, SimulateOptions
 from mmgtune.predicting import predict, write_prediction
 from mmgtune.profile import load_profile
+from mmgtune.provenance import made_by
 from mmgtune.recording import write_simulation
 from mmgtune.report import approaches, load, render
 from mmgtune.report.kinds import KINDS
@@ -52,6 +55,16 @@ def test_of_a_simulation(tmp_path: Path) -> None:
     assert lead(tmp_path) == (
         "Approach straight ahead at 5 m/s (9.72 kn) and 106 rpm. All numbers are simulated, none is measured."
     )
+
+
+def test_of_a_check(tmp_path: Path) -> None:
+    update_baseline("suzaku", "suzaku", tmp_path / "base.json")
+    found = check("suzaku", "suzaku", tmp_path / "base.json")
+    write_json({**found.to_dict(), **made_by("mmgtune check")}, tmp_path / "check.json")
+    assert lead(tmp_path).startswith("To pass is to be no worse than the committed baseline, but for its tolerances;")
+    text = (tmp_path / "report.md").read_text(encoding="utf-8")
+    assert "Nearest to failing" in text
+    assert text.splitlines()[2] == "suzaku on suzaku against base.json"
 
 
 def test_approaches_of_several_runs_and_of_older_records() -> None:
