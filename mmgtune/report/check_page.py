@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..metrics import METRICS
-from . import advice
+from . import advice, codes
 from .blocks import Block, Card, Cell, Commands, Fold, Nothing, Page, Prose, Section, Table, cells
 from .common import doubts, made_table, picture
 from .load import Kind
@@ -163,7 +163,9 @@ def _worst(data: Mapping[str, Any]) -> Section | None:
     if any(_severity(row) > _FAR for row in rows):
         caption += f" Bars end at {_FAR:g} times what passes."
     title = "What changed" if failing else "Nearest to failing"
-    return Section("worst", title, (picture(figure, "Metrics", caption),))
+    told = codes.sentences(data.get("orders") or {})
+    legend_of_trials = (Prose(told, listed=True),) if told else ()
+    return Section("worst", title, (picture(figure, "Metrics", caption), *legend_of_trials))
 
 
 def _changed(data: Mapping[str, Any]) -> Section | None:

@@ -277,6 +277,12 @@ def _causes(data: Mapping[str, Any]) -> Section | None:
     return Section("causes", "Causes" if data["causes"] else "What comes closest", tuple(blocks))
 
 
+_STANDS_IN = (
+    "targets stand in for one another and for what is no target, and the ship may be otherwise: sentences name only what "
+    "fouling changes (R_0, X_0F)"
+)
+
+
 def _retuned(data: Mapping[str, Any]) -> Section | None:
     """Targets as they were re-tuned, what is surest to differ from the profile first."""
     rows = data.get("retuned") or ()
@@ -306,10 +312,7 @@ def _retuned(data: Mapping[str, Any]) -> Section | None:
             numeric=range(2, 6),
             cards=True,
             about=(
-                (
-                    "re-tuned",
-                    "targets stand in for one another and for what is no target; the ship may be otherwise",
-                ),
+                ("re-tuned", _STANDS_IN),
                 ("±", "half the 95 % interval of the change, the model's form taken as right; none at a bound"),
             ),
         )

@@ -198,7 +198,7 @@ def _off(record: PredictRecord) -> list[Card]:
     if not squares["place"]:
         return []
     place_off, heading_off = (sum(values) / len(values) for values in squares.values())
-    note = f"root mean square, mean of {count(len(squares['place']), 'trial')}"
+    note = f"root mean square of each trial, mean of {count(len(squares['place']), 'trial')}"
     return [
         Card("The mean is off track by" if record.several else "Off track by", f"{shown(place_off, 3)} m", note=note),
         Card("Off heading by", f"{shown(heading_off, 2)}°", note=note),

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import advice, approaches, measures, motion_block, motions
+from . import advice, approaches, codes, measures, motion_block, motions
 from .blocks import Block, Card, Cell, Commands, Fold, Page, Section, Table, cells
 from .common import doubts, made_table
 from .forces import NO_SHIP, Ship, ship_of
@@ -133,7 +133,7 @@ def _cards(record: SimulationRecord) -> tuple[Card, ...]:
     cards = []
     if record.measured:
         place, heading = _off(record)
-        note = f"root mean square, mean of {count(len(record.runs), 'trial')}"
+        note = f"root mean square of each trial, mean of {count(len(record.runs), 'trial')}"
         cards.append(Card("Off track", f"{shown(place, 3)} m" if place is not None else NONE, note=note))
         cards.append(Card("Off heading", f"{shown(heading, 2)}°" if heading is not None else NONE, note=note))
     for run in record.runs:
@@ -218,7 +218,8 @@ def _indices(record: SimulationRecord) -> Section | None:
         )
         heads = ["trial", *(measures.with_unit(name) for name in names)]
         numeric = range(1, len(heads))
-        about = measures.about(names)
+        about = list(measures.about(names))
+        about += list(codes.legend({str(run["id"]): run["measured"] or {} for run in distances}))
         blocks.append(Table("measures-table", "Distances from what was measured", tuple(heads), lines, numeric, about))
     return Section("indices", "Manoeuvring indices", tuple(blocks))
 

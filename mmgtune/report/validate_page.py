@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import advice, measures, motion_block, motions, repeated, tables
+from . import advice, codes, measures, motion_block, motions, repeated, tables
 from .band_scores import bands_section
 from .blocks import Block, Card, Commands, Fold, Page, Section, Table, cells
 from .common import doubts, generated_banner, made_table, picture, rms_errors
@@ -63,6 +63,7 @@ def build(record: ValidationRecord) -> Page:
         title=f"{ship}: models on trials",
         eyebrow=f"{names} on {clean(data['trials'])}",
         verdict=_verdict(record),
+        lead=(f"The misfit J: {measures.J}.",) if record.scored else (),
         banners=generated_banner({"source": data.get("sources") or {}}),
         warnings=(
             *map(clean, data.get("warnings", ())),
@@ -90,7 +91,7 @@ def _verdict(record: ValidationRecord) -> str:
     place, heading = _errors(record, best)
     window = number(record.data["window_s"])
     over = f"Over {shown(window, 3)} s from a measured state" if window else "Over whole trials"
-    off = f"{shown(place, 3)} m and {shown(heading, 2)}° off (root mean square)"
+    off = f"{shown(place, 3)} m and {shown(heading, 2)}° off (root mean square over all samples)"
     if len(record.models) == 1:
         return f"{over} {best['called']} is {off}."
     others = [
@@ -109,12 +110,12 @@ def _cards(record: ValidationRecord) -> tuple[Card, ...]:
     if len(record.models) == 1 and record.scored:
         one = record.models[0]
         place, heading = _errors(record, one)
-        note = f"root mean square, {count(len(one['trials']), 'trial')}"
+        note = f"root mean square over all samples of {count(len(one['trials']), 'trial')} together"
         return (
             Card("Off track", f"{shown(place, 3)} m", note=note),
             Card("Off heading", f"{shown(heading, 2)}°", note=note),
             Card("L_MSE", shown(one["L_MSE"]), note="0 is perfect, about 6 knows only the mean"),
-            Card("Misfit J", shown(one["J"]), note=clean(one["method"])),
+            Card("Misfit J", shown(one["J"]), note="sum over all samples; 0 is a perfect fit"),
         )
     for one in record.models[:4] if record.scored else ():
         place, heading = _errors(record, one)
@@ -171,7 +172,10 @@ def _scores(record: ValidationRecord) -> Section:
         for row in one["trials"]:
             lines.append(cells(clean(row["id"]), one["called"], clean(row["manoeuvre"]), *_numbers(record, row)))
     heads = ("off track [m]", "off heading [°]", "L_MSE [–]", "J [–]")
-    about = (("off …", "root mean square over all samples"), ("L_MSE", measures.L_MSE), ("J", measures.J))
+    about = (
+        ("off …", "root mean square over all samples"), ("L_MSE", measures.L_MSE), ("J", measures.J),
+        *codes.legend(record.data.get("orders") or {}),
+    )  # fmt: skip
     table = Table("scores-table", "Scores by kind of manoeuvre", ("model", "manoeuvre", "runs", *heads), tuple(rows),
                   range(2, 7), about)  # fmt: skip
     every = Table("trials-table", "Scores of every trial", ("trial", "model", "manoeuvre", *heads), tuple(lines),
@@ -219,6 +223,7 @@ def _stated(record: ValidationRecord) -> Section | None:
 
 def _made(data: Mapping[str, Any]) -> Section:
     items = [(f"hash of {clean(one['profile'])}", clean(one.get("sha256") or NONE)) for one in data["profiles"]]
+    items += [(f"{clean(one['profile'])} simulated by", clean(one.get("method") or NONE)) for one in data["profiles"]]
     items.append(("spread counted in", clean(data["sigma_from"])))
     options = [(str(name), str(value)) for name, value in (data.get("options") or {}).items()]
     folded = Fold("Options", (pairs("options-table", "Options", ("option", "value"), options),))
