@@ -27,15 +27,16 @@ def section(models: Mapping[str, Mapping[str, Any] | None]) -> Section | None:
     rows = _rows(asked)
     if not rows:
         return Section("repeated", title, (Nothing("No trial is a turning circle or a zigzag without gaps."),))
-    heads = ("trial", "order", "index", "measured", *asked)
+    heads = ("trial", "index", "measured", *asked)
+    about = (("[L]", "in ship lengths"), ("ordered", "; ".join(_ordered(asked))))
     caption = "Indices as measured, and as each model repeats the manoeuvre"
-    table = Table("repeated-table", caption, heads, rows, range(3, len(heads)))
-    every = Fold("Every manoeuvre: measured and simulated", (table,)) if len(rows) > _MANY else table
+    table = Table("repeated-table", caption, heads, rows, range(2, len(heads)), about)
+    every = Fold(f"Every manoeuvre: {len(rows)} indices", (table,)) if len(rows) > _MANY else table
     errors = _errors(asked)
     return Section("repeated", title, (Prose((ABOUT,)), *((errors,) if errors else ()), every))
 
 
-_MANY = 40
+_MANY = 24
 """Rows from which the indices of every manoeuvre are folded away under the errors over all."""
 
 
@@ -54,7 +55,7 @@ def _rows(asked: Mapping[str, Mapping[str, Any]]) -> tuple[tuple[Cell, ...], ...
                 continue
             values = (_mean(by_model.get(name) or (), key) for name in asked)
             shown = (fixed(value, decimals) for value in (measured, *values))
-            rows.append(cells(clean(id), clean(first.get("order") or ""), f"{words} [{_unit(unit)}]", *shown))
+            rows.append(cells(clean(id), f"{words} [{unit}]", *shown))
     return tuple(rows)
 
 
@@ -64,8 +65,10 @@ def _mean(runs: Sequence[Mapping[str, Any]], key: str) -> float | None:
     return sum(values) / len(values) if values else None
 
 
-def _unit(unit: str) -> str:
-    return "ship lengths" if unit == "L" else unit
+def _ordered(asked: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    """Each trial with its order in words."""
+    runs = (run for found in asked.values() for run in found.get("runs") or ())
+    return [f"{id}: {order}" for id, order in {clean(run["id"]): clean(run.get("order") or "") for run in runs}.items()]
 
 
 def _errors(asked: Mapping[str, Mapping[str, Any]]) -> Table | None:

@@ -28,9 +28,10 @@ def test_of_a_validation(tmp_path: Path) -> None:
         for other in [next(one for one in result.profiles[1].repeated if one.id == "turn_p35")]
         for values in (one.measured, one.simulated, other.simulated)
     )
-    row = rf"| turn\_p35 | 35 deg to starboard | advance \[ship lengths\] | {measured} | {first} | {second} |"
+    row = rf"| turn\_p35 | advance \[L\] | {measured} | {first} | {second} |"
     assert row in told
-    assert r"| trial | order | index | measured | suzaku | suzaku\_fam |" in told
+    assert r"turn\_p35: 35 deg to starboard; " in told
+    assert r"| trial | index | measured | suzaku | suzaku\_fam |" in told
     errors = document(result.profiles[0].repeated)["errors"]["overshoot_1_deg"]
     assert f"| 1st overshoot | 2 | +{errors['mean']:.1f}° | {errors['rms']:.1f}° |" in told
     assert (tmp_path / "report.html").read_text(encoding="utf-8").count('id="repeated-table"') == 1
