@@ -138,7 +138,7 @@ def _cards(record: DiagnosisRecord) -> tuple[Card, ...]:
     ):
         size = mean(record.results, "before")
         if size is not None:
-            cards.append(Card(label, written(size), note="re-tuned model, root mean square"))
+            cards.append(Card(label, written(size), note="re-tuned model, root mean square of each trial, mean"))
     left = beyond_noise(data["unexplained"]["share_of_noise_variance"])
     structured = data["unexplained"]["structured"]
     note = "looks like something that happened" if structured else "what is left looks like noise"
