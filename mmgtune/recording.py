@@ -15,7 +15,7 @@ from .physics.quantities import STATES
 from .predictor import Predictor, profile_of
 from .provenance import made_by
 from .simulating import Simulated
-from .simulation import Motion, simulate
+from .simulation import Motion, orders_of, simulate
 from .tables import write_table
 from .trial import Trial, TrialSet
 from .validating import Validation
@@ -81,6 +81,7 @@ def write_validation(
         "L_pp": result.profiles[0].predictor.L_pp,
         "sources": {trial.id: trial.source for trial in pieces},
         "inputs": [INPUTS[name].to_dict() for name in names],
+        "orders": orders_of(list(data.trials.values())[:MOST], result.profiles[0].predictor.L_pp),
         "out": str(folder),
     }
     _write(folder / "validate.json", document)

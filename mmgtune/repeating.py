@@ -26,6 +26,7 @@ from .manoeuvres import (
     turning_indices,
     zigzag_indices,
 )
+from .manoeuvres.judged import JUDGED
 from .model import Model
 from .networks import named_ship
 from .orders import LONGEST_STEP, Helmsman, Sailing, TurningOrder, ZigzagOrder, run_manoeuvres
@@ -33,17 +34,6 @@ from .predictor import PhysicsPredictor, Predictor, as_predictor, stepper_of
 from .simulation import Motion, ordered_angles, track_if_whole
 from .trial import Trial
 from .units import DEG
-
-JUDGED = {
-    "advance_over_L": ("advance", "L", 2),
-    "transfer_over_L": ("transfer", "L", 2),
-    "tactical_diameter_over_L": ("tactical diameter", "L", 2),
-    "steady_diameter_over_L": ("steady diameter", "L", 2),
-    "overshoot_1_deg": ("1st overshoot", "deg", 1),
-    "overshoot_2_deg": ("2nd overshoot", "deg", 1),
-    "initial_turning_time_s": ("initial turning time", "s", 1),
-}
-"""What a manoeuvre is usually judged by: words, unit and decimals worth showing; ``Repeated`` holds all indices."""
 
 PATIENCE = 2.0
 """A repetition may last this many times as long as the trial did."""

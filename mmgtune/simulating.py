@@ -15,6 +15,7 @@ from .errors import OptionError, Problem, reason
 from .evaluation import TrialRecord, evaluate
 from .files import path_of, refuse_existing
 from .given import ShipGiven, TrialsGiven, list_of
+from .inputs import INPUTS
 from .manoeuvres.summary import criteria_of, indices_of
 from .model import Model
 from .networks import named_ship
@@ -109,6 +110,13 @@ class Simulated(Plotted, Sequence[Motion]):
             "doubts": [one.to_dict() for one in ship.doubts()] if ship else [],
         }
 
+    def _begins(self, motion: Motion) -> dict[str, float]:
+        """Speed and revolutions that a run begins with, without revolutions of a ship that logs none."""
+        found = {"speed_m_per_s": float(motion.states[0, 3])}
+        if any(INPUTS[name].role == "propeller" for name in motion.inputs):
+            found["rpm"] = 60.0 * float(motion.mean_of("propeller")[0])
+        return found
+
     def _described(self, motion: Motion, record: TrialRecord | None) -> dict[str, Any]:
         ship, L_pp = self.ship, self.predictor.L_pp
         V = ship.approach.speed if ship and ship.approach else float(motion.states[0, 3])
@@ -119,6 +127,7 @@ class Simulated(Plotted, Sequence[Motion]):
             **({"member": motion.member} if self.predictor.n_members > 1 else {}),
             "status": "diverged" if motion.diverged else "ok",
             "duration_s": float(motion.t[-1]),
+            "approach": self._begins(motion),
             "integrator": record.method if record else ORDERED,
             "indices": record.indices if record else indices_of(track, L_pp) if track else {},
             "measured": measured,

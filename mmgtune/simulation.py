@@ -175,6 +175,23 @@ def ordered_angles(trial: Trial) -> tuple[float, float] | None:
     return (float(said[1]) * DEG, float(said[2]) * DEG) if said else None
 
 
+ORDER = ("rudder_angle_deg", "heading_angle_deg", "direction")
+"""Indices that say what was ordered."""
+
+
+def orders_of(trials: Sequence[Trial], L_pp: float) -> dict[str, dict[str, Any]]:
+    """What each turning circle and zigzag ordered, by trial and by the names of its indices; others are left out.
+
+    A report tells by it what the code of a trial stands for.
+    """
+    read = {trial.id: trial_indices(trial, L_pp) for trial in trials}
+    return {
+        id: {name: indices[name] for name in ORDER if indices.get(name) is not None}
+        for id, indices in read.items()
+        if indices.get("rudder_angle_deg") is not None
+    }
+
+
 def trial_indices(trial: Trial, L_pp: float) -> dict[str, Any]:
     """Manoeuvring indices of a measured trial; empty where ``track_if_whole`` finds no record.  L_pp [m]."""
     track = track_if_whole(trial)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Literal
 
@@ -123,6 +123,7 @@ class CheckReport(Displayed):
     problems  why nothing could be run
     made_by, integrator, substeps, backend  how
     doubts    which of the profile's numbers may be wrong
+    orders    what trials ordered, see ``simulation.orders_of``
     """
 
     profile: str
@@ -140,6 +141,7 @@ class CheckReport(Displayed):
     backend: str
     wall_s: float
     doubts: tuple[Doubt, ...] = ()
+    orders: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
     @cached_property
     def by_status(self) -> Mapping[Status, list[Item]]:
@@ -214,6 +216,7 @@ class CheckReport(Displayed):
             "substeps": self.substeps,
             "backend": self.backend,
             "counts": {status: len(of) for status, of in self.by_status.items()},
+            "orders": {id: dict(order) for id, order in self.orders.items()},
             "items": [item.to_dict() for item in self.items],
             "changed": [one.to_dict() for one in self.changed],
             "notes": list(self.notes),

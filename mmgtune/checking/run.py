@@ -14,6 +14,7 @@ from ..given import ShipGiven, TrialsGiven, trials_of
 from ..metrics import METRICS
 from ..predictor import PhysicsPredictor, Predictor
 from ..profile.doubts import in_words
+from ..simulation import orders_of
 from ..trial import TrialSet
 from .baseline import Baseline, Recorded, read_baseline, write_baseline
 from .blame import changed_coefficients
@@ -137,6 +138,7 @@ def check(
         backend=backend,
         wall_s=time.perf_counter() - began,
         doubts=ship.doubts,
+        orders=orders_of(list(trials.trials.values()), ship.L_pp),
     )
 
 

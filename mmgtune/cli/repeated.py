@@ -13,7 +13,8 @@ if TYPE_CHECKING:
 
 def table(by_model: Mapping[str, Sequence[Repeated]]) -> str:
     """Measured indices beside those of each model, and the errors over all manoeuvres; one model at least."""
-    from ..repeating import JUDGED, summary
+    from ..manoeuvres.judged import JUDGED
+    from ..repeating import summary
 
     first = next(iter(by_model.values()))
     if not first:

@@ -20,7 +20,7 @@ from .instead import Instead
 from .leftover import Leftover, change_in_words, in_words
 from .legs import Difference
 from .record import Record, kind_of, record_of
-from .retuned import Retuned
+from .retuned import Retuned, besides
 from .retuned import in_words as moved_in_words
 from .separate import Suggestion
 from .together import Together
@@ -334,7 +334,8 @@ class Diagnosis(Plotted):
             f"what alone shows, {alone}, tells held-out trials worse" if alone else "no cause that was looked for shows"
         )
         if far := moved_in_words(self.moved):
-            return f"Re-tuning is all it takes: with {far}, the model fits these trials to their noise, and {none}."
+            said = f"Re-tuning is all it takes: with {far}, the model fits these trials to their noise, and {none}."
+            return f"{said} {besides(self.moved)}".strip()
         instead = f" {self.instead.sentence}" if self.instead else ""
         return (
             "Nothing is wrong beyond the noise of the measurements: the re-tuned model fits these trials, and "

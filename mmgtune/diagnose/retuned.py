@@ -103,6 +103,19 @@ def in_words(moved: Sequence[Retuned]) -> str:
     return " and ".join([", ".join(told[:-1]), told[-1]] if len(told) > 1 else told)
 
 
+def besides(moved: Sequence[Retuned]) -> str:
+    """Why the others are not told of, where some moved as far: in a sentence; "" for none."""
+    others = [one for one in moved if one.name not in IN_SERVICE]
+    n = sum(abs(one.after - one.before) >= FAR * abs(one.before) > 0.0 for one in others)
+    if not n:
+        return ""
+    they = "Another coefficient is" if n == 1 else f"{n} other coefficients are"
+    return (
+        f"{they} a tenth or more off too, but may only take up what those beside them are off by: "
+        "what fouling changes is named alone."
+    )
+
+
 def _distance(one: Retuned) -> float:
     """From its pre-determined value, in standard errors; what is not known last."""
     return abs(one.after - one.before) / one.stderr if one.stderr else -1.0

@@ -36,6 +36,10 @@ class Approach:
     speed: float
     n: float
 
+    def to_dict(self) -> dict[str, float]:
+        """For JSON."""
+        return {"speed_m_per_s": self.speed, "rpm": 60.0 * self.n}
+
 
 @dataclass(frozen=True)
 class Asked:

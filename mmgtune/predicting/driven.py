@@ -38,7 +38,7 @@ def on_orders(predictor: Predictor, orders: OrderList, approach: Approach) -> Fo
     ]
     indices = of_records([_shown(motion, predictor.L_pp) for motion in motions])
     words = f"{len(orders.t) - 1} orders of {orders.path.name}"
-    return Foretold(orders.path.stem, "orders", words, t, states, diverged, indices)
+    return Foretold(orders.path.stem, "orders", words, t, states, diverged, indices, approach=approach)
 
 
 def on_trials(predictor: Predictor, trials: Sequence[Trial], restart: float | None) -> Iterator[Foretold]:
@@ -80,7 +80,14 @@ def _beside(predictor: Predictor, trial: Trial, states: FloatArray, diverged: Bo
         values = of_records(rows)
     own = {key: float(of[0]) for key, of in of_records([measured.indices]).items()}
     kind = trial.manoeuvre or measured.kind
-    return Foretold(trial.id, kind, f"{kind}, driven by its inputs", trial.t, states, diverged, values, trial, own)
+    words = f"{kind}, driven by its inputs"
+    return Foretold(trial.id, kind, words, trial.t, states, diverged, values, trial, own, approach=_begins(trial))
+
+
+def _begins(trial: Trial) -> Approach | None:
+    """Measured speed and revolutions a trial begins with; None where they have gaps there."""
+    begins = Approach(float(trial.u[0]), float(trial.n[0]))
+    return begins if np.isfinite([begins.speed, begins.n]).all() else None
 
 
 def _shown(motion: Motion, L_pp: float) -> dict[str, object]:

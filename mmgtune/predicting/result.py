@@ -19,7 +19,7 @@ from ..profile import ShipProfile
 from ..provenance import made_by
 from ..trial import Trial
 from ..units import DEG
-from .asked import profile_behind
+from .asked import Approach, profile_behind
 from .reading import BY_KEY, Values
 
 END = {
@@ -44,6 +44,7 @@ class Foretold:
     diverged  (n_particles,) those that left the world of ships; their states mean nothing
     indices   of each particle, see ``reading``
     trial     that drove it, None where orders did; measured: its indices by the same keys
+    approach  what it begins from, None where that is not known
     scores    of its windows
     """
 
@@ -57,6 +58,7 @@ class Foretold:
     trial: Trial | None = None
     measured: Mapping[str, float] = field(default_factory=dict)
     scores: tuple[WindowScore, ...] = ()
+    approach: Approach | None = None
 
     def __repr__(self) -> str:
         """In a line."""
@@ -196,6 +198,7 @@ class Predicted(Plotted):
             "id": run.id,
             "manoeuvre": run.manoeuvre,
             "order": run.words,
+            "approach": run.approach.to_dict() if run.approach else None,
             "duration_s": float(run.t[-1] - run.t[0]),
             "diverged": int(run.diverged.sum()),
             "indices": [self._index(run, key) for key in run.indices],

@@ -68,7 +68,16 @@ def predict(
         approach = approach_of(several, options)
         manoeuvres = asked(several, options, approach)
         runs = tuple(
-            Foretold(one.id, one.manoeuvre, one.words, found.t, found.states, found.diverged, found.indices)
+            Foretold(
+                one.id,
+                one.manoeuvre,
+                one.words,
+                found.t,
+                found.states,
+                found.diverged,
+                found.indices,
+                approach=approach,
+            )
             for one, found in zip(manoeuvres, sail(several, manoeuvres, approach), strict=True)
         )
     notes += _notes(several, options, runs, steered=trials is None)

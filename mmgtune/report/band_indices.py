@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from . import approaches
 from .blocks import Cell, Table, cells
 from .wording import NONE, clean, fixed, number, shown
 
@@ -53,7 +54,8 @@ def indices_table(run: Mapping[str, Any], level: float, several: bool) -> Table 
     heads += [f"band of {shown(level, 3)} %"] if several else []
     heads += ["measured"] if measured else []
     heads += ["never reach it"] if several else []
-    caption = f"Indices of {clean(run['id'])}"
+    order = f": {clean(run['order'])}" if run.get("order") else ""
+    caption = f"Indices of {clean(run['id'])}{order}{approaches.in_caption(run)}"
     caption += "; particles that never reach one count as beyond all others" if several else ""
     return Table(f"indices-{clean(run['id'])}", caption, tuple(heads), tuple(rows), numeric=range(1, len(heads)))
 

@@ -1,7 +1,7 @@
 """The vocabulary of reports: what a page says, apart from how it looks.
 
-Every page is made of these and of nothing else: a headline, up to four cards, then sections of blocks in order of
-need.  HTML, Markdown and notebooks are renderings of the same blocks.
+Every page is made of these and of nothing else: a headline with what explains it, up to four cards, then sections of
+blocks in order of need.  HTML, Markdown and notebooks are renderings of the same blocks.
 """
 
 from __future__ import annotations
@@ -148,11 +148,15 @@ class Card:
 
 @dataclass(frozen=True)
 class Page:
-    """A whole report."""
+    """A whole report.
+
+    lead  sentences under the headline: what its words mean, and on which terms its numbers hold
+    """
 
     title: str
     eyebrow: str
     verdict: str
+    lead: tuple[str, ...] = ()
     banners: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
     cards: tuple[Card, ...] = ()

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import re
+import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..metrics import METRICS
-from . import advice
+from . import advice, codes
 from .blocks import Block, Card, Cell, Commands, Fold, Nothing, Page, Prose, Section, Table, cells
 from .common import doubts, made_table, picture
 from .load import Kind
-from .plot import Axis, Bar, Figure, Look, Mark, Panel, Rule
+from .plot import Axis, Bar, Color, Figure, Look, Mark, Panel, Rule
 from .tables import tone
 from .wording import NONE, change, clean, coefficient_text, count, number, percent, sentence, share, shown
 
@@ -24,6 +26,12 @@ _BARS = 14
 _FAR = 4.0
 """Allowances at which a bar ends."""
 
+_PASSES: tuple[Color, float] = ("good", 0.6)
+_FAILS: tuple[Color, float] = ("flag", 0.85)
+
+_LETTERS = 24
+"""Letters of a line beside a bar, which a phone has room for."""
+
 
 def build(data: Mapping[str, Any]) -> Page:
     """Everything the report of a check says."""
@@ -34,16 +42,33 @@ def build(data: Mapping[str, Any]) -> Page:
         Section("next", "What to do next", (Commands(advice.after_check(data)),)) if data["next"] else None,
         _made(data),
     ]
-    compared = "its own limits" if data["baseline"] is None else clean(data["baseline"])
+    profile, trials = _file(data["profile"]), _file(data["trials"])
+    compared = "its own limits" if data["baseline"] is None else _file(data["baseline"])
     problems = tuple(clean(one["what"]) for one in data["problems"])
     return Page(
-        title=f"Check of {clean(data['profile'])}",
-        eyebrow=f"{clean(data['profile'])} on {clean(data['trials'])} against {compared}",
+        title=f"Check of {profile}",
+        eyebrow=f"{profile} on {trials} against {compared}",
         verdict=_verdict(data),
+        lead=_lead(data),
         warnings=(*problems, *(sentence(note) for note in data["notes"]), *doubts(data)),
         cards=_cards(data),
         sections=tuple(section for section in sections if section is not None),
     )
+
+
+def _file(name: Any) -> str:
+    """The name of a file without its folder."""
+    return re.split(r"[\\/]", clean(name).rstrip("\\/"))[-1]
+
+
+def _lead(data: Mapping[str, Any]) -> tuple[str, ...]:
+    """What it is to pass: nothing is said of how good the model is."""
+    if data["verdict"] not in ("pass", "regressed"):
+        return ()
+    limits = "within the limits that the profile sets itself"
+    if data["baseline"] is not None:
+        limits = "no worse than the committed baseline, but for its tolerances"
+    return (f"To pass is to be {limits}; how well the model fits the trials is another question.",)
 
 
 def _verdict(data: Mapping[str, Any]) -> str:
@@ -75,14 +100,17 @@ def _cards(data: Mapping[str, Any]) -> tuple[Card, ...]:
 def _means(data: Mapping[str, Any]) -> list[Card]:
     """Means over trials of the distance off track and the error of heading, where they are checked."""
     cards = []
-    for metric, label, unit, digits in (("MED", "Off track", " m", 3), ("rms_psi", "Off heading", "°", 2)):
+    for metric, label, unit, digits in (
+        ("MED", "Mean distance off track", " m", 3),
+        ("rms_psi", "Off heading, rms", "°", 2),
+    ):
         pairs = [(number(row["baseline"]), number(row["now"])) for row in data["items"] if row["metric"] == metric]
         known = [(a, b) for a, b in pairs if a is not None and b is not None]
         if known:
             before, after = (sum(pair[k] for pair in known) / len(known) for k in (0, 1))
             moved = change(before, after)
             value = f"{shown(before, digits)} → {shown(after, digits)}{unit}"
-            note = f"mean of {count(len(known), 'trial')}, {'mean distance' if metric == 'MED' else 'root mean square'}"
+            note = f"mean of {count(len(known), 'trial')}"
             cards.append(Card(label, value, percent(moved), note, tone(moved, 1.0)))
     return cards
 
@@ -98,7 +126,9 @@ def _severity(row: Mapping[str, Any]) -> float:
 def _words(row: Mapping[str, Any]) -> str:
     """What people call a metric; older records may have one that is known no more."""
     known = METRICS.get(str(row["metric"]))
-    return known.words if known else clean(row["metric"])
+    if known is None:
+        return clean(row["metric"])
+    return "misfit J" if row["metric"] == "J" else known.words
 
 
 def _ordered(data: Mapping[str, Any]) -> list[Mapping[str, Any]]:
@@ -111,20 +141,31 @@ def _worst(data: Mapping[str, Any]) -> Section | None:
     rows = sorted(rows, key=_severity, reverse=True)[:_BARS]
     if not rows:
         return Section("worst", "Metrics", (Nothing("Nothing could be compared."),))
-    sizes = [min(_severity(row), _FAR) for row in rows]
-    marks: list[Mark] = [Rule(1.0, Look("flag", 1.4, "dash"))]
+    sizes = [100.0 * min(_severity(row), _FAR) for row in rows]
+    limit = Look("ink", 1.4, "dash")
+    marks: list[Mark] = [Rule(100.0, limit)]
     for k, (row, size) in enumerate(zip(rows, sizes, strict=True)):
-        marks.append(Bar((0.0, size), (k - 0.3, k + 0.3), "flag" if row["status"] == "regressed" else "muted", 0.85))
-    ticks = tuple((float(k), f"{clean(row['trial'])}: {_words(row)}") for k, row in enumerate(rows))
-    x = Axis("size now over the largest that passes [–]", low=0.0, high=max(1.2, *sizes) + 0.05)
+        marks.append(Bar((0.0, size), (k - 0.3, k + 0.3), *(_FAILS if row["status"] == "regressed" else _PASSES)))
+    names = [[clean(row["trial"]), *textwrap.wrap(_words(row), _LETTERS)] for row in rows]
+    ticks = tuple((float(k), "\n".join(lines)) for k, lines in enumerate(names))
+    x = Axis("share of what is allowed [%]", low=0.0, high=max(120.0, *sizes) + 5.0)
     y = Axis(low=len(rows) - 0.4, high=-0.6, ticks=ticks, grid=False)
-    panel = Panel(tuple(marks), x, y, shape=-(25.0 * len(rows) + 50.0))
-    legend = (("passes up to here", Look("flag", 1.4, "dash")),)
-    figure = Figure("metrics", "Size of each metric over the largest that passes", (panel,), legend)
-    caption = f"The {count(len(rows), 'metric')} nearest to failing or beyond: right of the line is a regression."
+    panel = Panel(tuple(marks), x, y, shape=-((14.0 * max(map(len, names)) + 8.0) * len(rows) + 50.0))
+    failing = sum(row["status"] == "regressed" for row in rows)
+    legend: list[tuple[str, Look | tuple[Color, float]]] = [("passes", _PASSES)]
+    legend += [("fails", _FAILS)] if failing else []
+    figure = Figure("metrics", "Size of each metric as a share of what is allowed", (panel,),
+                    (*legend, ("as much as is allowed", limit)))  # fmt: skip
+    caption = f"The {count(len(rows), 'metric')} nearest to failing"
+    caption += (
+        ", or beyond: bars that end left of the line pass." if failing else ": all pass, no bar crosses the line."
+    )
     if any(_severity(row) > _FAR for row in rows):
         caption += f" Bars end at {_FAR:g} times what passes."
-    return Section("worst", "What changed", (picture(figure, "Metrics", caption),))
+    title = "What changed" if failing else "Nearest to failing"
+    told = codes.sentences(data.get("orders") or {})
+    legend_of_trials = (Prose(told, listed=True),) if told else ()
+    return Section("worst", title, (picture(figure, "Metrics", caption), *legend_of_trials))
 
 
 def _changed(data: Mapping[str, Any]) -> Section | None:

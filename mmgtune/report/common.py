@@ -89,7 +89,7 @@ def off_cards(off: Mapping[str, Any], where: str) -> tuple[Card, ...]:
 
     where  what the trials are
     """
-    note = f"root mean square, mean of {count(off['trials'], 'trial')}"
+    note = f"root mean square of each trial, mean of {count(off['trials'], 'trial')}"
     cards = []
     for key, label, unit, digits in (("track_m", "Off track", " m", 3), ("heading_deg", "Off heading", "°", 2)):
         before, after = (number(off[key].get(which)) for which in ("before", "after"))
@@ -147,6 +147,7 @@ def provenance(data: Mapping[str, Any]) -> Section:
         ("time taken", f"{shown(data.get('wall_s'), 3)} s" if number(data.get("wall_s")) is not None else None),
         ("ship profile", shortest(profile.get("path") or "", "ship_profiles")),
         ("profile's hash (SHA-256)", profile.get("sha256")),
+        ("simulated by", _simulated_by(data)),
         ("profile's source", profile.get("source")),
         ("profile's licence, of the data it was tuned to", profile.get("licence")),
         ("to be cited for these", profile.get("citation")),
@@ -172,6 +173,15 @@ def provenance(data: Mapping[str, Any]) -> Section:
     sources = (Prose(("To be cited with these results:",)), Prose(cited, listed=True)) if cited else ()
     table = pairs("provenance-table", "How this run was made", ("what", "value"), known)
     return Section("provenance", "Provenance", (table, *folded, *sources))
+
+
+def _simulated_by(data: Mapping[str, Any]) -> str | None:
+    """The integrator and its substeps; None where a record does not say, or was made by several models."""
+    options = data.get("options") or {}
+    name, substeps = data.get("integrator") or options.get("integrator"), options.get("substeps")
+    if not isinstance(name, str):
+        return None
+    return f"{name}, {substeps} substeps" if isinstance(substeps, int) and substeps > 1 and "," not in name else name
 
 
 def made_table(data: Mapping[str, Any], items: Sequence[tuple[str, str]]) -> Table:

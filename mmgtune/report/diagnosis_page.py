@@ -138,7 +138,7 @@ def _cards(record: DiagnosisRecord) -> tuple[Card, ...]:
     ):
         size = mean(record.results, "before")
         if size is not None:
-            cards.append(Card(label, written(size), note="re-tuned model, root mean square"))
+            cards.append(Card(label, written(size), note="re-tuned model, root mean square of each trial, mean"))
     left = beyond_noise(data["unexplained"]["share_of_noise_variance"])
     structured = data["unexplained"]["structured"]
     note = "looks like something that happened" if structured else "what is left looks like noise"
@@ -277,6 +277,12 @@ def _causes(data: Mapping[str, Any]) -> Section | None:
     return Section("causes", "Causes" if data["causes"] else "What comes closest", tuple(blocks))
 
 
+_STANDS_IN = (
+    "targets stand in for one another and for what is no target, and the ship may be otherwise: sentences name only "
+    "what fouling changes (R_0, X_0F)"
+)
+
+
 def _retuned(data: Mapping[str, Any]) -> Section | None:
     """Targets as they were re-tuned, what is surest to differ from the profile first."""
     rows = data.get("retuned") or ()
@@ -306,10 +312,7 @@ def _retuned(data: Mapping[str, Any]) -> Section | None:
             numeric=range(2, 6),
             cards=True,
             about=(
-                (
-                    "re-tuned",
-                    "targets stand in for one another and for what is no target; the ship may be otherwise",
-                ),
+                ("re-tuned", _STANDS_IN),
                 ("±", "half the 95 % interval of the change, the model's form taken as right; none at a bound"),
             ),
         )

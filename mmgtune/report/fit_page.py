@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from . import advice, confidence, figures, findings, motion_block, tables, tables_of_motion
+from . import advice, codes, confidence, figures, findings, measures, motion_block, tables, tables_of_motion
 from .band_indices import indices_table
 from .blocks import Card, Commands, Fold, Page, Prose, Section
 from .common import assumptions, cards_of_misfit, generated_banner, picture, provenance, warnings
 from .forces import ship_of
 from .load import Kind, RunRecord, history_in, inputs_of, motions_in
 from .wording import change, clean, number, percent, sentence, shown
+
+_METHOD = re.compile(r"\bJ \([^()]*\)")
+"""J with the way of simulation it is of, as a terminal names it; a page has that under how it was made."""
 
 BANDS = "How sure predictions are"
 """Heading of the section."""
@@ -40,7 +45,8 @@ def build(record: RunRecord) -> Page:
     return Page(
         title=f"{ship}: fine-tuned MMG coefficients",
         eyebrow=f"{ship} · fine-tuned MMG coefficients{reach}",
-        verdict=clean(data.get("verdict") or _verdict(record)),
+        verdict=_METHOD.sub("the misfit J", clean(data.get("verdict") or _verdict(record))),
+        lead=(f"The misfit J: {measures.J}.",) if record.results else (),
         banners=generated_banner(data["trials"]),
         warnings=warnings(data),
         cards=_cards(record),
@@ -51,7 +57,8 @@ def build(record: RunRecord) -> Page:
 def _trials(record: RunRecord) -> Section | None:
     if not record.results:
         return None
-    return Section("trials", "Trials", (tables.trials(record), Prose((findings.misfit(record.data["options"]),))))
+    table = replace(tables.trials(record), about=codes.of_rows(record.results))
+    return Section("trials", "Trials", (table, Prose((findings.misfit(record.data["options"]),))))
 
 
 def _stated(record: RunRecord) -> Section | None:

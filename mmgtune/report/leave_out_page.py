@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import advice, findings, measures, motion_block, tables, tables_of_motion
+from . import advice, codes, findings, measures, motion_block, repeated, tables, tables_of_motion
 from .band_scores import SCORE_HEADS, score_cells
 from .blocks import Card, Commands, Fold, Nothing, Page, Picture, Prose, Section, Table, cells
 from .common import assumptions, doubts, generated_banner, picture, provenance, warnings
@@ -49,6 +49,7 @@ def build(record: LeaveOutRecord) -> Page:
         _motions(record),
         _scores(record),
         _indices(record),
+        _repeated(data),
         _bands(data),
         _stated(data),
         _coefficients(data),
@@ -61,6 +62,7 @@ def build(record: LeaveOutRecord) -> Page:
         title=f"{ship}: trials left out in turn",
         eyebrow=f"{ship} · {count(len(data['parts']), 'fit')}, each without some of the trials",
         verdict=_verdict(data),
+        lead=(f"L_MSE: {measures.L_MSE}.", f"The misfit J: {measures.J}.") if _whole(data) else (),
         banners=generated_banner(data["trials"]),
         warnings=(*((stopped,) if data.get("interrupted") else ()), *warnings(data), *doubts(data)),
         cards=_cards(data),
@@ -98,7 +100,7 @@ def _answer(data: Mapping[str, Any]) -> str:
     if removed <= 0.0:
         return f"{off or 'On trials it has not seen, tuning does not help'}: the error L_MSE there does not fall."
     interval = row["share_removed_ci95"]
-    sure = f" (95 % interval {span(*interval)}, runs drawn anew)" if interval else ""
+    sure = f" ({span(*interval)} with 95 % confidence, judged by how much the runs differ)" if interval else ""
     told = f"tuning removes {share(removed)} of the error L_MSE{sure}."
     return f"{off}: {told}" if off else f"On trials it has not seen, {told}"
 
@@ -107,7 +109,7 @@ def _cards(data: Mapping[str, Any]) -> tuple[Card, ...]:
     row = _whole(data)
     if row is None:
         return ()
-    note = f"trials left out in turn, all samples of {count(row['runs'], 'run')}"
+    where = f"all samples of {count(row['runs'], 'run')}, each left out in turn"
     cards = []
     for key, label, unit, digits in (
         ("position_rms_m", "Off track", " m", 3),
@@ -119,6 +121,7 @@ def _cards(data: Mapping[str, Any]) -> tuple[Card, ...]:
         if number(before) is not None and number(after) is not None:
             moved = change(before, after)
             value = f"{shown(before, digits)} → {shown(after, digits)}{unit}"
+            note = f"root mean square over {where}" if unit else where
             cards.append(Card(label, value, percent(moved), note, tone(moved)))
     return tuple(cards)
 
@@ -152,6 +155,12 @@ def _motions(record: LeaveOutRecord) -> Section | None:
 def _indices(record: LeaveOutRecord) -> Section | None:
     table = tables_of_motion.index_errors(record.results)
     return None if table is None else Section("indices", "Manoeuvring indices of the trials left out", (table,))
+
+
+def _repeated(data: Mapping[str, Any]) -> Section | None:
+    """Manoeuvres repeated from their orders before tuning and as tuned to the others, where that was asked for."""
+    found = data.get("manoeuvres") or {}
+    return repeated.section({WORDS["before"]: found.get("before"), WORDS["after"]: found.get("left_out")})
 
 
 def _by_run(results: Sequence[Mapping[str, Any]]) -> list[tuple[str, str, float, float]]:
@@ -225,8 +234,15 @@ def _scores(record: LeaveOutRecord) -> Section:
         range(1, 8),
         (
             ("L_MSE [–]", measures.L_MSE),
-            ("removed", "share of L_MSE that tuning takes away; its interval by drawing runs anew"),
+            (
+                "removed",
+                (
+                    "share of L_MSE that tuning takes away; its interval by how much the runs differ: as many drawn "
+                    "from them at random, some twice and some never, many times over"
+                ),
+            ),
             ("J [–]", measures.J),
+            *codes.of_rows(record.results),
         ),
     )
     drawn = _runs(record.results)

@@ -25,6 +25,7 @@ def _replaced(match: re.Match[str]) -> str:
 def render(page: Page) -> str:
     """The Markdown of a report; figures are the SVG files beside it."""
     parts = [f"# {escaped(page.verdict)}", escaped(page.eyebrow)]
+    parts += [escaped(" ".join(page.lead))] if page.lead else []
     parts += [f"> **{escaped(text)}**" for text in page.banners]
     if page.cards:
         rows = "\n".join(

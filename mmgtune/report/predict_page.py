@@ -8,7 +8,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import fans, motion_block, motions
+from . import approaches, fans, motion_block, motions
 from .band_indices import banded, indices_table
 from .band_scores import MEANING, MEANING_OF_ONE, known_scores, score_cells
 from .blocks import Block, Card, Fold, Page, Prose, Section, Table, cells
@@ -116,11 +116,27 @@ def build(record: PredictRecord) -> Page:
         title="Prediction",
         eyebrow=f"{clean(data['model']['id'])} · {members}",
         verdict=_verdict(record),
+        lead=_lead(record),
         banners=(banner,) if sources == {"generated"} else (),
         warnings=(*(f"{clean(note)}." for note in data["notes"]), *doubts(data)),
         cards=_cards(record),
         sections=(*sections, _made(record)),
     )
+
+
+def _lead(record: PredictRecord) -> tuple[str, ...]:
+    """From which approach the numbers are, that none of them was measured, and what stands behind a ±."""
+    ordered = all(run["trial"] is None for run in record.runs)
+    simulated = "All numbers are simulated, none is measured."
+    if not ordered:
+        simulated = "Numbers are simulated but where they are called measured."
+    band = ""
+    if record.several:
+        band = (
+            f"± is half of the band that holds {shown(record.level, 3)} % of {record.data['particles']} particles, "
+            "each of them one set of coefficients or one network that the ship may be like."
+        )
+    return tuple(filter(None, (approaches.sentence(record.runs, ordered), simulated, band)))
 
 
 def _verdict(record: PredictRecord) -> str:
@@ -182,7 +198,7 @@ def _off(record: PredictRecord) -> list[Card]:
     if not squares["place"]:
         return []
     place_off, heading_off = (sum(values) / len(values) for values in squares.values())
-    note = f"root mean square, mean of {count(len(squares['place']), 'trial')}"
+    note = f"root mean square of each trial, mean of {count(len(squares['place']), 'trial')}"
     return [
         Card("The mean is off track by" if record.several else "Off track by", f"{shown(place_off, 3)} m", note=note),
         Card("Off heading by", f"{shown(heading_off, 2)}°", note=note),
@@ -243,7 +259,7 @@ def _run(record: PredictRecord, run: Mapping[str, Any], k: int) -> Section:
         f"motions_{k}", f"Heading and velocities of {name} over time", bands, record.level, record.several
     )
     lost = f" {run['diverged']} of {record.data['particles']} particles diverged." if run["diverged"] else ""
-    first = f"{clean(run['order'])}, {shown(run['duration_s'], 3)} s.{lost}"
+    first = f"{clean(run['order'])}{approaches.in_caption(run)}, {shown(run['duration_s'], 3)} s.{lost}"
     if record.several:
         first += (
             f" Regions hold half and {shown(record.level, 3)} % of the positions at a time, "

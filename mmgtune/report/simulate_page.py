@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import advice, measures, motion_block, motions
+from . import advice, approaches, codes, measures, motion_block, motions
 from .blocks import Block, Card, Cell, Commands, Fold, Page, Section, Table, cells
 from .common import doubts, made_table
 from .forces import NO_SHIP, Ship, ship_of
@@ -69,10 +69,19 @@ def build(record: SimulationRecord) -> Page:
         title=f"{ship}: simulation",
         eyebrow=f"{ship} · {count(len(record.runs), 'run')} simulated",
         verdict=_verdict(record, ship),
+        lead=_lead(record),
         warnings=(*lost, *(f"{sentence(note)}." for note in data["notes"]), *doubts(data)),
         cards=_cards(record),
         sections=tuple(section for section in sections if section is not None),
     )
+
+
+def _lead(record: SimulationRecord) -> tuple[str, ...]:
+    """From which approach the numbers are, and that none of them was measured."""
+    said = "All numbers are simulated, none is measured."
+    if record.measured:
+        said = "Numbers are simulated but where they are called measured."
+    return tuple(filter(None, (approaches.sentence(record.runs, ordered=not record.measured), said)))
 
 
 def _off(record: SimulationRecord) -> tuple[float | None, float | None]:
@@ -124,7 +133,7 @@ def _cards(record: SimulationRecord) -> tuple[Card, ...]:
     cards = []
     if record.measured:
         place, heading = _off(record)
-        note = f"root mean square, mean of {count(len(record.runs), 'trial')}"
+        note = f"root mean square of each trial, mean of {count(len(record.runs), 'trial')}"
         cards.append(Card("Off track", f"{shown(place, 3)} m" if place is not None else NONE, note=note))
         cards.append(Card("Off heading", f"{shown(heading, 2)}°" if heading is not None else NONE, note=note))
     for run in record.runs:
@@ -153,7 +162,9 @@ def _motions(record: SimulationRecord) -> Section | None:
         own = dict(record.motions[str(run["id"])])
         if "simulated" in own:
             own["simulated"] = record.ship.with_forces(own["simulated"])
-        note = f"{shown(run['duration_s'], 4)} s" + ("" if run["status"] == "ok" else f", {clean(run['status'])}")
+        note = f"{shown(run['duration_s'], 4)} s{approaches.in_caption(run)}" + (
+            "" if run["status"] == "ok" else f", {clean(run['status'])}"
+        )
         manoeuvres.append(motions.Manoeuvre(run_words(run["id"]), own, note=note))
     runs = [motions.Run("simulated", "simulated", LOOKS["after"])]
     if record.measured:
@@ -207,7 +218,8 @@ def _indices(record: SimulationRecord) -> Section | None:
         )
         heads = ["trial", *(measures.with_unit(name) for name in names)]
         numeric = range(1, len(heads))
-        about = measures.about(names)
+        about = list(measures.about(names))
+        about += list(codes.legend({str(run["id"]): run["measured"] or {} for run in distances}))
         blocks.append(Table("measures-table", "Distances from what was measured", tuple(heads), lines, numeric, about))
     return Section("indices", "Manoeuvring indices", tuple(blocks))
 

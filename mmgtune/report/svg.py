@@ -34,6 +34,9 @@ _LETTER = 0.62
 _WIDE_LETTER = 0.97
 """The same of letters such as m, of a font that runs wide."""
 
+_LINE = 13.5
+"""From one line to the next of words that stand on several."""
+
 _MARGIN = 12.0
 """Room beside a panel, at least."""
 
@@ -197,8 +200,14 @@ def _panel(panel: Panel, width: int, height: int, ink: Ink) -> str:
         few = max(2, int((height - top - bottom) / 34))
         y_places = tuple(ticks.logarithmic(y_low, y_high) if panel.y.log else ticks.linear(y_low, y_high, few))
     longest = 24 if narrow else 48
-    y_places = tuple((place, shortened(text, longest)) for place, text in y_places)
-    left = 12.0 + max((_width(text) for _, text in y_places), default=10.0) + (17.0 if panel.y.words else 0.0)
+    y_places = tuple(
+        (place, "\n".join(shortened(line, longest) for line in text.split("\n"))) for place, text in y_places
+    )
+    left = (
+        12.0
+        + max((_width(line) for _, text in y_places for line in text.split("\n")), default=10.0)
+        + (17.0 if panel.y.words else 0.0)
+    )
     left = min(left, 0.5 * width)
     if panel.equal:
         (x_low, x_high), (y_low, y_high) = _equal(
@@ -278,7 +287,10 @@ def _grid(
             continue
         if panel.y.grid:
             lines.append(f"M{left:.1f} {y:.1f}H{right:.1f}")
-        out.append(_letters(left - 6.0, y + 4.0, text, "muted", "end", FONT, ink))
+        pieces = text.split("\n")
+        for row, piece in enumerate(pieces):
+            down = y + 4.0 + _LINE * (row - 0.5 * (len(pieces) - 1))
+            out.append(_letters(left - 6.0, down, piece, "muted", "end", FONT, ink))
     grid = f'<path d="{"".join(lines)}" fill="none" stroke-width="0.8" {ink.paint(stroke="grid")}/>' if lines else ""
     return grid + "".join(out)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import advice, measures, motion_block, motions, tables
+from . import advice, codes, measures, motion_block, motions, repeated, tables
 from .band_scores import bands_section
 from .blocks import Block, Card, Commands, Fold, Page, Section, Table, cells
 from .common import doubts, generated_banner, made_table, picture, rms_errors
@@ -53,7 +53,7 @@ def build(record: ValidationRecord) -> Page:
         _scores(record) if record.scored else None,
         bands_section(record.models, "these trials"),
         _stated(record),
-        _repeated(record),
+        repeated.section({one["called"]: one.get("manoeuvres") for one in record.models}),
         Section("next", "What to do next", (Commands(advice.after_validation(data)),)),
         _made(data),
     ]
@@ -63,6 +63,7 @@ def build(record: ValidationRecord) -> Page:
         title=f"{ship}: models on trials",
         eyebrow=f"{names} on {clean(data['trials'])}",
         verdict=_verdict(record),
+        lead=(f"The misfit J: {measures.J}.",) if record.scored else (),
         banners=generated_banner({"source": data.get("sources") or {}}),
         warnings=(
             *map(clean, data.get("warnings", ())),
@@ -90,7 +91,7 @@ def _verdict(record: ValidationRecord) -> str:
     place, heading = _errors(record, best)
     window = number(record.data["window_s"])
     over = f"Over {shown(window, 3)} s from a measured state" if window else "Over whole trials"
-    off = f"{shown(place, 3)} m and {shown(heading, 2)}° off (root mean square)"
+    off = f"{shown(place, 3)} m and {shown(heading, 2)}° off (root mean square over all samples)"
     if len(record.models) == 1:
         return f"{over} {best['called']} is {off}."
     others = [
@@ -109,12 +110,12 @@ def _cards(record: ValidationRecord) -> tuple[Card, ...]:
     if len(record.models) == 1 and record.scored:
         one = record.models[0]
         place, heading = _errors(record, one)
-        note = f"root mean square, {count(len(one['trials']), 'trial')}"
+        note = f"root mean square over all samples of {count(len(one['trials']), 'trial')} together"
         return (
             Card("Off track", f"{shown(place, 3)} m", note=note),
             Card("Off heading", f"{shown(heading, 2)}°", note=note),
             Card("L_MSE", shown(one["L_MSE"]), note="0 is perfect, about 6 knows only the mean"),
-            Card("Misfit J", shown(one["J"]), note=clean(one["method"])),
+            Card("Misfit J", shown(one["J"]), note="sum over all samples; 0 is a perfect fit"),
         )
     for one in record.models[:4] if record.scored else ():
         place, heading = _errors(record, one)
@@ -171,7 +172,10 @@ def _scores(record: ValidationRecord) -> Section:
         for row in one["trials"]:
             lines.append(cells(clean(row["id"]), one["called"], clean(row["manoeuvre"]), *_numbers(record, row)))
     heads = ("off track [m]", "off heading [°]", "L_MSE [–]", "J [–]")
-    about = (("off …", "root mean square over all samples"), ("L_MSE", measures.L_MSE), ("J", measures.J))
+    about = (
+        ("off …", "root mean square over all samples"), ("L_MSE", measures.L_MSE), ("J", measures.J),
+        *codes.legend(record.data.get("orders") or {}),
+    )  # fmt: skip
     table = Table("scores-table", "Scores by kind of manoeuvre", ("model", "manoeuvre", "runs", *heads), tuple(rows),
                   range(2, 7), about)  # fmt: skip
     every = Table("trials-table", "Scores of every trial", ("trial", "model", "manoeuvre", *heads), tuple(lines),
@@ -217,24 +221,9 @@ def _stated(record: ValidationRecord) -> Section | None:
     return Section("stated", "Stated indices", tuple(blocks)) if blocks else None
 
 
-def _repeated(record: ValidationRecord) -> Section | None:
-    """Manoeuvres that the models' own helmsmen repeat, where that was asked for."""
-    rows = []
-    for one in record.models:
-        for run in (one.get("manoeuvres") or {}).get("trials") or ():
-            for key, value in (run.get("simulated") or {}).items():
-                measured = number((run.get("measured") or {}).get(key))
-                rows.append(cells(clean(run.get("id", "")), one["called"], clean(key), shown(measured),
-                                  shown(value)))  # fmt: skip
-    if not rows:
-        return None
-    heads = ("trial", "model", "index", "measured", "simulated")
-    table = Table("repeated-table", "Manoeuvres repeated from their orders", heads, tuple(rows), (3, 4))
-    return Section("repeated", "Manoeuvres repeated", (table,))
-
-
 def _made(data: Mapping[str, Any]) -> Section:
     items = [(f"hash of {clean(one['profile'])}", clean(one.get("sha256") or NONE)) for one in data["profiles"]]
+    items += [(f"{clean(one['profile'])} simulated by", clean(one.get("method") or NONE)) for one in data["profiles"]]
     items.append(("spread counted in", clean(data["sigma_from"])))
     options = [(str(name), str(value)) for name, value in (data.get("options") or {}).items()]
     folded = Fold("Options", (pairs("options-table", "Options", ("option", "value"), options),))

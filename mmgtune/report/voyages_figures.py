@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from typing import Any
 
 from ..arrays import FloatArray
@@ -11,6 +12,9 @@ from .wording import clean, number
 
 SHADES: tuple[tuple[Color, float], ...] = (("after", 0.5), ("box", 1.0), ("before", 0.5))
 """Fill of the three classes and how dense it is: letters can be read on each, on light paper and on dark."""
+
+STRIP = (102.0, 106.0)
+"""Where the classes are shown above curves that end at 100 %."""
 
 PARTS: Mapping[str, Color] = {
     "position": "after", "heading": "before", "surge": "muted", "sway": "box", "yaw": "flag",
@@ -37,7 +41,10 @@ def classes_figure(names: Sequence[str], counts: Sequence[Sequence[int]], classe
 
 
 def distributions(values: Mapping[str, FloatArray], limits: Sequence[float], classes: Sequence[str]) -> Figure:
-    """Share of windows below each cVDM, a curve per model, with the limits of the classes."""
+    """Share of windows below each cVDM, a curve per model, with the limits of the classes.
+
+    A strip along the top shows which class lies where: on a phone a narrow class has no room for its name.
+    """
     import numpy as np
 
     marks: list[Mark] = []
@@ -55,12 +62,12 @@ def distributions(values: Mapping[str, FloatArray], limits: Sequence[float], cla
     marks += [Rule(limit, Look("muted", 1.0, "dash")) for limit in limits]
     low = min(0.8 * min(ends), 0.7 * limits[0]) if ends else 0.5 * limits[0]
     high = max(1.2 * max(ends), 1.8 * limits[-1]) if ends else 2.0 * limits[-1]
-    edges = [low, *limits, high]
-    for k, name in enumerate(classes):
-        marks.append(Words((edges[k] * edges[k + 1]) ** 0.5, 104.0, name, "muted", size=10.5))
+    for ends_of, (fill, density) in zip(pairwise([low, *limits, high]), SHADES, strict=True):
+        marks.append(Bar(ends_of, STRIP, fill, density))
     x, y = Axis("cVDM [%]", low, high, log=True), Axis("windows below [%]", 0.0, 108.0)
     panel = Panel(tuple(marks), x, y, shape=0.5)
-    return Figure("distributions", "Share of windows below each cVDM, a curve per model", (panel,), tuple(legend))
+    strip = zip(classes, SHADES, strict=True)
+    return Figure("distributions", "Share of windows below each cVDM, a curve per model", (panel,), (*legend, *strip))
 
 
 _LETTERS = 30

@@ -22,6 +22,13 @@ from .wording import NONE, clean, count, input_channel, number, percent, share, 
 PANELS = 8
 """Features drawn at most; all are in the tables."""
 
+_CVDM = (
+    "cVDM, a distance measure of Mathioudakis et al., adds up how far off a simulated window is in the mean: "
+    "in position as a share of the path sailed, in heading as a share of a half turn, in velocities and yaw rate "
+    "as shares of the ship's own; 0 % is perfect."
+)
+"""What the headline speaks of, where it is first read."""
+
 PAPER_RUDDER = 10.0
 """Rudder angle [deg] near which Mathioudakis et al. found the largest errors."""
 
@@ -75,6 +82,7 @@ def build(record: VoyagesRecord) -> Page:
         eyebrow=f"{ship} · {count(len(record.names), 'model')} on {count(len(data['logs']), 'voyage')}, "
         f"{count(int(data['n_windows']), 'window')} of {shown(data['window_s'], 4)} s",
         verdict=clean(data["verdict"]),
+        lead=(_CVDM,) if scored else (),
         banners=generated_banner(data["trials"]),
         warnings=_warnings(data),
         cards=_cards(record) if scored else (),
@@ -181,7 +189,9 @@ def _measures(record: VoyagesRecord) -> Section:
         numeric=(2, 3),
         about=(("J [–]", measures.J), ("L_MSE [–]", measures.L_MSE)),
     )
-    caption = "A curve further left is the better model; dashed: the limits of the classes."
+    caption = (
+        "A curve further left is the better model; dashed: the limits of the classes, which the strip on top shows."
+    )
     return Section(
         "measures",
         "How far off",

@@ -6,7 +6,7 @@ import pytest
 
 from mmgtune.cli.diagnose import summary
 from mmgtune.diagnose import DiagnoseOptions, diagnose, write_diagnosis
-from mmgtune.diagnose.retuned import Retuned, in_words
+from mmgtune.diagnose.retuned import Retuned, besides, in_words
 from mmgtune.profile import load_profile
 from mmgtune.report import render
 from mmgtune.trial import load_trials
@@ -41,6 +41,8 @@ def test_words():
     stands_in = Retuned("propeller.t_P", "thrust deduction", "1", 0.2, 0.3, 0.001)
     assert stands_in.far
     assert in_words([stands_in]) == ""
+    assert besides([up, stands_in]).startswith("Another coefficient is a tenth or more off too, but may only take up")
+    assert besides([up]) == ""
     assert in_words([up]) == "resistance going straight (R_0) 40 ± 4 % above its pre-determined value"
     assert in_words([up, down]).endswith(
         " value and resistance going straight (R_0) 40.0 ± 0.4 % below its pre-determined value"

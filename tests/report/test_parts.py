@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from mmgtune.report import (
     diagnosis_page,
     fleet_figures,
     html,
+    load,
     models_page,
     motion_block,
     motions,
@@ -28,8 +30,9 @@ from mmgtune.report import (
 )
 from mmgtune.report.blocks import Fold, Motions, Page, Picture, Section, Table
 from mmgtune.report.html import embedded
+from mmgtune.report.kinds import KINDS
 from mmgtune.report.markdown import escaped
-from mmgtune.report.plot import Axis, Bar, Dots, Figure, Line, Look, Panel
+from mmgtune.report.plot import Axis, Bar, Dots, Figure, Line, Look, Panel, Words
 
 
 @pytest.mark.parametrize(
@@ -240,7 +243,8 @@ def test_a_check_weighs_metrics_as_its_verdict_does() -> None:
     (block,) = section.blocks
     assert isinstance(block, Picture)
     sizes = [mark.x[1] for mark in block.figure.panels[0].marks if isinstance(mark, Bar)]
-    assert sizes == pytest.approx([4.0, 0.0886 / 0.055, 0.5])
+    assert sizes == pytest.approx([400.0, 100.0 * 0.0886 / 0.055, 50.0])
+    assert [words for words, _ in block.figure.legend] == ["passes", "fails", "as much as is allowed"]
     (worst, *_) = check_page._cards({"items": items, "counts": {}})
     assert "error of sway, rms of a" in worst.note
 
@@ -261,6 +265,26 @@ def test_a_section_of_tables_to_look_up_is_not_on_paper() -> None:
     table = Table("t", "c", ("a",), (), raw=True)
     assert not Section("s", "S", (table, Fold("more", (table,)))).printed
     assert Section("s", "S", (Fold("more", (table,), printed=True),)).printed
+
+
+def test_words_beside_bars_stand_on_several_lines() -> None:
+    items = [{"trial": f"turn_m{k}", "metric": "tactical_diameter", "now": 1.0, "baseline": 1.0, "allowed": 2.0,
+              "unit": "%", "status": "ok"} for k in range(3)]  # fmt: skip
+    section = check_page._worst({"items": items})
+    assert section is not None
+    (block,) = section.blocks
+    assert isinstance(block, Picture)
+    text = svg.inline(block.figure)
+    for line in ("turn_m1", "error of tactical", "diameter"):  # whole, on a phone too
+        assert text.count(f">{line}</text>") == 2 * (1 if line == "turn_m1" else 3)
+    assert "all pass" in block.caption
+
+
+def test_names_of_classes_are_in_the_legend(voyages_folder: Path) -> None:
+    kind, record = load.find(voyages_folder, KINDS)
+    figure = kind.build(record).figures()["distributions"]
+    assert not [mark for panel in figure.panels for mark in panel.marks if isinstance(mark, Words)]
+    assert [words for words, _ in figure.legend][-3:] == ["optimal", "satisfactory", "sub-optimal"]
 
 
 def test_ticks_stay_inside_and_stagger() -> None:

@@ -1,0 +1,123 @@
+"""What stands under headlines: on which terms the numbers of a page hold, and what its words mean."""
+
+from __future__ import annotations
+
+import json
+from html import unescape
+from pathlib import Path
+
+import pytest
+
+from mmgtune.checking import check, update_baseline
+from mmgtune.documents import write_json
+from mmgtune.model import Model
+from mmgtune.options import PredictOptions, SimulateOptions
+from mmgtune.predicting import predict, write_prediction
+from mmgtune.profile import load_profile
+from mmgtune.provenance import made_by
+from mmgtune.recording import write_simulation, write_validation
+from mmgtune.report import approaches, codes, load, render
+from mmgtune.report.kinds import KINDS
+from mmgtune.simulating import simulate
+from mmgtune.trial import load_trials
+from mmgtune.validating import validate
+from tests.predicting.test_predict import scattered, two_trials
+
+from . import fake_run
+
+
+def lead(folder: Path) -> str:
+    """Of the report of a run folder, which is rendered too."""
+    text = unescape(render(folder)[0].read_text(encoding="utf-8"))
+    kind, record = load.find(folder, KINDS)
+    said = kind.build(record).lead
+    assert all(one in text for one in said)
+    return " ".join(said)
+
+
+def test_of_a_prediction_by_orders(tmp_path: Path) -> None:
+    options = PredictOptions(turn=("35",), speed="12 kn", rpm="200")
+    write_prediction(predict(scattered(Model(load_profile("suzaku")), 20), options=options), tmp_path)
+    said = lead(tmp_path)
+    assert said.startswith("Approach straight ahead at 6.17 m/s (12 kn) and 200 rpm. All numbers are simulated, none")
+    assert "± is half of the band that holds 90 % of 20 particles" in said
+    caption = "Indices of turn_p35: turn with 35 deg of rudder to starboard, from 6.17 m/s (12 kn) and 200 rpm"
+    assert caption in (tmp_path / "report.html").read_text(encoding="utf-8")
+
+
+def test_of_a_prediction_on_trials(tmp_path: Path) -> None:
+    trials = two_trials()
+    write_prediction(predict("suzaku", trials=trials), tmp_path)
+    low, high = sorted(float(one.u[0]) for one in trials)
+    assert lead(tmp_path).startswith(f"Each run begins as measured, at {low:.3g} to {high:.3g} m/s")
+    assert "±" not in lead(tmp_path)
+
+
+def test_of_a_simulation(tmp_path: Path) -> None:
+    result = simulate("suzaku", None, SimulateOptions(turn=("35",), speed="5 m/s"))
+    assert result.rows()[0]["approach"] == pytest.approx({"speed_m_per_s": 5.0, "rpm": 106.0})
+    write_simulation(result, result.rows(), tmp_path, "")
+    assert lead(tmp_path) == (
+        "Approach straight ahead at 5 m/s (9.72 kn) and 106 rpm. All numbers are simulated, none is measured."
+    )
+
+
+def test_of_a_check(tmp_path: Path) -> None:
+    update_baseline("suzaku", "suzaku", tmp_path / "base.json")
+    found = check("suzaku", "suzaku", tmp_path / "base.json")
+    write_json({**found.to_dict(), **made_by("mmgtune check")}, tmp_path / "check.json")
+    assert lead(tmp_path).startswith("To pass is to be no worse than the committed baseline, but for its tolerances;")
+    text = (tmp_path / "report.md").read_text(encoding="utf-8")
+    assert r"- Turning circles, rudder to port: turn\_m10 (10°)," in text
+    assert "Nearest to failing" in text
+    assert text.splitlines()[2] == "suzaku on suzaku against base.json"
+
+
+def test_of_misfits(fit_folder: Path, voyages_folder: Path) -> None:
+    assert lead(fit_folder).startswith("The misfit J: squared differences of simulated and measured motion")
+    assert lead(voyages_folder).startswith("cVDM, a distance measure of Mathioudakis et al., adds up how far off")
+
+
+def test_of_a_fit_how_it_was_simulated_stands_below(tmp_path: Path) -> None:
+    folder = fake_run.make_fit(tmp_path / "run")
+    path = folder / "fit.json"
+    data = json.loads(path.read_text(encoding="utf-8"))
+    data["verdict"] = "On 4 trials (root mean square); J (rk4, 2 substeps) falls by 99.7 %."
+    data["options"] |= {"integrator": "rk4", "substeps": 2}
+    path.write_text(json.dumps(data), encoding="utf-8")
+    render(folder)
+    text = (folder / "report.md").read_text(encoding="utf-8")
+    assert text.startswith("# On 4 trials (root mean square); the misfit J falls by 99.7 %.")
+    assert "| simulated by | rk4, 2 substeps |" in text
+
+
+def test_of_a_validation(tmp_path: Path) -> None:
+    data = load_trials("suzaku")
+    write_validation(validate("suzaku", data), data, tmp_path)
+    assert lead(tmp_path).startswith("The misfit J: squared differences")
+    text = (tmp_path / "report.md").read_text(encoding="utf-8")
+    assert "root mean square over all samples of 10 trials together" in text
+    assert "| suzaku simulated by | rk4 |" in text
+    assert r"- *turning circles, rudder to port*: turn\_m10 (10°), turn\_m20 (20°), " in text
+    assert r"- *zigzags, rudder first to starboard*: zigzag\_10 (10/10) and zigzag\_20 (20/20)" in text
+
+
+def test_codes_of_trials() -> None:
+    turn = {"rudder_angle_deg": 34.8, "direction": "starboard"}
+    odd = {"rudder_angle_deg": 12.4, "direction": "port"}
+    zigzag = {"rudder_angle_deg": 20.0, "heading_angle_deg": 10.0, "direction": "port"}
+    assert codes.legend({"a": turn, "b": odd, "c": zigzag, "d": {}, "e": {"rudder_angle_deg": 5.0}}) == (
+        ("turning circles, rudder to starboard", "a (35°)"),
+        ("turning circles, rudder to port", "b (12.4°)"),
+        ("zigzags, rudder first to port", "c (20/10)"),
+    )
+    assert codes.sentences({"a": turn}) == ("Turning circles, rudder to starboard: a (35°).",)
+
+
+def test_approaches_of_several_runs_and_of_older_records() -> None:
+    runs = [{"approach": {"speed_m_per_s": speed, "rpm": 106.0}} for speed in (3.0, 3.1)]
+    assert approaches.sentence(runs, ordered=False) == (
+        "Each run begins as measured, at 3 to 3.1 m/s (5.83 to 6.03 kn) and 106 rpm."
+    )
+    assert approaches.sentence([{"approach": None}, {}], ordered=True) == ""
+    assert approaches.in_caption({"approach": {"speed_m_per_s": 3.0}}) == ", from 3 m/s (5.83 kn)"
