@@ -43,5 +43,6 @@ EFFECT = SensorEffect(
         )
     },
     variants=(("rate",),),
+    varies=("rate",),
     sentence=lambda v: f"The rate gyro showed {signed(v['rate'], 'too much', 'too little')}",
 )

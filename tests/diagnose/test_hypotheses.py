@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mmgtune.diagnose.hypotheses import known_causes, not_looked_for
+from mmgtune.diagnose.hypotheses import known_causes, not_looked_for, of_runs
 from mmgtune.diagnose.refitting import akin
 from mmgtune.options import DiagnoseOptions
 from mmgtune.profile import load_profile, with_effects
@@ -44,6 +44,14 @@ def test_without_columns_the_constants_are(trials):
     assert variants(trials, "current") == [("north", "east"), ("north", "east", "north_rate", "east_rate")]
     assert variants(trials, "shallow-water") == [("depth",)]
     assert variants(trials, "waves") == []
+
+
+def test_what_a_crew_and_the_day_change_is_looked_for_run_by_run_too():
+    several = list(load_trials("suzaku").trials.values())[:4]
+    found = known_causes(load_profile("suzaku"), several, DiagnoseOptions())
+    by_run = {one.tag for one in of_runs(found, several)}
+    assert {"current", "wind", "rudder-offset", "heading-bias", "gyro-bias", "clock-offset", "loading"} <= by_run
+    assert not {"antenna", "memory", "flap"} & by_run
 
 
 def test_a_wind_nobody_measured_is_looked_for_though_a_measured_one_would_act(trials):
