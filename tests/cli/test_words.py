@@ -32,7 +32,7 @@ def test_the_shell_completes_words_names_and_files(tmp_path):
     (tmp_path / "my_notes.txt").write_text("")
     (tmp_path / "my_trials").mkdir()
     assert completed("fit --method ", tmp_path) == ["cma-es", "least-squares"]
-    assert completed("diagnose --effects current,wa", tmp_path) == ["current,waves", "current,wave-drift"]
+    assert completed("diagnose --effects current,wav", tmp_path) == ["current,waves", "current,wave-drift"]
     assert completed("fit --profile suz", tmp_path) == ["suzaku", "suzaku_fam"]
     assert completed("fit --profile my_", tmp_path) == ["my_ship.toml", "my_trials/"]
     assert completed("fit --profile esso_osaka_3m --targets rudder.e", tmp_path) == ["rudder.eps"]

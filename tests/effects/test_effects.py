@@ -49,6 +49,7 @@ STRONG = {
     "antenna": {"x": 10.0, "y": 3.0, "x_alone": -6.0, "y_alone": 2.0},
     "heading-bias": {"angle": 0.03, "alone": -0.02},
     "compass-deviation": {"sine": 0.05, "cosine": -0.03, "sine_alone": 0.02, "cosine_of_twice_alone": 0.02},
+    "water-log": {"north": 0.2, "east": -0.1},
     "log-misalignment": {"angle": 0.02},
     "speed-scale": {"factor": 1.02, "both": 0.99, "grows": 0.01},
     "log-zero": {"ahead": 0.05, "abeam": -0.03},
@@ -340,10 +341,9 @@ def test_every_cause_can_be_said_whichever_parameters_were_found(effect):
     together = [{name for variant in effect.variants for name in variant}] if not effect.stand_in else []
     for found in (*effect.variants, *together):
         shown = {name: f"<{name}>" for name in found}
-        if effect.tag == "current" and "north" in found:
-            shown = {"speed": "<north>", "towards": "<east>"}
-            if "north_rate" in found:
-                shown |= {"gain": "<north_rate>", "gaining": "<east_rate>"}
+        for pair, told in effect.told_as.items():  # north and east as size and direction
+            if set(pair) <= set(found):
+                shown |= {word: shown.pop(name) for name, word in zip(pair, told, strict=True)}
         sentence = effect.sentence(shown)
         for variant in effect.variants:
             if set(variant) <= set(found):

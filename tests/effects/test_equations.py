@@ -259,6 +259,14 @@ def test_a_biased_compass_turns_the_axes_and_not_the_track():
         ("speed-scale", (1.0, 1.1, 0.0, 3.0), {"u": MOVING.u * 1.1, "v_m": MOVING.v_m * 1.1}),
         ("speed-scale", (1.1, 1.0, 0.05, 3.0), {"u": MOVING.u * 1.1 * (1.0 + 0.05 * (MOVING.u - 3.0))}),
         ("log-zero", (0.1, -0.2), {"u": MOVING.u + 0.1, "v_m": MOVING.v_m - 0.2}),
+        (
+            "water-log",
+            (0.3, -0.1),
+            {
+                "u": MOVING.u - 0.3 * np.cos(0.7) + 0.1 * np.sin(0.7),
+                "v_m": MOVING.v_m + 0.3 * np.sin(0.7) + 0.1 * np.cos(0.7),
+            },
+        ),
         ("log-misalignment", np.pi / 2.0, {"u": MOVING.v_m, "v_m": -MOVING.u}),
     ],
 )

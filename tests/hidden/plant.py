@@ -407,6 +407,7 @@ def sensed(rows: np.ndarray, count: int, e: Mapping[str, Mapping[str, float]]) -
     x, y = x + step, (1.0 + e["unknown-easting-scale"]["magnitude"]) * y + step
     smooth, compass = e["velocity-filter"], e["compass-deviation"]
     north, east = _low_pass(north, smooth["over_ground"]), _low_pass(east, smooth["over_ground"])
+    north, east = north - e["water-log"]["north"], east - e["water-log"]["east"]
     heading = _low_pass(psi, e["heading-filter"]["time_constant"]) + e["heading-bias"]["angle"]
     heading = heading + compass["sine"] * np.sin(psi) + compass["cosine"] * np.cos(psi) + e["gyro-drift"]["heading"] * t
     heading = heading + e["unknown-deviation-quadrantal"]["magnitude"] * np.sin(2.0 * psi)

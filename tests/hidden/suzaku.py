@@ -137,6 +137,7 @@ NULL: dict[str, dict[str, float]] = {
     "log-misalignment": {"angle": 0.0},
     "speed-scale": {"factor": 1.0, "both": 1.0, "grows": 0.0},
     "log-zero": {"ahead": 0.0, "abeam": 0.0},
+    "water-log": {"north": 0.0, "east": 0.0},
     **{name: {"magnitude": 0.0} for name in UNKNOWN},
 }
 """Every effect with its parameters where they do nothing; SI units, angles in radians."""

@@ -217,9 +217,12 @@ def test_sensors(still):
     np.testing.assert_allclose(grown[:, U], turn[:, U] * (1.0 + 0.1 * (turn[:, U] - plant.SPEED)), atol=1e-12)
     zero = sailed("log-zero", ahead=0.1, abeam=-0.2)["turn_p35"]
     np.testing.assert_allclose(zero[:, [U, V]], turn[:, [U, V]] + [0.1, -0.2], atol=1e-12)
+    wet = sailed("water-log", north=0.3, east=-0.1)["turn_p35"]
+    ahead = 0.3 * np.cos(psi) - 0.1 * np.sin(psi)
+    np.testing.assert_allclose(wet[:, U], turn[:, U] - ahead, atol=1e-12)
     turned = sailed("log-misalignment", angle=0.5 * np.pi)["turn_p35"]
     np.testing.assert_allclose(turned[:, [U, V]], np.column_stack([turn[:, V], -turn[:, U]]), atol=1e-12)
-    for one in (grown, zero, turned):
+    for one in (grown, zero, turned, wet):
         np.testing.assert_array_equal(one[:, [X, Y, PSI, R]], turn[:, [X, Y, PSI, R]])
 
 
