@@ -6,9 +6,9 @@ what it predicts are held against what ``predictor.Predictor`` promises.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from numbers import Integral, Real
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,14 +17,43 @@ from .backends import STATES, Cases
 from .errors import OptionError, Problem, brief, kind_of
 from .inputs import INPUTS, meant_by
 
+
+class Told(NamedTuple):
+    """A member by which a predictor describes itself: whether a value can be, what it has to be, and what to write."""
+
+    right: Callable[[Any], bool]
+    words: str
+    fix: str
+
+
+def _is_text(value: object) -> bool:
+    return isinstance(value, str)
+
+
+def _is_length(value: Any) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool) and 0.0 < float(value) < np.inf
+
+
+def _is_count(value: object) -> bool:
+    return isinstance(value, Integral) and int(value) >= 1
+
+
+def _are_names(value: object) -> bool:
+    return isinstance(value, Sequence) and not isinstance(value, str) and all(isinstance(one, str) for one in value)
+
+
 SELF_TOLD = {
-    "name": "a text",
-    "L_pp": "a length in m, above 0",
-    "n_members": "a whole number, 1 or more",
-    "inputs": "names of what drives it, in a tuple",
-    "method": "a text",
+    "name": Told(_is_text, "a text", "give it a name"),
+    "L_pp": Told(_is_length, "a length in m, above 0", "write the number alone, in metres"),
+    "n_members": Told(_is_count, "a whole number, 1 or more", "write how many predictions it makes of each case"),
+    "inputs": Told(
+        _are_names,
+        "names of what drives it, in a tuple",
+        f"write some of {', '.join(INPUTS)}, as ('n', 'delta')",
+    ),
+    "method": Told(_is_text, "a text", 'say how it gets on in time, such as "rk4"'),
 }
-"""Members by which a predictor describes itself, and what each is."""
+"""What a predictor says of itself."""
 
 MEMBERS = (*SELF_TOLD, "predict")
 """Everything that makes a predictor."""
@@ -41,31 +70,18 @@ def lacking(given: object) -> list[str]:
 
 def hold_described(predictor: object) -> None:
     """Raises OptionError with everything that a predictor says of itself and that can not be."""
-    told = {name: getattr(predictor, name) for name in SELF_TOLD}
-    right = {
-        "name": isinstance(told["name"], str),
-        "L_pp": _is_number(told["L_pp"]) and 0.0 < told["L_pp"] < np.inf,
-        "n_members": isinstance(told["n_members"], Integral) and int(told["n_members"]) >= 1,
-        "inputs": _are_names(told["inputs"]),
-        "method": isinstance(told["method"], str),
-    }
     who = type(predictor).__name__
-    problems = [
-        Problem(f"'{name}' of a {who} is {brief(told[name])}", f"{who}.{name}", f"it has to be {SELF_TOLD[name]}", fix)
-        for name, fix in (
-            ("name", "give it a name"),
-            ("L_pp", "write the number alone, in metres"),
-            ("n_members", "write how many predictions it makes of each case"),
-            ("inputs", f"write some of {', '.join(INPUTS)}, as ('n', 'delta')"),
-            ("method", 'say how it gets on in time, such as "rk4"'),
-        )
-        if not right[name]
-    ]
-    if right["inputs"]:
-        for name in told["inputs"]:
-            if name not in INPUTS:
-                what = f"a {who} is driven by '{name}', which no trial has"
-                problems.append(Problem(what, f"{who}.inputs", **meant_by(name)))
+    problems = []
+    for name, told in SELF_TOLD.items():
+        value = getattr(predictor, name)
+        if not told.right(value):
+            what = f"'{name}' of a {who} is {brief(value)}"
+            problems.append(Problem(what, f"{who}.{name}", f"it has to be {told.words}", told.fix))
+        elif name == "inputs":
+            for one in value:
+                if one not in INPUTS:
+                    what = f"a {who} is driven by '{one}', which no trial has"
+                    problems.append(Problem(what, f"{who}.inputs", **meant_by(one)))
     if problems:
         raise OptionError(*problems)
 
@@ -95,8 +111,11 @@ def hold_predicted(predictor: Any, cases: Cases, found: object) -> tuple[FloatAr
         if members == 1 and states.shape == (n, T, len(STATES)):
             fix = "the axis of members is missing: return states[:, None]"
         raise OptionError(Problem(what, "predict", why, fix))
+    if _sound(states):
+        return states, diverged
     for k in np.flatnonzero(np.isfinite(cases.initial).all(axis=1)):
-        unsound = _unsound(states[k, :, : cases.n_samples[k]]) & ~diverged[k]
+        run = states[k, :, : cases.n_samples[k]]
+        unsound = ~np.isfinite(run).all(axis=(1, 2)) & ~diverged[k]
         if unsound.any():
             what = f"states of {who} are not finite in case {k}, member {np.flatnonzero(unsound)[0]}"
             why = "the run is not marked as diverged, so it would be scored"
@@ -105,18 +124,7 @@ def hold_predicted(predictor: Any, cases: Cases, found: object) -> tuple[FloatAr
     return states, diverged
 
 
-def _unsound(states: FloatArray) -> BoolArray:
-    """(n_members,) whether states (n_members, n_samples, 6) are not finite somewhere."""
+def _sound(states: FloatArray) -> bool:
+    """Whether all states are finite, told by their sum, which makes no copy; False where that is beyond all bounds."""
     with np.errstate(over="ignore", invalid="ignore"):
-        total = states.sum()  # makes no copy; of finite numbers it may still be beyond all bounds
-    if np.isfinite(total):
-        return np.zeros(len(states), dtype=bool)
-    return np.asarray(~np.isfinite(states).all(axis=(1, 2)))
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, Real) and not isinstance(value, bool)
-
-
-def _are_names(value: object) -> bool:
-    return isinstance(value, Sequence) and not isinstance(value, str) and all(isinstance(one, str) for one in value)
+        return bool(np.isfinite(states.sum()))

@@ -3,8 +3,8 @@
     python -m tools.ensemble_study FOLDER [--repeats 5] [--steps 3000] [--out FILE] ...
 
 FOLDER keeps the made trials, the models and the checkpoints.  The study can be stopped at any time, by Ctrl-C or by
-SIGTERM, and goes on where it was when it is called again with the same options; what is known so far is written after
-each model.  Sizes are the paper's unless options say otherwise: 15 members of 3 x 256 units, windows of 100 s.
+SIGTERM, and goes on where it was when it is called again with the same options; what is found is written when all is
+trained and scored.  Sizes are the paper's unless options say otherwise: 15 members of 3 x 256 units, windows of 100 s.
 
 Models: the ensembles of all repeats (section 5.3), which share no network and are trained at once, and as many single
 networks without initial-state networks as an ensemble has members, whose fit is held against that of the first
@@ -106,11 +106,7 @@ class Study:
             for rows in pool.map(of_repeat, range(1, given.repeats + 1)):
                 self.found.setdefault("scores", []).extend(rows)
         self.found["complete"] = True
-        self.write()
-
-    def write(self) -> None:
-        """What is known so far."""
-        write_text(self.given.out, json.dumps(self.found, indent=1, allow_nan=False) + "\n")
+        write_text(given.out, json.dumps(self.found, indent=1, allow_nan=False) + "\n")
 
 
 def scored(folder: Path, members: int, particles: int, repeat: int) -> list[dict[str, Any]]:

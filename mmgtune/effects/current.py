@@ -6,7 +6,7 @@ from typing import NamedTuple
 from ..physics.elementary import where
 from ..physics.frame import to_ship
 from ..physics.quantities import Lanes, State, Surroundings
-from .effect import FlowEffect, Parameter, factor_on_measured
+from .effect import FlowEffect, Parameter, factor_on_measured, velocity_of_water
 
 
 class Current(NamedTuple):
@@ -42,13 +42,7 @@ def rate_of_current(state: State, around: Surroundings, e: Current) -> tuple[Lan
 
 
 def _component(direction: str) -> Parameter:
-    return Parameter(
-        f"velocity of the water, {direction}, where the trial has no measured current",
-        "m/s",
-        bounds=lambda ship: (-0.6 * ship.U, 0.6 * ship.U),
-        typical=lambda ship: 0.05 * ship.U,
-        bounds_source="six tenths of the approach speed",
-    )
+    return velocity_of_water(f"velocity of the water, {direction}, where the trial has no measured current")
 
 
 def _rate(direction: str) -> Parameter:

@@ -78,6 +78,17 @@ def angle_about_zero(what: str, most: float, off: float) -> Parameter:
     )
 
 
+def velocity_of_water(what: str) -> Parameter:
+    """A component [m/s] of the velocity of water over ground, absent at 0."""
+    return Parameter(
+        what,
+        "m/s",
+        bounds=lambda ship: (-0.6 * ship.U, 0.6 * ship.U),
+        typical=lambda ship: 0.05 * ship.U,
+        bounds_source="six tenths of the approach speed",
+    )
+
+
 def factor_on_measured(what: str, most: float, typical: float, source: str) -> Parameter:
     """The factor on something that was measured around the ship: as measured unless told otherwise, absent at 0.
 

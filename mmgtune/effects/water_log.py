@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from ..physics.frame import to_ship
 from ..physics.quantities import Lanes, State
-from .effect import Parameter, SensorEffect
+from .effect import Parameter, SensorEffect, velocity_of_water
 
 
 class WaterLog(NamedTuple):
@@ -28,13 +28,7 @@ def water_log_inverse(logged: State, e: WaterLog) -> State:
 
 
 def _component(direction: str) -> Parameter:
-    return Parameter(
-        f"velocity over ground of the water that the log measures against, {direction}",
-        "m/s",
-        bounds=lambda ship: (-0.6 * ship.U, 0.6 * ship.U),
-        typical=lambda ship: 0.05 * ship.U,
-        bounds_source="as of the current",
-    )
+    return velocity_of_water(f"velocity over ground of the water that the log measures against, {direction}")
 
 
 def _sentence(v: Mapping[str, str]) -> str:

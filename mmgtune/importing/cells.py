@@ -27,11 +27,8 @@ def table_of(
     """
     wanted = columns_named(log_map, list(names), path, where)
     order = list(wanted)
-    cells, stamps, collector = (
-        Cells(log_map),
-        Stamps(log_map.time, path, log_map.decimal),
-        Collector([TIME, *order[1:]]),
-    )
+    cells, collector = Cells(log_map), Collector([TIME, *order[1:]])
+    stamps = Stamps(log_map.time, path, log_map.decimal)
     rows = first + np.arange(len(columns[0]) if columns else 0, dtype=np.int64)
     values = [
         stamps.of(columns[wanted[TIME]], rows),

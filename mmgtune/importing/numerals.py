@@ -9,6 +9,13 @@ import numpy as np
 from ..arrays import FloatArray
 
 
+def holds_numbers(column: Any) -> bool:
+    """Whether a pandas column holds numbers, and not texts, dates or truth values."""
+    import pandas as pd
+
+    return pd.api.types.is_numeric_dtype(column.dtype) and not pd.api.types.is_bool_dtype(column.dtype)
+
+
 def numbers_in(texts: Any, decimal: str) -> FloatArray:
     """Numbers (n_rows,) of a pandas column of texts, NaN where one is none.
 

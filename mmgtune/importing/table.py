@@ -15,7 +15,7 @@ from ..errors import LogError, Problem
 from ..units import is_unit
 from .degrees import degrees
 from .mapping import LogMap
-from .numerals import number_in, numbers_in
+from .numerals import holds_numbers, number_in, numbers_in
 from .sides import SIGNED, sided, takes_side
 
 MOST_ROWS = 1_000_000
@@ -117,10 +117,9 @@ class Cells:
 
     def of(self, name: str, values: Any, rows: IntArray) -> FloatArray:
         """Numbers (n_rows,) of a pandas column, NaN where a cell holds none."""
-        import pandas as pd
 
         side_said = False
-        if pd.api.types.is_numeric_dtype(values.dtype) and not pd.api.types.is_bool_dtype(values.dtype):
+        if holds_numbers(values):
             numbers = values.to_numpy(dtype=np.float64, na_value=np.nan)
         else:
             text = values.astype("string").str.strip()

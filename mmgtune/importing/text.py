@@ -41,11 +41,8 @@ def read_text(path: Path, log_map: LogMap) -> Table:
     layout = look(path, log_map)
     wanted = columns_named(log_map, layout.names, path, layout.where)
     names = list(wanted)
-    collector, cells, stamps = (
-        Collector([TIME, *names[1:]]),
-        Cells(log_map),
-        Stamps(log_map.time, path, log_map.decimal),
-    )
+    collector, cells = Collector([TIME, *names[1:]]), Cells(log_map)
+    stamps = Stamps(log_map.time, path, log_map.decimal)
     line = layout.first + 1
     dropped: list[str] = []
     try:

@@ -72,11 +72,13 @@ def visited_by(trials: Iterable[Sailed], L_pp: float) -> Visited:
 
 def _samples(trial: Sailed, L_pp: float) -> FloatArray:
     """(n_samples, 7) the fields of ``Visited``."""
+    if not len(trial.t):
+        return np.zeros((0, 7))
     unknown = np.full(len(trial.t), np.nan)
     n = unknown if trial.n is None else trial.n
     u, v_m = _measured(trial.u), _measured(trial.v_m)
     r = unknown if trial.r is None else _measured(trial.r)
-    if np.isnan(r).all() and len(trial.t):
+    if np.isnan(r).all():
         r = _slope(trial.psi, trial.t)
     step = np.diff(trial.t)
     seconds = np.concatenate([step[:1], step]) if len(step) else np.zeros(len(trial.t))
@@ -91,8 +93,8 @@ def _samples(trial: Sailed, L_pp: float) -> FloatArray:
 
 def _measured(values: FloatArray) -> FloatArray:
     """A channel, or NaN throughout where it has hardly a sample: one at the beginning says where a run starts alone."""
-    known = np.isfinite(values)
-    return values if known.mean() > HARDLY_MEASURED else np.full(len(values), np.nan)
+    known = np.count_nonzero(np.isfinite(values))
+    return values if known > HARDLY_MEASURED * len(values) else np.full(len(values), np.nan)
 
 
 def _slope(values: FloatArray, t: FloatArray) -> FloatArray:

@@ -1,6 +1,7 @@
 """What trials visit: known motions, whose extremes anyone can write down."""
 
 import json
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -116,6 +117,15 @@ def test_sides_and_speeds_are_told_without_yaw_rate_and_sway(turn):
     assert "drift_deg" not in seen.to_dict()
     assert Coverage.from_dict(json.loads(json.dumps(seen.to_dict()))).to_dict() == seen.to_dict()
     assert "cannot be told" in Coverage.of([replace(bare, u=first)], L).sentence
+
+
+def test_a_trial_without_samples_visits_nothing_without_a_word(turn):
+    none = np.zeros(0)
+    columns = dict.fromkeys(("t", "x", "y", "psi", "u", "v_m", "r", "n", "delta"), none)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        seen = Coverage.of([replace(turn, **columns)], L)
+    assert seen.to_dict() == {}
 
 
 def test_it_survives_json(turn):

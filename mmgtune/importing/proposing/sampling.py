@@ -19,7 +19,7 @@ from ..clock import CLOCK
 from ..degrees import degrees
 from ..forms import form_of, refuse_binary
 from ..mapping import LogMap, TimeSource
-from ..numerals import numbers_in
+from ..numerals import holds_numbers, numbers_in
 from ..parquet_log import is_text, shortened
 from ..sides import sided, takes_side
 from ..text import PEEK, Lines, start_of
@@ -91,14 +91,14 @@ def sample_of(path: Path) -> Sample:
 def _made(path: Path, layout: dict[str, Any], names: Sequence[str], units: Sequence[str], texts: list[Any]) -> Sample:
     """A sample of columns as they are printed."""
     LOG_COLUMNS.hold(len(names), str(path), LogError)
-    texts = [one if _holds_numbers(one) or _holds_dates(one) else one.astype("string").str.strip() for one in texts]
+    texts = [one if holds_numbers(one) or _holds_dates(one) else one.astype("string").str.strip() for one in texts]
     # A table whose cells are texts, exported from somewhere, may have decimal commas in them.
     if layout["format"] != "csv" and any(_has_commas(one) for one in texts):
         layout["decimal"] = ","
     decimal = layout.get("decimal", ".")
     numbers, written, with_side = [], set(), set()
     for k, text in enumerate(texts):
-        if _holds_numbers(text):
+        if holds_numbers(text):
             found = text.to_numpy(dtype=np.float64, na_value=np.nan)
         elif _holds_dates(text):
             found = np.full(len(text), np.nan)
@@ -122,12 +122,6 @@ def _made(path: Path, layout: dict[str, Any], names: Sequence[str], units: Seque
     return Sample(path, layout, tuple(names), tuple(units), texts, numbers, frozenset(written), frozenset(with_side))
 
 
-def _holds_numbers(column: Any) -> bool:
-    import pandas as pd
-
-    return pd.api.types.is_numeric_dtype(column.dtype) and not pd.api.types.is_bool_dtype(column.dtype)
-
-
 def _holds_dates(column: Any) -> bool:
     import pandas as pd
 
@@ -136,7 +130,7 @@ def _holds_dates(column: Any) -> bool:
 
 def _has_commas(column: Any) -> bool:
     """Whether a column holds numbers with a decimal comma, as texts."""
-    if _holds_numbers(column) or _holds_dates(column) or not len(column):
+    if holds_numbers(column) or _holds_dates(column) or not len(column):
         return False
     return bool(column.str.fullmatch(_COMMA.pattern).fillna(False).mean() > 0.2)
 
