@@ -20,6 +20,10 @@ IN_SERVICE = ("hull.R_0", "hull.X_0F")
 """What fouling changes while a ship sails: these are told of in sentences.  Other targets take up what coefficients
 beside them are off by, so that most values that come out surely far off are not the ship's."""
 
+DRIVES, IMPLAUSIBLE = ("propeller.", "wake."), 0.25
+"""Coefficients of thrust, which balances resistance, and the share of its pre-determined value by which one may have
+moved: beyond that the whole balance is where no ship's is, and none of its numbers is told as hers."""
+
 SURE = 3.0
 """Standard errors by which it must be further than that: a dozen targets are looked at."""
 
@@ -99,12 +103,25 @@ def retuned(bench: Workbench, point: Point) -> list[Retuned]:
 
 def in_words(moved: Sequence[Retuned]) -> str:
     """Those of service that are far away, the surest first: "A ... and B ..."; "" for none."""
+    if _astray(moved):
+        return ""
     told = [one.words for one in moved if one.far and one.name in IN_SERVICE]
     return " and ".join([", ".join(told[:-1]), told[-1]] if len(told) > 1 else told)
 
 
+def _astray(moved: Sequence[Retuned]) -> bool:
+    """Whether what drives the ship moved so far that resistance may only have followed."""
+    drive = [one for one in moved if one.name.startswith(DRIVES)]
+    return any(abs(one.after - one.before) > IMPLAUSIBLE * abs(one.before) for one in drive)
+
+
 def besides(moved: Sequence[Retuned]) -> str:
     """Why the others are not told of, where some moved as far: in a sentence; "" for none."""
+    if _astray(moved) and any(one.far and one.name in IN_SERVICE for one in moved):
+        return (
+            f"Resistance and thrust moved together, the latter by more than {100.0 * IMPLAUSIBLE:.0f} %: these trials "
+            "do not tell one from the other, so that neither is named."
+        )
     others = [one for one in moved if one.name not in IN_SERVICE]
     n = sum(abs(one.after - one.before) >= FAR * abs(one.before) > 0.0 for one in others)
     if not n:

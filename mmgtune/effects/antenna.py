@@ -55,14 +55,17 @@ def _arm(direction: str, of: str, share: float) -> Parameter:
 BOTH, ALONE = "positions and velocities being its own", "velocities being those of midship"
 
 
+def _place(v: Mapping[str, str], x: str, y: str, of: str = "midship") -> str:
+    return f"{signed(v[x], 'forward', 'aft')} of {of} and {signed(v[y], 'to starboard', 'to port')}"
+
+
 def _sentence(v: Mapping[str, str]) -> str:
-    said = {"x": "Position and velocities are those", "x_alone": "The position, not the velocities, is that"}
-    return ". ".join(
-        f"{whose} of an antenna {signed(v[x], 'forward', 'aft')} of midship and "
-        f"{signed(v[x.replace('x', 'y', 1)], 'to starboard', 'to port')}"
-        for x, whose in said.items()
-        if x in v
-    )
+    if "x" not in v:
+        return f"The position, not the velocities, is that of an antenna {_place(v, 'x_alone', 'y_alone')}"
+    if "x_alone" not in v:
+        return f"Position and velocities are those of an antenna {_place(v, 'x', 'y')}"
+    further = _place(v, "x_alone", "y_alone", "that")
+    return f"Velocities are those of a point {_place(v, 'x', 'y')}, and positions those of one {further}"
 
 
 EFFECT = SensorEffect(

@@ -11,8 +11,10 @@ from .cross_checks import cross_findings
 from .finding import SEVERITIES, Finding
 from .model import Trial
 from .motion_checks import motion_findings
+from .saturation import saturation_findings
 from .schema import OPTIONAL, known_column
 from .surroundings_checks import surroundings_findings
+from .swell import swell_findings
 from .unusable import unusable
 
 __all__ = ["Finding", "check_trial"]
@@ -35,6 +37,8 @@ def check_trial(trial: Trial, L_pp: float | None = None) -> list[Finding]:
         contradicted = any(one.code == "contradicted" for one in motion)
         found = [
             *motion,
+            *saturation_findings(trial, where),
+            *swell_findings(trial, where, L_pp),
             *control_findings(trial, where),
             *cross_findings(trial, where, L_pp, contradicted),
             *surroundings_findings(trial, where),

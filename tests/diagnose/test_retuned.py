@@ -38,7 +38,7 @@ def test_a_change_from_nothing_has_no_share():
 def test_words():
     assert in_words([moved(0.54, 0.1)]) == ""
     up, down = moved(0.7, 0.01), moved(0.3, 0.001)
-    stands_in = Retuned("propeller.t_P", "thrust deduction", "1", 0.2, 0.3, 0.001)
+    stands_in = Retuned("propeller.t_P", "thrust deduction", "1", 0.2, 0.24, 0.001)
     assert stands_in.far
     assert in_words([stands_in]) == ""
     assert besides([up, stands_in]).startswith("Another coefficient is a tenth or more off too, but may only take up")
@@ -47,6 +47,21 @@ def test_words():
     assert in_words([up, down]).endswith(
         " value and resistance going straight (R_0) 40.0 ± 0.4 % below its pre-determined value"
     )
+
+
+@pytest.mark.parametrize(
+    ("name", "after", "told"),
+    [
+        ("wake.w_P0", 0.6, True),
+        ("wake.w_P0", 0.7, False),
+        ("wake.C_1", -0.1, False),
+        ("rudder.kappa", 0.9, True),
+    ],
+)
+def test_resistance_is_not_told_where_what_drives_the_ship_is_no_ships(name, after, told):
+    up, drive = moved(0.7, 0.01), Retuned(name, "of the drive", "1", 0.5, after, None)
+    assert ("R_0" in in_words([up, drive])) == told
+    assert ("do not tell one from the other" in besides([up, drive])) == (not told)
 
 
 @pytest.mark.parametrize("hidden", [{}, {"rudder-offset": {"angle": 0.03}}], ids=["nothing else", "and a cause"])

@@ -239,6 +239,14 @@ def test_an_antenna_sees_its_own_way():
     assert alone == pytest.approx(MOVING._replace(x=seen.x, y=seen.y))
 
 
+def test_velocities_of_one_point_and_positions_of_another_are_told_in_one_sentence():
+    said = find_effect("antenna").sentence({"x": "-99.2 m", "y": "0.1 m", "x_alone": "100.1 m", "y_alone": "-0.2 m"})
+    assert said == (
+        "Velocities are those of a point 99.2 m aft of midship and 0.1 m to starboard, and positions those of one "
+        "100.1 m forward of that and 0.2 m to port"
+    )
+
+
 def test_a_biased_compass_turns_the_axes_and_not_the_track():
     effect = find_effect("heading-bias")
     e = effect.params(0.05, 0.0)

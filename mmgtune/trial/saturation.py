@@ -1,0 +1,66 @@
+"""Sensors at the end of their range: a channel that is noisy, and stands still at its largest or smallest value."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import FloatArray
+from .finding import Finding
+from .model import Trial
+from .schema import MOTION
+
+CHANNELS = tuple(name for name in MOTION if name not in ("x", "y", "psi"))
+"""Those that have a range; positions and headings go on for ever."""
+
+STANDS = 8
+"""Samples in a row that show the same extreme value."""
+
+ELSEWHERE = 0.05
+"""Share of samples that repeat the one before, elsewhere in the record, up to which few digits are no reason."""
+
+NOISY = -0.3
+"""Correlation of neighbouring second differences up to which a channel is noisy: -2/3 for white noise, near 1 for a
+smooth one, which may stand still for good."""
+
+
+def saturation_findings(trial: Trial, where: str) -> list[Finding]:
+    """That a channel of the motion stands at the end of its range."""
+    found = []
+    for name in CHANNELS:
+        for word, values in (("largest", trial.columns[name]), ("smallest", -trial.columns[name])):
+            if n := _at_the_end(values):
+                value = float(np.nanmax(values)) * (1.0 if word == "largest" else -1.0)
+                found.append(
+                    Finding(
+                        "warning",
+                        f"'{name}' stands still at its {word} value, {value:.4g}",
+                        f"{where}, column '{name}'",
+                        f"it is noisy elsewhere, and shows the same number {n} samples in a row: the sensor, or what "
+                        "logs it, may be at the end of its range",
+                        "mark these samples as NaN: they count in no comparison then",
+                        "saturated",
+                    )
+                )
+    return found
+
+
+def _at_the_end(values: FloatArray) -> int:
+    """Longest run of the largest value of a noisy channel (n_samples,); 0 where it is short, or the channel is not."""
+    known = values[np.isfinite(values)]
+    if len(known) < 4 * STANDS:
+        return 0
+    top = known == known.max()
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], top.astype(int), [0]])))
+    longest = int(np.max(edges[1::2] - edges[::2]))
+    if longest < STANDS:
+        return 0
+    away = ~top[1:] & ~top[:-1]
+    repeats = np.diff(known) == 0.0
+    if away.sum() < 2 * STANDS or np.mean(repeats[away]) > ELSEWHERE:
+        return 0
+    bends = np.diff(known, n=2)
+    free = ~top[2:] & ~top[1:-1] & ~top[:-2]
+    both = free[1:] & free[:-1]
+    one, next_one = bends[:-1][both], bends[1:][both]
+    power = float(np.sqrt(np.sum(one**2) * np.sum(next_one**2)))
+    return longest if len(one) > STANDS and power > 0.0 and float(one @ next_one) < NOISY * power else 0
