@@ -15,13 +15,17 @@ from ..fitting.box import AT
 from ..trial import Trial
 from .intervals import NORMAL, Estimate
 from .runs import IN_WORDS, groups_of, name_of
-from .wording import quantity, range_in_words
+from .wording import error_in_words, quantity, range_in_words
 
 ALIKE = 0.2
 """Difference from the mean of all runs, over that, up to which values with a direction are much the same."""
 
 CERTAIN = 3.0
 """Standard errors from which the value of a run is other than none at all."""
+
+IN_STEP = 2.0
+"""Standard error of a value over that of its distance from the mean of all, from which all are known better beside each
+other than alone: what they have in common is then told once."""
 
 Told = tuple[float, float | None]
 """A value and its standard error."""
@@ -102,6 +106,26 @@ class ByRun:
                 far += ((one.value - parameter.null) / one.stderr) ** 2
         return far > CERTAIN**2 + len(self._sizes)
 
+    def from_mean(self, k: int) -> Told | None:
+        """How far the value of a group is from the mean of all, where all are known better so; else None."""
+        own = [one[self.variant[0]] for one in self.values]
+        if len(self.variant) > 1 or len(own) < 2 or not all(self._better_apart(one) for one in own):
+            return None
+        return own[k].value - float(np.mean([one.value for one in own])), own[k].apart
+
+    @staticmethod
+    def _better_apart(one: Estimate) -> bool:
+        return one.apart is not None and one.stderr is not None and one.stderr > IN_STEP * one.apart
+
+    @property
+    def _differ_in_step(self) -> float | None:
+        """Standard error of distances from the mean of all, where some are beyond doubt other than none; else None."""
+        apart = [told for k in range(len(self.groups)) if (told := self.from_mean(k))]
+        errors = [error for _, error in apart if error]
+        if not errors or not any(abs(value) > CERTAIN * error for value, error in apart if error):
+            return None
+        return max(errors)
+
     @property
     def _sizes(self) -> tuple[str, ...]:
         """Parameters that are sizes, no directions."""
@@ -114,6 +138,8 @@ class ByRun:
         word = IN_WORDS[self.by]
         subject = self.effect.subject or self.effect.title
         shown = [k for k in range(len(self.groups)) if self.shows(k)]
+        if (beside := self._differ_in_step) is not None:
+            return f"The {subject} differed from {word} to {word}: {self._in_step_in_words(beside)}"
         sizes = [self.size(k)[0] for k in (shown or range(len(self.groups)))]
         others = len(self.groups) - len(shown)
         text = f"The {subject} differed from {word} to {word}: "
@@ -127,6 +153,14 @@ class ByRun:
             text += range_in_words(min(sizes), max(sizes), self.unit) + self._of_what
             text += f", and none shows in {others} of {len(self.groups)}" if shown and others else ""
         return text + self._within()
+
+    def _in_step_in_words(self, beside: float) -> str:
+        """From the least to the largest, with what is common to all errors told once."""
+        sizes = [self.size(k)[0] for k in range(len(self.groups))]
+        common = max(error or 0.0 for _, error in map(self.size, range(len(self.groups))))
+        half, between = (error_in_words(NORMAL * error, self.unit) for error in (common, beside))
+        of_all = range_in_words(min(sizes), max(sizes), self.unit) + self._of_what
+        return f"{of_all}, known to ± {between} beside each other and to ± {half} all together"
 
     @property
     def _much_alike(self) -> bool:
@@ -157,11 +191,14 @@ class ByRun:
         """Group, size and, where it has one, direction in words, the first row heads."""
         rows: list[tuple[str, ...]] = [(IN_WORDS[self.by], self.effect.subject or self.effect.title)]
         rows[0] += ("direction",) if self.towards(0) is not None else ()
+        rows[0] += ("from the mean",) if self.from_mean(0) is not None else ()
         for k, label in enumerate(self.groups):
             value, error = self.size(k)
             direction = self.towards(k)
             size = quantity(value, None if error is None else NORMAL * error, self.unit) + self._of_what
             rows.append((name_of(label), size, *(() if direction is None else (_degrees(*direction),))))
+            if (apart := self.from_mean(k)) is not None:
+                rows[-1] += (quantity(apart[0], None if apart[1] is None else NORMAL * apart[1], self.unit),)
         return rows
 
     def to_dict(self) -> dict[str, Any]:
@@ -177,12 +214,14 @@ class ByRun:
 
     def _row(self, k: int) -> dict[str, Any]:
         value, error = self.size(k)
-        direction = self.towards(k)
+        direction, apart = self.towards(k), self.from_mean(k)
         return {
             "group": name_of(self.groups[k]),
             "trials": list(self.trials[k]),
             "size": finite(value),
             "size_stderr": error,
+            "from_mean": None if apart is None else apart[0],
+            "from_mean_stderr": None if apart is None else apart[1],
             "direction_deg": None if direction is None else math.degrees(direction[0]),
             "direction_stderr_deg": None if direction is None or direction[1] is None else math.degrees(direction[1]),
             "parameters": {

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..arrays import FloatArray
-from ..fitting.box import group_of
+from ..fitting.box import base_of, group_of
 from .linear import linearise, unit_of
 from .workbench import Point, Workbench
 
@@ -21,13 +21,17 @@ OF_BOX = 1.0 / 12.0
 
 @dataclass(frozen=True)
 class Estimate:
-    """A parameter of a cause: value and 95 % interval in its unit; an end is None where it is infinite."""
+    """A parameter of a cause: value and 95 % interval in its unit; an end is None where it is infinite.
+
+    apart  of a value of single runs, the standard error of how far it is from the mean of all; else None
+    """
 
     name: str
     value: float
     low: float | None
     high: float | None
     stderr: float | None
+    apart: float | None = None
 
 
 def estimates(bench: Workbench, point: Point) -> dict[str, Estimate]:
@@ -106,4 +110,19 @@ def _in_units(bench: Workbench, point: Point, names: Sequence[str], covariance: 
         low, high = sorted(float(end) for end in box.from_unit(ends)[i])
         stderr = 0.5 * (high - low) / NORMAL if np.isfinite(high) else None
         found[name] = Estimate(name, float(values[i]), low, high if np.isfinite(high) else None, stderr)
+    for name, spread_of_one in _apart(names, covariance).items():
+        i = names.index(name)
+        if i not in box.charted:
+            found[name] = replace(found[name], apart=float(np.sqrt(spread_of_one) * box.width[i]))
+    return found
+
+
+def _apart(names: Sequence[str], covariance: FloatArray) -> dict[str, float]:
+    """Variance of the distance of each value of single runs from the mean of the like, in the unit cube."""
+    found = {}
+    for base in dict.fromkeys(base_of(name) for name in names if group_of(name)):
+        rows = [i for i, name in enumerate(names) if base_of(name) == base and group_of(name)]
+        less_mean = np.eye(len(rows)) - 1.0 / len(rows)
+        spread = less_mean @ covariance[np.ix_(rows, rows)] @ less_mean
+        found.update({names[i]: max(float(spread[k, k]), 0.0) for k, i in enumerate(rows)})
     return found

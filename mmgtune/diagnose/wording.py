@@ -19,8 +19,19 @@ def quantity(value: float, error: float | None, unit: str) -> str:
     if error is None or not math.isfinite(error) or error <= 0.0:
         return f"{value:.3g}{word}"
     error *= factor
-    digits = max(0, min(6, 1 - math.floor(math.log10(error))))
+    digits = _digits(error)
     return f"{value:.{digits}f} ± {error:.{digits}f}{word}"
+
+
+def error_in_words(error: float, unit: str) -> str:
+    """A half width alone: "0.03 m/s"."""
+    word, factor = _after_number(unit)
+    return f"{error * factor:.{_digits(error * factor)}f}{word}"
+
+
+def _digits(error: float) -> int:
+    """Places behind the point that a half width is told with."""
+    return max(0, min(6, 1 - math.floor(math.log10(error))))
 
 
 CLOSE, LITTLE = 0.1, 0.03
@@ -34,8 +45,9 @@ def range_in_words(low: float, high: float, unit: str) -> str:
     ends = []
     for end in (low * factor, high * factor):
         short = float(f"{end:.2g}")  # 590, not 5.9e+02
-        if apart > LITTLE * abs(end) and abs(short - end) > CLOSE * apart:
-            short = round(end, max(0, -math.floor(math.log10(apart))))
+        digits = max(0, -math.floor(math.log10(apart))) if apart > LITTLE * abs(end) else 0
+        while apart > LITTLE * abs(end) and abs(short - end) > CLOSE * apart:
+            short, digits = round(end, digits), digits + 1
         ends.append(f"{short:g}")
     return f"{' to '.join(dict.fromkeys(ends))}{word}"
 

@@ -18,21 +18,30 @@ def of_runs(cause: Mapping[str, Any]) -> list[Block]:
     unit, factor = read_as(clean(found["unit"]))
     head = "size" if found["unit"] in DIMENSIONLESS else f"size [{unit}]"
     directed = any(number(row["direction_deg"]) is not None for row in found["values"])
+    apart = any(number(row.get("from_mean")) is not None for row in found["values"])
     rows = []
     for row in found["values"]:
         direction = number(row["direction_deg"])
         size = shown(None if row["size"] is None else factor * row["size"], 3), _half(row["size_stderr"], factor)
         where = (NONE if direction is None else f"{direction:.0f}°", _half(row["direction_stderr_deg"], 1.0))
-        rows.append(cells(clean(row["group"]), *size, *(where if directed else ())))
+        off, error = row.get("from_mean"), row.get("from_mean_stderr")
+        beside = shown(None if off is None else factor * off, 3), _half(error, factor)
+        rows.append(cells(clean(row["group"]), *size, *(where if directed else ()), *(beside if apart else ())))
     what = f"{clean(cause['effect']).capitalize()} of each {clean(found['by'])}, with its 95 % half width"
     return [
         Prose((clean(cause["sentence"]) + ".",)),
         Table(
             f"{clean(cause['effect'])}-of-runs",
             what,
-            (clean(found["by"]), head, "±", *(("direction", "± [°]") if directed else ())),
+            (
+                clean(found["by"]),
+                head,
+                "±",
+                *(("direction", "± [°]") if directed else ()),
+                *(("from the mean of all", "±") if apart else ()),
+            ),
             tuple(rows),
-            (1, 2, 3, 4) if directed else (1, 2),
+            tuple(range(1, 3 + 2 * directed + 2 * apart)),
         ),
     ]
 

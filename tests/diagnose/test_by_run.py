@@ -11,7 +11,11 @@ import pytest
 
 from mmgtune.cli.diagnose import summary
 from mmgtune.diagnose import DiagnoseOptions, diagnose, write_diagnosis
+from mmgtune.diagnose.by_run import ByRun
+from mmgtune.diagnose.intervals import Estimate
+from mmgtune.diagnose.intervals import _apart as apart_of
 from mmgtune.diagnose.wording import range_in_words
+from mmgtune.effects import find_effect
 from mmgtune.profile import load_profile, parse_profile
 from mmgtune.report import render
 from mmgtune.trial import load_trials
@@ -162,4 +166,41 @@ def test_a_range_is_told_in_plain_numbers():
     assert range_in_words(586e3, 661e3, "N") == "590 to 660 kN"
     assert range_in_words(0.2, 0.4, "m/s") == "0.2 to 0.4 m/s"
     assert range_in_words(0.947, 1.027, "-") == "0.95 to 1.03"
+    assert range_in_words(0.87, 1.047, "-") == "0.87 to 1.05"
     assert range_in_words(0.3499, 0.3505, "m/s") == "0.35 m/s"
+
+
+def of_loading(values, stderr, apart):
+    """Drafts of runs, each known to ``stderr``, and to ``apart`` beside the mean of all."""
+    rows = [{"draught": Estimate("x", value, None, None, stderr, apart)} for value in values]
+    labels = tuple(f"trial:run{k}" for k in range(len(values)))
+    return ByRun(find_effect("loading"), ("draught",), "trial", labels, tuple((one,) for one in labels), tuple(rows))
+
+
+def test_what_is_common_to_all_errors_is_told_once():
+    found = of_loading((0.99, 0.81, 0.93), 0.03, 0.003)
+    assert found.sentence == (
+        "The loading differed from run to run: 0.81 to 0.99, known to ± 0.0059 beside each other and to ± 0.059 all "
+        "together"
+    )
+    assert found.table()[0][-1] == "from the mean"
+    assert found.table()[1] == ("run0", "0.990 ± 0.059", "0.0800 ± 0.0059")
+    row = found.to_dict()["values"][1]
+    assert (row["from_mean"], row["from_mean_stderr"]) == (pytest.approx(-0.1), 0.003)
+
+
+@pytest.mark.parametrize(("stderr", "apart"), [(0.03, 0.02), (0.03, None), (0.03, 0.05)])
+def test_values_known_no_better_beside_each_other_are_told_alone(stderr, apart):
+    found = of_loading((0.99, 0.81, 0.93), stderr, apart)
+    assert "none shows in 2 of 3" in found.sentence or "in the other 2" in found.sentence
+    assert len(found.table()[0]) == 2
+    assert found.to_dict()["values"][0]["from_mean"] is None
+
+
+def test_errors_beside_the_mean_are_free_of_what_all_have_in_common():
+    names = ("effects.loading.draught@trial:a", "effects.loading.draught@trial:b", "effects.loading.trim")
+    own, common = 0.01, 0.2
+    covariance = own**2 * np.eye(3)
+    covariance[:2, :2] += common**2
+    found = apart_of(names, covariance)
+    assert found == {name: pytest.approx(0.5 * own**2) for name in names[:2]}
