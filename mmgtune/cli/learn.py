@@ -139,7 +139,8 @@ def _train(
     if run.dry_run:
         c.print_plan(plan(ship, data, options), folder)
         return
-    with claimed(folder, force=run.force, resume=run.resume), Progress(run.quiet, folder) as progress:
+    progress = Progress(run.quiet, folder, kept="what was learned so far")
+    with claimed(folder, force=run.force, resume=run.resume), progress:
         hooks = Hooks(on_progress=progress.on_share, stop=lambda: progress.stopped)
         result = learn(ship, data, options, hooks=hooks, folder=folder, resume=run.resume, command=c.command_line())
         document = write_learned(result, folder, overwrite=True)
