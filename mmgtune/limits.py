@@ -46,6 +46,7 @@ class Limit:
 PROFILE_BYTES = Limit(1 << 20, "bytes", "a profile", "give the TOML file of a ship: some hundred lines")
 NETWORK_BYTES = Limit(1 << 28, "bytes", "a network", "give a file that mmgtune learn has written")
 NETWORK_MEMORY = Limit(1000, "samples", "a memory", "give a file that mmgtune learn has written")
+NETWORKS = Limit(100, "networks", "a mixture", "put fewer together")
 ORDERS_BYTES = Limit(16 << 20, "bytes", "a list of orders", "give a CSV file with a row an order")
 ORDERS_STEPS = Limit(5_000_000, "steps of particles", "a list of orders", "end it earlier, or draw fewer particles")
 CHECKS_BYTES = Limit(1 << 20, "bytes", "a file of checks", "give a TOML file of [[check]] tables")

@@ -42,9 +42,10 @@ def rnn(
     """Train recurrent networks on the trials that tune: velocities, inputs and wind in, accelerations out.
 
     The networks of Wakita et al. 2022. Of the profile only the ship's name, her length and what drives her are used.
-    Whole runs are kept back, and the weights are kept that do best on windows of these; trials that test play no
-    part and are scored at the end. What comes out is one file, model.safetensors in the run folder, that simulate
-    and validate take in place of a profile. Needs the extra called learn.
+    Whole runs are kept back, and the weights are kept that do best on windows of these; with --validation 0 all runs
+    are learned from and the last weights kept. Trials that test play no part and are scored at the end. What comes
+    out is one file, model.safetensors in the run folder, that simulate and validate take in place of a profile. Needs
+    the extra called learn.
 
     Examples:
 
@@ -138,7 +139,8 @@ def _train(
     if run.dry_run:
         c.print_plan(plan(ship, data, options), folder)
         return
-    with claimed(folder, force=run.force, resume=run.resume), Progress(run.quiet, folder) as progress:
+    progress = Progress(run.quiet, folder, kept="what was learned so far")
+    with claimed(folder, force=run.force, resume=run.resume), progress:
         hooks = Hooks(on_progress=progress.on_share, stop=lambda: progress.stopped)
         result = learn(ship, data, options, hooks=hooks, folder=folder, resume=run.resume, command=c.command_line())
         document = write_learned(result, folder, overwrite=True)
@@ -195,12 +197,17 @@ def summary(result: Learned, found: dict[str, Any], folder: str, report: bool) -
     """The result as a person wants to read it in a terminal."""
     members = found["members"]
     lines = [f"type {found['type']}: {found['recipe']}; {len(members)} x {found['width']} units"]
-    lines.append(f"learned from {len(found['learned_from'])} trials, chosen by {len(found['chosen_by'])} others")
-    lines += ["", f"{'seed':>6}{'best step':>11}{'L_MSE of validation':>22}"]
-    lines += [f"{row['seed']:>6}{row['best_step']:>11}{row['score']:>22.4g}" for row in members]
+    learned = f"learned from {len(found['learned_from'])} trials"
+    if found["chosen_by"]:
+        lines += [f"{learned}, chosen by {len(found['chosen_by'])} others", ""]
+        lines.append(f"{'seed':>6}{'best step':>11}{'L_MSE of validation':>22}")
+        lines += [f"{row['seed']:>6}{row['best_step']:>11}{row['score']:>22.4g}" for row in members]
+    else:
+        lines += [f"{learned}; none chose: the mean of the last updates' weights is kept", ""]
+        lines.append(f"{'seed':>6}{'updates':>11}{'loss':>12}")
+        lines += [f"{row['seed']:>6}{row['best_step']:>11}{_shown(row['loss']):>12}" for row in members]
     for role, scores in result.scores.items():
-        if scores:
-            lines += ["", f"L_MSE on the trials of {role}, mean and deviation over seeds", *_by_kind(scores)]
+        lines += ["", f"L_MSE on the trials {_ROLES[role]}, mean and deviation over seeds", *_by_kind(scores)]
     events = [event for one in members for event in one["events"]]
     return "\n".join([*lines, "", SCALE, *_ending(found, events, folder, report)])
 

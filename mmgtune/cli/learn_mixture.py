@@ -12,6 +12,7 @@ import typer
 from ..options import Options, again
 from ..options.learning import MixtureOptions
 from . import common as c
+from . import completing
 from .options import RunOptions, takes
 
 
@@ -25,12 +26,23 @@ class MixtureRunOptions(Options):
 
 @takes(options=MixtureOptions, run=MixtureRunOptions)
 def command(
-    model: Annotated[str, typer.Argument(metavar="MODEL", help="Profile, or model.safetensors of learn hybrid.")],
-    network: Annotated[str, typer.Argument(metavar="NETWORK", help="model.safetensors of learn rnn, same ship.")],
-    trials: Annotated[
-        str | None,
-        typer.Argument(metavar="TRIALS", help="Trials that neither has seen: those that tune choose the share."),
-    ] = None,
+    model: Annotated[
+        str,
+        typer.Argument(
+            metavar="MODEL",
+            help="Profile, or model.safetensors of learn hybrid.",
+            autocompletion=completing.models,
+        ),
+    ],
+    names: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="NETWORK... [TRIALS]",
+            help="model.safetensors of learn rnn, same ship, one or several of one step; then, if any, trials that no "
+            "part has seen: those that tune choose the share.",
+            autocompletion=completing.models_and_trials,
+        ),
+    ],
     *,
     options: MixtureOptions,
     run: MixtureRunOptions,
@@ -40,30 +52,38 @@ def command(
     """Let a model of forces and recurrent networks drive one ship together.
 
     Her accelerations are a weighted mean of theirs. Both err, but differently, so that together they often err less
-    than either. The share is tried on trials that neither was trained on, and what does best is written as one file,
-    model.safetensors, that simulate and validate take in place of a profile; where no mixture does better, that is the
-    hybrid or the networks alone. Without trials one share must be given. Needs no JAX.
+    than either. Several trainings of one step may be given, with other types, memories or runs to learn from: all their
+    networks count alike. The share is tried on trials that no part was trained on, and what does best is written as one
+    file, model.safetensors, that simulate and validate take in place of a profile; where no mixture does better, that
+    is the hybrid or the best of the trainings alone. Without trials one share must be given. Needs no JAX.
 
     Examples:
 
       mmgtune learn mixture esso_osaka_3m_tuned runs/type1/model.safetensors unseen --out runs/mixture
 
       mmgtune learn mixture esso_osaka_3m_hybrid runs/type1/model.safetensors --share 0.35
+
+      mmgtune learn mixture esso_osaka_3m_hybrid runs/type1 runs/type2 --share 0.35 --out runs/mixture
     """
     from ..comparing_models import compare_models, write_model_comparison
     from ..fitting import claimed
     from ..learning import learn_mixture
     from ..networks import named_ship
+    from ..networks.naming import file_of
     from ..report import render
     from ..resources import MODEL
 
+    # What stands last is trials unless it is a trained model; what stands first after the model never is.
+    trials = names[-1] if names[1:] and file_of(names[-1]) is None else None
+    networks = names if trials is None else names[:-1]
     given = named_ship(model)
     folder = run.out or c.default_out(given)
     with claimed(folder, force=run.force):
-        result = learn_mixture(given, network, trials, options, command=c.command_line())
+        result = learn_mixture(given, networks, trials, options, command=c.command_line())
         document = result.write(folder, overwrite=True)
         if trials is not None and not no_report:
-            several = {"model of forces": given, "networks": network}
+            alone = [f"networks {k + 1}" for k in range(len(networks))] if networks[1:] else ["networks"]
+            several = {"model of forces": given, **dict(zip(alone, networks, strict=True))}
             if 0.0 < document["share"] < 1.0:
                 several[f"mixture ({document['share']:g})"] = str(folder / MODEL)
             write_model_comparison(
@@ -84,7 +104,9 @@ def notes(document: Mapping[str, Any]) -> tuple[str, ...]:
         said.append(f"A part was trained on {len(seen)} of the trials that chose ({which}): errors flatter it.")
     if document["tried"] and document["share"] in (0.0, 1.0):
         kept = "networks alone are" if document["share"] else "model of forces alone is"
-        said.append(f"No gain: no mixture does better than one of the two, and the {kept} kept.")
+        if document["network"] is not None:
+            kept = f"networks {document['network']} alone are"
+        said.append(f"No gain: no mixture does better than one of its parts, and the {kept} kept.")
     return tuple(said)
 
 
@@ -93,12 +115,16 @@ def summary(document: Mapping[str, Any], model: str, *, report: bool) -> str:
     lines = []
     if document["tried"]:
         kinds = list(document["tried"][0]["L_MSE"])
-        lines.append(f"{'share':<8}{'error':>10}" + "".join(f"{kind or 'not stated':>12}" for kind in kinds))
+        several = any("network" in row for row in document["tried"])
+        wide = 20 if several else 8
+        lines.append(f"{'share':<{wide}}{'error':>10}" + "".join(f"{kind or 'not stated':>12}" for kind in kinds))
         for row in document["tried"]:
             errors = ["diverged" if row["L_MSE"][kind] is None else f"{row['L_MSE'][kind]:.4g}" for kind in kinds]
             total = "diverged" if row["score"] is None else f"{100 * row['score']:.1f} %"
-            chosen = " *" if row["share"] == document["share"] else ""
-            lines.append(f"{row['share']:<8g}{total:>10}" + "".join(f"{one:>12}" for one in errors) + chosen)
+            kept = (row["share"], row.get("network")) == (document["share"], document["network"])
+            chosen = " *" if kept else ""
+            share = f"{row['share']:g}" + (f", networks {row['network']}" if "network" in row else "")
+            lines.append(f"{share:<{wide}}{total:>10}" + "".join(f"{one:>12}" for one in errors) + chosen)
         lines += ["error: mean over kinds of manoeuvre of L_MSE over that of the model of forces; * kept", ""]
     lines += [text for note in notes(document) for text in (note, "")]
     lines.append(model)

@@ -1,4 +1,4 @@
-"""What networks are trained for: a loss on short windows, and the score on long ones that chooses."""
+"""What networks are trained for: a loss on short windows, and the score on long ones that chooses, where one does."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .task import Task
 
 
 class RecurrentAim:
-    """A recurrent network on windows of trials, chosen by windows of ``restart`` [s] of others."""
+    """A recurrent network on windows of trials, chosen by windows of ``restart`` [s] of others if there are some."""
 
     def __init__(self, task: Task, scales: Scales):
         jnp = jax_module().numpy
@@ -39,9 +39,10 @@ class RecurrentAim:
         self._h, self._memory, self._horizon, self._recipe = learn.step, task.memory, options.horizon, recipe
         if recipe.loss == "acceleration":
             self._deviation = jnp.asarray(np.nanstd(measured, axis=0), dtype=Single)
-        self._chooser = Chooser(
-            squares_of(self._of_windows), task.split.choose, task.inputs, learn.step, sigma, restart=options.restart
-        )
+        self._chooser = None
+        if choose := task.split.choose:
+            squares = squares_of(self._of_windows)
+            self._chooser = Chooser(squares, choose, task.inputs, learn.step, sigma, restart=options.restart)
 
     def _of_windows(self, w: Weights, initial: Any, controls: Any, around: Any) -> Any:
         """See ``Roll``."""
@@ -63,4 +64,4 @@ class RecurrentAim:
 
     def judged(self, w: Weights) -> dict[str, float]:
         """See ``Aim``: the mean over kinds of manoeuvre, each alike."""
-        return {"score": float(np.mean(list(self._chooser.by_kind(w).values())))}
+        return {"score": float(np.mean(list(self._chooser.by_kind(w).values())))} if self._chooser else {}

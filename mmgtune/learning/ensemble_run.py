@@ -96,7 +96,7 @@ class LearnedEnsemble:
     @property
     def role(self) -> str:
         """The trials it is judged by first."""
-        return next(role for role in ("test", "validation", "learned") if role in self.scores)
+        return next(iter(self.task.by_role))
 
     def as_ship(self) -> Ensemble:
         """What was trained: what the result stands for where a ship is wanted."""
@@ -142,13 +142,14 @@ def learn_ensemble(
     facts = {**travelling(made), "type": "ensemble", "seeds": [one.seed for one in members]}
     ensemble = ensemble_of(members, task, facts)
     done = len(members) == options.members and all(one.step >= options.steps for one in members)
-    held = {"test": task.test, "validation": task.split.choose}
-    held = {role: of for role, of in held.items() if of} or {"learned": task.split.learn}
     return LearnedEnsemble(
         ensemble,
         tuple(members),
         task,
-        {role: scored(EnsemblePredictor(ensemble), of, task.sigma, options.restart) for role, of in held.items()},
+        {
+            role: scored(EnsemblePredictor(ensemble), of, task.sigma, options.restart)
+            for role, of in task.by_role.items()
+        },
         made,
         not done,
         time.perf_counter() - began,

@@ -46,7 +46,6 @@ SHOWN = ("north_m", "east_m", "psi_rad", "u_m_s", "v_m_s", "r_rad_s")
 def document_of(result: Learned) -> dict[str, Any]:
     """Everything but the weights, for JSON."""
     task = result.task
-    role = "test" if task.test else "validation"
     return {
         "schema": 1,
         "kind": "learning",
@@ -64,8 +63,10 @@ def document_of(result: Learned) -> dict[str, Any]:
         "learned_from": [trial.id for trial in task.split.learn],
         "chosen_by": [trial.id for trial in task.split.choose],
         "held_out": [trial.id for trial in task.test],
-        "scores": {role: summary(scores) for role, scores in result.scores.items() if scores},
-        "drawn": drawn([NetworkPredictor(result.network)], task.test or task.split.choose, task.options.restart, role),
+        "scores": {role: summary(scores) for role, scores in result.scores.items()},
+        "drawn": drawn(
+            [NetworkPredictor(result.network)], task.by_role[result.role], task.options.restart, result.role
+        ),
         "options": task.options.to_dict(),
         "provenance": result.provenance,
         "interrupted": result.interrupted,
@@ -107,7 +108,6 @@ def hybrid_document(result: LearnedHybrid) -> dict[str, Any]:
 def ensemble_document(result: LearnedEnsemble) -> dict[str, Any]:
     """Everything but the weights of an ensemble, for JSON."""
     task, part = result.task, result.ensemble.motion
-    shown = {"test": task.test, "validation": task.split.choose, "learned": task.split.learn}[result.role]
     return {
         "schema": 1,
         "kind": "ensemble",
@@ -127,7 +127,9 @@ def ensemble_document(result: LearnedEnsemble) -> dict[str, Any]:
         "watched_by": [trial.id for trial in task.split.choose],
         "held_out": [trial.id for trial in task.test],
         "scores": {role: summary(scores) for role, scores in result.scores.items()},
-        "drawn": drawn([EnsemblePredictor(result.ensemble)], shown, task.options.restart, result.role),
+        "drawn": drawn(
+            [EnsemblePredictor(result.ensemble)], task.by_role[result.role], task.options.restart, result.role
+        ),
         "options": task.options.to_dict(),
         "provenance": result.provenance,
         "interrupted": result.interrupted,

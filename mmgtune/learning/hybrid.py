@@ -189,10 +189,9 @@ class HybridAim:
         return self._alone
 
     def judged(self, w: ResidualWeights) -> dict[str, float]:
-        """See ``Aim``: L_MSE by run, and the score of ``relative``; the last weights are as good as any where no run
-        chooses."""
+        """See ``Aim``: L_MSE by run, and the score of ``relative``."""
         errors = self._by_run(w)
-        return {"score": relative(self.alone(w), errors, self.runs) if errors else 0.0, **errors}
+        return {"score": relative(self.alone(w), errors, self.runs), **errors} if errors else {}
 
     def _by_run(self, w: ResidualWeights) -> dict[str, float]:
         return self._chooser.by_run((w, self.data["fixed"])) if self._chooser else {}

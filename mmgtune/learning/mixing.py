@@ -6,8 +6,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
+from .. import limits
 from ..documents import finite, write_json
 from ..errors import OptionError, Problem, reason
 from ..files import path_of, refuse_existing
@@ -36,31 +37,37 @@ from .choosing import pieces_of
 
 RESULT = "mixture.json"
 
+NetworkGiven = Network | Predictor | str | Path
+
 
 @dataclass(frozen=True, eq=False)
 class Tried:
     """A share of the networks, and what it does on the runs that choose.
 
-    errors  L_MSE by kind of manoeuvre
-    score   mean over kinds of the error over that of the hybrid alone; infinite where a run diverged
+    errors   L_MSE by kind of manoeuvre
+    score    mean over kinds of the error over that of the hybrid alone; infinite where a run diverged
+    network  which of several networks is alone with a share of 1, counted from 1
     """
 
     share: float
     errors: dict[str, float]
     score: float
+    network: int | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON; what diverged is null."""
         errors = {kind: finite(error) for kind, error in self.errors.items()}
-        return {"share": self.share, "score": finite(self.score), "L_MSE": errors}
+        which = {} if self.network is None else {"network": self.network}
+        return {"share": self.share, **which, "score": finite(self.score), "L_MSE": errors}
 
 
 @dataclass(frozen=True, eq=False)
 class LearnedMixture:
     """The best of the shares that were tried; a hybrid or networks alone where no mixture does better.
 
-    tried  share by share, with 0, the hybrid alone, and 1, the networks alone; empty where nothing chose
-    seen   runs among those that chose which a part was trained on: their errors flatter it
+    tried    share by share, with 0, the hybrid alone, and 1, each of the networks alone; empty where nothing chose
+    seen     runs among those that chose which a part was trained on: their errors flatter it
+    network  which of several networks is kept alone, counted from 1; None where none is
     """
 
     model: Mixture | Hybrid | Network
@@ -68,6 +75,7 @@ class LearnedMixture:
     seen: tuple[str, ...]
     options: MixtureOptions
     provenance: dict[str, Any]
+    network: int | None = None
 
     @property
     def share(self) -> float:
@@ -87,6 +95,7 @@ class LearnedMixture:
         return {
             "schema": 1,
             "share": self.share,
+            "network": self.network,
             "tried": [one.to_dict() for one in self.tried],
             "seen": list(self.seen),
             "options": self.options.to_dict(),
@@ -108,7 +117,7 @@ class LearnedMixture:
 
 def learn_mixture(
     model: ShipProfile | Hybrid | Predictor | str | Path,
-    network: Network | Predictor | str | Path,
+    networks: NetworkGiven | Sequence[NetworkGiven],
     trials: TrialsGiven | None = None,
     options: MixtureOptions = MixtureOptions(),
     *,
@@ -116,25 +125,27 @@ def learn_mixture(
 ) -> LearnedMixture:
     """Put a model of forces and recurrent networks together.
 
-    model    profile, or hybrid
-    network  of the same ship; all its members count alike
-    trials   that neither was trained on: those that tune choose the share.  None takes the one share of the options
+    model     profile, or hybrid
+    networks  of the same ship, one or several of one step; all members of all of them count alike
+    trials    that no part was trained on: those that tune choose the share.  None takes the one share of the options
     Raises OptionError where parts do not fit, or nothing says which of several shares is meant; NetworkError.
     """
     must_be(options, MixtureOptions)
-    hybrid, net = _hybrid(named_ship(model)), _network(named_ship(network))
+    several = networks if isinstance(networks, (list, tuple)) else [networks]
+    limits.NETWORKS.hold(len(several), "NETWORK", OptionError)
+    hybrid, nets = _hybrid(named_ship(model)), tuple(_network(named_ship(one)) for one in several)
     try:
-        mixtures = [Mixture(hybrid, net, share) for share in options.share]
+        mixtures = [Mixture(hybrid, nets, share) for share in options.share]
     except ValueError as error:
-        raise OptionError(
-            Problem("the two models do not fit together", "MODEL NETWORK", reason(error), "give two models of one ship")
-        ) from error
+        fix = "give models of one ship, and networks that were trained with one step"
+        raise OptionError(Problem("the models do not fit together", "MODEL NETWORK", reason(error), fix)) from error
     tried: list[Tried] = []
     seen: tuple[str, ...] = ()
-    parts = {"hybrid": hybrid.facts, "network": net.facts}
+    parts = [hybrid.facts, *(one.facts for one in nets)]
     made = made_by(command)
     facts: dict[str, Any] = {"type": "mixture", **{key: made[key] for key in ("mmgtune", "created", "environment")}}
-    facts["trials"] = _trials_of(list(parts.values()))
+    facts["trials"] = _trials_of(parts)
+    which: int | None = None
     if trials is None:
         if len(mixtures) > 1:
             why = f"{len(mixtures)} shares could be meant"
@@ -143,24 +154,34 @@ def learn_mixture(
     else:
         data = trials_of(trials).series_only("a mixture")
         chosen = [data.trials[id] for id in data.tune]
-        learned = {id for of in parts.values() for id in _learned(of)}
+        learned = {id for of in parts for id in _learned(of)}
         seen = tuple(one.id for one in chosen if {one.id, one.run} & learned)
-        candidates: list[tuple[float, Mixture | Hybrid | Network, Predictor]] = [
-            (0.0, hybrid, HybridPredictor(hybrid)),
-            *((one.share, one, MixturePredictor(one)) for one in mixtures),
-            (1.0, net, NetworkPredictor(net)),
+        candidates: list[_Candidate] = [
+            _Candidate(0.0, hybrid, HybridPredictor(hybrid)),
+            *(_Candidate(one.share, one, MixturePredictor(one)) for one in mixtures),
+            *(_Candidate(1.0, one, NetworkPredictor(one), k + 1 if nets[1:] else None) for k, one in enumerate(nets)),
         ]
-        tried = _tried([(share, predictor) for share, _, predictor in candidates], data, chosen, options)
+        tried = _tried(candidates, data, chosen, options)
         least = min(range(len(tried)), key=lambda k: tried[k].score)
-        best = candidates[least][1]
+        best, which = candidates[least].model, candidates[least].network
         facts["chosen_by"] = [one.id for one in chosen]
     if isinstance(best, Mixture):
-        best = Mixture(hybrid, net, best.share, facts)
-    return LearnedMixture(best, tuple(tried), seen, options, {**made, "parts": parts})
+        best = Mixture(hybrid, nets, best.share, facts)
+    told = {"hybrid": hybrid.facts, "networks": [one.facts for one in nets]}
+    return LearnedMixture(best, tuple(tried), seen, options, {**made, "parts": told}, which)
+
+
+class _Candidate(NamedTuple):
+    """What may be kept; ``network`` as of ``Tried``."""
+
+    share: float
+    model: Mixture | Hybrid | Network
+    predictor: Predictor
+    network: int | None = None
 
 
 def _tried(
-    several: Sequence[tuple[float, Predictor]], data: TrialSet, chosen: Sequence[Trial], options: MixtureOptions
+    several: Sequence[_Candidate], data: TrialSet, chosen: Sequence[Trial], options: MixtureOptions
 ) -> list[Tried]:
     """Each share on the runs that choose, the hybrid first."""
     if not chosen:
@@ -169,13 +190,13 @@ def _tried(
         )
     sigma, pieces = varying(spread(chosen), "trials", "give trials that do"), pieces_of(chosen, options.restart)
     found: list[Tried] = []
-    for share, predictor in several:
-        scores = score(predictor, pieces, sigma)
+    for one in several:
+        scores = score(one.predictor, pieces, sigma)
         errors = {kind: L_MSE(of) for kind, of in by_manoeuvre(scores).items()}
         alone = found[0].errors if found else errors
         ratios = [errors[kind] / alone[kind] for kind in errors]
         mean = math.fsum(ratios) / len(ratios)
-        found.append(Tried(share, errors, mean if math.isfinite(mean) else math.inf))
+        found.append(Tried(one.share, errors, mean if math.isfinite(mean) else math.inf, one.network))
     return found
 
 

@@ -45,7 +45,9 @@ def plan_rnn(ship: ShipGiven, trials: TrialsGiven, options: LearnOptions) -> Pla
     lines = (
         f"learn     type {options.type}: {task.recipe.words}",
         *_material(task, options.horizon),
-        f"choose    {_of(split.choose)}: {', '.join(one.id for one in split.choose)}",
+        f"choose    {_of(split.choose)}: {', '.join(one.id for one in split.choose)}"
+        if split.choose
+        else "choose    none: the mean of the last updates' weights is kept",
         f"test      {len(task.test)} trials",
         f"train     {options.seeds} seeds of {options.steps} updates by {options.batch} windows",
     )

@@ -38,26 +38,31 @@ from .training import Plan, Progressed, Trainer, needed
 class Member:
     """One trained network.
 
-    weights  the best by score, without the axis of members
-    score    mean over kinds of manoeuvre of L_MSE on the windows that chose
-    curve    a row for each validation: step, loss, score, norm of the gradient
+    weights  the best by score, or the last where no run chooses, without the axis of members
+    score    mean over kinds of manoeuvre of L_MSE on the windows that chose; None where none did
+    curve    a row for each validation: step, loss, score if there is one, norm of the gradient
     events   where training diverged, and what was done
     """
 
     seed: int
     weights: Weights
-    score: float
+    score: float | None
     step: int
     curve: tuple[dict[str, float], ...]
     events: tuple[dict[str, Any], ...]
 
+    @property
+    def best(self) -> dict[str, float]:
+        """The row of the curve at which the weights were kept."""
+        return self.curve[-1] if self.score is None else min(self.curve, key=lambda row: row["score"])
+
     def to_dict(self) -> dict[str, Any]:
         """For JSON; the weights are in the model's file."""
-        best = min(self.curve, key=lambda row: row["score"])
         return {
             "seed": self.seed,
-            "score": finite(self.score),
-            "best_step": int(best["step"]),
+            "loss": finite(self.best["loss"]),
+            "score": None if self.score is None else finite(self.score),
+            "best_step": int(self.best["step"]),
             "steps": self.step,
             "curve": [{key: finite(value) for key, value in row.items()} for row in self.curve],
             "events": list(self.events),
@@ -69,7 +74,8 @@ class Learned:
     """Networks of one type, one for each seed.
 
     task     what was learned from what
-    scores   of the trials that chose and of those held out, in windows, by role: "validation", "test"
+    scores   in windows, by role, of the trials of ``Material.by_role``: those held out, "test", and those that chose,
+             "validation"; where there are neither, of those "learned" from
     """
 
     written_by = "write_learned"
@@ -82,14 +88,21 @@ class Learned:
     interrupted: bool
     wall_s: float
 
+    @property
+    def role(self) -> str:
+        """The trials it is judged by first."""
+        return next(iter(self.task.by_role))
+
     def as_ship(self) -> Network:
         """What was trained: what the result stands for where a ship is wanted."""
         return self.network
 
     def __repr__(self) -> str:
         """In a line."""
-        best = ", ".join(f"{one.score:.3g}" for one in self.members)
-        return f"Learned({self.network.ship}, type {self.task.options.type}, L_MSE of validation by seed {best})"
+        chosen = bool(self.task.split.choose)
+        best = ", ".join(f"{one.best['score' if chosen else 'loss']:.3g}" for one in self.members)
+        what = "L_MSE of validation" if chosen else "loss"
+        return f"Learned({self.network.ship}, type {self.task.options.type}, {what} by seed {best})"
 
 
 def learn_rnn(
@@ -103,6 +116,8 @@ def learn_rnn(
     command: str = "",
 ) -> Learned:
     """Train networks on the trials that tune, choose by runs kept back, and score those that test.
+
+    With ``validation=0.0`` no run is kept back: after all updates the running mean of the weights is kept.
 
     ship    profile that names the ship, her length and what drives her; her coefficients play no part
     hooks   what is told on the way, and what ends it: see ``until_interrupted`` for Ctrl-C
@@ -139,12 +154,11 @@ def learn_rnn(
         mirrored=options.mirrored,
     )
     done = len(members) == options.seeds and all(one.step >= options.steps for one in members)
-    held = {"validation": task.split.choose, "test": task.test}
     return Learned(
         network,
         tuple(members),
         task,
-        {role: scored(NetworkPredictor(network), of, task.sigma, options.restart) for role, of in held.items()},
+        {role: scored(NetworkPredictor(network), of, task.sigma, options.restart) for role, of in task.by_role.items()},
         made,
         not done,
         time.perf_counter() - began,
@@ -177,8 +191,8 @@ def _members(trainer: Trainer, task: Task, hooks: Hooks, kept: Kept) -> list[Mem
     def told(k: int, one: Progressed) -> None:
         kept.keep(seeds[k], one)
         row, done[k] = one.curve[-1], one.step
-        words = f"seed {k + 1} of {options.seeds}, loss {row['loss']:.4g}, L_MSE of validation {row['score']:.4g}"
-        hooks.on_progress(sum(done), task.updates, words)
+        chosen = f", L_MSE of validation {row['score']:.4g}" if "score" in row else ""
+        hooks.on_progress(sum(done), task.updates, f"seed {k + 1} of {options.seeds}, loss {row['loss']:.4g}{chosen}")
 
     def one_by_one() -> Iterator[Progressed]:
         for k, seed in enumerate(seeds):
@@ -197,7 +211,8 @@ def _members(trainer: Trainer, task: Task, hooks: Hooks, kept: Kept) -> list[Mem
     for seed, now in zip(seeds, at_once() if accelerated() else one_by_one(), strict=False):  # fewer where stopped
         if np.isfinite(now.best_score):
             best = Weights(*(np.asarray(one, dtype=np.float64) for one in now.best))
-            found.append(Member(seed, best, now.best_score, now.step, tuple(now.curve), tuple(now.events)))
+            score = now.best_score if task.split.choose else None
+            found.append(Member(seed, best, score, now.step, tuple(now.curve), tuple(now.events)))
     return found
 
 

@@ -52,7 +52,10 @@ class Aim(Protocol):
         ...
 
     def judged(self, parameters: Any) -> dict[str, float]:
-        """What is known of weights: their "score", less is better and infinite where a run diverged, and more."""
+        """What is known of weights: their "score", less is better and infinite where a run diverged, and more.
+
+        Without a score nothing chooses: the last weights are as good as any.
+        """
         ...
 
 
@@ -72,7 +75,7 @@ class Progressed:
     """Where a training stands: everything that it goes on from.
 
     parameters, state, mean  trees of arrays: weights, what the optimiser remembers, running mean of the weights
-    best, best_score         the best mean so far
+    best, best_score         the best mean so far; where nothing chooses the last, and the loss of its updates
     curve                    a row for each validation: step, mean loss since the last, norm of the gradient, and what
                              the aim says
     events                   what went wrong, with its step
@@ -190,10 +193,10 @@ class Trainer:
         losses, largest  of the steps since the last validation: losses, and the largest norm of a gradient
         """
         judged = self.aim.judged(now.mean)
-        score = judged["score"]
         loss = float(np.mean(losses)) if losses else math.nan
         now.curve.append({"step": now.step, "loss": loss, "norm": largest, **judged})
-        if score < now.best_score:
+        score = judged.get("score", loss)
+        if score < now.best_score or ("score" not in judged and math.isfinite(loss)):
             now.best, now.best_score = now.mean, score
         return math.isfinite(score) and not now.lost
 

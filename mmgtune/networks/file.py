@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -24,7 +24,9 @@ from .residual import Ranges, ResidualWeights
 
 SUFFIX = ".safetensors"
 FORMAT = "mmgtune network"
-SCHEMA = 1
+SCHEMA, SEVERAL = 1, 2
+"""Schemas: of all files, and of mixtures of several networks, which versions that know one alone refuse by it."""
+
 Trained = Network | Hybrid | Ensemble | Mixture
 FIX = "give a file that mmgtune learn has written, or train the model again"
 
@@ -41,7 +43,8 @@ def save_network(network: Trained, path: Path | str, *, overwrite: bool = False)
         for name, values in of.items()
     }
     text = json.dumps(header, sort_keys=True, allow_nan=False)
-    content = in_order(save(arrays, metadata={"format": FORMAT, "schema": str(SCHEMA), "network": text}))
+    schema = SEVERAL if "networks" in header else SCHEMA
+    content = in_order(save(arrays, metadata={"format": FORMAT, "schema": str(schema), "network": text}))
     with atomic(path, overwrite) as part:
         part.write_bytes(content)
     return path
@@ -61,9 +64,12 @@ def _described(model: Trained) -> tuple[dict[str, Any], dict[str, dict[str, Any]
     """Header of a model, and its arrays by group and name."""
     if isinstance(model, Mixture):
         header: dict[str, Any] = {"kind": "mixture", "share": model.share}
-        groups: dict[str, dict[str, Any]] = {}
-        for name, part in (("hybrid", model.hybrid), ("network", model.network)):
-            header[name], own = _described(part)
+        header["hybrid"], own = _described(model.hybrid)
+        groups = {f"hybrid.{group}": of for group, of in own.items()}
+        several = [_described(one) for one in model.networks]
+        alone = len(several) == 1  # as in files from before there could be several
+        header |= {"network": several[0][0]} if alone else {"networks": [of for of, _ in several]}
+        for name, (_, own) in zip(["network"] if alone else _numbered(len(several)), several, strict=True):
             groups |= {f"{name}.{group}": of for group, of in own.items()}
     elif isinstance(model, Hybrid):
         header = {"kind": "hybrid", "profile": model.profile.text, "memory": model.memory}
@@ -101,8 +107,7 @@ def load_network(path: str | Path) -> Trained:
             raise NetworkError(Problem("a folder is no trained model", where, "", _in_folder(path)))
         limits.NETWORK_BYTES.hold(path.stat().st_size, where, NetworkError)
         with safe_open(path, framework="numpy") as file:
-            header = _header(file.metadata() or {}, where)
-            made = _MADE[header["kind"]]
+            header, made = _header(file.metadata() or {}, where)
             _hold(header, made.header, where)
             groups_of = made.groups(header)
             wanted = [f"{group}.{name}" for group, of in groups_of.items() for name in of._fields]
@@ -132,7 +137,8 @@ def _in_folder(path: Path) -> str:
 
 
 _Kinds = Mapping[str, Any]
-"""Types that what stands in a header may have, by key; or what stands in a table of it, likewise."""
+"""Types that what stands in a header may have, by key; or what stands in a table of it, likewise, or in each table of
+a list."""
 
 
 class _Made(NamedTuple):
@@ -177,9 +183,25 @@ def _ensemble(header: dict[str, Any], motion: Layers, standards: Standards, *oth
 
 
 def _mixture(header: dict[str, Any], *others: Any) -> Mixture:
-    weights, ranges, net, scales, where = others
+    return _of_several({**header, "networks": [header["network"]]}, *others)
+
+
+def _of_several(header: dict[str, Any], *others: Any) -> Mixture:
+    weights, ranges, *of_networks, where = others
     hybrid = _hybrid(header["hybrid"], weights, ranges, where)
-    return Mixture(hybrid, _recurrent(header["network"], net, scales, where), float(header["share"]), header["facts"])
+    several = zip(header["networks"], of_networks[::2], of_networks[1::2], strict=True)
+    networks = tuple(_recurrent(one, net, scales, where) for one, net, scales in several)
+    return Mixture(hybrid, networks, float(header["share"]), header["facts"])
+
+
+def _groups_of_mixture(names: Sequence[str]) -> dict[str, Any]:
+    of_networks = {f"{name}.{of}": kind for name in names for of, kind in (("weights", Weights), ("scales", Scales))}
+    return {"hybrid.weights": ResidualWeights, "hybrid.ranges": Ranges, **of_networks}
+
+
+def _numbered(n: int) -> list[str]:
+    """What the groups of several networks begin with."""
+    return [f"network.{k}" for k in range(n)]
 
 
 def _groups_of_ensemble(header: dict[str, Any]) -> dict[str, Any]:
@@ -201,40 +223,51 @@ _ALONE = {"ship": (str,), "L_pp": _NUMBER, "inputs": (list,), "step": _NUMBER, "
 _RECURRENT = {**_ALONE, "memory": (int, type(None))}
 _HYBRID = {"profile": (str,), "memory": _NUMBER, "facts": (dict,)}
 
+_MIXTURE = {"share": _NUMBER, "hybrid": _HYBRID, "facts": (dict,)}
+
 _MADE = {
-    "recurrent": _Made(lambda _: {"weights": Weights, "scales": Scales}, _RECURRENT, _recurrent),
-    "ensemble": _Made(_groups_of_ensemble, {**_ALONE, "initial": (int,)}, _ensemble),
-    "hybrid": _Made(lambda _: {"weights": ResidualWeights, "ranges": Ranges}, _HYBRID, _hybrid),
-    "mixture": _Made(
-        lambda _: {
-            "hybrid.weights": ResidualWeights,
-            "hybrid.ranges": Ranges,
-            "network.weights": Weights,
-            "network.scales": Scales,
-        },
-        {"share": _NUMBER, "hybrid": _HYBRID, "network": _RECURRENT, "facts": (dict,)},
-        _mixture,
+    ("recurrent", SCHEMA): _Made(lambda _: {"weights": Weights, "scales": Scales}, _RECURRENT, _recurrent),
+    ("ensemble", SCHEMA): _Made(_groups_of_ensemble, {**_ALONE, "initial": (int,)}, _ensemble),
+    ("hybrid", SCHEMA): _Made(lambda _: {"weights": ResidualWeights, "ranges": Ranges}, _HYBRID, _hybrid),
+    ("mixture", SCHEMA): _Made(
+        lambda _: _groups_of_mixture(["network"]), {**_MIXTURE, "network": _RECURRENT}, _mixture
+    ),
+    ("mixture", SEVERAL): _Made(
+        lambda header: _groups_of_mixture(_numbered(len(header["networks"]))),
+        {**_MIXTURE, "networks": [_RECURRENT]},
+        _of_several,
     ),
 }
+"""By kind and schema."""
 
 
-def _header(metadata: dict[str, str], where: str) -> dict[str, Any]:
-    """The facts of a file.  Raises NetworkError where it is not one of ours."""
+def _header(metadata: dict[str, str], where: str) -> tuple[dict[str, Any], _Made]:
+    """The facts of a file, and how such a file is read.  Raises NetworkError where it is not one of ours."""
     if metadata.get("format") != FORMAT:
         raise NetworkError(Problem("the file holds no network of mmgtune", where, "its header does not say so", FIX))
-    if metadata.get("schema") != str(SCHEMA):
-        why = f"it is written in schema {brief(metadata.get('schema'))}, this version reads {SCHEMA}"
-        raise NetworkError(Problem("the network is of another version", where, why, FIX))
+    _schema(metadata, (SCHEMA, SEVERAL), where)
     try:
         found = json.loads(metadata.get("network", ""))
     except (ValueError, RecursionError) as error:
         raise NetworkError(Problem("the header of the network cannot be read", where, reason(error), FIX)) from error
     if not isinstance(found, dict):
         raise NetworkError(Problem("the header of the network is no table", where, brief(found), FIX))
-    if not isinstance(found.get("kind"), str) or found["kind"] not in _MADE:
-        why = f"known here: {', '.join(_MADE)}"
-        raise NetworkError(Problem(f"the network is of kind {brief(found.get('kind'))}", where, why, FIX))
-    return found
+    kind: Any = found.get("kind")
+    schemas = [of for name, of in _MADE if name == kind]
+    if not schemas:
+        why = f"known here: {', '.join(dict.fromkeys(name for name, _ in _MADE))}"
+        raise NetworkError(Problem(f"the network is of kind {brief(kind)}", where, why, FIX))
+    return found, _MADE[kind, _schema(metadata, schemas, where)]
+
+
+def _schema(metadata: dict[str, str], known: Sequence[int], where: str) -> int:
+    """The schema that a file is written in.  Raises NetworkError where it is none of those known."""
+    given = metadata.get("schema")
+    for one in known:
+        if given == str(one):
+            return one
+    why = f"it is written in schema {brief(given)}, this version reads {' and '.join(map(str, known))}"
+    raise NetworkError(Problem("the network is of another version", where, why, FIX))
 
 
 def _hold(header: dict[str, Any], kinds: _Kinds, where: str) -> None:
@@ -244,7 +277,11 @@ def _hold(header: dict[str, Any], kinds: _Kinds, where: str) -> None:
         given = header.get(key, ...)
         if isinstance(kind, dict) and isinstance(given, dict):
             _hold(given, kind, where)
-        elif isinstance(kind, dict) or not isinstance(given, kind) or isinstance(given, bool):
+        elif isinstance(kind, list) and isinstance(given, list) and all(isinstance(one, dict) for one in given):
+            limits.NETWORKS.hold(len(given), where, NetworkError)
+            for one in given:
+                _hold(one, kind[0], where)
+        elif isinstance(kind, (dict, list)) or not isinstance(given, kind) or isinstance(given, bool):
             wrong.append(Problem(f"{key} of the network is {brief(header.get(key))}", where, "", FIX))
     if wrong:
         raise NetworkError(*wrong)

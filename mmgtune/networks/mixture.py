@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from .. import limits
 from ..arrays import FloatArray
 from ..backends import Cases
 from ..backends.numpy_lanes import Moment
@@ -31,31 +32,46 @@ N_STATES = len(State._fields)
 class Mixture:
     """Two ways to compute the accelerations of one ship, and how much each counts.
 
-    hybrid   model of forces; its network may add nothing
-    network  recurrent networks, of which all members count alike
-    share    of the networks in the accelerations
-    facts    provenance, as of ``Network``
+    hybrid    model of forces; its network may add nothing
+    networks  recurrent networks of one step, with memories of any length, mirrored or not; all members of all of them
+              count alike
+    share     of the networks in the accelerations
+    facts     provenance, as of ``Network``
     """
 
     hybrid: Hybrid
-    network: Network
+    networks: tuple[Network, ...]
     share: float
     facts: dict[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        """Raises ValueError where both do not fit together."""
+        """Raises ValueError where they do not fit together."""
         if not 0.0 < self.share < 1.0:
             raise ValueError(f"the share of the networks is {self.share:g}, not between 0 and 1")
+        if not self.networks:
+            raise ValueError("there are no networks")
+        if too_many := limits.NETWORKS.problem(len(self.networks), ""):
+            raise ValueError(too_many.what)
         ship, inputs = self.hybrid.profile.id, Model(self.hybrid.profile).inputs
-        if self.network.ship != ship:
-            raise ValueError(f"the networks are of {self.network.ship}, the model of forces is of {ship}")
-        if self.network.inputs != inputs:
-            raise ValueError(f"{', '.join(self.network.inputs)} drive the networks, {', '.join(inputs)} the other")
+        for one in self.networks:
+            if one.ship != ship:
+                raise ValueError(f"the networks are of {one.ship}, the model of forces is of {ship}")
+            if one.inputs != inputs:
+                raise ValueError(f"{', '.join(one.inputs)} drive the networks, {', '.join(inputs)} the other")
+        steps = sorted({one.step for one in self.networks})
+        if len(steps) > 1:  # their memories count samples
+            several = " and ".join(f"{step:.12g} s" for step in steps)
+            raise ValueError(f"the networks have steps of {several}, and none can march in that of another")
 
     def __repr__(self) -> str:
         """In a line."""
-        one = self.network
-        return f"Mixture({one.ship}: hybrid, and {one.n_members} networks with a share of {self.share:g})"
+        members = " + ".join(str(one.n_members) for one in self.networks)
+        return f"Mixture({self.hybrid.profile.id}: hybrid, and {members} networks with a share of {self.share:g})"
+
+    @property
+    def step(self) -> float:
+        """Of its networks [s]."""
+        return self.networks[0].step
 
 
 class MixtureRun:
@@ -67,8 +83,9 @@ class MixtureRun:
     def __init__(self, mixture: Mixture, states: FloatArray):
         self.states: Array = np.array(states)
         self._share = mixture.share
-        members = mixture.network.n_members
-        self._networks = NetworkRun(mixture.network, np.broadcast_to(states[0], (members, *states.shape[1:])))
+        self._networks = [
+            NetworkRun(one, np.broadcast_to(states[0], (one.n_members, *states.shape[1:]))) for one in mixture.networks
+        ]
         one = mixture.hybrid
         model = Model(one.profile)
         self._lanes = HybridLanes(model, model.matrix(), weights=one.weights, ranges=one.ranges, memory=one.memory)
@@ -86,9 +103,11 @@ class MixtureRun:
             chain = lanes.moved(self._now.chain, logged, self._now.chain, h)
             now = self._now._replace(chain=chain, around=here)
         s = now.s + h * lanes.rates(now.s, now.chain[-1], here, h)
-        self._networks.states = np.broadcast_to(shown, self._networks.states.shape)
-        self._networks.step(controls, around, h)
-        there = lanes.unsensed(State(*self._networks.states.mean(axis=0).T))
+        for run in self._networks:
+            run.states = np.broadcast_to(shown, run.states.shape)
+            run.step(controls, around, h)
+        members = np.concatenate([run.states for run in self._networks])
+        there = lanes.unsensed(State(*members.mean(axis=0).T))
         s[:N_STATES] += self._share * (np.stack(there) - s[:N_STATES])
         self._now = now._replace(s=s)
         self.states = np.stack(lanes.sensed(State(*s[:N_STATES])), axis=-1)[None]
@@ -108,7 +127,7 @@ class MixturePredictor:
     @property
     def id(self) -> str:
         """Id of the ship."""
-        return self.mixture.network.ship
+        return self.mixture.hybrid.profile.id
 
     @property
     def name(self) -> str:
@@ -118,7 +137,7 @@ class MixturePredictor:
     @property
     def L_pp(self) -> float:
         """Length between perpendiculars [m]."""
-        return self.mixture.network.L_pp
+        return self.mixture.networks[0].L_pp
 
     @property
     def n_members(self) -> int:
@@ -128,20 +147,19 @@ class MixturePredictor:
     @property
     def inputs(self) -> tuple[str, ...]:
         """What drives her."""
-        return self.mixture.network.inputs
+        return self.mixture.networks[0].inputs
 
     @property
     def method(self) -> str:
         """The step of its networks."""
-        return f"mixture, euler at {self.mixture.network.step:g} s"
+        return f"mixture, euler at {self.mixture.step:g} s"
 
     @blas_on_one_thread
     def predict(self, cases: Cases) -> Prediction:
         """See ``Predictor``."""
-        return marched(MixtureRun(self.mixture, cases.initial[None]), cases, self.mixture.network.step)
+        return marched(MixtureRun(self.mixture, cases.initial[None]), cases, self.mixture.step)
 
     def stepper(self, member: int, state: FloatArray, controls: FloatArray) -> RunStepper:
         """See ``Steerable``."""
-        return RunStepper(
-            MixtureRun(self.mixture, np.asarray(state, dtype=float)[None, None]), self.mixture.network.step
-        )
+        run = MixtureRun(self.mixture, np.asarray(state, dtype=float)[None, None])
+        return RunStepper(run, self.mixture.step)

@@ -29,13 +29,17 @@ class TrainingOptions(Options):
     validation: float = choice(
         0.2,
         "Share of each kind of manoeuvre kept back, as whole runs, to choose the best weights by.",
-        above=0.0,
+        least=0.0,
         most=0.8,
         panel=TRAINING,
     )
     restart: float | None = again(LeaveOutOptions, "restart", 100.0)
     validate_every: int = choice(
-        25, "Updates between two validations; the last is always one.", least=1, most=1_000_000, panel=TRAINING
+        25,
+        "Updates between two validations, and between two checkpoints; the last is always one.",
+        least=1,
+        most=1_000_000,
+        panel=TRAINING,
     )
     step: float | None = choice(
         None, "Time between samples in training.", unit="s", least=1e-3, most=3600, panel=TRAINING
@@ -60,6 +64,11 @@ class LearnOptions(TrainingOptions):
     seeds: int = choice(5, "Networks trained, each from a start of its own.", least=1, most=100, panel=TRAINING)
     memory: int = choice(10, "Samples that truncated memory reaches back.", least=1, most=1000, panel=TRAINING)
     horizon: int = choice(60, "Samples that a window of the loss has.", least=2, most=100_000, panel=TRAINING)
+    validation: float = again(
+        TrainingOptions,
+        "validation",
+        but="0: all runs are learned from, and the mean of the last updates' weights is kept.",
+    )
     mirrored: bool = choice(
         False,
         "Take port and starboard for mirror images: networks give the mean of what they see on either side.",
@@ -102,6 +111,14 @@ class HybridOptions(TrainingOptions):
         panel=TRAINING,
     )
     step: float | None = again(TrainingOptions, "step", but="Default: three hundredths of the time of a ship length.")
+
+    def problems(self) -> list[Problem]:
+        """Some runs have to be kept back."""
+        found = super().problems()
+        if self.folds == 1 and self.validation == 0.0:
+            why = "only runs not learned from say whether a network is better than none, and after how many updates"
+            found.append(Problem("no run is kept back", "validation", why, "write validation=0.2, or folds=5"))
+        return found
 
 
 @dataclass(frozen=True)

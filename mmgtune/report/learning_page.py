@@ -19,6 +19,11 @@ from .tables import pairs
 from .wording import NONE, clean, count, listing, number, shown
 
 ROLES = {"test": "held out", "validation": "validation", "learned": "learned from"}
+_PARTS = {
+    "test": "that played no part",
+    "validation": "that chose among their weights",
+    "learned": "that they learned from, which says little of others",
+}
 MEANING = (
     "L_MSE is the mean over time of the sum over all six states of squared differences over their variance in the "
     "trials that tune (Wakita et al. 2022, eq. 26): 0 is perfect, and a model that knows only the mean has about 6."
@@ -53,10 +58,11 @@ def build(record: LearningRecord) -> Page:
     """Everything the report of a training says."""
     data = record.data
     curves = curves_figure(record.members, "L_MSE of validation [–]")
+    curves_words = _CURVES if data["chosen_by"] else _CURVES_OF_LOSS
     sections = [
         Section("tracks", "What it predicts", (learned_motions.block(data, tracks_words(record)),)),
         Section("scores", "Errors by kind of manoeuvre", (scores_table(record), Prose((MEANING,)))),
-        Section("learning", "How it learned", (picture(curves, "Learning curves", _CURVES), *events_said(record))),
+        Section("learning", "How it learned", (picture(curves, "Learning curves", curves_words), *events_said(record))),
         Section("next", "What to do next", (next_steps(record),)),
         made_section(data, _more(data)),
     ]
@@ -80,7 +86,7 @@ def _verdict(record: LearningRecord) -> str:
     return (
         f"{over.capitalize()} from a measured state the networks are {shown(position, 3)} m off track and "
         f"{shown(heading, 2)}° off heading (root mean square) on {count(len(record.scores['trials']), 'trial')} "
-        f"{'that played no part' if record.role == 'test' else 'that chose among their weights'}."
+        f"{_PARTS[record.role]}."
     )
 
 
@@ -88,15 +94,17 @@ def _cards(record: LearningRecord) -> tuple[Card, ...]:
     data = record.data
     position, heading = rms_errors(data, record.scores)
     where = ROLES[record.role]
-    best = [one["score"] for one in record.members if number(one["score"]) is not None]
+    chosen_by = len(data["chosen_by"])
     return (
         Card(f"Off track, {where}", f"{shown(position, 3)} m", note="root mean square"),
         Card(f"Off heading, {where}", f"{shown(heading, 2)}°", note="root mean square"),
-        Card(f"L_MSE, {where}", shown(record.scores["L_MSE"], 3), note=f"mean over {count(len(best), 'seed')}"),
+        Card(
+            f"L_MSE, {where}", shown(record.scores["L_MSE"], 3), note=f"mean over {count(len(record.members), 'seed')}"
+        ),
         Card(
             "Learned from",
             count(len(data["learned_from"]), "trial"),
-            note=f"weights chosen by {len(data['chosen_by'])} more",
+            note=f"weights chosen by {chosen_by} more" if chosen_by else "none chose: the last weights are kept",
         ),
     )
 
@@ -115,15 +123,22 @@ _CURVES = (
     "Loss on short windows of the trials learned from, and L_MSE on long windows of those that chose; a line a seed. "
     "The weights at the dot are kept: the loss on short windows hardly foretells the error on long ones."
 )
+_CURVES_OF_LOSS = (
+    "Loss on short windows of the trials learned from; a line a seed. No trial was kept back to choose by: the mean of "
+    "the last updates' weights is kept."
+)
 
 
 def curves_figure(members: Sequence[Mapping[str, Any]], label: str) -> Figure:
-    """Loss of each network by updates, and what it is watched by, named ``label``; a dot where one was kept."""
+    """Loss of each network by updates, and what it is watched by, named ``label``, if anything; a dot where one was
+    kept."""
     panels = []
     for key, color, words in (("loss", "before", "loss on short windows [–]"), ("score", "after", label)):
         marks: list[Mark] = []
+        if key == "score" and not any(key in row for one in members for row in one["curve"]):
+            continue
         for one in members:
-            rows = [row for row in one["curve"] if number(row[key]) is not None]
+            rows = [row for row in one["curve"] if number(row.get(key)) is not None]
             look = Look(color, 1.1, marker="o" if len(rows) == 1 else "", size=4.0)  # type: ignore[arg-type]
             marks.append(Line([row["step"] for row in rows], [row[key] for row in rows], look))
             if key == "score" and number(one["score"]) is not None and "best_step" in one:

@@ -38,6 +38,9 @@ def test_the_shell_completes_words_names_and_files(tmp_path):
     assert completed("fit --profile esso_osaka_3m --targets rudder.e", tmp_path) == ["rudder.eps"]
     assert completed("predict esso_osaka_3m_h", tmp_path) == ["esso_osaka_3m_hybrid"]
     assert completed("check suzaku suzaku --format j", tmp_path) == ["json", "junit"]
+    assert completed("learn mixture esso_osaka_3m_h", tmp_path) == ["esso_osaka_3m_hybrid"]
+    assert completed("learn mixture suzaku a.safetensors esso_osaka_3m_ty", tmp_path) == ["esso_osaka_3m_type1"]
+    assert completed("learn mixture suzaku a.safetensors b.safetensors my_t", tmp_path) == ["my_trials/"]
 
 
 def test_help_shows_the_choices(tmp_path):

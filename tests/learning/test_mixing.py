@@ -9,6 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from mmgtune.cli import app
+from mmgtune.cli.learn_mixture import notes, summary
 from mmgtune.errors import OptionError, OutputError
 from mmgtune.learning import learn_mixture
 from mmgtune.networks import Hybrid, Mixture, MixturePredictor, Network, load_network, save_network
@@ -17,6 +18,7 @@ from mmgtune.options import MixtureOptions
 from mmgtune.profile import load_profile
 from mmgtune.simulation import as_trial, simulate
 from mmgtune.trial import TrialSet, load_trials, write_trial
+from tests.command import run
 from tests.networks.made import network
 
 FEW = MixtureOptions(share=(0.2, 0.4, 0.6))
@@ -33,7 +35,7 @@ def parts():
 @pytest.fixture(scope="module")
 def made(parts):
     """Trials that a mixture of a share of 0.4 sailed."""
-    plant = MixturePredictor(Mixture(silent(parts[0]), parts[1], 0.4))
+    plant = MixturePredictor(Mixture(silent(parts[0]), (parts[1],), 0.4))
     found = {}
     for trial in list(load_trials("suzaku").trials.values())[:3]:
         found[trial.id] = replace(as_trial(plant, simulate(plant, [trial])[0]), id=trial.id, manoeuvre="turning")
@@ -52,12 +54,12 @@ def test_where_no_mixture_helps_the_better_part_is_kept(parts):
     """Trials that the model of forces sailed itself."""
     profile, net = parts
     trial = next(iter(load_trials("suzaku").trials.values()))
-    own = as_trial(MixturePredictor(Mixture(silent(profile), net, 1e-9)), simulate(profile, [trial])[0])
+    own = as_trial(MixturePredictor(Mixture(silent(profile), (net,), 1e-9)), simulate(profile, [trial])[0])
     data = TrialSet({own.id: own}, (own.id,), (), ship="suzaku")
     assert isinstance(learn_mixture(profile, net, data, FEW).model, Hybrid)
     alone = as_trial(
-        MixturePredictor(Mixture(silent(profile), net, 0.5)),
-        simulate(MixturePredictor(Mixture(silent(profile), net.member(0), 1.0 - 1e-12)), [trial])[0],
+        MixturePredictor(Mixture(silent(profile), (net,), 0.5)),
+        simulate(MixturePredictor(Mixture(silent(profile), (net.member(0),), 1.0 - 1e-12)), [trial])[0],
     )
     data = TrialSet({alone.id: alone}, (alone.id,), (), ship="suzaku")
     assert isinstance(learn_mixture(profile, net.member(0), data, FEW).model, Network)
@@ -67,6 +69,72 @@ def test_runs_that_a_part_learned_from_are_named(parts, made):
     profile, net = parts
     told = replace(net, facts={"trials": {"learned_from": [made.tune[1]]}})
     assert learn_mixture(profile, told, made, FEW).seen == (made.tune[1],)
+
+
+@pytest.fixture(scope="module")
+def other(parts):
+    """Networks of another type with the same step: a memory that runs on, wider, mirrored."""
+    drawn = network(members=3, step=1.0, size=0.1, memory=None, width=7, seed=5)
+    facts = {"trials": {"licence": "CC0", "citation": "Nobody 2020", "sources": ["measured"], "learned_from": ["x_1"]}}
+    alike = {"ship": "suzaku", "L_pp": parts[1].L_pp, "scales": parts[1].scales, "facts": facts}
+    return replace(drawn, **alike, mirrored=True)
+
+
+def test_several_networks_drive_her_together(parts, other):
+    """The share of trials made by both is found only with both, and what they were trained on is told together."""
+    profile, net = parts
+    net = replace(net, facts={"trials": {"licence": "MIT", "sources": ["generated"], "learned_from": ["x_2"]}})
+    plant = MixturePredictor(Mixture(silent(profile), (net, other), 0.4))
+    trial = next(iter(load_trials("suzaku").trials.values()))
+    sailed = replace(as_trial(plant, simulate(plant, [trial])[0]), id="x_1", manoeuvre="turning")
+    result = learn_mixture(profile, [net, other], sailed, FEW)
+    assert result.share == 0.4
+    assert result.network is None
+    assert [one.n_members for one in result.model.networks] == [2, 3]
+    assert "2 + 3 networks with a share of 0.4" in repr(result)
+    rows = {(one.share, one.network): one.score for one in result.tried}
+    assert list(rows) == [(0.0, None), (0.2, None), (0.4, None), (0.6, None), (1.0, 1), (1.0, 2)]
+    assert rows[0.4, None] == min(rows.values()) < 1e-6
+    assert result.seen == ("x_1",)
+    told = result.model.facts["trials"]
+    assert told["learned_from"] == ["x_2", "x_1"]
+    assert told["sources"] == ["generated", "measured"]
+    assert "MIT" in told["licence"]
+    assert "CC0" in told["licence"]
+    assert told["citation"] == "Nobody 2020"
+    assert len(result.to_dict()["provenance"]["parts"]["networks"]) == 2
+    alone = learn_mixture(profile, net, sailed, FEW)
+    assert min(one.score for one in alone.tried) > 100.0 * rows[0.4, None]
+
+
+def test_where_one_of_several_networks_does_best_alone_it_is_kept(parts, other):
+    profile, net = parts
+    one = other.member(1)
+    plant = MixturePredictor(Mixture(silent(profile), (one,), 1.0 - 1e-12))
+    trial = next(iter(load_trials("suzaku").trials.values()))
+    sailed = as_trial(plant, simulate(plant, [trial])[0])
+    result = learn_mixture(profile, (net, one), sailed, FEW)
+    assert (result.share, result.network) == (1.0, 2)
+    assert isinstance(result.model, Network)
+    assert result.model.mirrored
+    assert "networks 2 alone are kept" in notes(result.to_dict())[-1]
+    said = summary({**result.to_dict(), "out": "runs/x"}, repr(result.model), report=False)
+    (kept,) = [line for line in said.splitlines() if line.endswith("*")]
+    assert kept.startswith("1, networks 2 ")
+
+
+def test_networks_of_several_steps_or_too_many_are_refused(parts, other):
+    profile, net = parts
+    one = MixtureOptions(share=(0.3,))
+    with pytest.raises(OptionError, match=r"steps of 0\.5 s and 1 s") as error:
+        learn_mixture(profile, [net, replace(other, step=0.5)], options=one)
+    assert "one step" in error.value.problems[0].fix
+    with pytest.raises(OptionError, match="no networks"):
+        learn_mixture(profile, [], options=one)
+    with pytest.raises(OptionError, match="101 networks: too many"):
+        learn_mixture(profile, [net] * 101, options=one)
+    with pytest.raises(OptionError, match="no recurrent network"):
+        learn_mixture(profile, [net, profile], options=one)
 
 
 def test_what_does_not_fit_is_refused(parts):
@@ -101,3 +169,36 @@ def test_the_command_leaves_a_model_that_the_others_take(parts, made, tmp_path, 
     assert again.exit_code == 0, again.output
     refused = CliRunner().invoke(app, line.split())
     assert isinstance(refused.exception, OutputError)
+
+
+def test_the_command_takes_several_networks_and_then_trials(parts, other, tmp_path):
+    """As a user runs it, with what it says where the last word is no trial, and where steps differ."""
+    save_network(parts[1], tmp_path / "net.safetensors")
+    (tmp_path / "other").mkdir()
+    save_network(other, tmp_path / "other" / "model.safetensors")
+    save_network(replace(other, step=0.5), tmp_path / "fine.safetensors")
+    plant = MixturePredictor(Mixture(silent(parts[0]), (parts[1], other), 0.4))
+    for trial in list(load_trials("suzaku").trials.values())[:2]:
+        sailed = replace(as_trial(plant, simulate(plant, [trial])[0]), id=trial.id, manoeuvre="turning")
+        write_trial(sailed, tmp_path / "sailed" / f"{trial.id}.parquet")
+    mixture = ("learn", "mixture", "suzaku", "net.safetensors")
+    done = run(*mixture, "other", "sailed", "--share", "0.2,0.4", "--out", "mixed", cwd=tmp_path)
+    assert done.code == 0, done.err
+    assert "2 + 3 networks" in done.out
+    assert "1, networks 2" in done.out
+    page = (tmp_path / "mixed" / "report.html").read_text()
+    assert "networks 2" in page
+    found = load_network(tmp_path / "mixed" / "model.safetensors")
+    assert [(one.memory, one.mirrored) for one in found.networks] == [(3, False), (None, True)]
+    scored = run("validate", "mixed", "sailed", "--json", cwd=tmp_path)
+    assert scored.code == 0, scored.err
+    given = run(*mixture, "other", "--share", "0.3", "--out", "given", cwd=tmp_path)
+    assert given.code == 0, given.err
+    assert len(load_network(tmp_path / "given" / "model.safetensors").networks) == 2
+    refused = run(*mixture, "fine.safetensors", "--share", "0.3", "--out", "x", cwd=tmp_path)
+    assert refused.code == 2
+    assert "steps of 0.5 s and 1 s" in refused.err
+    assert not (tmp_path / "x").exists()
+    missing = run(*mixture, "nowhere.safetensors", "--share", "0.3", "--out", "x", cwd=tmp_path)
+    assert missing.code == 2
+    assert "no such trained model" in missing.err

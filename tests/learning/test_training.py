@@ -11,17 +11,26 @@ import pytest
 
 pytest.importorskip("jax", reason="networks are trained with the extra mmgtune[learn]")
 
+from mmgtune.cli.learn import summary
 from mmgtune.errors import OptionError
 from mmgtune.learning import Hooks, learn_hybrid, learn_rnn, write_learned
 from mmgtune.learning import run as runs
+from mmgtune.learning.aims import RecurrentAim
 from mmgtune.learning.keeping import named
+from mmgtune.learning.planning import plan_rnn
+from mmgtune.learning.starting import first_weights, scales_of
+from mmgtune.learning.training import Plan, Trainer
 from mmgtune.networks import NetworkPredictor, load_network
-from mmgtune.options.learning import LearnOptions
+from mmgtune.options.learning import HybridOptions, LearnOptions
+from mmgtune.report import render
 from mmgtune.trial import load_trials
 from mmgtune.validating import validate
 from mmgtune.validation import L_MSE, by_manoeuvre
 
 pytestmark = pytest.mark.xdist_group("networks")
+
+ALL = {"validation": 0.0}
+"""No run kept back."""
 
 SMALL = LearnOptions(seeds=1, steps=6, validate_every=2, batch=16, width=6, memory=3, horizon=8, restart=60.0)
 
@@ -78,10 +87,10 @@ def test_the_same_seed_gives_the_same_weights_and_another_others():
     assert np.abs(weights(a) - weights(other)).max() > 0.01
 
 
-@pytest.mark.parametrize("after", [1, 4])
-def test_resumed_equals_not_interrupted(tmp_path, after):
+@pytest.mark.parametrize(("after", "kept"), [(1, {}), (4, {}), (1, ALL), (4, ALL)])
+def test_resumed_equals_not_interrupted(tmp_path, after, kept):
     """Stopped in the first seed or in the second, and gone on: the same bits."""
-    options = replace(SMALL, seeds=2)
+    options = replace(SMALL, seeds=2, **kept)
     asked = []
 
     def stop():
@@ -101,14 +110,16 @@ def test_resumed_equals_not_interrupted(tmp_path, after):
     assert [one.to_dict() for one in second.members] == [one.to_dict() for one in whole.members]
 
 
-def test_under_one_compiled_step_networks_become_the_same(monkeypatch):
+@pytest.mark.parametrize("kept", [{}, ALL])
+def test_under_one_compiled_step_networks_become_the_same(monkeypatch, kept):
     """As on a GPU, here on a processor: to the rounding of single precision."""
-    options = replace(SMALL, seeds=2)
+    options = replace(SMALL, seeds=2, **kept)
     one_by_one = learn_rnn("suzaku", "suzaku", options)
     monkeypatch.setattr(runs, "accelerated", lambda: True)
     at_once = learn_rnn("suzaku", "suzaku", options)
     np.testing.assert_allclose(weights(at_once), weights(one_by_one), atol=2e-5)
-    assert [one.score for one in at_once.members] == pytest.approx([one.score for one in one_by_one.members], rel=1e-3)
+    for one, same in zip(at_once.members, one_by_one.members, strict=True):
+        assert one.best == pytest.approx(same.best, rel=1e-3)
 
 
 def test_a_checkpoint_of_another_training_or_damaged_is_refused(tmp_path):
@@ -122,6 +133,83 @@ def test_a_checkpoint_of_another_training_or_damaged_is_refused(tmp_path):
         learn_rnn("suzaku", "suzaku", SMALL, folder=tmp_path, resume=True)
     with pytest.raises(OptionError, match="nothing to resume"):
         learn_rnn("suzaku", "suzaku", SMALL, folder=tmp_path / "other", resume=True)
+
+
+@pytest.mark.parametrize("type", ["1", "2", "3"])
+def test_where_no_run_is_kept_back_the_last_running_mean_of_the_weights_is_kept(type):
+    options = replace(SMALL, type=type, **ALL)
+    result = learn_rnn("suzaku", "suzaku", options)
+    data = load_trials("suzaku")
+    assert [trial.id for trial in result.task.split.learn] == list(data.tune)
+    assert not result.task.split.choose
+    (member,) = result.members
+    assert member.score is None
+    assert [sorted(row) for row in member.curve] == [["loss", "norm", "step"]] * 3
+    assert member.best["step"] == options.steps
+    assert list(result.scores) == ["test"]
+    plan = Plan(options.steps, options.batch, options.rate, options.validate_every)
+    trainer = Trainer(RecurrentAim(result.task, scales_of(result.task.samples)), plan)
+    first = first_weights(len(result.task.inputs), options.width, options.seed)
+    ended = trainer.run(trainer.begin(in_single(first)), options.seed)
+    for kept, mean, last in zip(result.network.weights, ended.mean, ended.parameters, strict=True):
+        np.testing.assert_array_equal(kept[0], np.float64(mean))
+        assert np.abs(np.float64(mean) - np.float64(last)).max() > 0.0
+
+
+def in_single(first):
+    return first._replace(**{name: np.float32(one) for name, one in first._asdict().items()})
+
+
+def test_stopped_without_runs_that_choose_the_weights_of_the_last_checkpoint_are_kept(tmp_path):
+    from safetensors.numpy import load_file
+
+    asked = []
+    hooks = Hooks(on_progress=lambda *told: asked.append(told), stop=lambda: len(asked) >= 2)
+    stopped = learn_rnn("suzaku", "suzaku", replace(SMALL, seeds=2, **ALL), hooks=hooks, folder=tmp_path)
+    assert stopped.interrupted
+    assert [one.step for one in stopped.members] == [4]
+    assert [words.split(",")[0] for *_, words in asked] == ["seed 1 of 2"] * 2
+    assert not any("validation" in words for *_, words in asked)
+    held = [one for one in load_file(tmp_path / named(1)).values() if one.dtype == np.float32]
+    for kept in stopped.network.weights:
+        assert any(np.array_equal(one, kept[0]) for one in held)
+    short = learn_rnn("suzaku", "suzaku", replace(SMALL, **ALL))
+    assert np.abs(weights(short) - weights(stopped)).max() > 0.0
+
+
+def test_without_runs_that_choose_nothing_speaks_of_validation(tmp_path):
+    """No trial is held out either: scored are those learned from, and it says so."""
+    data = load_trials("suzaku")
+    data = replace(data, test=())
+    options = replace(SMALL, **ALL)
+    result = learn_rnn("suzaku", data, options)
+    loss = result.members[0].best["loss"]
+    assert repr(result) == f"Learned(suzaku, type 1, loss by seed {loss:.3g})"
+    assert result.role == "learned"
+    document = write_learned(result, tmp_path)
+    assert document["chosen_by"] == []
+    assert document["members"][0]["score"] is None
+    assert document["members"][0]["best_step"] == options.steps
+    assert {one["role"] for one in document["drawn"]} == set(document["scores"]) == {"learned"}
+    said = summary(result, document, "runs/x", report=True)
+    assert "none chose" in said
+    assert f"{loss:.4g}" in said
+    assert "trials learned from" in said
+    assert "validation" not in said
+    assert "validation" not in " ".join(line for line in plan_rnn("suzaku", data, options).lines)
+    (path,) = [path for path in render(tmp_path) if path.suffix == ".html"]
+    text = path.read_text()
+    assert "that they learned from" in text
+    assert "none chose" in text
+    assert "L_MSE of validation" not in text
+    assert "that chose" not in text
+
+
+def test_a_hybrid_needs_runs_kept_back():
+    with pytest.raises(OptionError, match="no run is kept back") as error:
+        HybridOptions(validation=0.0)
+    assert error.value.problems[0].where == "validation"
+    assert HybridOptions(validation=0.0, folds=2).folds == 2
 
 
 @pytest.mark.parametrize("type", ["2", "3"])
@@ -173,10 +261,13 @@ def test_one_run_leaves_nothing_to_choose_by():
         learn_rnn("suzaku", one, SMALL)
 
 
-def test_divergence_is_told_with_its_step_and_training_goes_back(monkeypatch):
+@pytest.mark.parametrize("kept", [{}, ALL])
+@pytest.mark.parametrize("at_once", [False, True])
+def test_divergence_is_told_with_its_step_and_training_goes_back(monkeypatch, kept, at_once):
     """Gradients that are no numbers for a while: training goes back to the last good state at half the rate."""
-    from mmgtune.learning import training
+    from mmgtune.learning import together, training
 
+    monkeypatch.setattr(runs, "accelerated", lambda: at_once)
     drawn = training.batch
     poisoned = range(13, 23)
 
@@ -185,6 +276,7 @@ def test_divergence_is_told_with_its_step_and_training_goes_back(monkeypatch):
         return np.full_like(found, -1_000_000) if step in poisoned else found
 
     monkeypatch.setattr(training, "batch", batch)
+    monkeypatch.setattr(together, "batch", batch)
     spoiled = runs.RecurrentAim.loss
 
     def loss(self, w, starts, data):
@@ -193,10 +285,11 @@ def test_divergence_is_told_with_its_step_and_training_goes_back(monkeypatch):
         return jnp.where(starts[0] < 0, jnp.nan, 1.0) * spoiled(self, w, jnp.abs(starts) % len(self.starts), data)
 
     monkeypatch.setattr(runs.RecurrentAim, "loss", loss)
-    result = learn_rnn("suzaku", "suzaku", replace(SMALL, steps=30, validate_every=5))
+    result = learn_rnn("suzaku", "suzaku", replace(SMALL, steps=30, validate_every=5, **kept))
     (event,) = result.members[0].events
-    assert (event["step"], event["back_to"], event["rate_factor"]) == (23, 10, 0.5)
-    assert np.isfinite(result.members[0].score)
+    assert (event["step"], event["back_to"], event["rate_factor"]) == (25 if at_once else 23, 10, 0.5)
+    assert np.isfinite(weights(result)).all()
+    assert np.isfinite(result.members[0].best["loss"])
 
 
 def test_gradients_that_are_never_numbers_are_an_error(monkeypatch):

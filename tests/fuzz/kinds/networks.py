@@ -27,7 +27,9 @@ def contents() -> tuple[bytes, ...]:
     import tempfile
 
     net = replace(network(step=0.5), ship="esso_osaka_3m")
-    models = (network(members=2), network(memory=None), a_hybrid(), Mixture(a_hybrid(), net, 0.4), ensemble())
+    other = replace(network(step=0.5, memory=None, width=4, seed=2), ship="esso_osaka_3m", mirrored=True)
+    mixtures = [Mixture(a_hybrid(), of, 0.4) for of in ((net,), (net, other))]
+    models = (network(members=2), network(memory=None), a_hybrid(), ensemble(), *mixtures)
     with tempfile.TemporaryDirectory() as place:
         return tuple(save_network(one, Path(place) / f"{k}.safetensors").read_bytes() for k, one in enumerate(models))
 
@@ -90,7 +92,7 @@ def _step(predictor: Any) -> float:
     for name in ("network", "ensemble", "mixture"):
         model = getattr(predictor, name, None)
         if model is not None:
-            return float(model.network.step if name == "mixture" else model.step)
+            return float(model.step)
     return 0.5
 
 
