@@ -89,7 +89,7 @@ def voyages(folder):
 
 
 def test_validate_on_voyages_says_it_once_for_each_model(folder, voyages):
-    arguments = ("validate", "ship.toml", "suzaku", voyages, "--backend", "numpy", "--restart", "300", "--out", "on")
+    arguments = ("validate", "ship.toml", "suzaku", voyages, "--restart", "300", "--out", "on")
     ended = run(*arguments, cwd=folder)
     assert ended.code == 0, ended.err
     said = "1 of 2 voyages has no measured current: still water there"

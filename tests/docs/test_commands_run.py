@@ -86,12 +86,13 @@ def own_trials(desk, name, trials=TRIALS):
 
 SHORTER = {
     "diagnose": ("--effects", "current,rudder-offset"),
-    "fit": ("--method", "least-squares", "--starts", "2"),
-    "leave-out": ("--starts", "1", "--folds", "2"),
+    "fit": ("--method", "least-squares", "--starts", "2", "--integrator", "euler"),
+    "leave-out": ("--starts", "1", "--folds", "2", "--integrator", "euler"),
     "learn ensemble": ("--steps", "5"),
     "learn hybrid": ("--steps", "10"),
     "learn rnn": ("--steps", "10"),
     "plan": ("--particles", "50", "--integrator", "euler"),
+    "posterior": ("--particles", "50", "--integrator", "euler"),
     "sweep": ("--starts", "2", "--ar", "0.2,0.5"),
     "trials make": ("--sets", "test-b"),
 }

@@ -78,7 +78,7 @@ def test_so_does_a_diagnosis(wild):
 
 def test_so_do_particles(wild):
     with pytest.raises(ProfileError, match="with any coefficients that are likely"):
-        posterior(wild, "suzaku", PosteriorOptions(particles=20))
+        posterior(wild, [load_trials("suzaku").trials["turn_p35"]], PosteriorOptions(particles=20))
 
 
 def test_a_diagnosis_of_trials_that_can_be_simulated_stands_beside_others_that_cannot(wild):

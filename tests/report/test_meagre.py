@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from mmgtune.errors import OptionError, OutputError
+from mmgtune.files import write_text
 from mmgtune.report import motions as motions_of_page
 from mmgtune.report import render
 
@@ -44,10 +45,14 @@ def test_least_squares_only(tmp_path: Path) -> None:
 def test_no_history_file_and_a_figure_left_from_before(tmp_path: Path) -> None:
     data, history, motions = fake_run.edited()
     folder = fake_run.write_fit(tmp_path / "run", data, history, motions)
-    render(folder, pdf=True)
+    for name in ("convergence", "tracks"):  # as if from --pdf, which takes seconds for all figures
+        write_text(folder / "figures" / f"{name}.pdf", "")
+    render(folder)
     (folder / "figures" / "mine.svg").write_text("somebody's own")
     assert (folder / "figures" / "convergence.svg").exists()
+    assert (folder / "figures" / "convergence.pdf").read_bytes().startswith(b"%PDF")
     tracks = (folder / "figures" / "tracks.pdf").read_bytes()
+    assert tracks.startswith(b"%PDF")
     (folder / "history.parquet").unlink()
     render(folder)
     assert not (folder / "figures" / "convergence.svg").exists()
