@@ -221,7 +221,9 @@ def expected(bench: Workbench, found: Found, trials: Sequence[Trial]) -> float:
     at = beside.units[-1]
     offsets = fit_offsets(beside.scaled, at)
     rng = np.random.default_rng(0)
-    drawn = rng.multivariate_normal(np.zeros(len(names)), spread, DRAWS, method="eigh")
+    drawn = np.zeros((DRAWS, 0))
+    if names:  # what is at a bound is not in doubt, and a short list of targets may all be there
+        drawn = rng.multivariate_normal(np.zeros(len(names)), spread, DRAWS, method="eigh")
     columns = np.repeat(at[:, None], DRAWS, axis=1)
     rows = [beside.wide.names.index(name) for name in names]
     columns[rows] = np.clip(at[rows][:, None] + drawn.T, 0.0, 1.0)

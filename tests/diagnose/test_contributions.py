@@ -21,7 +21,7 @@ from mmgtune.diagnose.leftover import Leftover
 from mmgtune.diagnose.record import ANSWERS, kind_of, record_of
 from mmgtune.diagnose.search import Found
 from mmgtune.diagnose.unseen import Unseen
-from mmgtune.diagnose.workbench import make_workbench
+from mmgtune.diagnose.workbench import Point, make_workbench
 from mmgtune.effects import Visited, effects, find_effect
 from mmgtune.profile import load_profile, tuned
 from mmgtune.simulation import simulate as simulate_trials
@@ -162,6 +162,13 @@ def test_the_side_that_no_trial_turned_to_is_expected_to_be_wrong(suzaku):
     found = Found(base, base)
     assert expected(bench, found, [port]) > 8.0 * expected(bench, found, [starboard])
     assert not held_out(found, Unseen(bench, [port])).remains
+
+
+def test_of_targets_that_all_end_at_a_bound_nothing_is_expected(suzaku):
+    trial = load_trials("suzaku").trials["turn_p35"]
+    bench = make_workbench(suzaku.profile, [trial], DiagnoseOptions(targets=("hull.R_0",), leeway=0.0))
+    at_bound = Point(bench.targets, np.ones(1), np.zeros((1, 6)), 0.0, bench.problem.integrator)
+    assert expected(bench, Found(at_bound, at_bound), [trial]) == pytest.approx(0.0, abs=1e-6)
 
 
 def test_what_was_not_asked_for_is_no_trace():
