@@ -9,7 +9,7 @@ from mmgtune.backends import Integrator
 from mmgtune.checking.measuring import measure
 from mmgtune.evaluation import evaluate
 from mmgtune.fitting import fit, leave_out
-from mmgtune.fitting.run import make_setting
+from mmgtune.fitting.setting import make_setting
 from mmgtune.measures import distance_measures, reference_of
 from mmgtune.metrics import METRICS
 from mmgtune.objective import make_objective, spread

@@ -19,7 +19,7 @@ import numpy as np
 from mmgtune.diagnose.hypotheses import hypotheses
 from mmgtune.fitting import FitOptions, in_pieces, make_problem
 from mmgtune.fitting.least_squares import solve
-from mmgtune.fitting.run import edge_ridge, random_starts
+from mmgtune.fitting.optimum import edge_ridge, random_starts
 from mmgtune.model import Model
 from mmgtune.profile import ShipProfile, load_profile, scale_of, with_all_effects, with_effects
 from mmgtune.trial import TrialSet, load_trials, measured_wind

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..fitting.box import width_words
 from ..fitting.extending import with_width
 from ..fitting.planning import Plan, can_be_tried, evaluation_seconds, whole
-from ..fitting.run import in_pieces
+from ..fitting.setting import in_pieces
 from ..given import ShipGiven, TrialsGiven, ship_of
 from ..options import DiagnoseOptions
 from ..trial import VoyageSet

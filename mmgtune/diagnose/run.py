@@ -13,9 +13,10 @@ from ..errors import ProfileError
 from ..files import path_of
 from ..fitting.extending import with_width
 from ..fitting.journal import journalled
-from ..fitting.run import identity_of, in_pieces, make_provenance
+from ..fitting.setting import in_pieces
 from ..given import ShipGiven, TrialsGiven, ship_of
 from ..hooks import Hooks
+from ..made_from import identity_of, make_provenance
 from ..model import Model
 from ..options import DiagnoseOptions
 from ..options.choice import must_be

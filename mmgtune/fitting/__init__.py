@@ -9,7 +9,8 @@ from .leaving_out import BandsLeftOut, LeftOut, leave_out, write_left_out
 from .planning import Plan, plan_fit, plan_leave_out, plan_sweep
 from .pooled import CLASSES, FEWEST, SisterClass, pooled
 from .result import FitResult
-from .run import fit, in_pieces, make_problem
+from .run import fit
+from .setting import in_pieces, make_problem
 from .sweeping import SweepResult, sweep
 
 __all__ = [

@@ -10,7 +10,7 @@ from ..trial import TrialSet
 from .information import Information
 from .least_squares import LeastSquaresResult, fit_offsets
 from .result import FitResult
-from .run import in_pieces, make_problem
+from .setting import in_pieces, make_problem
 from .weighing import weight_at
 
 

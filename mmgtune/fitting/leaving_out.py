@@ -21,6 +21,7 @@ from ..files import path_of, refuse_existing
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..hooks import Hooks
 from ..inputs import INPUTS
+from ..made_from import identity_of, make_provenance
 from ..model import Model
 from ..objective import spread
 from ..options import LeaveOutOptions
@@ -40,16 +41,10 @@ from .folder import motions_table
 from .journal import finished, journalled
 from .least_squares import solve
 from .one_sided import coverage_notes
+from .optimum import edge_ridge, random_starts
 from .robust import weigh_down
-from .run import (
-    edge_ridge,
-    hold_directions,
-    identity_of,
-    in_pieces,
-    make_problem,
-    make_provenance,
-    random_starts,
-)
+from .run import hold_directions
+from .setting import in_pieces, make_problem
 from .weighing import Weight, weigh
 
 RESULT = "leave_out.json"

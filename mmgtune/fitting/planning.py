@@ -19,7 +19,7 @@ from .cmaes import LAMBDAS
 from .extending import held_words, settled, tune_trials
 from .leaving_out import leaving_out
 from .problem import FitProblem
-from .run import in_pieces, make_problem
+from .setting import in_pieces, make_problem
 
 GENERATIONS = (150, 600)
 """Generations of a restart of CMA-ES, from few to many."""

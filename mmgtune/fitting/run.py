@@ -3,167 +3,39 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..arrays import FloatArray
-from ..backends import STATES, Backend, Integrator, get_backend
-from ..errors import OptionError, Problem
 from ..files import path_of
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..hooks import Hooks
-from ..model import Model
-from ..objective import Objective, cases_of, make_objective, spread
-from ..options import FitOptions, Options, TuningOptions
+from ..made_from import identity_of, make_provenance
+from ..options import FitOptions
 from ..options.choice import must_be
 from ..profile import ShipProfile
-from ..provenance import made_by as made_by
-from ..stated import IndexComparison, compare_stated, possible
+from ..stated import IndexComparison, compare_stated
 from ..threads import blas_on_one_thread
-from ..trial import Coverage, Trial, TrialSet, oddities
-from .box import Box, choose_targets, make_box
+from ..trial import Trial, TrialSet, oddities
 from .certificate import certify
-from .checkpoint import EVERY, Checkpoint
-from .cmaes import Search, search
+from .checkpoint import Checkpoint
 from .comparison import compare, total
 from .extending import settled
 from .identifiability import analyse
-from .initial import deviations
 from .journal import journalled
-from .least_squares import LeastSquaresResult, fit_offsets, solve
+from .least_squares import fit_offsets
 from .lost import hold_simulated
-from .one_sided import tied
-from .pooled import Pooled, SistersPrior, pooled, read_sisters, with_sisters
+from .optimum import Seeking
+from .pooled import read_sisters
 from .problem import FitProblem
 from .result import Beside, FitResult
-from .robust import weigh_down
-from .terms import ScatterPrior, StatedIndices, Term
+from .setting import Setting, in_pieces, make_problem, make_setting
 from .weighing import Weight, weigh
-
-EDGE = 0.5
-"""Distance from the middle of the box to its edge, in the unit cube."""
-
-RIDGE = 1e-8
-"""Weight, as a share of J, of the distance to the pre-determined values: chooses among sets that fit equally well."""
-
-
-EXACT = 1e-8
-"""Squared tolerances of stated indices that count as none: they can be met to the last bit, which is worth nothing."""
-
-LOOSE = 1e-3
-"""The same where indices are stated, in squared tolerances: a few numbers are met exactly by many sets."""
-
-
-def in_pieces(trials: TrialSet, options: TuningOptions) -> TrialSet:
-    """The trials cut into windows where the options ask for that; unchanged where they are windows already."""
-    if options.restart is None or any(trial.part_of for trial in trials.trials.values()):
-        return trials
-    return trials.in_windows(options.restart, options.every)
-
-
-@dataclass(frozen=True, eq=False)
-class Setting:
-    """What all problems of one fit have in common.
-
-    estimated  whether trials start from an estimated state
-    terms      what is made small besides J
-    sisters    what sister ships say beforehand, None where they are not asked
-    """
-
-    model: Model
-    trials: TrialSet
-    objective: Objective
-    box: Box
-    a_r: float | None
-    backend: Backend
-    integrator: Integrator
-    estimated: bool
-    terms: tuple[Term, ...] = ()
-    sisters: Pooled | None = None
-
-    def holding(self, names: Sequence[str]) -> Setting:
-        """The same with some targets held at their pre-determined values."""
-        left = [name for name in self.box.names if name not in names]
-        return replace(self, box=boxed(self.model, left, self.a_r, self.sisters))
-
-    def problem(self, ids: Sequence[str] | None = None) -> FitProblem:
-        """The problem of fitting the tune trials, or the trials ``ids``.
-
-        Raises OptionError where the window leaves one without a sample.
-        """
-        if ids is None:
-            ids = (*self.trials.tune, *self.trials.tune_stated)
-        chosen = [self.trials.trials[name] for name in ids if name in self.trials.trials]
-        stated = [self.trials.stated[name] for name in ids if name in self.trials.stated]
-        terms = (*self.terms, StatedIndices(stated)) if stated else self.terms
-        cases = cases_of(chosen, self.objective, self.model.inputs, self.model.draught)
-        sigma = self.deviations(ids) if self.estimated and chosen else None
-        return FitProblem.of(self.model, cases, self.box, self.backend, self.integrator, sigma, terms)
-
-    def deviations(self, ids: Sequence[str] | None = None) -> FloatArray:
-        """Deviations (n_trials, 6) of the measured initial states."""
-        scales = np.array([self.objective.scales[name] for name in STATES])
-        ids = self.trials.tune if ids is None else ids
-        return deviations([self.trials.trials[name] for name in ids if name in self.trials.trials], scales)
-
-
-def make_setting(profile: ShipProfile, trials: TrialSet, options: FitOptions) -> Setting:
-    """The setting of fitting ``profile`` to trials.
-
-    Raises OptionError for targets, box or channels that make no sense, and for stated trials the ship cannot be asked
-    for.
-    """
-    coverage = Coverage.of([trials.trials[name] for name in trials.tune], profile.L_pp)
-    names = choose_targets(Model(profile), options.targets, options.fixed)
-    names, ties = (names, ()) if trials.tune_stated else tied(profile, names, coverage)
-    model = Model(profile, ties)
-    possible(profile, list(trials.stated.values()))
-    if trials.tune_stated and options.method == "cma-es":
-        why = "a few numbers leave many sets that fit alike, of which this search takes any"
-        raise OptionError(
-            Problem("CMA-ES is not for trials given as indices", "method", why, "add method=least-squares")
-        )
-    # Scales come from all tune trials, whichever of them a problem is over.
-    standardised = options.objective == "standardised" and trials.tune
-    scales = spread([trials.trials[name] for name in trials.tune]) if standardised else None
-    objective = make_objective(model.L_pp, options.channels, options.window, scales=scales, every=options.every)
-    sisters = None
-    if options.sisters is not None:  # her own trials count once
-        sisters = pooled(read_sisters(options.sisters, profile.id).without(profile.id).without(trials.ship))
-    box = boxed(model, names, options.a_r, sisters)
-    prior = ScatterPrior() if sisters is None else SistersPrior()
-    return Setting(
-        model,
-        trials,
-        objective,
-        box,
-        options.a_r,
-        get_backend(options.backend),
-        options.make_integrator(),
-        options.initial == "estimated",
-        (prior,) if options.prior and len(box.from_formula) else (),
-        sisters,
-    )
-
-
-def boxed(model: Model, names: Sequence[str], a_r: float | None, sisters: Pooled | None) -> Box:
-    """The box of targets, with what sister ships say of them."""
-    box = make_box(model, names, a_r)
-    return box if sisters is None else with_sisters(box, sisters)
-
-
-def make_problem(
-    profile: ShipProfile, trials: TrialSet, options: FitOptions, ids: Sequence[str] | None = None
-) -> FitProblem:
-    """The problem of fitting ``profile`` to the tune trials, or to the trials ``ids``.
-
-    Raises OptionError for targets, box, channels or window that make no sense.
-    """
-    return make_setting(profile, trials, options).problem(ids)
 
 
 @blas_on_one_thread
@@ -234,43 +106,24 @@ def _fit(
     problem, weight = weigh(problem, np.clip(before, 0.0, 1.0), hooks.stop)
     J_before = float(problem.misfit(before[:, None])[0])
     cost_before = float(problem.costs(before[:, None])[0]) if problem.terms else J_before
-
-    hooks.on_phase("least squares")
-    starts = random_starts(problem, options, before, more_starts)
-    if problem.sigma is not None:  # far from an optimum, free initial states only lead astray
-        starts = np.column_stack([end.unit for end in solve(problem.held(), starts, stop=hooks.stop)])
-    ridge = edge_ridge(problem, options, before)
-    exact = 0.0 if all(term.known_before for term in problem.terms) else EXACT * problem.weight
-    ends = solve(problem, starts, ridge=ridge, anchor=before, stop=hooks.stop, tolerance=exact)
-    best = min(ends, key=lambda end: end.J + ridge * float(np.sum((end.unit - before) ** 2)))
-    problem = problem.with_offsets(best.offsets)
-    if options.loss == "huber" and not hooks.stop():
-        hold_simulated(profile, problem, best.unit, _tuned_on(trials))
-        hooks.on_phase("weighing outliers down")
-        problem, best = weigh_down(problem, best, ridge, before)
-        ends = [best]
-    found: Search | None = None
-    if options.method == "cma-es":
-        hooks.on_phase("CMA-ES")
-        # Far below the tolerance of the certificate; least squares goes on from where the search ends.
-        tolerance = max(1e-9 * cost_before, 1e-5 * best.J)
-        found = _search(problem, options, np.clip(before, 0.0, 1.0), tolerance, hooks, checkpoint, recorded)
-        if not hooks.stop():
-            ends += solve(problem, found.unit[:, None], stop=hooks.stop)
-            best = min(ends, key=lambda end: end.J)
-    if not np.isfinite(best.J):
-        hold_simulated(profile, problem, best.unit, _tuned_on(trials))
-    if not hooks.stop() and ridge == 0.0:
-        best = _nearest(problem, best, before)
-    unit, cost = best.unit, best.J
-    problem = problem.with_offsets(best.offsets)
-    if found is not None and cost > found.J:
-        unit, cost = found.unit, found.J
-    J = float(problem.misfit(unit[:, None])[0]) if problem.terms else cost
+    hold = partial(hold_simulated, profile, trials=_tuned_on(trials))
+    best = Seeking(problem, options, before, cost_before, hold, hooks, checkpoint, recorded).optimum(more_starts)
+    problem, unit, found = best.problem, best.unit, best.cma_es
+    J = float(problem.misfit(unit[:, None])[0]) if problem.terms else best.cost
 
     hooks.on_phase("certificate and identifiability")
     restarts = found.restarts if found else []
-    certificate = certify(problem, unit, cost, cost_before, ends, restarts, found.J if found else None, ridge, before)
+    certificate = certify(
+        problem,
+        unit,
+        best.cost,
+        cost_before,
+        best.ends,
+        restarts,
+        found.J if found else None,
+        best.ridge,
+        before,
+    )
     held_by_bound = np.isin(problem.box.names, [bound.name for bound in certificate.active])
     roles = {name: trials.role(name) for name in (*trials.trials, *trials.stated)}
     everything = setting.problem(tuple(trials.trials)) if trials.trials else plain
@@ -290,7 +143,7 @@ def _fit(
         compared=compared,
         stated=compared_stated(setting, roles, before, unit),
         restarts=tuple(restarts),
-        starts=tuple(ends),
+        starts=tuple(best.ends),
         history=tuple(found.history if found else ()),
         certificate=certificate,
         identifiability=analyse(problem, unit, held_by_bound),
@@ -310,25 +163,6 @@ def _fit(
 def _tuned_on(trials: TrialSet) -> list[Trial]:
     """Tune trials that have a motion, a case of the problem each."""
     return [trials.trials[name] for name in trials.tune if name in trials.trials]
-
-
-def edge_ridge(problem: FitProblem, options: FitOptions, before: FloatArray) -> float:
-    """Weight of squared distances from the pre-determined values (n_targets,) in the cube, of a weighed problem."""
-    asked = options.regularise * float(problem.misfit(before[:, None])[0]) / EDGE**2 if options.regularise else 0.0
-    series_alone = all(term.known_before for term in problem.terms)
-    return asked if series_alone else max(asked, LOOSE * problem.weight)
-
-
-def random_starts(
-    problem: FitProblem, options: FitOptions, before: FloatArray, more: tuple[Mapping[str, float], ...]
-) -> FloatArray:
-    """Where least squares starts, (n_targets, n_starts): pre-determined values, those given, the rest at random."""
-    box = problem.box
-    rng = np.random.default_rng(options.seed)
-    starts = [before]
-    starts += [box.to_unit([values.get(name, box.pre[i]) for i, name in enumerate(box.names)]) for values in more]
-    starts += [rng.uniform(size=len(box)) for _ in range(max(0, options.starts - len(starts)))]
-    return np.clip(np.column_stack(starts), 0.0, 1.0)
 
 
 def J_free_start(problem: FitProblem, unit: FloatArray) -> float:
@@ -367,88 +201,3 @@ def hold_directions(profile: ShipProfile, trials: TrialSet, options: FitOptions)
     """The same options with one coefficient fixed for every direction no trial can tell, found before searching."""
     held = traded(profile, trials, make_problem(profile, trials, options))
     return replace(options, fixed=(*options.fixed, *held), identifiable=False)
-
-
-def _search(
-    problem: FitProblem,
-    options: FitOptions,
-    start: FloatArray,
-    tolerance: float,
-    hooks: Hooks,
-    checkpoint: Checkpoint | None,
-    recorded: list[FloatArray] | None,
-) -> Search:
-    """CMA-ES with checkpoints: every few generations, and when it ends for whatever reason."""
-
-    def on_generation(state: Search) -> None:
-        if checkpoint and len(state.costs) % EVERY == 0:
-            checkpoint.save(state.costs)
-        hooks.on_generation(state)
-
-    found = search(
-        problem,
-        options.seed,
-        start,
-        tolerance=tolerance,
-        recorded=recorded,
-        on_generation=on_generation,
-        stop=hooks.stop,
-    )
-    if checkpoint:
-        checkpoint.save(found.costs)
-    return found
-
-
-def _nearest(problem: FitProblem, best: LeastSquaresResult, before: FloatArray) -> LeastSquaresResult:
-    """Of all sets that fit as well as ``best``, the one nearest to the pre-determined values."""
-    moved = solve(problem, best.unit[:, None], ridge=RIDGE * best.J, anchor=before)[0]
-    return moved if moved.J <= best.J * (1.0 + 1e-7) else best
-
-
-def identity_of(
-    profile: ShipProfile, trials: TrialSet, options: Options, provenance: Mapping[str, Any]
-) -> dict[str, Any]:
-    """Everything a run depends on: a run that was stopped is continued only where none of it has changed."""
-    return {
-        "profile": profile.sha256,
-        "trials": trials.hashes(),
-        "tune": [*trials.tune, *trials.tune_stated],
-        "test": [*trials.test, *trials.test_stated],
-        "options": options.to_dict(),
-        "versions": {**provenance["environment"], "mmgtune": provenance["mmgtune"]},
-    }
-
-
-def make_provenance(profile: ShipProfile, trials: TrialSet, command: str) -> dict[str, Any]:
-    """What a fit was made from, and with which versions."""
-    made = made_by(command)
-    environment = made.pop("environment")
-    return {
-        **made,
-        "profile": facts_of_profile(profile),
-        "trials": {
-            "path": str(trials.path) if trials.path else "",
-            "ship": trials.ship,
-            "licence": trials.licence,
-            "citation": trials.citation,
-            "tune": [*trials.tune, *trials.tune_stated],
-            "test": [*trials.test, *trials.test_stated],
-            "coverage": Coverage.of([trials.trials[name] for name in trials.tune], profile.L_pp).to_dict(),
-            "sha256": trials.hashes(),
-            "source": {name: trial.source for of in (trials.trials, trials.stated) for name, trial in of.items()},
-        },
-        "environment": environment,
-    }
-
-
-def facts_of_profile(profile: ShipProfile) -> dict[str, str]:
-    """What a profile was read from, and on what terms."""
-    return {
-        "id": profile.id,
-        "name": profile.name,
-        "path": str(profile.path) if profile.path else "",
-        "sha256": profile.sha256,
-        "source": profile.source,
-        "licence": profile.licence,
-        "citation": profile.citation,
-    }

@@ -14,6 +14,7 @@ from ..documents import finite_values, write_json
 from ..files import path_of
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..hooks import Hooks
+from ..made_from import identity_of, make_provenance
 from ..options import SweepOptions
 from ..options.choice import must_be
 from ..profile import ShipProfile
@@ -25,9 +26,11 @@ from .folder import write_run
 from .journal import finished, journalled
 from .least_squares import fit_offsets, solve
 from .leaving_out import leaving_out
+from .optimum import edge_ridge
 from .result import FitResult
 from .robust import weigh_down
-from .run import edge_ridge, fit, identity_of, in_pieces, make_problem, make_provenance, make_setting
+from .run import fit
+from .setting import in_pieces, make_problem, make_setting
 
 RESULT = "sweep.json"
 

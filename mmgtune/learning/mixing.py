@@ -12,7 +12,6 @@ from .. import limits
 from ..documents import finite, write_json
 from ..errors import OptionError, Problem, reason
 from ..files import path_of, refuse_existing
-from ..fitting.run import made_by
 from ..given import TrialsGiven, trials_of
 from ..networks import (
     HybridPredictor,
@@ -30,6 +29,7 @@ from ..options.learning import MixtureOptions
 from ..predictor import Predictor
 from ..profile import ShipProfile
 from ..profile.changing import joined
+from ..provenance import made_by
 from ..resources import MODEL
 from ..trial import Trial, TrialSet
 from ..validation import L_MSE, by_manoeuvre, score

@@ -7,7 +7,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from ..fitting.run import facts_of_profile
+from ..made_from import facts_of_profile
 from ..options import Options
 from ..profile import ShipProfile
 from ..provenance import made_by

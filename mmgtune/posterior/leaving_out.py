@@ -13,9 +13,9 @@ from ..bands import Pooled, WindowScore, pooled, pooled_by
 from ..fitting import BandsLeftOut, LeftOut, leave_out
 from ..fitting.extending import settled
 from ..fitting.journal import journalled, remembered
-from ..fitting.run import identity_of, make_provenance
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..hooks import Hooks
+from ..made_from import identity_of, make_provenance
 from ..options import LeaveOutOptions, ParticleOptions, PosteriorOptions
 from ..profile import ShipProfile, tuned
 from ..threads import blas_on_one_thread

@@ -14,8 +14,8 @@ from ..components import split_name
 from ..displayed import Plotted
 from ..errors import Problem, ProfileError, TrialError
 from ..fitting.lost import runs_away
-from ..fitting.run import make_provenance
 from ..given import ShipGiven, TrialsGiven, list_of, ship_of, trials_of
+from ..made_from import make_provenance
 from ..options import PosteriorOptions
 from ..options.choice import must_be
 from ..particles import Particles

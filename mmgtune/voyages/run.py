@@ -17,9 +17,9 @@ from ..circumstances import acts_on_surroundings, extremes, notes
 from ..errors import OptionError, Problem, TrialError
 from ..files import path_of
 from ..fitting.journal import journalled, remembered
-from ..fitting.run import facts_of_profile
 from ..given import trials_of
 from ..hooks import Hooks
+from ..made_from import facts_of_profile
 from ..objective import spread
 from ..options import VoyageOptions
 from ..options.choice import must_be

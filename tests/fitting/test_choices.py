@@ -8,7 +8,7 @@ import pytest
 from mmgtune.errors import OptionError
 from mmgtune.fitting import FitOptions, LeaveOutOptions, fit, leave_out, make_problem, plan_leave_out
 from mmgtune.fitting.leaving_out import leaving_out
-from mmgtune.fitting.run import make_setting
+from mmgtune.fitting.setting import make_setting
 from mmgtune.simulation import as_trial, simulate
 from mmgtune.trial import TrialSet, write_trial
 from tests.command import run

@@ -14,7 +14,7 @@ from mmgtune.fitting import FitOptions, Hooks, LeaveOutOptions, SweepOptions, le
 from mmgtune.fitting import folder as run_folder
 from mmgtune.fitting.journal import NAME, _hash
 from mmgtune.fitting.least_squares import _asked
-from mmgtune.fitting.run import make_setting
+from mmgtune.fitting.setting import make_setting
 from mmgtune.trial import load_trials, write_trial
 from mmgtune.trial.schema import ATTRIBUTES
 from tests.command import run, run_until
