@@ -160,9 +160,9 @@ def test_files_of_one_network_stay_as_they_were_and_those_of_several_say_so(tmp_
     assert len(header["network"]["networks"]) == 2
 
 
-def test_the_mixture_that_travels_along_is_read_as_before():
+def test_the_mixture_that_travels_along_is_plain_and_mirrored():
     mixture = load_network("esso_osaka_3m_mixture")
-    assert [one.n_members for one in mixture.networks] == [5]
+    assert [(one.n_members, one.mirrored) for one in mixture.networks] == [(5, False), (5, True)]
     assert mixture.share == 0.35
 
 
