@@ -202,6 +202,60 @@ def typical(bench: Workbench, name: str) -> float:
     return float(parameter.typical(scale_of(bench.model.profile)) / bench.box.width[i])
 
 
+@dataclass(eq=False)
+class Steps:
+    """Steps that differences are taken over, about a place in the unit cube: of what is free to either side, of what is
+    absent a typical size, and of what has one side only a small and a tiny one besides, in this order.
+
+    moved        which name each step moves
+    plus, minus  its size to either side, 0 where that side is left out
+    ends         which of what is absent has one side only
+    """
+
+    moved: IntArray
+    plus: FloatArray
+    minus: FloatArray
+    ends: IntArray
+
+    @classmethod
+    def about(cls, at: FloatArray, n_free: int, size: FloatArray, inward: FloatArray) -> Steps:
+        """Of places ``at`` (n_names,), the first ``n_free`` of which are free, the others at their null.
+
+        size    (n_absent,) typical sizes in the unit cube; inward: as ``inwards`` has it
+        """
+        ends = np.flatnonzero(inward)
+        moved = np.concatenate([np.arange(len(at)), n_free + ends, n_free + ends])
+        plus = np.concatenate([np.full(n_free, STEP), size, SMALL * size[ends], TINY * size[ends]])
+        minus = plus.copy()
+        beyond = moved >= n_free  # derivatives may look over a bound, sizes of effects may not
+        plus[beyond & (at[moved] + plus > 1.0)] = 0.0
+        minus[beyond & (at[moved] - minus < 0.0)] = 0.0
+        return cls(moved, plus, minus, ends)
+
+    def columns(self, at: FloatArray) -> FloatArray:
+        """Places to simulate at, (n_names, 1 + 2 n_moved): as it is, then every step to one side, then to the other."""
+        n = len(self.moved)
+        found = np.repeat(at[:, None], 1 + 2 * n, axis=1)
+        found[self.moved, 1 + np.arange(n)] += self.plus
+        found[self.moved, 1 + n + np.arange(n)] -= self.minus
+        return found
+
+    def without_lost(self, runs: FloatArray) -> FloatArray:
+        """Residuals there (n_residuals, 1 + 2 n_moved); a run that diverged says nothing: its side is left out."""
+        n = len(self.moved)
+        lost = np.asarray(~np.isfinite(runs).all(axis=0))
+        runs[:, lost] = runs[:, :1]
+        self.plus[lost[1 : 1 + n]] = 0.0
+        self.minus[lost[1 + n :]] = 0.0
+        return runs
+
+    def slopes(self, values: FloatArray) -> FloatArray:
+        """(n_rows, n_moved) out of whitened residuals at ``columns``."""
+        n = len(self.moved)
+        over = np.maximum(self.plus + self.minus, 1e-300)
+        return np.asarray((values[:, 1 : 1 + n] - values[:, 1 + n :]) / over)
+
+
 def linearise(
     bench: Workbench,
     point: Point,
@@ -222,26 +276,11 @@ def linearise(
     null = bench.null(wanted)
     at = np.concatenate([point.unit, null])
     n_free = len(point.names)
-    size = np.array([typical(bench, name) for name in wanted])
-    ends = np.flatnonzero(inwards(null))
-    moved = np.concatenate([np.arange(len(names)), n_free + ends, n_free + ends])  # names differences are taken over
-    plus = np.concatenate([np.full(n_free, STEP), size, SMALL * size[ends], TINY * size[ends]])
-    minus = plus.copy()
-    beyond = moved >= n_free  # derivatives may look over a bound, sizes of effects may not
-    plus[beyond & (at[moved] + plus > 1.0)] = 0.0
-    minus[beyond & (at[moved] - minus < 0.0)] = 0.0
-    n_moved = len(moved)
-    columns = np.repeat(at[:, None], 1 + 2 * n_moved, axis=1)
-    columns[moved, 1 + np.arange(n_moved)] += plus
-    columns[moved, 1 + n_moved + np.arange(n_moved)] -= minus
-    runs = problem.residuals(columns).T
-    lost = np.asarray(~np.isfinite(runs).all(axis=0))
-    runs[:, lost] = runs[:, :1]  # a run that diverged says nothing: its side of the difference is left out
-    plus[lost[1 : 1 + n_moved]] = 0.0
-    minus[lost[1 + n_moved :]] = 0.0
-    values = bench.noise.apply(runs)
-    slopes = (values[:, 1 : 1 + n_moved] - values[:, 1 + n_moved :]) / np.maximum(plus + minus, 1e-300)
-    slopes *= np.array([unit_of(bench, names[i]) for i in moved])
+    steps = Steps.about(at, n_free, np.array([typical(bench, name) for name in wanted]), inwards(null))
+    runs = problem.residuals(steps.columns(at)).T
+    values = bench.noise.apply(steps.without_lost(runs))
+    slopes = steps.slopes(values) * np.array([unit_of(bench, names[i]) for i in steps.moved])
+    n_moved, ends = len(steps.moved), steps.ends
     by_offset = bench.noise.apply(flat_where_lost(offset_derivatives(bench, point)))
 
     columns = np.column_stack([values[:, 0], slopes, wander(bench, point)])
