@@ -224,9 +224,10 @@ def in_words(name: str, offset: float) -> str:
 
 
 def _white(residuals: Sequence[FloatArray]) -> FloatArray:
-    """(6,) white noise of each channel, from second differences of the residuals."""
+    """(6,) white noise of each channel, from second differences of the residuals; 0 of what was not measured."""
     second = np.concatenate([np.diff(r, n=2, axis=0) for r in residuals])
-    return np.asarray(np.sqrt(np.nanmean(second**2, axis=0) / 6.0))
+    counts = np.isfinite(second).sum(axis=0)
+    return np.asarray(np.sqrt(np.nansum(second**2, axis=0) / np.maximum(counts, 1) / 6.0))
 
 
 def _left_open(bench: Workbench, point: Point) -> FloatArray:

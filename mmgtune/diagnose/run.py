@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -23,6 +23,7 @@ from ..options.choice import must_be
 from ..profile import ShipProfile, with_all_effects
 from ..threads import blas_on_one_thread
 from ..trial import Trial, TrialSet, VoyageSet, oddities
+from ..trial.schema import MOTION
 from .contributions import set_aside
 from .hypotheses import known_causes, not_looked_for, of_runs
 from .judging import Judge
@@ -107,6 +108,7 @@ def _looked_at(
 ) -> Diagnosis:
     """The answer of the trials that are not kept for testing; how long it took is for the caller to say."""
     odd = oddities(trials.trials, profile.L_pp) if choice is None else []
+    odd += _derived(trials.trials)
     trials = in_pieces(trials, options.fit_options())
     seen = _in_order([trial for name, trial in trials.trials.items() if name not in trials.test])
     test = _in_order([trials.trials[name] for name in trials.test])
@@ -145,7 +147,19 @@ def _legs(profile: ShipProfile, names: Sequence[str]) -> list[str]:
     return [name for name in LEG_NAMES if name in there and name not in names]
 
 
+def _derived(trials: Mapping[str, Trial]) -> list[str]:
+    """A sentence on what was worked out from other channels; none where nothing was."""
+    names = [name for name in MOTION if any(name in trial.derived for trial in trials.values())]
+    if not names:
+        return []
+    n = sum(bool(trial.derived) for trial in trials.values())
+    was, does = ("was", "does") if len(names) == 1 else ("were", "do")
+    of = f"{n} of {len(trials)} trials"
+    return [f"{', '.join(names)} {was} derived from other channels in {of}, not measured, and {does} not count there."]
+
+
 def _in_order(trials: Sequence[Trial]) -> list[Trial]:
-    """Trials without what their files say about them, in an order that depends on what was measured alone."""
-    bare = [replace(trial, noise={}) for trial in trials]
+    """Trials without what their files say about them and what was derived, in an order that depends on what was
+    measured alone."""
+    bare = [replace(trial.as_measured(), noise={}) for trial in trials]
     return sorted(bare, key=lambda trial: (trial.n_samples, trial.motion[0].tolist(), trial.delta.tobytes()))

@@ -275,11 +275,25 @@ def noise_levels(trials: Sequence[Trial]) -> FloatArray:
     Generated trials may have none: there it is a millionth of the largest value; of a channel that stays at 0, of a
     metre, a radian, the largest speed, or a radian in the time the ship takes for a metre.
     """
-    found = by_channel(trials, motion_noise)
+    found = np.maximum(by_channel(trials, motion_noise), _of_slopes(trials))
     largest = np.nanmax([np.nanmax(np.abs(trial.motion), axis=0) for trial in trials], axis=0)
     speed = max(float(np.max(largest[3:5])), 1e-3)
     scale = np.where(largest > LEAST, largest, [1.0, 1.0, 1.0, speed, speed, speed])
     return np.asarray(np.maximum(found, 1e-6 * scale))
+
+
+FEWEST = 4
+"""Samples that show the noise of a channel."""
+
+
+def _of_slopes(trials: Sequence[Trial]) -> FloatArray:
+    """(6,) deviation of velocities that no trial measured but in the first sample: that of a slope from one sample of
+    the positions, or of the heading, to the next; 0 of what was measured."""
+    x, y, psi = by_channel(trials, motion_noise)[:3]
+    step = float(np.median([np.median(np.diff(trial.t)) for trial in trials]))
+    slopes = np.array([0.0, 0.0, 0.0, max(x, y), max(x, y), psi]) / step
+    measured = [np.isfinite(trial.motion).sum(axis=0) >= FEWEST for trial in trials]
+    return np.where(np.any(measured, axis=0), 0.0, slopes)
 
 
 def _in_noise(sigma: FloatArray, channels: Sequence[str]) -> Objective:

@@ -56,6 +56,8 @@ EFFECT = ActuatorEffect(
     },
     variants=(("factor",), ("starboard", "port")),
     besides=("starboard", "port"),
+    varies=("factor",),
+    subject="gain of the rudder",
     unvisited=unvisited,
     sentence=lambda v: (
         "The rudder moved by "

@@ -56,6 +56,7 @@ class Piece:
     columns  of the trial format, (n_samples,)
     began    time of the first sample on the log's clock [s]
     notes    what was done, in sentences
+    derived  columns of the motion that were worked out from others
     follows  "pull-out" where it is what follows the piece before it; else ""
     """
 
@@ -64,6 +65,7 @@ class Piece:
     grid: Grid
     began: float
     notes: list[str]
+    derived: tuple[str, ...] = ()
     follows: str = ""
 
 
@@ -272,13 +274,16 @@ def _of_record(record: Record, log_map: LogMap, step: float | None) -> list[Piec
     notes += motion.at_midship(columns, log_map)
     if log_map.antenna is None and log_map.point is None:
         notes.append("positions are taken to be of midship, as the map has no [antenna]")
+    before = set(columns)
     notes += motion.with_yaw_rate(grid.t, columns)
     try:
         notes += conventions.settle(grid.t, columns, log_map, measured, where)
     except conventions.NoYawRate as error:
         raise _elsewhere(error, record.path, log_map) from error
     notes += motion.over_ground(columns, log_map)
+    before |= {"u", "v"} & set(columns)
     notes += motion.with_velocities(grid.t, columns)
+    derived = tuple(name for name in ("u", "v", "r") if name in columns and name not in before)
     notes += with_mean(columns, "n", log_map)
     notes += conventions.settle_rudders(grid.t, columns, log_map, where)
     notes += with_mean(columns, "delta", log_map)
@@ -293,7 +298,7 @@ def _of_record(record: Record, log_map: LogMap, step: float | None) -> list[Piec
         if rest and len(t[inside][rest[0]]) >= FEWEST:
             begun = t[inside][rest[0]]
             cut = {name: values[rest[0]] for name, values in cut.items()}
-            piece = Piece({"t": begun, **cut}, record, grid, float(begun[0]), [*notes, *dropped])
+            piece = Piece({"t": begun, **cut}, record, grid, float(begun[0]), [*notes, *dropped], derived)
             found += _split(piece) if log_map.cut.split else [piece]
     if not found:
         needed = [name for name in (*MEASURED, *log_map.inputs) if not np.isfinite(columns[name]).any()]
@@ -342,6 +347,7 @@ def _split(piece: Piece) -> list[Piece]:
             piece.grid,
             float(piece.columns["t"][part][0]),
             [*piece.notes, said],
+            piece.derived,
             follows,
         )
         for follows, part, said in parts
@@ -372,5 +378,6 @@ def _trial(id: str, piece: Piece, notes: list[str], log_map: LogMap, cut_from: s
         noise=log_map.noise,
         note="; ".join([*([log_map.note] if log_map.note else []), f"imported with the map {log_map.name}", *notes]),
         cut_from=cut_from,
+        derived=piece.derived,
     )
     return trial, quality_of(trial, record, piece.grid, piece.began, notes, log_map)

@@ -12,7 +12,7 @@ import numpy as np
 from ..errors import Problem, among, brief, reason
 from ..limits import FACTS_BYTES, NAME, NESTING
 from ..toml_reading import depth, finite
-from .schema import COLUMNS, LARGEST, METADATA, SCHEMA, SOURCES, impossible, known_column
+from .schema import COLUMNS, LARGEST, METADATA, MOTION, SCHEMA, SOURCES, impossible, known_column
 
 
 def facts_of(raw: bytes | None, path: Path, columns: Sequence[str]) -> tuple[dict[str, Any], list[Problem]]:
@@ -59,6 +59,10 @@ def facts_of(raw: bytes | None, path: Path, columns: Sequence[str]) -> tuple[dic
     source = facts.get("source", "")
     if isinstance(source, str) and source not in ("", *SOURCES):
         problems.append(Problem(f"source is {brief(source)}", where, fix=f"one of: {', '.join(SOURCES)}"))
+    derived = facts.get("derived", [])
+    if not isinstance(derived, list) or not set(map(str, derived)) <= set(MOTION):
+        fix = f"write a list of any of {', '.join(MOTION)}, or leave it out"
+        problems.append(Problem(f"'derived' is {brief(derived)}, not a list of motion columns", where, fix=fix))
     return facts, problems + _noise(facts.get("noise", {}), where, columns)
 
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -36,6 +37,7 @@ class Trial(Plotted):
     part_of    id of the trial this is a window of, "" for a whole trial
     begins     when the time of a window begins, in the time of its whole trial [s]
     group      what it has in common with other runs, such as the day or the loading; "" where the file does not say
+    derived    motion columns, by their names in the file, that were worked out from others and measured by nothing
     cut_from   name of the run that this and other trials were cut from, "" where it is a run of its own
 
     Raises TrialError for arrays without numbers or of other lengths than ``t``, and for ``extra`` that repeats a field.
@@ -65,6 +67,7 @@ class Trial(Plotted):
     begins: float = 0.0
     cut_from: str = ""
     group: str = ""
+    derived: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         shape = (np.size(self.t),)
@@ -113,6 +116,15 @@ class Trial(Plotted):
         """(n_samples, 6) x, y, psi, u, v_m, r; read-only."""
         found: FloatArray = self.__dict__["_motion"]
         return found
+
+    def as_measured(self) -> Trial:
+        """The trial without what was derived, but for the first sample, which a simulation begins with: it says nothing
+        that the others do not, and its noise is not of a sensor."""
+        if not self.derived:
+            return self
+        first = np.arange(self.n_samples) == 0
+        kept: Any = {ATTRIBUTES[name]: np.where(first, self.columns[name], np.nan) for name in self.derived}
+        return replace(self, **kept)
 
     def inputs(self, names: Sequence[str]) -> FloatArray:
         """(n_samples, n_inputs) what drove the ship, by names of ``inputs.INPUTS``.

@@ -61,6 +61,7 @@ def read_trial(path: Path | str) -> Trial:
         note=facts.get("note", ""),
         cut_from=facts.get("cut_from", ""),
         group=facts.get("group", ""),
+        derived=tuple(facts.get("derived", ())),
         path=path,
         sha256=held.sha256,
         sealed=DIGEST_KEY in held.metadata,
@@ -95,6 +96,8 @@ def write_trial(trial: Trial, path: Path | str, overwrite: bool = False) -> Path
         facts["cut_from"] = trial.cut_from
     if trial.group:
         facts["group"] = trial.group
+    if trial.derived:
+        facts["derived"] = list(trial.derived)
     written = json.dumps(facts).encode()
     schema = pa.schema(fields, metadata={METADATA_KEY: written, DIGEST_KEY: digest(values, written)})
     table = pa.table([pa.array(column) for column in values.values()], schema=schema)

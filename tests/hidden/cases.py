@@ -290,6 +290,7 @@ def otherwise(tag: str, seed: int) -> Case:
 RUNS: dict[str, Draw] = {
     "current": lambda k, rng: _vector(("north", "east"), (0.02, 0.06, 0.15, 0.35, 0.5))(k, rng),
     "rudder-offset": lambda k, rng: {"angle": float(np.radians((0.05, 0.2, 0.5, 1.0, 2.0)[k]) * rng.standard_normal())},
+    "rudder-gain": lambda k, rng: {"factor": 1.0 + (0.005, 0.02, 0.05, 0.1, 0.2)[k] * float(rng.uniform(-1.0, 1.0))},
     "clock-offset": lambda k, rng: {"seconds": (0.1, 0.3, 0.8, 2.0, 4.0)[k] * float(rng.standard_normal())},
     "wind": lambda k, rng: _from("speed", (0.5, 2.0, 4.0, 8.0, 12.0))(k, rng),
     "loading": lambda k, rng: {"draught": 1.0 + (0.005, 0.02, 0.05, 0.1, 0.15)[k] * float(rng.uniform(-1.0, 1.0))},

@@ -156,6 +156,7 @@ delta = {{ column = "rudder", unit = "deg", positive = "starboard" }}
         assert back.n == pytest.approx(1.7)
         assert "u and v were not measured" in back.note
         assert "r was not measured" in back.note
+        assert back.derived == ("u", "v", "r")
         assert "projection of WGS 84" in back.note
     text = text.replace("[antenna]", "[velocity]\npoint = 'antenna'\n[antenna]")
     assert imported(log, text).n_samples == trial.n_samples
