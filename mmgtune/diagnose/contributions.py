@@ -292,6 +292,17 @@ def takes_the_rest(bench: Workbench, found: Found, cause: Hypothesis, fewer: Poi
     return fewer.chi2 - found.final.chi2 >= OF_REST * rest
 
 
+LOST = 1e12
+"""Squares of a run that left the world."""
+
+
+def squares(off: FloatArray) -> FloatArray:
+    """Sums of squares by channel (6,) of errors (n_trials, n_samples, 6); of a run that was lost, very much."""
+    with np.errstate(over="ignore"):
+        found = np.sum(off**2, axis=(0, 1))
+    return np.where(found < LOST, found, LOST)
+
+
 def _errors(
     bench: Workbench, points: Sequence[Point], trials: Sequence[Trial]
 ) -> tuple[FloatArray, FloatArray, dict[str, list[float]]]:
@@ -303,7 +314,7 @@ def _errors(
     for k, unit in enumerate(beside.units):
         states = scaled.states(unit[:, None], fit_offsets(scaled, unit)[:, None]).states[:, 0]
         off = np.where(counted, states - scaled.cases.target, 0.0)
-        errors[k] = np.minimum(np.sum((off / bench.sigma) ** 2, axis=(0, 1)), 1e12)
+        errors[k] = squares(off / bench.sigma)
     changes: dict[str, list[float]] = {name: [] for name in INDICES}
     for one in beside.compared():
         for name in INDICES:

@@ -235,7 +235,7 @@ def _with(bench: Workbench, point: Point, other: Refit, hopeless: float = math.i
 
 
 def _as_given(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis]) -> Given | None:
-    """The point refitted with what has leeway at the profile's values, where that leaves much."""
+    """The point refitted with what has leeway at the profile's values, where that leaves much and no run is lost."""
     kept = [i for i, name in enumerate(point.names) if name not in bench.believed.leeway]
     if len(kept) == len(point.names):
         return None
@@ -248,7 +248,7 @@ def _as_given(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis]) 
         tolerance=unnoticed(bench, point.chi2),
         spreads=point.spreads,
     )
-    if there.chi2 < STRONG * bench.problem.n_residuals:
+    if not STRONG * bench.problem.n_residuals <= there.chi2 < math.inf:
         return None
     alike = [h for h in hypotheses if not h.by]
     linear = linearise(bench, there, [name for h in alike for name in h.bases])

@@ -13,7 +13,7 @@ from mmgtune.backends import Integrator
 from mmgtune.diagnose import DiagnoseOptions, Diagnosis, diagnose
 from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.causes import Cause
-from mmgtune.diagnose.contributions import Contribution, set_aside, takes_the_rest
+from mmgtune.diagnose.contributions import Contribution, set_aside, squares, takes_the_rest
 from mmgtune.diagnose.gain import BAND, expected, held_out
 from mmgtune.diagnose.hypotheses import known_causes
 from mmgtune.diagnose.intervals import Estimate
@@ -162,6 +162,12 @@ def test_the_side_that_no_trial_turned_to_is_expected_to_be_wrong(suzaku):
     found = Found(base, base)
     assert expected(bench, found, [port]) > 8.0 * expected(bench, found, [starboard])
     assert not held_out(found, Unseen(bench, [port])).remains
+
+
+def test_a_run_that_is_lost_has_very_large_squares_and_none_that_is_no_number():
+    off = np.zeros((2, 3, 6))
+    off[0, 1] = [1.0, 2.0, np.nan, np.inf, 1e200, -3.0]
+    assert squares(off).tolist() == [1.0, 4.0, 1e12, 1e12, 1e12, 9.0]
 
 
 def test_of_targets_that_all_end_at_a_bound_nothing_is_expected(suzaku):

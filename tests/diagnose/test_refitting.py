@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ from mmgtune.diagnose.hypotheses import known_causes
 from mmgtune.diagnose.linear import linearise
 from mmgtune.diagnose.refitting import HARDLY_MORE, HOPELESS, Known, Refitting
 from mmgtune.diagnose.screening import scores
+from mmgtune.diagnose.search import _as_given as as_given
 from mmgtune.diagnose.workbench import make_workbench
 from mmgtune.profile import load_profile, with_effects
 from mmgtune.simulation import simulate
@@ -101,3 +104,11 @@ def test_where_little_is_left_what_does_not_earn_its_price_is_not_refitted():
     assert {"steering-lag", "loading"} <= fitted
     assert set(ALIKE) - best - earns
     assert not fitted & (set(ALIKE) - best - earns)
+
+
+@pytest.mark.parametrize("chi2", [np.inf, np.nan])
+def test_nothing_is_looked_for_where_what_has_no_leeway_runs_away(monkeypatch, chi2):
+    refitting, _ = first_look({}, ("current",))
+    bench, point = refitting.bench, refitting.point
+    monkeypatch.setattr(bench, "refit", lambda *_, **__: replace(point, chi2=chi2))
+    assert as_given(bench, point, known_causes(bench.model.profile, bench.trials, bench.options)) is None
