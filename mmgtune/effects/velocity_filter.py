@@ -14,6 +14,7 @@ class VelocityFilter(NamedTuple):
     over_ground: Lanes
     along_axes: Lanes
     yaw_rate: Lanes
+    ahead: Lanes
 
 
 Held = tuple[Lanes, Lanes, Lanes, Lanes, Lanes]
@@ -26,15 +27,15 @@ def _with(state: State, u: Lanes, v_m: Lanes, r: Lanes) -> State:
 
 def velocity_filter(start: State, end: State, held: Held, h: Lanes, e: VelocityFilter) -> tuple[State, Held]:
     """Velocity over ground smoothed north and east, as a satellite receiver does, and then ahead and to starboard, as
-    a log in the ship does; the yaw rate by itself.  First-order low-passes (assumption: what receivers
-    and logs do is not published), exact for what is linear over a step."""
+    a log in the ship does, or ahead alone, as one of a single axis; the yaw rate by itself.  First-order low-passes
+    (assumption: what receivers and logs do is not published), exact for what is linear over a step."""
     north_0, east_0 = to_earth(start.psi, start.u, start.v_m)
     north_1, east_1 = to_earth(end.psi, end.u, end.v_m)
     north = followed(north_0, north_1, held[0], h, e.over_ground)
     east = followed(east_0, east_1, held[1], h, e.over_ground)
     u_0, v_0 = to_ship(start.psi, held[0] - north_0, held[1] - east_0)
     u_1, v_1 = to_ship(end.psi, north - north_1, east - east_1)
-    u = followed(start.u + u_0, end.u + u_1, held[2], h, e.along_axes)
+    u = followed(start.u + u_0, end.u + u_1, held[2], h, e.along_axes + e.ahead)
     v_m = followed(start.v_m + v_0, end.v_m + v_1, held[3], h, e.along_axes)
     r = followed(start.r, end.r, held[4], h, e.yaw_rate)
     return _with(end, u, v_m, r), (north, east, u, v_m, r)
@@ -69,6 +70,7 @@ def _constant(of: str) -> Parameter:
 _WORDS = {
     "over_ground": "the velocity over ground with a time constant of {}",
     "along_axes": "the velocities ahead and to starboard with a time constant of {}",
+    "ahead": "the velocity ahead, and no other, with a time constant of {}",
     "yaw_rate": "the yaw rate with a time constant of {}",
 }
 
@@ -86,7 +88,9 @@ EFFECT = FilterEffect(
         "over_ground": _constant("of the velocity over ground, north and east"),
         "along_axes": _constant("of the velocities ahead and to starboard"),
         "yaw_rate": _constant("of the yaw rate"),
+        "ahead": _constant("of the velocity ahead alone, beside that of both"),
     },
-    variants=(("over_ground",), ("along_axes",), ("yaw_rate",)),
+    variants=(("over_ground",), ("along_axes",), ("ahead",), ("yaw_rate",)),
+    besides=("ahead",),
     sentence=lambda v: "The log smooths " + " and ".join(_WORDS[name].format(v[name]) for name in _WORDS if name in v),
 )

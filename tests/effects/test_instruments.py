@@ -77,6 +77,9 @@ def test_velocities_are_smoothed_over_ground_or_along_the_axes():
     np.testing.assert_allclose(found.u, lagged(t, fine.u, T)[EVERY], atol=5e-4)
     np.testing.assert_allclose(found.v_m, lagged(t, fine.v_m, T)[EVERY], atol=5e-4)
     np.testing.assert_allclose(found.r, lagged(t, fine.r, 2.0)[EVERY], atol=1e-5)
+    found = logged("velocity-filter", samples, ahead=T)
+    np.testing.assert_allclose(found.u, lagged(t, fine.u, T)[EVERY], atol=5e-4)
+    np.testing.assert_array_equal(found.v_m, fine.v_m[EVERY])
 
 
 @pytest.mark.parametrize("name", ["time_constant", "alone"])

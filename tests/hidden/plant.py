@@ -412,7 +412,7 @@ def sensed(rows: np.ndarray, count: int, e: Mapping[str, Mapping[str, float]]) -
     heading = heading + compass["sine"] * np.sin(psi) + compass["cosine"] * np.cos(psi) + e["gyro-drift"]["heading"] * t
     heading = heading + e["unknown-deviation-quadrantal"]["magnitude"] * np.sin(2.0 * psi)
     u, v = north * np.cos(heading) + east * np.sin(heading), east * np.cos(heading) - north * np.sin(heading)
-    u, v = _low_pass(u, smooth["along_axes"]), _low_pass(v, smooth["along_axes"])
+    u, v = _low_pass(u, smooth["along_axes"] + smooth["ahead"]), _low_pass(v, smooth["along_axes"])
     heading = heading + _low_pass(psi, e["heading-filter"]["alone"]) - psi + e["heading-bias"]["alone"]
     heading = heading + compass["sine_alone"] * np.sin(psi) + compass["cosine_alone"] * np.cos(psi)
     heading = heading + e["gyro-drift"]["heading_alone"] * t
