@@ -78,6 +78,8 @@ EFFECT = FilterEffect(
         ),
     },
     variants=(("heading",), ("heading_alone",), ("yaw_rate",)),
+    varies=("heading", "heading_alone"),
+    subject="drift of the gyro",
     sentence=lambda v: (
         "The gyro drifted: " + " and ".join(_WORDS[name].format(v[name]) for name in _WORDS if name in v)
     ),
