@@ -58,7 +58,7 @@ values bend to what is elsewhere, or at another hour, and not of the run at all.
 
 TOLD = 0.5
 """Share of the held-out error that causes must remove which were found once no trial was kept for testing, and several
-causes anyhow: what little there is any two or three would imitate."""
+causes anyhow: what little there is any two or three would imitate; and a single one whose size may be none."""
 
 TOO_MANY = 4
 """Terms of a sum of causes from which it is not believed."""
@@ -107,6 +107,7 @@ class Diagnosis(Plotted):
     evidence  residuals, residual forces and what explains them, for the report
     coverage  what the trials it looked at visit; warnings: what of that a reader must know
     whereabouts  where the error lives, where nothing explains it; None else
+    contradicted what the logs say against each other, in a sentence; told first where the answer is unexplained
     doubted      the sum of causes that the one named was found in, where that is not believed; None else
     together  what was found without the trials kept for testing, where these had to be looked at too; None else
     choice    windows of voyages that were looked at, None for trials; differing: what differs between the voyages
@@ -141,6 +142,7 @@ class Diagnosis(Plotted):
     together: Together | None = None
     moved: tuple[Retuned, ...] = ()
     instead: Instead | None = None
+    contradicted: str = ""
     choice: Choice | None = None
     differing: tuple[Difference, ...] = ()
 
@@ -184,15 +186,18 @@ class Diagnosis(Plotted):
     def unclear(self) -> str:
         """Why causes are not believed, in words; "" where they are.
 
-        A single one is doubted only where it was found once trials kept for testing were looked at too.
+        A single one is doubted only where it was found once trials kept for testing were looked at too, and where its
+        size may be none and it removes little.
 
         An effect that no registry holds looks like a sum of those that one does; the study says how such sums look.
         """
         brought = [one for _, one in self.contributions]
         if self._told_by_none:
             return "with it any run is told little better by the others"
+        unsized = [cause.tag for cause in self.causes if not cause.sized]
+        not_told = f"how large {' and '.join(unsized)} would be is not told" if unsized else ""
         if len(brought) < 2:
-            return ""
+            return not_told if self.gain.share_removed[0] < TOLD else ""
         if len(brought) >= TOO_MANY:
             return f"it takes {len(brought)} terms"
         if len(brought) > 2 and self.groups:
@@ -201,8 +206,8 @@ class Diagnosis(Plotted):
             return "more than one of them differs from run to run"
         if self.gain.share_removed[0] < TOLD:
             return "it removes little of the error where nothing was fitted"
-        if unsized := [cause.tag for cause in self.causes if not cause.sized]:
-            return f"how large {' and '.join(unsized)} would be is not told"
+        if not_told:
+            return not_told
         if sum(one.seen for one in brought) < NEEDED:
             return "each of them can be left out with little loss"
         if self.gain.mostly_remains:
@@ -285,7 +290,8 @@ class Diagnosis(Plotted):
         if self.verdict == "found" and not self.causes:
             return " ".join(["No cause that is the same in all voyages shows.", *told])
         together = [self.together.sentence] if self.together else []
-        return " ".join([self._of_causes(), *told, *together])
+        first = [self.contradicted] if self.contradicted and self.verdict == "unexplained" else []
+        return " ".join([*first, self._of_causes(), *told, *together])
 
     def _of_causes(self) -> str:
         """What is the same in all trials, in words."""

@@ -24,6 +24,7 @@ from ..profile import ShipProfile, with_all_effects
 from ..threads import blas_on_one_thread
 from ..trial import Trial, TrialSet, VoyageSet, oddities
 from ..trial.schema import MOTION
+from ..trial.set_checks import turn_away
 from .contributions import set_aside
 from .hypotheses import known_causes, not_looked_for, of_runs
 from .judging import Judge
@@ -138,13 +139,26 @@ def _looked_at(
     doubtful = result.verdict != "none" or result.leaves_open
     left_out = not_looked_for(profile, options.effects) if doubtful else []
     warnings = (*odd, *result.warnings, *left_out, *(narrow_box(bench, found) if not hooks.stop() else ()))
-    return replace(result, warnings=warnings)
+    contradicted = _contradicted(trials.trials) if result.verdict == "unexplained" and choice is None else ""
+    return replace(result, warnings=warnings, contradicted=contradicted)
 
 
 def _legs(profile: ShipProfile, names: Sequence[str]) -> list[str]:
     """What may differ from voyage to voyage, of the effects that apply, besides what is looked for anyhow."""
     there = {f"{effect.kind}.{name}" for effect in Model(with_all_effects(profile)).effects for name in effect.fields}
     return [name for name in LEG_NAMES if name in there and name not in names]
+
+
+def _contradicted(trials: Mapping[str, Trial]) -> str:
+    """What the logs of most trials say against each other, which is to be put right before a cause is looked for."""
+    away = turn_away(trials)
+    if 2 * len(away) <= len(trials):
+        return ""
+    of = f"{len(away)} of {len(trials)} trials" if len(trials) > 1 else "the trial"
+    return (
+        f"First put the logs right: in {of} the ship turns away from her rudder, so the sign of its angle is wrong, or "
+        "those of heading and yaw rate."
+    )
 
 
 def _derived(trials: Mapping[str, Trial]) -> list[str]:

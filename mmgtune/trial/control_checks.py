@@ -29,6 +29,10 @@ SLOWEST_MODEL = 3.0
 those of shafts and gears alike, so that a faster shaft tells a model and how much quicker its gear may be."""
 
 
+RUDDER_SIGN = "rudder-sign"
+"""Code of the finding that a ship turns away from her rudder."""
+
+
 def control_findings(trial: Trial, where: str) -> list[Finding]:
     """Findings on inputs and directions of a trial that can be used."""
     found = []
@@ -84,6 +88,7 @@ def _rudder_sign(trial: Trial, name: str, where: str) -> Finding | None:
         where,
         f"a positive angle must turn the ship to starboard; agreement of sides {towards:.2f}, expected near 1",
         f"change the sign of '{name}'; if it is right, those of 'r', 'psi', 'v' and 'y'",
+        RUDDER_SIGN,
     )
 
 

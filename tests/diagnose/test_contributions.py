@@ -297,6 +297,8 @@ GROUP = (("a", "b"),)
         (sum_of(CLEAR, CLEAR, removed=-0.16), "removes little"),
         (sum_of(CLEAR, CLEAR, sized=False), "how large wind"),
         (sum_of(CLEAR, sized=False), ""),
+        (sum_of(CLEAR, sized=False, removed=0.2), "how large wind"),
+        (sum_of(CLEAR, removed=0.2), ""),
         (sum_of(CLEAR, CLEAR, removed=0.6), ""),
         (sum_of(CLEAR, removed=-0.16), ""),
         (sum_of(CLEAR, remains=True), ""),

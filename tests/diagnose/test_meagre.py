@@ -11,6 +11,7 @@ import pytest
 from mmgtune import DiagnoseOptions, FitOptions, diagnose, fit, load_trials
 from mmgtune.errors import OptionError
 from mmgtune.trial import Trial
+from mmgtune.trial.set_checks import turn_away
 
 ATTRIBUTES = ("t", "x", "y", "psi", "u", "v_m", "r", "n", "delta")
 
@@ -57,3 +58,14 @@ def test_a_channel_of_numbers_whose_squares_are_none():
         fit(
             "suzaku", [replace(tiny, u=tiny.u * (np.arange(trial.n_samples) % 2))], FitOptions(objective="standardised")
         )
+
+
+def test_a_rudder_of_the_wrong_sign_is_told_first():
+    trials = load_trials("suzaku")
+    wrong = {name: replace(one, delta=-one.delta) for name, one in trials.trials.items() if name in trials.tune[:3]}
+    assert turn_away(wrong) == list(wrong)
+    assert turn_away(trials.trials) == []
+    asked = DiagnoseOptions(effects=("rudder-offset",), targets=("hull.R_0",), leeway=0.0)
+    result = diagnose("suzaku", replace(trials, trials=wrong, tune=tuple(wrong), test=()), asked)
+    assert result.verdict == "unexplained"
+    assert result.sentence().startswith("First put the logs right: in 3 of 3 trials the ship turns away from")
