@@ -41,9 +41,9 @@ class Material:
 
     @property
     def by_role(self) -> dict[str, tuple[Trial, ...]]:
-        """Trials that are scored at the end, the first role that which speaks for what was learned.
+        """Trials that are scored at the end, by role; the first of them speaks for what was learned.
 
-        Those held out, "test", and those kept back, "validation"; where there are neither those "learned" from.
+        Those held out, "test", and those kept back, "validation"; where there are neither, those "learned" from.
         """
         apart = {"test": self.test, "validation": self.split.choose}
         return {role: of for role, of in apart.items() if of} or {"learned": self.split.learn}
