@@ -25,6 +25,9 @@ OF_LENGTH = 1.0
 SHORTEST = 2.5
 """Samples of a period."""
 
+PEAKS = 6
+"""Peaks of a spectrum that are looked at, the highest first."""
+
 PERIODS = 12
 """Times a swinging must be seen in a record."""
 
@@ -104,7 +107,9 @@ def _swing(values: FloatArray, step: float, longest: float) -> tuple[float, floa
     width = min(len(values), max(16, round(8.0 * longest / step)))
     f, power = np.fft.rfftfreq(width, step), _spectrum(values, width)
     asked = np.flatnonzero((f >= 1.0 / longest) & (f <= 1.0 / (SHORTEST * step)))
-    for k in asked[np.argsort(-power[asked])]:
+    asked = asked[(asked > 0) & (asked < len(f) - 1)]
+    peaks = asked[(power[asked] > power[asked - 1]) & (power[asked] > power[asked + 1])]
+    for k in peaks[np.argsort(-power[peaks])][:PEAKS]:
         peak = f[k]
         sides = [power[(f >= low * peak) & (f <= high * peak)] for low, high in (BELOW, BEYOND)]
         if any(len(side) and power[k] < ABOVE * np.median(side) for side in sides) or not len(sides[0]):
