@@ -16,7 +16,7 @@ from ..arrays import FloatArray
 from ..backends import STATES
 from ..fitting.least_squares import fit_offsets
 from ..trial import Trial
-from .gain import INDICES, measured
+from .gain import INDICES, LOST, measured
 from .hypotheses import Hypothesis
 from .intervals import Estimate, estimates
 from .leftover import Leftover
@@ -290,10 +290,6 @@ def takes_the_rest(bench: Workbench, found: Found, cause: Hypothesis, fewer: Poi
     if cause.by or cause.effect.one_of_many or rest < LEFT * n:
         return False
     return fewer.chi2 - found.final.chi2 >= OF_REST * rest
-
-
-LOST = 1e12
-"""Squares of a run that left the world."""
 
 
 def squares(off: FloatArray) -> FloatArray:

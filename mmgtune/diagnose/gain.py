@@ -52,6 +52,9 @@ HELD_OUT: dict[HeldOut, str] = {
 }
 """What the gain is measured on, in words."""
 
+LOST = 1e12
+"""Squares of a run that left the world."""
+
 INDICES = ("tactical_diameter_m", "advance_m", "overshoot_1_deg", "overshoot_2_deg")
 """Indices whose errors are reported."""
 
@@ -321,7 +324,7 @@ def _on(
     for k, unit in enumerate(beside.units):
         offsets = fit_offsets(beside.scaled, unit)
         excess[:, k] = judged.costs_by_case(unit[:, None], offsets[:, None])[:, 0] - floor
-    return compared, np.where(np.isfinite(excess), excess, 1e12)
+    return compared, np.where(np.isfinite(excess), excess, LOST)
 
 
 def _floor(bench: Workbench, problem: FitProblem, case: int) -> float:

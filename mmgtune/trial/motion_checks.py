@@ -66,7 +66,7 @@ def _gaps(trial: Trial, where: str) -> list[Finding]:
     missing = {name: rows for name, rows in missing.items() if rows.any()}
     if not missing:
         return []
-    longest = {name: _longest(rows) for name, rows in missing.items()}
+    longest = {name: longest_run(rows) for name, rows in missing.items()}
     worst = max(longest, key=lambda name: longest[name][1] - longest[name][0])
     begins, ends = longest[worst]
     # A gap lasts from the last sample before it to the first one after it, if there is one.
@@ -86,9 +86,9 @@ def _gaps(trial: Trial, where: str) -> list[Finding]:
     ]
 
 
-def _longest(missing: BoolArray) -> tuple[int, int]:
-    """First row of the longest gap, and the row behind it."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], missing.astype(int), [0]])))
+def longest_run(rows: BoolArray) -> tuple[int, int]:
+    """First row of the longest run of rows (n_samples,) that are so, and the row behind it."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], rows.astype(int), [0]])))
     begins, ends = edges[::2], edges[1::2]
     k = int(np.argmax(ends - begins))
     return int(begins[k]), int(ends[k])

@@ -7,6 +7,7 @@ import numpy as np
 from ..arrays import FloatArray
 from .finding import Finding
 from .model import Trial
+from .motion_checks import longest_run
 from .schema import MOTION
 
 CHANNELS = tuple(name for name in MOTION if name not in ("x", "y", "psi"))
@@ -50,8 +51,8 @@ def _at_the_end(values: FloatArray) -> int:
     if len(known) < 4 * STANDS:
         return 0
     top = known == known.max()
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], top.astype(int), [0]])))
-    longest = int(np.max(edges[1::2] - edges[::2]))
+    begins, ends = longest_run(top)
+    longest = ends - begins
     if longest < STANDS:
         return 0
     away = ~top[1:] & ~top[:-1]

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..units import DEG
 from .checks import check_trial
-from .control_checks import RUDDER_SIGN, control_findings
+from .control_checks import RUDDER_SIGN
 from .finding import SEVERITIES, Finding
 from .model import Trial
 
@@ -61,7 +61,7 @@ def oddities(trials: Mapping[str, Trial], L_pp: float | None = None) -> list[str
 
 def turn_away(trials: Mapping[str, Trial]) -> list[str]:
     """Trials in which the ship turns away from her rudder: a sign is wrong there."""
-    return [id for id, one in trials.items() if any(f.code == RUDDER_SIGN for f in control_findings(one, id))]
+    return [id for id, one in trials.items() if any(f.code == RUDDER_SIGN for f in check_trial(one))]
 
 
 def way_per_turn(trial: Trial) -> float | None:
