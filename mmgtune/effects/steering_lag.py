@@ -15,21 +15,44 @@ class SteeringLag(NamedTuple):
 
     time_constant: Lanes
     rate_limit: Lanes
+    to_starboard: Lanes
+    to_port: Lanes
 
 
 def steering_lag(start: Lanes, end: Lanes, before: Lanes, h: Lanes, e: SteeringLag) -> Lanes:
     """Blade angle after a step of h [s], for an order that changes linearly over the step.
 
-    Exact for a first-order lag; the rate limit then cuts the change.
+    Exact for a first-order lag; the rate limit then cuts the change, and another one where the rudder turns slower to
+    one side.
     """
     goal = followed(start, end, before, h, e.time_constant)
-    most = e.rate_limit * np.maximum(h, INSTANT)
     change = goal - before
+    to_its_side = where(change > 0.0, e.to_starboard, e.to_port)
+    most = np.minimum(e.rate_limit, to_its_side) * np.maximum(h, INSTANT)
     limited = before + np.minimum(np.maximum(change, -most), most)
     return where(np.abs(change) > most, limited, goal)
 
 
-_WORDS = {"time_constant": "with a time constant of {}", "rate_limit": "at {} at most"}
+_WORDS = {
+    "time_constant": "with a time constant of {}",
+    "rate_limit": "at {} at most",
+    "to_starboard": "at {} at most to starboard",
+    "to_port": "at {} at most to port",
+}
+
+
+def _rate(words: str) -> Parameter:
+    return Parameter(
+        f"largest rate of the rudder{words}",
+        "rad/s",
+        null=float("inf"),
+        low=0.0,
+        chart="reciprocal",
+        bounds=lambda ship: (0.0, 2.0 * ship.L / ship.U),
+        typical=lambda ship: 0.9 * ship.L / ship.U,
+        bounds_source="a rudder that takes half the time of a ship length for 15 deg",
+    )
+
 
 EFFECT = ActuatorEffect(
     kind="effects.steering-lag",
@@ -48,18 +71,12 @@ EFFECT = ActuatorEffect(
             typical=lambda ship: 0.075 * ship.L / ship.U,
             bounds_source="the time the ship takes for six tenths of her length",
         ),
-        "rate_limit": Parameter(
-            "largest rate of the rudder",
-            "rad/s",
-            null=float("inf"),
-            low=0.0,
-            chart="reciprocal",
-            bounds=lambda ship: (0.0, 2.0 * ship.L / ship.U),
-            typical=lambda ship: 0.9 * ship.L / ship.U,
-            bounds_source="a rudder that takes half the time of a ship length for 15 deg",
-        ),
+        "rate_limit": _rate(""),
+        "to_starboard": _rate(" towards starboard"),
+        "to_port": _rate(" towards port"),
     },
-    variants=(("time_constant",), ("rate_limit",)),
+    variants=(("time_constant",), ("rate_limit",), ("to_starboard", "to_port")),
+    besides=("to_starboard", "to_port"),
     sentence=lambda v: (
         "The rudder followed the logged angle "
         + " and ".join(_WORDS[name].format(v[name]) for name in _WORDS if name in v)

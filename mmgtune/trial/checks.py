@@ -16,6 +16,7 @@ from .schema import OPTIONAL, known_column
 from .surroundings_checks import surroundings_findings
 from .swell import swell_findings
 from .unusable import unusable
+from .wind_checks import wind_findings
 
 __all__ = ["Finding", "check_trial"]
 
@@ -42,6 +43,7 @@ def check_trial(trial: Trial, L_pp: float | None = None) -> list[Finding]:
             *control_findings(trial, where),
             *cross_findings(trial, where, L_pp, contradicted),
             *surroundings_findings(trial, where),
+            *wind_findings(trial, where),
             *_facts(trial, where),
         ]
     return sorted(found, key=lambda finding: SEVERITIES.index(finding.severity))

@@ -28,6 +28,12 @@ SLOWEST_MODEL = 3.0
 """Revolutions [1/s] of a ship's shaft that few exceed.  By Froude's law all rates grow with the root of the scale,
 those of shafts and gears alike, so that a faster shaft tells a model and how much quicker its gear may be."""
 
+FASTEST_SHAFT = 5.0
+"""Revolutions [1/s] that only models' shafts exceed."""
+
+HELD, HELD_SECONDS = 4, 6.0
+"""Samples that orders stand still for before they change and after, and the longest time [s] between two: an engine
+takes longer."""
 
 RUDDER_SIGN = "rudder-sign"
 """Code of the finding that a ship turns away from her rudder."""
@@ -119,13 +125,20 @@ def _shaft_speed(trial: Trial, name: str, where: str) -> Finding | None:
     n = trial.columns[name]
     step, rate = fastest_change(trial.t, n)
     largest = float(np.percentile(np.abs(n), 99.0))
-    if largest > 5.0 or step < 0.25 * largest or rate < 0.3:
+    if largest > FASTEST_SHAFT:
         return None
+    jump = jump_between_holds(trial.t, n)
+    if jump > 0.1 * largest:
+        why = "they stand still before and after, as orders do and no measured revolutions"
+    elif step < 0.25 * largest or rate < 0.3:
+        return None
+    else:
+        jump, why = step, "no ship's engine does; these may be orders, not measured revolutions"
     return Finding(
         "warning",
-        f"the revolutions change by {60.0 * step:.3g} rpm from one sample to the next",
+        f"the revolutions change by {60.0 * jump:.3g} rpm from one sample to the next",
         where,
-        "no ship's engine does; these may be orders, not measured revolutions",
+        why,
         "use the measured revolutions where there are any",
     )
 
@@ -175,6 +188,17 @@ def _directions(trial: Trial, where: str) -> list[Finding]:
                 )
             )
     return found
+
+
+def jump_between_holds(t: FloatArray, values: FloatArray) -> float:
+    """Largest change between neighbouring samples before and after which some stand still; 0 without any."""
+    steps = np.abs(np.diff(values))
+    still = steps <= 1e-6 * float(np.max(np.abs(values), initial=0.0))
+    held = np.concatenate([[0], np.cumsum(still)])
+    n = HELD - 1
+    k = np.arange(n, len(steps) - n)
+    jumps = (held[k] - held[k - n] == n) & (held[k + n + 1] - held[k + 1] == n) & (np.diff(t)[k] < HELD_SECONDS)
+    return float(np.max(steps[k][jumps], initial=0.0))
 
 
 def fastest_change(t: FloatArray, values: FloatArray) -> tuple[float, float]:

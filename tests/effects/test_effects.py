@@ -24,7 +24,7 @@ from tests.runs import measured, states, turn
 STRONG = {
     "clock-offset": {"seconds": 1.3},
     "dead-time": {"seconds": 2.2},
-    "steering-lag": {"time_constant": 2.5, "rate_limit": 0.05},
+    "steering-lag": {"time_constant": 2.5, "rate_limit": 0.05, "to_starboard": 0.04},
     "backlash": {"play": 0.05},
     "rudder-gain": {"factor": 0.9, "starboard": 1.1, "port": 0.95},
     "rudder-offset": {"angle": 0.02},
@@ -218,7 +218,7 @@ def test_current_moves_a_circle_and_leaves_the_ship_in_the_water_alone(ship):
 def test_steering_lag_is_the_exact_first_order_response(ship):
     T = 4.0
     function = find_effect("steering-lag").function
-    e = find_effect("steering-lag").params(T, np.inf)
+    e = find_effect("steering-lag").params(T, np.inf, np.inf, np.inf)
     order = [min(max(0.0, t - 3.0), 10.0) for t in range(41)]  # a ramp
     blade = 0.0
     for before, after in pairwise(order):

@@ -303,16 +303,23 @@ def test_actuators_with_one_number(tag, value, left):
 
 @pytest.mark.parametrize(("start", "end", "before"), [(0.0, 0.3, -0.1), (0.2, -0.1, 0.25)])
 def test_steering_lag(start, end, before):
-    """Against the same response integrated finely; then the rate limit."""
+    """Against the same response integrated finely; then the rate limit, of either side or of one."""
     effect, T, h = find_effect("steering-lag"), 2.5, 1.0
+
+    def of(**values):
+        return effect.params(**{name: one.null for name, one in effect.parameters.items()} | values)
+
     blade, n = before, 20000
     for k in range(n):
         order = start + (end - start) * (k + 0.5) / n
         blade += h / n * (order - blade) / T
-    assert effect.function(start, end, before, h, effect.params(T, math.inf)) == pytest.approx(blade, abs=1e-5)
-    limited = effect.function(start, end, before, h, effect.params(0.0, 0.04))
-    assert limited == pytest.approx(before + math.copysign(0.04, end - before))
-    assert effect.function(start, end, before, h, effect.params(0.0, math.inf)) == pytest.approx(end)
+    assert effect.function(start, end, before, h, of(time_constant=T)) == pytest.approx(blade, abs=1e-5)
+    limited = pytest.approx(before + math.copysign(0.04, end - before))
+    assert effect.function(start, end, before, h, of(rate_limit=0.04)) == limited
+    this, other = ("to_starboard", "to_port") if end > before else ("to_port", "to_starboard")
+    assert effect.function(start, end, before, h, of(**{this: 0.04})) == limited
+    assert effect.function(start, end, before, h, of(**{other: 0.04})) == pytest.approx(end)
+    assert effect.function(start, end, before, h, of()) == pytest.approx(end)
 
 
 @pytest.fixture(scope="module")

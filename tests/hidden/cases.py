@@ -298,6 +298,14 @@ RUNS: dict[str, Draw] = {
 """What differs from trial to trial: an effect of one trial, at five levels."""
 
 
+def gear_of_two_rates(level: int, seed: int, noise: Noise = WHITE) -> Case:
+    """Orders are logged, and the rudder follows them more slowly to one side than to the other."""
+    fast, slow = 3.0, (2.9, 2.5, 2.0, 1.5, 0.8)[level]
+    rates = (slow, fast) if _sign(_rng("gear-of-two-rates", seed)) > 0.0 else (fast, slow)
+    hidden = {"steering-lag": {"to_starboard": float(np.radians(rates[0])), "to_port": float(np.radians(rates[1]))}}
+    return Case(f"gear-of-two-rates-{level}-{seed}", _ship(seed), hidden, seed, noise)
+
+
 def of_runs(tag: str, level: int, seed: int, noise: Noise = WHITE) -> Case:
     """An effect with another value in each trial."""
     rng = _rng(f"runs-{tag}", seed)

@@ -100,6 +100,12 @@ def toward(angle, target, most):
 
 
 @njit(cache=True)
+def driven(gear, order, s, seconds):
+    """Where the steering gear is after some seconds."""
+    return toward(gear, order, seconds * (s.rate_to_stbd if order > gear else s.rate_to_port))
+
+
+@njit(cache=True)
 def flap_angle(delta, scale):
     """Flap angle [rad] of a blade at delta: odd, linear between points each 5 deg, constant beyond the last."""
     place = abs(delta) / FLAP_STEP
@@ -333,8 +339,8 @@ def voyage(s, n_0, psi_0, angle, zigzag, steps, more):
         rows[k, 7] = order if s.logs_order > 0.0 else gear
         if k >= end + more:
             return rows[: k + 1], end + 1
-        middle = toward(gear, order, 0.5 * STEP * s.gear_rate)
-        gear = toward(gear, order, STEP * s.gear_rate)
+        middle = driven(gear, order, s, 0.5 * STEP)
+        gear = driven(gear, order, s, STEP)
         moved[k + 1] = gear
         if s.dead_time > 0.0:
             first, half, whole = late_by(moved, k, s.dead_time), late_by(moved, k + 0.5, s.dead_time), 0.0

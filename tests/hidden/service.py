@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numba import njit
 
-from .plant import STEP, WHITE, Noise, current, logged_revolutions, noisy, rates, toward
+from .plant import STEP, WHITE, Noise, current, driven, logged_revolutions, noisy, rates, toward
 from .suzaku import Parameters, coefficients
 
 LEG = 150.0
@@ -39,8 +39,8 @@ def keep_courses(s, n_0, psi_0, speed, courses, legs):
         rows[k, 5] = z[5]
         rows[k, 6] = logged_revolutions(n_0, z[3], z[4])
         rows[k, 7] = gear
-        half = toward(gear, order, 0.5 * STEP * s.gear_rate)
-        whole = toward(gear, order, STEP * s.gear_rate)
+        half = driven(gear, order, s, 0.5 * STEP)
+        whole = driven(gear, order, s, STEP)
         rates(s, t, z, gear, 0.0, n_0, rate[0])
         trying[:] = z + 0.5 * STEP * rate[0]
         rates(s, t + 0.5 * STEP, trying, half, 0.0, n_0, rate[1])

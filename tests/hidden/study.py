@@ -30,6 +30,7 @@ from .cases import (
     LADDER,
     RUNS,
     Case,
+    gear_of_two_rates,
     null,
     of_one_run,
     of_runs,
@@ -46,7 +47,7 @@ from .unknown import UNKNOWN
 SEEDS = 4
 NULLS, COLOURED_NULLS, PAIRS, TRIPLES = 80, 20, 48, 20
 
-N_CASES = SEEDS * (6 * len(LADDER) + 2 * len(RUNS) + 2) + NULLS + COLOURED_NULLS + PAIRS + TRIPLES + len(UNKNOWN)
+N_CASES = SEEDS * (6 * len(LADDER) + 2 * len(RUNS) + 4) + NULLS + COLOURED_NULLS + PAIRS + TRIPLES + len(UNKNOWN)
 
 ASIDE = ("checking", "cli", "importing", "report")
 """Parts of the package whose source no diagnosis depends on."""
@@ -76,6 +77,8 @@ def _of_seed(seed: int) -> Iterator[tuple[str, Case]]:
     for tag in RUNS:
         for level in (2, 3):
             yield "of-runs", of_runs(tag, level, seed)
+    for level in (2, 3):
+        yield "gear-of-two-rates", gear_of_two_rates(level, seed)
     yield "of-runs", of_one_run(seed)
     yield "of-runs", tide(seed)
     if seed == 1:

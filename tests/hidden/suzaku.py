@@ -109,7 +109,7 @@ NULL: dict[str, dict[str, float]] = {
     "dead-time": {"seconds": 0.0},
     "backlash": {"play": 0.0},
     "rudder-gain": {"factor": 1.0, "starboard": 1.0, "port": 1.0},
-    "steering-lag": {"time_constant": 0.0, "rate_limit": np.inf},
+    "steering-lag": {"time_constant": 0.0, "rate_limit": np.inf, "to_starboard": np.inf, "to_port": np.inf},
     "governor-lag": {"time_constant": 0.0},
     "engine-droop": {"share": 0.0},
     "rpm-scale": {"factor": 1.0},
@@ -169,10 +169,11 @@ def coefficients(ship: Mapping[str, float], effects: Parameters) -> np.void:
     p.update(_fujiwara(p))
     p["resistance_factor"], p["resistance_slope"] = e["resistance"]["factor"], e["resistance"]["slope"]
     p["rudder_offset"], p["rudder_gain"] = e["rudder-offset"]["angle"], e["rudder-gain"]["factor"]
-    ordered = np.isfinite(e["steering-lag"]["rate_limit"])
-    p["logs_order"] = float(ordered)
-    p["gear_rate"] = e["steering-lag"]["rate_limit"] if ordered else GEAR_RATE
-    p["steering_lag"] = e["steering-lag"]["time_constant"]
+    gear = e["steering-lag"]
+    rates = [min(gear["rate_limit"], gear[way]) for way in ("to_starboard", "to_port")]
+    p["logs_order"] = float(np.isfinite(rates).any())
+    p["rate_to_stbd"], p["rate_to_port"] = (rate if np.isfinite(rate) else GEAR_RATE for rate in rates)
+    p["steering_lag"] = gear["time_constant"]
     p["dead_time"], p["half_play"] = e["dead-time"]["seconds"], 0.5 * e["backlash"]["play"]
     p["gain_stbd"], p["gain_port"] = e["rudder-gain"]["starboard"], e["rudder-gain"]["port"]
     p["governor_lag"] = e["governor-lag"]["time_constant"]

@@ -89,6 +89,7 @@ def _summary(sets: dict[str, list[Row]]) -> list[str]:
     inside = [held for seed in by_seed.values() for held in seed]
     shares = [100.0 * sum(seed) / len(seed) for seed in by_seed.values() if seed]
     some, threes = sets.get("otherwise", []), sets.get("triple", [])
+    gears = sets.get("gear-of-two-rates", [])
     of_runs = [row for row in sets.get("of-runs", []) if row["of_runs"]]
     seconds = [row["seconds"] for rows in sets.values() for row in rows]
     coverage = f"{sum(inside)} of {len(inside)} ({100.0 * sum(inside) / len(inside):.1f} %)" if inside else "-"
@@ -113,6 +114,7 @@ def _summary(sets: dict[str, list[Row]]) -> list[str]:
         ("three effects of typical size, all found", _share(threes, "right", "grouped"), "60 %"),
         ("three effects of typical size, a wrong name", _share(threes, "wrong"), "at most 5 %"),
         ("another value in each run: named as such", _share(of_runs, "right", "grouped"), "-"),
+        ("a gear slower to one side: named, or in the group", _share(gears, "right", "grouped"), "-"),
         ("effects in no registry, no wrong name", _share(sets.get("unknown", []), "right", "missed"), "90 %"),
         ("seconds a diagnosis, median, one core of a busy machine", f"{statistics.median(seconds):.0f}", "-"),
     ]

@@ -176,6 +176,23 @@ def test_what_does_not_show_is_asked(tmp_path):
     assert f"line {line}" in said
 
 
+@pytest.mark.parametrize(("rudder", "shaft"), [("Ruder Soll/Grad", "Telegraph rpm"), ("Rudder cmd", "RPM order")])
+def test_orders_are_taken_where_nothing_else_is_logged(tmp_path, rudder, shaft):
+    columns = logged(turn())
+    ordered = {key: values for key, values in columns.items() if key not in ("rudder", "shaft")}
+    ordered |= {rudder: columns["rudder"], shaft: columns["shaft"]}
+    alone = propose_map([write_csv(tmp_path / "alone.csv", ordered)])
+    found = alone.map().sources
+    assert (found["delta"].column, found["n"].column, alone.asks) == (rudder, shaft, ())
+    assert alone.text.replace("\n# ", " ").count("this one holds orders, which") == 2
+    both = propose_map(
+        [write_csv(tmp_path / "both.csv", {**ordered, "Rudder": columns["rudder"], "rpm": columns["shaft"]})]
+    )
+    found = both.map().sources
+    assert (found["delta"].column, found["n"].column) == ("Rudder", "rpm")
+    assert "holds orders" not in both.text
+
+
 @pytest.mark.parametrize(
     ("name", "side", "expected"),
     [
@@ -310,7 +327,7 @@ def test_json_and_console(tmp_path):
         ("Kurs über Grund [°]", "cog", "deg"), ("Ruderlage BB", "delta_port", ""), ("s", "", ""), ("CH01", "", ""),
         ("Vitesse de giration (°/min)", "r", "deg/min"), ("対地速力 [ノット]", "sog", "kn"), ("船首方位", "psi", ""),
         ("Geschwindigkeit quer", "v", ""), ("Heading_deg", "psi", "deg"), ("Rudder Order", "order", ""),
-        ("Wind dir app", "wind_dir_app", ""), ("shaft_rpm", "n", "rpm"),
+        ("Wind dir app", "wind_dir_app", ""), ("shaft_rpm", "n", "rpm"), ("Telegraph rpm", "order", "rpm"),
     ],
 )  # fmt: skip
 def test_names(name, quantity, unit):

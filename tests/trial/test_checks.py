@@ -123,6 +123,16 @@ def test_engine_orders_instead_of_revolutions() -> None:
     only(with_value(made(), "n", slice(200, None), 0.9), "revolutions change by 48 rpm")
 
 
+def test_a_telegraph_stands_still_before_it_changes_and_after() -> None:
+    """However seldom it is logged; an engine takes its time, and what is measured is never quite the same twice."""
+    slow = made(dt=3.0)
+    only(with_value(slow, "n", slice(200, None), 1.4), "revolutions change by 18 rpm from one sample to the next")
+    ramp = np.interp(slow.t, slow.t[[0, 200, 204, -1]], [1.7, 1.7, 1.4, 1.4])
+    only(changed(slow, "n", lambda _: ramp))
+    measured = np.where(slow.t < slow.t[200], 1.7, 1.4) + 0.002 * np.random.default_rng(0).normal(size=len(slow.t))
+    only(changed(slow, "n", lambda _: measured))
+
+
 def test_revolutions_per_minute() -> None:
     only(made(n=102.0), "divide 'n' by 60")
     only(made(n=12.0))

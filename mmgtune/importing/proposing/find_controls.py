@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -19,30 +19,27 @@ WAY = (0.01, 0.04)
 """Ship lengths that ships make with each turn of the propeller."""
 
 
+ORDERS_ONLY = "no column holds what was measured, and this one holds orders, which {} follows later"
+"""Said of a column that is taken for want of a better one."""
+
+MOTIONS = ("x", "y", "u", "v", "r", "wind_speed", "wind_dir", "wind_speed_app", "wind_dir_app")
+
+
 def rudder(find: Finder) -> None:
+    """The rudder a ship answers to; the one ordered where no other is logged."""
+    if not _rudder_among(find, find.pool(ORDER, OTHER, ROLL, "n", "depth", *MOTIONS)):
+        _rudder_among(find, find.orders("delta"), ORDERS_ONLY.format("the rudder"))
+
+
+def _rudder_among(find: Finder, columns: Sequence[int], remark: str = "") -> bool:
+    """Take the column of some that a ship answers to most; False where there is none."""
     weights: dict[tuple[int, bool], float] = defaultdict(float)
     sides: dict[int, list[int]] = defaultdict(list)
     strongest: dict[int, tuple[float, str]] = {}
-    not_rudders = (
-        ORDER,
-        OTHER,
-        ROLL,
-        "n",
-        "depth",
-        "u",
-        "v",
-        "r",
-        "x",
-        "y",
-        "wind_speed",
-        "wind_dir",
-        "wind_speed_app",
-        "wind_dir_app",
-    )
     names = [name for name, item in INPUTS.items() if item.role == "rudder"]
     for look in find.looks:
         # Degrees with N, S, E or W are no angles of a rudder; S alone would look like one, of the wrong sign.
-        pool = [k for k in find.pool(*not_rudders) if k not in look.sample.written or find.said[k] in names]
+        pool = [k for k in columns if k not in look.sample.written or remark or find.said[k] in names]
         for one in rudders(look, pool, find.units_said):
             weights[one.column, one.degrees] += one.weight
             if one.evidence.side:
@@ -54,14 +51,15 @@ def rudder(find: Finder) -> None:
     if len(pairs) == 2:
         for name, k in pairs.items():
             _rudder(find, name, k, weights, sides, strongest, len(named) > 2)
-        return
+        return True
     ranked = sorted(weights, key=lambda key: -(weights[key] * (6.0 if key[0] in named else 1.0)))
     if not ranked:
-        return
+        return False
     best = ranked[0][0]
     rival = next((weights[key] for key in ranked if key[0] != best), 0.0)
     clear = best in named or (weights[ranked[0]] > 1.5 * rival and bool(sides[best]))
-    _rudder(find, "delta", best, weights, sides, strongest, clear)
+    _rudder(find, "delta", best, weights, sides, strongest, clear and not remark, remark)
+    return True
 
 
 def _rudder(
@@ -72,6 +70,7 @@ def _rudder(
     sides: Mapping[int, list[int]],
     strongest: Mapping[int, tuple[float, str]],
     clear: bool,
+    remark: str = "",
 ) -> None:
     degrees = weights.get((column, True), 0.0) >= weights.get((column, False), 0.0)
     own, more = find.unit_of(column, "rad", "deg" if degrees else "rad")
@@ -95,18 +94,25 @@ def _rudder(
     else:
         own["positive"] = f'{MARK} "starboard" or "port": to which side does a positive angle turn the ship?'
         confidence = ASKED
+    if remark:
+        words.append(remark)
     find.add(Guess(name, column, own, tuple(words), confidence))
 
 
 def propeller(find: Finder) -> None:
-    winds = ("wind_speed", "wind_dir", "wind_speed_app", "wind_dir_app")
-    motion = ("x", "y", "psi", "u", "v", "r", "sog", "cog", LOG_SPEED)
-    not_shafts = (ORDER, OTHER, ROLL, "delta", "depth", "wave_height", *motion, *winds)
+    """The revolutions; those ordered where no others are logged."""
+    pool = find.pool(ORDER, OTHER, ROLL, "psi", "sog", "cog", LOG_SPEED, "delta", "depth", "wave_height", *MOTIONS)
+    if not _shafts_among(find, pool):
+        _shafts_among(find, find.orders("n"), ORDERS_ONLY.format("the shaft"))
+
+
+def _shafts_among(find: Finder, columns: Sequence[int], remark: str = "") -> bool:
+    """Take the column of some that moves most as revolutions do, or one for each side; False where there is none."""
     ranks: dict[int, float] = defaultdict(float)
     per_column: dict[tuple[int, str], list[float]] = defaultdict(list)
     delta = find.guesses.get("delta") or find.guesses.get("delta_port")
     for look in find.looks:
-        found = shafts(look, find.pool(*not_shafts), find.units_said, _rudder_angle(find, look, delta))
+        found = shafts(look, columns, find.units_said, _rudder_angle(find, look, delta))
         for place, one in enumerate(found):
             ranks[one.column] += 1.0 / (1.0 + place) + (2.0 if find.said[one.column].startswith("n") else 0.0)
             for unit, way in one.advance.items():
@@ -117,7 +123,8 @@ def propeller(find: Finder) -> None:
     if not chosen and ranks:
         chosen = [("n", max(ranks, key=lambda k: ranks[k]))]
     for name, column in chosen:
-        _shaft(find, name, column, ranks, per_column)
+        _shaft(find, name, column, ranks, per_column, remark)
+    return bool(chosen)
 
 
 def _rudder_angle(find: Finder, look: Look, delta: Guess | None) -> float:
@@ -133,7 +140,12 @@ def _rudder_angle(find: Finder, look: Look, delta: Guess | None) -> float:
 
 
 def _shaft(
-    find: Finder, name: str, column: int, ranks: Mapping[int, float], ways: Mapping[tuple[int, str], list[float]]
+    find: Finder,
+    name: str,
+    column: int,
+    ranks: Mapping[int, float],
+    ways: Mapping[tuple[int, str], list[float]],
+    remark: str = "",
 ) -> None:
     said = find.units_said[column].replace("1/s", "rps")
     fits = {unit: float(np.median(ways[column, unit])) for unit in ("rpm", "rps") if ways.get((column, unit))}
@@ -160,4 +172,6 @@ def _shaft(
     rivals = [k for k, rank in ranks.items() if k != column and rank > 0.6 * ranks[column]]
     if rivals and confidence == LIKELY:
         words.append(f"{', '.join(find.shown(k) for k in rivals[:3])} might be it too")
+    if remark:
+        words.append(remark)
     find.add(Guess(name, column, own, tuple(words), confidence))

@@ -13,7 +13,7 @@ from .clocks import Clock
 from .guess import Guess
 from .look import Look
 from .sampling import Sample
-from .words import plain, quantity_named, unit_named
+from .words import ordered, plain, quantity_named, unit_named
 
 MOST_LOGS = 8
 """Logs whose motion is looked at."""
@@ -82,8 +82,11 @@ class Finder:
 
     def pool(self, *not_said: str) -> list[int]:
         """Columns that are nothing yet, whose behaviour can be looked at, and whose names say none of some words."""
-        left = [k for k in self.numeric if k not in self.used and self.said[k] not in not_said]
-        return left
+        return [k for k in self.numeric if k not in self.used and self.said[k] not in not_said]
+
+    def orders(self, quantity: str) -> list[int]:
+        """Columns that are nothing yet and hold orders of a quantity by their names."""
+        return [k for k in self.pool() if ordered(self.first.names[k]) == quantity]
 
     def unit_of(self, k: int, kind: str, seen: str) -> tuple[dict[str, str], str]:
         """Keys for the unit of a column that behaviour shows to be ``seen``, and what its name says of it."""

@@ -16,6 +16,7 @@ _PORT = r"\b(port|ps|p|bb|babord|backbord|bakboord|babor|left|links|gauche)\b|�
 _STARBOARD = r"\b(st(a?r?)b(oar)?d|sb|stb|tribord|steuerbord|stuurboord|estribor|right|rechts|droite)\b|右"
 
 _STEERED = r"(rudder|rud|ruder|helm|roer|gouvern|timon|barre|rpm|speed|course|heading|kurs)"
+_TELEGRAPH = r"telegra(ph|f)|\beot\b|テレグラフ"
 _ORDERED = r"(ord|cmd|comm?and|set|soll|gewenst|consigne|demand|desired|ref)"
 
 _WORDS: tuple[tuple[str, tuple[str, ...]], ...] = (
@@ -51,7 +52,7 @@ _WORDS: tuple[tuple[str, tuple[str, ...]], ...] = (
         r"depth", r"wassertiefe", r"\btiefe", r"profond", r"diepte", r"水深",
     )),
     (ORDER, (
-        rf"{_STEERED}.*{_ORDERED}", rf"{_ORDERED}\w*[ .]*{_STEERED}", r"指令",
+        rf"{_STEERED}.*{_ORDERED}", rf"{_ORDERED}\w*[ .]*{_STEERED}", r"指令", _TELEGRAPH,
     )),
     ("n_bow", (
         r"bow.*thr", r"bugstrahl", r"boegschroef", r"etrave", r"バウスラスタ",
@@ -128,6 +129,7 @@ _WORDS: tuple[tuple[str, tuple[str, ...]], ...] = (
 
 _PATTERNS = tuple((quantity, re.compile("|".join(words))) for quantity, words in _WORDS)
 _DIRECTION = re.compile(r"dir|angle|richtung|winkel|hoek|richt|rumbo|awa|twd|\bdd?\b|向|from|풍향|cap|angulo")
+_DRIVES = ("delta", "n")
 _SIDES = (re.compile(_PORT), re.compile(_STARBOARD))
 
 _UNITS = {
@@ -169,6 +171,17 @@ def quantity_named(name: str) -> str:
         if port != starboard:
             return f"{found}_{'port' if port else 'stbd'}"
     return found
+
+
+@lru_cache(maxsize=4096)
+def ordered(name: str) -> str:
+    """What an order is of by its name: "delta", "n", or "" for a course, a speed, or nothing that can be told."""
+    if quantity_named(name) != ORDER:
+        return ""
+    text = plain(name)
+    if re.search(_TELEGRAPH, text):
+        return "n"
+    return next((quantity for quantity, pattern in _PATTERNS if quantity in _DRIVES and pattern.search(text)), "")
 
 
 @lru_cache(maxsize=4096)

@@ -1,0 +1,74 @@
+"""Whether the wind of a trial is what its columns say: true or apparent, from north or from the bow.
+
+The wind over the ground stays much the same while a ship turns; read as what it is not, it turns with her.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..physics.frame import to_earth
+from ..units import DEG
+from .finding import Finding
+from .model import Trial
+from .wind import WIND_PAIRS
+
+TURNED = 90.0 * DEG
+"""Change of heading [rad] from which readings differ enough."""
+
+UNSTEADY = 0.3
+"""Change of the wind over the ground, as a share of its mean speed, from which a reading is doubted."""
+
+STEADIER = 0.4
+"""Share of that change that another reading must stay below."""
+
+READINGS = {
+    (False, False): "the true wind, its direction from north",
+    (True, True): "the apparent wind, its direction from the bow",
+    (True, False): "the apparent wind, its direction from north",
+    (False, True): "the true wind, its direction from the bow",
+}
+"""How a speed and a direction may be meant, by (apparent, from the bow)."""
+
+
+def wind_findings(trial: Trial, where: str) -> list[Finding]:
+    """A warning where the wind would be far steadier if its columns meant something else."""
+    pair = next((pair for pair in WIND_PAIRS if set(pair) <= set(trial.extra)), None)
+    if pair is None or np.ptp(np.unwrap(trial.psi[np.isfinite(trial.psi)])) < TURNED:
+        return []
+    apparent = pair == WIND_PAIRS[1]
+    said = (apparent, apparent)
+    changes = dict(_changes(trial, trial.extra[pair[0]], trial.extra[pair[1]]))
+    if not changes:
+        return []
+    best = min(changes, key=lambda reading: changes[reading])
+    if not changes[said] > UNSTEADY or not changes[best] < STEADIER * changes[said]:
+        return []
+    to_be = " and ".join(f"'{name}'" for name in WIND_PAIRS[1 if best == (True, True) else 0])
+    fix = f"rename them {to_be}" if best in ((True, True), (False, False)) else f"work {to_be} out of them"
+    return [
+        Finding(
+            "warning",
+            f"the wind over the ground changes by {100.0 * changes[said]:.0f} % as the ship turns",
+            f"{where}, columns '{pair[0]}' and '{pair[1]}'",
+            f"it would change by {100.0 * changes[best]:.0f} % if they held {READINGS[best]}",
+            f"if they do, {fix}",
+        )
+    ]
+
+
+def _changes(trial: Trial, speed: FloatArray, direction: FloatArray) -> Iterator[tuple[tuple[bool, bool], float]]:
+    """By reading, how far the wind over the ground changes, as a share of its mean speed."""
+    own = to_earth(trial.psi, trial.u, trial.v_m)
+    for apparent, from_bow in READINGS:
+        towards = direction + (trial.psi if from_bow else 0.0)
+        from_there = speed * np.stack([np.cos(towards), np.sin(towards)])
+        air = np.stack(own) - from_there if apparent else -from_there
+        air = air[:, np.isfinite(air).all(axis=0)]
+        if air.size == 0:
+            return
+        change = float(np.sqrt(np.sum(np.var(air, axis=1))))
+        yield (apparent, from_bow), change / max(float(np.hypot(*air).mean()), 1e-300)
