@@ -24,7 +24,7 @@ from tests.runs import measured, states, turn
 STRONG = {
     "clock-offset": {"seconds": 1.3},
     "dead-time": {"seconds": 2.2},
-    "steering-lag": {"time_constant": 2.5, "rate_limit": 0.05, "to_starboard": 0.04},
+    "steering-lag": {"time_constant": 2.5, "rate_limit": 0.05, "to_starboard": 0.04, "to_port": 0.06},
     "backlash": {"play": 0.05},
     "rudder-gain": {"factor": 0.9, "starboard": 1.1, "port": 0.95},
     "rudder-offset": {"angle": 0.02},
