@@ -165,8 +165,9 @@ def summary(result: Diagnosis, folder: str, report: bool) -> str:
     where = f"J held out ({result.gain.words}; {result.gain.method})"
     named = result.causes and result.verdict != "unexplained" and not result.interrupted
     if named and before is not None and after is not None:
-        removed = span(*result.gain.share_removed[1:]).replace("\u00a0", " ")
-        lines.append(f"{where}: {before:.4g} -> {after:.4g}; 95 % interval of the share removed: {removed}.")
+        interval = result.gain.interval
+        sure = f"; 95 % interval of the share removed: {span(*interval)}" if interval else ", of one trial"
+        lines.append(f"{where}: {before:.4g} -> {after:.4g}{sure}.".replace("\u00a0", " "))
     elif before is not None:
         lines.append(f"{where}: {before:.4g}, re-tuned without a cause.")
     by_run = [cause.runs for cause in result.causes if cause.runs and not result.interrupted]

@@ -233,7 +233,11 @@ def import_(
     c.show(f"{len(imported.trials)} {trials} {done}")
     if not dry_run:
         c.show(f"next: mmgtune trials check {quote(str(out))}")
-        c.show(f"then, with her profile: mmgtune fit -p PROFILE -t {quote(str(out))}")
+        c.show(f"then, with her profile: mmgtune fit -p PROFILE -t {quote(str(out))}, or diagnose in the place of fit")
+        if len(imported.trials) > 1 and out is not None and not (out / "split.toml").exists():
+            *some, last = (f'"{trial.id}"' for trial in imported.trials)
+            c.show(f"all of them tune; to keep some for testing, say so in {quote(str(out / 'split.toml'))}, such as:")
+            c.show(f"  tune = [{', '.join(some)}]\n  test = [{last}]")
 
 
 @app.command("make")

@@ -94,8 +94,8 @@ class Trace:
     def sentence(self) -> str:
         """What it is, and why it is no more than that."""
         harmful = self.contribution.harmful
-        why = "held-out trials are told no better with it" if harmful else "nothing that would be noticed"
-        return f"Trace, {why}, and in no profile: {self.words}."
+        why = "held-out trials are told no better with it" if harmful else "it changes nothing that would be noticed"
+        return f"There is a trace of one more, left out as {why}: {self.words[0].lower()}{self.words[1:]}."
 
     @property
     def words(self) -> str:

@@ -130,6 +130,11 @@ class Gain(Brief):
         low, high = np.quantile([_share(self.excess[pick]) for pick in picks], [0.025, 0.975])
         return _share(self.excess), float(low), float(high)
 
+    @property
+    def interval(self) -> tuple[float, float] | None:
+        """That interval, None where there is but one trial and nothing tells how much trials differ."""
+        return self.share_removed[1:] if len(self.excess) > 1 else None
+
     def measures(self, which: str) -> dict[str, float]:
         """Means over trials of the seven distance measures, "before" or "after"."""
         found = [one.records[which].measures for one in self.compared]
@@ -168,7 +173,6 @@ class Gain(Brief):
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
-        share, low, high = self.share_removed
         return {
             "held_out": self.words,
             "held_out_code": self.held_out,
@@ -176,8 +180,8 @@ class Gain(Brief):
             "trials": [one.trial.id for one in self.compared],
             "J_test_before": self.J[0],
             "J_test_after": self.J[1],
-            "share_above_noise_removed": share,
-            "share_ci95": [low, high],
+            "share_above_noise_removed": self.share_removed[0],
+            "share_ci95": list(self.interval) if self.interval else None,
             "measures_before": {name: finite(value) for name, value in self.measures("before").items()},
             "measures_after": {name: finite(value) for name, value in self.measures("after").items()},
             "index_errors_before": self.index_errors("before"),

@@ -311,24 +311,34 @@ def _make_alike(bench: Workbench, found: Found, asked: Sequence[Hypothesis]) -> 
     """
     for cause in asked:
         one = replace(cause, by="", groups=())
-        final = found.final
-        values = dict(zip(final.names, final.unit, strict=True))
-        mean = [float(np.mean([values[name] for name in cause.names if base_of(name) == base])) for base in one.names]
-        alike = _exchanged(bench, final, cause.names, one.names, mean)
+        alike = _as_special(bench, found.final, cause, one)
         if alike.chi2 < STRONG * bench.problem.n_residuals:
             found.causes[found.causes.index(cause)] = one
             found.final = alike
 
 
+def _as_special(bench: Workbench, point: Point, cause: Hypothesis, special: Hypothesis) -> Point:
+    """The point refitted with a special case in the place of a cause; one value for all begins at the mean of those of
+    each run."""
+    gone = [name for name in cause.names if name not in special.names]
+    if special.by == cause.by:
+        return _exchanged(bench, point, gone)
+    values = dict(zip(point.names, point.unit, strict=True))
+    mean = [float(np.mean([values[name] for name in cause.names if base_of(name) == base])) for base in special.names]
+    return _exchanged(bench, point, gone, special.names, mean)
+
+
 def _make_plain(bench: Workbench, found: Found, hypotheses: Sequence[Hypothesis]) -> None:
     """Put a special case in the place of a cause where the parameters it does without earn too little: what else was
-    wrong when the cause was found may have bent them."""
+    wrong when the cause was found may have bent them, or made them differ from run to run."""
     for cause in list(found.causes):
-        special = [one for one in hypotheses if one.by == cause.by and cause.holds(one)]
+        special = [one for one in hypotheses if one.by in (cause.by, "") and cause.holds(one)]
         for one in sorted(special, key=lambda one: len(one.names)):
-            gone = [name for name in cause.names if name not in one.names]
-            fewer = _exchanged(bench, found.final, gone)
-            if fewer.chi2 - found.final.chi2 < len(gone) * bench.price + ENOUGH:
+            fewer = _as_special(bench, found.final, cause, one)
+            saved = (len(cause.names) - len(one.names)) * bench.price
+            if one.by != cause.by:
+                saved = _price(bench, found, cause) - len(one.names) * bench.price
+            if fewer.chi2 - found.final.chi2 < saved + ENOUGH:
                 found.causes[found.causes.index(cause)] = one
                 found.final = fewer
                 break

@@ -17,6 +17,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..documents import finite
 from ..trial import Trial, measured_wind
+from ..trial.set_checks import odd_in_words
 from ..units import DEG
 from .evidence import FEWEST_BLOCKS, ResidualForces, share_explained
 from .leftover import LOGGED, in_words
@@ -155,7 +156,7 @@ class Whereabouts:
             (first, *_) = self.offsets
             return f"the {LOGGED[first]} from a second sensor in the same runs"
         if self.odd:
-            return f"the same without what is odd: {'; '.join(f'{what} ({run})' for run, what in self.odd.items())}"
+            return f"the same without what is odd: {odd_in_words(self.odd)}"
         best = self.strongest
         return TELLS[best[1]] if best else REPEAT
 

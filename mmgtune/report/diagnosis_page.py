@@ -125,10 +125,11 @@ def _cards(record: DiagnosisRecord) -> tuple[Card, ...]:
     if data["causes"]:
         removed = share(gain["share_above_noise_removed"])
         causes = " and ".join(clean(cause["effect"]) for cause in data["causes"])
-        note = f"by {causes}; 95\u00a0% interval over trials: {span(*gain['share_ci95'])}"
+        interval = gain["share_ci95"]
+        sure = f"95\u00a0% interval over trials: {span(*interval)}" if interval else "on one trial"
         return (
             *cards_of_misfit({}, record.results, where="held out")[:2],
-            Card("Error beyond noise removed", removed, note=note, tone="good"),
+            Card("Error beyond noise removed", removed, note=f"by {causes}; {sure}", tone="good"),
             _misfit(gain),
         )
     cards = []

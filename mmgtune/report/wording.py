@@ -174,9 +174,11 @@ def share(value: Any) -> str:
 
 
 def span(low: Any, high: Any) -> str:
-    """An interval of shares, said as such where both ends are written alike."""
+    """An interval of shares; one number where both ends are written alike, and "or more" of the highest written."""
     first, last = share(low), share(high)
-    return f"{first} at both ends" if first == last else f"{first.removesuffix(UNIT_PERCENT)} to {last}"
+    if first != last:
+        return f"{first.removesuffix(UNIT_PERCENT)} to {last}"
+    return f"{first} or more" if first == share(1.0) else f"{first}, either end"
 
 
 def beyond_noise(value: Any) -> str:

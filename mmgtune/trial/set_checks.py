@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 
 import numpy as np
@@ -19,7 +20,7 @@ FEWEST = 5
 STEADY = 0.1
 """Spread of the way per turn within an approach, as a share, beyond which the ship gathers or loses speed."""
 NAMED = 3
-"""Trials named where a result says that some are odd."""
+"""Things told where a result says that trials are odd."""
 APART = 1.3
 """Factor between trials that neither currents nor the weather make, but wrong units do."""
 
@@ -52,11 +53,21 @@ def oddities(trials: Mapping[str, Trial], L_pp: float | None = None) -> list[str
     worst = oddest(trials, L_pp)
     if not worst:
         return []
-    told = "; ".join(f"{what} ({name})" for name, what in list(worst.items())[:NAMED])
-    more = f"; and {len(worst) - NAMED} more" if len(worst) > NAMED else ""
-    return [
-        f"Something is odd in {len(worst)} of {len(trials)} trials: {told}{more}. 'mmgtune trials check' says more."
+    said = odd_in_words(worst)
+    return [f"Something is odd in {len(worst)} of {len(trials)} trials: {said}. 'mmgtune trials check' says more."]
+
+
+def odd_in_words(odd: Mapping[str, str]) -> str:
+    """What is odd, by trial, in words: what differs in its numbers alone once, of the first of those trials."""
+    alike: dict[str, list[str]] = {}
+    for name, what in odd.items():
+        alike.setdefault(re.sub(r"\d[\d.e+-]*", "", what), []).append(name)
+    told = [
+        f"{odd[first]} ({first}{f', and {len(others)} more alike' if others else ''})"
+        for first, *others in alike.values()
     ]
+    more = [f"and {len(told) - NAMED} more"] if len(told) > NAMED else []
+    return "; ".join([*told[:NAMED], *more])
 
 
 def turn_away(trials: Mapping[str, Trial]) -> list[str]:

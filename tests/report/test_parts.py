@@ -67,7 +67,8 @@ def test_shares_are_written_in_one_way(value: float | None, text: str | None) ->
 
 
 def test_an_interval_of_one_number_is_said_once() -> None:
-    assert wording.span(0.9999, 1.0) == "99.9\u00a0% at both ends"
+    assert wording.span(0.9999, 1.0) == "99.9\u00a0% or more"
+    assert wording.span(0.941, 0.943) == "94\u00a0%, either end"
     assert wording.span(0.4, 0.6) == "40 to 60\u00a0%"
 
 

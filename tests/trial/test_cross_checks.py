@@ -15,6 +15,7 @@ from mmgtune import DiagnoseOptions, FitOptions, LeaveOutOptions, diagnose, fit,
 from mmgtune.importing import import_logs, load_map
 from mmgtune.profile import load_profile
 from mmgtune.trial import Trial, check_trial, check_trials, load_trials, oddities
+from mmgtune.trial.set_checks import odd_in_words
 
 from .made import DEG, made, said
 
@@ -214,7 +215,9 @@ def test_results_say_what_is_odd_about_their_trials() -> None:
     assert sentence.startswith(
         "Something is odd in 4 of 10 trials: the yaw rate does not integrate to the heading (turn_"
     )
-    assert "; and 1 more. 'mmgtune trials check' says more." in sentence
+    assert ", and 3 more alike). 'mmgtune trials check' says more." in sentence
+    several = {"a": "turns 3.5 times", "b": "no rudder", "c": "turns 12 times", "d": "stands", "e": "drifts"}
+    assert odd_in_words(several) == "turns 3.5 times (a, and 1 more alike); no rudder (b); stands (d); and 1 more"
     jumped = replace(SUZAKU["turn_m20"], x=SUZAKU["turn_m20"].x + 25.0 * (SUZAKU["turn_m20"].t > 300.0))
     trials = replace(load_trials("suzaku"), trials=SUZAKU | {"turn_m20": jumped})
     said = "Something is odd in 1 of 10 trials: the position jumps once, by 2"
