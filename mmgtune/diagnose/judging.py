@@ -77,6 +77,10 @@ class Judge:
             if other.names_causes and other.explains_nearly_all:
                 result, found = other, fewer
                 break
+        if result.is_chance and not self.before.noticed and not self.hooks.stop():
+            alone = with_only(self.bench, found, [])
+            other = self._judged(alone, [])
+            result, found = (other, alone) if other.verdict == "none" else (result, found)
         if result.verdict == "unexplained" and not result.misses_test:
             result = replace(result, whereabouts=error_of(self.bench, found, result.leftover))
         elif result.verdict != "interrupted":

@@ -207,7 +207,8 @@ class Refitting:
         chi2 = np.where(known, -np.inf, np.inf)
         asked = [k for k, score in enumerate(named) if score.power > 0.0 and not known[k]]
         starts = {k: self._starts(point, named[k], SIZES) for k in asked}
-        for k, those in (starts if self.every else self._promising(point, named, starts)).items():
+        begin = self._first_by_step if self.every else self._promising
+        for k, those in begin(point, named, starts).items():
             self._go_on()
             ends = self._steps(point, named[k], those, FIRST if those.shape[1] > 1 else 1)
             self.known.begun[named[k].hypothesis.names] = ends
@@ -257,6 +258,22 @@ class Refitting:
         normal = columns.T @ columns + believed
         along = columns.T @ self.linear.residual
         return float(along @ np.linalg.lstsq(normal, along, rcond=1e-12)[0])
+
+    def _first_by_step(
+        self, point: Point, named: Sequence[Score], starts: Mapping[int, FloatArray]
+    ) -> dict[int, FloatArray]:
+        """Where a step from those starts leads, by number of the hypothesis: of the hypotheses that it helps most, and
+        of the best scores anyhow."""
+        led = {}
+        for k, those in starts.items():
+            self._go_on()
+            led[k] = sorted(self._steps(point, named[k], those, 1), key=lambda end: end.chi2)[:STARTS_BEGUN]
+        likely = sorted(led, key=lambda k: led[k][0].chi2)[:BEGUN]
+        return {
+            k: np.column_stack([end.unit for end in ends])
+            for k, ends in led.items()
+            if k in likely or k < REFITTED // 2
+        }
 
     def _promising(
         self, point: Point, named: Sequence[Score], starts: Mapping[int, FloatArray]

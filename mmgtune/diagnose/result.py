@@ -20,7 +20,7 @@ from .instead import Instead
 from .leftover import Leftover, change_in_words, in_words
 from .legs import Difference
 from .record import Record, kind_of, record_of
-from .retuned import Retuned, besides
+from .retuned import Retuned, besides, far_off
 from .retuned import in_words as moved_in_words
 from .separate import Suggestion
 from .together import Together
@@ -59,6 +59,10 @@ values bend to what is elsewhere, or at another hour, and not of the run at all.
 TOLD = 0.5
 """Share of the held-out error that causes must remove which were found once no trial was kept for testing, and several
 causes anyhow: what little there is any two or three would imitate; and a single one whose size may be none."""
+
+GUSTS_LEAVE, OF_WIND = 4.0, 0.15
+"""Variance beyond noise that gusts of a wind that was found would have to account for, and share of chi-squared before
+it that it leaves, from which it is no wind: gusts and another shape of the force leave less than that of its work."""
 
 TOO_MANY = 4
 """Terms of a sum of causes from which it is not believed."""
@@ -194,6 +198,8 @@ class Diagnosis(Plotted):
         brought = [one for _, one in self.contributions]
         if self._told_by_none:
             return "with it any run is told little better by the others"
+        if self._excused_by_gusts:
+            return "it leaves far more than noise, and more than gusts of such a wind would"
         unsized = [cause.tag for cause in self.causes if not cause.sized]
         not_told = f"how large {' and '.join(unsized)} would be is not told" if unsized else ""
         if len(brought) < 2:
@@ -228,6 +234,19 @@ class Diagnosis(Plotted):
         bends = any(cause.runs for cause in self.causes) and self.gain.leaves_beside()
         share = self.gain.share_removed[0]
         return bool(self.causes) and ((settled and share < TOLD) or (bends and share < AT_ALL))
+
+    @property
+    def _excused_by_gusts(self) -> bool:
+        """Whether a wind among the causes leaves an error that is noise only if gusts make it, and gusts are too small
+        for it: a wind that is found excuses what it leaves."""
+        before, after = self.chi2
+        blows = any(winds.blows(cause.effect) for cause in self.causes)
+        return blows and self.leftover.left_open > GUSTS_LEAVE and after > OF_WIND * before
+
+    @property
+    def is_chance(self) -> bool:
+        """Whether a single cause is not believed whose size may be none, and that removes little."""
+        return len(self.contributions) == 1 and not self.causes[0].sized and bool(self.unclear)
 
     @property
     def of_a_sensor(self) -> bool:
@@ -298,7 +317,7 @@ class Diagnosis(Plotted):
         if self.verdict == "interrupted":
             known = ", ".join(dict.fromkeys(cause.tag for cause in self.causes))
             told = (
-                f"Found by then, and not yet compared with their rivals: {known}."
+                f"What was tried on by then, not compared with its rivals and not to be relied on: {known}."
                 if known
                 else "No cause was found by then."
             )
@@ -342,11 +361,12 @@ class Diagnosis(Plotted):
         if far := moved_in_words(self.moved):
             said = f"Re-tuning is all it takes: with {far}, the model fits these trials to their noise, and {none}."
             return f"{said} {besides(self.moved)}".strip()
-        instead = f" {self.instead.sentence}" if self.instead else ""
-        return (
-            "Nothing is wrong beyond the noise of the measurements: the re-tuned model fits these trials, and "
-            f"{none}.{instead}"
+        parts = (
+            f"Nothing is wrong beyond the noise of the measurements: the re-tuned model fits these trials, and {none}.",
+            far_off(self.moved),
+            self.instead.sentence if self.instead else "",
         )
+        return " ".join(filter(None, parts))
 
     def _of_the_unknown(self, where: str) -> str:
         """That something is wrong, the best that is known of it, and how much is left."""

@@ -20,6 +20,9 @@ IN_SERVICE = ("hull.R_0", "hull.X_0F")
 """What fouling changes while a ship sails: these are told of in sentences.  Other targets take up what coefficients
 beside them are off by, so that most values that come out surely far off are not the ship's."""
 
+LISTED = 3
+"""Of others, those that moved most that are named where nothing else is wrong."""
+
 DRIVES, IMPLAUSIBLE = ("propeller.", "wake."), 0.25
 """Coefficients of thrust, which balances resistance, and the share of its pre-determined value by which one may have
 moved: beyond that the whole balance is where no ship's is, and none of its numbers is told as hers."""
@@ -117,10 +120,11 @@ def _astray(moved: Sequence[Retuned]) -> bool:
 
 def besides(moved: Sequence[Retuned]) -> str:
     """Why the others are not told of, where some moved as far: in a sentence; "" for none."""
-    if _astray(moved) and any(one.far and one.name in IN_SERVICE for one in moved):
+    followed = [one for one in moved if one.far and one.name in IN_SERVICE]
+    if _astray(moved) and followed:
         return (
-            f"Resistance and thrust moved together, the latter by more than {100.0 * IMPLAUSIBLE:.0f} %: these trials "
-            "do not tell one from the other, so that neither is named."
+            f"Re-tuning moved {_changes(followed)}, but what drives the ship by more than {100.0 * IMPLAUSIBLE:.0f} % "
+            "with it: these trials do not tell one from the other, so that neither is named."
         )
     others = [one for one in moved if one.name not in IN_SERVICE]
     n = sum(abs(one.after - one.before) >= FAR * abs(one.before) > 0.0 for one in others)
@@ -131,6 +135,33 @@ def besides(moved: Sequence[Retuned]) -> str:
         f"{they} a tenth or more off too, but may only take up what those beside them are off by: "
         "what fouling changes is named alone."
     )
+
+
+def far_off(moved: Sequence[Retuned]) -> str:
+    """What else a reader should know of targets that are far off where nothing is wrong: in a sentence; "" for none."""
+    if _astray(moved) and any(one.far and one.name in IN_SERVICE for one in moved):
+        return besides(moved)
+    far = [one for one in moved if one.far]
+    ends = [one for one in moved if one.stderr is None and one.after != one.before]
+    if not far:
+        return ""
+    listed = _changes(sorted(far, key=lambda one: -abs(one.change or 0.0))[:LISTED])
+    so_many = f"{len(far)} coefficients" if len(far) > 1 else "a coefficient"
+    at_ends = f", and {len(ends)} more to the end of {'their' if len(ends) > 1 else 'its'} range" if ends else ""
+    return (
+        f"For that it moved {so_many} by well over a tenth{', most of all ' if len(far) > 1 else ': '}{listed}"
+        f"{at_ends}: the ship may be unlike her profile in these, or they take up what others are off by."
+    )
+
+
+def _changes(moved: Sequence[Retuned]) -> str:
+    """Targets that moved and by how much: "A (a) by +3 % and B (b) by -4 %"."""
+    shown = [
+        f"{one.label} ({one.name.rpartition('.')[2]}) by {100.0 * one.change:+.0f} %"
+        for one in moved
+        if one.change is not None
+    ]
+    return " and ".join([", ".join(shown[:-1]), shown[-1]] if len(shown) > 1 else shown)
 
 
 def _distance(one: Retuned) -> float:

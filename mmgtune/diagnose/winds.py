@@ -28,6 +28,11 @@ OFF = {"X": 0.2, "Y": 0.1, "N": 0.2}
 """Deviation of each harmonic of a force, as a share of all of that force."""
 
 
+def blows(effect: Effect | None) -> bool:
+    """Whether an effect is a wind that is found."""
+    return effect is EFFECT
+
+
 def in_words(effects: Collection[Effect]) -> list[dict[str, str]]:
     """What is assumed where a wind is among effects that were found: name, value and note."""
     if EFFECT not in effects:

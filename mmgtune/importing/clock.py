@@ -177,7 +177,9 @@ def put_right(t: FloatArray, source: TimeSource, place: Any) -> Timeline:
     line = Timeline(known.copy(), np.array(t))
     if (~known).any():
         row = int(np.flatnonzero(~known)[0])
-        line.notes.append(f"{(~known).sum()} rows without a time were dropped, the first in {place(row)}")
+        dropped = int((~known).sum())
+        rows = "1 row without a time was" if dropped == 1 else f"{dropped} rows without a time were"
+        line.notes.append(f"{rows} dropped, {'in' if dropped == 1 else 'the first in'} {place(row)}")
     if source.recover != "never":
         rows = np.flatnonzero(known)
         even = uniform(t[rows], source)

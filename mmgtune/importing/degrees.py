@@ -19,6 +19,9 @@ ANGLE = (
 _COMPACT = rf"^{_SIDE}\s*(\d{{2,3}})(\d{{2}}[.,]\d+)\s*{_SIDE}$"
 """Degrees and minutes in one, as NMEA 0183 writes them: 5206.0001N."""
 
+_DASHED = rf"^{_SIDE}\s*(\d{{1,3}})\s*-\s*(\d{{1,2}}(?:[.,]\d*)?)\s*['′’]?\s*{_SIDE}$"
+"""Degrees and minutes with a dash between, as people write them in lists of positions: 52-06.0001N."""
+
 
 def degrees(texts: Any) -> FloatArray:
     """Degrees (n_rows,) of a pandas column of texts such as ``52°06.00001'N``; NaN where one is not.
@@ -31,13 +34,14 @@ def degrees(texts: Any) -> FloatArray:
     plain = short.str.fullmatch(r"[-+]?[\d.,]*").fillna(True).to_numpy(dtype=bool)
     side = (parts[0].fillna("") + parts[5].fillna("")).str.upper()
     whole, minutes, seconds = (numbers_in(parts[k], ",") for k in (2, 3, 4))
-    compact = short.str.extract(_COMPACT)
-    both = (compact[0].fillna("") + compact[3].fillna("")).str.upper()
-    in_one = (both.str.len() == 1).to_numpy(dtype=bool, na_value=False) & compact[1].notna().to_numpy(dtype=bool)
-    side = side.where(~in_one, both)
-    whole = np.where(in_one, numbers_in(compact[1], ","), whole)
-    minutes = np.where(in_one, numbers_in(compact[2], ","), minutes)
-    seconds = np.where(in_one, 0.0, seconds)
+    for pattern in (_COMPACT, _DASHED):
+        found = short.str.extract(pattern)
+        both = (found[0].fillna("") + found[3].fillna("")).str.upper()
+        in_one = (both.str.len() == 1).to_numpy(dtype=bool, na_value=False) & found[1].notna().to_numpy(dtype=bool)
+        side = side.where(~in_one, both)
+        whole = np.where(in_one, numbers_in(found[1], ","), whole)
+        minutes = np.where(in_one, numbers_in(found[2], ","), minutes)
+        seconds = np.where(in_one, 0.0, seconds)
     right = np.isfinite(whole) & ~(minutes >= 60.0) & ~(seconds >= 60.0) & ~plain
     right &= (side.str.len() <= 1).to_numpy(dtype=bool, na_value=False)
     size = whole + np.nan_to_num(minutes) / 60.0 + np.nan_to_num(seconds) / 3600.0

@@ -23,6 +23,9 @@ MOST_ROWS = 1_000_000
 
 TIME = "t"
 
+MISSING = frozenset({"", "-", "--", "---", "----", "*", "**", "***", "nan", "na", "n/a", "#n/a", "null", "none"})
+"""Texts for no value, in small letters, that need not be said in a map."""
+
 
 @dataclass(eq=False)
 class Table:
@@ -107,7 +110,7 @@ class Cells:
     """Turns cells into numbers and remembers what could not be turned."""
 
     def __init__(self, log_map: LogMap):
-        self.missing = {"", "-", "--", "nan", "na", "n/a", "null", "none", *(one.lower() for one in log_map.missing)}
+        self.missing = {*MISSING, *(one.lower() for one in log_map.missing)}
         self.decimal = log_map.decimal
         self.numbers = [one for text in log_map.missing if (one := number_in(text, self.decimal)) is not None]
         self.bad: dict[str, BadCells] = {}
@@ -158,10 +161,19 @@ class Cells:
             place = f"{table.path}, {table.unit} {self.plain[name]}, column '{table.headers[name]}'"
             fix = f"write the column as plain numbers, {plainly}"
             problems.append(Problem(no_side, place, "here a number has none", fix))
+        units: dict[int, str] = {}
         for name, bad in self.bad.items():
             place = f"{table.path}, {table.unit} {bad.row}, column '{table.headers[name]}'"
-            what = "say no side or are no numbers" if name in self.sided else "are no numbers"
-            cells = f"{bad.count} cells of {n_rows} {what}, the first is '{bad.text}'"
+            if bad.count == 1 and is_unit(bad.text) and bad.row <= table.rows.min(initial=bad.row):
+                units[bad.row] = f"line {bad.row} holds units"
+                continue
+            if bad.count == 1:
+                what = "cell of {} says no side or is no number" if name in self.sided else "cell of {} is no number"
+            else:
+                what = (
+                    "cells of {} say no side or are no numbers" if name in self.sided else "cells of {} are no numbers"
+                )
+            cells = f"{bad.count} {what.format(n_rows)}, the first is '{bad.text}'"
             if name in self.sided and bad.count > 0.5 * n_rows:
                 fix = f"write the column as plain numbers, {plainly}"
                 problems.append(Problem(no_side, place, cells, fix))
@@ -179,5 +191,6 @@ class Cells:
                 problems.append(Problem(f"the column of '{name}' holds text", place, cells, fix))
             else:
                 table.notes.append(f"{name}: {cells} (line {bad.row}); taken as gaps")
+        table.notes += units.values()
         if problems:
             raise LogError(*problems)

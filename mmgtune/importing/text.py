@@ -85,7 +85,9 @@ def read_text(path: Path, log_map: LogMap) -> Table:
     table = Table(path, t, columns, numbers, headers, stamps.clock, "line", [*stamps.notes, *collector.notes()])
     bad = [int(one) for message in dropped for one in re.findall(r"[Ll]ine (\d+)", message)]
     if bad:
-        table.notes.append(f"{len(bad)} lines have too many fields and were dropped, the first is line {bad[0]}")
+        lines = "1 line has" if len(bad) == 1 else f"{len(bad)} lines have"
+        was = "was dropped: line" if len(bad) == 1 else "were dropped, the first is line"
+        table.notes.append(f"{lines} too many fields and {was} {bad[0]}")
         if len(bad) > 0.5 * max(1, len(t)):
             why = f"{len(bad)} of {len(bad) + len(t)} lines have more fields than the header's {len(layout.names)}"
             raise _too_wide(path, bad[0], why)

@@ -259,7 +259,15 @@ def test_ten_degree_zigzags_name_no_stall(tmp_path, monkeypatch):
 
 
 def sum_of(
-    *brought, groups=(), structured=False, explains_all=False, remains=False, by_run=0, removed=0.99, sized=True
+    *brought,
+    groups=(),
+    structured=False,
+    explains_all=False,
+    remains=False,
+    by_run=0,
+    removed=0.99,
+    sized=True,
+    excused=False,
 ):
     """What ``Diagnosis.unclear`` sees of a sum of causes."""
     return SimpleNamespace(
@@ -270,6 +278,7 @@ def sum_of(
         explains_all=explains_all,
         gain=SimpleNamespace(mostly_remains=remains, share_removed=(removed, 0.0, 1.0)),
         _told_by_none=False,
+        _excused_by_gusts=excused,
     )
 
 
@@ -303,6 +312,7 @@ GROUP = (("a", "b"),)
         (sum_of(CLEAR, removed=-0.16), ""),
         (sum_of(CLEAR, remains=True), ""),
         (sum_of(CLEAR, structured=True), ""),
+        (sum_of(CLEAR, excused=True), "more than gusts"),
         (sum_of(CLEAR, SMALL_BUT_CLEAR, structured=True, explains_all=True), ""),
     ],
 )
@@ -310,6 +320,23 @@ def test_a_sum_is_believed_where_each_of_it_is_clear(one, said):
     found = Diagnosis.unclear.fget(one)
     assert (found == "") == (said == "")
     assert said in found
+
+
+@pytest.mark.parametrize(
+    ("tag", "chi2", "left_open", "excused"),
+    [
+        ("wind", (3.0, 1.3), 120.0, True),
+        ("wind", (3.0, 1.3), 2.0, False),
+        ("wind", (30.0, 1.3), 120.0, False),
+        ("current", (3.0, 1.3), 120.0, False),
+    ],
+    ids=["a tug", "little", "gusts of a gale", "no wind"],
+)
+def test_a_wind_does_not_excuse_what_no_gusts_leave(tag, chi2, left_open, excused):
+    seen = SimpleNamespace(
+        causes=[SimpleNamespace(effect=find_effect(tag))], chi2=chi2, leftover=SimpleNamespace(left_open=left_open)
+    )
+    assert Diagnosis._excused_by_gusts.fget(seen) == excused
 
 
 def test_how_often_answers_were_right_is_what_the_study_says():

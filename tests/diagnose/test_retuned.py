@@ -6,7 +6,7 @@ import pytest
 
 from mmgtune.cli.diagnose import summary
 from mmgtune.diagnose import DiagnoseOptions, diagnose, write_diagnosis
-from mmgtune.diagnose.retuned import Retuned, besides, in_words
+from mmgtune.diagnose.retuned import Retuned, besides, far_off, in_words
 from mmgtune.profile import load_profile
 from mmgtune.report import render
 from mmgtune.trial import load_trials
@@ -62,6 +62,21 @@ def test_resistance_is_not_told_where_what_drives_the_ship_is_no_ships(name, aft
     up, drive = moved(0.7, 0.01), Retuned(name, "of the drive", "1", 0.5, after, None)
     assert ("R_0" in in_words([up, drive])) == told
     assert ("do not tell one from the other" in besides([up, drive])) == (not told)
+
+
+def test_what_else_is_far_off_is_told_where_nothing_is_wrong():
+    """As it may be another loading, and as it may not: coefficients take up what others are off by."""
+    hull = [Retuned(f"hull.Y_{k}", f"force {k}", "1", 1.0, 1.0 + 0.1 * k, 0.01) for k in range(2, 6)]
+    at_end = Retuned("hull.C_D", "drag", "1", 1.0, 1.5, None)
+    assert far_off([]) == far_off([at_end]) == ""
+    assert far_off([*hull, at_end]).startswith(
+        "For that it moved 4 coefficients by well over a tenth, most of all force 5 (Y_5) by +50 %, force 4 (Y_4) by "
+        "+40 % and force 3 (Y_3) by +30 %, and 1 more to the end of its range:"
+    )
+    drive = Retuned("wake.w_P0", "wake", "1", 0.5, 0.7, 0.01)
+    assert far_off([moved(0.7, 0.01), drive]).startswith(
+        "Re-tuning moved resistance going straight (R_0) by +40 %, but what drives the ship by more than 25 % with it:"
+    )
 
 
 @pytest.mark.parametrize("hidden", [{}, {"rudder-offset": {"angle": 0.03}}], ids=["nothing else", "and a cause"])

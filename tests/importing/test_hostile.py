@@ -328,10 +328,10 @@ def test_rows_that_are_damaged(log, columns):
     lines[350] = lines[350].replace(",", ",?", 1)
     log.write_text("\n".join(lines))
     report = said(log)
-    assert "1 lines have too many fields" in report
+    assert "1 line has too many fields and was dropped" in report
     assert "line 101" in report
-    assert "rows without a time" in report
-    assert "1 cells of" in report
+    assert "row without a time was dropped" in report
+    assert "1 cell of" in report
     back = imported(log)
     assert back.n_samples == 400
     assert np.isfinite(back.delta).all()

@@ -135,7 +135,7 @@ def test_numbers_that_nothing_about_a_ship_is(log, columns):
     report = said(write_csv(log, columns))
     assert "3 of 399 values of 'ahead' are impossible" in report
     assert "up to 5.14e+299 m/s; taken as gaps" in report
-    assert "1 rows without a time were dropped" in report
+    assert "1 row without a time was dropped" in report
     text = MAP.replace('unit = "deg", positive = "starboard"', 'unit = "deg", positive = "starboard", scale = 1e300')
     with bounded():
         answer = refusal(lambda: said(log, text))

@@ -176,6 +176,61 @@ def test_what_does_not_show_is_asked(tmp_path):
     assert f"line {line}" in said
 
 
+@pytest.mark.parametrize("gap", ["---", "*", "N/A"])
+def test_cells_that_stand_for_nothing_do_not_hide_the_table(tmp_path, gap):
+    """Dates and times with a blank between look like two columns then."""
+    trial = turn()
+    stamps = pd.date_range("2024-05-14 10:33:00", periods=400, freq="s").strftime("%d.%m.%Y %H:%M:%S")
+    columns = {**logged(trial), "time": stamps}
+    text = (
+        pd.DataFrame(columns)
+        .round(4)
+        .astype(str)
+        .apply(lambda one: one.str.replace(".", ",") if one.name != "time" else one)
+    )
+    text.iloc[7::20, 1:] = gap
+    log = tmp_path / "log.csv"
+    log.write_text("Sea trial;MS Example\n" + text.to_csv(index=False, sep=";"), encoding="utf-8")
+    proposal = propose_map([log])
+    assert proposal.asks == ()
+    assert 'delimiter = ";"' in proposal.text
+    back = imported(log, proposal.text)
+    assert np.isfinite(back.delta).all()
+
+
+def test_positions_and_rudders_that_say_their_sides(tmp_path):
+    """Degrees with a dash, and a rudder of P1.3: more than half of the cells of a row are no plain numbers."""
+    trial = turn()
+    latitude, longitude = 34.6 + trial.x / 111_000.0, 135.1 + trial.y / 111_000.0 / np.cos(np.radians(34.6))
+    written = {
+        "TIME": pd.date_range("2024-05-14 10:33:00", periods=400, freq="s").strftime("%Y/%m/%d %H:%M:%S"),
+        "LAT": [f"{int(one)}-{60.0 * (one % 1.0):08.5f}N" for one in latitude],
+        "LON": [f"{int(one)}-{60.0 * (one % 1.0):08.5f}E" for one in longitude],
+        "HDG": np.mod(np.degrees(trial.psi), 360.0).round(2),
+        "RUDDER": [f"{'P' if one < 0.0 else 'S'}{abs(np.degrees(one)):.1f}" for one in trial.delta],
+        "SHAFT REV.": np.round(60.0 * trial.n, 1),
+    }
+    log = tmp_path / "log.csv"
+    pd.DataFrame(written).to_csv(log, index=False)
+    proposal = propose_map([log])
+    assert proposal.asks == ()
+    back = imported(log, proposal.text)
+    assert back.delta == pytest.approx(trial.delta, abs=np.radians(0.1))
+    assert back.x - back.x[0] == pytest.approx(trial.x - trial.x[0], abs=0.5, rel=2e-3)
+
+
+def test_a_line_of_units_is_noted_once(tmp_path):
+    columns = logged(turn())
+    frame = pd.DataFrame({name: values.round(4).astype(str) for name, values in columns.items()})
+    units = {"time": "s", "north": "m", "heading": "deg", "ahead": "kn", "rate": "deg/min"}
+    frame = pd.concat([pd.DataFrame([{name: units.get(name, "") for name in frame}]), frame])
+    frame.to_csv(tmp_path / "log.csv", index=False)
+    result = import_logs([tmp_path / "log.csv"], parse_map(MAP), tmp_path / "out", None, False, True)
+    said = [note for one in result.quality for note in one["notes"] if "line 2" in note]
+    assert said[0] == "line 2 holds units"
+    assert len(said) == 2  # and that it has no time
+
+
 @pytest.mark.parametrize(("rudder", "shaft"), [("Ruder Soll/Grad", "Telegraph rpm"), ("Rudder cmd", "RPM order")])
 def test_orders_are_taken_where_nothing_else_is_logged(tmp_path, rudder, shaft):
     columns = logged(turn())

@@ -22,6 +22,7 @@ from ..mapping import LogMap, TimeSource
 from ..numerals import holds_numbers, numbers_in
 from ..parquet_log import is_text, shortened
 from ..sides import sided, takes_side
+from ..table import MISSING
 from ..text import PEEK, Lines, start_of
 from .words import known_unit, quantity_named
 
@@ -30,9 +31,9 @@ ROWS = 60_000
 MARKS = ("\t", ";", ",", "|", " ")
 SHOWN = {"\t": "tab", " ": "space"}
 _JAPANESE = re.compile("[\u3040-\u30ff\u4e00-\u9fff]")
-_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?|nan|NaN|NA|n/a|-?inf", re.ASCII)
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?|-?inf", re.ASCII)
 _COMMA = re.compile(r"[-+]?\d+,\d+([eE][-+]?\d+)?", re.ASCII)
-_DATED = re.compile(r"\d{1,4}[-./:]\d{1,2}[-./:]\d{1,4}|\d{1,2}:\d{2}|[-+]?\d{1,3}°")
+_DATED = re.compile(r"(\d{1,4}[-./:]\d{1,2}[-./:]\d{1,4}|\d{1,2}:\d{2}|[-+]?\d{1,3}°)[^;|\t,]*(,[^;|\t,]*)?")
 
 
 @dataclass(frozen=True, eq=False)
@@ -309,7 +310,10 @@ def _are_units(row: Sequence[str]) -> bool:
 
 def _numeric_share(row: Sequence[str]) -> float:
     cells = [cell.strip() for cell in row if cell.strip()]
-    told = [bool(_NUMBER.fullmatch(one) or _COMMA.fullmatch(one) or _DATED.match(one)) for one in cells]
+    told = [
+        bool(_NUMBER.fullmatch(one) or _COMMA.fullmatch(one) or _DATED.fullmatch(one) or one.lower() in MISSING)
+        for one in cells
+    ]
     return sum(told) / len(told) if told else 0.0
 
 
@@ -335,10 +339,10 @@ def _separator(lines: Sequence[str]) -> tuple[str, str]:
         usual = max(set(counts), key=counts.count, default=0)
         if usual < 2:
             continue
-        cells = [cell for row in rows for cell in row if cell]
+        cells = [cell for row in rows for cell in row if cell.lower() not in MISSING]
         plain = sum(_NUMBER.fullmatch(cell) is not None for cell in cells)
         comma = sum(_COMMA.fullmatch(cell) is not None for cell in cells)
-        dated = sum(_DATED.match(cell) is not None for cell in cells)
+        dated = sum(_DATED.fullmatch(cell) is not None for cell in cells)
         score = counts.count(usual) / len(counts) * (plain + comma + dated) / max(1, len(cells))
         if score > best[0] + 0.02:
             best = score, mark, "," if comma > 0.2 * (plain + comma) and mark != "," else "."
