@@ -268,7 +268,7 @@ class Refitting:
         for k, those in starts.items():
             self._go_on()
             led[k] = sorted(self._steps(point, named[k], those, 1), key=lambda end: end.chi2)[:STARTS_BEGUN]
-        likely = sorted(led, key=lambda k: led[k][0].chi2)[:BEGUN]
+        likely = sorted(led, key=lambda k: led[k][0].chi2)[:LIKELY]
         return {
             k: np.column_stack([end.unit for end in ends])
             for k, ends in led.items()

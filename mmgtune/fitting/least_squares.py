@@ -24,7 +24,7 @@ from .quadratic import Quadratic, flat_where_lost
 QUIET = 1e-9
 """Relative fall of what is minimised that counts as none; two such iterations in a row end a start."""
 
-DAMPINGS = 10.0 ** np.array([-3.0, -1.0, 0.5, 2.0])
+DAMPINGS = 10.0 ** np.array([-2.0, -0.7, 0.3, 2.0])
 """Multiples of the last damping tried side by side, as lanes of one call."""
 
 FIRM = 10.0

@@ -178,8 +178,8 @@ def put_right(t: FloatArray, source: TimeSource, place: Any) -> Timeline:
     if (~known).any():
         row = int(np.flatnonzero(~known)[0])
         dropped = int((~known).sum())
-        rows = "1 row without a time was" if dropped == 1 else f"{dropped} rows without a time were"
-        line.notes.append(f"{rows} dropped, {'in' if dropped == 1 else 'the first in'} {place(row)}")
+        said = "1 row without a time was" if dropped == 1 else f"{dropped} rows without a time were"
+        line.notes.append(f"{said} dropped, {'in' if dropped == 1 else 'the first in'} {place(row)}")
     if source.recover != "never":
         rows = np.flatnonzero(known)
         even = uniform(t[rows], source)

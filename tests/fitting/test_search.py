@@ -142,7 +142,7 @@ def test_derivatives_that_foretold_a_step_serve_the_next_to_the_same_end(problem
     models = least_squares._Minimised.models
     monkeypatch.setattr(least_squares._Minimised, "models", lambda *given: made.append(1) or models(*given))
     estimated = problem.estimated(np.full((len(problem.cases), 6), 0.1))
-    start = estimated.box.to_unit(estimated.box.pre)[:, None]
+    start = np.full((len(estimated.box.names), 1), 0.4)
 
     def end(settled):
         made.clear()
