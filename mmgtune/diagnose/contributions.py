@@ -206,7 +206,7 @@ def with_only(bench: Workbench, found: Found, causes: Sequence[Hypothesis]) -> F
     for cause in found.causes:
         if cause not in causes:
             final = without(bench, final, cause)
-    return replace(found, final=final, causes=list(causes))
+    return replace(found, final=final, causes=list(causes), more=found.more and len(causes) == len(found.causes))
 
 
 def _alone(found: Found, unseen: Unseen) -> Contribution:

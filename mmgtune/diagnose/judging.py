@@ -124,6 +124,7 @@ class Judge:
             choice=self.choice,
             differing=tuple(self.differing),
             doubted=doubted,
+            more=found.more,
             wall_s=0.0,
             interrupted=self.hooks.stop(),
         )

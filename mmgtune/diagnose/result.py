@@ -22,6 +22,7 @@ from .legs import Difference
 from .record import Record, kind_of, record_of
 from .retuned import Retuned, besides, far_off
 from .retuned import in_words as moved_in_words
+from .search import TOO_MANY
 from .separate import Suggestion
 from .together import Together
 from .voyages import Choice
@@ -63,9 +64,6 @@ causes anyhow: what little there is any two or three would imitate; and a single
 GUSTS_LEAVE, OF_WIND = 4.0, 0.15
 """Variance beyond noise that gusts of a wind that was found would have to account for, and share of chi-squared before
 it that it leaves, from which it is no wind: gusts and another shape of the force leave less than that of its work."""
-
-TOO_MANY = 4
-"""Terms of a sum of causes from which it is not believed."""
 
 NEEDED = 0.15
 """Share of the fall of chi-squared that the terms of a sum must lose, one left out at a time, all added up."""
@@ -115,6 +113,7 @@ class Diagnosis(Plotted):
     doubted      the sum of causes that the one named was found in, where that is not believed; None else
     together  what was found without the trials kept for testing, where these had to be looked at too; None else
     choice    windows of voyages that were looked at, None for trials; differing: what differs between the voyages
+    more      whether much is left beside as many causes as are believed together
     """
 
     written_by = "write_diagnosis"
@@ -149,6 +148,7 @@ class Diagnosis(Plotted):
     contradicted: str = ""
     choice: Choice | None = None
     differing: tuple[Difference, ...] = ()
+    more: bool = False
 
     def __repr__(self) -> str:
         """In a line."""
@@ -204,8 +204,8 @@ class Diagnosis(Plotted):
         not_told = f"how large {' and '.join(unsized)} would be is not told" if unsized else ""
         if len(brought) < 2:
             return not_told if self.gain.share_removed[0] < TOLD else ""
-        if len(brought) >= TOO_MANY:
-            return f"it takes {len(brought)} terms"
+        if self.more or len(brought) >= TOO_MANY:
+            return f"it takes {'more than ' if self.more else ''}{len(brought)} terms"
         if len(brought) > 2 and self.groups:
             return "not all of them can be told from others"
         if len(brought) > 2 and sum(bool(cause.runs) for cause in self.causes) > 1:

@@ -33,6 +33,9 @@ HALF = 0.5
 """The same of a log that looks held and is read accordingly: it is seen in the log, and a clock that is late explains
 most of it too."""
 
+TOO_MANY = 4
+"""Terms of a sum of causes from which it is not believed."""
+
 FINER = 4
 """The integration step as a cause: a Runge-Kutta step this many times finer."""
 
@@ -77,6 +80,7 @@ class Found:
     causes  accepted hypotheses, in the order found, after those that others made superfluous were dropped
     steps   every look, the last one in vain
     held    what the logs hold between updates, where that is a cause; the base is read accordingly too
+    more    whether much is left beside as many causes as are believed together, so that no further one was looked for
     """
 
     base: Point
@@ -85,6 +89,7 @@ class Found:
     steps: list[Step] = field(default_factory=list)
     finer_step: float | None = None
     held: Held | None = None
+    more: bool = False
 
 
 def search(
@@ -109,6 +114,9 @@ def search(
     dropped: list[Hypothesis] = []
     once: list[Hypothesis] = []
     while not bench.stop():
+        found.more = len(found.causes) == TOO_MANY - 1 and found.final.chi2 > STRONG * bench.problem.n_residuals
+        if found.more:
+            break
         say("looking for a cause" if not found.causes else f"looking for cause {len(found.causes) + 1}")
         try:
             step = look(bench, found.final, left, first=not found.steps)
@@ -154,6 +162,7 @@ def search(
         _drop_superfluous(bench, found, found.causes[:-1])
     if not bench.stop():
         _make_plain(bench, found, hypotheses)
+    found.more = found.more and len(found.causes) == TOO_MANY - 1
     return found
 
 

@@ -268,6 +268,7 @@ def sum_of(
     removed=0.99,
     sized=True,
     excused=False,
+    more=False,
 ):
     """What ``Diagnosis.unclear`` sees of a sum of causes."""
     return SimpleNamespace(
@@ -279,6 +280,7 @@ def sum_of(
         gain=SimpleNamespace(mostly_remains=remains, share_removed=(removed, 0.0, 1.0)),
         _told_by_none=False,
         _excused_by_gusts=excused,
+        more=more,
     )
 
 
@@ -294,7 +296,8 @@ GROUP = (("a", "b"),)
         (sum_of(CLEAR, SMALL_BUT_CLEAR), ""),
         (sum_of(CLEAR, SMALL_BUT_CLEAR, SMALL_BUT_CLEAR), ""),
         (sum_of(CLEAR, SMALL_BUT_CLEAR, groups=GROUP), ""),
-        (sum_of(CLEAR, CLEAR, CLEAR, CLEAR), "4 terms"),
+        (sum_of(CLEAR, CLEAR, CLEAR, CLEAR), "it takes 4 terms"),
+        (sum_of(CLEAR, CLEAR, CLEAR, more=True), "it takes more than 3 terms"),
         (sum_of(CLEAR, CLEAR, CLEAR, groups=GROUP), "told from others"),
         (sum_of(SMALL_BUT_CLEAR, SMALL_BUT_CLEAR), "left out"),
         (sum_of(CLEAR, SMALL_BUT_CLEAR, structured=True), "no noise"),
