@@ -189,7 +189,7 @@ class ByRun:
 
     def table(self) -> list[tuple[str, ...]]:
         """Group, size and, where it has one, direction in words, the first row heads."""
-        rows: list[tuple[str, ...]] = [(IN_WORDS[self.by], self.effect.subject or self.effect.title)]
+        rows: list[tuple[str, ...]] = [(IN_WORDS[self.by], self._what)]
         rows[0] += ("direction",) if self.towards(0) is not None else ()
         rows[0] += ("from the mean",) if self.from_mean(0) is not None else ()
         for k, label in enumerate(self.groups):
@@ -200,6 +200,14 @@ class ByRun:
             if (apart := self.from_mean(k)) is not None:
                 rows[-1] += (quantity(apart[0], None if apart[1] is None else NORMAL * apart[1], self.unit),)
         return rows
+
+    @property
+    def _what(self) -> str:
+        """What differs, in words: which of several things where the effect has more than one that may."""
+        several = sum(set(variant) <= set(self.effect.varies) for variant in self.effect.variants) > 1
+        if several and len(self.variant) == 1:
+            return self.effect.parameters[self.variant[0]].label
+        return self.effect.subject or self.effect.title
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""

@@ -195,7 +195,7 @@ def test_what_is_common_to_all_errors_is_told_once():
         "The loading differed from run to run: 0.81 to 0.99, known to ± 0.0059 beside each other and to ± 0.059 all "
         "together"
     )
-    assert found.table()[0][-1] == "from the mean"
+    assert found.table()[0] == ("run", "draught over the profile's", "from the mean")
     assert found.table()[1] == ("run0", "0.990 ± 0.059", "0.0800 ± 0.0059")
     row = found.to_dict()["values"][1]
     assert (row["from_mean"], row["from_mean_stderr"]) == (pytest.approx(-0.1), 0.003)
