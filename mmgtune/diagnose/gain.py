@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
@@ -122,7 +123,7 @@ class Gain(Brief):
         after = sum(one.J["after"] for one in self.compared)
         return finite(before), finite(after)
 
-    @property
+    @cached_property
     def share_removed(self) -> tuple[float, float, float]:
         """Share of the error above noise that the causes remove, with a 95 % interval over trials."""
         rng = np.random.default_rng(0)

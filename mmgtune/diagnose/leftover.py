@@ -26,7 +26,8 @@ from ..units import DEG
 from .evidence import FEWEST_BLOCKS, share_explained
 from .linear import linearise
 from .noise import by_channel, rows_of_channels
-from .workbench import Point, Workbench
+from .wording import listed
+from .workbench import Point, Workbench, least_noise
 
 NOTICED = 0.05
 """Variance beyond the white noise of the sensors, as a share of it, that is worth speaking of."""
@@ -121,7 +122,8 @@ def leftover(bench: Workbench, point: Point) -> Leftover:
     """What is left at a point, on the trials of the workbench."""
     residuals = residuals_of(bench, point)
     # Second differences do not show the noise of rounding where a channel moves little.
-    level = np.maximum(_white(residuals), by_channel(bench.trials, rounding_noise))
+    shown = np.maximum(_white(residuals), by_channel(bench.trials, rounding_noise))
+    level = np.where(shown > 0.0, np.maximum(shown, 1e-3 * least_noise(bench.trials)), shown)
     left_open = _left_open(bench, point)
     excess, excused = {}, {}
     for k, name in enumerate(STATES):
@@ -160,10 +162,9 @@ def _changed(bench: Workbench) -> dict[str, tuple[str, ...]]:
 
 def change_in_words(name: str, ids: Sequence[str]) -> str:
     """A log whose factor changes as a sentence without its full stop."""
-    where = f"{', '.join(ids[:-1])} and {ids[-1]}" if len(ids) > 1 else ids[0]
     return (
-        f"the log of the {LOGGED[name]} has another factor from some time on in {where}, which a model takes for noise "
-        "that lasts for minutes"
+        f"the log of the {LOGGED[name]} has another factor from some time on in {listed(ids)}, which a model takes for "
+        "noise that lasts for minutes"
     )
 
 

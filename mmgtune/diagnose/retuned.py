@@ -11,6 +11,7 @@ import numpy as np
 from ..components import split_name
 from ..documents import finite
 from .intervals import NORMAL, covariance
+from .wording import listed
 from .workbench import Point, Workbench
 
 FAR = 0.1
@@ -109,7 +110,7 @@ def in_words(moved: Sequence[Retuned]) -> str:
     if _astray(moved):
         return ""
     told = [one.words for one in moved if one.far and one.name in IN_SERVICE]
-    return " and ".join([", ".join(told[:-1]), told[-1]] if len(told) > 1 else told)
+    return listed(told)
 
 
 def _astray(moved: Sequence[Retuned]) -> bool:
@@ -120,12 +121,8 @@ def _astray(moved: Sequence[Retuned]) -> bool:
 
 def besides(moved: Sequence[Retuned]) -> str:
     """Why the others are not told of, where some moved as far: in a sentence; "" for none."""
-    followed = [one for one in moved if one.far and one.name in IN_SERVICE]
-    if _astray(moved) and followed:
-        return (
-            f"Re-tuning moved {_changes(followed)}, but what drives the ship by more than {100.0 * IMPLAUSIBLE:.0f} % "
-            "with it: these trials do not tell one from the other, so that neither is named."
-        )
+    if told := _together(moved):
+        return told
     others = [one for one in moved if one.name not in IN_SERVICE]
     n = sum(abs(one.after - one.before) >= FAR * abs(one.before) > 0.0 for one in others)
     if not n:
@@ -137,10 +134,21 @@ def besides(moved: Sequence[Retuned]) -> str:
     )
 
 
+def _together(moved: Sequence[Retuned]) -> str:
+    """That resistance is far off and thrust with it, in a sentence; "" where they are not."""
+    followed = [one for one in moved if one.far and one.name in IN_SERVICE]
+    if not followed or not _astray(moved):
+        return ""
+    return (
+        f"Re-tuning moved {_changes(followed)}, but what drives the ship by more than {100.0 * IMPLAUSIBLE:.0f} % "
+        "with it: these trials do not tell one from the other, so that neither is named."
+    )
+
+
 def far_off(moved: Sequence[Retuned]) -> str:
     """What else a reader should know of targets that are far off where nothing is wrong: in a sentence; "" for none."""
-    if _astray(moved) and any(one.far and one.name in IN_SERVICE for one in moved):
-        return besides(moved)
+    if told := _together(moved):
+        return told
     far = [one for one in moved if one.far]
     ends = [one for one in moved if one.stderr is None and one.after != one.before]
     if not far:
@@ -156,12 +164,13 @@ def far_off(moved: Sequence[Retuned]) -> str:
 
 def _changes(moved: Sequence[Retuned]) -> str:
     """Targets that moved and by how much: "A (a) by +3 % and B (b) by -4 %"."""
-    shown = [
-        f"{one.label} ({one.name.rpartition('.')[2]}) by {100.0 * one.change:+.0f} %"
-        for one in moved
-        if one.change is not None
-    ]
-    return " and ".join([", ".join(shown[:-1]), shown[-1]] if len(shown) > 1 else shown)
+    return listed(
+        [
+            f"{one.label} ({one.name.rpartition('.')[2]}) by {100.0 * one.change:+.0f} %"
+            for one in moved
+            if one.change is not None
+        ]
+    )
 
 
 def _distance(one: Retuned) -> float:

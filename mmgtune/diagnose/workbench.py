@@ -270,16 +270,20 @@ class Workbench:
 
 
 def noise_levels(trials: Sequence[Trial]) -> FloatArray:
-    """(6,) deviation of the noise by channel: the median over trials of what second differences and rounding show.
+    """(6,) deviation of the noise by channel: the median over trials of what second differences and rounding show."""
+    shown = np.maximum(by_channel(trials, motion_noise), _of_slopes(trials))
+    return np.asarray(np.maximum(shown, least_noise(trials)))
 
-    Generated trials may have none: there it is a millionth of the largest value; of a channel that stays at 0, of a
-    metre, a radian, the largest speed, or a radian in the time the ship takes for a metre.
+
+def least_noise(trials: Sequence[Trial]) -> FloatArray:
+    """(6,) deviation of the noise by channel where generated trials show none: a millionth of the largest value.
+
+    Of a channel that stays at 0, of a metre, a radian, the largest speed, or a radian in the time the ship takes for a
+    metre.
     """
-    found = np.maximum(by_channel(trials, motion_noise), _of_slopes(trials))
     largest = np.nanmax([np.nanmax(np.abs(trial.motion), axis=0) for trial in trials], axis=0)
     speed = max(float(np.max(largest[3:5])), 1e-3)
-    scale = np.where(largest > LEAST, largest, [1.0, 1.0, 1.0, speed, speed, speed])
-    return np.asarray(np.maximum(found, 1e-6 * scale))
+    return np.asarray(1e-6 * np.where(largest > LEAST, largest, [1.0, 1.0, 1.0, speed, speed, speed]))
 
 
 FEWEST = 4

@@ -103,6 +103,8 @@ class BadCells:
     text: str = ""
 
 
+_ONE, _SEVERAL = ("cell", "says no side or ", "is no number"), ("cells", "say no side or ", "are no numbers")
+
 _WITH_UNIT = re.compile(r"[-+]?[\d.,]+(?:[eE][-+]?\d+)?\s*([^\d\s].*)")
 
 
@@ -167,13 +169,9 @@ class Cells:
             if bad.count == 1 and is_unit(bad.text) and bad.row <= table.rows.min(initial=bad.row):
                 units[bad.row] = f"line {bad.row} holds units"
                 continue
-            if bad.count == 1:
-                what = "cell of {} says no side or is no number" if name in self.sided else "cell of {} is no number"
-            else:
-                what = (
-                    "cells of {} say no side or are no numbers" if name in self.sided else "cells of {} are no numbers"
-                )
-            cells = f"{bad.count} {what.format(n_rows)}, the first is '{bad.text}'"
+            noun, no_side_said, no_number = _ONE if bad.count == 1 else _SEVERAL
+            what = f"{no_side_said if name in self.sided else ''}{no_number}"
+            cells = f"{bad.count} {noun} of {n_rows} {what}, the first is '{bad.text}'"
             if name in self.sided and bad.count > 0.5 * n_rows:
                 fix = f"write the column as plain numbers, {plainly}"
                 problems.append(Problem(no_side, place, cells, fix))

@@ -9,12 +9,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..arrays import FloatArray
-from ..physics.frame import to_earth
 from ..units import DEG
 from .finding import Finding
 from .model import Trial
-from .wind import WIND_PAIRS
+from .wind import APPARENT, TRUE, Pair, air_over_ground, wind_pair
 
 TURNED = 90.0 * DEG
 """Change of heading [rad] from which readings differ enough."""
@@ -36,18 +34,17 @@ READINGS = {
 
 def wind_findings(trial: Trial, where: str) -> list[Finding]:
     """A warning where the wind would be far steadier if its columns meant something else."""
-    pair = next((pair for pair in WIND_PAIRS if set(pair) <= set(trial.extra)), None)
+    pair = wind_pair(trial)
     if pair is None or np.ptp(np.unwrap(trial.psi[np.isfinite(trial.psi)])) < TURNED:
         return []
-    apparent = pair == WIND_PAIRS[1]
-    said = (apparent, apparent)
-    changes = dict(_changes(trial, trial.extra[pair[0]], trial.extra[pair[1]]))
+    said = (pair == APPARENT, pair == APPARENT)
+    changes = dict(_changes(trial, pair))
     if not changes:
         return []
     best = min(changes, key=lambda reading: changes[reading])
     if not changes[said] > UNSTEADY or not changes[best] < STEADIER * changes[said]:
         return []
-    to_be = " and ".join(f"'{name}'" for name in WIND_PAIRS[1 if best == (True, True) else 0])
+    to_be = " and ".join(f"'{name}'" for name in (APPARENT if best == (True, True) else TRUE))
     fix = f"rename them {to_be}" if best in ((True, True), (False, False)) else f"work {to_be} out of them"
     return [
         Finding(
@@ -60,13 +57,10 @@ def wind_findings(trial: Trial, where: str) -> list[Finding]:
     ]
 
 
-def _changes(trial: Trial, speed: FloatArray, direction: FloatArray) -> Iterator[tuple[tuple[bool, bool], float]]:
+def _changes(trial: Trial, pair: Pair) -> Iterator[tuple[tuple[bool, bool], float]]:
     """By reading, how far the wind over the ground changes, as a share of its mean speed."""
-    own = to_earth(trial.psi, trial.u, trial.v_m)
     for apparent, from_bow in READINGS:
-        towards = direction + (trial.psi if from_bow else 0.0)
-        from_there = speed * np.stack([np.cos(towards), np.sin(towards)])
-        air = np.stack(own) - from_there if apparent else -from_there
+        air = np.stack(air_over_ground(trial, pair, apparent, from_bow))
         air = air[:, np.isfinite(air).all(axis=0)]
         if air.size == 0:
             return

@@ -117,7 +117,7 @@ def test_a_rudder_that_stopped_half_way_in_one_run(tmp_path):
     """Of 35 deg to starboard she got 20, while the log holds the order."""
     case = of_runs("rudder-gain", 0, seed=5)
     case = replace(case, of_trial={"turn_p35": {"rudder-gain": {"factor": 20.0 / 35.0}}})
-    result = said_of(case, tmp_path, ("rudder-gain", "rudder-offset"))
+    result = said_of(case, tmp_path, ("rudder-gain", "rudder-offset", "rudder-stall"))
     (cause,) = result.causes
     assert (result.verdict, cause.tag, cause.runs.by) == ("found", "rudder-gain", "trial"), result.sentence()
     assert [cause.runs.shows(k) for k in range(5)] == [label == "trial:turn_p35" for label in cause.runs.groups]

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from mmgtune import DiagnoseOptions, FitOptions, diagnose, fit, load_trials
-from mmgtune.diagnose.result import VERDICTS
 from mmgtune.errors import OptionError
 from mmgtune.trial import Trial
 from mmgtune.trial.set_checks import turn_away
@@ -37,7 +36,7 @@ def test_every_number_of_the_answer_is_one(made):
         "suzaku", replace(trials, trials=few, tune=tuple(few), test=()), DiagnoseOptions(effects=("current",))
     )
     said = json.loads(json.dumps(result.to_dict(), allow_nan=False))
-    assert said["verdict"] in VERDICTS
+    assert said["verdict"] in ("none", "found")
     assert "forces_before" not in said["evidence"] or made is not short
 
 

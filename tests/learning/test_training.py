@@ -87,7 +87,7 @@ def test_the_same_seed_gives_the_same_weights_and_another_others():
     assert np.abs(weights(a) - weights(other)).max() > 0.01
 
 
-@pytest.mark.parametrize(("after", "kept"), [(1, {}), (4, {}), (1, ALL)])
+@pytest.mark.parametrize(("after", "kept"), [(1, {}), (4, {}), (1, ALL), (4, ALL)])
 def test_resumed_equals_not_interrupted(tmp_path, after, kept):
     """Stopped in the first seed or in the second, and gone on: the same bits."""
     options = replace(SMALL, seeds=2, **kept)
