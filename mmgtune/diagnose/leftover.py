@@ -18,6 +18,7 @@ from scipy.special import stdtr
 from ..arrays import FloatArray
 from ..backends import STATES
 from ..displayed import Brief
+from ..phrases import listed
 from ..physics.frame import to_earth
 from ..trial import Trial
 from ..trial.in_parts import changes_within
@@ -26,7 +27,6 @@ from ..units import DEG
 from .evidence import FEWEST_BLOCKS, share_explained
 from .linear import linearise
 from .noise import by_channel, rows_of_channels
-from .wording import listed
 from .workbench import Point, Workbench, least_noise
 
 NOTICED = 0.05

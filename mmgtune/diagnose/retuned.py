@@ -10,8 +10,8 @@ import numpy as np
 
 from ..components import split_name
 from ..documents import finite
+from ..phrases import listed
 from .intervals import NORMAL, covariance
-from .wording import listed
 from .workbench import Point, Workbench
 
 FAR = 0.1
@@ -153,11 +153,11 @@ def far_off(moved: Sequence[Retuned]) -> str:
     ends = [one for one in moved if one.stderr is None and one.after != one.before]
     if not far:
         return ""
-    listed = _changes(sorted(far, key=lambda one: -abs(one.change or 0.0))[:LISTED])
+    most = _changes(sorted(far, key=lambda one: -abs(one.change or 0.0))[:LISTED])
     so_many = f"{len(far)} coefficients" if len(far) > 1 else "a coefficient"
     at_ends = f", and {len(ends)} more to the end of {'their' if len(ends) > 1 else 'its'} range" if ends else ""
     return (
-        f"For that it moved {so_many} by well over a tenth{', most of all ' if len(far) > 1 else ': '}{listed}"
+        f"For that it moved {so_many} by well over a tenth{', most of all ' if len(far) > 1 else ': '}{most}"
         f"{at_ends}: the ship may be unlike her profile in these, or they take up what others are off by."
     )
 

@@ -99,7 +99,7 @@ TELLS = {
     "wind_angle": "the same manoeuvre without wind, or the wind measured on another mast: its force is not the model's",
     "wind_speed": "the same manoeuvre without wind, or the wind measured on another mast: its force is not the model's",
     "drift": "turns with 10, 20 and 35 deg of rudder to both sides, with the velocity through the water logged",
-    "yaw_rate": "turns with 10, 20 and 35 deg of rudder to both sides, and a second rate gyro",
+    "yaw_rate": "turns with 10, 20 and 35 deg of rudder to both sides, at two speeds each",
     "rudder": "the angle of the rudder stock logged beside the order, and zigzags of other angles than these",
     "ordered": "order and angle of the rudder logged by one clock, five times a second or more, shaft speed with them",
     "speed": "the same manoeuvre at two other speeds, and straight runs at each with the thrust or torque logged",

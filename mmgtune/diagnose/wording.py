@@ -3,16 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 from ..effects import Effect
 from ..units import DIMENSIONLESS, read_as
 from .intervals import Estimate
-
-
-def listed(words: Sequence[str]) -> str:
-    """Words as a phrase: "a, b and c"; "" for none."""
-    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
 
 
 def quantity(value: float, error: float | None, unit: str) -> str:

@@ -278,12 +278,19 @@ def noise_levels(trials: Sequence[Trial]) -> FloatArray:
 def least_noise(trials: Sequence[Trial]) -> FloatArray:
     """(6,) deviation of the noise by channel where generated trials show none: a millionth of the largest value.
 
-    Of a channel that stays at 0, of a metre, a radian, the largest speed, or a radian in the time the ship takes for a
-    metre.
+    Positions and headings count from where the trial starts.  Of a channel that stays at 0, of a metre, a radian, the
+    largest speed, or a radian in the time the ship takes for a metre.
     """
-    largest = np.nanmax([np.nanmax(np.abs(trial.motion), axis=0) for trial in trials], axis=0)
+    largest = np.nanmax([np.nanmax(np.abs(_from_start(trial)), axis=0) for trial in trials], axis=0)
     speed = max(float(np.max(largest[3:5])), 1e-3)
     return np.asarray(1e-6 * np.where(largest > LEAST, largest, [1.0, 1.0, 1.0, speed, speed, speed]))
+
+
+def _from_start(trial: Trial) -> FloatArray:
+    """(n, 6) the motion, its positions and heading without those of the first sample that has one."""
+    places = trial.motion[:, :3]
+    first = places[np.argmax(np.isfinite(places), axis=0), range(3)]
+    return np.column_stack([places - first, trial.motion[:, 3:]])
 
 
 FEWEST = 4

@@ -24,7 +24,7 @@ from ..inputs import INPUTS
 from ..made_from import identity_of, make_provenance
 from ..model import Model
 from ..objective import spread
-from ..options import LeaveOutOptions
+from ..options import FitOptions, LeaveOutOptions
 from ..options.choice import must_be
 from ..predictor import as_predictor, words_of
 from ..profile import ShipProfile
@@ -42,6 +42,7 @@ from .journal import finished, journalled
 from .least_squares import solve
 from .one_sided import coverage_notes
 from .optimum import edge_ridge, random_starts
+from .problem import FitProblem
 from .robust import weigh_down
 from .run import hold_directions
 from .setting import in_pieces, make_problem
@@ -278,63 +279,25 @@ def _leave_out(
     profile: ShipProfile, whole: TrialSet, asked: LeaveOutOptions, hooks: Hooks, provenance: dict[str, Any]
 ) -> LeftOut:
     began = time.perf_counter()
-    options = asked.fit_options()
-    trials = in_pieces(whole, options)
-    if options.identifiable:
-        options = hold_directions(profile, trials, options)
-    problem = make_problem(profile, trials, options)
-    box, model = problem.box, problem.model
-    before = np.clip(box.to_unit(box.pre), 0.0, 1.0)
-    problem, weight = weigh(problem, before, hooks.stop)
-    hooks.on_phase("fitting all runs")
-    ridge = edge_ridge(problem, options, before)
-    first = random_starts(problem, options, before, ())
-    tolerance = SETTLED * float(problem.costs(before[:, None])[0])
-    ends = solve(problem, first, ridge=ridge, anchor=before, stop=hooks.stop, tolerance=tolerance)
-    best = min(ends, key=lambda end: end.J)
-    starts = best.unit[:, None]
+    fit = _ToAllRuns.of(profile, whole, asked, hooks)
+    trials, model = fit.trials, fit.problem.model
+    dealt = list(leaving_out(trials, asked.folds))
+    parts = []
+    for out, others in dealt:
+        part = None if hooks.stop() else fit.without(out, others, hooks)
+        if part is None:
+            break
+        parts.append(part)
+    left = {name: record for part in parts for name, record in part.records.items()}
+    repeated = {name: manoeuvre for part in parts for name, manoeuvre in part.repeated.items()}
+    stated = [index for part in parts for index in part.stated]
     chosen = [trials.trials[name] for name in trials.tune]
     sigma = spread(chosen) if chosen else {}
-    integrator = options.make_integrator()
-
-    def simulated(series: Sequence[Trial], theta: FloatArray | None = None) -> dict[str, TrialRecord]:
-        predictor = as_predictor(model, theta=theta, integrator=integrator, backend=options.backend)
-        return {one.trial.id: one for one in evaluate(predictor, series)} if series else {}
-
-    left: dict[str, TrialRecord] = {}
-    repeated: dict[str, Repeated] = {}
-    stated: dict[str, list[IndexComparison]] = {}
-    thetas, parts = [], []
-    dealt = list(leaving_out(trials, asked.folds))
-    for out, others in dealt:
-        if hooks.stop():
-            break
-        series = [trials.trials[name] for name in out if name in trials.trials]
-        indices = [trials.stated[name] for name in out if name in trials.stated]
-        runs = tuple(dict.fromkeys([*(one.run for one in series), *(one.run for one in indices)]))
-        hooks.on_phase(f"leaving out {', '.join(runs)}")
-        part = make_problem(profile, trials, options, others).with_weight(problem.weight)
-        ends = solve(part, starts, ridge=ridge, anchor=before, stop=hooks.stop, tolerance=SETTLED * best.J)
-        fitted = min(ends, key=lambda end: end.J + ridge * float(np.sum((end.unit - before) ** 2)))
-        if options.loss == "huber" and not hooks.stop():
-            part, fitted = weigh_down(part, fitted, ridge, before)
-        if hooks.stop():  # not fitted to its end
-            break
-        thetas.append(dict(zip(box.names, box.from_unit(fitted.unit).tolist(), strict=True)))
-        parts.append(runs)
-        theta = part.theta(fitted.unit[:, None])
-        left |= simulated(series, theta)
-        both = {"before": model.matrix()[:, 0], "left_out": theta[:, 0]}
-        for of in compare_stated(model, both, indices, dict.fromkeys(out, "tune"), options.backend):
-            stated.setdefault(of.trial, []).append(of)
-        if asked.manoeuvres:
-            hooks.on_phase(f"repeating {', '.join(runs)}")
-            repeated |= {one.id: one for one in repeat(model, _named(whole, series), theta=theta)}
     seen = [trial for trial in chosen if trial.id in left]
-    given = simulated(seen)
+    given = fit.simulated(seen)
     return LeftOut(
-        tuple(thetas),
-        tuple(parts),
+        tuple(part.values for part in parts),
+        tuple(part.runs for part in parts),
         tuple(score_of(given[trial.id], sigma) for trial in seen),
         tuple(score_of(left[trial.id], sigma) for trial in seen),
         asked,
@@ -343,18 +306,109 @@ def _leave_out(
         time.perf_counter() - began,
         len(dealt),
         len(parts) < len(dealt),
-        weight,
+        fit.weight,
         tuple(repeat(model, _named(whole, seen))) if asked.manoeuvres else (),
         tuple(repeated[name] for name in dict.fromkeys(trial.whole for trial in seen) if name in repeated),
-        tuple(one for name in trials.tune_stated for one in stated.get(name, ())),
+        tuple(index for name in trials.tune_stated for index in stated if index.trial == name),
         model.L_pp,
-        tuple(_warnings(model, box.names, whole, asked)),
+        tuple(_warnings(model, fit.problem.box.names, whole, asked)),
         tuple(profile.doubts()),
         compared=tuple(
             TrialComparison(trial, "left-out", {"before": given[trial.id], "after": left[trial.id]}) for trial in seen
         ),
         inputs=tuple(one.name for one in profile.arrangement.inputs),
     )
+
+
+@dataclass(frozen=True, eq=False)
+class _Part:
+    """A part of the runs, by coefficients fitted without it.
+
+    values    by name, in profile units
+    records   its trials simulated; repeated: their manoeuvres, where asked for
+    stated    its stated indices with the profile's values ("before") and with these ("left_out")
+    """
+
+    runs: tuple[str, ...]
+    values: dict[str, float]
+    records: Mapping[str, TrialRecord]
+    repeated: Mapping[str, Repeated]
+    stated: Sequence[IndexComparison]
+
+
+@dataclass(frozen=True, eq=False)
+class _ToAllRuns:
+    """The fit to all runs, from which each fit without some of them starts.
+
+    whole   trials as given; trials: in the pieces they are fitted in
+    before  (n_targets,) the profile's values in the unit cube; best: (n_targets,) where the fit ended, with J there
+    ridge   of those that fit equally well the nearest to the profile's are preferred by so much
+    weight  of what is known beforehand; None where J is all
+    """
+
+    profile: ShipProfile
+    whole: TrialSet
+    trials: TrialSet
+    asked: LeaveOutOptions
+    options: FitOptions
+    problem: FitProblem
+    before: FloatArray
+    best: FloatArray
+    J: float
+    ridge: float
+    weight: Weight | None
+
+    @classmethod
+    def of(cls, profile: ShipProfile, whole: TrialSet, asked: LeaveOutOptions, hooks: Hooks) -> _ToAllRuns:
+        """Fit by least squares from the starts of the options."""
+        options = asked.fit_options()
+        trials = in_pieces(whole, options)
+        if options.identifiable:
+            options = hold_directions(profile, trials, options)
+        problem = make_problem(profile, trials, options)
+        before = np.clip(problem.box.to_unit(problem.box.pre), 0.0, 1.0)
+        problem, weight = weigh(problem, before, hooks.stop)
+        hooks.on_phase("fitting all runs")
+        ridge = edge_ridge(problem, options, before)
+        starts = random_starts(problem, options, before, ())
+        tolerance = SETTLED * float(problem.costs(before[:, None])[0])
+        ends = solve(problem, starts, ridge=ridge, anchor=before, stop=hooks.stop, tolerance=tolerance)
+        best = min(ends, key=lambda end: end.J)
+        return cls(profile, whole, trials, asked, options, problem, before, best.unit, best.J, ridge, weight)
+
+    def simulated(self, series: Sequence[Trial], theta: FloatArray | None = None) -> dict[str, TrialRecord]:
+        """Trials by id, with the columns ``theta`` of coefficients or the profile's."""
+        if not series:
+            return {}
+        integrator, backend = self.options.make_integrator(), self.options.backend
+        predictor = as_predictor(self.problem.model, theta=theta, integrator=integrator, backend=backend)
+        return {one.trial.id: one for one in evaluate(predictor, series)}
+
+    def without(self, out: Sequence[str], others: Sequence[str], hooks: Hooks) -> _Part | None:
+        """Fit to the others and meet those left out; None where it was stopped before its end."""
+        box, model, trials = self.problem.box, self.problem.model, self.trials
+        series = [trials.trials[name] for name in out if name in trials.trials]
+        indices = [trials.stated[name] for name in out if name in trials.stated]
+        runs = tuple(dict.fromkeys([*(one.run for one in series), *(one.run for one in indices)]))
+        hooks.on_phase(f"leaving out {', '.join(runs)}")
+        problem = make_problem(self.profile, trials, self.options, others).with_weight(self.problem.weight)
+        how: dict[str, Any] = {"ridge": self.ridge, "anchor": self.before, "stop": hooks.stop}
+        ends = solve(problem, self.best[:, None], tolerance=SETTLED * self.J, **how)
+        fitted = min(ends, key=lambda end: end.J + self.ridge * float(np.sum((end.unit - self.before) ** 2)))
+        if self.options.loss == "huber" and not hooks.stop():
+            problem, fitted = weigh_down(problem, fitted, self.ridge, self.before)
+        if hooks.stop():
+            return None
+        values = dict(zip(box.names, box.from_unit(fitted.unit).tolist(), strict=True))
+        theta = problem.theta(fitted.unit[:, None])
+        records = self.simulated(series, theta)
+        both = {"before": model.matrix()[:, 0], "left_out": theta[:, 0]}
+        stated = compare_stated(model, both, indices, dict.fromkeys(out, "tune"), self.options.backend)
+        repeated = {}
+        if self.asked.manoeuvres:
+            hooks.on_phase(f"repeating {', '.join(runs)}")
+            repeated = {one.id: one for one in repeat(model, _named(self.whole, series), theta=theta)}
+        return _Part(runs, values, records, repeated, stated)
 
 
 def _warnings(model: Model, targets: Sequence[str], trials: TrialSet, options: LeaveOutOptions) -> list[str]:

@@ -13,6 +13,7 @@ from ..backends import LaneModel
 from ..inputs import INPUTS
 from ..model import Model
 from ..networks.hybrid import Hybrid
+from ..phrases import listed
 from ..physics.kinematics import flow
 from ..physics.quantities import UNKNOWN
 from ..physics.rigid_body import accelerations
@@ -180,10 +181,10 @@ class Reading:
         sizes = [f"{_force(one.size, UNITS[one.component])} in {DIRECTIONS[one.component]}" for one in self.shares]
         parts = [_percent(one.share) for one in self.shares]
         said = [
-            f"The network adds {_listed(sizes)} (root mean square), which is {_listed(parts)} of the model's own force."
+            f"The network adds {listed(sizes)} (root mean square), which is {listed(parts)} of the model's own force."
         ]
         if self.classes:
-            where = _listed(
+            where = listed(
                 [
                     f"{one.words} ({_percent(one.force)} of it in {_percent(one.time)} of the time)"
                     for one in self.classes
@@ -333,11 +334,6 @@ def _force(value: float, unit: str) -> str:
         if value >= size:
             return f"{value / size:.3g} {prefix}{unit}"
     return f"{value:.3g} {unit}"
-
-
-def _listed(parts: Sequence[str]) -> str:
-    """Parts as a phrase."""
-    return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"
 
 
 def _percent(share: float) -> str:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..options import in_flags
+from ..phrases import listed
 from ..units import DEG, shown_in
 
 MINUS = "\u2212"
@@ -229,11 +230,7 @@ def unit_words(unit: Any) -> str:
 
 def listing(names: list[str], limit: int = 6) -> str:
     """Names as a phrase: "a, b and c", or the first few "and 4 more"."""
-    if len(names) > limit:
-        names = [*names[: limit - 1], f"{len(names) - limit + 1} more"]
-    if not names:
-        return "none"
-    return names[0] if len(names) == 1 else ", ".join(names[:-1]) + " and " + names[-1]
+    return listed(names, limit) or "none"
 
 
 _RUN = re.compile(r"(turn|zigzag)_([pm])(\d+(?:\.\d+)?)(?:_(\d+(?:\.\d+)?))?")

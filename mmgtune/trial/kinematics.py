@@ -218,7 +218,7 @@ def rounding_noise(values: FloatArray) -> float:
     known = values[np.isfinite(values)]
     found = np.unique(known)
     steps = np.diff(found)
-    steps = steps[steps > 1e-9 * np.max(np.abs(known), initial=0.0)]  # the same number, worked out in two ways
+    steps = steps[steps > 1e-12 * np.max(np.abs(known), initial=0.0)]  # the same number, worked out in two ways
     if not len(steps) or (len(found) < FEW_VALUES and len(known) < OFTEN * len(found)):
         return 0.0
     of = (found - found[0]) / np.min(steps)

@@ -1,10 +1,14 @@
 """Noise of sensors, estimated from what a fit of many numbers leaves of it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from mmgtune.diagnose.inputs import _rounded_off
 from mmgtune.diagnose.noise import ChannelNoise, NoiseModel, estimate
+from mmgtune.diagnose.workbench import noise_levels
+from mmgtune.trial import load_trials
 
 CHANNELS, RUNS, SAMPLES = 6, 4, 400
 TRUE = ChannelNoise(phi=0.96, fading=0.8, white=0.4)
@@ -83,3 +87,10 @@ def test_a_rudder_logged_in_whole_degrees_may_have_been_anywhere_between():
     assert np.std(left_out) == pytest.approx(1.0 / np.sqrt(12.0), rel=0.2)
     for exact in (angle, np.where(angle > 0.0, 35.0, -35.0)):
         assert not _rounded_off(exact, exact, drawn).any()
+
+
+def test_where_a_track_lies_and_whence_a_heading_counts_is_no_noise():
+    """Tracks on a national grid of millions of metres passed for noisy ones, by metres."""
+    here = list(load_trials("suzaku"))
+    there = [replace(one, x=one.x + 5.7e6, y=one.y + 4.2e5, psi=one.psi + 6.0 * np.pi) for one in here]
+    np.testing.assert_allclose(noise_levels(there), noise_levels(here), rtol=1e-3)
