@@ -45,7 +45,8 @@ def changes(
 
     The noise of revolutions and rudder angle is what second differences of the logs show; those far above it are bends.
     What a log in whole degrees leaves out stays the same for as long as it shows the same.
-    Where a wind blows it comes in gusts besides, and its force is of another shape.
+    Where a wind blows it comes in gusts besides, and its force is of another shape.  A run that diverges with them
+    changes nothing.
 
     offsets  (n_cases, 6) of the initial states
     updates  samples at which each input of each case was updated; None where all of them are
@@ -76,12 +77,13 @@ def changes(
     assert result.residuals is not None  # asked for
     changed = np.empty((problem.n_residuals, DRAWS))
     at = 0
-    for rows in problem.rows_of_cases:
+    for case, rows in enumerate(problem.rows_of_cases):
         n = rows.stop - rows.start
         runs = result.residuals[at : at + n * copies, 0].reshape(copies, n)
-        changed[rows] = (runs[1:] - runs[0]).T
+        lost = result.diverged[:, 0].reshape(-1, copies)[case]
+        changed[rows] = np.where(lost[1:] | lost[0], 0.0, (runs[1:] - runs[0]).T)
         at += n * copies
-    return np.where(np.isfinite(changed), changed, 0.0)
+    return changed
 
 
 def _otherwise(drawn: FloatArray, logged: FloatArray, n_samples: int, at: IntArray | None) -> FloatArray:

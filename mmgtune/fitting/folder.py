@@ -108,7 +108,7 @@ def claimed(folder: Path, *, force: bool = False, resume: bool = False) -> Itera
 
     Raises OutputError as ``prepare`` does, and where another run is writing there.
     """
-    made = not folder.exists()
+    made = [one for one in (folder, *folder.parents) if not one.exists()]
     if made:
         make_folder(folder)
     elif not folder.is_dir():
@@ -119,9 +119,9 @@ def claimed(folder: Path, *, force: bool = False, resume: bool = False) -> Itera
             remove_left_overs(folder)
             yield folder
         except BaseException:
-            if made:  # of a command that is refused no empty folder stays; it goes while nobody else can have it
-                with contextlib.suppress(OSError):
-                    folder.rmdir()
+            with contextlib.suppress(OSError):  # of a command that is refused no empty folder stays
+                for one in made:  # it goes while nobody else can have it
+                    one.rmdir()
             raise
 
 

@@ -20,6 +20,9 @@ INPUT, SEARCH, OUTPUT, REPRODUCE = "Input", "Search", "Output", "Reproducibility
 _KEY = "choice"
 _UNSET: Any = object()
 
+PERCENT = 2.0
+"""Least number that may have been meant in percent."""
+
 
 @dataclass(frozen=True)
 class Choice:
@@ -85,7 +88,11 @@ class Choice:
 
     def _fix(self, name: str, value: Any) -> str:
         most = self.most if self.most is not None and self.most <= 10.0 else 0.0
-        if isinstance(value, (int, float)) and most < value <= 100.0 * most and self.allows(value / 100.0):
+        if (
+            isinstance(value, (int, float))
+            and max(most, PERCENT) < value <= 100.0 * most
+            and self.allows(value / 100.0)
+        ):
             return f"did you mean {name}={value / 100.0:g}?"
         of = f" in {self.unit}" if self.unit else ""
         return f"give a number{of}, {' and '.join(self._limits)}"

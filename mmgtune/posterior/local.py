@@ -118,12 +118,14 @@ def make_windowed(
     theta = np.repeat(model.matrix(room.names, room.values(np.zeros((len(room), 1)))), 7, axis=1)
     found = backend.run(model, theta, cases, initial=started, integrator=integrator, keep_residuals=True)
     assert found.residuals is not None  # asked for
-    by_start = np.nan_to_num(found.residuals[:, 1:] - found.residuals[:, :1])
+    with np.errstate(invalid="ignore"):
+        by_start = found.residuals[:, 1:] - found.residuals[:, :1]
     whitened = []
-    for case in range(len(cases)):
+    for case, lost in enumerate(found.diverged):
         rows = cases.rows[case]
         rows = np.sort(rows[rows >= 0])
         if len(rows):
+            by_start[rows] = np.where(lost[1:] | lost[0], 0.0, by_start[rows])
             covariance = np.eye(len(rows)) + by_start[rows] @ by_start[rows].T
             whitened.append((rows, np.linalg.inv(np.linalg.cholesky(covariance))))
     return Windowed(room, model, tuple(trials), cases, sigma, tuple(whitened), backend, integrator)

@@ -30,6 +30,22 @@ def killed_while_writing(path):
     return part
 
 
+def stopped(note=None):
+    if note:
+        note.write_text("so far")
+    raise KeyboardInterrupt
+
+
+def test_of_a_refused_command_no_folder_stays_that_it_made(tmp_path):
+    (tmp_path / "mine").mkdir()
+    with pytest.raises(KeyboardInterrupt), claimed(tmp_path / "mine" / "runs" / "one"):
+        stopped()
+    assert list((tmp_path / "mine").iterdir()) == []
+    with pytest.raises(KeyboardInterrupt), claimed(tmp_path / "mine" / "runs" / "two") as own:
+        stopped(own / "journal")
+    assert (tmp_path / "mine" / "runs" / "two" / "journal").exists()
+
+
 def test_a_folder_belongs_to_one_run(tmp_path):
     second = claimed(tmp_path / "run", force=True)
     with claimed(tmp_path / "run"), pytest.raises(OutputError, match="another run is writing there"):

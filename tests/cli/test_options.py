@@ -14,7 +14,7 @@ from mmgtune import backends, options
 from mmgtune.cli import app
 from mmgtune.cli.options import RunOptions, parameters_of, problems_in_flags
 from mmgtune.errors import OptionError, Problem
-from mmgtune.options import FLAGS, FitOptions, choice, choices, in_flags
+from mmgtune.options import FLAGS, FitOptions, LearnOptions, choice, choices, in_flags
 from mmgtune.options.simulation import BACKENDS, INTEGRATORS
 from mmgtune.simulating import revolutions, rudder_angle
 from tests.command import run
@@ -127,6 +127,8 @@ def test_the_library_names_fields_and_the_command_line_flags(tmp_path):
     assert "--" not in str(found.value)
     said = "\n".join(map(str, problems_in_flags(found.value)))
     assert "did you mean --ar 0.5?" in said
+    with pytest.raises(OptionError, match=r"fix: give a number, 0 or more and 0\.8 or less"):  # 0.9 was no percent
+        LearnOptions(validation=0.9)
     assert "add --method least-squares" in said
     assert in_flags("add force=True, or choose.") == "add --force, or choose."
     assert in_flags('name some, such as targets="hull.Y_*"') == 'name some, such as --targets "hull.Y_*"'
