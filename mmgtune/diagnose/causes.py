@@ -85,14 +85,21 @@ class Cause:
 
 @dataclass(frozen=True, eq=False)
 class Trace:
-    """A cause that is statistically there, and without which a user would notice nothing."""
+    """A cause that is statistically there, and without which a user would notice nothing.
+
+    alike  tags of causes that these trials do not tell it from
+    """
 
     cause: Cause
     contribution: Contribution
+    alike: tuple[str, ...] = ()
 
     @property
     def sentence(self) -> str:
         """What it is, and why it is no more than that."""
+        if self.alike:
+            told = f"too little to be told: {' or '.join((self.cause.tag, *self.alike))}, or coefficients that are off"
+            return f"There is a trace of one more, {told}. If the first: {self.words[0].lower()}{self.words[1:]}."
         harmful = self.contribution.harmful
         why = "held-out trials are told no better with it" if harmful else "it changes nothing that would be noticed"
         return f"There is a trace of one more, left out as {why}: {self.words[0].lower()}{self.words[1:]}."
@@ -107,7 +114,12 @@ class Trace:
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
-        return {**self.cause.to_dict(), "sentence": self.words, "contribution": self.contribution.to_dict()}
+        return {
+            **self.cause.to_dict(),
+            "sentence": self.words,
+            "contribution": self.contribution.to_dict(),
+            "alike": list(self.alike),
+        }
 
 
 @dataclass(frozen=True)

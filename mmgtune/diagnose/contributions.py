@@ -50,6 +50,10 @@ HARDLY_SEEN = 0.005
 """Share of the fall of chi-squared up to which a cause has to remove more than ``FORM`` on held-out trials, and
 share of the error there up to which one that shows in a channel of its own may seem to add to others."""
 
+DOUBTFUL = 0.02
+"""Share of the fall of chi-squared, and of the error removed on held-out trials, up to which a cause that these trials
+do not tell from others is a trace: errors of coefficients that nobody tunes are as large, and look like several."""
+
 LEFT, OF_REST = 0.2, 0.9
 """Error beyond noise, as a share of it, that others must leave, and the share of that which a cause with one value for
 all must remove, for it to be no matter of their form: what a form leaves has no such shape."""
@@ -119,6 +123,12 @@ class Contribution:
         )
         return self.seen < SMALL and self.share < SHARE and max(self.channels.values()) < OF_NOISE and moved
 
+    @property
+    def little(self) -> bool:
+        """Whether it is so little that it is named only if it is told from all others."""
+        asked = self.channels is not None
+        return asked and max(self.seen, self.share) < DOUBTFUL and not (self.stands_out or self.whole)
+
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
         asked = self.channels is not None
@@ -132,12 +142,23 @@ class Contribution:
 
 @dataclass(frozen=True, eq=False)
 class Aside:
-    """A cause that was set aside as a trace, with what was known of it."""
+    """A cause that was set aside as a trace, with what was known of it, and the tags of those it is not told from."""
 
     hypothesis: Hypothesis
     estimates: Mapping[str, Estimate]
     p_value: float
     contribution: Contribution
+    alike: Sequence[str] = ()
+
+    @classmethod
+    def of(
+        cls, bench: Workbench, found: Found, cause: Hypothesis, brings: Contribution, alike: Sequence[str] = ()
+    ) -> Aside:
+        """One of the causes that were found."""
+        sizes = estimates(bench, found.final)
+        step = step_of(found, cause)
+        p_value = step.refits[0].p_value if step else 0.0
+        return cls(cause, {name: sizes[name] for name in cause.names}, p_value, brings, alike)
 
 
 def contributions(bench: Workbench, found: Found, unseen: Unseen) -> list[Contribution]:
@@ -182,10 +203,7 @@ def set_aside(
     while any(one.unnoticed for one in brought):
         k = min((i for i, one in enumerate(brought) if one.unnoticed), key=lambda i: brought[i].seen)
         cause = found.causes[k]
-        sizes = estimates(bench, found.final)
-        step = step_of(found, cause)
-        p_value = step.refits[0].p_value if step else 0.0
-        traces.append(Aside(cause, {name: sizes[name] for name in cause.names}, p_value, brought[k]))
+        traces.append(Aside.of(bench, found, cause, brought[k]))
         found.final = fewer[k] if fewer else without(bench, found.final, cause)
         del found.causes[k]
         fewer = _fewer(bench, found)

@@ -70,6 +70,7 @@ class Judge:
         brought  what each cause contributes
         """
         result = self._compared(self._judged(found, brought), found)
+        result, found = self._without_doubtful(result, found, brought)
         for causes, doubted in _fewer(result, found) if result.unclear and not self.hooks.stop() else []:
             fewer = with_only(self.bench, found, causes)
             brought = contributions(self.bench, fewer, self.unseen)
@@ -88,6 +89,29 @@ class Judge:
         if result.verdict == "none" and self.choice is None:
             self.hooks.on_phase("asking what re-tuning may stand for")
             result = replace(result, instead=instead_of_tuning(self.bench, found.base, self.asked))
+        return result, found
+
+    def _without_doubtful(
+        self, result: Diagnosis, found: Found, brought: Sequence[Contribution]
+    ) -> tuple[Diagnosis, Found]:
+        """The answer without what is little and not told from others, the least first, where it holds without."""
+        while result.groups and result.names_causes and len(found.causes) > 1 and not self.hooks.stop():
+            groups = {tag: others for tag, *others in result.groups}
+            doubtful = [
+                (one.seen, cause, one)
+                for cause, one in zip(found.causes, brought, strict=True)
+                if one.little and cause.tag in groups
+            ]
+            if not doubtful:
+                break
+            _, cause, brings = min(doubtful, key=lambda one: one[0])
+            fewer = with_only(self.bench, found, [one for one in found.causes if one is not cause])
+            brought = contributions(self.bench, fewer, self.unseen)
+            other = self._compared(self._judged(fewer, brought), fewer)
+            if not (other.names_causes and other.explains_nearly_all):
+                break
+            trace = _trace(self.bench, Aside.of(self.bench, found, cause, brings, groups[cause.tag]))
+            result, found = replace(other, traces=(*result.traces, trace)), fewer
         return result, found
 
     def _judged(self, found: Found, brought: Sequence[Contribution], doubted: Doubted | None = None) -> Diagnosis:
@@ -213,7 +237,7 @@ def _trace(bench: Workbench, aside: Aside) -> Trace:
     one = aside.hypothesis
     runs = ByRun.of(one.effect, one.variant, one.by, one.groups, bench.trials, aside.estimates) if one.by else None
     cause = Cause(one.tag, one.effect, {} if one.by else aside.estimates, aside.p_value, None, runs)
-    return Trace(cause, aside.contribution)
+    return Trace(cause, aside.contribution, tuple(aside.alike))
 
 
 def _candidates(bench: Workbench, found: Found, test: Sequence[Trial]) -> list[Candidate]:

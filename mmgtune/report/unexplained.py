@@ -50,7 +50,7 @@ def traces(data: Mapping[str, Any]) -> list[Block]:
         removed = found["share_held_out"]
         rows.append(
             cells(
-                clean(trace["sentence"]),
+                clean(" or ".join([trace["sentence"], *trace.get("alike", ())])),
                 NONE if removed is None else f"{100.0 * removed:.2g} %" if removed > 0.0 else "none",
                 _largest(found["error_over_noise"], 100.0, " %", {name: one.words for name, one in CHANNELS.items()}),
                 _largest(found["index_changes"], 1.0, "", {}),
