@@ -30,7 +30,7 @@ TABLES = {
     ),
     "log": ("format", "delimiter", "encoding", "decimal", "skip", "header", "fields", "missing", "sheet", "variable"),
     "trial": ("ship", "id", "manoeuvre", "group", "source", "note", "noise"),
-    "time": ("column", "format", "unit", "scale", "recover", "step"),
+    "time": ("column", "format", "unit", "header_says", "scale", "recover", "step"),
     "velocity": ("axes", "point", "shifted"),
     "antenna": ("x", "y"),
     "position": ("projection", "origin"),
@@ -47,6 +47,7 @@ class Source:
     column     name of the log's column, or its number counted from 1; None where ``value`` is given
     value      constant in the program's unit, None where a column is given
     unit       unit of the column, None where the log's header has to say it
+    header_says  another unit that the header says, and is wrong in
     positive   direction the log counts as positive, None where the map does not say
     zero       "north" or "east": where angles are counted from
     direction  "from" or "to", of wind, current and waves; None for other quantities
@@ -60,6 +61,7 @@ class Source:
     column: str | int | None = None
     value: float | None = None
     unit: str | None = None
+    header_says: str | None = None
     positive: str | None = None
     zero: str = "north"
     direction: str | None = None
@@ -77,6 +79,7 @@ class TimeSource:
     format   one of TIME_FORMATS; "date" where the dates have to show the order of day and month; None where the cells
              have to show it all
     unit     of numbers; None where the header has to say it
+    header_says  another unit that the header says, and is wrong in
     scale    factor on the log's time
     recover  "auto" (where stamps are found to be printed with too few digits), "uniform" (always) or "never"
     step     true time between samples [s], None where it is to be estimated
@@ -85,6 +88,7 @@ class TimeSource:
     column: str | int | None = None
     format: str | None = None
     unit: str | None = None
+    header_says: str | None = None
     scale: float = 1.0
     recover: str = "auto"
     step: float | None = None

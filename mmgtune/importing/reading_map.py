@@ -19,7 +19,7 @@ from .mapping import ASKS, FORMATS, PROJECTIONS, TABLES, TIME_FORMATS, Cut, LogM
 from .quantities import QUANTITIES, known_quantity, meaning, quantity_of
 
 SCHEMA = 1
-COLUMN_KEYS = ("column", "value", "unit", "positive", "zero", "direction", "scale", "offset", "recover")
+COLUMN_KEYS = ("column", "value", "unit", "header_says", "positive", "zero", "direction", "scale", "offset", "recover")
 RECOVER = {"x": ("print-resolution",), "y": ("print-resolution",), "psi": ("yaw-rate",)}
 """What a map may have made up for where few digits are printed."""
 MOST_COUNT = 1000
@@ -286,15 +286,12 @@ class _Reader(TomlReader):
 
     def time(self) -> TimeSource:
         table = self.table("time")
-        unit = canonical(table.get("unit"))
-        if unit is not None and unit not in units.factors("s"):
-            what = f"unit of time is {brief(table['unit'])}"
-            self.problem(what, "time", "unit", fix=f"one of: {', '.join(units.factors('s'))}")
         recover = self.choice("time", table, "recover", ("auto", "uniform", "never")) or "auto"
         return TimeSource(
             column=self.column("time", table),
             format=self.choice("time", table, "format", TIME_FORMATS),
-            unit=unit,
+            unit=self.unit("time", "time", table, "unit", "s"),
+            header_says=self.unit("time", "time", table, "header_says", "s"),
             scale=self.number("time", table, "scale", 1.0),
             recover=recover,
             step=self.quantity("time", "step", "s", least=0.0),
@@ -324,20 +321,23 @@ class _Reader(TomlReader):
                 found[name] = self.one(name, where, table)
         return found
 
+    def unit(self, name: str, where: str, table: dict[str, Any], key: str, target: str) -> str | None:
+        """A unit of what has another, as the program writes it; None where none is said."""
+        found, known = canonical(table.get(key)), units.factors(target)
+        if found is None or found in known:
+            return found
+        of = f"unit of {'time' if name == 'time' else repr(name)}"
+        self.problem(f"{of} is {brief(table[key])}", where, key, fix=f"one of: {', '.join(known)}")
+        return None
+
     def one(self, name: str, where: str, table: dict[str, Any]) -> Source:
         quantity = known_quantity(name)
         self.unknown(where, table, COLUMN_KEYS)
-        known = units.factors(quantity.unit)
-        unit = canonical(table.get("unit"))
-        if unit is not None and unit not in known:
-            fix = f"one of: {', '.join(known)}"
-            self.problem(f"unit of '{name}' is {brief(table['unit'])}", where, "unit", fix=fix)
-            unit = None
         for key, can in (("positive", quantity.positive), ("zero", quantity.origin), ("direction", quantity.points)):
             if key in table and not can:
                 self.problem(f"'{where}.{key}' has no meaning for {meaning(name)}", where, key, fix="remove it")
         value = self.parsed(where, "value", table["value"], quantity.unit) if "value" in table else None
-        if "value" in table and set(table) & {"column", "unit", "scale", "positive", "zero", "offset", "recover"}:
+        if "value" in table and set(table) & {*COLUMN_KEYS} - {"value", "direction"}:
             fix = "a constant is its value with a unit, in the trial format's conventions; nothing else"
             self.problem(f"'{where}' has a value and keys of a column", where, "value", fix=fix)
         offset = self.parsed(where, "offset", table["offset"], quantity.unit) if "offset" in table else 0.0
@@ -355,7 +355,8 @@ class _Reader(TomlReader):
         return Source(
             column=self.column(where, table),
             value=value,
-            unit=unit,
+            unit=self.unit(name, where, table, "unit", quantity.unit),
+            header_says=self.unit(name, where, table, "header_says", quantity.unit),
             positive=self.choice(where, table, "positive", quantity.positive) if quantity.positive else None,
             zero=(self.choice(where, table, "zero", ("north", "east")) if quantity.origin else None) or "north",
             direction=direction,

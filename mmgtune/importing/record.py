@@ -13,7 +13,7 @@ from ..errors import LogError, Problem
 from ..trial.schema import impossible
 from .digits import print_step, within_digits
 from .headers import unit_in
-from .mapping import LogMap, Source
+from .mapping import LogMap, Source, TimeSource
 from .quantities import AGAINST, known_quantity, meaning
 from .table import TIME, Table
 
@@ -94,24 +94,25 @@ def time_in_seconds(table: Table, log_map: LogMap) -> FloatArray:
     source = log_map.time
     if table.clock:
         return table.t * source.scale
-    unit = unit_of(TIME, table, source.unit, "s", table.t, f"{log_map.path}, [time]")
+    unit = unit_of(TIME, table, source, "s", table.t, f"{log_map.path}, [time]")
     return table.t * (units.factors("s")[unit] * source.scale)
 
 
-def unit_of(name: str, table: Table, stated: str | None, target: str, values: FloatArray, place: str) -> str:
+def unit_of(name: str, table: Table, source: Source | TimeSource, target: str, values: FloatArray, place: str) -> str:
     """The unit a column is written in, from the map or the log's header.
 
     Raises LogError where neither says it, with the question to answer, and where they contradict each other.
     """
     if name in table.stated:
         return table.stated[name]
-    header = table.headers[name]
+    header, stated = table.headers[name], source.unit
     known = units.factors(target)
     printed = unit_in(header)
     printed = printed if printed in known else None
-    if stated and printed and stated != printed:
+    if stated and printed and printed not in (stated, source.header_says):
         what = f"the map says '{header}' is in {stated}, its header says {printed}"
-        raise LogError(Problem(what, place, "one of them is wrong", "correct the map's unit, or remove it"))
+        fix = f'correct the map\'s unit or remove it; if the header is wrong, add header_says = "{printed}"'
+        raise LogError(Problem(what, place, "one of them is wrong", fix))
     if stated or printed:
         return str(stated or printed)
     finite = values[np.isfinite(values)]
@@ -155,7 +156,7 @@ def record_of(table: Table, log_map: LogMap, t: FloatArray, rows: slice) -> Reco
             problems.append(Problem("the column has no numbers at all", place, why, fix))
             continue
         try:
-            unit = unit_of(name, table, source.unit, known_quantity(name).unit, values, log_map.place(name))
+            unit = unit_of(name, table, source, known_quantity(name).unit, values, log_map.place(name))
             printed = possible(name, values[rows], source, unit, table, notes)
         except LogError as error:
             problems += error.problems

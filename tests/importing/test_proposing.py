@@ -21,6 +21,9 @@ from .made import MAP, close, imported, logged, nmea, refusal, suzaku, turn, wri
 DATA = Path(os.environ.get("MMGTUNE_DATA", Path(__file__).parents[2].parent / "shared" / "data"))
 
 
+LOG = Path(__file__).parents[2] / "docs" / "tutorial" / "logs" / "turn_p35.csv"
+
+
 def needs(name):
     """Skip where measured data are not at hand, and say so."""
     reason = f"no measured data at {DATA / name}; MMGTUNE_DATA names the folder they are in"
@@ -54,6 +57,45 @@ def test_disguises_of_measured_trials(tmp_path, name):
     score, same = judged(disguised(rng, [logs[k] for k in rng.permutation(len(logs))[:3]], tmp_path))
     assert same is not False, score.wrong
     assert score.ends["right"] >= 0.9 * score.ends.total(), score.wrong
+
+
+@pytest.mark.parametrize(
+    ("column", "as_logged", "quantity", "unit"),
+    [
+        ("HDG [deg]", np.radians, "psi", "rad"),
+        ("ROT [deg/min]", lambda of: of / 60.0, "r", "deg/s"),
+        ("SOG [kn]", lambda of: of * KNOT, "sog", "m/s"),
+        ("COG [deg]", np.radians, "cog", "rad"),
+        ("Time [s]", lambda of: of * 1000.0, "t", "ms"),
+        ("Time [s]", lambda of: of / 60.0, "t", "min"),
+    ],
+)
+def test_a_unit_that_a_name_says_and_the_motion_refutes(tmp_path, column, as_logged, quantity, unit):
+    """The course was taken for the heading, surely, where that was logged in radians under "deg"."""
+    log = pd.read_csv(LOG, skiprows=2)
+    stamps = pd.to_datetime(log.pop("UTC"))
+    log.insert(0, "Time [s]", (stamps - stamps[0]).dt.total_seconds())
+    log.to_csv(tmp_path / "plain.csv", index=False)
+    log[column] = as_logged(log[column])
+    log.to_csv(tmp_path / "log.csv", index=False)
+    plain, proposal = propose_map([tmp_path / "plain.csv"]), propose_map([tmp_path / "log.csv"])
+    assert proposal.asks == proposal.problems == ()
+    guess = proposal.guesses[quantity]
+    assert (guess.keys["unit"], guess.confidence) == (unit, "likely")
+    assert guess.keys["header_says"] == column.partition("[")[2].rstrip("]")
+    rest = [name for name in plain.guesses if name != quantity]
+    assert {name: proposal.guesses[name].keys for name in rest} == {name: plain.guesses[name].keys for name in rest}
+    (trial,) = import_logs([tmp_path / "log.csv"], proposal.map(), ".", dry_run=True).trials
+    (usual,) = import_logs([tmp_path / "plain.csv"], plain.map(), ".", dry_run=True).trials
+    np.testing.assert_allclose(trial.t, usual.t, atol=1e-6)
+    np.testing.assert_allclose(trial.motion, usual.motion, rtol=1e-4, atol=1e-4)
+
+
+def test_a_course_that_is_taken_for_the_heading_is_said_to_be(tmp_path):
+    pd.read_csv(LOG, skiprows=2).drop(columns=["HDG [deg]", "ROT [deg/min]"]).to_csv(tmp_path / "log.csv", index=False)
+    proposal = propose_map([tmp_path / "log.csv"])
+    assert proposal.guesses["psi"].confidence == "likely"
+    assert any("no heading is found: 'COG [deg]'" in note for note in proposal.notes)
 
 
 def test_a_wrong_map_makes_other_trials(tmp_path):

@@ -19,6 +19,7 @@ class Clock:
 
     format  of dates and clocks, "" for numbers; unit of numbers, "" where it is not known
     score   how much speaks for it; words: what does
+    by_name whether its name or header says the unit
     """
 
     column: int
@@ -26,6 +27,7 @@ class Clock:
     unit: str
     score: float
     words: str
+    by_name: bool = False
 
 
 def clocks(sample: Sample, said: Sequence[str], units_said: Sequence[str]) -> list[Clock]:
@@ -52,7 +54,8 @@ def clocks(sample: Sample, said: Sequence[str], units_said: Sequence[str]) -> li
         score = 0.6 + named + 0.1 * (k == 0) - min(1.0, 3.0 * uneven)
         # Numbers of rows count by one.
         score -= 0.2 * bool(np.all(steps == 1.0) and k > 0 and not named)
-        found.append(Clock(k, "", unit, score, f"it grows steadily, by {usual:.4g} a row{words}"))
+        by_name = units_said[k] in units.factors("s")
+        found.append(Clock(k, "", unit, score, f"it grows steadily, by {usual:.4g} a row{words}", by_name))
     return sorted(found, key=lambda one: -one.score)
 
 
@@ -81,9 +84,10 @@ def in_seconds(sample: Sample, clock: Clock, unit: str) -> FloatArray:
 
 
 def likely_units(sample: Sample, clock: Clock) -> tuple[str, ...]:
-    """Units in which a log would have a usual rate, the usual one first."""
-    if clock.format or clock.unit:
+    """Units in which a log would have a usual rate, the usual one first; before all the one that its name says."""
+    if clock.format or (clock.unit and not clock.by_name):
         return (clock.unit or "s",)
     steps = np.diff(sample.numbers[clock.column])
     step = float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else 1.0
-    return tuple(one for one in ("s", "ms", "min", "h") if 0.004 < step * units.factors("s")[one] < 130.0) or ("s",)
+    usual = [one for one in ("s", "ms", "min", "h") if 0.004 < step * units.factors("s")[one] < 130.0]
+    return tuple(dict.fromkeys([*([clock.unit] if clock.unit else []), *usual])) or ("s",)

@@ -25,6 +25,8 @@ def position_and_heading(find: Finder) -> None:
     scale = [units.factors("m").get(find.units_said[k], 1.0) for k in range(len(find.first.names))]
     candidates_ = [k for k in find.numeric if find.said[k] not in (ORDER, OTHER, ROLL, TIME)]
     for unit in likely_units(find.first, find.clock):
+        if unit != find.clock.unit and find.clock.unit and best and best[0] > 2.0:
+            break  # with the unit that the name says rates or velocities agree
         windows = [
             Windows(in_seconds(one, find.clock, unit), [n * f for n, f in zip(one.numbers, scale, strict=True)])
             for one in find.samples
@@ -35,9 +37,7 @@ def position_and_heading(find: Finder) -> None:
             if not w.enough:
                 continue
             for track, (score, word) in tracks(w, sample, find.said, candidates_).items():
-                if find.units_said[track.psi] in ("deg", "rad") and (
-                    (find.units_said[track.psi] == "deg") != track.degrees
-                ):
+                if find.said[track.psi] != "psi" and _against_its_name(find, track):
                     continue
                 scores[track] += score
                 words.setdefault(track, word)
@@ -59,6 +59,11 @@ def position_and_heading(find: Finder) -> None:
     mirrored = max((v for one, v in scores.items() if one.left != track.left and one.psi == track.psi), default=0.0)
     clear = scores[track] > 1.1 * rival
     confidence = SURE if clear and scores[track] > 0.45 * len(find.looks) else LIKELY
+    if find.said[track.psi] == "cog":  # that the course follows the course is no evidence
+        find.notes.append(
+            f"no heading is found: {find.shown(track.psi)}, the course over ground, is taken for it, which lacks the "
+            "drift angle of a ship that turns"
+        )
     unit = next((find.units_said[k] for k in (track.x, track.y) if find.units_said[k] in units.factors("m")), "")
     keys = keys_of(track, find.first, unit or "m")
     speed = np.median([one.usual_speed for one in find.looks])
@@ -69,11 +74,15 @@ def position_and_heading(find: Finder) -> None:
             said = [words.get(track, "the course follows it")]
             if find.units_said[column] == own["unit"]:
                 said.append(f"its name says {own['unit']}")
+            elif _against_its_name(find, track):
+                own |= {"header_says": find.units_said[column]}
+                said.append(f"it is in {own['unit']}, although its name says {find.units_said[column]}")
         elif find.said[column] == quantity:
             said.append("its name says so")
         if column in find.first.written:
             said.append("its cells are in degrees and minutes")
-        find.add(Guess(quantity, column, own, tuple(said), confidence))
+        doubtful = quantity == "psi" and (find.said[column] == "cog" or _against_its_name(find, track))
+        find.add(Guess(quantity, column, own, tuple(said), LIKELY if doubtful else confidence))
     if (
         not track.geographic
         and not {find.said[track.x], find.said[track.y]} & {"x", "y"}
@@ -82,23 +91,33 @@ def position_and_heading(find: Finder) -> None:
         find.notes.append("no motion shows its mirror image: y is taken to the east and the heading clockwise")
 
 
+def _against_its_name(find: Finder, track: Track) -> bool:
+    """Whether a heading is in the other unit than its name says."""
+    unit = find.units_said[track.psi]
+    return unit in ("deg", "rad") and (unit == "deg") != track.degrees
+
+
 def fits(find: Finder, scores: Mapping[Track, float], windows: Sequence[Windows]) -> float:
-    """1 where rates and velocities are what they must be with the likeliest track, else 0."""
+    """Of the yaw rate and the velocities how many are what they must be with the likeliest track."""
     if not scores:
         return 0.0
     track = max(scores, key=lambda one: scores[one])
+    rate = speed = False
     for sample, w in zip(find.samples, windows, strict=True):
         if not w.enough:
             continue
         look = Look(sample, w, track)
         among = [k for k in find.numeric if k not in (track.x, track.y, track.psi)]
-        if yaw_rates(look, among, find.units_said):
-            return 1.0
+        rate = rate or bool(yaw_rates(look, among, find.units_said))
         found = velocities(look, among, find.units_said)
         ahead = speeds(look, look.ahead, among, find.units_said, False)
-        if (found and found[0].miss < FITS) or (ahead and ahead[0].miss < 0.5 * FITS):
-            return 1.0
-    return 0.0
+        along = speeds(look, look.speed, [k for k in among if find.said[k] == "sog"], find.units_said, False)
+        misses = (
+            [one.miss for one in found[:1]] + [one.miss for one in along[:1]] + [2.0 * one.miss for one in ahead[:1]]
+        )
+        best = min(misses, default=FITS)
+        speed = speed or best < FITS
+    return float(rate) + float(speed)
 
 
 def _better_heading(find: Finder, scores: Mapping[Track, float], windows: Sequence[Windows]) -> Track:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from ... import units
 from ...errors import LogError, Problem
 from .clocks import Clock
-from .guess import Guess
+from .guess import LIKELY, SURE, Guess
 from .look import Look
 from .sampling import Sample
 from .words import ordered, plain, quantity_named, unit_named
@@ -28,6 +29,7 @@ class Finder:
     """One pass over logs of one kind.
 
     said, units_said  (n_columns,) what names say: a quantity, a unit
+    units_wrong       units that names say and behaviour refutes, by column; ``units_said`` has "" there
     guesses           by quantity, in the order they were found; guess_t: time, before its unit is known
     used, numeric     columns that are something already, and those whose behaviour can be looked at
     looks             logs whose motion is known; unit: of time; axes: of the velocities
@@ -55,6 +57,7 @@ class Finder:
         if {"n", "e"} <= set(letters):
             self.said[letters["n"]], self.said[letters["e"]] = "x", "y"
         self.units_said = [unit_named(name, row) for name, row in zip(self.first.names, below, strict=True)]
+        self.units_wrong: dict[int, str] = {}
         self.guesses: dict[str, Guess] = {}
         self.used: set[int] = set()
         self.notes: list[str] = []
@@ -71,7 +74,9 @@ class Finder:
         return self.first.shown(k)
 
     def add(self, guess: Guess) -> None:
-        """Take a guess, whose column is then nothing else."""
+        """Take a guess, whose column is then nothing else; a name that is wrong in its unit leaves a doubt."""
+        if "header_says" in guess.keys and guess.confidence == SURE:
+            guess = replace(guess, confidence=LIKELY)
         self.guesses[guess.quantity] = guess
         if guess.column is not None:
             self.used.add(guess.column)
@@ -94,6 +99,8 @@ class Finder:
         known = units.factors(kind)
         if said and units.factors(kind).get(said) == known[seen]:
             return {"unit": said}, "; its name says so too"
+        if wrong := self.units_wrong.get(k):
+            return {"unit": seen, "header_says": wrong}, f", although its name says {wrong}"
         return {"unit": seen}, ""
 
 

@@ -11,6 +11,7 @@ from .find_time import time
 from .find_track import position_and_heading
 from .find_wind import wind
 from .finder import Finder
+from .misnamed import doubt_units
 from .sampling import Sample
 
 
@@ -20,6 +21,7 @@ def found_in(samples: Sequence[Sample]) -> Finder:
     time(find)
     position_and_heading(find)
     if find.looks:
+        doubt_units(find)
         yaw_rate(find)
         velocity(find)
         wind(find)

@@ -73,9 +73,8 @@ def table_of_guesses(guesses: Mapping[str, Guess], sample: Sample) -> list[tuple
     for quantity in ("t", *_in_order(guesses)):
         guess = guesses[quantity]
         column = "-" if guess.column is None else sample.shown(guess.column)
-        counts = ", ".join(
-            str(one) for key, one in guess.keys.items() if key != "column" and not str(one).startswith("?")
-        )
+        told = [str(one) for key, one in guess.keys.items() if key not in ("column", "header_says")]
+        counts = ", ".join(one for one in told if not one.startswith("?"))
         rows.append((quantity, column, counts, guess.confidence, "; ".join(guess.evidence)))
     return rows
 
