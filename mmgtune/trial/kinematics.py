@@ -20,6 +20,9 @@ IN_DEGREES = "with the heading in degrees"
 TO_PORT = "with v positive to port"
 SWAPPED = "with x east and y north"
 IN_KNOTS = "with velocities in knots"
+NOT_KNOTS = "with velocities that were in m/s before they were taken for knots"
+TO_WEST = "with y positive west"
+TWICE = "with a heading that was in radians before it was taken for degrees"
 FITS = 0.1
 """Share of the distance run by which velocities may miss the positions."""
 
@@ -150,8 +153,40 @@ def position_misfits(columns: Mapping[str, FloatArray]) -> dict[str, float]:
         IN_DEGREES: ways.rotated(psi * DEG, v),
         SWAPPED: ways.rotated(psi, v)[:, ::-1],
         IN_KNOTS: ways.rotated(psi, v, KNOT),
+        NOT_KNOTS: ways.rotated(psi, v, 1.0 / KNOT),
+        TO_WEST: ways.rotated(psi, v) * [1.0, -1.0],
+        TWICE: ways.rotated(psi / DEG, v),
     }
     return {name: ways.misfit(steps) for name, steps in readings.items()}
+
+
+OFF = 0.05
+"""Share by which factors of time may differ that are one."""
+
+TIMES = {
+    "min": 60.0,
+    "h": 3600.0,
+    "d": 86400.0,
+    "ms": 1e-3,
+    "sixtieths of a second": 1.0 / 60.0,  # seconds that were taken for minutes
+}
+"""Units of time [s] that a log may be in."""
+
+
+def time_unit(columns: Mapping[str, FloatArray]) -> str:
+    """The unit that time is in, of ``TIMES``, where both the yaw rate and the velocities say so; else "".
+
+    Needs t, x, y, psi, u, v and r, (n_samples,) each.
+    """
+    turned = turning(columns)
+    if turned.ratio <= 0.0 or abs(turned.correlation) < 0.9:
+        return ""
+    for unit, seconds in TIMES.items():
+        if abs(np.log(turned.ratio / seconds)) < OFF:
+            ways = _ways({**columns, "t": seconds * columns["t"]})
+            if ways is not None and ways.misfit(ways.rotated(ways.psi, ways.v)) < FITS:
+                return unit
+    return ""
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,11 @@ from .kinematics import (
     IN_DEGREES,
     IN_EARTH_AXES,
     IN_KNOTS,
+    NOT_KNOTS,
     SWAPPED,
     TO_PORT,
+    TO_WEST,
+    TWICE,
     lever_of,
     position_misfits,
     turning,
@@ -39,7 +42,10 @@ MENDED = {
     IN_EARTH_AXES: "turn 'u' and 'v' into ship axes: u cos(psi) + v sin(psi) and v cos(psi) - u sin(psi)",
     TO_PORT: "change the sign of 'v': positive to starboard",
     SWAPPED: "swap 'x' and 'y': x is north and y is east",
-    IN_KNOTS: "multiply 'u' and 'v' by 0.5144: they are in m/s",
+    IN_KNOTS: "multiply 'u' and 'v' by 0.5144: they are to be in m/s",
+    NOT_KNOTS: "divide 'u' and 'v' by 0.5144: they are in m/s without it",
+    TO_WEST: "change the sign of 'y': positive east",
+    TWICE: "multiply 'psi' by 180/pi: it is in radians then",
 }
 """What makes of a reading that fits the one that is asked for."""
 

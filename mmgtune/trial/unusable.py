@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import Problem, closest
-from .kinematics import FITS, IN_DEGREES, position_misfits, turning
+from .kinematics import FITS, IN_DEGREES, TIMES, position_misfits, time_unit, turning
 from .raw_logs import import_commands
 from .schema import (
     COLUMNS,
@@ -42,7 +42,7 @@ def unusable(columns: Mapping[str, FloatArray], where: str, reported: Collection
         problems += _time(columns, where) + _values(columns, where) + _rudder(columns, where)
         problems += _dead(columns, where)
         damaged = any(impossible(values, _unit(name)).any() for name, values in columns.items())
-        return problems if damaged else problems + in_degrees(columns, where)
+        return problems if damaged else problems + (_other_time(columns, where) or in_degrees(columns, where))
 
 
 def too_short(samples: int, where: str) -> Problem:
@@ -227,6 +227,19 @@ def _dead(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
         return []
     why = "speeds and revolutions are 0 and nothing changes from the first sample to the last"
     return [Problem("nothing moves in the whole trial", where, why, "export the columns again, or leave the file out")]
+
+
+def _other_time(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
+    """Time in another unit than seconds, told by yaw rate and velocities at once."""
+    if not {"t", "x", "y", "psi", "u", "v", "r"} <= set(columns) or not increasing(columns["t"]):
+        return []
+    unit = time_unit(columns)
+    if not unit:
+        return []
+    factor = TIMES[unit]
+    why = f"heading and positions change {factor:.3g} times as much in a second as 'r', 'u' and 'v' say"
+    fix = f"multiply 't' by {factor:g}" if factor > 1.0 else f"divide 't' by {1.0 / factor:g}"
+    return [Problem(f"'t' is in {unit}, not s", f"{where}, column 't'", why, fix)]
 
 
 def in_degrees(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:

@@ -20,6 +20,24 @@ def as_degrees(values: Any) -> Any:
     return values / DEG
 
 
+@pytest.mark.parametrize("seed", [None, 1])
+@pytest.mark.parametrize("zigzag", [False, True])
+@pytest.mark.parametrize(
+    ("factor", "unit", "fix"),
+    [
+        (1.0 / 60.0, "min", "multiply 't' by 60"),
+        (1.0 / 3600.0, "h", "multiply 't' by 3600"),
+        (1000.0, "ms", "divide 't' by 1000"),
+        (60.0, "sixtieths of a second", "divide 't' by 60"),
+    ],
+)
+def test_time_that_is_not_in_seconds(factor: float, unit: str, fix: str, zigzag: bool, seed: int | None) -> None:
+    """Times in minutes made a yaw rate in degrees of one in rad/s, by a factor of 60."""
+    trial = made(seed=seed, zigzag=zigzag)
+    (error,) = [one for one in check_trial(replace(trial, t=trial.t * factor)) if one.severity == "error"]
+    assert (error.what, error.fix) == (f"'t' is in {unit}, not s", fix)
+
+
 @pytest.mark.parametrize("seed", [None, 1, 2])
 @pytest.mark.parametrize("kind", [{}, {"zigzag": True}, {"angle": -35 * DEG}, {"angle": 0.0}, {"speed": 0.0}])
 def test_good_trials_have_no_errors_and_no_warnings(kind: dict[str, Any], seed: int | None) -> None:
