@@ -54,17 +54,27 @@ class Cause:
         """Whether the interval of any of its parameters leaves out the value at which it is absent."""
         if self.effect is None or not self.estimates:
             return True
-        fields = [*self.effect.parameters.items()]
-        directions = {name for (_, before), (name, _) in pairwise(fields) if before.chart == "polar"}
-        nulls = {name: field.null for name, field in fields if name not in {*directions, *self.effect.form}}
-        known = {name.rpartition(".")[2]: one for name, one in self.estimates.items()}
+        nulls = {name: self.effect.parameters[name].null for name in self._sizes}
         return any(
             not (-math.inf if one.low is None else one.low)
             <= nulls[name]
             <= (math.inf if one.high is None else one.high)
-            for name, one in known.items()
-            if name in nulls
+            for name, one in self._sizes.items()
         )
+
+    @property
+    def _sizes(self) -> dict[str, Estimate]:
+        """Estimates by name, but those of directions and of the form of the effect."""
+        fields = [*self.effect.parameters.items()] if self.effect else []
+        directions = {name for (_, before), (name, _) in pairwise(fields) if before.chart == "polar"}
+        named = {name for name, _ in fields} - directions - set(self.effect.form if self.effect else ())
+        known = {name.rpartition(".")[2]: one for name, one in self.estimates.items()}
+        return {name: one for name, one in known.items() if name in named}
+
+    @property
+    def at_ends(self) -> bool:
+        """Whether all its sizes are at the ends of their ranges: another cause may be what would take them further."""
+        return self.runs is None and bool(self._sizes) and all(one.at_end for one in self._sizes.values())
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON; values in the unit named, interval ends null where infinite."""

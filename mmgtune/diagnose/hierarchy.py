@@ -20,6 +20,9 @@ STEPS = 24
 ROUGHLY = 8
 """The same for simulated data, of which there are thousands."""
 
+ROUNDING = 1e-13
+"""Share of the largest variance of noise below which another one is not told from none."""
+
 SAME = 1e-7
 """Directions shorter than this share of the longest are numerical noise."""
 
@@ -49,7 +52,9 @@ class Hierarchy:
     """
 
     def __init__(self, shown: FloatArray, noise: FloatArray, n_parameters: int):
-        self._whiten = np.linalg.inv(np.linalg.cholesky(noise))
+        variances, axes = np.linalg.eigh(noise)
+        # What one log of the inputs leaves open may be so much that the rest drowns in rounding.
+        self._whiten = (axes / np.sqrt(np.maximum(variances, ROUNDING * variances[-1]))).T
         A = self._whiten @ shown
         self._A = A
         self._X = np.tile(np.eye(n_parameters), (A.shape[1] // n_parameters, 1))

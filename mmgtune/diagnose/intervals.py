@@ -15,6 +15,9 @@ from .workbench import Point, Workbench
 NORMAL = 1.96
 """Deviations either side of a 95 % interval."""
 
+AT_END = 0.01
+"""Share of an interval on one side of its value from which that is at an end of its range."""
+
 OF_BOX = 1.0 / 12.0
 """Variance of what may be anywhere in a box, over the square of its width."""
 
@@ -32,6 +35,13 @@ class Estimate:
     high: float | None
     stderr: float | None
     apart: float | None = None
+
+    @property
+    def at_end(self) -> bool:
+        """Whether the value is at an end of its range, which its interval ends with."""
+        if self.low is None or self.high is None or not self.low < self.high:
+            return False
+        return min(self.value - self.low, self.high - self.value) < AT_END * (self.high - self.low)
 
 
 def estimates(bench: Workbench, point: Point) -> dict[str, Estimate]:

@@ -65,6 +65,9 @@ GUSTS_LEAVE, OF_WIND = 4.0, 0.15
 """Variance beyond noise that gusts of a wind that was found would have to account for, and share of chi-squared before
 it that it leaves, from which it is no wind: gusts and another shape of the force leave less than that of its work."""
 
+LEFT_AT_END = 1.0
+"""Variance beyond noise, as a share of it, from which a single cause at the end of its range is not believed."""
+
 NEEDED = 0.15
 """Share of the fall of chi-squared that the terms of a sum must lose, one left out at a time, all added up."""
 
@@ -202,6 +205,8 @@ class Diagnosis(Plotted):
             return "it leaves far more than noise, and more than gusts of such a wind would"
         unsized = [cause.tag for cause in self.causes if not cause.sized]
         not_told = f"how large {' and '.join(unsized)} would be is not told" if unsized else ""
+        if len(brought) == 1 and self.causes[0].at_ends and self.leftover.unknown > LEFT_AT_END:
+            return "its size is at the end of its range, and it leaves more than noise"
         if len(brought) < 2:
             return not_told if self.gain.share_removed[0] < TOLD else ""
         if self.more or len(brought) >= TOO_MANY:

@@ -31,7 +31,7 @@ from .judging import Judge
 from .leftover import leftover
 from .legs import LEG_NAMES, Difference, differences
 from .narrow import narrow_box
-from .result import Diagnosis
+from .result import TOLD, Diagnosis
 from .search import search
 from .together import Together
 from .unseen import Unseen
@@ -86,7 +86,8 @@ def diagnose(
 def _settled(alone: Diagnosis, of_all: Diagnosis) -> Diagnosis:
     """Of an answer that does not tell the trials kept for testing and that of all together, the one to give.
 
-    A cause that the others show stays, unless all together show one that tells what is held out better.
+    A cause that the others show stays if it tells most of the error of those, unless all together show one that tells
+    what is held out better.
     """
     if of_all.interrupted:
         return replace(alone, interrupted=True)
@@ -94,7 +95,7 @@ def _settled(alone: Diagnosis, of_all: Diagnosis) -> Diagnosis:
     together = Together.of(alone.gain, effects, believed=alone.names_causes, settled=True)
     settled = replace(of_all, together=together)
     better = settled.names_causes and of_all.gain.share_removed[0] > alone.gain.share_removed[0]
-    if better or not alone.names_causes:
+    if better or not alone.names_causes or alone.gain.share_removed[0] < TOLD:
         return settled
     return replace(alone, together=replace(together, settled=False))
 
