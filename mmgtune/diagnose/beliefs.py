@@ -19,8 +19,8 @@ from ..effects import Effect
 from ..fitting.box import Box, base_of, choose_targets
 from ..model import Model
 
-PATTERNS = ("hull.*", "wake.*", "particulars.m_x_", "particulars.m_y_", "particulars.k_zz_")
-"""What has leeway: forces of the hull, its wake, and mass and inertia with what moves along of the water."""
+PATTERNS = ("hull.*", "wake.C_*", "particulars.m_x_", "particulars.m_y_", "particulars.k_zz_")
+"""What has leeway: forces of the hull, how its wake changes, mass and inertia with what moves along of the water."""
 
 
 @dataclass(frozen=True)

@@ -69,14 +69,14 @@ def test_what_is_left_of_noise_and_leeway_together_has_variance_one():
     np.testing.assert_allclose(spread, np.eye(40) - Q @ Q.T, atol=1e-8)
 
 
-@pytest.mark.parametrize("name", ["suzaku", "esso_osaka", "esso_osaka_3m", "vectwin_3m"])
+@pytest.mark.parametrize("name", ["suzaku", "kvlcc2", "esso_osaka", "esso_osaka_3m", "vectwin_3m"])
 def test_nothing_that_is_tuned_or_held_has_leeway(name):
     profile = load_profile(name)
     loose = let_go(Model(profile), profile.targets, ("N_v",))
     assert not set(loose) & {*profile.targets, "hull.N_v"}
     assert all(profile.value(one) != 0.0 for one in loose)
     kinds = {one.partition(".")[0] for one in loose}
-    assert kinds <= {"hull", "particulars"}
+    assert kinds <= {"hull", "particulars", "wake"}
 
 
 def test_no_leeway_is_nothing_beside_the_targets(suzaku):
@@ -99,3 +99,10 @@ def test_limits_of_detection_are_those_of_a_hull_that_follows(sailed):
         typical, _ = (np.linalg.norm(look) for look in linear.looks([depth]))
     assert apart[0.05] < 0.5 * typical  # what is left of a large change because it bends does not count
     assert apart[0.05] < 0.1 * apart[0.0]
+
+
+def test_a_wake_a_little_off_is_no_hull_term():
+    """The tanker tunes two coefficients of her wake of five: errors of the others were N_r|r|, or a memory."""
+    loose = let_go(Model(load_profile("kvlcc2")), load_profile("kvlcc2").targets, ())
+    assert {"wake.C_2p", "wake.C_2n"} <= set(loose)
+    assert "wake.x_P_" not in loose  # a length from a drawing

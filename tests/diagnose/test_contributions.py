@@ -12,7 +12,7 @@ import pytest
 from mmgtune.backends import Integrator
 from mmgtune.diagnose import DiagnoseOptions, Diagnosis, diagnose
 from mmgtune.diagnose.base_fit import base_fit
-from mmgtune.diagnose.causes import Cause
+from mmgtune.diagnose.causes import Cause, Trace
 from mmgtune.diagnose.contributions import Contribution, set_aside, squares, takes_the_rest
 from mmgtune.diagnose.gain import BAND, expected, held_out
 from mmgtune.diagnose.hypotheses import known_causes
@@ -115,6 +115,30 @@ def test_a_cause_in_a_channel_of_its_own_is_no_trace(error, own, form, trace):
     assert one.unnoticed == trace
     assert replace(one, share=-0.001).unnoticed == trace  # the wind's form, in positions
     assert replace(one, share=-0.01).unnoticed
+
+
+@pytest.mark.parametrize(
+    ("seen", "share", "named", "little"),
+    [
+        (0.0016, 0.011, {}, True),  # a calm beside a rudder that stalled
+        (0.03, 0.001, {}, False),
+        (0.001, 0.03, {}, False),
+        (0.001, 0.001, {"whole": True}, False),
+        (0.001, 0.001, {"own": {"psi": 0.6}}, False),
+    ],
+)
+def test_what_is_named_though_it_is_not_told_from_others(seen, share, named, little):
+    assert Contribution(seen, share, {"psi": 2.0}, {}, **named).little == little
+    assert not Contribution(seen).little  # enough to tell that it is more
+
+
+def test_a_trace_names_what_it_is_not_told_from():
+    effect = find_effect("rudder-gain")
+    sizes = {"effects.rudder-gain.factor": Estimate("factor", 0.977, 0.97, 0.985, 0.004)}
+    trace = Trace(Cause("rudder-gain", effect, sizes, 0.0, None), Contribution(0.001, 0.001, {}, {}), ("flap",))
+    assert "too little to be told: rudder-gain or flap, or coefficients that are off" in trace.sentence
+    assert "If the first: the rudder moved by 0.977" in trace.sentence
+    assert trace.to_dict()["alike"] == ["flap"]
 
 
 @pytest.mark.parametrize(
@@ -269,13 +293,17 @@ def sum_of(
     sized=True,
     excused=False,
     more=False,
+    at_ends=False,
+    left=0.0,
 ):
     """What ``Diagnosis.unclear`` sees of a sum of causes."""
     return SimpleNamespace(
-        causes=[SimpleNamespace(runs=k < by_run, sized=sized, tag="wind") for k in range(len(brought))],
+        causes=[
+            SimpleNamespace(runs=k < by_run, sized=sized, tag="wind", at_ends=at_ends) for k in range(len(brought))
+        ],
         contributions=[("tag", one) for one in brought],
         groups=groups,
-        leftover=SimpleNamespace(structured=structured),
+        leftover=SimpleNamespace(structured=structured, unknown=left),
         explains_all=explains_all,
         gain=SimpleNamespace(mostly_remains=remains, share_removed=(removed, 0.0, 1.0)),
         _told_by_none=False,
@@ -312,6 +340,9 @@ GROUP = (("a", "b"),)
         (sum_of(CLEAR, sized=False, removed=0.2), "how large wind"),
         (sum_of(CLEAR, removed=0.2), ""),
         (sum_of(CLEAR, CLEAR, removed=0.6), ""),
+        (sum_of(CLEAR, at_ends=True, left=1.2), "at the end of its range"),
+        (sum_of(CLEAR, at_ends=True, left=0.4), ""),
+        (sum_of(CLEAR, left=1.2), ""),
         (sum_of(CLEAR, removed=-0.16), ""),
         (sum_of(CLEAR, remains=True), ""),
         (sum_of(CLEAR, structured=True), ""),
@@ -387,6 +418,22 @@ def test_values_of_runs_that_leave_a_shape_are_not_believed(runs, excess, struct
     assert Diagnosis._mostly_left.fget(seen) is not believed
     seen.explains_all = True
     assert not Diagnosis._mostly_left.fget(seen)
+
+
+@pytest.mark.parametrize(
+    ("tag", "estimated", "at_ends"),
+    [
+        ("propeller-side-force", {"force": (-1.0, -1.0, -0.8), "moment": (-0.99998, -1.0, -0.83)}, True),
+        ("propeller-side-force", {"force": (-1.0, -1.0, -0.8), "moment": (0.9, 0.8, 1.0)}, False),
+        ("wave-drift", {"force": (9e4, 8e4, 9e4), "direction": (1.0, 0.9, 1.1)}, True),
+        ("steering-lag", {"rate_limit": (0.04, 0.03, None)}, False),
+        ("current", {}, False),
+    ],
+)
+def test_whether_a_cause_is_at_the_end_of_its_range(tag, estimated, at_ends):
+    effect = find_effect(tag)
+    sizes = {f"{effect.kind}.{name}": Estimate(name, *ends, 1.0) for name, ends in estimated.items()}
+    assert Cause(tag, effect, sizes, 0.0, None).at_ends is at_ends
 
 
 @pytest.mark.parametrize(

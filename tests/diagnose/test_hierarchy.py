@@ -72,6 +72,15 @@ def test_chance_earns_next_to_nothing_however_many_values_there_are(shown):
     assert gain.min() >= 0.0
 
 
+def test_what_a_log_leaves_open_without_measure_hides_the_rest_and_breaks_nothing(shown):
+    """A run near its end of stability: other inputs would take it anywhere."""
+    rng = np.random.default_rng(9)
+    anywhere = 1e12 * rng.standard_normal((N, 3))
+    wide = Hierarchy(shown, np.eye(N) + anywhere @ anywhere.T, N_PARAMETERS)
+    found = wide.best(-shown @ rng.standard_normal(shown.shape[1]))
+    assert np.isfinite([found.gain, found.spread, *found.values]).all()
+
+
 def test_no_spread_is_one_value_for_all(shown):
     X = np.tile(np.eye(N_PARAMETERS), (N_GROUPS, 1))
     data = -shown @ X @ np.array([0.7, 0.2])

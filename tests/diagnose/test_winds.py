@@ -133,7 +133,7 @@ def test_gusts_are_no_unknown_cause(sailed):
 def test_what_is_believed_beforehand_is_told():
     wind, lag = find_effect("wind"), find_effect("steering-lag")
     told = {one["name"]: one["value"] for one in (*beliefs.in_words(0.05, [wind, lag]), *winds.in_words([wind, lag]))}
-    assert told["hull.*, particulars.m_x_, particulars.m_y_, particulars.k_zz_"].endswith("5 %")
+    assert told["hull.*, wake.C_*, particulars.m_x_, particulars.m_y_, particulars.k_zz_"].endswith("5 %")
     assert told["effects.wind.turning"] == "1 with a standard deviation of 0.5"
     assert told["effects.wind.arm"] == "0 with a standard deviation of 0.05"
     assert "12 %" in told["gusts"]
