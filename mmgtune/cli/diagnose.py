@@ -102,7 +102,10 @@ def command(
         c.print_plan(plan, folder)
         return
     left = Left(plan.seconds, options.most).words
-    with claimed(folder, force=run.force, resume=run.resume), Progress(run.quiet, folder, left=left) as progress:
+    with (
+        claimed(folder, force=run.force, resume=run.resume, anew=True),
+        Progress(run.quiet, folder, left=left) as progress,
+    ):
         result = diagnose(
             ship, data, options, hooks=progress.hooks(), folder=folder, resume=run.resume, command=c.command_line()
         )

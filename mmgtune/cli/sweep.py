@@ -42,7 +42,7 @@ def command(
     if run.dry_run:
         c.print_plan(plan, folder)
         return
-    with claimed(folder, force=run.force, resume=run.resume), Progress(run.quiet, folder) as progress:
+    with claimed(folder, force=run.force, resume=run.resume, anew=True), Progress(run.quiet, folder) as progress:
         result = sweep(
             ship, data, options, hooks=progress.hooks(), folder=folder, resume=run.resume, command=c.command_line()
         )

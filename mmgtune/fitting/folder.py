@@ -32,7 +32,7 @@ from .journal import finished
 from .result import FitResult
 
 RESULT = "fit.json"
-OWN_FILES = (
+MARKS = (
     RESULT,
     "sweep.json",
     "diagnosis.json",
@@ -50,12 +50,14 @@ OWN_FILES = (
     "windows.parquet",
     "drawn.parquet",
     "journal.jsonl",
-    "profile.toml",
-    "history.parquet",
-    "motions.parquet",
     "checkpoint.npz",
-    "report.html",
 )
+"""What tells a run folder: files that nobody else has."""
+
+BESIDE = ("profile.toml", "calm.toml", "history.parquet", "motions.parquet", "report.html", "report.md")
+"""What lies beside them, and may be somebody's own where they are not."""
+
+FIGURES = "figures"
 
 CHECKPOINTS = "training-*.safetensors"
 """What is left of a training that was stopped before it had a result."""
@@ -90,7 +92,7 @@ def refuse_taken(folder: Path, *, force: bool = False, resume: bool = False) -> 
     taken = folder.is_dir() and any(not is_left_over(one) for one in folder.iterdir())
     if taken and not (force or resume):
         raise OutputError(exists(folder))
-    own = any((folder / name).exists() for name in OWN_FILES) or any(folder.glob(CHECKPOINTS))
+    own = any((folder / name).exists() for name in MARKS) or any(folder.glob(CHECKPOINTS))
     if taken and force and not own:
         raise OutputError(
             Problem(
@@ -102,9 +104,22 @@ def refuse_taken(folder: Path, *, force: bool = False, resume: bool = False) -> 
         )
 
 
+def _left_before(folder: Path) -> dict[Path, tuple[int, int]]:
+    """What runs before left in a folder: each file with what changes when it is written anew."""
+    there = [
+        *(folder / name for name in (*MARKS, *BESIDE)),
+        *folder.glob(f"{FIGURES}/*.svg"),
+        *folder.glob(CHECKPOINTS),
+    ]
+    return {path: (path.stat().st_ino, path.stat().st_mtime_ns) for path in there if path.is_file()}
+
+
 @contextlib.contextmanager
-def claimed(folder: Path, *, force: bool = False, resume: bool = False) -> Iterator[Path]:
+def claimed(folder: Path, *, force: bool = False, resume: bool = False, anew: bool = False) -> Iterator[Path]:
     """The folder made ready as by ``prepare``, and no other run's while the context lasts.
+
+    anew  what runs before left there goes at the end where ``force`` let this one in: a report or a ship of another
+          run would be taken for its own
 
     Raises OutputError as ``prepare`` does, and where another run is writing there.
     """
@@ -117,7 +132,12 @@ def claimed(folder: Path, *, force: bool = False, resume: bool = False) -> Itera
         try:
             prepare(folder, force=force, resume=resume)
             remove_left_overs(folder)
+            before = _left_before(folder) if anew and force and not resume else {}
             yield folder
+            after = _left_before(folder)
+            for path, written in before.items():
+                if after.get(path) == written:
+                    path.unlink(missing_ok=True)
         except BaseException:
             with contextlib.suppress(OSError):  # of a command that is refused no empty folder stays
                 for one in made:  # it goes while nobody else can have it

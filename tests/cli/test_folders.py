@@ -11,7 +11,7 @@ import pytest
 
 from mmgtune.errors import OutputError, ProfileError
 from mmgtune.estimating import read_particulars
-from mmgtune.files import atomic, remove_left_overs
+from mmgtune.files import atomic, remove_left_overs, write_text
 from mmgtune.fitting import claimed, prepare
 from mmgtune.fitting.sweeping import folder_name
 from mmgtune.profile import load_profile, parse_profile
@@ -28,6 +28,33 @@ def killed_while_writing(path):
     path.unlink()
     os.rename(str(part) + ".kept", part)
     return part
+
+
+@pytest.mark.parametrize("name", ["profile.toml", "report.html", "motions.parquet"])
+def test_a_folder_with_a_profile_of_ones_own_is_no_run(tmp_path, name):
+    """With --force a fit wrote over the user's profile among trials of the user's."""
+    (tmp_path / name).write_text("mine")
+    with pytest.raises(OutputError, match="not a run of mmgtune"):
+        claimed(tmp_path, force=True).__enter__()
+    assert (tmp_path / name).read_text() == "mine"
+
+
+def test_what_another_run_left_goes_where_force_lets_one_in(tmp_path):
+    """A report of the fit before lay beside the new result, and a sweep left its profile to be taken for its own."""
+    for name in ("fit.json", "profile.toml", "report.html", "notes.txt", "figures/tracks.svg"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text("before")
+    with claimed(tmp_path, force=True, anew=True):
+        write_text(tmp_path / "sweep.json", "after")
+        write_text(tmp_path / "profile.toml", "after")
+    there = {str(one.relative_to(tmp_path)): one.read_text() for one in tmp_path.rglob("*") if one.is_file()}
+    assert there == {"sweep.json": "after", "profile.toml": "after", "notes.txt": "before"}
+    with pytest.raises(KeyboardInterrupt), claimed(tmp_path, force=True, anew=True):
+        stopped()
+    assert (tmp_path / "sweep.json").exists()
+    with claimed(tmp_path, force=True):  # of one that adds to the folder
+        pass
+    assert (tmp_path / "sweep.json").exists()
 
 
 def stopped(note=None):
