@@ -11,7 +11,7 @@ from typing import Any, overload
 from .backends import Integrator
 from .circumstances import notes_on
 from .displayed import Plotted, inert
-from .errors import OptionError, Problem, reason
+from .errors import OptionError, Problem
 from .evaluation import TrialRecord, evaluate
 from .files import path_of, refuse_existing
 from .given import ShipGiven, TrialsGiven, list_of
@@ -28,7 +28,7 @@ from .profile import Approach, ShipProfile
 from .simulation import Motion, as_trial
 from .steering import APPROACH, STEP
 from .trial import Coverage, write_trial
-from .units import DEG, KNOT, parse, with_known_unit, with_point
+from .units import DEG, KNOT, quantity
 
 ORDERED = "rk4"
 """How manoeuvres given as orders are simulated, at steps of their own."""
@@ -259,7 +259,7 @@ def rudder_angle(text: str) -> float:
     if written is not None and 0.0 < abs(written) < RADIANS:
         fix = f'write {written / DEG:.3g} for degrees, "{text} rad", or "{text} deg" if that is meant'
         raise OptionError(Problem(f"a rudder angle of {text} looks like radians", "turn", "turn is in degrees", fix))
-    angle = written * DEG if written is not None else _quantity(text, "turn", "rad", '35 or "0.61 rad"')
+    angle = written * DEG if written is not None else quantity(text, "turn", "rad", '35 or "0.61 rad"', bare=True)
     if not 0.0 < abs(angle) <= 0.5 * math.pi:
         why = "no ship turns by that" if angle == 0.0 else "no rudder goes beyond 90 deg"
         fix = "give an angle between -90 and 90 deg, not 0"
@@ -269,7 +269,7 @@ def rudder_angle(text: str) -> float:
 
 def approach_speed(text: str) -> float:
     """The speed [m/s] of "12 kn".  Raises OptionError."""
-    speed = _quantity(text, "speed", "m/s", '"12 kn"')
+    speed = quantity(text, "speed", "m/s", '"12 kn"')
     if not speed > 0.0:
         raise OptionError(
             Problem(f"the approach speed is {text}", "speed", "manoeuvres begin ahead", "give a speed above 0")
@@ -283,7 +283,7 @@ def revolutions(text: str) -> float:
     if written is not None and 0.0 < written < PER_SECOND:
         fix = f'write {60.0 * written:.4g} for 1/min, "{text} 1/s", or "{text} rpm" if that is meant'
         raise OptionError(Problem(f"{text} revolutions look like 1/s", "rpm", "rpm is in 1/min", fix))
-    n = written / 60.0 if written is not None else _quantity(text, "rpm", "1/s", '106 or "1.77 1/s"')
+    n = written / 60.0 if written is not None else quantity(text, "rpm", "1/s", '106 or "1.77 1/s"', bare=True)
     if not (n > 0.0 and math.isfinite(n)):
         raise OptionError(
             Problem(f"the revolutions are {text}", "rpm", "manoeuvres begin ahead", "give a number above 0")
@@ -345,19 +345,6 @@ def _plain(text: str) -> float | None:
         return float(text)
     except ValueError:
         return None
-
-
-def _quantity(text: str, name: str, unit: str, such_as: str) -> float:
-    what = f"'{text[:80]}' cannot be read"
-    if (pointed := with_point(text)) is not None:
-        raise OptionError(Problem(what, name, "numbers have a decimal point here", f'write {name}="{pointed}"'))
-    try:
-        numbers = parse(with_known_unit(text), unit)
-    except ValueError as error:
-        raise OptionError(Problem(what, name, reason(error), f"write {name}={such_as}")) from None
-    if len(numbers) != 1:
-        raise OptionError(Problem(what, name, f"it is {len(numbers)} numbers, not one", f"write {name}={such_as}"))
-    return numbers[0]
 
 
 def _signed(angle: float) -> str:

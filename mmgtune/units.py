@@ -9,6 +9,8 @@ from __future__ import annotations
 import math
 import re
 
+from .errors import OptionError, Problem, reason
+
 DEG = math.pi / 180.0
 KNOT = 1852.0 / 3600.0
 
@@ -127,6 +129,37 @@ def parse(text: str, unit: str, infinite: bool = False) -> tuple[float, ...]:
         return tuple(float(number) * factor for number in match.group(1).split(","))
     except ValueError:
         raise Unreadable(f"'{text}' is not a number with a unit, such as '{example(unit)}'", such) from None
+
+
+def quantity(text: str, name: str, unit: str, such_as: str, bare: bool = False) -> float:
+    """One number of an option with its unit, in ``unit``.
+
+    such_as  how the option may be written
+    bare     whether a number without a unit is understood too, elsewhere
+    Raises OptionError that says what to write.
+    """
+    what, fix = f"'{text[:80]}' cannot be read", f"write {name}={such_as}"
+    pointed = with_point(text)
+    number = _plain(text if pointed is None else pointed)
+    if number is not None and not bare:
+        fix = f'write {name}="{number} {unit}" if it is in {unit}'
+    elif pointed is not None:
+        fix = f'write {name}="{pointed}"'
+    if pointed is not None:
+        raise OptionError(Problem(what, name, "numbers have a decimal point here", fix))
+    try:
+        numbers = parse(with_known_unit(text), unit)
+    except Unreadable as error:
+        raise OptionError(Problem(what, name, reason(error), fix)) from None
+    if len(numbers) != 1:
+        raise OptionError(Problem(what, name, f"it is {len(numbers)} numbers, not one", fix))
+    return numbers[0]
+
+
+def _plain(text: str) -> str | None:
+    """A number without a unit, None for anything else."""
+    match = _QUANTITY.match(text[:LONGEST])
+    return match[1] if match and not match[2] and "," not in match[1] else None
 
 
 def with_point(text: str) -> str | None:

@@ -8,12 +8,12 @@ from typing import Annotated
 
 import typer
 
-from ..errors import OptionError, Problem, reason
+from ..errors import MmgtuneError, OptionError, Problem
 from ..options import MakeOptions
 from . import common as c
 from . import completing
 from .exitcodes import ExitCode
-from .options import takes
+from .options import problems_in_flags, takes
 
 app = typer.Typer(help="Make trial files from logs or from a model, check and inspect them.", no_args_is_help=True)
 
@@ -38,13 +38,20 @@ def check(
     from ..resources import profile_names
     from ..trial import check_trials, load_trials
 
-    data = load_trials(trials)
+    try:
+        data = load_trials(trials)
+    except MmgtuneError as error:
+        if json:
+            problems = [problem.to_dict() for problem in problems_in_flags(error)]
+            c.print_json({"schema": 1, "trials": {}, "problems": problems})
+        raise
     # The trials of a ship with a bundled profile are checked against her length.
     L_pp = load_profile(data.ship).L_pp if data.ship in profile_names() else None
     found = check_trials(data.trials, L_pp)
     found |= {name: [] for name in data.stated}  # what is wrong with these is said on reading
     if json:
-        c.print_json({"schema": 1, "trials": {name: [vars(f) for f in findings] for name, findings in found.items()}})
+        listed = {name: [vars(f) for f in findings] for name, findings in found.items()}
+        c.print_json({"schema": 1, "trials": listed, "problems": []})
     else:
         for findings in found.values():
             for f in findings:
@@ -214,10 +221,7 @@ def import_(
         raise OptionError(Problem("no folder is given for the trials", "--out", why, "add -o FOLDER, or --dry-run"))
     seconds = None
     if step is not None:
-        try:
-            (seconds,) = units.parse(step, "s")
-        except ValueError as error:
-            raise OptionError(Problem(f"the step is {step}", "--step", reason(error), "write --step 0.5")) from error
+        seconds = units.quantity(step, "step", "s", '"0.5 s"')
         if not 0.0 < seconds < float("inf"):
             raise OptionError(
                 Problem(f"the step is {step}", "--step", "samples follow one another", "give a time above 0 s")

@@ -7,6 +7,7 @@ executed on loading.
 from __future__ import annotations
 
 import json
+import shlex
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,18 @@ from ..files import atomic
 NAME = "checkpoint.npz"
 EVERY = 25
 """Generations between two checkpoints: about a second of work."""
+
+RESULTS = (
+    "fit.json",
+    "sweep.json",
+    "diagnosis.json",
+    "leave_out.json",
+    "voyages.json",
+    "learning.json",
+    "ensemble.json",
+    "hybrid.json",
+)
+"""Results of runs that can be resumed: one is there once its run has ended."""
 
 
 @dataclass(eq=False)
@@ -51,11 +64,7 @@ class Checkpoint:
     def load(self) -> list[FloatArray]:
         """Costs by generation.  Raises OptionError where there is no checkpoint or it belongs to another fit."""
         if not self.path.is_file():
-            raise OptionError(
-                Problem(
-                    "nothing to resume", str(self.folder), "the folder holds no checkpoint", "run without resume=True"
-                )
-            )
+            raise nothing_to_resume(self.folder, "checkpoint")
         try:
             with self.path.open("rb") as file, np.load(file, allow_pickle=False) as data:
                 identity = dict(json.loads(str(data["identity"])))
@@ -72,6 +81,20 @@ class Checkpoint:
             ) from error
         differing(identity, self.identity, self.path)
         return parts
+
+
+def nothing_to_resume(folder: Path, lacking: str, so: str = "the run never began") -> OptionError:
+    """The error of a run that cannot be continued; of one that has ended it says so, and how to have its report.
+
+    lacking, so  what the folder does not hold, and what that means
+    """
+    result = next((name for name in RESULTS if (folder / name).is_file()), None)
+    why, fix = f"the folder holds no {lacking}: {so}", "run without resume=True"
+    if result is not None:
+        why = f"the run there has ended: {result} is its result"
+        report = f"mmgtune report {shlex.quote(str(folder))}"
+        fix = f"{report} renders its report; force=True in the place of resume=True repeats it"
+    return OptionError(Problem("nothing to resume", str(folder), why, fix))
 
 
 def differing(recorded: dict[str, Any], now: dict[str, Any], path: Path) -> None:

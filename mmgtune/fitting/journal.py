@@ -24,7 +24,7 @@ import numpy as np
 from ..errors import OptionError, Problem
 from ..files import cannot_write, write_text
 from .checkpoint import NAME as CHECKPOINT
-from .checkpoint import differing
+from .checkpoint import differing, nothing_to_resume
 
 NAME = "journal.jsonl"
 SCHEMA = 2
@@ -71,14 +71,7 @@ class Journal:
 
     def _lines(self) -> list[str]:
         if not self.path.is_file():
-            raise OptionError(
-                Problem(
-                    "nothing to resume",
-                    str(self.path.parent),
-                    "the folder holds no journal: the run ended, or never began",
-                    "run without resume=True",
-                )
-            )
+            raise nothing_to_resume(self.path.parent, "journal")
         return self.path.read_text(encoding="utf-8", errors="replace").splitlines()
 
     def remember(self, what: str, asked: str, do: Callable[[], Any], note: Callable[[Any], Any], recall: Any) -> Any:

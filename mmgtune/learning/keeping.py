@@ -13,7 +13,7 @@ import numpy as np
 from ..backends.twins import jax_module
 from ..errors import OptionError, Problem, reason
 from ..files import atomic
-from ..fitting.checkpoint import differing
+from ..fitting.checkpoint import differing, nothing_to_resume
 from .training import Progressed
 
 CHECKPOINTS = "training-*.safetensors"
@@ -42,8 +42,7 @@ class Kept:
         versions = {name: version(name) for name in ("jax", "jaxlib", "optax", "numpy")}
         object.__setattr__(self, "identity", {**self.identity, "versions": versions})
         if self.resume and self.folder is not None and not any(self.folder.glob(CHECKPOINTS)):
-            why = "the folder holds no checkpoint: the run ended, or never came to its first validation"
-            raise OptionError(Problem("nothing to resume", str(self.folder), why, "run without resume=True"))
+            raise nothing_to_resume(self.folder, "checkpoint", "it never came to its first validation")
 
     def begun(self, number: int, first: Progressed) -> Progressed:
         """Where a training goes on: at its checkpoint, or at the beginning.  Raises OptionError as ``load`` does."""

@@ -18,6 +18,8 @@ METHODS = ("cma-es", "least-squares")
 INITIAL = ("measured", "estimated")
 SHORTEST = 0.01
 """Least time between samples that count, and of windows [s]."""
+NARROWEST = 0.001
+"""Least half width of the box: in one much narrower there are no numbers to search among."""
 
 
 @dataclass(frozen=True)
@@ -98,10 +100,10 @@ class FitOptions(SearchOptions):
 
     a_r: float | None = choice(
         None,
-        "Half width of the box, as a share of each pre-determined value. "
+        f"Half width of the box, as a share of each pre-determined value, from {NARROWEST:g}. "
         "Default: 0.5, and two scatters of its formula for a coefficient that says one.",
         flag="--ar",
-        above=0,
+        least=NARROWEST,
         most=5,
     )
     sisters: Path | None = choice(
@@ -134,7 +136,11 @@ class SweepOptions(SearchOptions):
     """All choices of a sweep: those of a fit, at several widths of the box."""
 
     widths: tuple[float, ...] = choice(
-        (0.2, 0.3, 0.4, 0.5, 0.6), "Half widths of the box, comma-separated.", flag="--ar", above=0, most=5
+        (0.2, 0.3, 0.4, 0.5, 0.6),
+        f"Half widths of the box, comma-separated, each from {NARROWEST:g}.",
+        flag="--ar",
+        least=NARROWEST,
+        most=5,
     )
 
     def problems(self) -> list[Problem]:

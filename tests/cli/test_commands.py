@@ -135,6 +135,17 @@ def test_trials_check_and_inspect(tmp_path):
     assert rows["turn_p35"]["source"] == "generated"
 
 
+def test_trials_check_of_what_cannot_be_read_is_json_too(tmp_path):
+    (tmp_path / "a.parquet").write_text("no table")
+    ended = run("trials", "check", "a.parquet", "--json", cwd=tmp_path)
+    assert ended.code == 2
+    document = ended.json()
+    assert document["trials"] == {}
+    (problem,) = document["problems"]
+    assert problem["what"] in ended.err
+    assert run("trials", "check", "suzaku", "--json", cwd=tmp_path).json()["problems"] == []
+
+
 def test_indices_are_counted_in_lengths_of_the_right_ship(tmp_path):
     trial = next(iter(load_trials("suzaku").trials.values()))
     write_trial(replace(trial, ship="kvlcc2"), tmp_path / "a.parquet")

@@ -86,6 +86,14 @@ def test_output_that_exists_is_refused_and_force_replaces_it(finished):
     assert run("fit", *QUICK, "--out", "run", "--force", cwd=folder).code == 0
 
 
+def test_a_finished_run_is_not_resumed_but_reported(finished):
+    folder, _ = finished
+    ended = run("fit", *QUICK, "--out", "run", "--resume", cwd=folder)
+    assert ended.code == 2
+    assert "the run there has ended: fit.json is its result" in ended.err
+    assert "mmgtune report run renders its report; --force in the place of --resume repeats it" in ended.err
+
+
 def test_force_never_mixes_with_other_files(tmp_path):
     (tmp_path / "photos").mkdir()
     (tmp_path / "photos" / "holiday.jpg").write_text("x")

@@ -12,6 +12,7 @@ from mmgtune.backends import Integrator
 from mmgtune.errors import OptionError
 from mmgtune.fitting import FitOptions, Hooks, LeaveOutOptions, SweepOptions, leave_out, sweep, write_left_out
 from mmgtune.fitting import folder as run_folder
+from mmgtune.fitting.checkpoint import Checkpoint
 from mmgtune.fitting.journal import NAME, _hash
 from mmgtune.fitting.least_squares import _asked
 from mmgtune.fitting.setting import make_setting
@@ -155,6 +156,16 @@ def test_a_changed_line_is_done_again_and_so_is_what_follows(tmp_path, in_three)
 def test_nothing_to_resume(tmp_path):
     with pytest.raises(OptionError, match="nothing to resume"):
         leave_out("suzaku", "suzaku", folder=tmp_path, resume=True)
+
+
+def test_a_run_that_has_ended_names_the_command_for_its_report(tmp_path):
+    """Killed between result and report it was told to run without --resume, which the result refused."""
+    (tmp_path / "leave_out.json").write_text("{}")
+    with pytest.raises(OptionError, match=r"leave_out\.json is its result") as refused:
+        leave_out("suzaku", "suzaku", folder=tmp_path, resume=True)
+    assert f"mmgtune report {tmp_path} renders its report" in str(refused.value)
+    with pytest.raises(OptionError, match=r"leave_out\.json is its result"):
+        Checkpoint(tmp_path, {}).load()
 
 
 def few_trials(folder):
