@@ -161,12 +161,38 @@ def write_text(path: Path, text: str, overwrite: bool = True) -> Path:
 
 
 def refuse_existing(paths: Iterable[Path], overwrite: bool = False) -> None:
-    """Raises OutputError with each of these outputs that is already there, unless they are to be replaced."""
+    """Raises OutputError with each of these outputs that is already there, unless they are to be replaced.
+
+    Also, and in any case, where a folder that one is to lie in is a file.
+    """
+    paths = tuple(paths)
+    for folder in dict.fromkeys(path.parent for path in paths):
+        refuse_file(folder)
     if overwrite:
         return
     found = [exists(path) for path in dict.fromkeys(paths) if os.path.lexists(path)]
     if found:
         raise OutputError(*found)
+
+
+def refuse_file(folder: Path) -> None:
+    """Raises OutputError where a folder for results, or one that it lies in, is a file."""
+    found = _file_in(folder)
+    if found is not None:
+        raise OutputError(_no_folder(found))
+
+
+def _file_in(path: Path) -> Path | None:
+    """The part of a path that is there and no folder, None where there is none."""
+    try:
+        there = next((one for one in (path, *path.parents) if one.exists()), path)
+        return there if there.exists() and not there.is_dir() else None
+    except (OSError, ValueError):  # writing says what is wrong with it
+        return None
+
+
+def _no_folder(path: Path) -> Problem:
+    return Problem("the output is a file, not a folder", str(path), "results are several files", "name a folder")
 
 
 def exists(path: Path) -> Problem:
@@ -181,6 +207,8 @@ def exists(path: Path) -> Problem:
 
 def cannot_write(path: Path, error: OSError | ValueError) -> OutputError:
     """The error for a path the system does not let us write, or that can be none."""
+    if isinstance(error, (FileExistsError, NotADirectoryError)) and (found := _file_in(path)) is not None:
+        return OutputError(_no_folder(found))
     return OutputError(
         Problem(
             what="cannot write the output",

@@ -28,7 +28,7 @@ def folder(name: str) -> Path:
 def must_be_name(name: object, kind: str, error: type[MmgtuneError]) -> None:
     """Raises an error of that class for what is neither a name nor a path; ``kind`` is what it would be the name of.
 
-    Names that no file can have are none either: too long ones, and those with a zero byte.
+    Names that no file can have are none either: empty ones, too long ones, and those with a zero byte.
     """
     if not isinstance(name, (str, Path)):
         why = f"a {kind} is found by a path or a bundled name, and {kind_of(name)} is neither"
@@ -37,6 +37,9 @@ def must_be_name(name: object, kind: str, error: type[MmgtuneError]) -> None:
             f"write it first: mmgtune.{writer}(RESULT, FOLDER), and give FOLDER" if writer else "give a text or a Path"
         )
         raise error(Problem(f"no name of a {kind}", brief(name), why, fix))
+    if not str(name).strip():
+        why = "an empty text would mean the folder one is in"
+        raise error(Problem(f"no name of a {kind}", brief(str(name)), why, "give a path or a bundled name"))
     try:
         Path(name).exists()
     except OSError as wrong:

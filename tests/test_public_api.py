@@ -111,6 +111,7 @@ SHIP, TRIALS = mmgtune.load_profile("suzaku"), mmgtune.load_trials("suzaku")
         (lambda: mmgtune.estimate(5), "no name of a file of particulars (5)", "a text or a Path"),
         (lambda: mmgtune.write_trial("turn.parquet", TRIALS["turn_p35"]), "no path (Trial(turn_p35", "where the file"),
         (lambda: mmgtune.load_trials(5), "no name of a data set (5)", "a text or a Path"),
+        (lambda: mmgtune.load_trials(""), "no name of a data set ('')", "give a path or a bundled name"),
         (lambda: mmgtune.load_profile(None), "no name of a ship profile (None)", "a text or a Path"),
     ],
 )

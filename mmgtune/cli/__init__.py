@@ -191,7 +191,7 @@ def _say_warning(message: Warning | str, *_where: Any) -> None:
 
 
 def _understand(arguments: list[str]) -> None:
-    """Raises OptionError for an argument that is no text: no file that is written could name it."""
+    """Raises OptionError for an argument that is empty, or no text: no file that is written could name it."""
     for one in arguments:
         try:
             one.encode()
@@ -200,6 +200,20 @@ def _understand(arguments: list[str]) -> None:
             raise OptionError(
                 Problem(what, "command line", "no file of results could name it", "rename the file or folder")
             ) from None
+    for before, one in zip(["", *arguments], arguments, strict=False):
+        flag, value = _flag_of(before, one)
+        if not value.strip(" ,"):
+            what, why = f"{value!r} names nothing", "an empty value is no name, no number and no list of them"
+            fix = f"give {flag} a value, or leave it out" if flag else "write a name, or leave it out"
+            raise OptionError(Problem(what, flag or "command line", why, fix))
+
+
+def _flag_of(before: str, argument: str) -> tuple[str, str]:
+    """The option that an argument is the value of, as far as that shows, and the value."""
+    if argument.startswith("--") and "=" in argument:
+        flag, _, value = argument.partition("=")
+        return flag, value
+    return before if before.startswith("-") and "=" not in before else "", argument
 
 
 def _in_its_lines(problem: Problem) -> Problem:

@@ -106,9 +106,12 @@ def command(
       mmgtune check ship.toml trials/ -b check.json --sensitivity 0.02
     """
     from .. import checking
+    from ..files import refuse_file
     from ..networks import named_ship
     from ..trial import load_trials
 
+    if out is not None:
+        refuse_file(out)
     chosen = "json" if json else format
     if chosen is not None and chosen not in FORMATS:
         raise OptionError(Problem(f"no format '{chosen}'", "format", **among(chosen, FORMATS)))

@@ -66,9 +66,11 @@ def run(
 
       mmgtune fleet run fleet.toml --out runs/fleet --resume --scheduler tcp://10.0.0.5:8786
     """
+    from ..files import refuse_file
     from ..fleet import plan_fleet, run_fleet
     from ..report import render
 
+    refuse_file(out)
     if dry_run:
         plan = plan_fleet(table, out)
         c.print_json(_plan_dict(plan, options)) if json else c.show(plan_text(plan, options, out))

@@ -14,7 +14,8 @@ import typer
 from typer.core import TyperCommand
 from typer.models import OptionInfo
 
-from ..errors import MmgtuneError, OptionError, Problem
+from ..errors import MmgtuneError, OptionError, OutputError, Problem
+from ..files import refuse_file
 from ..options import FLAGS, Options, again, choice, flags_of, in_flags
 from ..options.choice import OUTPUT
 from ..options.flags import off_flag
@@ -33,8 +34,8 @@ class RunOptions(Options):
     quiet: bool = choice(False, "No progress.", short="-q", panel=OUTPUT)
 
     def problems(self) -> list[Problem]:
-        """A run to continue needs its folder, and is not replaced."""
-        return super().problems() + _of_resuming(self.out, self.force, self.resume)
+        """A run to continue needs its folder, and is not replaced; results need a folder."""
+        return super().problems() + _of_no_folder(self.out) + _of_resuming(self.out, self.force, self.resume)
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,18 @@ class WrittenOptions(Options):
 
     def problems(self) -> list[Problem]:
         """As of ``RunOptions``."""
-        return super().problems() + _of_resuming(self.out, self.force, self.resume)
+        return super().problems() + _of_no_folder(self.out) + _of_resuming(self.out, self.force, self.resume)
+
+
+def _of_no_folder(out: Path | None) -> list[Problem]:
+    """A file is no folder: known before any work, and without it."""
+    if out is None:
+        return []
+    try:
+        refuse_file(out)
+    except OutputError as error:
+        return list(error.problems)
+    return []
 
 
 def _of_resuming(out: Path | None, force: bool, resume: bool) -> list[Problem]:

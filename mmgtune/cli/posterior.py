@@ -43,10 +43,13 @@ def command(
     """
     from pathlib import Path
 
+    from ..files import refuse_existing
     from ..posterior import posterior, write_posterior
+    from ..posterior.folder import FILES
 
     ship, data = c.load(profile, trials)
     folder = Path(out) if out else c.default_out(ship)
+    refuse_existing([folder / name for name in FILES], force)
     result = posterior(ship, data, options, command=c.command_line())
     document = write_posterior(result, folder, overwrite=force)
     if json:

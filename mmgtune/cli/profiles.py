@@ -194,8 +194,8 @@ def compare(
     from ..comparing import compare as compared
     from ..files import refuse_existing
 
-    if out is not None and not force:
-        refuse_existing([out / FILE])
+    if out is not None:
+        refuse_existing([out / FILE], force)
     found = compared(a, b)
     if out is not None:
         from ..report import render

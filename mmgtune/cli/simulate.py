@@ -64,8 +64,8 @@ def command(
         raise OptionError(
             Problem("forces need a folder to write to", "forces", "they are files, one a manoeuvre", "add out=FOLDER")
         )
-    if out is not None and not force:
-        refuse_existing(files_of(out, trials, options))
+    if out is not None:
+        refuse_existing(files_of(out, trials, options), force)
     result = simulate(profile, trials, options)
     rows = result.rows()
     notes = list(result.notes)

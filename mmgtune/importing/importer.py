@@ -15,7 +15,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..documents import write_json
 from ..errors import LogError, Problem
-from ..files import path_of, refuse_existing, true_path
+from ..files import path_of, refuse_existing, refuse_file, true_path
 from ..resources import must_be_name
 from ..trial import Trial, write_trial
 from ..trial.schema import ATTRIBUTES, directions, known_column
@@ -124,6 +124,7 @@ def import_logs(
     out = path_of(out)
     for log in logs:
         must_be_name(log, "log", LogError)
+    refuse_file(out)
     if not dry_run and not overwrite:
         # Known before the work is done; parts of a log that is cut are found out later.
         refuse_existing(

@@ -11,6 +11,7 @@ from ..particles import FILE, save_particles
 from .run import Posterior
 
 RESULT = "posterior.json"
+FILES = (FILE, RESULT)
 
 
 def write_posterior(result: Posterior, folder: Path | str, overwrite: bool = False) -> dict[str, Any]:

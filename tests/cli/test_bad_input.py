@@ -214,6 +214,30 @@ def test_output_is_a_file(tmp_path):
     assert (tmp_path / "run").read_text() == "mine"
 
 
+@pytest.mark.parametrize(
+    "line",
+    [
+        ("fit", "--dry-run"),
+        ("sweep", "--dry-run"),
+        ("learn", "rnn", "--dry-run"),
+        ("trials", "make", "vectwin"),
+        ("trials", "import", "a.csv", "--preset", "nmea-0183", "--dry-run"),
+        ("fleet", "run", "fleet.toml", "--dry-run"),
+        ("simulate", "--turn", "35"),
+        ("simulate", "--turn", "35", "--force"),
+        ("profile", "compare", "suzaku", "suzaku_fam"),
+        ("check", "suzaku", "suzaku"),
+        ("posterior",),
+    ],
+    ids=" ".join,
+)
+@pytest.mark.parametrize("out", ["mine", "mine/run"])
+def test_a_file_in_the_place_of_a_folder_is_told_at_once(tmp_path, line, out):
+    (tmp_path / "mine").write_text("mine")
+    refused(run(*line, "--out", out, cwd=tmp_path), "the output is a file, not a folder (mine)", "name a folder")
+    assert [one.name for one in tmp_path.iterdir()] == ["mine"]
+
+
 def test_folders_in_folders_beyond_measure(tmp_path):
     deep = 1500 * "a/"
     refused(run("fit", "--no-report", "--out", deep, cwd=tmp_path), "cannot write the output", "too many folders")
