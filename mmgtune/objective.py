@@ -7,7 +7,7 @@ was measured, whatever the other channels did.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -173,17 +173,20 @@ def cases_of(trials: Sequence[Trial], objective: Objective, inputs: Sequence[str
 def weights_of(trials: Sequence[Trial], objective: Objective) -> list[FloatArray]:
     """Weight of each squared difference of trials, (n_samples, 6) each.
 
-    Raises OptionError where the window or gaps leave a trial without a sample to compare.
+    Raises OptionError where the window, gaps or samples far apart leave a trial without a sample to compare.
     """
     weight = [objective.weight(trial) for trial in trials]
     for trial, values in zip(trials, weight, strict=True):
         if not values.any():
-            raise OptionError(
-                Problem(
-                    f"trial '{trial.id}' has no sample to compare with",
-                    "window" if objective.window else str(trial.path or trial.id),
-                    f"it lasts from {trial.t[0]:g} to {trial.t[-1]:g} s and needs two samples or more that count",
-                    "choose a window inside the trial, or leave the trial out of the split",
-                )
-            )
+            raise OptionError(_nothing_counts(trial, objective))
     return weight
+
+
+def _nothing_counts(trial: Trial, objective: Objective) -> Problem:
+    """The problem of a trial without a sample to compare."""
+    where = "window" if objective.window else str(trial.path or trial.id)
+    fix = "choose a window inside the trial, or leave the trial out of the split"
+    if objective.every is not None and replace(objective, every=None).weight(trial).any():
+        where, fix = "every", f"choose a time below {trial.t[-1] - trial.t[0]:g} s, or leave the trial out of the split"
+    why = f"it lasts from {trial.t[0]:g} to {trial.t[-1]:g} s and needs two samples or more that count"
+    return Problem(f"trial '{trial.id}' has no sample to compare with", where, why, fix)

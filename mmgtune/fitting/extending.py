@@ -56,13 +56,27 @@ def _unmeasured(tags: Sequence[str], trials: Sequence[Trial]) -> dict[str, str]:
 def with_width(profile: ShipProfile, options: O) -> O:
     """Options that say ``a_r``, unless the scatter of formulas makes the box of a target.
 
-    Raises OptionError for unknown targets.
+    Raises OptionError for unknown targets, and where all of them are fixed.
     """
+    if not isinstance(options, (TuningOptions, DiagnoseOptions)):
+        return options
+    names = _free(profile, options)
     if isinstance(options, (FitOptions, LeaveOutOptions, DiagnoseOptions)) and options.a_r is None:
-        names = choose_targets(Model(profile), options.targets, options.fixed)
         if all(profile.coefficient(name).scatter is None for name in names):
             return replace(options, a_r=A_R)
     return options
+
+
+def _free(profile: ShipProfile, options: TuningOptions | DiagnoseOptions) -> tuple[str, ...]:
+    """Targets that are not fixed.  Raises OptionError where there are some and all are."""
+    names = choose_targets(Model(profile), options.targets, options.fixed)
+    if not names and (held := choose_targets(Model(profile), options.targets)):
+        why = (
+            f"fixed={','.join(options.fixed)} leaves out all targets: {', '.join(held[:8])}{', ...' * (len(held) > 8)}"
+        )
+        fix = 'fix less, or name others, such as targets="hull.Y_*"'
+        raise OptionError(Problem("no coefficient is left to tune", "fixed", why, fix))
+    return names
 
 
 def with_effects(profile: ShipProfile, options: T) -> tuple[ShipProfile, T]:

@@ -58,6 +58,9 @@ def refused(ended, *words):
         (("--fix", "epsilon"), ("no coefficient is called 'epsilon'",)),
         (("--channels", "x,speed"), ("unknown channel 'speed'",)),
         (("--channels", "x:-1"), ("not a positive number",)),
+        (("--fix", "*"), ("no coefficient is left to tune (--fix)", "--fix * leaves out all targets: hull.R_0, ")),
+        (("--every", "1e9"), ("has no sample to compare with (--every)", "choose a time below 800 s")),
+        (("--every", "1e9", "--window", "5000:6000"), ("has no sample to compare with (--window)",)),
         (("--window", "300:100"), ("is empty",)),
         (("--window", "soon"), ("not a time window", "FIRST:LAST")),
         (("--window", "5000:6000"), ("has no sample to compare with",)),
@@ -73,6 +76,11 @@ def test_options(tmp_path, arguments, words):
     quick = QUICK if "--method" not in arguments and "--starts" not in arguments else ("--no-report",)
     refused(run("fit", *quick, *arguments, cwd=tmp_path), *words)
     assert not (tmp_path / "runs").exists()
+
+
+@pytest.mark.parametrize("command", ["sweep", "leave-out", "diagnose"])
+def test_all_targets_fixed(tmp_path, command):
+    refused(run(command, "--fix", "*", "--ar", "0.5", "--dry-run", cwd=tmp_path), "left to tune (--fix)")
 
 
 def test_truncated_file(tmp_path, data):
