@@ -61,7 +61,7 @@ def list_of(given: TrialsGiven) -> list[Trial]:
         return list(trials_of(given).series_only(what).trials.values())
     several = _several(given)
     series = [one for one in several if isinstance(one, Trial)]
-    if len(series) < len(several):
+    if len(series) < len(several) or not several:
         _set_of(several).series_only(what)
     return series
 

@@ -296,13 +296,25 @@ def as_predictor(
     if isinstance(ship, ShipProfile):
         ship = Model(ship)
     if isinstance(ship, Model):
-        return PhysicsPredictor(ship, ship.matrix() if theta is None else theta, integrator, backend)
+        own = ship.matrix()
+        return PhysicsPredictor(ship, own if theta is None else _columns(theta, len(own)), integrator, backend)
     if isinstance(ship, type) or not isinstance(ship, Predictor):
         raise OptionError(_no_ship(ship))
     hold_described(ship)
     if theta is not None:
         raise OptionError(Problem("coefficients are given for a predictor", ship.name, "only a profile has them"))
     return ship
+
+
+def _columns(theta: object, n_rows: int) -> FloatArray:
+    """Coefficients as they are.  Raises OptionError for what is no array of a column for each member."""
+    shape = np.shape(theta) if isinstance(theta, np.ndarray) else ()
+    if isinstance(theta, np.ndarray) and len(shape) == 2 and shape[0] == n_rows:
+        return theta
+    what = f"theta has shape {shape}" if isinstance(theta, np.ndarray) else f"theta is {kind_of(theta)}"
+    why = f"it is an array of {n_rows} coefficients of the model, and of each a value for every member"
+    fix = f"give one of shape ({n_rows}, n_members); Model(SHIP).matrix() is that of the ship herself"
+    raise OptionError(Problem(what, "theta", why, fix))
 
 
 def _no_ship(given: object) -> Problem:

@@ -60,6 +60,23 @@ def test_of_another_kind(of, given):
     assert "give" in error.value.problems[0].fix
 
 
+@pytest.mark.parametrize(
+    ("of", "given", "meant"),
+    [
+        (FitOptions, {"window": "0:100"}, "window=(0.0, 100.0)"),
+        (SweepOptions, {"widths": "0.2,0.3"}, "widths=(0.2, 0.3)"),
+        (SweepOptions, {"widths": "0.2"}, "widths=(0.2,)"),
+        (FitOptions, {"targets": "R_0"}, "targets=('R_0',)"),
+    ],
+)
+def test_a_text_for_a_tuple_is_answered_with_one_that_works(of, given, meant):
+    with pytest.raises(OptionError) as error:
+        of(**given)
+    assert error.value.problems[0].fix.endswith(f": {meant}")
+    (name,) = given
+    of(**{name: eval(meant.partition("=")[2])})
+
+
 def test_of_a_kind_that_does():
     found = FitOptions(
         starts=np.int64(3), a_r=1, restart=np.float32(100.0), targets=["R_0"], window=[0, math.inf], every=None

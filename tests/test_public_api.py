@@ -84,6 +84,7 @@ def test_a_trial_and_a_list_of_trials_are_sets_that_tune():
 
 
 SHIP, TRIALS = mmgtune.load_profile("suzaku"), mmgtune.load_trials("suzaku")
+A_TRACK = mmgtune.Track(**dict.fromkeys(("t", "x", "y", "psi", "u", "v_m", "delta"), np.arange(20.0) / 10.0))
 
 
 @pytest.mark.parametrize(
@@ -112,6 +113,24 @@ SHIP, TRIALS = mmgtune.load_profile("suzaku"), mmgtune.load_trials("suzaku")
         (lambda: mmgtune.write_trial("turn.parquet", TRIALS["turn_p35"]), "no path (Trial(turn_p35", "where the file"),
         (lambda: mmgtune.load_trials(5), "no name of a data set (5)", "a text or a Path"),
         (lambda: mmgtune.load_trials(""), "no name of a data set ('')", "give a path or a bundled name"),
+        (lambda: mmgtune.write_trial(pandas.DataFrame(), "a.parquet"), "a DataFrame is no trial", "give a Trial"),
+        (
+            lambda: mmgtune.indices_of(TRIALS["turn_p35"], 83.0),
+            "a Trial is no track",
+            "simulate(SHIP, TRIAL)[0].track()",
+        ),
+        (lambda: mmgtune.indices_of(A_TRACK, SHIP), "a ShipProfile is no length (L_pp)", "profile.L_pp"),
+        (lambda: mmgtune.evaluate(SHIP, TRIALS, theta=[1, 2]), "theta is a list (theta)", "n_members); Model(SHIP)"),
+        (lambda: mmgtune.evaluate(SHIP, TRIALS, theta=np.ones(2)), "theta has shape (2,)", "n_members); Model(SHIP)"),
+        (lambda: mmgtune.simulate(SHIP, []), "the list of trials is empty", "one at least"),
+        (lambda: mmgtune.FitOptions(ar=0.5), "FitOptions has no option ar (ar)", "did you mean 'a_r'?"),
+        (lambda: mmgtune.FitOptions(fix=("R_0",)), "FitOptions has no option fix (fix)", "did you mean 'fixed'?"),
+        (lambda: mmgtune.FitOptions(0.5), "0.5 is given no name (FitOptions)", "write FitOptions(NAME=0.5)"),
+        (
+            lambda: mmgtune.run_manoeuvre(SHIP, mmgtune.TurningOrder(0.5), n=106),
+            "the revolutions are 6360 rpm (n)",
+            "write n=1.767 for 106 rpm",
+        ),
         (lambda: mmgtune.load_profile(None), "no name of a ship profile (None)", "a text or a Path"),
     ],
 )

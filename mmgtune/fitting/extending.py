@@ -61,9 +61,9 @@ def with_width(profile: ShipProfile, options: O) -> O:
     if not isinstance(options, (TuningOptions, DiagnoseOptions)):
         return options
     names = _free(profile, options)
-    if isinstance(options, (FitOptions, LeaveOutOptions, DiagnoseOptions)) and options.a_r is None:
-        if all(profile.coefficient(name).scatter is None for name in names):
-            return replace(options, a_r=A_R)
+    scattered = any(profile.coefficient(name).scatter is not None for name in names)
+    if isinstance(options, (FitOptions, LeaveOutOptions, DiagnoseOptions)) and options.a_r is None and not scattered:
+        return replace(options, a_r=A_R)
     return options
 
 

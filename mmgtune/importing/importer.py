@@ -37,6 +37,7 @@ from .parquet_log import read_parquet
 from .proposing.elsewhere import yaw_rate_elsewhere
 from .quality import quality_of, quality_text, same_units_throughout
 from .quantities import MEASURED
+from .reading_map import load_map
 from .record import Record, record_of, time_in_seconds
 from .sides import as_cells_say
 from .table import Table
@@ -106,8 +107,8 @@ class Imported:
 
 
 def import_logs(
-    logs: Sequence[Path | str],
-    log_map: LogMap,
+    logs: Path | str | Sequence[Path | str],
+    log_map: LogMap | Path | str,
     out: Path | str,
     step: float | None = None,
     overwrite: bool = False,
@@ -115,6 +116,8 @@ def import_logs(
 ) -> Imported:
     """Write each log as one trial file in the folder ``out``, or several where it has to be cut, and a report beside.
 
+    logs     paths of them; of one a path does
+    log_map  what their columns are, or the file that says so
     step     time step of the trials [s]; None: what the map says, else the log's own median
     dry_run  write nothing
 
@@ -122,18 +125,16 @@ def import_logs(
     ``overwrite`` is false; nothing is written then.
     """
     out = path_of(out)
-    for log in logs:
-        must_be_name(log, "log", LogError)
+    paths = paths_of(logs)
+    log_map = log_map if isinstance(log_map, LogMap) else load_map(log_map)
     refuse_file(out)
     if not dry_run and not overwrite:
         # Known before the work is done; parts of a log that is cut are found out later.
-        refuse_existing(
-            [out / REPORT, *(out / f"{_name(log_map.of(Path(log)).id, Path(log))}.parquet" for log in logs)]
-        )
+        refuse_existing([out / REPORT, *(out / f"{_name(log_map.of(log).id, log)}.parquet" for log in paths)])
     trials: list[Trial] = []
     quality: list[dict[str, Any]] = []
     problems: list[Problem] = []
-    for log in dict.fromkeys(Path(one) for one in logs):
+    for log in paths:
         try:
             # Damaged numbers overflow on their way to where they are found out.
             with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
@@ -159,6 +160,14 @@ def import_logs(
     imported = Imported(tuple(trials), tuple(quality), tuple(files), log_map.name)
     write_json(imported.to_dict(), out / REPORT, overwrite)
     return imported
+
+
+def paths_of(logs: Path | str | Sequence[Path | str]) -> tuple[Path, ...]:
+    """The paths of logs, each once; of one the path alone does.  Raises LogError for what is none."""
+    several = [logs] if isinstance(logs, (str, Path)) else logs
+    for one in several:
+        must_be_name(one, "log", LogError)
+    return tuple(dict.fromkeys(Path(one) for one in several))
 
 
 def _name(template: str, log: Path) -> str:

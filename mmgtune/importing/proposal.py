@@ -14,10 +14,9 @@ from typing import Any
 import numpy as np
 
 from ..errors import LogError, Problem
-from ..resources import must_be_name
 from .doubts import shifted_lever
 from .forms import form_of
-from .importer import Imported, import_logs
+from .importer import Imported, import_logs, paths_of
 from .mapping import ASKS, LogMap
 from .proposing.finder import MOST_LOGS, Finder
 from .proposing.finding import found_in
@@ -113,14 +112,12 @@ def _given(logs: Sequence[Path]) -> str:
     return " ".join(quote(str(log)) for log in logs)
 
 
-def propose_map(logs: Sequence[Path | str]) -> Proposal:
-    """Find out what the columns of logs are and write a map that imports them.
+def propose_map(logs: Path | str | Sequence[Path | str]) -> Proposal:
+    """Find out what the columns of logs, or of one, are and write a map that imports them.
 
     Raises LogError where a log cannot be read, is no table, or where the logs are of different kinds.
     """
-    for one in logs:
-        must_be_name(one, "log", LogError)
-    paths = tuple(dict.fromkeys(Path(one) for one in logs))
+    paths = paths_of(logs)
     forms = {path: form_of(path) for path in paths}
     if set(forms.values()) == {"nmea"}:
         return _of_sentences(paths)

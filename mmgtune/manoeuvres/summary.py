@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from numbers import Real
 from typing import Any
 
+from ..errors import OptionError, Problem, brief, kind_of
 from ..units import DEG
 from .criteria import Criterion, check_turning, check_zigzag
 from .track import Track
@@ -18,13 +20,25 @@ def indices_of(track: Track, L_pp: float, measured: Mapping[str, Any] | None = N
     L_pp      length between perpendiculars [m]
     measured  indices of the run that the record is a simulation of: a zigzag keeps the rudder and check angle of that
               one, because a helmsman who follows another heading does not reverse at the check heading
+    Raises OptionError for what is no record or no length.
     """
+    _hold_kinds(track, L_pp)
     kind = manoeuvre_kind(track)
     if kind == "turning":
         return turning_indices(track, L_pp).to_dict()
     if kind == "zigzag":
         return zigzag_indices(track, L_pp, _angles(measured or {})).to_dict()
     return {}
+
+
+def _hold_kinds(track: object, L_pp: object) -> None:
+    if not isinstance(track, Track):
+        why = "indices are read from the record of one manoeuvre"
+        fix = "give a Track: simulate(SHIP, TRIAL)[0].track(), or Track(t=..., x=..., ...) of what was measured"
+        raise OptionError(Problem(f"{kind_of(track)} is no track", brief(track), why, fix))
+    if not isinstance(L_pp, Real):
+        why, fix = "it is the length between perpendiculars in m", "give a number; a profile has it as profile.L_pp"
+        raise OptionError(Problem(f"{kind_of(L_pp)} is no length", "L_pp", why, fix))
 
 
 def _angles(indices: Mapping[str, Any]) -> tuple[float, float] | None:

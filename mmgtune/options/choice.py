@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+import re
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
@@ -138,8 +139,36 @@ def choices(of: type[Options]) -> dict[str, Choice]:
     return first
 
 
+class _Named(type):
+    """Classes of options are made by the names of their fields."""
+
+    def __call__(cls, *given: Any, **named: Any) -> Any:
+        """Raises OptionError for options without a name, and for names that no option has."""
+        known: Any = cls
+        names = [one.name for one in fields(known)]
+        if given:
+            what, why = f"{_short(given[0])} is given no name", "options are given by name, and have defaults"
+            fix = f"write {cls.__name__}(NAME={_short(given[0])}); the names are {', '.join(names)}"
+            raise OptionError(Problem(what, cls.__name__, why, fix))
+        flags = {one.flag.lstrip("-").replace("-", "_"): name for name, one in choices(known).items()}
+        problems = [
+            Problem(f"{cls.__name__} has no option {name}", name, **_meant(name, names, flags))
+            for name in named
+            if name not in names
+        ]
+        if problems:
+            raise OptionError(*problems)
+        return super().__call__(**named)
+
+
+def _meant(name: str, names: Sequence[str], flags: Mapping[str, str]) -> dict[str, str]:
+    """Why an option is unknown, and which is meant: the one of that flag, or the nearest."""
+    found = among(name, names)
+    return {**found, "fix": f"did you mean '{flags[name]}'?"} if name in flags else found
+
+
 @dataclass(frozen=True)
-class Options:
+class Options(metaclass=_Named):
     """Choices that belong together; they are looked at when they are made."""
 
     def __init_subclass__(cls) -> None:
@@ -173,7 +202,7 @@ class Options:
         ]
 
     def _of_other_kinds(self) -> list[Problem]:
-        hints: dict[str, Any] = _hints(type(self))  # type: ignore[arg-type]  # classes can be hashed
+        hints: dict[str, Any] = _hints(type(self))
         return [
             problem
             for name, known in choices(type(self)).items()
@@ -228,8 +257,7 @@ def _of_another_kind(name: str, value: Any, hint: Any, unit: str = "") -> list[P
     parts = get_args(kind)
     if parts:
         if isinstance(value, str) or not isinstance(value, Sequence):
-            such = f": {name}=({_part(value, parts[0])},)" if isinstance(value, (str, int, float)) else ""
-            fix = f"give a tuple, each part {_KINDS[parts[0]][1]}{such}"
+            fix = f"give a tuple, each part {_KINDS[parts[0]][1]}{_as_tuple(name, value, parts)}"
             return [Problem(f"{name} is {_short(value)}", name, fix=fix)]
         if ... not in parts and len(value) != len(parts):
             return [Problem(f"{name} is {_short(value)}", name, fix=f"give {len(parts)} numbers")]
@@ -240,6 +268,21 @@ def _of_another_kind(name: str, value: Any, hint: Any, unit: str = "") -> list[P
     such = f": {_part(value, kind, unit)}" if kind is str and isinstance(value, (int, float)) else ""
     of = " with its unit" if kind is str and unit else ""
     return [Problem(f"{name} is {_short(value)}", name, fix=f"give {words}{of}{such}")]
+
+
+def _as_tuple(name: str, value: Any, parts: tuple[Any, ...]) -> str:
+    """How a value that is no tuple may have been meant: "0:100" as two numbers; "" where that does not show."""
+    if isinstance(value, (int, float)) and ... in parts:
+        return f": {name}=({_part(value, parts[0])},)"
+    if not isinstance(value, str):
+        return ""
+    if parts[0] is str:
+        return f": {name}=({_short(value)},)"
+    try:
+        numbers = [float(part) for part in re.split("[:,]", value.strip("()[]"))]
+    except ValueError:
+        return ""
+    return f": {name}=({', '.join(map(repr, numbers))}{',' * (len(numbers) == 1)})"
 
 
 def _pythons(value: Any) -> Any:

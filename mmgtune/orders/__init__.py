@@ -16,6 +16,7 @@ from ..model import Model
 from ..simulation import Motion
 from .helmsmen import Helmsman, SpiralOrder, Straight, TurningOrder, Weave, ZigzagOrder, in_radians
 from .ordering import order_by_order, serves
+from .possible import possible_approach
 from .sailing import LONGEST_STEP, Sailing, Watch, sample_of
 from .stepping import step_by_step
 
@@ -29,6 +30,7 @@ __all__ = [
     "Weave",
     "ZigzagOrder",
     "in_radians",
+    "possible_approach",
     "run_manoeuvre",
     "run_manoeuvres",
     "sample_of",
@@ -53,10 +55,13 @@ def run_manoeuvre(
 
     ship   object, path or bundled name
     theta  (n_rows, 1) coefficients, those of the profile where None
-    The others are those of a ``Sailing``; see ``run_manoeuvres``, which raises what this raises.
+    The others are those of a ``Sailing``; see ``run_manoeuvres``.  Raises what that raises, and OptionError for a speed
+    or revolutions beyond any ship.
     """
     sailing = Sailing(helmsman, id, speed, n, heading, longest, sample, step, engine)
-    return run_manoeuvres(ship, [sailing], theta=theta)[0]
+    model = ship if isinstance(ship, Model) else Model(ship_of(ship))
+    possible_approach(speed, n, model.L_pp, model.profile.approach, option="n")
+    return run_manoeuvres(model, [sailing], theta=theta)[0]
 
 
 def run_manoeuvres(

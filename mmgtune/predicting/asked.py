@@ -9,11 +9,11 @@ from ..errors import OptionError, Problem
 from ..inputs import INPUTS
 from ..model import Model
 from ..options import PredictOptions
+from ..orders import possible_approach
 from ..predictor import Predictor
 from ..profile import Actuator, ShipProfile
 from ..simulating import (
     approach_speed,
-    possible_approach,
     revolutions,
     rudder_angle,
     turn_name,

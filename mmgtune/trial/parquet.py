@@ -15,7 +15,7 @@ import numpy as np
 
 from .. import limits
 from ..arrays import FloatArray
-from ..errors import Problem, TrialError, reason
+from ..errors import OptionError, Problem, TrialError, brief, kind_of, reason
 from ..files import atomic, hold_regular, path_of
 from ..resources import must_be_name
 from ..units import canonical, factors
@@ -72,12 +72,17 @@ def read_trial(path: Path | str) -> Trial:
 def write_trial(trial: Trial, path: Path | str, overwrite: bool = False) -> Path:
     """Write a trial, whole or not at all; returns the path.
 
-    Raises OutputError where the file exists and ``overwrite`` is false, or the system refuses to write.
+    Raises OutputError where the file exists and ``overwrite`` is false, or the system refuses to write, OptionError for
+    what is no trial.
     """
     import pyarrow as pa
     import pyarrow.parquet as pq
 
     path = path_of(path)
+    if not isinstance(trial, Trial):
+        why = "a file holds a trial with its ship, manoeuvre and inputs"
+        fix = "give a Trial; tables are written as logs, and import_logs makes trials of these"
+        raise OptionError(Problem(f"{kind_of(trial)} is no trial", brief(trial), why, fix))
     values = trial.columns
     fields = [
         pa.field(name, pa.float64(), metadata={"unit": known.unit} if (known := known_column(name)) else None)

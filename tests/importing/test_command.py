@@ -4,6 +4,7 @@ import signal
 
 import pytest
 
+from mmgtune import import_logs, propose_map
 from tests.command import run, run_until
 from tests.importing.made import MAP, logged, turn, write_csv
 
@@ -57,6 +58,13 @@ def test_refusals(folder, options, words):
     assert words in ended.err
     assert "Traceback" not in ended.err
     assert not (folder / "out").exists()
+
+
+def test_the_library_takes_one_log_and_the_path_of_a_map(folder):
+    log = folder / "zigzag.csv"
+    for one in (log, str(log), [log]):
+        assert [trial.id for trial in import_logs(one, folder / "map.toml", "out", dry_run=True).trials] == ["zigzag"]
+        assert propose_map(one).text == propose_map([log]).text
 
 
 def test_stopped_while_reading_leaves_nothing(folder):

@@ -1,0 +1,43 @@
+"""Approaches that a ship can be asked for."""
+
+from __future__ import annotations
+
+import math
+
+from ..errors import OptionError, Problem
+from ..physics.constants import GRAVITY
+from ..profile import Approach
+from ..units import KNOT
+
+FROUDE = 1.0
+"""Speed over sqrt(g L_pp) [1] that no ship of displacement comes near: ships stay below 0.5."""
+
+FASTER = 5.0
+"""Times the revolutions of the profile's approach beyond which no shaft turns: engines have a tenth to spare."""
+
+FASTEST_SHAFT = 100.0
+"""Revolutions [1/s] that no propeller makes, not even a model's."""
+
+
+def possible_approach(
+    speed: float | None, n: float | None, L_pp: float, own: Approach | None, *, option: str = "rpm"
+) -> None:
+    """Raises OptionError for an approach that was ordered and is beyond any ship; None where nothing was.
+
+    own     approach of the profile, None where there is none
+    option  that ordered the revolutions
+    """
+    fastest = FROUDE * math.sqrt(GRAVITY * L_pp)
+    if speed is not None and not speed <= fastest:
+        why = f"a Froude number of {speed / fastest:.2g} with {L_pp:.4g} m between perpendiculars; ships stay below 0.5"
+        fix = f"give a speed below {0.5 * fastest / KNOT:.3g} kn, with its unit"
+        raise OptionError(Problem(f"the approach speed is {speed / KNOT:.4g} kn", "speed", why, fix))
+    most = FASTEST_SHAFT if own is None else FASTER * own.n
+    if n is not None and n > most:
+        why = "no propeller turns so fast, not even a model's"
+        if own is not None:
+            why = f"that is {n / own.n:.3g} times the {60.0 * own.n:.4g} rpm of the profile's approach"
+        fix = f"give less than {60.0 * most:.4g} rpm, or correct [approach] of the profile"
+        if option == "n":
+            fix = f"write n={n / 60.0:.4g} for {n:g} rpm: it is in 1/s, and less than {most:.4g}"
+        raise OptionError(Problem(f"the revolutions are {60.0 * n:.4g} rpm", option, why, fix))
