@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from json import JSONDecodeError
 
 
 @dataclass(frozen=True)
@@ -128,6 +129,12 @@ def reason(error: BaseException) -> str:
     """What an exception says, in one short line: of a file, what the system says, without its number and the path."""
     if isinstance(error, UnicodeDecodeError):
         return f"byte {error.start} is no {error.encoding} text"
+    if isinstance(error, JSONDecodeError):
+        return f"it is no JSON: line {error.lineno}, column {error.colno}"
+    if isinstance(error, IsADirectoryError):
+        return "it is a folder"
+    if isinstance(error, KeyError) and error.args:
+        return f"it has no '{error.args[0]}'"
     said = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
     return (said.strip().splitlines() or [type(error).__name__])[0][:300]
 

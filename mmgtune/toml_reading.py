@@ -20,13 +20,23 @@ def toml_of(text: str, what: str, where: str, error: type[MmgtuneError]) -> dict
     try:
         found = tomllib.loads(text.removeprefix("\ufeff"))
     except tomllib.TOMLDecodeError as why:
-        raise error(Problem(f"{what} is not valid TOML", where, str(why), "correct the line named")) from why
+        raise error(Problem(f"{what} is not valid TOML", where, _in_words(why), "correct the line named")) from why
     except RecursionError as why:
         raise error(Problem(f"{what} is nested too deeply", where, fix=NESTING.fix)) from why
     except ValueError as why:  # a number of thousands of digits
         raise error(Problem(f"{what} has a number that cannot be read", where, str(why), "write it shorter")) from why
     NESTING.hold(depth(found), where, error)
     return found
+
+
+def _in_words(error: tomllib.TOMLDecodeError) -> str:
+    """What is wrong with the TOML; of what is there twice what that is."""
+    said = str(error)
+    said = re.sub(r"^Cannot overwrite a value", "a name or a table is there twice", said)
+    twice = re.match(r"Cannot declare \((.*?),?\) twice(.*)", said)
+    if twice is None:
+        return said
+    return f"the table [{'.'.join(name.strip(chr(39)) for name in twice[1].split(', '))}] is there twice{twice[2]}"
 
 
 def depth(value: object) -> int:

@@ -1,9 +1,12 @@
 """What refusals say of what the system or a library told them."""
 
+import json
+
 import pytest
 
 from mmgtune.errors import ProfileError, cannot_write_reason, reason
 from mmgtune.profile import load_profile
+from mmgtune.toml_reading import toml_of
 
 
 def test_a_reason_is_one_line_without_numbers_and_paths(tmp_path):
@@ -14,6 +17,28 @@ def test_a_reason_is_one_line_without_numbers_and_paths(tmp_path):
     assert reason(ValueError("first\nsecond")) == "first"
     assert reason(ValueError()) == "ValueError"
     assert len(reason(ValueError("x" * 10_000))) == 300
+    assert reason(KeyError("name")) == "it has no 'name'"
+    with pytest.raises(OSError) as folder:
+        tmp_path.read_text(encoding="utf-8")
+    assert reason(folder.value) == "it is a folder"
+    with pytest.raises(ValueError) as document:
+        json.loads('{"a":\n x')
+    assert reason(document.value) == "it is no JSON: line 2, column 2"
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("[hull]\n[hull]", "the table [hull] is there twice (at line 2, column 6)"),
+        ("[a.b]\n[a.b]", "the table [a.b] is there twice (at line 2, column 5)"),
+        ("a = 1\na = 2\n", "a name or a table is there twice (at line 2, column 6)"),
+        ("a = ", "Invalid value (at end of document)"),
+    ],
+)
+def test_what_is_wrong_with_toml_is_said_in_words(text, said):
+    with pytest.raises(ProfileError) as refused:
+        toml_of(text, "the profile", "ship.toml", ProfileError)
+    assert refused.value.problems[0].why == said
 
 
 def test_a_profile_that_is_no_text(tmp_path):

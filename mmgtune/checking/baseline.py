@@ -12,7 +12,7 @@ from typing import Any
 from .. import limits
 from ..backends import Integrator
 from ..documents import finite_values, write_json
-from ..errors import OptionError, Problem, among
+from ..errors import OptionError, Problem, among, reason
 from ..files import path_of
 from ..metrics import METRICS
 from ..options import SimulationOptions
@@ -109,7 +109,7 @@ def read_baseline(path: Path | str) -> Baseline:
         fix = "write one with update_baseline=True, and commit it"
         raise OptionError(Problem("there is no baseline", str(path), looked_for(path), fix)) from None
     except (OSError, ValueError, RecursionError) as error:
-        raise OptionError(Problem("the baseline cannot be read", str(path), str(error), again)) from None
+        raise OptionError(Problem("the baseline cannot be read", str(path), reason(error), again)) from None
     if not isinstance(data, dict) or data.get("kind") != KIND:
         raise OptionError(Problem("this is not a baseline of a check", str(path), f"it has no kind '{KIND}'", again))
     if data.get("schema") != SCHEMA:
@@ -118,8 +118,7 @@ def read_baseline(path: Path | str) -> Baseline:
     try:
         baseline = _parsed(data)
     except (ArithmeticError, KeyError, TypeError, ValueError, AttributeError) as error:
-        why = f"no {error}" if isinstance(error, KeyError) else str(error)
-        raise OptionError(Problem("the baseline is not complete", str(path), why, again)) from None
+        raise OptionError(Problem("the baseline is not complete", str(path), reason(error), again)) from None
     problems = _wrong(baseline, str(path))
     if problems:
         raise OptionError(*problems)

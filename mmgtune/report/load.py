@@ -163,9 +163,10 @@ def whole(path: Path) -> Iterator[None]:
         ValueError,
     ) as error:
         # Deep in the page, so the innermost place says which part of it that was.
-        part = traceback.extract_tb(error.__traceback__)[-1].name.strip("_").replace("_", " ")
+        names = [frame.name for frame in traceback.extract_tb(error.__traceback__) if not frame.name.startswith("<")]
+        why = f"{reason(error)}, needed for '{names[-1].strip('_').replace('_', ' ')}'"
         fix = "run it again; if nothing but mmgtune wrote there, please report it"
-        raise _problem("no report can be made of the run's record", path, f"{error!r} in '{part}'", fix) from error
+        raise _problem("no report can be made of the run's record", path, why, fix) from error
 
 
 def _read(path: Path, kind: Kind) -> dict[str, Any]:
