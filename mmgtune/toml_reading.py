@@ -12,10 +12,11 @@ from .errors import MmgtuneError, Problem, among, brief
 from .limits import NESTING
 
 
-def toml_of(text: str, what: str, where: str, error: type[MmgtuneError]) -> dict[str, Any]:
-    """The tables written in ``text``.  Raises ``error`` where ``what``, such as "the profile", is not TOML.
+def toml_of(text: str, what: str, where: str, error: type[MmgtuneError], *, profile: bool = False) -> dict[str, Any]:
+    """The tables written in ``text``; a byte-order mark in front is passed over.
 
-    A byte-order mark in front is passed over.
+    profile  whether a ship profile is wanted
+    Raises ``error`` where ``what``, such as "the map", is not TOML, or is a ship profile where none is wanted.
     """
     try:
         found = tomllib.loads(text.removeprefix("\ufeff"))
@@ -26,6 +27,10 @@ def toml_of(text: str, what: str, where: str, error: type[MmgtuneError]) -> dict
     except ValueError as why:  # a number of thousands of digits
         raise error(Problem(f"{what} has a number that cannot be read", where, str(why), "write it shorter")) from why
     NESTING.hold(depth(found), where, error)
+    if not profile and {"ship", "hull"} <= found.keys():
+        why = f"it has [ship] and [hull], and {what} is wanted here"
+        fix = f"give {what}, and the profile where a ship is wanted"
+        raise error(Problem("this is a ship profile", where, why, fix))
     return found
 
 

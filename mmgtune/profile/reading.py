@@ -104,7 +104,7 @@ def load_profile(name: str | Path) -> ShipProfile:
 def parse_profile(text: str, path: Path | None = None) -> ShipProfile:
     """The profile written in ``text``; ``path`` is for messages.  Raises ProfileError."""
     where = str(path) if path else "profile"
-    reader = _Reader(toml_of(text, "the profile", where, ProfileError), text, where)
+    reader = _Reader(toml_of(text, "the profile", where, ProfileError, profile=True), text, where)
     profile = reader.read(path)
     if reader.problems:
         raise ProfileError(*reader.problems)

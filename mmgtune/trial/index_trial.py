@@ -183,7 +183,7 @@ def has_index_trials(path: Path) -> bool:
 
     Raises TrialError where it cannot be read.
     """
-    data = _data(path)[0]
+    data = _data(path, profile=True)[0]
     # A map of logs has a table [trial] too, for what their trials have in common; it goes with what it says of a log.
     return "trial" in data and not is_map(data)
 
@@ -213,13 +213,14 @@ def read_index_trials(path: Path) -> tuple[list[IndexTrial], list[Problem]]:
     return [one for one in found if one is not None], reader.problems
 
 
-def _data(path: Path) -> tuple[dict[str, Any], str]:
+def _data(path: Path, profile: bool = False) -> tuple[dict[str, Any], str]:
+    """The tables of a file, and its text; ``profile`` where it may be a ship profile."""
     try:
         text = limits.text(path, limits.SPLIT_BYTES, TrialError)
     except (OSError, ValueError) as error:
         what = "the file of stated indices cannot be read"
         raise TrialError(Problem(what, str(path), reason(error), "it must be UTF-8 text")) from error
-    return toml_of(text, "the file of stated indices", str(path), TrialError), text
+    return toml_of(text, "the file of stated indices", str(path), TrialError, profile=profile), text
 
 
 class _Table:

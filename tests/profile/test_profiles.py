@@ -8,9 +8,13 @@ from hypothesis import strategies as st
 
 from mmgtune import units
 from mmgtune.components import COMPONENTS, KINDS
-from mmgtune.errors import ProfileError
+from mmgtune.errors import MmgtuneError, ProfileError
+from mmgtune.estimating import read_particulars
+from mmgtune.fleet.table import read_table
+from mmgtune.importing import load_map
 from mmgtune.profile import load_profile, parse_profile, tuned, with_effects
 from mmgtune.resources import profile_names
+from mmgtune.trial import load_trials
 
 
 @pytest.mark.parametrize("name", profile_names())
@@ -149,3 +153,22 @@ def test_a_document_of_a_run_is_no_profile_and_the_one_beside_it_is_named(tmp_pa
     with pytest.raises(ProfileError) as caught:
         load_profile(tmp_path / name)
     assert caught.value.problems[0].fix == "name the TOML file of the profile"
+
+
+@pytest.mark.parametrize(
+    ("read", "wanted"),
+    [
+        (load_trials, "the file of stated indices"),
+        (load_map, "the map"),
+        (read_table, "the table of jobs"),
+        (read_particulars, "the file of particulars"),
+    ],
+)
+def test_a_profile_in_the_place_of_another_file_is_told_as_one(tmp_path, read, wanted):
+    """A list of its tables as unknown keys said nothing."""
+    (tmp_path / "ship.toml").write_text(load_profile("suzaku").text)
+    with pytest.raises(MmgtuneError) as refused:
+        read(tmp_path / "ship.toml")
+    (problem,) = refused.value.problems
+    assert problem.what == "this is a ship profile"
+    assert problem.fix.startswith(f"give {wanted}")
