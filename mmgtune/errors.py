@@ -87,16 +87,24 @@ def closest(name: str, known: Sequence[str]) -> str:
     return near_to(name, known) or _listed(known)
 
 
-def near_to(name: str, known: Sequence[str], cutoff: float = 0.5) -> str:
-    """A question naming the nearest known names, "" where none is near.
+def near_to(name: str, known: Sequence[str], cutoff: float = 0.62) -> str:
+    """A question naming the nearest known names, "" where none is near; capitals count as small letters.
+
+    Where none is near, those that begin with the name are.
 
     cutoff  likeness from which a name is near, 1 being the same
     """
     import difflib
 
     # Names may come from files: comparing grows with the product of lengths.
-    short = [other for other in known[:1000] if len(other) <= 80]
-    near = difflib.get_close_matches(name[:80], short, n=3, cutoff=cutoff)
+    short: dict[str, list[str]] = {}
+    for other in known[:1000]:
+        if len(other) <= 80:
+            short.setdefault(other.lower(), []).append(other)
+    asked = name[:80].lower()
+    alike = difflib.get_close_matches(asked, short, n=3, cutoff=cutoff)
+    alike = alike or [one for one in short if asked and one.startswith(asked)]
+    near = [other for one in alike for other in short[one]][:3]
     return "did you mean " + " or ".join(f"'{other}'" for other in near) + "?" if near else ""
 
 

@@ -23,6 +23,8 @@ class Found(Protocol):
 ShipGiven = ShipProfile | Found | str | Path
 TrialsGiven = TrialSet | Trial | IndexTrial | Sequence[Trial | IndexTrial] | str | Path
 
+_NONE = Problem("the list of trials is empty", "trials", "nothing was measured", "give one at least")
+
 
 def ship_of(given: ShipGiven) -> ShipProfile:
     """A profile, the one of that path or bundled name, or the one that a fit or a diagnosis found.
@@ -61,9 +63,17 @@ def list_of(given: TrialsGiven) -> list[Trial]:
         return list(trials_of(given).series_only(what).trials.values())
     several = _several(given)
     series = [one for one in several if isinstance(one, Trial)]
-    if len(series) < len(several) or not several:
+    if len(series) < len(several):
         _set_of(several).series_only(what)
     return series
+
+
+def some_of(given: TrialsGiven) -> list[Trial]:
+    """The same where there is one at least.  Raises TrialError for none."""
+    several = list_of(given)
+    if not several:
+        raise TrialError(_NONE)
+    return several
 
 
 def _several(given: object) -> list[Trial | IndexTrial]:
@@ -88,7 +98,7 @@ def _several(given: object) -> list[Trial | IndexTrial]:
 def _set_of(several: Sequence[Trial | IndexTrial]) -> TrialSet:
     """Trials as a data set that tunes to all of them.  Raises TrialError for none, and for two of one id."""
     if not several:
-        raise TrialError(Problem("the list of trials is empty", "trials", "nothing was measured", "give one at least"))
+        raise TrialError(_NONE)
     ids = [one.id for one in several]
     twice = [id for id in dict.fromkeys(ids) if ids.count(id) > 1]
     if twice:

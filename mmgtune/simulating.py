@@ -14,7 +14,7 @@ from .displayed import Plotted, inert
 from .errors import OptionError, Problem
 from .evaluation import TrialRecord, evaluate
 from .files import path_of, refuse_existing
-from .given import ShipGiven, TrialsGiven, list_of
+from .given import ShipGiven, TrialsGiven, list_of, some_of
 from .inputs import INPUTS
 from .manoeuvres.summary import criteria_of, indices_of
 from .model import Model
@@ -190,7 +190,7 @@ def simulate(
                 "leave out turn, zigzag, speed and rpm",
             )
         )
-    several = list_of(trials)
+    several = some_of(trials)
     records = evaluate(predictor, several)
     notes = notes_on(predictor.model, several) if isinstance(predictor, PhysicsPredictor) else ()
     simulated = tuple(record.motion for record in records)

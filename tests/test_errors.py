@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from mmgtune.errors import ProfileError, cannot_write_reason, reason
+from mmgtune.errors import ProfileError, cannot_write_reason, near_to, reason
 from mmgtune.profile import load_profile
 from mmgtune.toml_reading import toml_of
 
@@ -39,6 +39,22 @@ def test_what_is_wrong_with_toml_is_said_in_words(text, said):
     with pytest.raises(ProfileError) as refused:
         toml_of(text, "the profile", "ship.toml", ProfileError)
     assert refused.value.problems[0].why == said
+
+
+@pytest.mark.parametrize(
+    ("name", "known", "said"),
+    [
+        ("nonsense", ("diagnose", "fit"), ""),
+        ("numba", ("numpy", "jax"), ""),
+        ("RK4", ("euler", "rk4"), "did you mean 'rk4'?"),
+        ("hull.y_v", ("hull.Y_v", "rudder.eps"), "did you mean 'hull.Y_v'?"),
+        ("fitt", ("fit", "sweep"), "did you mean 'fit'?"),
+        ("v", ("v_m", "x"), "did you mean 'v_m'?"),
+        ("", ("v_m", "x"), ""),
+    ],
+)
+def test_only_near_names_are_proposed(name, known, said):
+    assert near_to(name, known) == said
 
 
 def test_a_profile_that_is_no_text(tmp_path):

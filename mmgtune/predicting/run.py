@@ -10,7 +10,7 @@ from typing import cast
 from ..bands import widest
 from ..circumstances import notes_on
 from ..errors import OptionError, Problem
-from ..given import ShipGiven, TrialsGiven, list_of
+from ..given import ShipGiven, TrialsGiven, some_of
 from ..model import Model
 from ..networks import named_ship
 from ..options import PredictOptions
@@ -56,7 +56,7 @@ def predict(
     sigma: dict[str, float] = {}
     notes: list[str] = []
     if trials is not None:
-        given = list_of(trials)
+        given = some_of(trials)
         sigma = _sigma(given, options)
         runs = tuple(on_trials(several, given, options.restart))
         if isinstance(whole, PhysicsPredictor):
