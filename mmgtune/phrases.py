@@ -5,6 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 
+def counted(amount: int, noun: str, plural: str = "") -> str:
+    """A number with its noun: "1 trial", "8 trials"."""
+    return f"{amount} {noun if amount == 1 else plural or noun + 's'}"
+
+
 def listed(words: Sequence[str], most: int | None = None) -> str:
     """Words as a phrase: "a, b and c"; "" for none.
 

@@ -28,9 +28,9 @@ def toml_of(text: str, what: str, where: str, error: type[MmgtuneError], *, prof
         raise error(Problem(f"{what} has a number that cannot be read", where, str(why), "write it shorter")) from why
     NESTING.hold(depth(found), where, error)
     if not profile and {"ship", "hull"} <= found.keys():
-        why = f"it has [ship] and [hull], and {what} is wanted here"
+        there = f"it has [ship] and [hull], and {what} is wanted here"
         fix = f"give {what}, and the profile where a ship is wanted"
-        raise error(Problem("this is a ship profile", where, why, fix))
+        raise error(Problem("this is a ship profile", where, there, fix))
     return found
 
 

@@ -12,6 +12,7 @@ from ..displayed import Displayed
 from ..documents import finite
 from ..errors import Problem
 from ..metrics import METRICS
+from ..phrases import counted
 from ..profile.doubts import Doubt
 
 Status = Literal["ok", "improved", "regressed", "not comparable", "not shown"]
@@ -177,19 +178,20 @@ class CheckReport(Displayed):
         if self.problems:
             return f"COULD NOT RUN  {self.problems[0].what}"
         bad, odd = self.by_status["regressed"], self.by_status["not comparable"]
+        n_trials = counted(len(self.trial_ids), "trial")
         if bad:
             trials = len({item.trial for item in bad})
             text = (
-                f"FAIL  {len(bad)} of {self.n_compared} metrics regressed, in {trials} of {len(self.trial_ids)} trials."
+                f"FAIL  {len(bad)} of {self.n_compared} metrics regressed, in {trials} of {n_trials}."
                 f" Worst: {bad[0].words} of {bad[0].trial}."
             )
             return text + (f" {len(odd)} could not be compared." if odd else "")
         if odd:
             trials = len({item.trial for item in odd})
-            return f"NOT COMPARABLE  {trials} of {len(self.trial_ids)} trials: {odd[0].trial}: {odd[0].reason}."
+            return f"NOT COMPARABLE  {trials} of {n_trials}: {odd[0].trial}: {odd[0].reason}."
         better = len(self.by_status["improved"])
         improved = f", {better} of them better" if better else ""
-        return f"pass  {self.n_compared} metrics of {len(self.trial_ids)} trials{improved}."
+        return f"pass  {self.n_compared} metrics of {n_trials}{improved}."
 
     @property
     def next(self) -> str:

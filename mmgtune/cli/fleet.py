@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..options import FleetOptions
+from ..phrases import counted
 from ..units import in_time
 from . import common as c
 from . import interrupts
@@ -84,8 +85,8 @@ def run(
         c.print_json(dict(result.document))
     else:
         c.show(summary(result.document))
-        workers = "1 worker" if result.workers == 1 else f"{result.workers} workers"
-        ran = f"{len(result.ran)} jobs run by {workers} in {result.wall_s:.1f} s"
+        workers = counted(result.workers, "worker")
+        ran = f"{counted(len(result.ran), 'job')} run by {workers} in {result.wall_s:.1f} s"
         again = f", {result.killed} of them again since their worker was killed" if result.killed else ""
         c.show(f"{ran if result.ran else 'Nothing was left to run'}{again}.")
         c.show(f"Results: {out}" if no_report else f"Report: {out}/report.html")
@@ -144,7 +145,7 @@ def plan_text(plan: FleetPlan, options: FleetOptions, out: Path) -> str:
     head, *rest = c.table(("ship", "date", "job", "command", "trials"), rows, words=(0, 1, 2, 3, 4), spare=(3,))
     lines = [head, "", *rest, ""]
     there = sum(job.key in plan.there for job in plan.jobs)
-    lines.append(f"{len(plan.jobs)} jobs" + (f", {there} of them done in {out}" if there else ""))
+    lines.append(counted(len(plan.jobs), "job") + (f", {there} of them done in {out}" if there else ""))
     for name, count, low, high in plan.reckoned.kinds:
         lines.append(f"  {name}: {count} to run, {low / count:.2g} to {high / count:.2g} s each")
     low, high = plan.reckoned.seconds
@@ -179,7 +180,8 @@ def _plan_dict(plan: FleetPlan, options: FleetOptions) -> dict[str, Any]:
 def summary(document: Mapping[str, Any]) -> str:
     """The results of a fleet as a person wants to read them in a terminal."""
     jobs = document["jobs"]
-    head = f"{len(document['ships'])} ships, {len(document['dates'])} dates: {jobs['total']} jobs; "
+    several = counted(len(document["ships"]), "ship"), counted(len(document["dates"]), "date")
+    head = f"{', '.join(several)}: {counted(jobs['total'], 'job')}; "
     parts = f"nothing wrong in {jobs['good']}, something in {jobs['no']}, {jobs['failed']} failed"
     lines = [f"{head}{parts}, {jobs['missing']} not run yet."]
     for one in document["failures"][:SHOWN]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from ..options.learning import EnsembleOptions, HybridOptions, LearnOptions, TrainingOptions
+from ..phrases import counted
 from . import common as c
 from . import compare, learn_mixture
 from .options import RunOptions, takes
@@ -197,7 +198,7 @@ def summary(result: Learned, found: dict[str, Any], folder: str, report: bool) -
     """The result as a person wants to read it in a terminal."""
     members = found["members"]
     lines = [f"type {found['type']}: {found['recipe']}; {len(members)} x {found['width']} units"]
-    learned = f"learned from {len(found['learned_from'])} trials"
+    learned = f"learned from {counted(len(found['learned_from']), 'trial')}"
     if found["chosen_by"]:
         lines += [f"{learned}, chosen by {len(found['chosen_by'])} others", ""]
         lines.append(f"{'seed':>6}{'best step':>11}{'L_MSE of validation':>22}")
@@ -216,7 +217,7 @@ def ensemble_summary(result: LearnedEnsemble, found: dict[str, Any], folder: str
     """The result as a person wants to read it in a terminal."""
     members = found["members"]
     lines = [f"ensemble of {len(members)} x {found['layers']} x {found['width']} units"]
-    lines.append(f"learned from {len(found['learned_from'])} trials")
+    lines.append(f"learned from {counted(len(found['learned_from']), 'trial')}")
     watched = "of runs kept back" if found["watched_by"] else "on all windows of these"
     lines += ["", "loss: squared errors of three velocities over their noise; 3 is as near as the noise lets it be"]
     lines += [f"{'member':>8}{'updates':>9}{'loss':>10}   {watched}"]

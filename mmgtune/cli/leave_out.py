@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..options import LeaveOutOptions, in_flags
+from ..phrases import counted
 from . import common as c
 from .options import RunOptions, takes
 from .progress import Progress
@@ -108,6 +109,6 @@ def summary(result: LeftOut, folder: str, report: bool = False) -> str:
     lines += [f"Note: {in_flags(warning)}" for warning in result.warnings]
     if result.interrupted:
         lines.append(f"Stopped after {len(result.parts)} of {result.n_parts} parts; scores are of those alone.")
-    lines.append(f"{len(result.parts)} fits in {result.wall_s:.1f} s, simulated by {result.method}.")
+    lines.append(f"{counted(len(result.parts), 'fit')} in {result.wall_s:.1f} s, simulated by {result.method}.")
     lines.append(f"Report: {folder}/report.html" if report else f"Results: {folder}")
     return "\n".join(lines)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..options import PosteriorOptions
+from ..phrases import counted
 from . import common as c
 from .options import takes
 
@@ -61,4 +62,4 @@ def command(
 def summary(result: Posterior, folder: Path) -> str:
     """What a person wants to read in a terminal."""
     lines = [*result.sentences(), *(f"Note: {warning}" for warning in result.warnings())]
-    return "\n".join([*lines, f"{len(result.particles)} particles: {folder}/particles.parquet"])
+    return "\n".join([*lines, f"{counted(len(result.particles), 'particle')}: {folder}/particles.parquet"])

@@ -10,6 +10,7 @@ import typer
 
 from ..errors import MmgtuneError, OptionError, Problem
 from ..options import MakeOptions
+from ..phrases import counted
 from . import common as c
 from . import completing
 from .exitcodes import ExitCode
@@ -62,7 +63,7 @@ def check(
                 )
         warnings = sum(f.severity == "warning" for findings in found.values() for f in findings)
         tune, test = len(data.tune) + len(data.tune_stated), len(data.test) + len(data.test_stated)
-        c.show(f"{len(found)} trials can be used, {warnings} warnings; tune {tune}, test {test}")
+        c.show(f"{counted(len(found), 'trial')} can be used, {counted(warnings, 'warning')}; tune {tune}, test {test}")
     if strict and any(f.severity == "warning" for findings in found.values() for f in findings):
         raise typer.Exit(ExitCode.NO)
 
@@ -119,7 +120,7 @@ def inspect(
     for row in rows:
         c.show(
             f"{row['id']}  {row['ship']} {row['manoeuvre']} ({row['source'] or 'source not stated'}), "
-            f"{row['role']}, {row['n_samples']} samples, {row['duration_s']:g} s"
+            f"{row['role']}, {counted(row['n_samples'], 'sample')}, {row['duration_s']:g} s"
         )
         for channel, span in row["ranges"].items():
             c.show(f"  {channel:<8}{span['min']:>12.4g} .. {span['max']:<12.4g} {span['unit']}")
@@ -233,8 +234,7 @@ def import_(
         return
     c.show(imported.text())
     done = "would be written" if dry_run else f"written to {out}"
-    trials = "trial" if len(imported.trials) == 1 else "trials"
-    c.show(f"{len(imported.trials)} {trials} {done}")
+    c.show(f"{counted(len(imported.trials), 'trial')} {done}")
     if not dry_run:
         c.show(f"next: mmgtune trials check {quote(str(out))}")
         c.show(f"then, with her profile: mmgtune fit -p PROFILE -t {quote(str(out))}, or diagnose in the place of fit")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import TrialError
 from ..options import VoyageOptions
+from ..phrases import counted
 from ..units import DEG, shown_in
 from . import common as c
 from .options import WrittenOptions
@@ -101,7 +102,7 @@ def summary(result: VoyageValidation, folder: str, report: bool) -> str:
     if result.interrupted:
         done = sum(log["complete"] for log in found["logs"])
         lines.append(f"Stopped after {done} of {found['n_logs']} voyages; everything is of the windows scored by then.")
-    lines.append(f"{found['n_windows']} windows of {found['window_s']:g} s in {found['wall_s']:.1f} s.")
+    lines.append(f"{counted(found['n_windows'], 'window')} of {found['window_s']:g} s in {found['wall_s']:.1f} s.")
     lines.append(f"Report: {folder}/report.html" if report else f"Results: {folder}")
     return "\n".join(lines)
 

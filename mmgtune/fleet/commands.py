@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from ..documents import write_json
 from ..errors import OptionError, Problem
 from ..options import CheckOptions, DiagnoseOptions, FitOptions, Options, SweepOptions, ValidateOptions
+from ..phrases import counted
 
 if TYPE_CHECKING:
     from ..profile import ShipProfile
@@ -199,7 +200,7 @@ def _validate(task: Task, folder: Path) -> tuple[str, Facts]:
     errors = [rms_errors(document, row) for row in scored["trials"]]
     track, heading = ([one[k] for one in errors if one[k] is not None] for k in (0, 1))
     lost = sum(one[0] is None for one in errors)
-    words = f"J {scored['J']:.4g} over {len(errors)} trials" if scored["J"] is not None else "no finite J"
+    words = f"J {scored['J']:.4g} over {counted(len(errors), 'trial')}" if scored["J"] is not None else "no finite J"
     return "validate.json", Facts(
         "no" if lost else "good",
         f"{words}; {lost} diverged" if lost else words,

@@ -16,6 +16,7 @@ from ..arrays import FloatArray
 from ..documents import write_json
 from ..errors import LogError, Problem
 from ..files import path_of, refuse_existing, refuse_file, true_path
+from ..phrases import counted
 from ..resources import must_be_name
 from ..trial import Trial, write_trial
 from ..trial.schema import ATTRIBUTES, directions, known_column
@@ -211,7 +212,10 @@ def _trials(log: Path, log_map: LogMap, step: float | None) -> list[tuple[Trial,
         if count > 1:
             notes = [f"part {number} of {count} of the log", *notes]
         if short:
-            notes = [*notes, f"{short} parts with fewer than {FEWEST} rows were left out"]
+            notes = [
+                *notes,
+                f"{counted(short, 'part')} with fewer than {FEWEST} rows {'was' if short == 1 else 'were'} left out",
+            ]
         found.append(_trial(f"{id}_{piece.follows}" if piece.follows else id, piece, notes, log_map, cut_from))
     return found
 

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import LogError, Problem
+from ..phrases import counted
 from .doubts import shifted_lever
 from .forms import form_of
 from .importer import Imported, import_logs, paths_of
@@ -92,7 +93,8 @@ class Proposal:
         if self.asks:
             lines.append(f"answer {'it' if len(self.asks) == 1 else f'these {len(self.asks)}'} in {name}, then import")
         elif not self.problems:
-            lines.append(f"the map imports all {len(self.logs)} logs, as {self.imported} trials")
+            logs = "the log" if len(self.logs) == 1 else f"all {len(self.logs)} logs"
+            lines.append(f"the map imports {logs}, as {counted(self.imported or 0, 'trial')}")
         lead = f"next: mend what is refused, in {name} or in the logs; then " if self.problems else "next: "
         lines.append(f"{lead}mmgtune trials import {_given(self.logs)} --map {quote(name)} -o trials --dry-run")
         return lines

@@ -14,6 +14,7 @@ from scipy.integrate import cumulative_trapezoid
 from ..arrays import FloatArray
 from ..errors import LogError, Problem
 from ..inputs import INPUTS
+from ..phrases import counted
 from ..physics.frame import to_earth
 from ..trial import Trial, check_trial
 from ..trial.control_checks import fastest_change, looks_ordered
@@ -107,7 +108,7 @@ def quality_text(quality: dict[str, Any], common: Set[str] = frozenset(), told: 
         lines.append(f"  rate      every {median:.4g} s, longest {longest:.4g} s: {', '.join(names)}")
     shown = q["gaps"][:6]
     lines += [
-        f"  gap       {g['channel']}: {g['n_samples']} samples from {g['from_s']:.6g} to {g['to_s']:.6g} s"
+        f"  gap       {g['channel']}: {counted(g['n_samples'], 'sample')} from {g['from_s']:.6g} to {g['to_s']:.6g} s"
         for g in shown
     ]
     if len(q["gaps"]) > len(shown):
@@ -115,7 +116,9 @@ def quality_text(quality: dict[str, Any], common: Set[str] = frozenset(), told: 
     if q["spikes"]:
         lines.append("  spikes    " + ", ".join(f"{name}: {count}" for name, count in q["spikes"].items()))
     if q["bridged"]:
-        lines.append("  bridged   " + ", ".join(f"{name}: {count} samples" for name, count in q["bridged"].items()))
+        lines.append(
+            "  bridged   " + ", ".join(f"{name}: {counted(count, 'sample')}" for name, count in q["bridged"].items())
+        )
     yaw, positions, rudder = q["yaw"], q["positions"], q["rudder"]
     lines.append(
         f"  yaw       integral of r and heading differ by up to {yaw['largest_difference_deg']:.3g} deg "

@@ -8,6 +8,7 @@ from ..backends.compiled import cores
 from ..fitting import Plan
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..options.learning import EnsembleOptions, HybridOptions, LearnOptions
+from ..phrases import counted
 from ..trial import Trial
 from .hybrid_run import splits_of, times_of
 from .refitting import tuned_names
@@ -48,7 +49,7 @@ def plan_rnn(ship: ShipGiven, trials: TrialsGiven, options: LearnOptions) -> Pla
         f"choose    {_of(split.choose)}: {', '.join(one.id for one in split.choose)}"
         if split.choose
         else "choose    none: the mean of the last updates' weights is kept",
-        f"test      {len(task.test)} trials",
+        f"test      {counted(len(task.test), 'trial')}",
         f"train     {options.seeds} seeds of {options.steps} updates by {options.batch} windows",
     )
     low, high = (operations / rate for rate in (RATE[1], RATE[0]))
@@ -67,7 +68,7 @@ def plan_ensemble(ship: ShipGiven, trials: TrialsGiven, options: EnsembleOptions
         *_material(task, options.horizon),
         f"start     {start}",
         f"watch     {_of(watch)}, {', '.join(one.id for one in watch)}" if watch else "watch     what it learns from",
-        f"test      {len(task.test)} trials",
+        f"test      {counted(len(task.test), 'trial')}",
         f"train     {options.steps} updates by {options.batch} windows, {min(cores(), options.members)} side by side",
     )
     low, high = (operations / rate / min(cores(), options.members) for rate in (ALONE[1], ALONE[0]))
@@ -90,7 +91,7 @@ def plan_hybrid(ship: ShipGiven, trials: TrialsGiven, options: HybridOptions) ->
         f"memory    {lag:.3g} s, steps of {step:.3g} s in windows of {window:.4g} s",
         *(f"part {k + 1:<4} {_of(one.choose)} kept back; the profile {anew}" for k, one in enumerate(splits)),
         f"train     {options.steps} updates by {options.batch} windows, penalties {options.penalty}, then on all runs",
-        f"test      {len(data.test)} trials",
+        f"test      {counted(len(data.test), 'trial')}",
     )
     low, high = (lane_steps * seconds + FIT * len(splits) * bool(names) for seconds in LANE_STEP)
     return Plan(lines, (low, high), ("hybrid.json", *WRITES[1:]))
@@ -105,4 +106,4 @@ def _material(task: Material, horizon: int) -> tuple[str, ...]:
 
 
 def _of(trials: Sequence[Trial]) -> str:
-    return f"{len(trials)} trials, {sum(one.duration for one in trials):.0f} s"
+    return f"{counted(len(trials), 'trial')}, {sum(one.duration for one in trials):.0f} s"

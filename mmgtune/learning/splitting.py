@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import OptionError, Problem
+from ..phrases import counted
 from ..trial import Trial
 
 
@@ -33,7 +34,7 @@ def fold_runs(trials: Sequence[Trial], folds: int, seed: int) -> list[Split]:
         names = sorted(runs)
         dealt += [names[k] for k in rng.permutation(len(names))]
     if len(dealt) < folds:
-        why = f"there are {len(dealt)} runs"
+        why = f"runs to deal out: {len(dealt)}"
         raise OptionError(Problem(f"{folds} parts of runs", "folds", why, f"write folds={len(dealt)} or less"))
     parts = [{*dealt[k::folds]} for k in range(folds)]
     return [
@@ -69,11 +70,12 @@ def split_runs(trials: Sequence[Trial], share: float, seed: int) -> Split:
     choose = tuple(trial for trial in trials if trial.run in kept)
     learn = tuple(trial for trial in trials if trial.run not in kept)
     if not learn or not choose:
+        many = counted(len({trial.run for trial in trials}), "run")
         raise OptionError(
             Problem(
                 "there are too few runs to keep some back",
                 "validation",
-                f"{len({trial.run for trial in trials})} runs: what is learned is chosen by runs it has not seen",
+                f"{many}: what is learned is chosen by runs it has not seen",
                 "give two runs or more of one kind of manoeuvre",
             )
         )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..inputs import INPUTS
+from ..phrases import counted
 from ..physics.quantities import STATES
 from ..report.wording import PRINCIPAL, index_words
 from .view import Line, Row, View
@@ -58,7 +59,9 @@ def trial(one: Trial) -> View:
                 "noise": one.noise.get(name),
             }
         )
-    says = [f"{one.label}: {one.n_samples} samples in {one.duration:.6g} s, {one.source or 'source not stated'}."]
+    says = [
+        f"{one.label}: {counted(one.n_samples, 'sample')} in {one.duration:.6g} s, {one.source or 'source not stated'}."
+    ]
     columns = {named(name): values for name, values in one.columns.items() if name != "t"}
     return View(
         repr(one), says, rows, frame={"t [s]": one.t, **columns}, along="t [s]",

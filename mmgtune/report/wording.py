@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..options import in_flags
-from ..phrases import listed
+from ..phrases import counted, listed
 from ..units import DEG, shown_in
 
 MINUS = "\u2212"
@@ -248,9 +248,7 @@ def run_words(name: Any) -> str:
     return f"zigzag {rudder}/{heading or rudder}" + ("" if side == "p" else " to port")
 
 
-def count(amount: int, noun: str, plural: str = "") -> str:
-    """A number with its noun: "1 trial", "8 trials"."""
-    return f"{amount} {noun if amount == 1 else plural or noun + 's'}"
+count = counted
 
 
 def short(name: str) -> str:

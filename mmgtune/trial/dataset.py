@@ -10,6 +10,7 @@ from typing import Self
 
 from ..displayed import Plotted, inert
 from ..errors import Problem, TrialError, among, brief, closest, kind_of
+from ..phrases import counted
 from ..resources import folder, looked_for, must_be_name, profile_names, taken, trial_set_names
 from .index_trial import IndexTrial, has_index_trials, read_index_trials
 from .model import Trial
@@ -46,7 +47,7 @@ class TrialSet(Plotted):
     def __repr__(self) -> str:
         """In a line."""
         tune, test = len(self.tune) + len(self.tune_stated), len(self.test) + len(self.test_stated)
-        roles = f"{len(self.trials) + len(self.stated)} trials, {tune} tune, {test} test"
+        roles = f"{counted(len(self.trials) + len(self.stated), 'trial')}, {tune} tune, {test} test"
         return f"TrialSet({inert(self.ship) or 'ship not stated'}: {roles})"
 
     def __len__(self) -> int:

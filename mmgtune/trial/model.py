@@ -13,6 +13,7 @@ from ..arrays import FloatArray
 from ..displayed import Plotted, inert
 from ..errors import Problem, TrialError
 from ..inputs import INPUTS, meant_by
+from ..phrases import counted
 from .schema import ATTRIBUTES, CHANNELS
 
 
@@ -89,7 +90,7 @@ class Trial(Plotted):
     def __repr__(self) -> str:
         """In a line."""
         words = ", ".join(word for word in (self.ship, self.manoeuvre, self.source) if word)
-        return f"Trial({inert(self.id)}: {inert(words)}, {self.n_samples} samples)"
+        return f"Trial({inert(self.id)}: {inert(words)}, {counted(self.n_samples, 'sample')})"
 
     @property
     def n_samples(self) -> int:

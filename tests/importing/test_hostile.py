@@ -108,7 +108,7 @@ def test_latitude_and_longitude_swapped(log, columns):
     refused(write_csv(log, moved), "swapped?", "along the heading", text=swapped)
     columns["lat"][100] = 0.0
     columns["lon"][100] = 0.0
-    assert "gap       x: 1 samples from 100 to 100 s" in said(write_csv(log, columns), text)
+    assert "gap       x: 1 sample from 100 to 100 s" in said(write_csv(log, columns), text)
 
 
 def test_decimal_commas(log, columns):
@@ -133,7 +133,7 @@ def test_decimal_commas_beside_texts(log, columns, text):
         return
     written["rate"][30] = text
     report = said(write_csv(log, written, sep=";"), COMMAS)
-    assert "gap       r: 1 samples from 30 to 30 s" in report
+    assert "gap       r: 1 sample from 30 to 30 s" in report
     assert "numbers with a comma" in refusal(lambda: imported(log))
     proposal = propose_map([log])
     assert (proposal.problems, proposal.imported) == ((), 1)

@@ -62,7 +62,7 @@ def test_a_receiver_that_begins_in_1980(log, columns):
         result = import_logs([write_csv(log, columns)], parse_map(text), log.parent / "out")
     assert [trial.n_samples for trial in result.trials] == [395]
     assert "time jumps forward once" in result.text()
-    assert "1 parts with fewer than 20 rows were left out" in result.text()
+    assert "1 part with fewer than 20 rows was left out" in result.text()
 
 
 def test_nothing_but_jumps(log, columns):

@@ -155,7 +155,7 @@ def test_columns_of_marin_in_another_language(tmp_path):
     write_csv(tmp_path / "log.csv", columns, sep=";", decimal=",")
     ended = run("trials", "map", "log.csv", "-o", "map.toml", cwd=tmp_path)
     assert ended.code == 0, ended.err
-    assert "the map imports all 1 logs" in ended.out
+    assert "the map imports the log, as 1 trial" in ended.out
     found = parse_map((tmp_path / "map.toml").read_text(encoding="utf-8"))
     units = {name: (one.column, one.unit, one.positive) for name, one in found.sources.items()}
     assert units == {

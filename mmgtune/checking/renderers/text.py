@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ... import columns
+from ...phrases import counted
 from ..result import CheckReport, Item
 from .numbers import change, value
 
@@ -72,7 +73,12 @@ def difference(report: CheckReport, path: str) -> str:
 
 def _head(report: CheckReport) -> str:
     how = f"{report.backend}, {report.integrator}"
-    parts = [report.made_by, f"{report.profile} (sha256 {report.sha256[:8]})", f"{len(report.trial_ids)} trials", how]
+    parts = [
+        report.made_by,
+        f"{report.profile} (sha256 {report.sha256[:8]})",
+        counted(len(report.trial_ids), "trial"),
+        how,
+    ]
     return " · ".join(parts) if report.sha256 else f"{report.made_by} · {report.profile}"
 
 
