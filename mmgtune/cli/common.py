@@ -106,6 +106,14 @@ def warn_of_another_ship(ship: HasId, data: TrialSet | VoyageSet) -> None:
         say(f"warning: the trials are of '{data.ship}', the model is of '{ship.id}'")
 
 
+def say_odd(data: TrialSet | VoyageSet, L_pp: float) -> None:
+    """Say on stderr what is odd about trials, before long work on them; of voyages the work itself tells."""
+    from ..trial import TrialSet, oddities
+
+    for words in oddities(data.trials, L_pp) if isinstance(data, TrialSet) else ():
+        say(f"note: {words}")
+
+
 def say_doubts(doubts: Sequence[Doubt], whose: str = "") -> None:
     """Say on stderr which numbers of a profile may be wrong."""
     from ..profile.doubts import in_words

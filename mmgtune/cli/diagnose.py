@@ -101,6 +101,8 @@ def command(
     if run.dry_run:
         c.print_plan(plan, folder)
         return
+    if not run.quiet:
+        c.say_odd(data, ship.L_pp)
     left = Left(plan.seconds, options.most).words
     with (
         claimed(folder, force=run.force, resume=run.resume, anew=True),

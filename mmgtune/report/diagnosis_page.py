@@ -359,11 +359,10 @@ def _why(data: Mapping[str, Any]) -> Section | None:
     )
     every = Fold(f"All hypotheses: {len(data['candidates'])}", (table,))
     if not data["causes"]:
-        sentence = (
-            "No hypothesis explains more than chance would."
-            if data["verdict"] == "none"
-            else ("No single hypothesis is enough.")
-        )
+        sentence = "No single hypothesis is enough."
+        if data["verdict"] == "none":
+            trace, nothing = "Beyond chance there are traces alone.", "No hypothesis explains more than chance would."
+            sentence = trace if data.get("traces") else nothing
         drawn = (Fold("What each alone would explain", (_candidates(fitted, data),)),) if fitted else ()
         return Section("why", "What was looked at", (Prose((sentence,)), *drawn, every))
     return Section("why", "Why this and not another", (_candidates(fitted, data), every) if fitted else (every,))
