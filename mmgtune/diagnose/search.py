@@ -339,8 +339,12 @@ def _as_special(bench: Workbench, point: Point, cause: Hypothesis, special: Hypo
 
 def _make_plain(bench: Workbench, found: Found, hypotheses: Sequence[Hypothesis]) -> None:
     """Put a special case in the place of a cause where the parameters it does without earn too little: what else was
-    wrong when the cause was found may have bent them, or made them differ from run to run."""
+    wrong when the cause was found may have bent them, or made them differ from run to run.  Or another form of the same
+    effect that has fewer: one rate of the rudder for two that are alike."""
     for cause in list(found.causes):
+        if (plainer := _in_plainer_form(bench, found, cause)) is not None:
+            found.causes[found.causes.index(cause)], found.final = plainer
+            continue
         special = [one for one in hypotheses if one.by in (cause.by, "") and cause.holds(one)]
         for one in sorted(special, key=lambda one: len(one.names)):
             fewer = _as_special(bench, found.final, cause, one)
@@ -351,6 +355,21 @@ def _make_plain(bench: Workbench, found: Found, hypotheses: Sequence[Hypothesis]
                 found.causes[found.causes.index(cause)] = one
                 found.final = fewer
                 break
+
+
+def _in_plainer_form(bench: Workbench, found: Found, cause: Hypothesis) -> tuple[Hypothesis, Point] | None:
+    """A form of the effect of a cause with fewer parameters, none of them among its own, that does nearly as well."""
+    step = step_of(found, cause)
+    refits = step.refits if step is not None else []
+    forms = [r for r in refits if r.hypothesis.effect is cause.effect and r.hypothesis.by == cause.by]
+    forms = [r for r in forms if not set(r.hypothesis.names) & set(cause.names)]
+    for refit in sorted(forms, key=lambda one: len(one.hypothesis.names)):
+        saved = (len(cause.names) - len(refit.hypothesis.names)) * bench.price
+        if saved > 0.0:
+            other = _with(bench, without(bench, found.final, cause), refit)
+            if other.chi2 - found.final.chi2 < saved + ENOUGH:
+                return refit.hypothesis, other
+    return None
 
 
 def step_of(found: Found, cause: Hypothesis) -> Step | None:

@@ -6,8 +6,11 @@ from types import SimpleNamespace
 
 import pytest
 
+from mmgtune.diagnose import search
+from mmgtune.diagnose.hypotheses import Hypothesis
 from mmgtune.diagnose.refit import Refit, believable_first, kin_among, rivals_among
 from mmgtune.diagnose.refitting import Refitting
+from mmgtune.effects import find_effect
 
 N_RESIDUALS, BEFORE = 10_000, 15_000.0
 
@@ -76,3 +79,18 @@ def test_a_wind_may_be_meant_where_the_drift_of_waves_fits_badly(wind, kin):
     others = [fitted("current", 200_000.0, 1.0, 0.0), fitted("wind", wind, 1.0, 0.0)]
     assert [one.hypothesis.tag for one in kin_among([drift, *others])] == kin
     assert rivals_among([drift, *others]) == []
+
+
+@pytest.mark.parametrize(("chi2", "plainer"), [(9_510.0, True), (9_530.0, False)])
+def test_one_rate_of_the_rudder_stands_for_two_that_are_alike(monkeypatch, chi2, plainer):
+    """A gear of 1.2 deg/s was told as one of 1.214 to starboard and 1.201 to port."""
+    gear = find_effect("steering-lag")
+    two, one = Hypothesis(gear, ("to_starboard", "to_port")), Hypothesis(gear, ("rate_limit",))
+    other = Hypothesis(find_effect("dead-time"), ("seconds",))
+    step = SimpleNamespace(refits=[SimpleNamespace(hypothesis=of) for of in (two, other, one)])
+    found = SimpleNamespace(causes=[two], final=SimpleNamespace(chi2=9_500.0), steps=[step])
+    there = SimpleNamespace(chi2=chi2)
+    monkeypatch.setattr(search, "without", lambda *_: None)
+    monkeypatch.setattr(search, "_with", lambda *_: there)
+    answer = search._in_plainer_form(SimpleNamespace(price=9.0), found, two)
+    assert answer == ((one, there) if plainer else None)
