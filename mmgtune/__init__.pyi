@@ -109,6 +109,7 @@ from .trial import Trial as Trial
 from .trial import TrialSet as TrialSet
 from .trial import load_trials as load_trials
 from .trial import read_trial as read_trial
+from .trial import trial_of as trial_of
 from .trial import write_trial as write_trial
 from .validating import Validation as Validation
 from .validating import validate as validate

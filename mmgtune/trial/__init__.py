@@ -2,6 +2,7 @@
 
 schema          columns of a file, their units and meaning
 model           a trial in memory
+from_table      one from a table in memory
 parquet         reading and writing a file; metadata: the facts in it; digest: told from damage; footer: its size
 index_trial     a trial of which only indices are known, and its files
 dataset         folders of files; split: which of them tune and which test
@@ -21,6 +22,7 @@ from .checks import check_trial
 from .coverage import BY_SIDE, Coverage, visited_by
 from .dataset import TrialSet, load_trials
 from .finding import Finding
+from .from_table import trial_of
 from .held import Held
 from .index_trial import IndexTrial
 from .model import Trial
@@ -55,6 +57,7 @@ __all__ = [
     "open_voyage",
     "read_trial",
     "surroundings",
+    "trial_of",
     "visited_by",
     "voyage_windows",
     "window_at",

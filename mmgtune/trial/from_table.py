@@ -1,0 +1,70 @@
+"""A trial from a table in memory, such as a pandas DataFrame."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..errors import Problem, TrialError, kind_of
+from .model import Trial
+from .schema import ATTRIBUTES, REQUIRED
+from .unusable import unusable
+
+FACTS = ("ship", "manoeuvre", "source", "note", "group", "cut_from", "noise", "derived")
+"""What may be said of a trial besides."""
+
+
+def trial_of(table: Any, id: str, **facts: Any) -> Trial:
+    """A trial from columns as a trial file has them: SI units, angles in radians, ``v`` to starboard.
+
+    table  a DataFrame, or a mapping of names to (n_samples,) numbers; time may be the index of a DataFrame, called "t";
+           columns the program does not know are kept where they hold numbers
+    id     name of the trial, unique within a data set
+    facts  fields of ``Trial``: ship, manoeuvre, source ("measured" or "generated"), note, group, cut_from, noise and
+           derived
+
+    Raises TrialError with everything that is wrong in the columns, as for a file.
+    """
+    unknown = [name for name in facts if name not in FACTS]
+    if unknown:
+        what, fix = f"a trial has no fact '{unknown[0]}'", f"known here: {', '.join(FACTS)}"
+        raise TrialError(Problem(what, unknown[0], "what a trial is beside its columns has a name", fix))
+    index = getattr(table, "index", None)
+    if getattr(index, "name", None) == "t" and "t" not in table:
+        table = {"t": index, **{name: table[name] for name in table}}
+    if not hasattr(table, "keys"):
+        fix = "give a DataFrame, or a dict of arrays"
+        raise TrialError(Problem("this is no table", "table", f"{kind_of(table)} has no named columns", fix))
+    columns: dict[str, FloatArray] = {}
+    ignored = []
+    for name in table.keys():  # noqa: SIM118  the names of a DataFrame, and of a mapping
+        column = _numbers(table[name])
+        if column is None and name not in REQUIRED:
+            ignored.append(str(name))
+            continue
+        columns[str(name)] = np.full(len(table[name]), np.nan) if column is None else column
+    lengths = {len(column) for column in columns.values()}
+    if len(lengths) > 1:
+        longest = max(columns, key=lambda name: len(columns[name]))
+        shortest = min(columns, key=lambda name: len(columns[name]))
+        what = f"'{longest}' has {len(columns[longest])} samples, '{shortest}' {len(columns[shortest])}"
+        raise TrialError(Problem(what, id, "all columns of a trial are as long as t", "write NaN where one has a gap"))
+    problems = unusable(columns, id)
+    if problems:
+        raise TrialError(*problems)
+    own: dict[str, Any] = {attribute: columns[name] for name, attribute in ATTRIBUTES.items()}
+    extra = {name: values for name, values in columns.items() if name not in REQUIRED}
+    return Trial(
+        **{"ship": "", "manoeuvre": "", "source": "", **facts}, id=id, **own, extra=extra, ignored=tuple(ignored)
+    )
+
+
+def _numbers(column: Any) -> FloatArray | None:
+    """A column (n_samples,) as numbers, None where it holds others, such as words or dates."""
+    try:
+        found = np.asarray(column)
+        return found.astype(float) if found.ndim == 1 and found.dtype.kind in "fiub" else None
+    except (TypeError, ValueError):
+        return None

@@ -1,0 +1,55 @@
+"""Trials from tables in memory, as in a notebook."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import mmgtune
+from mmgtune.errors import TrialError
+from mmgtune.trial import load_trials, trial_of, write_trial
+from mmgtune.trial.parquet import read_trial
+
+
+@pytest.fixture
+def table():
+    trial = load_trials("suzaku")["turn_p35"]
+    return pd.DataFrame(trial.columns)
+
+
+def test_a_table_of_columns_is_a_trial(table, tmp_path):
+    trial = trial_of(table.assign(mode="auto", torque=1.0), "one", ship="suzaku", source="measured")
+    assert (trial.id, trial.ship, trial.source) == ("one", "suzaku", "measured")
+    np.testing.assert_array_equal(trial.motion, table[["x", "y", "psi", "u", "v", "r"]])
+    assert trial.ignored == ("mode",)
+    assert trial.extra["torque"].tolist() == [1.0] * len(table)
+    assert np.array_equal(read_trial(write_trial(trial, tmp_path / "one.parquet")).motion, trial.motion)
+    assert len(mmgtune.validate("suzaku", trial).profiles) == 1
+
+
+def test_time_may_be_the_index_and_a_dict_will_do(table):
+    usual = trial_of(table, "one")
+    for other in (table.set_index("t"), dict(table), {name: table[name].tolist() for name in table}):
+        np.testing.assert_array_equal(trial_of(other, "one").t, usual.t)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda table: table.drop(columns="r"), "column 'r' is missing"),
+        (lambda table: table.rename(columns={"psi": "Psi"}), "rename Psi to psi"),
+        (lambda table: table.assign(delta=table.delta * 57.3), "probably in degrees"),
+        (lambda table: table.assign(u="fast"), "'u' has no values at all"),
+        (lambda table: {**table, "u": table.u[:9]}, "samples, 'u' 9"),
+        (lambda _: [1, 2, 3], "this is no table"),
+        (lambda table: table.iloc[::-1], "time"),
+    ],
+)
+def test_what_is_wrong_is_said_as_of_a_file(table, change, said):
+    with pytest.raises(TrialError) as found:
+        trial_of(change(table), "one")
+    assert said in str(found.value)
+
+
+def test_a_fact_that_no_trial_has(table):
+    with pytest.raises(TrialError, match="no fact 'vessel'"):
+        trial_of(table, "one", vessel="suzaku")
