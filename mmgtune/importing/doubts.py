@@ -30,6 +30,16 @@ TELLS = 0.8
 """Share of what is left of the positions that a lever must explain to be named."""
 APART = 4.0
 """How many times as much must be left along one axis as along the other to be said."""
+OTHER_UNITS = (
+    (60.0, "r", "the yaw rate is in deg/s and was read in deg/min"),
+    (1.0 / 60.0, "r", "the yaw rate is in deg/min and was read in deg/s"),
+    (1.0 / DEG, "r", "the yaw rate is in rad/s and was read in deg/s"),
+    (60.0 / DEG, "r", "the yaw rate is in rad/s and was read in deg/min"),
+    (DEG, "psi", "the heading is in rad and was read in deg"),
+)
+"""How many times as far a heading turns as its yaw rate says, the column whose unit is wrong then, and how."""
+SAME_UNIT, TURNS_ALIKE = 0.025, 0.95
+"""Share by which that may differ, and correlation of the two that is enough to tell."""
 HANDLED = 0.1
 """Share of her speed and yaw rate under orders, and angle [rad], by which a ship moves that is handled without any."""
 
@@ -80,6 +90,11 @@ def gyro_drift(trial: Trial, where: str) -> list[Finding]:
     drift = slope * trial.duration
     if max(in_time, by_turning) < STEADY or max(abs(drift), float(np.ptp(off))) < DRIFTS:
         return []
+    for ratio, name, why in OTHER_UNITS:
+        if abs(np.log(turned.ratio / ratio)) < SAME_UNIT and abs(turned.correlation) > TURNS_ALIKE:
+            what = f"the heading turns {turned.ratio:.3g} times as far as the yaw rate says"
+            fix = f"say its unit in [columns.{name}], and header_says where the header has another"
+            return [Finding("warning", what, where, why, fix)]
     what = f"heading and integrated yaw rate drift apart by {float(np.ptp(off)) / DEG:.3g} deg over the run"
     scale = f"a factor of {1.0 + factor:.4g} on the yaw rate explains {100.0 * by_turning:.0f} % of it"
     if by_turning > in_time + 0.05:

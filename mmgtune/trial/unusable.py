@@ -27,6 +27,10 @@ from .schema import (
 )
 
 
+PER_MINUTE = 58.6
+"""Times as far as the heading that a yaw rate turns in rad/min, rather than in degrees per second: midway of 57.3, 60."""
+
+
 def unusable(columns: Mapping[str, FloatArray], where: str, reported: Collection[str] = ()) -> list[Problem]:
     """Every reason why a trial cannot be simulated, [] where there is none.
 
@@ -251,7 +255,11 @@ def in_degrees(columns: Mapping[str, FloatArray], where: str) -> list[Problem]:
         column = turned.in_degrees()
         if column:
             ratio = turned.ratio if column == "psi" else 1.0 / turned.ratio
-            return [_in_degrees(column, where, f"it turns {ratio:.3g} times as far as the other of 'psi' and 'r' says")]
+            why = f"it turns {ratio:.3g} times as far as the other of 'psi' and 'r' says"
+            if column == "r" and ratio > PER_MINUTE:
+                fix = "divide 'r' by 60"
+                return [Problem("'r' is in rad/min, not rad/s", f"{where}, column 'r'", why, fix)]
+            return [_in_degrees(column, where, why)]
     psi = columns["psi"][np.isfinite(columns["psi"])]
     if len(psi) == 0 or np.abs(psi).max() < 2.0 * np.pi or not {"x", "y", "u", "v"} <= set(columns):
         return []

@@ -49,6 +49,22 @@ def test_a_factor_on_the_yaw_rate_of_a_turn(tmp_path):
     assert float(fix.split("scale = ")[1].split(" ")[0]) == pytest.approx(1.05, abs=0.01)
 
 
+@pytest.mark.parametrize("name", ["turn_p35", "zigzag_10"])
+@pytest.mark.parametrize(
+    ("change", "column"),
+    [
+        (lambda trial: replace(trial, r=trial.r / 60.0), "columns.r"),
+        (lambda trial: replace(trial, r=trial.r * DEG / 60.0), "columns.r"),
+        (lambda trial: replace(trial, psi=trial.psi * DEG), "columns.psi"),
+    ],
+)
+def test_a_rate_or_heading_in_another_unit_is_no_drift(tmp_path, name, change, column):
+    """Offsets and factors were advised where a unit was wrong by 60 or 57."""
+    found = warned(tmp_path, logged(change(suzaku(name))))
+    assert column in one_of(found, "times as far as the yaw rate says")
+    assert not [what for what in found if "drift apart" in what]
+
+
 def test_a_heading_that_drifts(tmp_path):
     trial = suzaku("zigzag_20")
     drifting = trial.psi + 0.03 * DEG * trial.t

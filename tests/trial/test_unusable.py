@@ -21,6 +21,14 @@ def as_degrees(values: Any) -> Any:
 
 
 @pytest.mark.parametrize("seed", [None, 1])
+@pytest.mark.parametrize(("factor", "unit"), [(60.0, "rad/min"), (1.0 / DEG, "degrees per second")])
+def test_a_yaw_rate_by_the_minute_is_not_in_degrees(factor: float, unit: str, seed: int | None) -> None:
+    trial = made(seed=seed)
+    (error,) = [one for one in check_trial(replace(trial, r=trial.r * factor)) if one.severity == "error"]
+    assert error.what == f"'r' is in {unit}, not rad/s"
+
+
+@pytest.mark.parametrize("seed", [None, 1])
 @pytest.mark.parametrize("zigzag", [False, True])
 @pytest.mark.parametrize(
     ("factor", "unit", "fix"),
