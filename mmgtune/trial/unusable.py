@@ -26,9 +26,8 @@ from .schema import (
     known_column,
 )
 
-
 PER_MINUTE = 58.6
-"""Times as far as the heading that a yaw rate turns in rad/min, rather than in degrees per second: midway of 57.3, 60."""
+"""How many times as far as the heading a yaw rate turns in rad/min (60), not in degrees per second (57.3), from here on."""
 
 
 def unusable(columns: Mapping[str, FloatArray], where: str, reported: Collection[str] = ()) -> list[Problem]:
