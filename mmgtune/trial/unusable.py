@@ -27,7 +27,7 @@ from .schema import (
 )
 
 PER_MINUTE = 58.6
-"""How many times as far as the heading a yaw rate turns in rad/min (60), not in degrees per second (57.3), from here on."""
+"""From so many times as far as the heading on, a yaw rate turns in rad/min (60), not in degrees per second (57.3)."""
 
 
 def unusable(columns: Mapping[str, FloatArray], where: str, reported: Collection[str] = ()) -> list[Problem]:
