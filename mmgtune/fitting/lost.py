@@ -55,6 +55,6 @@ def _warned(trials: Sequence[Trial], L_pp: float) -> list[Problem]:
     found: dict[str, Problem] = {}
     for findings in check_trials({one.id: one for one in trials}, L_pp).values():
         for one in findings:
-            if one.severity == "warning" and one.code != "gaps":
+            if one.severity != "note" and one.code != "gaps":
                 found.setdefault(one.fix or one.what, Problem(one.what, one.where, one.why, one.fix))
     return list(found.values())[:SHOWN]

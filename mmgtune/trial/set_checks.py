@@ -37,14 +37,14 @@ def check_trials(trials: Mapping[str, Trial], L_pp: float | None = None) -> dict
 
 
 def oddest(trials: Mapping[str, Trial], L_pp: float | None = None) -> dict[str, str]:
-    """By trial, what is oddest of all that ``check_trials`` warns of; nothing of those where nothing is odd.
+    """By trial, what is oddest of all that ``check_trials`` calls wrong or warns of; nothing of those where nothing is.
 
     Gaps are not: what falls into them counts in no comparison, and results say that themselves.
     """
     return {
         name: odd[0].what
         for name, findings in check_trials(trials, L_pp).items()
-        if (odd := [one for one in findings if one.severity == "warning" and one.code != "gaps"])
+        if (odd := [one for one in findings if one.severity != "note" and one.code != "gaps"])
     }
 
 

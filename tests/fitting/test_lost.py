@@ -50,7 +50,7 @@ def test_a_fit_of_a_ship_that_runs_away_says_where(wild, options):
 
 @pytest.mark.parametrize(
     ("column", "factor", "said"),
-    [("n", 60.0, "divide 'n' by 60"), ("t", 1000.0, "check sign, scale and bias of 'r' against 'psi'")],
+    [("n", 60.0, "divide 'n' by 60"), ("t", 1000.0, "divide 't' by 1000")],
 )
 def test_what_is_odd_in_the_trials_is_said_too(column, factor, said):
     """The profile is good: revolutions are per minute, or times in milliseconds."""
