@@ -38,6 +38,10 @@ the log does not."""
 BLOCK = 60.0
 """Length [s] of the pieces noise is resampled in."""
 
+BOXED = 0.5
+"""Standard deviation of a target, as a share of its box, where the size of a cause is asked for: what only targets far
+outside their box could imitate is known."""
+
 SAME = 1e-5
 """Directions whose signatures are shorter than this share of the longest are numerical noise."""
 
@@ -266,7 +270,8 @@ def linearise(
     """The problem made linear at ``point``.
 
     absent  parameters at their null that get a signature over a typical size
-    apart   parameters that are free in the point and get a signature, by their derivative, instead of being re-tuned
+    apart   parameters that are free in the point and get a signature, by their derivative, instead of being re-tuned;
+            targets are re-tuned beside these no farther than their boxes let them
     varying parameters, free or among the absent, that trials may have values of their own of
     """
     there = {base_of(name) for name in point.names}
@@ -296,7 +301,12 @@ def linearise(
         for base in dict.fromkeys(varying)
     }
     deviation = np.array([bench.believed.deviations[name] for name in own])
-    tuned = Tuned.by(left[:, 1 : 1 + n_free][:, inside & ~loose], moved_by * deviation)
+    by_tuning, moved_by = left[:, 1 : 1 + n_free][:, inside & ~loose], moved_by * deviation
+    if apart:
+        widths = [unit_of(bench, name) for name in np.array(point.names)[inside & ~loose].tolist()]
+        moved_by = np.column_stack([moved_by, BOXED * by_tuning / np.array(widths)])
+        by_tuning = by_tuning[:, :0]
+    tuned = Tuned.by(by_tuning, moved_by)
     left = tuned.out_of(left)
     chosen = (*apart, *wanted)
     at_chosen = [1 + names.index(name) for name in chosen]

@@ -8,8 +8,9 @@ from mmgtune.diagnose import DiagnoseOptions
 from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.beliefs import let_go
 from mmgtune.diagnose.detecting import told_apart
+from mmgtune.diagnose.intervals import estimates
 from mmgtune.diagnose.linear import Tuned, linearise
-from mmgtune.diagnose.workbench import make_workbench
+from mmgtune.diagnose.workbench import Point, make_workbench
 from mmgtune.model import Model
 from mmgtune.profile import load_profile, tuned
 from mmgtune.simulation import simulate
@@ -106,3 +107,16 @@ def test_a_wake_a_little_off_is_no_hull_term():
     loose = let_go(Model(load_profile("kvlcc2")), load_profile("kvlcc2").targets, ())
     assert {"wake.C_2p", "wake.C_2n"} <= set(loose)
     assert "wake.x_P_" not in loose  # a length from a drawing
+
+
+def test_an_interval_knows_how_far_targets_can_go(sailed):
+    """An antenna was told to 51 m, as targets far outside their boxes would have imitated it."""
+    profile, trials = sailed
+    name, widths = "effects.rpm-scale.factor", []
+    for a_r in (0.02, 0.5):
+        bench = make_workbench(profile, trials[:1], DiagnoseOptions(a_r=a_r, effects=("rpm-scale",)), [name])
+        names = (*bench.targets, name)
+        at = Point(names, bench.null(names), np.zeros((1, 6)), 0.0, bench.problem.integrator)
+        found = estimates(bench, at)[name]
+        widths.append(found.high - found.low)
+    assert widths[0] < 0.5 * widths[1]
