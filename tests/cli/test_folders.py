@@ -3,16 +3,19 @@
 import fcntl
 import multiprocessing
 import os
+import re
 from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 
 import pytest
 
+import mmgtune
 from mmgtune.errors import OutputError, ProfileError
 from mmgtune.estimating import read_particulars
 from mmgtune.files import atomic, remove_left_overs, write_text
 from mmgtune.fitting import claimed, prepare
+from mmgtune.fitting.folder import MARKS
 from mmgtune.fitting.sweeping import folder_name
 from mmgtune.profile import load_profile, parse_profile
 from mmgtune.resources import folder
@@ -37,6 +40,17 @@ def test_a_folder_with_a_profile_of_ones_own_is_no_run(tmp_path, name):
     with pytest.raises(OutputError, match="not a run of mmgtune"):
         claimed(tmp_path, force=True).__enter__()
     assert (tmp_path / name).read_text() == "mine"
+
+
+def test_every_result_tells_a_run_folder(tmp_path):
+    """Else its command would refuse its own folder with --force."""
+    package = Path(mmgtune.__file__).parent
+    named = {name for file in package.rglob("*.py") for name in re.findall(r'^RESULT = "(.*)"', file.read_text(), re.M)}
+    assert len(named) > 8
+    assert named <= set(MARKS)
+    for _ in range(2):
+        ended = typed("validate", "suzaku", "suzaku", "--force", "--no-report", "--out", tmp_path / "run")
+        assert ended.code == 0, ended.err
 
 
 def test_what_another_run_left_goes_where_force_lets_one_in(tmp_path):
