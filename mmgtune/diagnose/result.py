@@ -441,9 +441,9 @@ class Diagnosis(Plotted):
                 "error is mostly of coefficients which the other trials leave open."
             )
         imitated = share < IMITATED and self.options.leeway > 0.0 and self.choice is None
-        hull = f"what a hull that is {100.0 * self.options.leeway:.3g} % off would leave of the error"
+        hull = f", counted from a model whose hull may be {100.0 * self.options.leeway:.3g} % off" if imitated else ""
         few = ", of which there are too few to be sure" if low < TOLD <= share else ""
-        return f"Adding {them} removes {_percent(share)} of {hull if imitated else 'the error'} {where}{few}."
+        return f"Adding {them} removes {_percent(share)} of the error {where}{hull}{few}."
 
     def _assumptions(self) -> list[dict[str, Any]]:
         """What the profile assumes, and what the search believed beforehand."""

@@ -540,7 +540,7 @@ def test_a_cause_that_is_alone_and_slight_is_a_trace(suzaku, degrees, trace):
     [
         ((0.96, 0.0, 0.999), "Adding it removes 96 % of the error on trials not used, of which there are too few"),
         ((0.96, 0.9, 0.99), "Adding it removes 96 % of the error on trials not used."),
-        ((0.4, 0.0, 0.9), "a hull that is 5 % off"),
+        ((0.4, 0.0, 0.9), "a model whose hull may be 5 % off"),
         ((-0.1, -0.5, 0.6), "of the error on trials not used does not show"),
     ],
 )
