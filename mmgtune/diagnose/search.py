@@ -362,13 +362,16 @@ def _in_plainer_form(bench: Workbench, found: Found, cause: Hypothesis) -> tuple
     step = step_of(found, cause)
     refits = step.refits if step is not None else []
     forms = [r for r in refits if r.hypothesis.effect is cause.effect and r.hypothesis.by == cause.by]
-    forms = [r for r in forms if not set(r.hypothesis.names) & set(cause.names)]
-    for refit in sorted(forms, key=lambda one: len(one.hypothesis.names)):
+    others = [r for r in forms if not set(r.hypothesis.names) & set(cause.names)]
+    plainer = [r for r in others if len(r.hypothesis.names) < len(cause.names)]
+    if not plainer:
+        return None
+    fewer = without(bench, found.final, cause)
+    for refit in sorted(plainer, key=lambda one: len(one.hypothesis.names)):
+        other = _with(bench, fewer, refit)
         saved = (len(cause.names) - len(refit.hypothesis.names)) * bench.price
-        if saved > 0.0:
-            other = _with(bench, without(bench, found.final, cause), refit)
-            if other.chi2 - found.final.chi2 < saved + ENOUGH:
-                return refit.hypothesis, other
+        if other.chi2 - found.final.chi2 < saved + ENOUGH:
+            return refit.hypothesis, other
     return None
 
 

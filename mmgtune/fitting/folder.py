@@ -22,10 +22,12 @@ from ..files import (
     make_folder,
     path_of,
     refuse_existing,
+    refuse_file,
     remove_left_overs,
     write_text,
 )
 from ..tables import write_table
+from .checkpoint import RESULTS
 from .cmaes import Generation
 from .comparison import TrialComparison
 from .journal import finished
@@ -33,11 +35,7 @@ from .result import FitResult
 
 RESULT = "fit.json"
 MARKS = (
-    RESULT,
-    "sweep.json",
-    "diagnosis.json",
-    "leave_out.json",
-    "voyages.json",
+    *RESULTS,
     "validate.json",
     "simulate.json",
     "comparison.json",
@@ -47,9 +45,6 @@ MARKS = (
     "heading_keeping.json",
     "bands.parquet",
     "tracks.parquet",
-    "learning.json",
-    "hybrid.json",
-    "ensemble.json",
     "mixture.json",
     "model.safetensors",
     "posterior.json",
@@ -90,12 +85,7 @@ def refuse_taken(folder: Path, *, force: bool = False, resume: bool = False) -> 
     What a run that was killed left half-written counts for nothing.
     Raises OutputError where it holds results already (unless ``force`` or ``resume``), or is a file.
     """
-    if folder.exists() and not folder.is_dir():
-        raise OutputError(
-            Problem(
-                "the output is a file, not a folder", str(folder), "results are several files", "choose another folder"
-            )
-        )
+    refuse_file(folder)
     taken = folder.is_dir() and any(not is_left_over(one) for one in folder.iterdir())
     if taken and not (force or resume):
         raise OutputError(exists(folder))
@@ -130,11 +120,10 @@ def claimed(folder: Path, *, force: bool = False, resume: bool = False, anew: bo
 
     Raises OutputError as ``prepare`` does, and where another run is writing there.
     """
+    refuse_file(folder)
     made = [one for one in (folder, *folder.parents) if not one.exists()]
     if made:
         make_folder(folder)
-    elif not folder.is_dir():
-        prepare(folder)  # says what is wrong
     with alone_in(folder):
         try:
             prepare(folder, force=force, resume=resume)

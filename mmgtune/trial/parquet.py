@@ -81,7 +81,7 @@ def write_trial(trial: Trial, path: Path | str, overwrite: bool = False) -> Path
     path = path_of(path)
     if not isinstance(trial, Trial):
         why = "a file holds a trial with its ship, manoeuvre and inputs"
-        fix = "give a Trial; tables are written as logs, and import_logs makes trials of these"
+        fix = "give a Trial: trial_of makes one of a table in memory, import_logs of logs"
         raise OptionError(Problem(f"{kind_of(trial)} is no trial", brief(trial), why, fix))
     values = trial.columns
     fields = [

@@ -10,7 +10,7 @@ from ...errors import LogError, Problem
 from ..dates import ORDERS, Dates, order_told
 from .clocks import Clock, clocks
 from .finder import MOST_COLUMNS, Finder, moves
-from .guess import ASKED, LIKELY, MARK, SURE, Guess
+from .guess import ASKED, MARK, SURE, Guess
 from .words import DATE
 
 
@@ -76,7 +76,7 @@ def time_unit(find: Finder) -> None:
         if find.clock.by_name and find.unit != find.clock.unit:
             keys["header_says"] = find.clock.unit
             said = f"but the motion agrees with itself in {find.unit}, not in {find.clock.unit}"
-            guess = replace(guess, evidence=(*guess.evidence, said), confidence=LIKELY)
+            guess = replace(guess, evidence=(*guess.evidence, said))
         elif not find.clock.unit:
             how = "the usual one at this rate" if find.unit == "s" else "the one in which the motion agrees with itself"
             guess = replace(guess, evidence=(*guess.evidence, f"{find.unit} is {how}"))

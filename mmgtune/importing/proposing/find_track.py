@@ -25,8 +25,6 @@ def position_and_heading(find: Finder) -> None:
     scale = [units.factors("m").get(find.units_said[k], 1.0) for k in range(len(find.first.names))]
     candidates_ = [k for k in find.numeric if find.said[k] not in (ORDER, OTHER, ROLL, TIME)]
     for unit in likely_units(find.first, find.clock):
-        if unit != find.clock.unit and find.clock.unit and best and best[0] > 2.0:
-            break  # with the unit that the name says rates or velocities agree
         windows = [
             Windows(in_seconds(one, find.clock, unit), [n * f for n, f in zip(one.numbers, scale, strict=True)])
             for one in find.samples
@@ -41,10 +39,13 @@ def position_and_heading(find: Finder) -> None:
                     continue
                 scores[track] += score
                 words.setdefault(track, word)
-        total = max(scores.values(), default=0.0) + 2.0 * fits(find, scores, windows)
+        agreeing = fits(find, scores, windows)
+        total = max(scores.values(), default=0.0) + 2.0 * agreeing
         # The usual unit, which comes first, unless another one explains far more.
         if scores and (best is None or total > best[0] + 0.5):
             best = total, unit, dict(scores), words, windows
+        if agreeing and unit == find.clock.unit:
+            break  # the unit that the name says is right
     if best is None:
         find.unit = likely_units(find.first, find.clock)[0]
         time_unit(find)
@@ -81,7 +82,7 @@ def position_and_heading(find: Finder) -> None:
             said.append("its name says so")
         if column in find.first.written:
             said.append("its cells are in degrees and minutes")
-        doubtful = quantity == "psi" and (find.said[column] == "cog" or _against_its_name(find, track))
+        doubtful = quantity == "psi" and find.said[column] == "cog"
         find.add(Guess(quantity, column, own, tuple(said), LIKELY if doubtful else confidence))
     if (
         not track.geographic
