@@ -25,8 +25,8 @@ class DiagnoseOptions(SimulationOptions):
     restart: float | None = again(FitOptions, "restart")
     leeway: float = choice(
         0.05,
-        "How well coefficients of the hull that are not targets are known, as a share of their values: the standard "
-        "deviation they are let go by. 0 holds them, as for voyages.",
+        "How well coefficients of the hull, and of how its wake changes, that are not targets are known, as a share of "
+        "their values: the standard deviation they are let go by. 0 holds them, as for voyages.",
         least=0.0,
         most=0.5,
     )

@@ -8,8 +8,8 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import Problem, TrialError, kind_of
-from .model import Trial
-from .schema import ATTRIBUTES, REQUIRED
+from .model import Trial, fields_of
+from .schema import REQUIRED
 from .unusable import unusable
 
 FACTS = ("ship", "manoeuvre", "source", "note", "group", "cut_from", "noise", "derived")
@@ -54,11 +54,8 @@ def trial_of(table: Any, id: str, **facts: Any) -> Trial:
     problems = unusable(columns, id)
     if problems:
         raise TrialError(*problems)
-    own: dict[str, Any] = {attribute: columns[name] for name, attribute in ATTRIBUTES.items()}
-    extra = {name: values for name, values in columns.items() if name not in REQUIRED}
-    return Trial(
-        **{"ship": "", "manoeuvre": "", "source": "", **facts}, id=id, **own, extra=extra, ignored=tuple(ignored)
-    )
+    named = {"ship": "", "manoeuvre": "", "source": "", **facts}
+    return Trial(id=id, **named, **fields_of(columns), ignored=tuple(ignored))
 
 
 def _numbers(column: Any) -> FloatArray | None:

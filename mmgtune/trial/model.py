@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -162,6 +162,12 @@ class Trial(Plotted):
         """The trial's name for people: its id, and manoeuvre and ship where known."""
         about = ", ".join(word for word in (self.manoeuvre, self.ship) if word)
         return f"{self.id} ({about})" if about else self.id
+
+
+def fields_of(columns: Mapping[str, FloatArray]) -> dict[str, Any]:
+    """Fields of a trial out of all its columns by their names in a file, those of no field as ``extra``."""
+    own: dict[str, Any] = {attribute: columns[name] for name, attribute in ATTRIBUTES.items()}
+    return own | {"extra": {name: values for name, values in columns.items() if name not in ATTRIBUTES}}
 
 
 def _frozen(name: str, values: object, shape: tuple[int, ...]) -> FloatArray:

@@ -22,9 +22,9 @@ from ..units import canonical, factors
 from .digest import DIGEST_KEY, digest
 from .footer import rows_of
 from .metadata import facts_of
-from .model import Trial
+from .model import Trial, fields_of
 from .raw_logs import import_commands, refuse_log
-from .schema import ATTRIBUTES, METADATA_KEY, REQUIRED, SCHEMA, known_column
+from .schema import METADATA_KEY, SCHEMA, known_column
 from .unusable import unusable
 
 GROUP_ROWS = 65_536
@@ -49,14 +49,12 @@ def read_trial(path: Path | str) -> Trial:
     problems += unusable(columns, str(path), reported=held.names)
     if problems:
         raise TrialError(*problems)
-    motion: dict[str, Any] = {attribute: columns[name] for name, attribute in ATTRIBUTES.items()}
     return Trial(
         id=facts.get("id") or path.stem,
         ship=facts.get("ship", ""),
         manoeuvre=facts.get("manoeuvre", ""),
         source=facts.get("source", ""),
-        **motion,
-        extra={name: values for name, values in columns.items() if name not in REQUIRED},
+        **fields_of(columns),
         noise={name: float(value) for name, value in facts.get("noise", {}).items()},
         note=facts.get("note", ""),
         cut_from=facts.get("cut_from", ""),

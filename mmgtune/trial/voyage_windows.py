@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,10 +12,10 @@ from ..arrays import BoolArray, FloatArray, IntArray
 from ..errors import Problem, TrialError
 from ..inputs import INPUTS
 from ..physics.constants import GRAVITY
-from .model import Trial
+from .model import Trial, fields_of
 from .motion_checks import full_turns
 from .pieces import cuts, named
-from .schema import ATTRIBUTES, MAIN_INPUTS, MOTION
+from .schema import MAIN_INPUTS, MOTION
 from .unusable import in_degrees
 from .voyage import Block, Voyage
 
@@ -163,19 +163,16 @@ def _window(voyage: Voyage, block: Block, first: int, last: int) -> Window:
     """Rows of a block as a trial."""
     columns = {name: values[first : last + 1] for name, values in block.columns.items()}
     begins = float(columns["t"][0])
-    own: dict[str, Any] = {attribute: columns[name] for name, attribute in ATTRIBUTES.items()}
-    own["t"] = columns["t"] - begins
     trial = Trial(
         id=named(voyage.id, begins - voyage.begins),
         ship=voyage.ship,
         manoeuvre=voyage.manoeuvre,
         source=voyage.source,
-        extra={name: values for name, values in columns.items() if name not in ATTRIBUTES},
         path=voyage.path,
         part_of=voyage.id,
         begins=begins - voyage.begins,
         cut_from=voyage.cut_from,
-        **own,
+        **fields_of({**columns, "t": columns["t"] - begins}),
     )
     return Window(trial, block.row + first, begins)
 
