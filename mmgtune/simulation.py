@@ -45,7 +45,8 @@ class Motion(Plotted):
     t         (n_samples,) time [s]
     states    (n_samples, 6) x, y [m], psi [rad], u, v_m [m/s], r [rad/s]
     controls  (n_samples, n_inputs) what drove the ship
-    diverged  whether the simulation left the world of ships; its states then mean nothing
+    diverged  whether the simulation left the world of ships, as one that spins does, by more than half a turn from a
+              sample to the next; its states then mean nothing
     inputs    names of the inputs, see ``inputs.INPUTS``
     member    of the predictor, from 0
     around    (n_samples, n_surroundings) what was measured around the ship, as ``Surroundings``; None where
@@ -60,6 +61,10 @@ class Motion(Plotted):
     inputs: tuple[str, ...] = MAIN_INPUTS
     member: int = 0
     around: FloatArray | None = None
+
+    def __post_init__(self) -> None:
+        if np.any(np.abs(np.diff(self.states[:, STATES.index("psi")])) > np.pi):
+            object.__setattr__(self, "diverged", True)
 
     def __repr__(self) -> str:
         """In a line."""

@@ -1,6 +1,7 @@
 """What ``simulate`` says and writes: of each member by its own coefficients, and of what has no end."""
 
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -10,10 +11,12 @@ import mmgtune
 from mmgtune.errors import OptionError
 from mmgtune.options import SimulateOptions
 from mmgtune.predictor import PhysicsPredictor
+from mmgtune.resources import folder
 from mmgtune.simulation import as_trial, breakdown
 from mmgtune.stated import compare_stated
 from mmgtune.trial import TrialSet
 from mmgtune.trial.index_trial import IndexTrial, Stated
+from tests.command import typed
 
 TURN = mmgtune.load_trials("suzaku")["turn_p35"]
 
@@ -88,6 +91,21 @@ def test_what_diverged_is_not_written(suzaku, lost, tmp_path):
     assert [motion.diverged for motion in simulated] == [False, True]
     assert [path.name for path in simulated.write(tmp_path)] == ["drifting_0.parquet"]
     assert mmgtune.read_trial(tmp_path / "drifting_0.parquet").source == "generated"
+
+
+def test_a_ship_that_spins_is_said_and_is_not_good(tmp_path):
+    text = (folder("ship_profiles") / "suzaku.toml").read_text(encoding="utf-8")
+    for name, value in (("Y_v", 0.9), ("N_v", 0.5), ("N_rrr", 0.9)):  # a yaw moment that grows with what it drives
+        text, found = re.subn(rf"(?m)^{name} *=.*", f"{name} = {value}", text)
+        assert found == 1
+    (tmp_path / "spinning.toml").write_text(text, encoding="utf-8")
+    ended = typed("simulate", "-p", tmp_path / "spinning.toml", "--turn", "35", "--out", tmp_path / "out", "--json")
+    assert ended.code == 1
+    (run,) = ended.json()["runs"]
+    assert (run["status"], run["indices"]) == ("diverged", {})
+    (note,) = ended.json()["notes"]
+    assert note == "turn_p35 diverged: the ship spins, or is faster than any; none of it is judged or written"
+    assert not list((tmp_path / "out").glob("*.parquet"))
 
 
 def test_a_manoeuvre_asked_for_twice_is_made_once(tmp_path):

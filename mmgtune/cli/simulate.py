@@ -9,13 +9,16 @@ import typer
 
 from ..errors import OptionError, Problem
 from ..options import PredictOptions, SimulateOptions
+from ..phrases import listed
 from . import common as c
 from .banded import bands_on
+from .exitcodes import ExitCode
 from .options import takes
 from .predict import banded
 
 if TYPE_CHECKING:
     from ..predictor import Uncertain
+    from ..simulating import Simulated
 
 
 @takes(options=SimulateOptions)
@@ -57,7 +60,7 @@ def command(
     from ..files import refuse_existing
     from ..predictor import Uncertain
     from ..recording import write_simulation
-    from ..report import measures, render
+    from ..report import render
     from ..simulating import files_of, simulate
 
     if forces and out is None:
@@ -71,16 +74,27 @@ def command(
     notes = list(result.notes)
     if trials is None and isinstance(result.predictor, Uncertain):
         notes += _add_bands(rows, result.predictor, options)
-    if out is not None:
-        lost = [motion.id for motion in result.motions if motion.diverged]
-        notes += [f"{', '.join(dict.fromkeys(lost))}: diverged, so no trial of it is written"] if lost else []
+    lost = list(dict.fromkeys(motion.id for motion in result.motions if motion.diverged))
+    if lost:
+        notes.append(
+            f"{listed(lost)} diverged: the ship spins, or is faster than any; none of it is judged or written"
+        )
     files = result.write(out, with_forces=forces, overwrite=force) if out is not None else []
     if out is not None and not no_report:
         write_simulation(result, rows, out, c.command_line())
         files.append(render(out)[0])
     if json:
         c.print_json({**result.to_dict(), "runs": rows, "notes": notes, "files": [str(f) for f in files]})
-        return
+    else:
+        _show(result, rows, notes, files)
+    if lost:
+        raise typer.Exit(ExitCode.NO)
+
+
+def _show(result: Simulated, rows: list[dict[str, Any]], notes: list[str], files: list[Path]) -> None:
+    """The same for people."""
+    from ..report import measures
+
     for row in rows:
         c.show(_text(row))
     for name, words in measures.about(list(dict.fromkeys(name for row in rows for name in row["measures"] or ()))):

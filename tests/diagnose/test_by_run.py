@@ -95,6 +95,7 @@ def test_the_profile_keeps_nothing_of_a_run_and_the_record_all(currents, tmp_pat
     assert [line.split()[0] for line in told.splitlines() if " m/s   " in line] == sorted(TUNING)
 
 
+@pytest.mark.long
 def test_a_current_in_one_run_only(tmp_path):
     case = of_one_run(seed=1)
     (name,) = case.of_trial
@@ -104,6 +105,7 @@ def test_a_current_in_one_run_only(tmp_path):
     assert f"in {name}, and none shows in the other 4" in result.sentence()
 
 
+@pytest.mark.long
 def test_a_rudder_zero_that_differs(tmp_path):
     case = of_runs("rudder-offset", 3, seed=2)
     result = said_of(case, tmp_path, ("current", "rudder-offset"))
@@ -150,6 +152,7 @@ def test_a_resistance_that_differs_though_it_is_a_target_too(tmp_path):
     assert sizes == pytest.approx([1, 1, 2, 2, 2], rel=0.05)
 
 
+@pytest.mark.long
 def test_a_current_that_changes_within_the_runs(tmp_path):
     case = tide(seed=1)
     result = said_of(case, tmp_path, ("current",))

@@ -130,6 +130,7 @@ def test_values_by_run_do_not_beat_one_value_of_another_effect_that_hardly_leave
     assert by_run.beats(one) == beaten
 
 
+@pytest.mark.long
 def test_water_driven_by_measured_wind_is_named(suzaku, tmp_path):
     """Made with the program's own simulator: the plant logs no wind."""
     trials = load_trials(files(null(3), tmp_path))
@@ -249,6 +250,7 @@ def test_names_order_and_metadata_of_the_files_do_not_matter(drifted, tmp_path):
     assert a["theta"] == b["theta"]
 
 
+@pytest.mark.long
 def test_a_coarse_integration_step_is_a_cause(tmp_path):
     case = null(3)
     result = said_of(case, tmp_path, integrator="euler", effects=LIKE_IT)

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from mmgtune.diagnose import DiagnoseOptions, diagnose
 from mmgtune.diagnose.separate import holds, menu
@@ -31,6 +32,7 @@ def test_a_dead_time_and_a_late_clock_are_a_group_and_a_change_of_revolutions_wo
     assert result.suggestion.distance > 10.0
 
 
+@pytest.mark.long
 def test_a_slope_of_resistance_of_a_quarter_per_metre_per_second_is_within_reach(tmp_path):
     slope = 0.25 * np.sqrt(9.81 * 83.0)
     result = said_of({"resistance": {"slope": slope}}, tmp_path, "resistance", "hull-term")
@@ -40,6 +42,7 @@ def test_a_slope_of_resistance_of_a_quarter_per_metre_per_second_is_within_reach
     assert result.gain.share_removed[0] > 0.95
 
 
+@pytest.mark.long
 def test_the_quadrantal_deviation_of_a_compass_is_found(tmp_path):
     D = float(np.radians(2.5))
     hidden = {"unknown-deviation-quadrantal": {"magnitude": D}}

@@ -15,6 +15,7 @@ import numpy as np
 from ...arrays import FloatArray
 from ...errors import LogError, Problem, reason
 from ...limits import LOG_BYTES, LOG_COLUMNS, LOG_LINE
+from ...phrases import counted
 from ..clock import CLOCK
 from ..degrees import degrees
 from ..forms import form_of, refuse_binary
@@ -83,7 +84,8 @@ def sample_of(path: Path) -> Sample:
         raise LogError(Problem("the log is NMEA 0183, whose sentences say what they hold", str(path)))
     sample = reader(path)
     if len(sample.names) < 2 or not any(np.isfinite(one).sum() > 1 for one in sample.numbers):
-        why = f"{len(sample.names)} columns were seen, none with numbers" if sample.names else ""
+        seen = len(sample.names)
+        why = f"{counted(seen, 'column')} {'was' if seen == 1 else 'were'} seen, none with numbers" if seen else ""
         fix = "give a table with a row for each time and a column for each quantity"
         raise LogError(Problem("the log is no table of numbers", str(path), why, fix))
     return sample
