@@ -125,13 +125,14 @@ class Progress:
         self._show(f"{words}: {100.0 * done / max(total, 1):.0f} %{left}")
 
     def _on_generation(self, state: Search) -> None:
-        from ..fitting.cmaes import LAMBDAS
+        from ..fitting.cmaes import LAMBDAS, USUAL_GENERATIONS
 
         now = state.history[-1]
-        # A restart's share of the work grows with its population; generations of restarts differ little.
-        done = sum(LAMBDAS[: now.restart]) + now.population * min(now.generation / 400.0, 0.95)
+        work = [population * usual for population, usual in zip(LAMBDAS, USUAL_GENERATIONS, strict=True)]
+        share = min(now.generation / USUAL_GENERATIONS[now.restart], 0.95)
+        done = sum(work[: now.restart]) + share * work[now.restart]
         elapsed = time.monotonic() - self._began
-        left = elapsed * (sum(LAMBDAS) / done - 1.0)
+        left = elapsed * (sum(work) / done - 1.0)
         self._show(
             f"{self._phase}: restart {now.restart + 1} of {len(LAMBDAS)} (lambda {now.population}), "
             f"generation {now.generation}, {now.evaluations} evaluations, J {state.J:.6g}, sigma {now.sigma:.1e}, "

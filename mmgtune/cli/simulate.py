@@ -76,9 +76,7 @@ def command(
         notes += _add_bands(rows, result.predictor, options)
     lost = list(dict.fromkeys(motion.id for motion in result.motions if motion.diverged))
     if lost:
-        notes.append(
-            f"{listed(lost)} diverged: the ship spins, or is faster than any; none of it is judged or written"
-        )
+        notes.append(f"{listed(lost)} diverged: the ship spins, or is faster than any; none of it is judged or written")
     files = result.write(out, with_forces=forces, overwrite=force) if out is not None else []
     if out is not None and not no_report:
         write_simulation(result, rows, out, c.command_line())

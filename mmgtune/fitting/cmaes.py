@@ -25,6 +25,9 @@ from .problem import FitProblem
 LAMBDAS = (12, 24, 48, 96, 128)
 """Population sizes: 12 at first, doubled at each restart, up to 128 (Suyama et al. 2023, section 5)."""
 
+USUAL_GENERATIONS = (700, 500, 400, 300, 220)
+"""Generations of each restart, as counted for SUZAKU's 12 targets: what is left of a search is told by them."""
+
 SIGMA_0 = 0.25
 """First step size in z; the whole box is one unit of it."""
 
