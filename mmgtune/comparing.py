@@ -24,7 +24,7 @@ from .simulating import simulate
 from .simulation import breakdown
 from .units import DEG
 
-FILE = "comparison.json"
+RESULT = "comparison.json"
 ANGLES = tuple(float(angle) for angle in np.linspace(-30.0, 30.0, 61))
 """Drift angles forces are drawn over [deg]."""
 
@@ -75,7 +75,7 @@ class Comparison(Displayed):
         """Write the record into a folder; its path.  Raises OutputError where there is one already."""
         folder = path_of(folder)
 
-        path = folder / FILE
+        path = folder / RESULT
         refuse_existing([path], overwrite)
         return write_json(self.to_dict(), path, overwrite)
 

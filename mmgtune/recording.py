@@ -48,7 +48,6 @@ def write_simulation(result: Simulated, rows: Sequence[Mapping[str, Any]], folde
         folder / "simulate.json",
         {
             **result.to_dict(),
-            "kind": "simulate",
             **made_by(command),
             "runs": list(rows),
             "ship": result.ship.name if result.ship else result.predictor.name,

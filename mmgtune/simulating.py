@@ -14,7 +14,7 @@ from .displayed import Plotted, inert
 from .errors import OptionError, Problem
 from .evaluation import TrialRecord, evaluate
 from .files import path_of, refuse_existing
-from .given import ShipGiven, TrialsGiven, list_of, some_of
+from .given import ShipGiven, TrialsGiven, some_of
 from .inputs import INPUTS
 from .manoeuvres.summary import criteria_of, indices_of
 from .model import Model
@@ -102,6 +102,7 @@ class Simulated(Plotted, Sequence[Motion]):
         ship = self.ship
         return {
             "schema": 1,
+            "kind": "simulate",
             "profile": self.predictor.name,
             "sha256": ship.sha256 if ship else None,
             "runs": self.rows(),
@@ -195,15 +196,6 @@ def simulate(
     notes = notes_on(predictor.model, several) if isinstance(predictor, PhysicsPredictor) else ()
     simulated = tuple(record.motion for record in records)
     return Simulated(predictor, simulated, records, options, (*notes, *_beyond(profile_of(predictor), simulated)))
-
-
-def files_of(folder: Path, trials: TrialsGiven | None, options: SimulateOptions) -> list[Path]:
-    """Where ``Simulated.write`` would write the runs of a profile, known before they are made.
-
-    Raises OptionError for orders that make no sense, and as loading trials does.
-    """
-    ids = [name for name, _ in _orders(options)] if trials is None else [one.id for one in list_of(trials)]
-    return [folder / f"{id}.parquet" for id in ids]
 
 
 def _on_orders(predictor: Predictor, options: SimulateOptions) -> list[Motion]:

@@ -20,6 +20,7 @@ from ..errors import MmgtuneError, OptionError, OutputError, Problem, cannot_wri
 from . import (
     check,
     cite,
+    common,
     compare,
     diagnose,
     doctor,
@@ -41,14 +42,9 @@ from . import (
     validate,
 )
 from .exitcodes import ExitCode
-from .options import Command, problems_in_flags
+from .options import App, problems_in_flags
 from .output import limit_width, say, show
 from .pipes import Piped, ReaderGone, say_no_more
-
-EPILOG = (
-    "Exit codes: 0 good; 1 the answer is no; 2 could not run; 3 bug; 130 or 143 interrupted or terminated, best so far "
-    "saved."
-)
 
 
 class Commands(TyperGroup):
@@ -69,6 +65,8 @@ class Commands(TyperGroup):
             return super().invoke(ctx)
         except mistyped.Mistyped as error:
             raise _as_ours(error) from error
+        except typer.Abort as error:  # Ctrl-D where a question was asked
+            raise OptionError(Problem("the answers ended before the questions", fix="answer them all")) from error
         except EOFError as error:
             raise RuntimeError(f"the end of a file came too early: {error}") from error
         except BrokenPipeError as error:  # of a file: those of the streams are ReaderGone
@@ -89,12 +87,10 @@ def _as_ours(error: Exception) -> Exception:
     return error if problem is None else OptionError(problem)
 
 
-app = typer.Typer(
+app = App(
     name="mmgtune",
     cls=Commands,
     help="Calibrate MMG manoeuvring models of ships against measured trials.",
-    epilog=EPILOG,
-    no_args_is_help=True,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
@@ -117,25 +113,25 @@ def _options(
     pass
 
 
-app.command("fit", cls=Command, epilog=EPILOG)(fit.command)
-app.command("sweep", cls=Command, epilog=EPILOG)(sweep.command)
-app.command("diagnose", cls=Command, epilog=EPILOG)(diagnose.command)
-app.command("leave-out", cls=Command, epilog=EPILOG)(leave_out.command)
-app.command("posterior", cls=Command, epilog=EPILOG)(posterior.command)
-app.command("check", cls=Command, epilog=EPILOG)(check.command)
-app.command("validate", cls=Command, epilog=EPILOG)(validate.command)
-app.command("compare", cls=Command, epilog=EPILOG)(compare.command)
-app.command("simulate", cls=Command, epilog=EPILOG)(simulate.command)
-app.command("predict", cls=Command, epilog=EPILOG)(predict.command)
-app.command("plan", cls=Command, epilog=EPILOG)(plan.command)
-app.command("report", cls=Command, epilog=EPILOG)(report.command)
-app.command("cite", cls=Command, epilog=EPILOG)(cite.command)
-app.command("doctor", cls=Command, epilog=EPILOG)(doctor.command)
-app.add_typer(fleet.app, name="fleet", epilog=EPILOG)
-app.add_typer(learn.app, name="learn", epilog=EPILOG)
-app.add_typer(study.app, name="study", epilog=EPILOG)
-app.add_typer(trials.app, name="trials", epilog=EPILOG)
-app.add_typer(profiles.app, name="profile", epilog=EPILOG)
+app.command("fit")(fit.command)
+app.command("sweep")(sweep.command)
+app.command("diagnose")(diagnose.command)
+app.command("leave-out")(leave_out.command)
+app.command("posterior")(posterior.command)
+app.command("check")(check.command)
+app.command("validate")(validate.command)
+app.command("compare")(compare.command)
+app.command("simulate")(simulate.command)
+app.command("predict")(predict.command)
+app.command("plan")(plan.command)
+app.command("report")(report.command)
+app.command("cite")(cite.command)
+app.command("doctor")(doctor.command)
+app.add_typer(fleet.app, name="fleet")
+app.add_typer(learn.app, name="learn")
+app.add_typer(study.app, name="study")
+app.add_typer(trials.app, name="trials")
+app.add_typer(profiles.app, name="profile")
 
 
 def main() -> None:
@@ -149,6 +145,7 @@ def main() -> None:
             warnings.showwarning = _say_warning  # type: ignore[assignment]
             sys.exit(_run())
     finally:
+        common.tidy()
         interrupts.over()
         sys.stdout, sys.stderr = streams
 

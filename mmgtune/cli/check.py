@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 from dataclasses import dataclass
-from json import dumps
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -18,7 +18,8 @@ from .exitcodes import ExitCode
 from .options import problems_in_flags, takes
 
 if TYPE_CHECKING:
-    from ..checking import CheckReport
+    from ..checking import Baseline, CheckReport
+    from ..trial import TrialSet
 
 CI = "CI"
 CODES = {"pass": ExitCode.GOOD, "regressed": ExitCode.NO, "not comparable": ExitCode.COULD_NOT_RUN}
@@ -79,9 +80,12 @@ def command(
     out: Annotated[
         Path | None,
         typer.Option(
-            "--out", "-o", help="Also write check.json and a report to this folder.", rich_help_panel=c.OUTPUT
+            "--out", "-o", help="Also write checked.json and a report to this folder.", rich_help_panel=c.OUTPUT
         ),
     ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Replace the results in --out.", rich_help_panel=c.OUTPUT)
+    ] = False,
     sensitivity: Annotated[
         float | None,
         typer.Option(
@@ -105,54 +109,96 @@ def command(
 
       mmgtune check ship.toml trials/ -b check.json --sensitivity 0.02
     """
-    from .. import checking
-    from ..files import refuse_file
-    from ..networks import named_ship
-    from ..trial import load_trials
-
-    if out is not None:
-        refuse_file(out)
     chosen = "json" if json else format
     if chosen is not None and chosen not in FORMATS:
         raise OptionError(Problem(f"no format '{chosen}'", "format", **among(chosen, FORMATS)))
-    if baseline is None and (update_baseline or sensitivity is not None):
-        name = "update_baseline" if update_baseline else "sensitivity"
-        raise OptionError(
-            Problem(
-                f"{name}=True needs a baseline", name, "the file of what is good was not named", "add baseline=FILE"
-            )
-        )
+    given = Given(chosen, everything, junit, summary, out)
+    names = (profile, trials, baseline)
     if sensitivity is not None:
-        _sensitivity(profile, trials, baseline, options, sensitivity, json)
-        return
-    give = Given(chosen, everything, junit, summary, out)
-    names = (profile, trials, None if baseline is None else str(baseline))
+        given.refuse_beside("sensitivity", baseline)
+        _sensitivity(names, options, sensitivity, chosen == "json")
+    elif update_baseline:
+        given.refuse_beside("update_baseline", baseline)
+        _update(names, options, given)
+    else:
+        with _place(out, force):
+            report = _checked(names, options, given)
+        raise typer.Exit(CODES[report.verdict])
+
+
+Names = tuple[str, str, Path | None]
+"""Profile, trials and baseline as they were named."""
+
+
+def _place(out: Path | None, force: bool) -> contextlib.AbstractContextManager[object]:
+    """The folder of the record while it is written to, where one is asked for."""
+    from ..run_folders import claimed
+
+    if out is not None:
+        return claimed(out, force=force)
+    c.needs_folder(force=force)
+    return contextlib.nullcontext()
+
+
+def _checked(names: Names, options: CheckOptions, given: Given) -> CheckReport:
+    """The check, told and written; one that could not run is written too, where a machine will look."""
+    from .. import checking
+
+    profile, _, baseline = names
     try:
-        recorded = None
-        if baseline is not None and not (update_baseline and not baseline.exists()):
-            recorded = checking.read_baseline(baseline)
-        ship, data = named_ship(profile), load_trials(trials)
-        c.warn_of_another_ship(ship, data)
-        how: dict[str, Any] = {"names": names, "metrics": options.metrics, "backend": options.backend}
-        how["integrator"] = options.asked_integrator(recorded.method if recorded else None)
-        if update_baseline:
-            give.update(checking.update_baseline(profile, data, str(baseline), **how), str(baseline))
-            return
-        report = checking.check(profile, data, recorded, **how)
+        recorded = checking.read_baseline(baseline) if baseline else None
+        data = _data(names)
+        report = checking.check(profile, data, recorded, **_how(names, options, recorded))
     except MmgtuneError as error:
-        give.elsewhere(checking.could_not_run(names, tuple(problems_in_flags(error))))
+        given.elsewhere(checking.could_not_run(_words(names), tuple(problems_in_flags(error))))
         raise
-    give(report)
-    raise typer.Exit(CODES[report.verdict])
+    given(report)
+    return report
 
 
-def _sensitivity(
-    profile: str, trials: str, baseline: Path | None, options: CheckOptions, share: float, json: bool
-) -> None:
+def _update(names: Names, options: CheckOptions, given: Given) -> None:
+    from .. import checking
+
+    profile, _, baseline = names
+    assert baseline is not None  # else it was refused
+    recorded = checking.read_baseline(baseline) if baseline.exists() else None
+    how = _how(names, options, recorded)
+    given.update(checking.update_baseline(profile, _data(names), str(baseline), **how), str(baseline))
+
+
+def _data(names: Names) -> TrialSet:
+    """The trials; what is odd about them and the ship is said."""
+    from ..networks import named_ship
+    from ..trial import load_trials
+
+    ship, data = named_ship(names[0]), load_trials(names[1])
+    c.warn_of_another_ship(ship, data)
+    return data
+
+
+def _how(names: Names, options: CheckOptions, recorded: Baseline | None) -> dict[str, Any]:
+    """How it is measured: as the baseline was, where nothing else is asked for."""
+    integrator = options.asked_integrator(recorded.method if recorded else None)
+    return {
+        "names": _words(names),
+        "metrics": options.metrics,
+        "backend": options.backend,
+        "integrator": integrator,
+    }
+
+
+def _words(names: Names) -> tuple[str, str, str | None]:
+    profile, trials, baseline = names
+    return profile, trials, None if baseline is None else str(baseline)
+
+
+def _sensitivity(names: Names, options: CheckOptions, share: float, json: bool) -> None:
     from ..checking import read_baseline
     from ..checking.sensitivity import sensitivity, table
 
-    recorded = read_baseline(Path(str(baseline)))
+    profile, trials, baseline = names
+    assert baseline is not None  # else it was refused
+    recorded = read_baseline(baseline)
     ship, data = c.load(profile, trials)
     rows = sensitivity(ship, data, recorded, share, backend=options.backend)
     if json:
@@ -170,6 +216,17 @@ class Given:
     junit: Path | None
     summary: Path | None
     out: Path | None = None
+
+    def refuse_beside(self, name: str, baseline: Path | None) -> None:
+        """Raises OptionError where that has no baseline, or was asked for with what only a check has."""
+        if baseline is None:
+            why = "the file of what is good was not named"
+            raise OptionError(Problem(f"{name}=True needs a baseline", name, why, "add baseline=FILE"))
+        of_a_check: dict[str, object] = {"everything": self.everything, "junit": self.junit, "summary": self.summary}
+        of_a_check |= {"out": self.out, "format": self.format not in (None, "text", "json")}
+        why = "beside it no check is made, and nothing is written of one"
+        if asked := [option for option, value in of_a_check.items() if value]:
+            raise OptionError(*(Problem(f"it does not go with {name}=True", one, why, "leave it out") for one in asked))
 
     def __call__(self, report: CheckReport) -> None:
         """Print the report, and write it to the files asked for."""
@@ -209,11 +266,10 @@ class Given:
         from ..files import cannot_write, write_text
 
         if self.out is not None:
-            from ..provenance import made_by
+            from ..checking import write_check
             from ..report import render
 
-            document = {**report.to_dict(), **made_by(c.command_line()), "out": str(self.out)}
-            write_text(self.out / "check.json", dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+            write_check(report, self.out, c.command_line())
             render(self.out)
         if self.junit is not None:
             write_text(self.junit, RENDERERS["junit"](report))

@@ -11,15 +11,25 @@ from . import completing
 
 METHODS = {
     "calibration within a box around captive-test values, J (fit, sweep)": ("Suyama et al. 2023, arXiv:2312.04224",),
+    "restart CMA-ES (fit, sweep)": (
+        "Hansen & Ostermeier 2001, Evolutionary Computation 9(2), 159-195",
+        "Auger & Hansen 2005, IEEE Congress on Evolutionary Computation, 1769-1776",
+    ),
     "distance measures MMD to cVDM (simulate, diagnose, check)": (
         "Mathioudakis et al., Towards real-world validation of a physics-based ship motion prediction model",
     ),
     "standardised error L_MSE (validate, leave-out)": (
         "Wakita et al. 2022, J. Marine Science and Technology, doi 10.1007/s00773-021-00867-1",
     ),
+    "recurrent networks of a low-speed model (learn rnn, compare)": (
+        "Wakita et al. 2022, J. Marine Science and Technology, doi 10.1007/s00773-021-00867-1",
+    ),
+    "ensembles of networks and their bands (learn ensemble, predict, study)": (
+        "Wakita, Akimoto & Maki, Probabilistic prediction of ship maneuvering motion using ensemble learning",
+    ),
     "manoeuvring indices and criteria": ("IMO MSC.137(76), Standards for ship manoeuvrability",),
 }
-"""What was computed with a profile has its papers too."""
+"""What was computed with a profile has its papers too; diagnosis and posterior are this program's own."""
 
 
 def command(
@@ -28,7 +38,7 @@ def command(
     ] = "suzaku",
     json: c.Json = False,
 ) -> None:
-    """The papers behind the components and effects a profile uses, and behind the methods.
+    """The papers behind the components and effects a profile uses, and behind the published methods.
 
     Examples:
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
 from collections.abc import Sequence
 from datetime import datetime
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Protocol
 
 import typer
 
+from ..errors import OptionError, Problem
 from ..options.choice import INPUT, OUTPUT
 from . import completing
 from .output import filled as filled
@@ -26,6 +28,8 @@ if TYPE_CHECKING:
     from ..profile.doubts import Doubt
     from ..trial import TrialSet, VoyageSet
 
+
+_MADE: list[Path] = []
 
 PROFILE, TRIALS = "FILE|NAME", "DIR|FILE|NAME"
 """Kinds of paths, in the help."""
@@ -122,16 +126,43 @@ def say_doubts(doubts: Sequence[Doubt], whose: str = "") -> None:
         say(f"note: {whose}{words}")
 
 
-def print_plan(plan: Plan, folder: Path) -> None:
+def print_plan(plan: Plan, folder: Path, json: bool) -> None:
     """What a command would do, with what it would leave where."""
+    if json:
+        print_json({**plan.to_dict(), "out": str(folder)})
+        return
     show(f"{plan}\nwrites    {folder}: {', '.join(plan.writes)}")
 
 
+def needs_folder(**asked: bool) -> None:
+    """Of a command without a folder to write to: OptionError where that was asked for which only files have."""
+    if name := next((name for name, value in asked.items() if value), ""):
+        why = "files are only written with out=FOLDER"
+        raise OptionError(Problem("nothing is written", name, why, "add out=FOLDER, or leave it out"))
+
+
 def default_out(ship: HasId) -> Path:
-    """A folder under runs/ that does not exist yet."""
+    """A folder under runs/, made here so that no other command takes it; ``tidy`` removes it where it stays empty."""
     name = f"{datetime.now():%Y%m%d-%H%M%S}-{ship.id}"
-    tries = (Path("runs") / (f"{name}-{k}" if k > 1 else name) for k in count(1))
-    return next(folder for folder in tries if not folder.exists())
+    for folder in (Path("runs") / (f"{name}-{k}" if k > 1 else name) for k in count(1)):
+        new = [one.absolute() for one in (folder, *folder.parents) if not one.exists()]
+        try:
+            folder.mkdir(parents=True)
+        except FileExistsError:
+            if folder.parent.is_dir():
+                continue
+        except OSError:
+            pass  # who wants to write there will say so
+        _MADE.extend(new)
+        return folder
+    raise AssertionError("unreachable: numbers do not end")
+
+
+def tidy() -> None:
+    """Remove folders that ``default_out`` made and nothing was written to."""
+    while _MADE:
+        with contextlib.suppress(OSError):
+            _MADE.pop(0).rmdir()
 
 
 def command_line() -> str:

@@ -10,7 +10,8 @@ from typing import Annotated, Any
 import typer
 
 from ..errors import OptionError, Problem
-from ..options import CompareModelsOptions, Options, again
+from ..options import CompareModelsOptions, Options, again, choice
+from ..options.choice import OUTPUT
 from . import common as c
 from . import completing
 from .options import RunOptions, takes
@@ -20,7 +21,9 @@ from .options import RunOptions, takes
 class FolderOptions(Options):
     """What is left behind."""
 
-    out: Path | None = again(RunOptions, "out", but="Here: none without it.")
+    out: Path | None = choice(
+        None, "Folder for the record and a report; without it they are not written.", short="-o", panel=OUTPUT
+    )
     force: bool = again(RunOptions, "force")
 
     def problems(self) -> list[Problem]:
@@ -59,8 +62,8 @@ def command(
       mmgtune compare suzaku suzaku_fam suzaku --out runs/compared
     """
     from ..comparing_models import compare_models, write_model_comparison
-    from ..fitting import claimed
     from ..report import render
+    from ..run_folders import claimed
 
     if len(names) < 2:
         why = f"only '{names[0]}' was given, and trials stand last"

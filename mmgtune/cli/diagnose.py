@@ -50,6 +50,10 @@ class Left:
         return f"up to {in_time(rest)} left"
 
 
+FAILING = ("none", "found", "not-separable", "unexplained")
+"""Verdicts that a diagnosis may be told to fail on."""
+
+
 @takes(options=DiagnoseOptions, run=RunOptions)
 def command(
     profile: c.Profile = "suzaku",
@@ -61,8 +65,8 @@ def command(
         list[str] | None,
         typer.Option(
             "--fail-on",
-            help="Exit 1 on these verdicts: none, found, not-separable, unexplained, interrupted.",
-            autocompletion=completing.words(("none", "found", "not-separable", "unexplained", "interrupted")),
+            help="Exit 1 on these verdicts: none, found, not-separable, unexplained. Interrupted ends with 130.",
+            autocompletion=completing.words(FAILING),
             rich_help_panel=c.OUTPUT,
         ),
     ] = None,
@@ -73,8 +77,6 @@ def command(
     Of voyages (logs that say manoeuvre "voyage", or last more than an hour) at most --windows windows of 120 s, or
     --restart, are looked at, and what differs from voyage to voyage is told besides: current and resistance.
 
-    A diagnosis that was stopped has the verdict interrupted; it ends with 130 whatever --fail-on says.
-
     Examples:
 
       mmgtune diagnose --profile suzaku --trials suzaku
@@ -83,15 +85,15 @@ def command(
 
       mmgtune diagnose -p my_ship.toml -t my_trials/ --fail-on found,unexplained
     """
-    from ..diagnose import VERDICTS, diagnose, plan_diagnosis, write_diagnosis
-    from ..fitting import claimed, refuse_taken
+    from ..diagnose import diagnose, plan_diagnosis, write_diagnosis
     from ..report import render
+    from ..run_folders import claimed, refuse_taken
 
     failing = split(fail_on, "fail_on")
-    unknown = [word for word in failing if word not in VERDICTS]
+    unknown = [word for word in failing if word not in FAILING]
     if unknown:
         raise OptionError(
-            *(Problem(f"unknown verdict '{word}'", "fail_on", **among(word, VERDICTS)) for word in unknown)
+            *(Problem(f"unknown verdict '{word}'", "fail_on", **among(word, FAILING)) for word in unknown)
         )
     ship, data = c.load_with_voyages(profile, trials)
     folder = run.out or c.default_out(ship)
@@ -99,7 +101,7 @@ def command(
         refuse_taken(folder, force=run.force, resume=run.resume)
     plan = plan_diagnosis(ship, data, options)
     if run.dry_run:
-        c.print_plan(plan, folder)
+        c.print_plan(plan, folder, run.json)
         return
     if not run.quiet:
         c.say_odd(data, ship.L_pp)

@@ -6,6 +6,7 @@ from dataclasses import asdict
 
 import typer
 
+from ..phrases import counted
 from . import common as c
 from .exitcodes import ExitCode
 
@@ -34,6 +35,6 @@ def command(json: c.Json = False) -> None:
             if one.fix:
                 c.show(f"  fix: {one.fix}")
         wrong = sum(not one.ok for one in found)
-        c.show("all is well" if good else f"{wrong} things are wrong")
+        c.show("all is well" if good else f"{counted(wrong, 'thing')} {'is' if wrong == 1 else 'are'} wrong")
     if not good:
         raise typer.Exit(ExitCode.NO)

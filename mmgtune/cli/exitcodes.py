@@ -13,3 +13,10 @@ class ExitCode(IntEnum):
     BUG = 3
     INTERRUPTED = 130  # by Ctrl-C
     TERMINATED = 143  # by SIGTERM
+
+
+EPILOG = (
+    "Exit codes: 0 good; 1 the answer is no; 2 could not run; 3 bug; 130 or 143 interrupted or terminated, best so far "
+    "saved."
+)
+"""Below the help of every command."""

@@ -56,10 +56,11 @@ def command(
 
       mmgtune fit --ar 0.5 --json --out runs/today | jq .J_test
     """
-    from ..fitting import claimed, fit, plan_fit, refuse_taken, write_document, write_run
+    from ..fitting import fit, plan_fit, write_document, write_run
     from ..options import PredictOptions
     from ..posterior import posterior, write_posterior
     from ..report import render
+    from ..run_folders import claimed, refuse_taken
 
     ship, data = c.load(profile, trials)
     folder = run.out or c.default_out(ship)
@@ -67,7 +68,7 @@ def command(
         refuse_taken(folder, force=run.force, resume=run.resume)
     plan = plan_fit(ship, data, options)  # also finds what is wrong before a folder is made
     if run.dry_run:
-        c.print_plan(plan, folder)
+        c.print_plan(plan, folder, run.json)
         return
     if not run.quiet and plan.seconds[0] > LONG:
         c.say(f"note: {in_time_of(plan)}")

@@ -15,12 +15,12 @@ from ..units import in_time
 from . import common as c
 from . import interrupts
 from .exitcodes import ExitCode
-from .options import takes
+from .options import App, takes
 
 if TYPE_CHECKING:
     from ..fleet import FleetPlan, Progress
 
-app = typer.Typer(no_args_is_help=True, help="Run commands for many ships at many dates, and see what changed.")
+app = App(help="Run commands for many ships at many dates, and see what changed.")
 
 EVERY = 5.0
 """Seconds between two lines of progress."""

@@ -7,13 +7,11 @@ from math import isfinite
 from statistics import fmean, stdev
 from typing import TYPE_CHECKING, Any
 
-import typer
-
 from ..options.learning import EnsembleOptions, HybridOptions, LearnOptions, TrainingOptions
 from ..phrases import counted
 from . import common as c
 from . import compare, learn_mixture
-from .options import RunOptions, takes
+from .options import App, RunOptions, takes
 from .progress import Progress
 
 if TYPE_CHECKING:
@@ -21,8 +19,7 @@ if TYPE_CHECKING:
     from ..learning import Learned, LearnedEnsemble, LearnedHybrid
     from ..validation import TrialScore
 
-app = typer.Typer(
-    no_args_is_help=True,
+app = App(
     help="Train networks that predict the motion of a ship, and hold them against other models.",
 )
 
@@ -130,15 +127,15 @@ def _train(
     words: Callable[[Any, dict[str, Any], str, bool], str],
 ) -> None:
     """Say what would be done, or train, write the run folder and print what was found."""
-    from ..fitting import claimed
     from ..hooks import Hooks
     from ..learning import write_learned
     from ..report import render
+    from ..run_folders import claimed
 
     ship, data = c.load(profile, trials)
     folder = run.out or c.default_out(ship)
     if run.dry_run:
-        c.print_plan(plan(ship, data, options), folder)
+        c.print_plan(plan(ship, data, options), folder, run.json)
         return
     progress = Progress(run.quiet, folder, kept="what was learned so far")
     with claimed(folder, force=run.force, resume=run.resume, anew=True), progress:

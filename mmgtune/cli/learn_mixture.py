@@ -66,12 +66,12 @@ def command(
       mmgtune learn mixture esso_osaka_3m_hybrid runs/type1 runs/type2 --share 0.35 --out runs/mixture
     """
     from ..comparing_models import compare_models, write_model_comparison
-    from ..fitting import claimed
     from ..learning import learn_mixture
     from ..networks import named_ship
     from ..networks.naming import file_of
     from ..report import render
     from ..resources import MODEL
+    from ..run_folders import claimed
 
     # What stands last is trials unless it is a trained model; what stands first after the model never is.
     trials = names[-1] if names[1:] and file_of(names[-1]) is None else None

@@ -42,9 +42,10 @@ def command(
 
       mmgtune leave-out --folds 5 --bands
     """
-    from ..fitting import claimed, leave_out, plan_leave_out, refuse_taken, write_left_out
+    from ..fitting import leave_out, plan_leave_out, write_left_out
     from ..posterior import leave_out_with_bands
     from ..report import render
+    from ..run_folders import claimed, refuse_taken
 
     ship, data = c.load(profile, trials)
     folder = run.out or c.default_out(ship)
@@ -52,7 +53,7 @@ def command(
         refuse_taken(folder, force=run.force, resume=run.resume)
     plan = plan_leave_out(ship, data, options)
     if run.dry_run:
-        c.print_plan(plan, folder)
+        c.print_plan(plan, folder, run.json)
         return
     with claimed(folder, force=run.force, resume=run.resume, anew=True), Progress(run.quiet, folder) as progress:
         work = leave_out_with_bands if bands else leave_out

@@ -20,6 +20,7 @@ from ..options import FLAGS, Options, again, choice, flags_of, in_flags
 from ..options.choice import OUTPUT
 from ..options.flags import off_flag
 from . import completing
+from .exitcodes import EPILOG
 
 
 @dataclass(frozen=True)
@@ -90,11 +91,27 @@ NAMES: dict[str, Callable[[], Sequence[str]]] = {}
 class Command(TyperCommand):
     """A command whose help says which words its options may be, which are looked up when it is shown."""
 
+    def __init__(self, *of: Any, **how: Any):
+        super().__init__(*of, **{**how, "epilog": EPILOG})
+
     def format_help(self, ctx: Any, formatter: Any) -> None:
         """Write the help."""
         for parameter in self.params:
             parameter.help = help_of(parameter)  # type: ignore[attr-defined]
         super().format_help(ctx, formatter)
+
+
+class App(typer.Typer):
+    """A group of such commands, whose help is shown where none of them is named."""
+
+    def __init__(self, **how: Any):
+        super().__init__(**how, epilog=EPILOG, no_args_is_help=True)
+
+    def command(  # type: ignore[override]  # of its many options none is used here
+        self, name: str | None = None, **how: Any
+    ) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+        """As of Typer."""
+        return super().command(name, cls=Command, **how)
 
 
 def help_of(parameter: Any) -> str:

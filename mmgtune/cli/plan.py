@@ -54,8 +54,8 @@ def command(
     if run.out is None:
         document = plan_trial(model, question, options).to_dict(c.command_line())
     else:
-        from ..fitting import claimed
         from ..report import render
+        from ..run_folders import claimed
 
         with claimed(run.out, force=run.force):
             document = write_plan(plan_trial(model, question, options), run.out, c.command_line(), overwrite=True)

@@ -26,7 +26,7 @@ def command(
     out: Annotated[
         str | None,
         typer.Option(
-            "--out", "-o", help="Folder for the particles. Default: runs/TIME-SHIP.", rich_help_panel=c.OUTPUT
+            "--out", "-o", help="Folder for the particles. Default: runs/TIME-PROFILE.", rich_help_panel=c.OUTPUT
         ),
     ] = None,
     force: Annotated[
@@ -44,15 +44,17 @@ def command(
     """
     from pathlib import Path
 
-    from ..files import refuse_existing
+    from ..files import alone_in, make_folder, refuse_existing
     from ..posterior import posterior, write_posterior
     from ..posterior.folder import FILES
 
     ship, data = c.load(profile, trials)
     folder = Path(out) if out else c.default_out(ship)
     refuse_existing([folder / name for name in FILES], force)
-    result = posterior(ship, data, options, command=c.command_line())
-    document = write_posterior(result, folder, overwrite=force)
+    make_folder(folder)
+    with alone_in(folder):
+        result = posterior(ship, data, options, command=c.command_line())
+        document = write_posterior(result, folder, overwrite=force)
     if json:
         c.print_json(document)
     else:

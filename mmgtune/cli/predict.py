@@ -7,7 +7,6 @@ from typing import Annotated, Any
 
 import typer
 
-from ..errors import OptionError, Problem
 from ..options import PredictOptions
 from . import common as c
 from . import completing
@@ -52,16 +51,12 @@ def command(
     """
     from ..predicting import predict, write_prediction
 
-    if run.out is None and (keep_particles or no_report):
-        asked = "keep_particles" if keep_particles else "no_report"
-        raise OptionError(
-            Problem("nothing is written", asked, "files are only written with out=FOLDER", "add out=FOLDER")
-        )
     if run.out is None:
+        c.needs_folder(keep_particles=keep_particles, no_report=no_report)
         document = predict(model, orders, trials, options).to_dict(c.command_line())
     else:
-        from ..fitting import claimed
         from ..report import render
+        from ..run_folders import claimed
 
         with claimed(run.out, force=run.force):
             result = predict(model, orders, trials, options)

@@ -14,28 +14,36 @@ from ..options import EstimateOptions
 from ..units import DIMENSIONLESS
 from . import common as c
 from . import completing
-from .options import takes
+from .options import App, takes
 
 if TYPE_CHECKING:
     from ..comparing import Comparison
     from ..estimating import Particulars
 
-app = typer.Typer(help="Look at ship profiles, make one from main dimensions, compare two.", no_args_is_help=True)
+app = App(help="Look at ship profiles, make one from main dimensions, compare two.")
 
 Name = Annotated[str, typer.Argument(help="A TOML file or a bundled name.", autocompletion=completing.profiles)]
 
 
 @app.command("list")
-def list_profiles() -> None:
-    """List the bundled profiles, and what was trained beside them."""
+def list_profiles(json: c.Json = False) -> None:
+    """List the bundled profiles, and what was trained beside them.
+
+    Example:
+
+      mmgtune profile list
+    """
     from ..networks import load_network
     from ..profile import load_profile
     from ..resources import folder, network_names, profile_names
 
-    for name in profile_names():
-        c.show(f"{name:<24}{load_profile(name).name}")
-    for name in network_names():
-        c.show(f"{name:<24}{load_network(folder('ship_profiles') / f'{name}.safetensors')!r}")
+    profiles = {name: load_profile(name).name for name in profile_names()}
+    trained = {name: repr(load_network(folder("ship_profiles") / f"{name}.safetensors")) for name in network_names()}
+    if json:
+        c.print_json({"schema": 1, "kind": "profile-list", "profiles": profiles, "trained": trained})
+        return
+    for name, words in {**profiles, **trained}.items():
+        c.show(f"{name:<24}{words}")
 
 
 @app.command("show")
@@ -67,7 +75,8 @@ def show(profile: Name, json: c.Json = False) -> None:
             {**row, "value": None if row["value"] == float("inf") else row["value"]} for row in rows
         ]
         told = {key: getattr(ship, key) for key in ("id", "name", "source", "licence", "citation")}
-        c.print_json({"schema": 1, **told, "coefficients": finite, "doubts": [one.to_dict() for one in ship.doubts()]})
+        told |= {"coefficients": finite, "doubts": [one.to_dict() for one in ship.doubts()]}
+        c.print_json({"schema": 1, "kind": "profile", **told})
         return
     c.show("\n".join((ship.name, ship.source, *c.terms(ship), "")))
     numbers, texts = [], []
@@ -87,11 +96,31 @@ def show(profile: Name, json: c.Json = False) -> None:
 
 
 @app.command("validate")
-def validate(profile: Name) -> None:
-    """Check a profile; exit 2 with everything that is wrong in it."""
+def validate(profile: Name, json: c.Json = False) -> None:
+    """Check a profile; exit 2 with everything that is wrong in it.
+
+    Example:
+
+      mmgtune profile validate my_ship.toml
+    """
     from ..profile import load_profile
 
     ship = load_profile(profile)
+    if json:
+        c.print_json(
+            {
+                "schema": 1,
+                "kind": "profile-validate",
+                "file": str(ship.path),
+                "id": ship.id,
+                "name": ship.name,
+                "sha256": ship.sha256,
+                "coefficients": len(ship.names()),
+                "assumptions": [name for name, _ in ship.assumptions()],
+                "doubts": [one.to_dict() for one in ship.doubts()],
+            }
+        )
+        return
     c.show(f"{ship.path}: {ship.name}, {len(ship.names())} coefficients, {len(ship.assumptions())} of them assumptions")
     c.say_doubts(ship.doubts())
 
@@ -158,9 +187,10 @@ def new(
     ship = estimate(_asked() if asked else read_particulars(particulars), options)
     write_text(file, ship.text, overwrite=force)
     if json:
-        facts = {"schema": 1, "file": str(file), "id": ship.id, "sha256": ship.sha256, "options": options.to_dict()}
+        facts = {"schema": 1, "kind": "profile-new", "file": str(file), "id": ship.id, "sha256": ship.sha256}
         doubts = [one.to_dict() for one in ship.doubts()]
-        c.print_json({**facts, "coefficients": len(ship.names()), "targets": list(ship.targets), "doubts": doubts})
+        amounts = {"coefficients": len(ship.names()), "targets": list(ship.targets)}
+        c.print_json({**facts, "options": options.to_dict(), **amounts, "doubts": doubts})
         return
     c.show(f"wrote {file}: {ship.name}, {len(ship.names())} coefficients, {len(ship.targets)} of them free in a fit")
     assert ship.approach is not None  # particulars have a speed
@@ -190,19 +220,19 @@ def compare(
 
       mmgtune profile compare before.toml after.toml --out compared
     """
-    from ..comparing import FILE
     from ..comparing import compare as compared
-    from ..files import refuse_existing
+    from ..report import render
+    from ..run_folders import claimed
 
-    if out is not None:
-        refuse_existing([out / FILE], force)
-    found = compared(a, b)
-    if out is not None:
-        from ..report import render
-
-        c.say(f"wrote {found.write(out, overwrite=force)}")
-        for path in render(out):
-            c.say(f"wrote {path}")
+    if out is None:
+        c.needs_folder(force=force)
+        found = compared(a, b)
+    else:
+        with claimed(out, force=force, anew=True):
+            found = compared(a, b)
+            c.say(f"wrote {found.write(out, overwrite=True)}")
+            for path in render(out):
+                c.say(f"wrote {path}")
     if json:
         c.print_json(found.to_dict())
         return
@@ -216,7 +246,7 @@ def _asked() -> Particulars:
     from ..components import Field
     from ..estimating import QUESTIONS, parse_particulars
     from ..estimating.particulars import FIELDS, NEEDED
-    from ..units import example, parse
+    from ..units import Unreadable, example, parse, with_known_unit, with_point
 
     if not sys.stdin.isatty():
         raise OptionError(
@@ -241,13 +271,17 @@ def _asked() -> Particulars:
             )
             if not typed.strip():
                 return ""
+            text = with_known_unit(typed.strip())
             try:
-                if known.unit == "-":
-                    return repr(float(typed))
-                parse(typed, known.unit)
-                return '"' + typed.strip() + '"'
-            except ValueError as error:
+                if pointed := with_point(text):
+                    raise Unreadable(f"numbers have a decimal point here, as {pointed}", pointed)
+                value, *more = parse(text, known.unit)
+                if more:
+                    raise Unreadable(f"'{text}' is {1 + len(more)} numbers, not one", example(known.unit))
+            except Unreadable as error:
                 c.say(f"{error}; once more")
+            else:
+                return repr(value) if known.unit == "-" else f'"{text}"'
 
     name = typer.prompt("name of the ship").replace('"', "'").replace("\\", "/")
     id = "".join(sign if sign.isalnum() else "_" for sign in name.lower()).strip("_") or "ship"

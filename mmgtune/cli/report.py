@@ -12,7 +12,7 @@ from . import common as c
 
 
 def command(
-    run: Annotated[Path, typer.Argument(help="Run folder of a fit, a sweep, a diagnosis, or of voyages.")],
+    run: Annotated[Path, typer.Argument(help="Run folder: what --out of a command named.")],
     pdf: Annotated[
         bool, typer.Option("--pdf", help="Write the figures as PDF files too, as papers want them.")
     ] = False,

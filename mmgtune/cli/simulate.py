@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..errors import OptionError, Problem
 from ..options import PredictOptions, SimulateOptions
 from ..phrases import listed
 from . import common as c
@@ -57,30 +57,28 @@ def command(
 
       mmgtune simulate --trials suzaku --out simulated --forces
     """
-    from ..files import refuse_existing
     from ..predictor import Uncertain
     from ..recording import write_simulation
     from ..report import render
-    from ..simulating import files_of, simulate
+    from ..run_folders import claimed
+    from ..simulating import simulate
 
-    if forces and out is None:
-        raise OptionError(
-            Problem("forces need a folder to write to", "forces", "they are files, one a manoeuvre", "add out=FOLDER")
-        )
-    if out is not None:
-        refuse_existing(files_of(out, trials, options), force)
-    result = simulate(profile, trials, options)
-    rows = result.rows()
-    notes = list(result.notes)
-    if trials is None and isinstance(result.predictor, Uncertain):
-        notes += _add_bands(rows, result.predictor, options)
+    if out is None:
+        c.needs_folder(forces=forces, force=force, no_report=no_report)
+    with claimed(out, force=force, anew=True) if out is not None else nullcontext():
+        result = simulate(profile, trials, options)
+        rows = result.rows()
+        notes = list(result.notes)
+        if trials is None and isinstance(result.predictor, Uncertain):
+            notes += _add_bands(rows, result.predictor, options)
+        files: list[Path] = []
+        if out is not None:
+            files = result.write(out, with_forces=forces, overwrite=force)
+            write_simulation(result, rows, out, c.command_line())
+            files += [] if no_report else render(out)[:1]
     lost = list(dict.fromkeys(motion.id for motion in result.motions if motion.diverged))
     if lost:
         notes.append(f"{listed(lost)} diverged: the ship spins, or is faster than any; none of it is judged or written")
-    files = result.write(out, with_forces=forces, overwrite=force) if out is not None else []
-    if out is not None and not no_report:
-        write_simulation(result, rows, out, c.command_line())
-        files.append(render(out)[0])
     if json:
         c.print_json({**result.to_dict(), "runs": rows, "notes": notes, "files": [str(f) for f in files]})
     else:

@@ -11,9 +11,9 @@ from ..options import HeadingOptions
 from . import common as c
 from . import completing
 from .compare import FolderOptions
-from .options import takes
+from .options import App, takes
 
-app = typer.Typer(no_args_is_help=True, help="Judge controllers in simulation, and the simulators by what is true.")
+app = App(help="Judge controllers in simulation, and the simulators by what is true.")
 
 
 @app.callback()
@@ -51,9 +51,9 @@ def heading_keeping(
 
       mmgtune study heading-keeping runs/ensemble/model.safetensors --truth vectwin_3m --out runs/gains
     """
-    from ..fitting import claimed
     from ..heading_keeping import study_heading_keeping, write_heading_study
     from ..report import render
+    from ..run_folders import claimed
 
     if run.out is None:
         document = study_heading_keeping(models, truth, options).to_dict(c.command_line())

@@ -31,8 +31,9 @@ def command(
 
       mmgtune sweep --method least-squares --out runs/sweep
     """
-    from ..fitting import claimed, plan_sweep, refuse_taken, sweep
+    from ..fitting import plan_sweep, sweep
     from ..report import render
+    from ..run_folders import claimed, refuse_taken
 
     ship, data = c.load(profile, trials)
     folder = run.out or c.default_out(ship)
@@ -40,7 +41,7 @@ def command(
         refuse_taken(folder, force=run.force, resume=run.resume)
     plan = plan_sweep(ship, data, options)
     if run.dry_run:
-        c.print_plan(plan, folder)
+        c.print_plan(plan, folder, run.json)
         return
     with claimed(folder, force=run.force, resume=run.resume, anew=True), Progress(run.quiet, folder) as progress:
         result = sweep(

@@ -14,9 +14,9 @@ from ..phrases import counted
 from . import common as c
 from . import completing
 from .exitcodes import ExitCode
-from .options import problems_in_flags, takes
+from .options import App, problems_in_flags, takes
 
-app = typer.Typer(help="Make trial files from logs or from a model, check and inspect them.", no_args_is_help=True)
+app = App(help="Make trial files from logs or from a model, check and inspect them.")
 
 Name = Annotated[
     str, typer.Argument(help="Folder of trial files, one file, or a bundled name.", autocompletion=completing.trials)
@@ -44,7 +44,7 @@ def check(
     except MmgtuneError as error:
         if json:
             problems = [problem.to_dict() for problem in problems_in_flags(error)]
-            c.print_json({"schema": 1, "trials": {}, "problems": problems})
+            c.print_json({"schema": 1, "kind": "trials-check", "trials": {}, "problems": problems})
         raise
     # The trials of a ship with a bundled profile are checked against her length.
     L_pp = load_profile(data.ship).L_pp if data.ship in profile_names() else None
@@ -52,7 +52,7 @@ def check(
     found |= {name: [] for name in data.stated}  # what is wrong with these is said on reading
     if json:
         listed = {name: [vars(f) for f in findings] for name, findings in found.items()}
-        c.print_json({"schema": 1, "trials": listed, "problems": []})
+        c.print_json({"schema": 1, "kind": "trials-check", "trials": listed, "problems": []})
     else:
         for findings in found.values():
             for f in findings:
@@ -109,7 +109,8 @@ def inspect(
         rows.append({**describe(trial), "role": data.role(name), "indices": trial_indices(trial, L_pp)})
     stated = [{**one.describe(), "role": data.role(one.id)} for one in data.stated.values()]
     if json:
-        c.print_json({"schema": 1, "L_pp_m": L_pp, "trials": rows, **({"stated": stated} if stated else {})})
+        about = {"L_pp_m": L_pp, "trials": rows, **({"stated": stated} if stated else {})}
+        c.print_json({"schema": 1, "kind": "trials-inspect", **about})
         return
     for one in data.stated.values():
         c.show(f"{one.id}  {one.ship} {one.order} ({one.source or 'source not stated'}), {data.role(one.id)}")

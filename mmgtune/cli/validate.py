@@ -56,9 +56,9 @@ def command(
 
       mmgtune validate before.toml after.toml voyages/ --out runs/voyages
     """
-    from ..fitting import claimed, refuse_taken
     from ..recording import write_validation
     from ..report import render
+    from ..run_folders import claimed, refuse_taken
     from ..trial import holds_voyages, load_trials
     from ..validating import validate
 
@@ -109,8 +109,6 @@ def _refuse(options: VoyageOptions, run: WrittenOptions, no_report: bool) -> Non
     own = {one.name for one in fields(VoyageOptions)} - {one.name for one in fields(ValidateOptions)}
     asked = [name for name in sorted(own) if getattr(options, name) != getattr(VoyageOptions, name)]
     asked += [name for name in ("resume", "quiet") if getattr(run, name)]
-    asked += [name for name in ("force",) if run.force and run.out is None]
-    asked += ["no_report"] if no_report and run.out is None else []
     if asked:
         raise OptionError(
             *(
@@ -123,6 +121,8 @@ def _refuse(options: VoyageOptions, run: WrittenOptions, no_report: bool) -> Non
                 for name in asked
             )
         )
+    if run.out is None:
+        c.needs_folder(force=run.force, no_report=no_report)
 
 
 def summary(result: Validation) -> str:

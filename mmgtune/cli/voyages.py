@@ -30,11 +30,11 @@ def on_voyages(
     no_report: bool,
 ) -> None:
     """Score profiles on voyages, write the run folder and print what was found."""
-    from ..fitting import claimed
     from ..hooks import Hooks
     from ..networks import named_ship
     from ..predictor import profile_of
     from ..report import render
+    from ..run_folders import claimed
     from ..trial import load_voyages
     from ..voyages import validate_voyages, write_voyages
 

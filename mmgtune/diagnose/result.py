@@ -61,7 +61,7 @@ TOLD = 0.5
 """Share of the held-out error that causes must remove which were found once no trial was kept for testing, and several
 causes anyhow: what little there is any two or three would imitate; and a single one whose size may be none."""
 
-GUSTS_LEAVE, OF_WIND = 4.0, 0.15
+GUSTS_LEAVE, OF_WIND = 20.0, 0.25
 """Variance beyond noise that gusts of a wind that was found would have to account for, and share of chi-squared before
 it that it leaves, from which it is no wind: gusts and another shape of the force leave less than that of its work."""
 

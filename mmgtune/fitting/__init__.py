@@ -2,7 +2,7 @@
 
 from ..hooks import Hooks
 from ..options import METHODS, FitOptions, LeaveOutOptions, SweepOptions
-from .folder import claimed, prepare, refuse_taken, write_document, write_run
+from .folder import write_document, write_run
 from .information import Information
 from .informing import information_of
 from .leaving_out import BandsLeftOut, LeftOut, leave_out, write_left_out
@@ -28,7 +28,6 @@ __all__ = [
     "SisterClass",
     "SweepOptions",
     "SweepResult",
-    "claimed",
     "fit",
     "in_pieces",
     "information_of",
@@ -38,8 +37,6 @@ __all__ = [
     "plan_leave_out",
     "plan_sweep",
     "pooled",
-    "prepare",
-    "refuse_taken",
     "sweep",
     "write_document",
     "write_left_out",

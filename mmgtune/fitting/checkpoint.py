@@ -17,22 +17,11 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import OptionError, Problem, reason
 from ..files import atomic
+from ..run_folders import RESULTS
 
 NAME = "checkpoint.npz"
 EVERY = 25
 """Generations between two checkpoints: about a second of work."""
-
-RESULTS = (
-    "fit.json",
-    "sweep.json",
-    "diagnosis.json",
-    "leave_out.json",
-    "voyages.json",
-    "learning.json",
-    "ensemble.json",
-    "hybrid.json",
-)
-"""Results of runs that can be resumed: one is there once its run has ended."""
 
 
 @dataclass(eq=False)

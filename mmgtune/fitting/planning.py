@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -28,6 +29,7 @@ ITERATIONS = (15, 60)
 """Iterations of least squares from one start, from few to many; each is a Jacobian and some trials."""
 
 FIT_FILES = ("fit.json", "profile.toml", "history.parquet", "motions.parquet", "report.html and .md", "figures")
+LEFT_OUT_FILES = ("leave_out.json", "motions.parquet", *FIT_FILES[4:])
 
 
 ROUGHLY = 2e-8
@@ -48,6 +50,17 @@ class Plan:
     seconds: tuple[float, float]
     writes: tuple[str, ...]
     tried: bool = True
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "schema": 1,
+            "kind": "dry-run",
+            "plan": list(self.lines),
+            "seconds": list(self.seconds),
+            "timed": self.tried,
+            "writes": list(self.writes),
+        }
 
     def __str__(self) -> str:
         """The lines, and the time."""
@@ -93,7 +106,7 @@ def plan_leave_out(profile: ShipGiven, trials: TrialsGiven, options: LeaveOutOpt
     lines = [*whole(profile, pieces, search, own), *_problem(problem, own)]
     low, high = fit_seconds(problem, own)
     share = 1.0 + parts / own.starts
-    return Plan(tuple(lines), (share * low, share * high), ("leave_out.json",), can_be_tried(problem))
+    return Plan(tuple(lines), (share * low, share * high), LEFT_OUT_FILES, can_be_tried(problem))
 
 
 def whole(profile: ShipProfile, trials: TrialSet, search: str, options: FitOptions) -> list[str]:

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..documents import write_json
 from ..errors import OptionError, Problem
 from ..options import CheckOptions, DiagnoseOptions, FitOptions, Options, SweepOptions, ValidateOptions
 from ..phrases import counted
@@ -217,7 +216,6 @@ def _mean(values: Sequence[float | None]) -> float | None:
 
 def _check(task: Task, folder: Path) -> tuple[str, Facts]:
     from .. import checking
-    from ..provenance import made_by
     from ..trial import load_trials
 
     assert task.baseline is not None  # the table asks for one
@@ -227,15 +225,14 @@ def _check(task: Task, folder: Path) -> tuple[str, Facts]:
     integrator = task.options.asked_integrator(recorded.method)
     data = load_trials(task.trials)
     report = checking.check(task.ship, data, recorded, names=names, integrator=integrator, **how)
-    document = {**report.to_dict(), **made_by(task.label), "out": str(folder)}
-    write_json(document, folder / "check.json")
+    checking.write_check(report, folder, task.label)
     if report.verdict == "not comparable":
         lost = [item.reason for item in report.items if item.status == "not comparable" and item.reason]
         why = "; ".join(dict.fromkeys(lost))
         raise OptionError(Problem("the check could not compare", str(task.baseline), why, "write the baseline anew"))
     answer = "good" if report.verdict == "pass" else "no"
     sources = {name: trial.source for name, trial in data.trials.items()}
-    return "check.json", Facts(answer, document["sentence"], generated=_generated(sources))
+    return checking.RESULT, Facts(answer, report.sentence(), generated=_generated(sources))
 
 
 COMMANDS: Mapping[str, Command] = {

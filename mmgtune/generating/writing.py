@@ -61,7 +61,13 @@ class Made:
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
         profile = str(self.profile) if self.profile else self.ship
-        return {"schema": 1, "ship": self.ship, "profile": profile, "sets": [dict(one) for one in self.sets]}
+        return {
+            "schema": 1,
+            "kind": "made",
+            "ship": self.ship,
+            "profile": profile,
+            "sets": [dict(one) for one in self.sets],
+        }
 
 
 def make_trials(ship: str, out: Path | str, options: MakeOptions = MakeOptions(), *, overwrite: bool = False) -> Made:

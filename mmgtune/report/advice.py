@@ -17,6 +17,9 @@ Advice = tuple[tuple[str, str], ...]
 _TOLD_APART = re.compile(r" \(\d+\)$")
 """What stands behind the name of a model that was given twice."""
 
+_NUMBER = re.compile(r"-[\d.]")
+"""What begins with a dash and is no option."""
+
 
 def _inputs(data: Mapping[str, Any]) -> tuple[str, str]:
     """The profile and the trials as options of a shell command."""
@@ -42,29 +45,36 @@ def after_fit(data: Mapping[str, Any]) -> Advice:
     """(reason, command) pairs that follow from a fit."""
     profile, trials = _inputs(data)
     a_r = number(data["options"].get("a_r"))
-    method = " --method least-squares" if data.get("stated") else ""
-    same = f" --ar {a_r:g}" if a_r is not None else ""
+    width = f" --ar {a_r:g}" if a_r is not None else ""
+    command = data.get("command") or ""
+
+    def same(name: str) -> str:
+        """What was chosen for this fit, as another command takes it."""
+        if chosen := chosen_in(command, "fit", _OF_A_FIT[name]):
+            return chosen
+        return " --method least-squares" if data.get("stated") and name in ("fit", "sweep") else ""
+
     items = []
     if data.get("at_bound"):
         bound = count(len(data["at_bound"]), "coefficient")
         this = f" (this run: a_r = {shown(a_r)})" if a_r is not None else ""
         reason = f"{bound} at a bound: see what other ranges do on trials that were not tuned on{this}"
-        items.append((reason, f"mmgtune sweep {profile} {trials}{method}"))
+        items.append((reason, f"mmgtune sweep {profile} {trials}{same('sweep')}"))
     elif data.get("stated") and _several(data) and data.get("J_test") is None:
         reason = "Leave each trial out in turn, to see how the fit does on trials it was not tuned on"
-        items.append((reason, f"mmgtune leave-out {profile} {trials}"))
+        items.append((reason, f"mmgtune leave-out {profile} {trials}{same('leave-out')}"))
     elif data.get("J_test") is None and _several(data):
         reason = "No test set: leave each trial out in turn, to see how the fit does on trials it was not tuned on"
-        items.append((reason, f"mmgtune leave-out {profile} {trials}{same}"))
+        items.append((reason, f"mmgtune leave-out {profile} {trials}{width}{same('leave-out')}"))
     if data.get("misses"):
         reason = "It misses trials that it was not tuned to: what is wrong, and how much of it the cause explains"
-        items.append((reason, f"mmgtune diagnose {profile} {trials}"))
+        items.append((reason, f"mmgtune diagnose {profile} {trials}{width}{same('diagnose')}"))
     loose = len(data.get("undetermined") or ())
     if loose:
         reason = (
             f"{count(loose, 'coefficient')} not determined: hold what no trial can tell at its pre-determined value"
         )
-        items.append((reason, f"mmgtune fit {profile} {trials}{same}{method} --identifiable"))
+        items.append((reason, f"mmgtune fit {profile} {trials}{width}{same('fit')} --identifiable"))
     tuned = shlex.quote(clean(data.get("out") or "RUN").rstrip("/") + "/profile.toml")
     reason = "Take the tuned ship through manoeuvres that were not measured, against the IMO criteria"
     items.append((reason, f"mmgtune simulate -p {tuned} --turn 35 --turn -35 --zigzag 10/10 --zigzag 20/20"))
@@ -98,7 +108,7 @@ def after_sweep(data: Mapping[str, Any]) -> Advice:
     widest = max((number(run.get("a_r")) or 0.0 for run in data["runs"]), default=0.0)
     if chosen is not None and chosen == widest:
         wider = ",".join(f"{chosen + step:.2g}" for step in (0.0, 0.1, 0.2))
-        same = chosen_in(data.get("command") or "", "sweep")
+        same = chosen_in(data.get("command") or "", "sweep", ("--ar",))
         reason = "The widest range did best: try wider ones"
         items.append((reason, f"mmgtune sweep {profile} {trials} --ar {wider}{same}"))
     if data.get("command"):
@@ -126,8 +136,10 @@ def after_diagnosis(data: Mapping[str, Any]) -> Advice:
                 f"profile without {'it' if len(day) == 1 else 'them'}"
             )
             items.append((reason, f"mmgtune simulate -p {calm} --turn 35 --turn -35 --zigzag 10/10 --zigzag 20/20"))
+        a_r = number((data.get("options") or {}).get("a_r"))
+        width = f" --ar {a_r:g}" if a_r is not None else ""
         reason = "Re-tune the coefficients with what was found in the model, within the same range of their values"
-        items.append((reason, f"mmgtune fit -p {extended} {trials} --initial estimated"))
+        items.append((reason, f"mmgtune fit -p {extended} {trials}{width} --initial estimated"))
     if data["verdict"] in ("unexplained", "interrupted"):
         items.append(("Look for faults of the measurement itself", f"mmgtune trials check {trials[3:]}"))
     if data["verdict"] == "none":
@@ -138,7 +150,7 @@ def after_diagnosis(data: Mapping[str, Any]) -> Advice:
             ("Look for more, from the profile with what was found", f"mmgtune diagnose -p {extended} {trials}")
         )
     if data.get("interrupted") and data.get("command"):
-        items.append(("Go on where the search was stopped", f"{clean(data['command'])} --out {where} --resume"))
+        items.append(("Go on where the search was stopped", gone_on(data["command"], where)))
     return tuple(items)
 
 
@@ -152,31 +164,58 @@ def again(command: str) -> str:
     return shlex.join([*words, "--force"] if named else words)
 
 
-_SAID_ANEW = ("-p", "--profile", "-t", "--trials", "--ar", "-o", "--out")
+_SAID_ANEW = ("-p", "--profile", "-t", "--trials", "-o", "--out")
 """Options with a value that a command which varies another says itself."""
 
 _OF_THE_RUN = ("--force", "--resume", "--json", "-q", "--quiet", "--dry-run", "--no-report")
 """Flags that were about that run alone."""
 
+_OF_A_FIT = {
+    "fit": ("--ar",),
+    "sweep": ("--ar", "--bands", "--prior", "--strict"),
+    "leave-out": ("--ar", "--method", "--prior", "--strict"),
+    "diagnose": (
+        *("--ar", "--bands", "--every", "--identifiable", "--initial", "--loss", "--method", "--objective", "--prior"),
+        *("--regularise", "--starts", "--strict", "--window", "--with-effects"),
+    ),
+}
+"""Options of a fit that a command after it does not have, or says itself."""
 
-def chosen_in(command: str, name: str) -> str:
-    """What was chosen in a command that was given before, each with a space before it, to vary ranges alone.
 
-    "" of anything but the command ``name``: a run of the library or of a fleet.
-    """
+def _groups(command: str) -> list[list[str]]:
+    """The words of a command: its name, then each option with its values.  Nothing of what no shell reads."""
     try:
         words = shlex.split(clean(command))
-    except ValueError:  # no command of a shell
+    except ValueError:
+        return []
+    groups: list[list[str]] = [[]]
+    for word in words:
+        if word.startswith("-") and not _NUMBER.match(word):
+            groups.append([])
+        groups[-1].append(word)
+    return groups
+
+
+def chosen_in(command: str, name: str, but: tuple[str, ...] = ()) -> str:
+    """What was chosen in a command that was given before, each with a space before it, for one that differs from it.
+
+    but  options that are left out besides those of the run itself
+    "" of anything but the command ``name``: a run of the library or of a fleet.
+    """
+    first, *options = _groups(command) or [[]]
+    if first != ["mmgtune", name]:
         return ""
-    if words[:2] != ["mmgtune", name]:
-        return ""
-    kept, rest = [], iter(words[2:])
-    for word in rest:
-        if word in _SAID_ANEW:
-            next(rest, None)
-        elif word not in _OF_THE_RUN and word.partition("=")[0] not in _SAID_ANEW:
-            kept.append(word)
+    left_out = {*_SAID_ANEW, *_OF_THE_RUN, *but}
+    kept = [word for option in options if option[0].partition("=")[0] not in left_out for word in option]
     return "".join(f" {shlex.quote(word)}" for word in kept)
+
+
+def gone_on(command: str, folder: str) -> str:
+    """A command that was stopped, as it goes on in its folder."""
+    first, *options = _groups(command) or [[]]
+    left_out = ("-o", "--out", "--force", "--resume")
+    kept = [word for option in options if option[0].partition("=")[0] not in left_out for word in option]
+    return shlex.join([*first, *kept, "--out", folder, "--resume"])
 
 
 def of_the_day(tag: str) -> bool:
@@ -189,15 +228,18 @@ def after_leave_out(data: Mapping[str, Any]) -> Advice:
     """(reason, command) pairs that follow from leaving trials out."""
     profile, trials = _inputs(data)
     a_r = number((data.get("options") or {}).get("a_r"))
-    same = f" --ar {a_r:g}" if a_r is not None else ""
+    width = f" --ar {a_r:g}" if a_r is not None else ""
+    same = chosen_in(data.get("command") or "", "leave-out", ("--ar", "--folds", "--manoeuvres"))
     whole: Mapping[str, Any] = next((row for row in data["scores"] if row["manoeuvre"] == "all"), {})
     items = []
     if (number(whole.get("share_removed")) or 0.0) > 0.0:
-        items.append(("Tuning helps on unseen trials: tune to all of them", f"mmgtune fit {profile} {trials}{same}"))
+        items.append(
+            ("Tuning helps on unseen trials: tune to all of them", f"mmgtune fit {profile} {trials}{width}{same}")
+        )
     else:
         reason = "Tuning does not help on unseen trials: look for what the model lacks"
         items.append((reason, f"mmgtune diagnose {profile} {trials}"))
-    items.append(("See whether a narrower or a wider range does better", f"mmgtune sweep {profile} {trials}"))
+    items.append(("See whether a narrower or a wider range does better", f"mmgtune sweep {profile} {trials}{same}"))
     return tuple(items)
 
 

@@ -219,4 +219,10 @@ def _made(data: Mapping[str, Any]) -> Section:
     return Section("provenance", "Provenance", (made_table(data, items),))
 
 
-KIND = Kind("check", ("verdict", "sentence", "items", "changed", "counts", "next"), lambda _, data: data, build)
+KIND = Kind(
+    "check",
+    ("verdict", "sentence", "items", "changed", "counts", "next"),
+    lambda _, data: data,
+    build,
+    record="checked.json",
+)

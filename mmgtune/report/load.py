@@ -42,7 +42,7 @@ _HALF = re.compile(r"\\u[dD][89a-fA-F]")
 class Kind:
     """A kind of run that there are reports of.
 
-    name    "kind" of its record, which is the file of that name in the run folder
+    name    "kind" of its record, which is the file of that name in the run folder where ``record`` names no other
     needed  keys of the record without which there can be no page
     read    (folder, record file) -> the run as its page wants it
     build   that -> the page
@@ -54,11 +54,12 @@ class Kind:
     read: Callable[[Path, Mapping[str, Any]], Any]
     build: Callable[[Any], Page]
     inside: Callable[[Any], Iterable[Path]] = lambda _: ()
+    record: str = ""
 
     @property
     def file(self) -> str:
         """Name of the record's file: sweep.json."""
-        return f"{self.name.replace('-', '_')}.json"
+        return self.record or f"{self.name.replace('-', '_')}.json"
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 from ..arrays import BoolArray, FloatArray
 from ..inputs import INPUTS
+from ..phrases import counted
 from ..units import DEG
 from .finding import Finding
 from .kinematics import (
@@ -132,7 +133,7 @@ def _spikes(trial: Trial, where: str) -> list[Finding]:
             found.append(
                 Finding(
                     "warning",
-                    f"'{name}' has {len(rows)} spikes",
+                    f"'{name}' has {counted(len(rows), 'spike')}",
                     f"{where}, column '{name}', row {rows[0]}",
                     "single samples far off their neighbours",
                     "mark them as NaN" if name in MOTION else "replace them by interpolation",

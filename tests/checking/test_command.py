@@ -206,3 +206,44 @@ def test_trials_of_another_ship_are_told(ready):
     ended = run("check", "kvlcc2", "trials", "--baseline", "check.json", cwd=ready)
     assert ended.code == 2
     assert "of ship 'suzaku'" in ended.err
+
+
+def test_the_record_is_no_baseline_and_replaces_nothing(ready):
+    """``--out`` wrote its record over a baseline of the same name, and over the record before."""
+    before = (ready / "check.json").read_bytes()
+    for more in ((), ("--force",)):
+        ended = check(ready, "--out", ".", *more)
+        assert ended.code == 2
+        assert ("not a run of mmgtune" if more else "exists already") in ended.err
+    assert check(ready, "--out", "found").code == 0
+    assert {"checked.json", "report.html"} <= {one.name for one in (ready / "found").iterdir()}
+    again = check(ready, "--out", "found")
+    assert (again.code, "exists already" in again.err) == (2, True)
+    assert check(ready, "--out", "found", "--force").code == 0
+    assert (ready / "check.json").read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        (
+            ("--update-baseline", "--junit", "j.xml"),
+            "it does not go with --update-baseline (--junit)\n",
+        ),
+        (("--update-baseline", "--format", "markdown"), "it does not go with --update-baseline (--format)\n"),
+        (("--sensitivity", "0.02", "--summary", "s.md"), "it does not go with --sensitivity (--summary)\n"),
+        (("--force",), "nothing is written (--force)"),
+    ],
+)
+def test_what_would_be_ignored_is_refused(ready, asked, said):
+    before = (ready / "check.json").read_bytes()
+    ended = check(ready, *asked)
+    assert (ended.code, ended.out) == (2, "")
+    assert said in ended.err
+    assert (ready / "check.json").read_bytes() == before
+    assert not (ready / "j.xml").exists()
+
+
+def test_the_sensitivity_as_json_by_either_name(ready):
+    one, other = (check(ready, "--sensitivity", "0.02", *more) for more in (("--json",), ("--format", "json")))
+    assert one.json() == other.json()

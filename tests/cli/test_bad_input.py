@@ -9,11 +9,11 @@ import pytest
 
 from mmgtune.errors import LogError, OptionError, OutputError
 from mmgtune.files import write_text
-from mmgtune.fitting import prepare
 from mmgtune.fitting.checkpoint import Checkpoint
 from mmgtune.importing import propose_map
 from mmgtune.profile import load_profile
 from mmgtune.resources import folder
+from mmgtune.run_folders import prepare
 from mmgtune.trial import read_trial, write_trial
 from tests.command import QUICK, run
 

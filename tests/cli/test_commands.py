@@ -6,10 +6,12 @@ import sys
 from dataclasses import replace
 
 import pytest
+from typer.main import get_command
 
-from mmgtune.cli import _say_warning
+from mmgtune.cli import _say_warning, app
+from mmgtune.cli.exitcodes import EPILOG
 from mmgtune.trial import load_trials, read_trial, write_trial
-from tests.command import run
+from tests.command import run, typed
 
 COMMANDS = [
     ("fit",), ("sweep",), ("leave-out",), ("validate",), ("learn", "compare"), ("check",), ("cite",), ("doctor",),
@@ -25,6 +27,42 @@ def test_help(command, tmp_path):
     assert ended.code == 0
     assert "Usage: mmgtune" in ended.out.replace("python -m mmgtune", "mmgtune")
     assert len(ended.out.splitlines()) > 5
+
+
+def every_command(group=None, before=()):
+    for name, one in (group or get_command(app)).commands.items():
+        if hasattr(one, "commands"):
+            yield from every_command(one, (*before, name))
+        else:
+            yield (*before, name), one
+
+
+def test_every_command_has_examples_and_exit_codes():
+    """Those of groups had no exit codes, and some no example, though the README promises one."""
+    commands = dict(every_command())
+    assert len(commands) > 25
+    assert [name for name, one in commands.items() if one.epilog != EPILOG or "mmgtune " not in one.help] == []
+
+
+@pytest.mark.parametrize(
+    ("asked", "kind"),
+    [
+        (("profile", "list"), "profile-list"),
+        (("profile", "show", "suzaku"), "profile"),
+        (("profile", "validate", "suzaku"), "profile-validate"),
+        (("trials", "check", "suzaku"), "trials-check"),
+        (("trials", "inspect", "suzaku"), "trials-inspect"),
+        (("simulate", "--turn", "35"), "simulate"),
+        (("fit", "--dry-run"), "dry-run"),
+        (("leave-out", "--dry-run"), "dry-run"),
+    ],
+    ids=lambda one: one if isinstance(one, str) else " ".join(one),
+)
+def test_documents_say_what_they_are(asked, kind, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    document = typed(*asked, "--json").json()
+    assert (document["schema"], document["kind"]) == (1, kind)
+    assert list(tmp_path.iterdir()) == []  # also of the folder that a dry run would take
 
 
 def test_help_imports_nothing_heavy():

@@ -14,11 +14,10 @@ import mmgtune
 from mmgtune.errors import OutputError, ProfileError
 from mmgtune.estimating import read_particulars
 from mmgtune.files import atomic, remove_left_overs, write_text
-from mmgtune.fitting import claimed, prepare
-from mmgtune.fitting.folder import MARKS
 from mmgtune.fitting.sweeping import folder_name
 from mmgtune.profile import load_profile, parse_profile
 from mmgtune.resources import folder
+from mmgtune.run_folders import MARKS, claimed, prepare
 from mmgtune.trial import load_trials, write_trial
 from tests.command import run, typed
 
@@ -178,7 +177,7 @@ def test_two_runs_within_a_second_have_a_folder_each(tmp_path, monkeypatch):
     for k in range(3):
         folder = common.default_out(ship)
         assert folder == Path("runs") / f"20260101-000000-suzaku{f'-{k + 1}' if k else ''}"
-        folder.mkdir(parents=True)
+        assert folder.is_dir()
 
 
 def test_a_folder_that_hides_bundled_trials_is_named_once(tmp_path, monkeypatch):
@@ -226,3 +225,31 @@ def test_a_link_to_nowhere_is_not_replaced_silently(tmp_path):
     assert ended.code == 2
     assert "the output exists already" in ended.err
     assert link.is_symlink()
+
+
+def test_a_folder_of_simulations_is_one_run(tmp_path):
+    """A second one lay its runs beside the first's, and replaced its record and its report."""
+    first, second = ("simulate", "--turn", "35", "--out", "out"), ("simulate", "--turn", "20", "--out", "out")
+    assert run(*first, "--no-report", cwd=tmp_path).code == 0
+    assert run("report", "out", cwd=tmp_path).code == 0  # the record is there without its report
+    before = (tmp_path / "out" / "simulate.json").read_bytes()
+    ended = run(*second, cwd=tmp_path)
+    assert (ended.code, "exists already" in ended.err) == (2, True)
+    assert (tmp_path / "out" / "simulate.json").read_bytes() == before
+    assert run(*second, "--force", cwd=tmp_path).code == 0
+    assert "turn_p20" in (tmp_path / "out" / "simulate.json").read_text()
+    ended = run("profile", "compare", "suzaku", "kvlcc2", "--out", "out", cwd=tmp_path)
+    assert (ended.code, "exists already" in ended.err) == (2, True)
+
+
+def test_two_commands_at_one_time_have_a_folder_each(tmp_path, monkeypatch):
+    """The folder was looked for first and made later, and the second ended with "another run is writing there"."""
+    from mmgtune.cli import common
+
+    monkeypatch.chdir(tmp_path)
+    ship = load_profile("suzaku")
+    one, other = common.default_out(ship), common.default_out(ship)
+    assert one != other
+    (one / "fit.json").touch()
+    common.tidy()
+    assert (one.is_dir(), other.exists()) == (True, False)

@@ -30,14 +30,33 @@ def test_a_profile_from_a_file(tmp_path):
     assert "--force" in again.err
 
 
-def test_a_profile_by_questions(monkeypatch, tmp_path):
-    monkeypatch.setattr("sys.stdin", Terminal("\n".join((*ANSWERS[:4], "seven", *ANSWERS[4:])) + "\n"))
+def test_a_profile_by_questions(monkeypatch, capsys):
+    wrong = (
+        "3,8 m",
+        "1, 2 m",
+        "3.8 furlongs",
+    )  # the first of them was taken, and the file refused after the last answer
+    answers = (*ANSWERS[:3], *wrong, *ANSWERS[3:4], "seven", *ANSWERS[4:5], "12 knots", *ANSWERS[6:])
+    monkeypatch.setattr("sys.stdin", Terminal("\n".join(answers) + "\n"))
     ship = profiles._asked()
+    said = capsys.readouterr().err
+    assert "numbers have a decimal point here, as 3.8 m; once more" in said
+    assert "'1, 2 m' is 2 numbers, not one; once more" in said
+    assert said.count("; once more") == 4
     assert (ship.name, ship.id) == ("M.V. Ask Me", "m_v__ask_me")
     assert ship["particulars", "C_b"] == 0.737
     assert ship["approach", "speed"] == pytest.approx(12 * 1852 / 3600)
     assert ship.get("approach", "n") is None
     assert "propeller" not in ship.values
+
+
+def test_answers_that_end_too_early_are_said(monkeypatch, tmp_path):
+    """Ctrl-D ended with "Aborted." and the exit code of an answer that is no."""
+    monkeypatch.setattr("sys.stdin", Terminal("\n".join(ANSWERS[:3]) + "\n"))
+    ended = typed("profile", "new", tmp_path / "ship.toml")
+    assert ended.code == 2
+    assert "the answers ended before the questions" in ended.err
+    assert not (tmp_path / "ship.toml").exists()
 
 
 def test_nobody_to_ask_is_said(tmp_path):

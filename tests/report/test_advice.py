@@ -115,7 +115,33 @@ def test_commands_of_a_sweep_work_when_pasted(tmp_path: Path, monkeypatch: pytes
     ],
 )
 def test_what_was_chosen_stays(command: str, kept: str) -> None:
-    assert advice.chosen_in(command, "sweep") == kept
+    assert advice.chosen_in(command, "sweep", ("--ar",)) == kept
+
+
+def test_a_stopped_search_goes_on_in_its_folder() -> None:
+    """It was told to replace what it should continue, and a folder with a blank in its name was two words."""
+    stopped = "mmgtune diagnose -p suzaku -t suzaku --ar -0.5 --force --out 'runs/my run'"
+    assert advice.gone_on(stopped, "runs/my run") == (
+        "mmgtune diagnose -p suzaku -t suzaku --ar -0.5 --out 'runs/my run' --resume"
+    )
+
+
+def test_what_follows_a_fit_has_its_choices() -> None:
+    command = "mmgtune fit -p a -t b --ar 0.2 --method least-squares --starts=1 --targets 'hull.Y_*' --bands --out r"
+    data = {
+        "profile": {"path": "a"}, "trials": {"path": "b"}, "options": {"a_r": 0.2}, "out": "r", "J_test": 2.0,
+        "misses": True, "at_bound": ["hull.Y_v"], "command": command,
+    }  # fmt: skip
+    sweep, diagnose, *_ = [command for _, command in advice.after_fit(data)]
+    assert sweep == "mmgtune sweep -p a -t b --method least-squares --starts=1 --targets 'hull.Y_*'"
+    assert diagnose == "mmgtune diagnose -p a -t b --ar 0.2 --targets 'hull.Y_*'"
+
+
+@pytest.mark.parametrize("name", ["fit", "sweep", "leave-out", "diagnose"])
+def test_choices_of_a_fit_are_options_of_what_follows(name: str) -> None:
+    commands = get_command(app).commands
+    there = {one: {flag for option in commands[one].params for flag in option.opts} for one in ("fit", name)}
+    assert there["fit"] - there[name] - {"--ar"} == set(advice._OF_A_FIT[name]) - {"--ar"}
 
 
 def test_commands_of_a_comparison_of_profiles_work_when_pasted(more: dict[str, Path], tmp_path: Path) -> None:

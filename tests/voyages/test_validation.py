@@ -197,7 +197,7 @@ def test_wrong_arguments(voyage_file, tmp_path, arguments, said):
     assert "Traceback" not in ended.err
 
 
-@pytest.mark.parametrize("arguments", [("--quiet",), ("--r-max", "1.8"), ("--classes", "1,2"), ("--no-report",)])
+@pytest.mark.parametrize("arguments", [("--quiet",), ("--r-max", "1.8"), ("--classes", "1,2")])
 def test_what_is_of_voyages_is_refused_for_trials(tmp_path, arguments):
     ended = run("validate", "suzaku", "suzaku", *arguments, cwd=tmp_path)
     assert ended.code == 2

@@ -1,0 +1,139 @@
+"""Run folders: what tells one, and one run at a time in each."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+from .errors import OutputError, Problem
+from .files import (
+    alone_in,
+    cannot_write,
+    exists,
+    half,
+    is_left_over,
+    make_folder,
+    refuse_file,
+    remove_left_overs,
+)
+
+RESULTS = (
+    "fit.json",
+    "sweep.json",
+    "diagnosis.json",
+    "leave_out.json",
+    "voyages.json",
+    "learning.json",
+    "ensemble.json",
+    "hybrid.json",
+)
+"""Results of runs that can be resumed: one is there once its run has ended."""
+
+MARKS = (
+    *RESULTS,
+    "validate.json",
+    "checked.json",
+    "simulate.json",
+    "comparison.json",
+    "model_comparison.json",
+    "predict.json",
+    "plan.json",
+    "heading_keeping.json",
+    "bands.parquet",
+    "tracks.parquet",
+    "mixture.json",
+    "model.safetensors",
+    "posterior.json",
+    "particles.parquet",
+    "windows.parquet",
+    "drawn.parquet",
+    "journal.jsonl",
+    "checkpoint.npz",
+)
+"""What tells a run folder: files that nobody else has."""
+
+BESIDE = ("profile.toml", "calm.toml", "history.parquet", "motions.parquet", "report.html", "report.md")
+"""What lies beside them, and may be somebody's own where they are not."""
+
+FIGURES = "figures"
+
+CHECKPOINTS = "training-*.safetensors"
+"""What is left of a training that was stopped before it had a result."""
+
+
+def prepare(folder: Path, *, force: bool = False, resume: bool = False) -> Path:
+    """Make sure results can be written to ``folder``, before any work is done.
+
+    Raises OutputError as ``refuse_taken`` does, and where the folder cannot be written to.
+    """
+    refuse_taken(folder, force=force, resume=resume)
+    make_folder(folder)
+    if not os.access(folder, os.W_OK):
+        raise cannot_write(folder, PermissionError(13, "permission denied"))
+    with half(folder / "writable"):
+        pass
+    return folder
+
+
+def refuse_taken(folder: Path, *, force: bool = False, resume: bool = False) -> None:
+    """Refuse a folder that results cannot go to, and leave everything as it is.
+
+    What a run that was killed left half-written counts for nothing.
+    Raises OutputError where it holds results already (unless ``force`` or ``resume``), or is a file.
+    """
+    refuse_file(folder)
+    taken = folder.is_dir() and any(not is_left_over(one) for one in folder.iterdir())
+    if taken and not (force or resume):
+        raise OutputError(exists(folder))
+    own = any((folder / name).exists() for name in MARKS) or any(folder.glob(CHECKPOINTS))
+    if taken and force and not own:
+        raise OutputError(
+            Problem(
+                "the folder holds files that are not a run of mmgtune",
+                str(folder),
+                "force=True would mix them",
+                "choose another folder",
+            )
+        )
+
+
+def _left_before(folder: Path) -> dict[Path, tuple[int, int]]:
+    """What runs before left in a folder: each file with what changes when it is written anew."""
+    there = [
+        *(folder / name for name in (*MARKS, *BESIDE)),
+        *folder.glob(f"{FIGURES}/*.svg"),
+        *folder.glob(CHECKPOINTS),
+    ]
+    return {path: (path.stat().st_ino, path.stat().st_mtime_ns) for path in there if path.is_file()}
+
+
+@contextlib.contextmanager
+def claimed(folder: Path, *, force: bool = False, resume: bool = False, anew: bool = False) -> Iterator[Path]:
+    """The folder made ready as by ``prepare``, and no other run's while the context lasts.
+
+    anew  what runs before left there goes at the end where ``force`` let this one in: a report or a ship of another
+          run would be taken for its own
+
+    Raises OutputError as ``prepare`` does, and where another run is writing there.
+    """
+    refuse_file(folder)
+    made = [one for one in (folder, *folder.parents) if not one.exists()]
+    if made:
+        make_folder(folder)
+    with alone_in(folder):
+        try:
+            prepare(folder, force=force, resume=resume)
+            remove_left_overs(folder)
+            before = _left_before(folder) if anew and force and not resume else {}
+            yield folder
+            after = _left_before(folder)
+            for path, written in before.items():
+                if after.get(path) == written:
+                    path.unlink(missing_ok=True)
+        except BaseException:
+            with contextlib.suppress(OSError):  # of a command that is refused no empty folder stays
+                for one in made:  # it goes while nobody else can have it
+                    one.rmdir()
+            raise
