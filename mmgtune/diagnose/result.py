@@ -20,7 +20,7 @@ from .instead import Instead
 from .leftover import Leftover, change_in_words, in_words
 from .legs import Difference
 from .record import Record, kind_of, record_of
-from .retuned import Retuned, besides, far_off
+from .retuned import Retuned, besides, far_off, weighed
 from .retuned import in_words as moved_in_words
 from .search import TOO_MANY
 from .separate import Suggestion
@@ -365,10 +365,11 @@ class Diagnosis(Plotted):
         )
         if far := moved_in_words(self.moved):
             said = f"Re-tuning is all it takes: with {far}, the model fits these trials to their noise, and {none}."
-            return f"{said} {besides(self.moved)}".strip()
+            return " ".join(filter(None, (said, besides(self.moved), weighed(self.moved))))
         parts = (
             f"Nothing is wrong beyond the noise of the measurements: the re-tuned model fits these trials, and {none}.",
             far_off(self.moved),
+            weighed(self.moved),
             self.instead.sentence if self.instead else "",
         )
         return " ".join(filter(None, parts))

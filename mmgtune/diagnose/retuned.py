@@ -24,6 +24,9 @@ beside them are off by, so that most values that come out surely far off are not
 LISTED = 3
 """Of others, those that moved most that are named where nothing else is wrong."""
 
+WEIGHED = ("particulars.",)
+"""What has leeway that a user can weigh or work out: mass and inertia, with what moves along of the water."""
+
 DRIVES, IMPLAUSIBLE = ("propeller.", "wake."), 0.25
 """Coefficients of thrust, which balances resistance, and the share of its pre-determined value by which one may have
 moved: beyond that the whole balance is where no ship's is, and none of its numbers is told as hers."""
@@ -32,12 +35,17 @@ SURE = 3.0
 """Standard errors by which it must be further than that: a dozen targets are looked at."""
 
 
+BEYOND_LEEWAY = 2.0
+"""Standard deviations of what is believed of mass and inertia from which the trials contradict it."""
+
+
 @dataclass(frozen=True)
 class Retuned:
-    """A target as it was re-tuned.
+    """A target as it was re-tuned; or mass or inertia, no target, as it came out within its leeway.
 
-    label   what it is, in words
-    before  pre-determined value, in the profile's unit; after: re-tuned, with its standard error, None at a bound
+    label     what it is, in words
+    before    pre-determined value, in the profile's unit; after: re-tuned, with its standard error, None at a bound
+    believed  standard deviation as a share of it of what has leeway; None of a target
     """
 
     name: str
@@ -46,6 +54,7 @@ class Retuned:
     before: float
     after: float
     stderr: float | None
+    believed: float | None = None
 
     @property
     def change(self) -> float | None:
@@ -62,6 +71,9 @@ class Retuned:
         """Whether it is certainly far from what was pre-determined, if the form of the model is right."""
         if self.change is None or self.deviation is None:
             return False
+        if self.believed is not None:
+            sure = abs(self.change) - SURE * self.deviation >= self.believed
+            return sure and abs(self.change) >= BEYOND_LEEWAY * self.believed
         return abs(self.change) - SURE * self.deviation >= FAR
 
     @property
@@ -84,12 +96,15 @@ class Retuned:
             "value": finite(self.after),
             "stderr": self.stderr,
             "far": self.far,
+            "target": self.believed is None,
         }
 
 
 def retuned(bench: Workbench, point: Point) -> list[Retuned]:
-    """Targets of the ship herself at a point, what is surest far from its pre-determined value first."""
-    names = [name for name in point.names if name in bench.targets and not name.startswith("effects.")]
+    """Targets of the ship herself at a point, what is surest far from its pre-determined value first, and what the
+    trials contradict of her mass and inertia."""
+    weighed = [name for name in point.names if name in bench.believed.leeway and name.startswith(WEIGHED)]
+    names = [name for name in point.names if name in bench.targets and not name.startswith("effects.")] + weighed
     if not names:
         return []
     inside, spread = covariance(bench, point)
@@ -101,16 +116,32 @@ def retuned(bench: Workbench, point: Point) -> list[Retuned]:
         stderr = None if at is None else float(np.sqrt(spread[at, at]) * box.width[k])
         section, symbol = split_name(name)
         field = profile.sections[section].component.fields[symbol]
-        found.append(Retuned(name, field.label, field.unit, float(box.pre[k]), float(value), stderr))
-    return sorted(found, key=_distance, reverse=True)
+        believed = bench.options.leeway if name in weighed else None
+        found.append(Retuned(name, field.label, field.unit, float(box.pre[k]), float(value), stderr, believed))
+    told = [one for one in found if one.believed is None or one.far]
+    return sorted(told, key=_distance, reverse=True)
+
+
+def weighed(moved: Sequence[Retuned]) -> str:
+    """What the trials contradict of mass and inertia, in a sentence; "" for nothing."""
+    far = [one for one in moved if one.believed is not None and one.far]
+    if not far:
+        return ""
+    they = "It is no target" if len(far) == 1 else "They are no targets"
+    why = "the ship may be loaded otherwise than the profile says, or it was worked out otherwise"
+    return f"The trials ask for {listed([one.words for one in far])}. {they}: {why}."
 
 
 def in_words(moved: Sequence[Retuned]) -> str:
     """Those of service that are far away, the surest first: "A ... and B ..."; "" for none."""
     if _astray(moved):
         return ""
-    told = [one.words for one in moved if one.far and one.name in IN_SERVICE]
+    told = [one.words for one in _targets(moved) if one.far and one.name in IN_SERVICE]
     return listed(told)
+
+
+def _targets(moved: Sequence[Retuned]) -> list[Retuned]:
+    return [one for one in moved if one.believed is None]
 
 
 def _astray(moved: Sequence[Retuned]) -> bool:
@@ -123,7 +154,7 @@ def besides(moved: Sequence[Retuned]) -> str:
     """Why the others are not told of, where some moved as far: in a sentence; "" for none."""
     if told := _together(moved):
         return told
-    others = [one for one in moved if one.name not in IN_SERVICE]
+    others = [one for one in _targets(moved) if one.name not in IN_SERVICE]
     n = sum(abs(one.after - one.before) >= FAR * abs(one.before) > 0.0 for one in others)
     if not n:
         return ""
@@ -149,8 +180,8 @@ def far_off(moved: Sequence[Retuned]) -> str:
     """What else a reader should know of targets that are far off where nothing is wrong: in a sentence; "" for none."""
     if told := _together(moved):
         return told
-    far = [one for one in moved if one.far]
-    ends = [one for one in moved if one.stderr is None and one.after != one.before]
+    far = [one for one in _targets(moved) if one.far]
+    ends = [one for one in _targets(moved) if one.stderr is None and one.after != one.before]
     if not far:
         return ""
     most = _changes(sorted(far, key=lambda one: -abs(one.change or 0.0))[:LISTED])

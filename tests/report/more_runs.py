@@ -109,7 +109,7 @@ def _check(folder: Path) -> None:
     baseline = folder / "base.json"
     update_baseline("suzaku", "suzaku", baseline)
     report = check("suzaku_fam", "suzaku", baseline)
-    (folder / "check.json").write_text(json.dumps({**report.to_dict(), **made_by("mmgtune check")}), encoding="utf-8")
+    (folder / "checked.json").write_text(json.dumps({**report.to_dict(), **made_by("mmgtune check")}), encoding="utf-8")
 
 
 def _predict(folder: Path) -> None:

@@ -65,7 +65,7 @@ def test_of_a_simulation(tmp_path: Path) -> None:
 def test_of_a_check(tmp_path: Path) -> None:
     update_baseline("suzaku", "suzaku", tmp_path / "base.json")
     found = check("suzaku", "suzaku", tmp_path / "base.json")
-    write_json({**found.to_dict(), **made_by("mmgtune check")}, tmp_path / "check.json")
+    write_json({**found.to_dict(), **made_by("mmgtune check")}, tmp_path / "checked.json")
     assert lead(tmp_path).startswith("To pass is to be no worse than the committed baseline, but for its tolerances;")
     text = (tmp_path / "report.md").read_text(encoding="utf-8")
     assert r"- Turning circles, rudder to port: turn\_m10 (10°)," in text
