@@ -15,11 +15,11 @@ from ..trial.schema import impossible
 from .dates import ORDERS, Dates, is_date, order_told
 from .mapping import TimeSource
 from .numerals import numbers_in
+from .stopwatch import EITHER, MINUTES, TIME_OF_DAY, of_day, of_watch, times_told
 
-DAY = 86400.0
+DAY, HOUR = 86400.0, 3600.0
 OUTLIERS = 3
 """Rows in a row whose stamps may be off while the clock as a whole is right."""
-CLOCK = r"(\d{1,2}):(\d{2})(?::(\d{2}(?:[.,]\d*)?))?(?:\s*([AaPp])\.?[Mm]\.?)?"
 ISO = r"\d{4}-?\d{2}-?\d{2}[T ](?!.*[A-Ya-z]{2}$)"
 """Beginning of a date that the library reads, which knows no zones by name."""
 
@@ -35,18 +35,19 @@ class Stamps:
         self.orders: tuple[str, ...] = ()
         self.began: dict[str, float] = {}
         self.ended: dict[str, float] = {}
-        self.day = 0.0
+        self.turns = 0.0
         self.last = np.nan
 
     @property
     def clock(self) -> bool:
         """Whether stamps are dates or clocks, so that what is returned is in s."""
-        return self.format in ("iso", "clock", "date", *ORDERS)
+        return self.format in ("iso", TIME_OF_DAY, MINUTES, "date", *ORDERS)
 
     def of(self, values: Any, rows: IntArray) -> FloatArray:
         """Time (n_rows,) of a pandas column: as printed, or in s from the first stamp; NaN where there is none.
 
-        Raises LogError where the first stamps are neither numbers nor dates nor clocks.
+        Raises LogError where the first stamps are neither numbers nor dates nor clocks, and where they may be hours and
+        minutes as well as minutes and seconds.
         """
         import pandas as pd
 
@@ -58,11 +59,13 @@ class Stamps:
             return np.asarray(values.to_numpy(dtype=np.float64, na_value=np.nan))
         text = values.astype("string").str.strip()
         if self.format is None:
-            self.format = self._seen(text)
+            self.format = self._seen(text, rows)
         if self.format == "number":
             return numbers_in(text, self.decimal)
-        if self.format == "clock":
-            return self._clock(text)
+        if self.format == TIME_OF_DAY:
+            return self.over_midnight(of_day(text))
+        if self.format == MINUTES:
+            return self.over_the_hour(of_watch(text))
         if self.format in ("date", *ORDERS):
             return self._dated(text, rows)
         stamps = pd.to_datetime(text.str.replace(",", ".", regex=False), errors="coerce", utc=True, format="ISO8601")
@@ -70,11 +73,18 @@ class Stamps:
             self._unreadable(text, rows, "as ISO 8601 dates, such as 2024-05-01T10:00:00.5")
         return self._since(stamps)
 
-    def _seen(self, text: Any) -> str:
+    def _seen(self, text: Any, rows: IntArray) -> str:
         known = text.dropna()
         first = known[known != ""]
-        if len(first) and first.str.fullmatch(CLOCK).mean() > 0.5:
-            return "clock"
+        times = times_told(first)
+        if times == EITHER:
+            asks = "are the stamps hours and minutes, or minutes and seconds?"
+            place = f"{self.path}, line {rows[0] if len(rows) else 0}"
+            why = f"the first is '{first.iloc[0]}', and both can be: a time of day, and what a stopwatch shows"
+            fix = f'say format = "{TIME_OF_DAY}" (hours and minutes) or format = "{MINUTES}" in [time]'
+            raise LogError(Problem(asks, place, why, fix))
+        if times:
+            return times
         if len(first) and first.str.match(ISO).mean() > 0.5:
             return "iso"
         if any(is_date(one) for one in first.iloc[:20]):
@@ -119,31 +129,35 @@ class Stamps:
             return np.full(len(stamps), np.nan)
         return np.asarray((stamps - self.origin).dt.total_seconds().to_numpy(dtype=np.float64))
 
-    def _clock(self, text: Any) -> FloatArray:
-        parts = text.str.extract(f"^{CLOCK}$")
-        half = parts.pop(3).str.lower()
-        parts = parts.apply(lambda one: one.str.replace(",", ".", regex=False)).fillna({2: "0"})
-        h, m, s = (parts[k].astype("Float64").to_numpy(dtype=np.float64, na_value=np.nan) for k in range(3))
-        h = np.where(half.notna().to_numpy(dtype=bool), np.mod(h, 12.0), h)
-        h = h + 12.0 * (half == "p").to_numpy(dtype=bool, na_value=False)
-        return self.over_midnight(3600.0 * h + 60.0 * m + s)
-
     def over_midnight(self, seconds: FloatArray) -> FloatArray:
         """Seconds of the day (n_rows,) without the fall at midnight; blocks follow each other."""
+        return self._unwrapped(seconds, DAY, back=True)
+
+    def over_the_hour(self, seconds: FloatArray) -> FloatArray:
+        """Seconds of a stopwatch (n_rows,) without the fall after 59:59; blocks follow each other.
+
+        A rise of more than half an hour undoes a fall, but is a gap where there was none.
+        """
+        return self._unwrapped(seconds, HOUR, back=False)
+
+    def _unwrapped(self, seconds: FloatArray, period: float, back: bool) -> FloatArray:
+        """Seconds (n_rows,) without falls of a period; ``back``: it may go back beyond where it began."""
         out = np.array(seconds)
         known = np.flatnonzero(np.isfinite(seconds))
         if len(known):
             values = seconds[known]
             before = np.concatenate([[values[0] if np.isnan(self.last) else self.last], values[:-1]])
-            turns = np.where(values - before < -DAY / 2.0, 1.0, 0.0) - np.where(values - before > DAY / 2.0, 1.0, 0.0)
-            days = self.day + np.cumsum(turns)
-            out[known] = values + DAY * days
-            self.day, self.last = float(days[-1]), float(values[-1])
+            rise = values - before
+            turns = self.turns + np.cumsum(np.where(rise < -period / 2.0, 1.0, 0.0) - (rise > period / 2.0))
+            if not back:
+                turns = turns - np.minimum(0.0, np.minimum.accumulate(turns))
+            out[known] = values + period * turns
+            self.turns, self.last = float(turns[-1]), float(values[-1])
         return out
 
     def _unreadable(self, text: Any, rows: IntArray, how: str) -> None:
         shown = text.iloc[0] if len(text) else ""
-        fix = 'say format = "number", "iso", "clock", "dmy", "mdy" or "ymd" in [time]'
+        fix = 'say format = "number", "iso", "clock", "mm:ss", "dmy", "mdy" or "ymd" in [time]'
         place = f"{self.path}, line {rows[0] if len(rows) else 0}"
         raise LogError(Problem(f"time cannot be read {how}", place, f"the first stamp is '{shown}'", fix))
 

@@ -273,7 +273,8 @@ def in_map(finding: Finding) -> Finding:
     named = re.search(r"column '(\w+)'", finding.where)
     if not re.match(r"(multiply|divide) ", finding.fix) or named is None:
         return finding
-    return replace(finding, fix=f"correct unit or scale in [columns.{named[1]}] of the map")
+    place = "format, unit or scale in [time]" if named[1] == "t" else f"unit or scale in [columns.{named[1]}]"
+    return replace(finding, fix=f"correct {place} of the map")
 
 
 def fix_in_map(fix: str, where: str) -> str:

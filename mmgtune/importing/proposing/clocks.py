@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -9,15 +10,21 @@ import numpy as np
 
 from ... import units
 from ...arrays import FloatArray
+from ..stopwatch import EITHER, MINUTES, TIME_OF_DAY
 from .sampling import Sample, seconds
 from .words import TIME
+
+CELLS = {TIME_OF_DAY: "clock times", MINUTES: "minutes and seconds", EITHER: "two numbers with a colon"}
+"""What cells are that are times without a date."""
+_NAMED = {TIME_OF_DAY: re.compile(r"\bh{1,2} ?: ?m"), MINUTES: re.compile(r"\bm(in)?m? ?: ?s")}
 
 
 @dataclass(frozen=True)
 class Clock:
     """A column that may be time.
 
-    format  of dates and clocks, "" for numbers; unit of numbers, "" where it is not known
+    format  of dates and clocks, "" for numbers; EITHER of stamps that are hours and minutes or minutes and seconds
+    unit    of numbers, "" where it is not known
     score   how much speaks for it; words: what does
     by_name whether its name or header says the unit
     """
@@ -39,7 +46,7 @@ def clocks(sample: Sample, said: Sequence[str], units_said: Sequence[str]) -> li
             stamps = seconds(sample, k)
             if stamps is not None:
                 shown = str(next((one for one in sample.texts[k] if isinstance(one, str) and one), ""))[:40]
-                what = "clock times" if stamps[1] == "clock" else "dates"
+                what = CELLS.get(stamps[1], "dates")
                 found.append(Clock(k, stamps[1], "", 0.9 + named, f"its cells are {what}, such as {shown}"))
             continue
         known = numbers[np.isfinite(numbers)]
@@ -73,10 +80,17 @@ def _unit(values: FloatArray, step: float, said: str) -> tuple[str, str]:
     return "", ""
 
 
+def format_named(sample: Sample, k: int) -> str:
+    """The format of stamps that the name of a column, or the unit below it, says, as in "Time [mm:ss]"; else ""."""
+    written = f"{sample.names[k]} {sample.units[k]}".lower()
+    return next((form for form, pattern in _NAMED.items() if pattern.search(written)), "")
+
+
 def in_seconds(sample: Sample, clock: Clock, unit: str) -> FloatArray:
-    """Stamps (n_rows,) [s]."""
+    """Stamps (n_rows,) [s]; ``unit`` of numbers, or the format that those are read in that are EITHER."""
     if clock.format:
-        stamps = seconds(sample, clock.column)
+        form = unit if clock.format == EITHER else clock.format if clock.format in CELLS else None
+        stamps = seconds(sample, clock.column, form)
         return stamps[0] if stamps is not None else np.full(len(sample.numbers[0]), np.nan)
     numbers = sample.numbers[clock.column]
     known = numbers[np.isfinite(numbers)]
@@ -84,7 +98,13 @@ def in_seconds(sample: Sample, clock: Clock, unit: str) -> FloatArray:
 
 
 def likely_units(sample: Sample, clock: Clock) -> tuple[str, ...]:
-    """Units in which a log would have a usual rate, the usual one first; before all the one that its name says."""
+    """Units in which a log would have a usual rate, the usual one first; before all the one that its name says.
+
+    Of stamps that are EITHER both formats: first that of the name, else minutes and seconds, as of a manoeuvre.
+    """
+    if clock.format == EITHER:
+        both = (MINUTES, TIME_OF_DAY)
+        return both[::-1] if format_named(sample, clock.column) == TIME_OF_DAY else both
     if clock.format or (clock.unit and not clock.by_name):
         return (clock.unit or "s",)
     steps = np.diff(sample.numbers[clock.column])

@@ -34,7 +34,7 @@ def yaw_rate_elsewhere(log: Path, log_map: LogMap) -> tuple[str, str] | None:
         return None
     clock = Clock(time, log_map.time.format or "", "", 0.0, "")
     if not np.isfinite(sample.numbers[time]).any():
-        clock = Clock(time, "date", "", 0.0, "")
+        clock = Clock(time, log_map.time.format or "date", "", 0.0, "")
     with np.errstate(all="ignore"):
         windows = Windows(in_seconds(sample, clock, log_map.time.unit or "s"), sample.numbers)
         slope = windows.slope(windows.columns[heading])

@@ -11,7 +11,7 @@ from ... import units
 from ...trial.kinematics import FITS
 from .bearings import Track, keys_of, tracks
 from .clocks import in_seconds, likely_units
-from .find_time import time_unit
+from .find_time import CLEARLY, time_unit
 from .finder import Finder
 from .guess import LIKELY, SURE, Guess
 from .look import Look
@@ -41,8 +41,9 @@ def position_and_heading(find: Finder) -> None:
                 words.setdefault(track, word)
         agreeing = fits(find, scores, windows)
         total = max(scores.values(), default=0.0) + 2.0 * agreeing
+        find.readings[unit] = max(scores.values(), default=0.0) / len(find.samples) + 2.0 * agreeing
         # The usual unit, which comes first, unless another one explains far more.
-        if scores and (best is None or total > best[0] + 0.5):
+        if scores and (best is None or total > best[0] + CLEARLY):
             best = total, unit, dict(scores), words, windows
         if agreeing and unit == find.clock.unit:
             break  # the unit that the name says is right

@@ -33,6 +33,7 @@ class Finder:
     guesses           by quantity, in the order they were found; guess_t: time, before its unit is known
     used, numeric     columns that are something already, and those whose behaviour can be looked at
     looks             logs whose motion is known; unit: of time; axes: of the velocities
+    readings          how well the motion fits with time in each unit, or format, that it was tried in
     tables, comments  further tables of the map, and what is said above them
     notes             what else is to be said
     """
@@ -65,6 +66,7 @@ class Finder:
         self.comments: dict[str, str] = {}
         self.numeric: list[int] = []
         self.unit = "s"
+        self.readings: dict[str, float] = {}
         self.clock: Clock
         self.guess_t: Guess
         self.looks: list[Look] = []

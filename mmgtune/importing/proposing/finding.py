@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from .find_controls import propeller, rudder
 from .find_motion import velocity, yaw_rate
 from .find_rest import by_name, few_digits, missing
-from .find_time import time
+from .find_time import doubt_rates, time
 from .find_track import position_and_heading
 from .find_wind import wind
 from .finder import Finder
@@ -30,4 +30,5 @@ def found_in(samples: Sequence[Sample]) -> Finder:
     by_name(find)
     few_digits(find)
     missing(find)
+    doubt_rates(find)
     return find

@@ -16,13 +16,13 @@ from ...arrays import FloatArray
 from ...errors import LogError, Problem, reason
 from ...limits import LOG_BYTES, LOG_COLUMNS, LOG_LINE
 from ...phrases import counted
-from ..clock import CLOCK
 from ..degrees import degrees
 from ..forms import form_of, refuse_binary
 from ..mapping import LogMap, TimeSource
 from ..numerals import holds_numbers, numbers_in
 from ..parquet_log import is_text, shortened
 from ..sides import sided, takes_side
+from ..stopwatch import EITHER, TIME_OF_DAY, are_times, times_told
 from ..table import MISSING
 from ..text import PEEK, Lines, start_of
 from .words import known_unit, quantity_named
@@ -34,7 +34,7 @@ SHOWN = {"\t": "tab", " ": "space"}
 _JAPANESE = re.compile("[\u3040-\u30ff\u4e00-\u9fff]")
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?|-?inf", re.ASCII)
 _COMMA = re.compile(r"[-+]?\d+,\d+([eE][-+]?\d+)?", re.ASCII)
-_DATED = re.compile(r"(\d{1,4}[-./:]\d{1,2}[-./:]\d{1,4}|\d{1,2}:\d{2}|[-+]?\d{1,3}°)[^;|\t,]*(,[^;|\t,]*)?")
+_DATED = re.compile(r"(\d{1,4}[-./:]\d{1,2}[-./:]\d{1,4}|\d{1,3}:\d{2}|[-+]?\d{1,3}°)[^;|\t,]*(,[^;|\t,]*)?")
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +107,7 @@ def _made(path: Path, layout: dict[str, Any], names: Sequence[str], units: Seque
             found = np.full(len(text), np.nan)
         else:
             found = numbers_in(text, decimal)
-            clock = bool(len(text)) and text.str.fullmatch(CLOCK).fillna(False).mean() > 0.5
+            clock = are_times(text)
             plain = float(np.isfinite(found).mean()) if len(text) else 1.0
             named = takes_side(quantity_named(names[k]))
             if plain < (1.0 if named else 0.5) and not clock:
@@ -374,18 +374,26 @@ def _encoding(content: bytes) -> str:
     return "cp1252"
 
 
-def seconds(sample: Sample, k: int) -> tuple[FloatArray, str] | None:
-    """Stamps (n_rows,) of a column that holds dates or clocks in s, and their format; None where it holds none."""
+def seconds(sample: Sample, k: int, form: str | None = None) -> tuple[FloatArray, str] | None:
+    """Stamps (n_rows,) of a column that holds dates or clocks in s, and their format; None where it holds none.
+
+    form  how to read stamps that are hours and minutes as well as minutes and seconds; None: as hours and minutes, and
+          EITHER is their format then
+    """
     from ..clock import Stamps
 
-    stamps = Stamps(TimeSource(), sample.path)
+    texts = sample.texts[k]
+    rows = np.arange(len(texts), dtype=np.int64)
+    either = form is None and not (holds_numbers(texts) or _holds_dates(texts)) and times_told(texts) == EITHER
+    stamps = Stamps(TimeSource(format=TIME_OF_DAY if either else form), sample.path)
     try:
-        t = stamps.of(sample.texts[k], np.arange(len(sample.texts[k]), dtype=np.int64))
+        t = stamps.of(texts, rows)
     except LogError:
         # Dates whose order nothing shows: any will do to look at the motion.
         stamps = Stamps(TimeSource(format="dmy"), sample.path)
         try:
-            return stamps.of(sample.texts[k], np.arange(len(sample.texts[k]), dtype=np.int64)), "?"
+            return stamps.of(texts, rows), "?"
         except LogError:
             return None
-    return (t, str(stamps.format)) if stamps.clock and np.isfinite(t).sum() > 1 else None
+    found = EITHER if either else str(stamps.format)
+    return (t, found) if stamps.clock and np.isfinite(t).sum() > 1 else None
