@@ -15,21 +15,16 @@ ORDERS = ("dmy", "mdy", "ymd")
 """Orders of day, month and year."""
 
 _MONTHS = (
-    "jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec",
-    "mai", "okt", "dez", "mei", "gen", "mag", "giu", "lug", "ago", "set", "ott", "dic", "janv", "fevr", "fév", "avr",
-    "juin", "juil", "aou", "aoû", "déc", "mrt", "maa", "mär", "ene", "abr", "out", "des",
+    "jan janv jän ene gen sty", "feb fév fevr fev lut", "mar mär mrz maa mrt", "apr avr abr kwi", "may mai mei maj mag",
+    "jun juin giu cze", "jul juil lug lip", "aug aou aoû ago sie", "sep set wrz", "oct okt ott out paź paz",
+    "nov lis", "dec déc dez dic des gru",
 )  # fmt: skip
-_NUMBER = dict(
-    zip(
-        _MONTHS,
-        (*range(1, 13), 5, 10, 12, 5, 1, 5, 6, 7, 8, 9, 10, 12, 1, 2, 2, 4, 6, 7, 8, 8, 12, 3, 3, 3, 1, 4, 10, 12),
-        strict=True,
-    )
-)
-"""Months by the first letters of their names, in the languages of seven neighbours."""
+_NUMBER = {start: number for number, starts in enumerate(_MONTHS, start=1) for start in starts.split()}
+"""Months by the first letters of their names: English, Dutch, German, French, Italian, Spanish, Portuguese, Swedish,
+Danish, Norwegian and Polish."""
 
 DATE = (
-    r"(?P<a>\d{1,4})(?P<mark>[./\- ])(?P<b>\d{1,2}|[^\W\d_]{3,9}\.?)(?P=mark)(?P<c>\d{1,4})"
+    r"(?P<a>\d{1,4})(?P<mark>[./\- ])(?P<b>\d{1,2}|[^\W\d_]{3,12}\.?)(?P=mark)(?P<c>\d{1,4})"
     r"[T ,]\s*(?P<h>\d{1,2})[:.](?P<m>\d{2})(?:[:.](?P<s>\d{2}(?:[.,:]\d*)?))?"
     r"\s*(?P<half>[AaPp]\.?[Mm]\.?)?\s*(?P<zone>Z|[A-Za-z]{2,5}|(?:UTC|GMT)?[+-]\d{1,2}:?(?:\d{2})?)?"
 )

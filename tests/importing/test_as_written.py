@@ -83,6 +83,36 @@ def test_stamps_over_midnight(tmp_path, columns, plain, form):
     close(imported(write_csv(tmp_path / "log.csv", stamped(columns, form)), UNITLESS), plain)
 
 
+MONTHS = {
+    "en": "january february march april may june july august september october november december",
+    "nl": "januari februari maart april mei juni juli augustus september oktober november december",
+    "de": "januar februar märz april mai juni juli august september oktober november dezember",
+    "de, short": "jän feb mrz apr mai jun jul aug sep okt nov dez",
+    "fr": "janvier février mars avril mai juin juillet août septembre octobre novembre décembre",
+    "fr, short": "janv. févr. mars avr. mai juin juil. août sept. oct. nov. déc.",
+    "fr, plain": "janvier fevrier mars avril mai juin juillet aout septembre octobre novembre decembre",
+    "it": "gennaio febbraio marzo aprile maggio giugno luglio agosto settembre ottobre novembre dicembre",
+    "es": "enero febrero marzo abril mayo junio julio agosto septiembre octubre noviembre diciembre",
+    "es, short": "ene feb mar abr may jun jul ago sept oct nov dic",
+    "pt": "janeiro fevereiro março abril maio junho julho agosto setembro outubro novembro dezembro",
+    "pt, short": "jan fev mar abr mai jun jul ago set out nov dez",
+    "sv": "januari februari mars april maj juni juli augusti september oktober november december",
+    "da": "januar februar marts april maj juni juli august september oktober november december",
+    "no": "januar februar mars april mai juni juli august september oktober november desember",
+    "pl": "stycznia lutego marca kwietnia maja czerwca lipca sierpnia września października listopada grudnia",
+    "pl, short": "sty lut mar kwi maj cze lip sie wrz paź lis gru",
+}
+
+
+@pytest.mark.parametrize("language", MONTHS)
+@pytest.mark.parametrize("mark", "-/ ")
+def test_months_by_name(language, mark):
+    for number, month in enumerate(MONTHS[language].split(), start=1):
+        texts = pd.Series([f"12{mark}{one}{mark}2024 10:00:00" for one in (month, month.title())], dtype="string")
+        expected = (datetime.date(2024, number, 12) - datetime.date(1970, 1, 1)).days * 86400.0 + 36000.0
+        assert Dates(texts).since("dmy").tolist() == [expected, expected], month
+
+
 def test_stamps_without_seconds(tmp_path, columns, plain):
     minutes = {**columns, "time": 60.0 * columns["time"]}
     trial = imported(write_csv(tmp_path / "log.csv", stamped(minutes, "%d/%m/%Y %H:%M")), slow(UNITLESS))
