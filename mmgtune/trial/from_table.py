@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray
-from ..errors import Problem, TrialError, kind_of
+from ..errors import Problem, TrialError, brief, kind_of
+from .metadata import as_json, problems_in
 from .model import Trial, fields_of
 from .schema import REQUIRED
 from .unusable import unusable
@@ -21,11 +22,11 @@ def trial_of(table: Any, id: str, **facts: Any) -> Trial:
 
     table  a DataFrame, or a mapping of names to (n_samples,) numbers; time may be the index of a DataFrame, called "t";
            columns the program does not know are kept where they hold numbers
-    id     name of the trial, unique within a data set
+    id     name of the trial, unique within a data set; files are named after it
     facts  fields of ``Trial``: ship, manoeuvre, source ("measured" or "generated"), note, group, cut_from, noise and
            derived
 
-    Raises TrialError with everything that is wrong in the columns, as for a file.
+    Raises TrialError with everything that is wrong in id, facts and columns, as for a file.
     """
     unknown = [name for name in facts if name not in FACTS]
     if unknown:
@@ -50,8 +51,10 @@ def trial_of(table: Any, id: str, **facts: Any) -> Trial:
         longest = max(columns, key=lambda name: len(columns[name]))
         shortest = min(columns, key=lambda name: len(columns[name]))
         what = f"'{longest}' has {len(columns[longest])} samples, '{shortest}' {len(columns[shortest])}"
-        raise TrialError(Problem(what, id, "all columns of a trial are as long as t", "write NaN where one has a gap"))
-    problems = unusable(columns, id)
+        raise TrialError(
+            Problem(what, str(id), "all columns of a trial are as long as t", "write NaN where one has a gap")
+        )
+    problems = problems_in(as_json({"id": id, **facts}), brief(id), tuple(columns)) + unusable(columns, str(id))
     if problems:
         raise TrialError(*problems)
     named = {"ship": "", "manoeuvre": "", "source": "", **facts}

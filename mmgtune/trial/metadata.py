@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -35,6 +36,25 @@ def facts_of(raw: bytes | None, path: Path, columns: Sequence[str]) -> tuple[dic
     except (ValueError, RecursionError) as error:
         fix = 'write an object such as {"schema": 1, "ship": "...", "id": "..."}, or leave the metadata out'
         return {}, [Problem("the metadata is not a JSON object", where, reason(error), fix)]
+    return facts, problems_in(facts, where, columns)
+
+
+def as_json(facts: Mapping[str, Any]) -> dict[str, Any]:
+    """Facts of a trial in memory as a file has them: lists and plain numbers."""
+    noise, derived = facts.get("noise"), facts.get("derived")
+    made = dict(facts)
+    if isinstance(noise, Mapping):
+        made["noise"] = {name: float(one) if isinstance(one, Real) else one for name, one in noise.items()}
+    if isinstance(derived, tuple):
+        made["derived"] = list(derived)
+    return made
+
+
+def problems_in(facts: Mapping[str, Any], where: str, columns: Sequence[str]) -> list[Problem]:
+    """What is wrong with facts as a file has them; ``where`` they stand, for messages.
+
+    columns  of the trial, which noise may be given for
+    """
     problems = [
         Problem(f"unknown key {brief(key)}", where, **among(key, METADATA)) for key in facts if key not in METADATA
     ]
@@ -63,7 +83,7 @@ def facts_of(raw: bytes | None, path: Path, columns: Sequence[str]) -> tuple[dic
     if not isinstance(derived, list) or not set(map(str, derived)) <= set(MOTION):
         fix = f"write a list of any of {', '.join(MOTION)}, or leave it out"
         problems.append(Problem(f"'derived' is {brief(derived)}, not a list of motion columns", where, fix=fix))
-    return facts, problems + _noise(facts.get("noise", {}), where, columns)
+    return problems + _noise(facts.get("noise", {}), where, columns)
 
 
 def _noise(noise: object, where: str, columns: Sequence[str]) -> list[Problem]:

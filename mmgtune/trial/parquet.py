@@ -21,7 +21,7 @@ from ..resources import must_be_name
 from ..units import canonical, factors
 from .digest import DIGEST_KEY, digest
 from .footer import rows_of
-from .metadata import facts_of
+from .metadata import as_json, facts_of, problems_in
 from .model import Trial, fields_of
 from .raw_logs import import_commands, refuse_log
 from .schema import METADATA_KEY, SCHEMA, known_column
@@ -71,7 +71,7 @@ def write_trial(trial: Trial, path: Path | str, overwrite: bool = False) -> Path
     """Write a trial, whole or not at all; returns the path.
 
     Raises OutputError where the file exists and ``overwrite`` is false, or the system refuses to write, OptionError for
-    what is no trial.
+    what is no trial, and TrialError for facts that ``read_trial`` would refuse, such as an id that cannot name a file.
     """
     import pyarrow as pa
     import pyarrow.parquet as pq
@@ -92,7 +92,7 @@ def write_trial(trial: Trial, path: Path | str, overwrite: bool = False) -> Path
         "id": trial.id,
         "manoeuvre": trial.manoeuvre,
         "source": trial.source,
-        "noise": {name: float(value) for name, value in trial.noise.items()},
+        "noise": trial.noise,
         "note": trial.note,
     }
     if trial.cut_from:
@@ -100,8 +100,13 @@ def write_trial(trial: Trial, path: Path | str, overwrite: bool = False) -> Path
     if trial.group:
         facts["group"] = trial.group
     if trial.derived:
-        facts["derived"] = list(trial.derived)
+        facts["derived"] = trial.derived
+    facts = as_json(facts)
+    problems = problems_in(facts, f"trial {brief(trial.id)}", tuple(values))
+    if problems:
+        raise TrialError(*problems)
     written = json.dumps(facts).encode()
+    limits.FACTS_BYTES.hold(len(written), f"trial {brief(trial.id)}", TrialError)
     schema = pa.schema(fields, metadata={METADATA_KEY: written, DIGEST_KEY: digest(values, written)})
     table = pa.table([pa.array(column) for column in values.values()], schema=schema)
     with atomic(path, overwrite) as part:

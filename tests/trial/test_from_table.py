@@ -1,5 +1,7 @@
 """Trials from tables in memory, as in a notebook."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -53,3 +55,39 @@ def test_what_is_wrong_is_said_as_of_a_file(table, change, said):
 def test_a_fact_that_no_trial_has(table):
     with pytest.raises(TrialError, match="no fact 'vessel'"):
         trial_of(table, "one", vessel="suzaku")
+
+
+@pytest.mark.parametrize("id", ["../esc", "a/b", "a\\b", "..", "new\nline", "a" * 300, 3])
+def test_an_id_that_cannot_name_a_file(table, tmp_path, id):
+    """Results of the trial were written beside the folder that was asked for."""
+    with pytest.raises(TrialError, match=r"cannot be the name of a file|too many|not text"):
+        trial_of(table, id)
+    whole = replace(trial_of(table, "one"), id=id)
+    with pytest.raises(TrialError, match=r"cannot be the name of a file|too many|not text"):
+        write_trial(whole, tmp_path / "one.parquet")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("facts", "said"),
+    [
+        ({"source": "guessed"}, "source is 'guessed'"),
+        ({"noise": {"x": -1.0}}, "not a standard deviation"),
+        ({"noise": {"z": 1.0}}, "noise of unknown column 'z'"),
+        ({"derived": ("delta",)}, "not a list of motion columns"),
+        ({"ship": None}, "'ship' is None, not text"),
+    ],
+)
+def test_facts_that_no_file_may_have(table, tmp_path, facts, said):
+    with pytest.raises(TrialError) as found:
+        trial_of(table, "one", **facts)
+    assert said in str(found.value)
+    with pytest.raises(TrialError) as found:
+        write_trial(replace(trial_of(table, "one"), **facts), tmp_path / "one.parquet")
+    assert said in str(found.value)
+
+
+def test_facts_of_numpy_are_written(table, tmp_path):
+    trial = trial_of(table, "one", noise={"x": np.float32(0.5)}, derived=("u", "v"))
+    read = read_trial(write_trial(trial, tmp_path / "one.parquet"))
+    assert (read.noise, read.derived) == ({"x": 0.5}, ("u", "v"))
