@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from numbers import Real
 
 import numpy as np
 
 from ..arrays import FloatArray
-from ..errors import LogError, Problem
+from ..errors import LogError, OptionError, Problem, brief
 from ..limits import GRID_FREE, GRID_PER_ROW, GRID_SAMPLES
 from .mapping import LogMap
 from .quantities import MEASURED, meaning
@@ -32,6 +34,18 @@ class Grid:
     columns: dict[str, FloatArray]
     step: float
     bridged: dict[str, int]
+
+
+def hold_step(step: object) -> None:
+    """Raises OptionError for what is no time step [s] of trials; None is the map's, or the log's own."""
+    if step is None:
+        return
+    if isinstance(step, bool) or not isinstance(step, Real):
+        why, fix = "it is in seconds", "give a number, such as step=0.5"
+        raise OptionError(Problem(f"the step is {brief(step)}, not a number", "step", why, fix))
+    if not 0.0 < float(step) < math.inf:
+        why, fix = "samples follow one another", "give a time above 0 s, or leave it out"
+        raise OptionError(Problem(f"the step is {brief(step)}", "step", why, fix))
 
 
 def on_grid(record: Record, log_map: LogMap, step: float | None) -> Grid:

@@ -28,7 +28,7 @@ from .cutting import kept, pull_out
 from .doubts import fix_in_map
 from .forms import form_of, refuse_binary
 from .geodesy import not_mirrored, with_local_positions
-from .gridding import FEWEST, Grid, on_grid, stretches
+from .gridding import FEWEST, Grid, hold_step, on_grid, stretches
 from .jumps import cut_at_jumps
 from .mapping import LogMap
 from .matlab import read_matlab
@@ -122,9 +122,10 @@ def import_logs(
     step     time step of the trials [s]; None: what the map says, else the log's own median
     dry_run  write nothing
 
-    Raises LogError with everything wrong in any of the logs, and OutputError where a file exists already and
-    ``overwrite`` is false; nothing is written then.
+    Raises LogError with everything wrong in any of the logs, OptionError for a step that is none, and OutputError where
+    a file exists already and ``overwrite`` is false; nothing is written then.
     """
+    hold_step(step)
     out = path_of(out)
     paths = paths_of(logs)
     log_map = log_map if isinstance(log_map, LogMap) else load_map(log_map)

@@ -10,7 +10,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from mmgtune.errors import LogError
+from mmgtune.errors import LogError, OptionError
 from mmgtune.importing import import_logs, load_map, parse_map
 from tests.importing.made import MAP, imported, nmea, refusal, said, sentence, turn, write_csv
 
@@ -299,3 +299,23 @@ def test_maps_that_are_no_maps(tmp_path):
     assert "a map of more than 262144 bytes" in answer
     path.write_text(MAP + '[[logs]]\nname = "*"\nlog.skip = 1\n' * 101)
     assert "[[logs]] of 101 entries: too many" in refusal(lambda: load_map(path))
+
+
+@pytest.mark.parametrize(
+    ("step", "said"),
+    [
+        (0.0, "the step is 0.0"), (-1.0, "the step is -1.0"), (float("nan"), "the step is nan"),
+        (float("inf"), "the step is inf"), ("1 s", "the step is '1 s', not a number"), (True, "not a number"),
+    ],
+)  # fmt: skip
+def test_what_is_no_step(log, step, said):
+    """0.0 counted as none, -1.0 as too few samples, and a text ended in a traceback."""
+    with pytest.raises(OptionError) as found:
+        import_logs(log, parse_map(MAP), ".", step=step, dry_run=True)
+    assert said in str(found.value)
+
+
+def test_steps_of_numpy_are_numbers(log, columns):
+    write_csv(log, columns)
+    (trial,) = import_logs(log, parse_map(MAP), ".", step=np.float32(2.0), dry_run=True).trials
+    assert trial.t[1] - trial.t[0] == 2.0
