@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -12,8 +14,9 @@ from .arrays import FloatArray
 from .backends import STATES, Integrator
 from .bands import WindowScore, score_window
 from .displayed import Brief
+from .errors import OptionError, Problem, brief, kind_of
 from .evaluation import TrialRecord, records
-from .given import ShipGiven, TrialsGiven, list_of
+from .given import ShipGiven, TrialsGiven, some_of
 from .model import Model
 from .networks import named_ship
 from .objective import spread, varying
@@ -130,12 +133,34 @@ def score(
     sigma  what differences of each state are divided by in L_MSE [SI]; their spread in the trials where None
     theta  (n_rows, n_members) coefficients of a profile or model, its own where None
     -> trial by trial, and of each all members
+    Raises TrialError where there are no trials, and OptionError for a sigma that lacks a state or is not above 0.
     Windows of long trials are trials like any other (``TrialSet.in_windows``).
     """
     predictor = as_predictor(named_ship(ship, integrator), theta=theta, integrator=integrator, backend=backend)
-    several = list_of(trials)
-    sigma = varying(spread(several), "trials", "give sigma") if sigma is None else sigma
+    several = some_of(trials)
+    sigma = varying(spread(several), "trials", "give sigma") if sigma is None else scales_of(sigma)
     return [score_of(record, sigma) for record in records(predictor, several)]
+
+
+def scales_of(sigma: object) -> dict[str, float]:
+    """What differences of each state are divided by.
+
+    Raises OptionError where one is missing, unknown or no number above 0.
+    """
+    example = "give one for each of " + ", ".join(STATES)
+    why = "differences of each state are divided by its own"
+    if not isinstance(sigma, Mapping):
+        raise OptionError(Problem(f"sigma is {kind_of(sigma)}", "sigma", why, f"{example}, by name"))
+    unknown = [name for name in sigma if name not in STATES]
+    if unknown:
+        raise OptionError(Problem(f"sigma is of no state {brief(unknown[0])}", "sigma", why, example))
+    missing = [name for name in STATES if name not in sigma]
+    if missing:
+        raise OptionError(Problem(f"sigma says nothing of {', '.join(missing)}", "sigma", why, example))
+    for name, value in sigma.items():
+        if not isinstance(value, Real) or not 0.0 < float(value) < math.inf:
+            raise OptionError(Problem(f"sigma of {name} is {brief(value)}", "sigma", why, "give a number above 0"))
+    return {name: float(sigma[name]) for name in STATES}
 
 
 def window_scores(predictor: Predictor, trials: Sequence[Trial]) -> list[WindowScore]:

@@ -13,6 +13,7 @@ import pytest
 
 import mmgtune
 from mmgtune.networks import Ensemble, Hybrid, Mixture, Network
+from mmgtune.orders import SpiralOrder
 from mmgtune.predictor import as_predictor
 from mmgtune.provenance import own_version
 
@@ -56,6 +57,13 @@ def test_a_manoeuvre_of_a_bundled_ship_and_its_forces():
     assert mmgtune.breakdown("suzaku", motion.states, motion.controls).total.X.shape == motion.t.shape
 
 
+def test_rows_may_be_lists_and_a_set_is_asked_for_anything():
+    states = [[0.0, 0.0, 0.0, 5.0, 0.0, 0.0]] * 9
+    of_lists, of_arrays = (mmgtune.breakdown(SHIP, one, CONTROLS) for one in (states, np.array(states)))
+    assert np.array_equal(of_lists.total.X, of_arrays.total.X)
+    assert [1] not in TRIALS
+
+
 def test_orders_alone_are_carried_out_and_one_is_a_list_of_one():
     order = mmgtune.TurningOrder(0.6)
     (alone,) = mmgtune.run_manoeuvres("suzaku", order)
@@ -85,6 +93,8 @@ def test_a_trial_and_a_list_of_trials_are_sets_that_tune():
 
 SHIP, TRIALS = mmgtune.load_profile("suzaku"), mmgtune.load_trials("suzaku")
 A_TRACK = mmgtune.Track(**dict.fromkeys(("t", "x", "y", "psi", "u", "v_m", "delta"), np.arange(20.0) / 10.0))
+SIGMA = dict.fromkeys(("x", "y", "psi", "u", "v_m", "r"), 1.0)
+CONTROLS = np.tile([1.7, 0.1], (9, 1))
 
 
 @pytest.mark.parametrize(
@@ -131,6 +141,46 @@ A_TRACK = mmgtune.Track(**dict.fromkeys(("t", "x", "y", "psi", "u", "v_m", "delt
             "the revolutions are 6360 rpm (n)",
             "write n=1.767 for 106 rpm",
         ),
+        (lambda: mmgtune.indices_of(A_TRACK, 0.0), "the length is 0 m (L_pp)", "in m, above 0"),
+        (lambda: mmgtune.indices_of(A_TRACK, -83.0), "the length is -83 m (L_pp)", "in m, above 0"),
+        (lambda: mmgtune.indices_of(A_TRACK, np.nan), "the length is nan m (L_pp)", "in m, above 0"),
+        (lambda: mmgtune.score(SHIP, []), "the list of trials is empty", "one at least"),
+        (lambda: mmgtune.score(SHIP, [], {"x": 1.0}), "the list of trials is empty", "one at least"),
+        (
+            lambda: mmgtune.score(SHIP, TRIALS, {"x": 1.0}),
+            "sigma says nothing of y, psi, u, v_m, r",
+            "for each of x, y",
+        ),
+        (lambda: mmgtune.score(SHIP, TRIALS, {"v": 1.0}), "sigma is of no state 'v'", "for each of x, y"),
+        (lambda: mmgtune.score(SHIP, TRIALS, 1.0), "sigma is a float", "by name"),
+        (lambda: mmgtune.score(SHIP, TRIALS, {**SIGMA, "r": 0.0}), "sigma of r is 0.0", "a number above 0"),
+        (lambda: mmgtune.score(SHIP, TRIALS, {**SIGMA, "r": "1"}), "sigma of r is '1'", "a number above 0"),
+        (lambda: mmgtune.breakdown(SHIP, np.zeros(6), CONTROLS), "states has shape (6,)", "(n_samples, 6)"),
+        (lambda: mmgtune.breakdown(SHIP, np.zeros((9, 5)), CONTROLS), "states has shape (9, 5)", "(n_samples, 6)"),
+        (lambda: mmgtune.breakdown(SHIP, "states", CONTROLS), "states is a str, no array", "(n_samples, 6)"),
+        (lambda: mmgtune.breakdown(SHIP, np.zeros((4, 6)), CONTROLS), "controls has shape (9, 2)", "shape (4, 2)"),
+        (
+            lambda: mmgtune.breakdown(SHIP, np.zeros((9, 6)), CONTROLS[:, :1]),
+            "controls has shape (9, 1)",
+            "shape (9, 2)",
+        ),
+        (
+            lambda: mmgtune.breakdown(SHIP, np.zeros((9, 6)), CONTROLS, CONTROLS),
+            "around has shape (9, 2)",
+            "shape (9, 14)",
+        ),
+        (
+            lambda: mmgtune.breakdown(SHIP, np.zeros((9, 6)), CONTROLS, theta=mmgtune.Model(SHIP).matrix()),
+            "theta has shape",
+            "give an array of shape (",
+        ),
+        (lambda: mmgtune.check(SHIP, TRIALS, {"a": 1}), "a dict is no baseline ({'a': 1})", "read_baseline(FILE)"),
+        (lambda: TRIALS[[1]], "no trial [1]", "write ['turn_"),
+        (lambda: TRIALS[:2], "no trial slice(None, 2, None)", "write ['turn_"),
+        (lambda: mmgtune.TurningOrder(0.0), "the rudder angle is 0", "math.radians(35.0)"),
+        (lambda: mmgtune.ZigzagOrder(0, 0), "the rudder angle is 0", "math.radians(35.0)"),
+        (lambda: mmgtune.ZigzagOrder(0.2, 0.0), "the check heading is 0", "math.radians(35.0)"),
+        (lambda: SpiralOrder(0.0, 60.0), "the rudder angle is 0", "Straight()"),
         (lambda: mmgtune.load_profile(None), "no name of a ship profile (None)", "a text or a Path"),
     ],
 )

@@ -9,7 +9,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from ..backends import Integrator
-from ..errors import OptionError, Problem, among
+from ..errors import OptionError, Problem, among, brief, kind_of
 from ..given import ShipGiven, TrialsGiven, trials_of
 from ..metrics import METRICS
 from ..predictor import PhysicsPredictor, Predictor
@@ -196,8 +196,13 @@ def called(profile: object, trials: object, baseline: object) -> tuple[str, str,
 
 
 def baseline_of(given: BaselineGiven) -> Baseline | None:
-    """A baseline, or the one in that file.  Raises OptionError with everything wrong in it."""
-    return read_baseline(Path(given)) if isinstance(given, (str, Path)) else given
+    """A baseline, or the one in that file.  Raises OptionError with everything wrong in it, and for what is none."""
+    if given is None or isinstance(given, Baseline):
+        return given
+    if isinstance(given, (str, Path)):
+        return read_baseline(Path(given))
+    fix = "give the path of one, read_baseline(FILE), or record_baseline(SHIP, TRIALS)"
+    raise OptionError(Problem(f"{kind_of(given)} is no baseline", brief(given), "a baseline is compared with", fix))
 
 
 def could_not_run(names: tuple[str, str, str | None], problems: tuple[Problem, ...]) -> CheckReport:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from numbers import Real
 from typing import Any
@@ -20,7 +21,7 @@ def indices_of(track: Track, L_pp: float, measured: Mapping[str, Any] | None = N
     L_pp      length between perpendiculars [m]
     measured  indices of the run that the record is a simulation of: a zigzag keeps the rudder and check angle of that
               one, because a helmsman who follows another heading does not reverse at the check heading
-    Raises OptionError for what is no record or no length.
+    Raises OptionError for what is no record or no length above 0.
     """
     _hold_kinds(track, L_pp)
     kind = manoeuvre_kind(track)
@@ -39,6 +40,9 @@ def _hold_kinds(track: object, L_pp: object) -> None:
     if not isinstance(L_pp, Real):
         why, fix = "it is the length between perpendiculars in m", "give a number; a profile has it as profile.L_pp"
         raise OptionError(Problem(f"{kind_of(L_pp)} is no length", "L_pp", why, fix))
+    if not 0.0 < float(L_pp) < math.inf:
+        why, fix = "indices are told in lengths of the ship", "give the length between perpendiculars in m, above 0"
+        raise OptionError(Problem(f"the length is {float(L_pp):g} m", "L_pp", why, fix))
 
 
 def _angles(indices: Mapping[str, Any]) -> tuple[float, float] | None:

@@ -50,6 +50,13 @@ def in_radians(angle: float, name: str, most: float) -> None:
         raise OptionError(Problem(f"the {name} is {angle:g} rad", "", "orders are in radians", fix))
 
 
+def ordered(angle: float, name: str) -> None:
+    """Raises OptionError for an angle of 0: nothing is ordered then, and the run ends when its time does."""
+    if angle == 0.0:
+        fix = "write math.radians(35.0) for 35 deg; mmgtune.orders.Straight() leaves the rudder amidships"
+        raise OptionError(Problem(f"the {name} is 0", "", "such a manoeuvre orders nothing and never ends", fix))
+
+
 class Helmsman(Protocol):
     """Turns time and heading into rudder orders; may remember what it has seen: each simulation has its own copy."""
 
@@ -71,8 +78,9 @@ class TurningOrder:
     until: float = math.radians(540.0)
 
     def __post_init__(self) -> None:
-        """Raises OptionError for an angle that must be degrees, and for times that make no sense."""
+        """Raises OptionError for an angle that is 0 or must be degrees, and for times that make no sense."""
         in_radians(self.angle, "rudder angle", RUDDER_MOST)
+        ordered(self.angle, "rudder angle")
         started(self.at)
         if not is_number(self.until, above=0.0):
             why = "it ends where the heading has changed by so much"
@@ -102,9 +110,11 @@ class ZigzagOrder:
     _given: int = 0
 
     def __post_init__(self) -> None:
-        """Raises OptionError for angles that must be degrees, and for what makes no sense."""
+        """Raises OptionError for angles that are 0 or must be degrees, and for what makes no sense."""
         in_radians(self.rudder, "rudder angle", RUDDER_MOST)
         in_radians(self.heading, "check heading", HEADING_MOST)
+        ordered(self.rudder, "rudder angle")
+        ordered(self.heading, "check heading")
         started(self.at)
         whole(1, legs=self.legs)
 
@@ -135,8 +145,9 @@ class SpiralOrder:
     _t: float = 0.0
 
     def __post_init__(self) -> None:
-        """Raises OptionError for an angle that must be degrees, and for what makes no sense."""
+        """Raises OptionError for an angle that is 0 or must be degrees, and for what makes no sense."""
         in_radians(self.rudder, "rudder angle", RUDDER_MOST)
+        ordered(self.rudder, "rudder angle")
         positive(hold=self.hold)
         whole(2, steps=self.steps)
         started(self.at)

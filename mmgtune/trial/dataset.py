@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from numbers import Integral
 from pathlib import Path
 from typing import Self
 
@@ -58,18 +59,19 @@ class TrialSet(Plotted):
         return iter((*self.trials.values(), *self.stated.values()))
 
     def __contains__(self, name: object) -> bool:
-        return name in self.trials or name in self.stated
+        return isinstance(name, str) and (name in self.trials or name in self.stated)
 
     def __getitem__(self, name: str) -> Trial | IndexTrial:
         """The trial of that id.  Raises TrialError where there is none."""
-        found = self.trials.get(name) or self.stated.get(name)
+        found = (self.trials.get(name) or self.stated.get(name)) if isinstance(name, str) else None
         if found is None:
             known = [*self.trials, *self.stated]
             said = among(str(name), known)
             if not isinstance(name, str):
                 such = f"['{known[0]}']" if known else "[ID]"
                 why = f"a trial is had by its id, and {kind_of(name)} is none"
-                said = {"why": why, "fix": f"write {such} for the trial of that id, or list(TRIALS)[{brief(name)}]"}
+                listed = f", or list(TRIALS)[{brief(name)}]" if isinstance(name, Integral) else ""
+                said = {"why": why, "fix": f"write {such} for the trial of that id{listed}"}
             raise TrialError(Problem(f"no trial {brief(name)}", str(self.path or ""), **said))
         return found
 
