@@ -55,7 +55,9 @@ from .learning import learn_rnn as learn_rnn
 from .learning import write_learned as write_learned
 from .manoeuvres import Track as Track
 from .manoeuvres.summary import indices_of as indices_of
+from .measures import Reference as Reference
 from .measures import distance_measures as distance_measures
+from .measures import reference_of as reference_of
 from .model import Model as Model
 from .networks import load_network as load_network
 from .networks import save_network as save_network

@@ -45,18 +45,23 @@ def reference_of(measured: FloatArray, r_max: float | None = None) -> Reference:
     return Reference(length, speed, r)
 
 
-def distance_measures(measured: FloatArray, simulated: FloatArray, reference: Reference) -> dict[str, float]:
+def distance_measures(
+    measured: FloatArray, simulated: FloatArray, reference: Reference | None = None
+) -> dict[str, float]:
     """All seven measures by name, (n_samples, 6) each; units in ``UNITS``.
+
+    reference  what cVDM is relative to; None: ``reference_of(measured)``
 
     Headings are compared as they are: both unwrapped.  PMD and PED divide by the measured coordinates, so they depend
     on where the origin is; the paper's denominator of PMD can be zero or negative, and the sum of absolute values is
-    used instead.  Raises ValueError where shapes differ or no sample is complete.
+    used instead.  Raises ValueError where shapes differ or no sample is complete, and as ``reference_of`` does.
     """
     if measured.shape != simulated.shape or measured.ndim != 2 or measured.shape[1] != 6:
         raise ValueError(f"shapes {measured.shape} and {simulated.shape} are not (n_samples, 6) both")
     whole = ~(np.isnan(measured).any(axis=1) | np.isnan(simulated).any(axis=1))
     if not whole.any():
         raise ValueError("no complete sample to compare")
+    reference = reference_of(measured) if reference is None else reference
     found = distances(measured[None], simulated[None])
     length, speed = np.array([reference.length]), np.array([reference.speed])
     parts = cvdm_parts(found.mean, length, speed, reference.r_max)

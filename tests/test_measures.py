@@ -3,12 +3,21 @@
 import numpy as np
 import pytest
 
+import mmgtune
 from mmgtune.measures import UNITS, Reference, distance_measures, reference_of
 
 # Two samples; differences (3, 4, 0.1, 0.2, 0.3, 0.01) and zero.
 MEASURED = np.array([[10.0, 20.0, 0.5, 2.0, 0.0, 0.02], [13.0, 24.0, 0.6, 2.0, 0.0, 0.02]])
 SIMULATED = MEASURED + np.array([[3.0, -4.0, 0.1, -0.2, 0.3, -0.01], [0.0] * 6])
 REFERENCE = Reference(length=5.0, speed=2.0, r_max=0.0314)
+
+
+def test_without_a_reference_it_is_that_of_the_measured_one():
+    own = mmgtune.distance_measures(MEASURED, SIMULATED)
+    assert own == mmgtune.distance_measures(MEASURED, SIMULATED, mmgtune.reference_of(MEASURED))
+    assert own["cVDM"] != distance_measures(MEASURED, SIMULATED, REFERENCE)["cVDM"]
+    other = mmgtune.Reference(length=10.0, speed=4.0, r_max=0.04)
+    assert mmgtune.distance_measures(MEASURED, SIMULATED, other)["MMD"] == own["MMD"]
 
 
 def test_by_hand():
