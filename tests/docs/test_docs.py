@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+import mmgtune
 from mmgtune.fitting import FitOptions, fit
 from mmgtune.profile import load_profile
 from mmgtune.trial import load_trials
@@ -86,11 +87,29 @@ def test_every_promise_of_security_has_its_test():
         assert (ROOT / name).exists(), name
 
 
-def test_nomenclature_is_current():
-    spec = importlib.util.spec_from_file_location("write_nomenclature", ROOT / "tools" / "write_nomenclature.py")
+def tool(name):
+    """A module of tools/."""
+    spec = importlib.util.spec_from_file_location(name, ROOT / "tools" / f"{name}.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    assert (ROOT / "docs" / "nomenclature.md").read_text(encoding="utf-8") == module.nomenclature()
+    return module
+
+
+def test_nomenclature_is_current():
+    text = (ROOT / "docs" / "nomenclature.md").read_text(encoding="utf-8")
+    assert text == tool("write_nomenclature").nomenclature()
+
+
+def test_every_public_name_is_in_the_table_of_the_library_beside_its_page():
+    text = (ROOT / "docs" / "reference" / "api" / "index.md").read_text(encoding="utf-8")
+    names = re.findall(r"`(\w+)`", text.partition("| name | what | page |")[2].partition("\n\n")[0])
+    assert sorted(names) == sorted(mmgtune.__all__)
+    assert text == tool("write_api_names").page()
+
+
+def test_a_public_name_without_a_page_is_told():
+    with pytest.raises(ValueError, match="describes another_name"):
+        tool("write_api_names").table([*mmgtune.__all__, "another_name"])
 
 
 def test_every_key_of_the_result_is_documented():
