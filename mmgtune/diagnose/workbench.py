@@ -208,14 +208,17 @@ class Workbench:
             hopeless=hopeless,
         )
         method = problem.integrator
+        further = [end.promised if math.isfinite(end.promised) else 0.0 for end in ends]
         return [
-            Point(names, end.unit, end.offsets, self._total(end, beliefs), method, spreads, end.promised)
-            for end in ends
+            Point(names, end.unit, end.offsets, self._total(end, beliefs), method, spreads, promised)
+            for end, promised in zip(ends, further, strict=True)
         ]
 
     def _total(self, end: LeastSquaresResult, beliefs: tuple[FloatArray, FloatArray] | None) -> float:
+        """Chi-squared of an end; inf where its numbers ran away: what is compared with others has to have an order."""
         unlike = 0.0 if beliefs is None else float(np.sum((beliefs[0] @ (end.unit - beliefs[1])) ** 2))
-        return float(end.J + np.sum(self.problem.prior * end.offsets**2) + unlike)
+        total = float(end.J + np.sum(self.problem.prior * end.offsets**2) + unlike)
+        return math.inf if math.isnan(total) else total
 
     @property
     def noise_known(self) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mmgtune.diagnose import DiagnoseOptions
+from mmgtune.diagnose import DiagnoseOptions, workbench
 from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.hypotheses import known_causes
 from mmgtune.diagnose.linear import linearise
@@ -15,6 +15,7 @@ from mmgtune.diagnose.refitting import HARDLY_MORE, HOPELESS, Known, Refitting
 from mmgtune.diagnose.screening import scores
 from mmgtune.diagnose.search import _as_given as as_given
 from mmgtune.diagnose.workbench import make_workbench
+from mmgtune.fitting.least_squares import LeastSquaresResult
 from mmgtune.profile import load_profile, with_effects
 from mmgtune.simulation import simulate
 from mmgtune.trial import load_trials
@@ -85,6 +86,35 @@ def test_beside_one_that_leaves_noise_others_are_given_up(look):
     assert refitting._hopeless < other.point.chi2 <= refitting.point.chi2
     known.outdate()
     assert refitting._hopeless == np.inf
+
+
+@pytest.mark.parametrize("chi2", [np.nan, np.inf, 1e30])
+def test_a_refit_that_runs_away_ends_where_it_began_and_explains_nothing(look, chi2):
+    """A chi-squared that is no number ended a diagnosis with a report of a bug."""
+    refitting, by_names = look
+    score, point = by_names[NAMES], refitting.point
+    lost = refitting._starts(point, score, ())[:, 0] * (np.nan if np.isnan(chi2) else 1.0)
+    end = replace(point, names=(*point.names, *NAMES), unit=lost, chi2=chi2)
+    refit = refitting._judged(score, end, None, 1)
+    assert (refit.gain, refit.point.chi2) == (0.0, point.chi2)
+    assert refit.point.unit[-2:].tolist() == refitting.bench.null(NAMES).tolist()
+    assert np.isfinite(refit.point.unit).all()
+    assert refit.evidence < 0.0
+
+
+@pytest.mark.parametrize("lost", [{"J": np.nan}, {"J": np.inf}, {"J": np.inf, "promised": np.inf}])
+def test_refits_have_an_order_whatever_ran_away(look, monkeypatch, lost):
+    refitting, _ = look
+    bench, point = refitting.bench, refitting.point
+
+    def solved(problem, starts, **_):
+        there = LeastSquaresResult(starts[:, 0], problem.offsets, 1.0, 1, True, promised=np.nan)
+        return [replace(there, **lost), there]
+
+    monkeypatch.setattr(workbench, "solve", solved)
+    first, second = bench.refits(point.names, np.repeat(point.unit[:, None], 2, axis=1), point.offsets)
+    assert first.chi2 == first.foreseen == np.inf
+    assert second.foreseen == second.chi2 < np.inf
 
 
 ALIKE = ("heading-bias", "gyro-scale", "gyro-bias", "speed-scale", "rpm-scale", "rudder-gain")
