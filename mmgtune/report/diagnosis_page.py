@@ -296,7 +296,7 @@ def _retuned(data: Mapping[str, Any]) -> Section | None:
         lines.append(
             cells(
                 short(clean(row["name"])),
-                described(row),
+                described(row) + ("" if row.get("target", True) else "; no target, but may move a little"),
                 coefficient_text(before),
                 coefficient_text(row["value"]),
                 Cell(percent(change(before, row["value"])), "note" if row["far"] else ""),

@@ -6,7 +6,7 @@ import pytest
 
 from mmgtune.cli.diagnose import summary
 from mmgtune.diagnose import DiagnoseOptions, diagnose, write_diagnosis
-from mmgtune.diagnose.retuned import Retuned, besides, far_off, in_words
+from mmgtune.diagnose.retuned import Retuned, besides, far_off, in_words, weighed
 from mmgtune.profile import load_profile
 from mmgtune.report import render
 from mmgtune.trial import load_trials
@@ -102,6 +102,31 @@ def test_a_fouled_hull_is_told(tmp_path, hidden):
     page = (tmp_path / "run" / "report.html").read_text(encoding="utf-8")
     assert "What re-tuning changed" in page
     assert "More than a tenth off the profile" in page
+
+
+@pytest.mark.parametrize(
+    ("after", "stderr", "told"),
+    [(0.285, 0.004, True), (0.27, 0.001, False), (0.285, 0.01, False), (0.285, None, False)],
+    ids=["far", "within its leeway", "not sure", "at a bound"],
+)
+def test_inertia_that_is_not_the_profile_s_is_told_though_it_is_no_target(after, stderr, told):
+    inertia = Retuned("particulars.k_zz_", "radius of gyration", "-", 0.25, after, stderr, believed=0.05)
+    said = weighed([moved(0.7, 0.01), inertia])
+    assert said.startswith("The trials ask for radius of gyration (k_zz_) 14 ± 3 % above") == told
+    assert (said == "") == (not told)
+    assert far_off([inertia]) == besides([inertia]) == in_words([inertia]) == ""
+
+
+def test_the_inertia_of_another_loading_is_told(tmp_path):
+    ship = load_profile("suzaku")
+    write(simulate({"particulars.k_zz_": 1.25 * ship.value("particulars.k_zz_")}, {}, seed=3), tmp_path)
+    options = DiagnoseOptions(effects=("rudder-offset", "gyro-bias"), targets=TARGETS)
+    result = diagnose(ship, load_trials(tmp_path), options)
+    (inertia,) = [one for one in result.moved if one.believed is not None]
+    assert inertia.name == "particulars.k_zz_"
+    assert abs(inertia.change - 0.25) < 0.1  # what is believed of her hull keeps it nearer to the profile's
+    assert "The trials ask for radius of gyration" in result.sentence()
+    assert not inertia.to_dict()["target"]
 
 
 def test_a_hull_as_the_profile_has_it_is_not(tmp_path):
