@@ -65,12 +65,18 @@ def estimates(bench: Workbench, point: Point) -> dict[str, Estimate]:
     return _in_units(bench, point, names, spread)
 
 
-def covariance(bench: Workbench, point: Point) -> tuple[tuple[str, ...], FloatArray]:
+def covariance(bench: Workbench, point: Point, *, at_bounds: bool = False) -> tuple[tuple[str, ...], FloatArray]:
     """What is free inside its bounds and the same for all runs, and how well it is known: (n, n) in the unit cube.
 
     Directions that no trial tells end at the box, everywhere in which is equally likely beforehand.
+
+    at_bounds  what ended at a bound is no better known than what did not, so that the others are not too certain
     """
-    inside = [name for name, z in zip(point.names, point.unit, strict=True) if 0.0 < z < 1.0 and not group_of(name)]
+    inside = [
+        name
+        for name, z in zip(point.names, point.unit, strict=True)
+        if (at_bounds or 0.0 < z < 1.0) and not group_of(name)
+    ]
     if not inside:
         return (), np.zeros((0, 0))
     R, noise, size = _told(bench, point, tuple(inside))

@@ -209,7 +209,7 @@ class Diagnosis(Plotted):
             return "its size is at the end of its range, and it leaves more than noise"
         if len(brought) < 2:
             return not_told if self.gain.share_removed[0] < TOLD else ""
-        if self.takes_many:
+        if self.more or len(brought) >= TOO_MANY:
             return f"it takes {'more than ' if self.more else ''}{len(brought)} terms"
         if len(brought) > 2 and self.groups:
             return "not all of them can be told from others"
@@ -228,9 +228,9 @@ class Diagnosis(Plotted):
         return ""
 
     @property
-    def takes_many(self) -> bool:
-        """Whether so many terms are needed that an effect which no registry holds is at work, whatever they are."""
-        return self.more or len(self.contributions) >= TOO_MANY
+    def is_beyond_all(self) -> bool:
+        """Whether several terms are needed and not believed: more trials of an unknown effect take more of them."""
+        return len(self.contributions) >= TOO_MANY - 1 and bool(self.unclear)
 
     @property
     def _told_by_none(self) -> bool:

@@ -107,12 +107,12 @@ def retuned(bench: Workbench, point: Point) -> list[Retuned]:
     names = [name for name in point.names if name in bench.targets and not name.startswith("effects.")] + weighed
     if not names:
         return []
-    inside, spread = covariance(bench, point)
+    inside, spread = covariance(bench, point, at_bounds=True)
     box, profile = bench.sub_box(names), bench.model.profile
     unit = np.array([point.unit[point.names.index(name)] for name in names])
     found = []
     for k, (name, value) in enumerate(zip(names, box.from_unit(unit[:, None])[:, 0], strict=True)):
-        at = inside.index(name) if name in inside else None
+        at = inside.index(name) if name in inside and 0.0 < unit[k] < 1.0 else None
         stderr = None if at is None else float(np.sqrt(spread[at, at]) * box.width[k])
         section, symbol = split_name(name)
         field = profile.sections[section].component.fields[symbol]

@@ -54,7 +54,8 @@ def diagnose(
 
     Causes are looked for on every trial that the split does not keep for testing; the gain is that on the test trials,
     or on each trial in turn where there are none.  Where what is found does not tell the test trials, all are looked at
-    together, unless the options keep them or it takes four terms already.  Nothing is read but the profile, the columns and the split.
+    together, unless the options keep them or a sum of several terms is not believed already.  Nothing is read but the
+    profile, the columns and the split.
 
     Of voyages, logs of hours, a bounded number of windows is looked at, and what differs from one to the next is told.
 
@@ -75,8 +76,7 @@ def diagnose(
     with journalled(folder, identity, hooks.stop, resume=resume):
         began = time.perf_counter()
         result = _looked_at(profile, trials, choice, options, hooks, provenance)
-        hopeless = result.takes_many  # more trials of what no known cause tells take more terms
-        if result.gain.missed and not (options.keep_test or choice or hopeless or hooks.stop()):
+        if result.gain.missed and not (options.keep_test or choice or result.is_beyond_all or hooks.stop()):
             hooks.on_phase("looking at all trials together")
             with suppress(ProfileError):  # where the model runs away on the others there is nothing more to look at
                 of_all = _looked_at(profile, replace(trials, test=()), None, options, hooks, provenance)

@@ -297,7 +297,7 @@ def sum_of(
     left=0.0,
 ):
     """What ``Diagnosis.unclear`` sees of a sum of causes."""
-    seen = SimpleNamespace(
+    return SimpleNamespace(
         causes=[
             SimpleNamespace(runs=k < by_run, sized=sized, tag="wind", at_ends=at_ends) for k in range(len(brought))
         ],
@@ -310,8 +310,6 @@ def sum_of(
         _excused_by_gusts=excused,
         more=more,
     )
-    seen.takes_many = Diagnosis.takes_many.fget(seen)
-    return seen
 
 
 CLEAR = Contribution(0.8)
