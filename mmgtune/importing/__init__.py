@@ -4,7 +4,7 @@ mapping         the map of a log; reading_map: from TOML; checking_map: its cont
 headers         names and units in logs
 forms           what kind of file a log is
 table           columns of a log; text, parquet_log, workbook, matlab: reading them; cells: of what is in memory
-clock           time put right; dates, degrees, numerals, sides: as people write them
+clock           time put right; stopwatch, dates, degrees, numerals, sides: as people write them
 record          quantities in the program's units, each with its own time; nmea: reading sentences
 digits          made up for where too few are printed; yaw: the heading from its rate; cleaning: spikes
 jumps           records cut where time jumps forward
