@@ -151,7 +151,7 @@ def test_revolutions_per_minute() -> None:
 def test_spikes(seed: int | None, name: str, value: float) -> None:
     trial = with_value(made(seed=seed), name, 300, value)
     warnings = said(trial)
-    assert f"'{name}' has 1 spikes" in warnings
+    assert f"'{name}' has 1 spike" in warnings
     assert f"column '{name}', row 300" in warnings
     assert "orders" not in warnings
 
@@ -164,14 +164,14 @@ def test_the_last_of_few_digits_is_no_spike(name: str, step: float) -> None:
 
     coarse = changed(made(seed=1), name, printed)
     assert "spikes" not in said(coarse)
-    assert f"'{name}' has 1 spikes" in said(with_value(coarse, name, 300, 60.0 * step + 900.0 * (name == "x")))
+    assert f"'{name}' has 1 spike" in said(with_value(coarse, name, 300, 60.0 * step + 900.0 * (name == "x")))
 
 
 def test_one_step_of_revolutions_logged_in_halves_is_no_spike() -> None:
     steady = with_value(made(n=106.0 / 60.0), "n", 246, 105.5 / 60.0)
     only(steady)
     only(with_value(steady, "n", 300, 106.5 / 60.0))
-    only(with_value(steady, "n", 300, 0.0), "'n' has 1 spikes")
+    only(with_value(steady, "n", 300, 0.0), "'n' has 1 spike")
 
 
 def test_the_steering_gear_of_a_model_is_quick() -> None:
