@@ -357,14 +357,29 @@ def test_a_sum_is_believed_where_each_of_it_is_clear(one, said):
 
 
 @pytest.mark.parametrize(
+    ("one", "beyond"),
+    [
+        (sum_of(CLEAR, CLEAR, CLEAR, groups=GROUP), True),
+        (sum_of(CLEAR, CLEAR, CLEAR), False),
+        (sum_of(SMALL_BUT_CLEAR, SMALL_BUT_CLEAR), False),
+        (sum_of(CLEAR, CLEAR, CLEAR, more=True), True),
+    ],
+)
+def test_what_is_beyond_all_takes_three_terms_that_are_not_believed(one, beyond):
+    one.unclear = Diagnosis.unclear.fget(one)
+    assert Diagnosis.is_beyond_all.fget(one) == beyond
+
+
+@pytest.mark.parametrize(
     ("tag", "chi2", "left_open", "excused"),
     [
         ("wind", (3.0, 1.3), 120.0, True),
         ("wind", (3.0, 1.3), 2.0, False),
+        ("wind", (7.5, 1.14), 5.8, False),
         ("wind", (30.0, 1.3), 120.0, False),
         ("current", (3.0, 1.3), 120.0, False),
     ],
-    ids=["a tug", "little", "gusts of a gale", "no wind"],
+    ids=["a tug", "little", "gusts of a tenth of 9 m/s", "gusts of a gale", "no wind"],
 )
 def test_a_wind_does_not_excuse_what_no_gusts_leave(tag, chi2, left_open, excused):
     seen = SimpleNamespace(

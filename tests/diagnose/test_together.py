@@ -1,6 +1,8 @@
 """Trials kept for testing that an answer misses are looked at with the others."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from importlib import import_module
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -41,6 +43,31 @@ def test_water_that_moves_only_in_trials_kept_for_testing_is_no_nothing(keep, ve
         none = replace(alone, gain=replace(result.gain, excess=np.stack([before, before], axis=1), unsure=1e9))
         assert none.verdict == "unexplained"  # however little is known of what may have moved
         assert "any run is told little better by the others" in none.sentence()
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What decides whether all trials are looked at."""
+
+    is_beyond_all: bool
+    gain: SimpleNamespace
+    wall_s: float = 0.0
+
+
+@pytest.mark.parametrize("beyond", [False, True])
+def test_a_sum_that_is_not_believed_is_not_looked_for_in_more_trials(beyond, monkeypatch):
+    """A thruster in some runs took four looks at five trials, and four more at all eight."""
+    run = import_module("mmgtune.diagnose.run")
+    looked_at = []
+
+    def look(profile, trials, *rest):
+        looked_at.append(len(trials.test))
+        return Answer(beyond, SimpleNamespace(missed=True))
+
+    monkeypatch.setattr(run, "_looked_at", look)
+    monkeypatch.setattr(run, "_settled", lambda alone, of_all: of_all)
+    diagnose(load_profile("suzaku"), load_trials("suzaku"))
+    assert looked_at == ([4] if beyond else [4, 0])
 
 
 def test_without_a_cause_motion_may_run_away():
