@@ -230,7 +230,7 @@ class Diagnosis(Plotted):
     @property
     def is_beyond_all(self) -> bool:
         """Whether several terms are needed and not believed: more trials of an unknown effect take more of them."""
-        return len(self.contributions) >= TOO_MANY - 1 and bool(self.unclear)
+        return (self.more or len(self.contributions) >= TOO_MANY - 1) and bool(self.unclear)
 
     @property
     def _told_by_none(self) -> bool:

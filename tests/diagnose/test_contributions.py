@@ -363,6 +363,7 @@ def test_a_sum_is_believed_where_each_of_it_is_clear(one, said):
         (sum_of(CLEAR, CLEAR, CLEAR), False),
         (sum_of(SMALL_BUT_CLEAR, SMALL_BUT_CLEAR), False),
         (sum_of(CLEAR, CLEAR, CLEAR, more=True), True),
+        (sum_of(CLEAR, CLEAR, more=True), True),
     ],
 )
 def test_what_is_beyond_all_takes_three_terms_that_are_not_believed(one, beyond):
