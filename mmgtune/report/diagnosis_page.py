@@ -280,7 +280,7 @@ def _causes(data: Mapping[str, Any]) -> Section | None:
 
 _STANDS_IN = (
     "targets stand in for one another and for what is no target, and the ship may be otherwise: sentences name only "
-    "what fouling changes (R_0, X_0F)"
+    "what fouling changes (R_0, X_0F), and mass and inertia that the trials contradict"
 )
 
 
@@ -296,7 +296,7 @@ def _retuned(data: Mapping[str, Any]) -> Section | None:
         lines.append(
             cells(
                 short(clean(row["name"])),
-                described(row) + ("" if row.get("target", True) else "; no target, but may move a little"),
+                described(row) + ("" if row.get("target", True) else "; no target"),
                 coefficient_text(before),
                 coefficient_text(row["value"]),
                 Cell(percent(change(before, row["value"])), "note" if row["far"] else ""),
