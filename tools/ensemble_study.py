@@ -31,11 +31,11 @@ from mmgtune.files import write_text
 from mmgtune.generating import make_trials
 from mmgtune.learning import Hooks, learn_ensemble, write_learned
 from mmgtune.learning.choosing import pieces_of
-from mmgtune.learning.keeping import CHECKPOINTS
 from mmgtune.networks import Ensemble, EnsemblePredictor, load_network
 from mmgtune.objective import spread
 from mmgtune.options import SAMPLINGS, EnsembleOptions
 from mmgtune.predictor import cases_from
+from mmgtune.run_folders import CHECKPOINTS
 from mmgtune.trial import TrialSet, load_trials
 from mmgtune.validation import window_scores
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 from dataclasses import dataclass
 from pathlib import Path
@@ -121,23 +120,13 @@ def command(
         given.refuse_beside("update_baseline", baseline)
         _update(names, options, given)
     else:
-        with _place(out, force):
+        with c.placed(out, force=force):
             report = _checked(names, options, given)
         raise typer.Exit(CODES[report.verdict])
 
 
 Names = tuple[str, str, Path | None]
 """Profile, trials and baseline as they were named."""
-
-
-def _place(out: Path | None, force: bool) -> contextlib.AbstractContextManager[object]:
-    """The folder of the record while it is written to, where one is asked for."""
-    from ..run_folders import claimed
-
-    if out is not None:
-        return claimed(out, force=force)
-    c.needs_folder(force=force)
-    return contextlib.nullcontext()
 
 
 def _checked(names: Names, options: CheckOptions, given: Given) -> CheckReport:

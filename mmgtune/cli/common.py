@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from datetime import datetime
 from itertools import count
 from pathlib import Path
@@ -141,10 +141,28 @@ def needs_folder(**asked: bool) -> None:
         raise OptionError(Problem("nothing is written", name, why, "add out=FOLDER, or leave it out"))
 
 
+@contextlib.contextmanager
+def placed(out: Path | None, *, force: bool, anew: bool = False, **asked: bool) -> Iterator[None]:
+    """A context in which results are written to ``out``, as ``claimed`` gives it; where there is none nothing is.
+
+    asked  what else was asked for which only files have
+    """
+    from ..run_folders import claimed
+
+    if out is None:
+        needs_folder(**asked, force=force)
+        yield
+    else:
+        with claimed(out, force=force, anew=anew):
+            yield
+
+
 def default_out(ship: HasId) -> Path:
     """A folder under runs/, made here so that no other command takes it; ``tidy`` removes it where it stays empty."""
     name = f"{datetime.now():%Y%m%d-%H%M%S}-{ship.id}"
-    for folder in (Path("runs") / (f"{name}-{k}" if k > 1 else name) for k in count(1)):
+    tries = (Path("runs") / (f"{name}-{k}" if k > 1 else name) for k in count(1))
+    while True:
+        folder = next(tries)
         new = [one.absolute() for one in (folder, *folder.parents) if not one.exists()]
         try:
             folder.mkdir(parents=True)
@@ -155,7 +173,6 @@ def default_out(ship: HasId) -> Path:
             pass  # who wants to write there will say so
         _MADE.extend(new)
         return folder
-    raise AssertionError("unreachable: numbers do not end")
 
 
 def tidy() -> None:

@@ -222,14 +222,10 @@ def compare(
     """
     from ..comparing import compare as compared
     from ..report import render
-    from ..run_folders import claimed
 
-    if out is None:
-        c.needs_folder(force=force)
+    with c.placed(out, force=force, anew=True):
         found = compared(a, b)
-    else:
-        with claimed(out, force=force, anew=True):
-            found = compared(a, b)
+        if out is not None:
             c.say(f"wrote {found.write(out, overwrite=True)}")
             for path in render(out):
                 c.say(f"wrote {path}")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -60,12 +59,9 @@ def command(
     from ..predictor import Uncertain
     from ..recording import write_simulation
     from ..report import render
-    from ..run_folders import claimed
     from ..simulating import simulate
 
-    if out is None:
-        c.needs_folder(forces=forces, force=force, no_report=no_report)
-    with claimed(out, force=force, anew=True) if out is not None else nullcontext():
+    with c.placed(out, force=force, anew=True, forces=forces, no_report=no_report):
         result = simulate(profile, trials, options)
         rows = result.rows()
         notes = list(result.notes)

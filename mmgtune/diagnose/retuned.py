@@ -103,8 +103,8 @@ class Retuned:
 def retuned(bench: Workbench, point: Point) -> list[Retuned]:
     """Targets of the ship herself at a point, what is surest far from its pre-determined value first, and what the
     trials contradict of her mass and inertia."""
-    weighed = [name for name in point.names if name in bench.believed.leeway and name.startswith(WEIGHED)]
-    names = [name for name in point.names if name in bench.targets and not name.startswith("effects.")] + weighed
+    loose = [name for name in point.names if name in bench.believed.leeway and name.startswith(WEIGHED)]
+    names = [name for name in point.names if name in bench.targets and not name.startswith("effects.")] + loose
     if not names:
         return []
     inside, spread = covariance(bench, point, at_bounds=True)
@@ -116,7 +116,7 @@ def retuned(bench: Workbench, point: Point) -> list[Retuned]:
         stderr = None if at is None else float(np.sqrt(spread[at, at]) * box.width[k])
         section, symbol = split_name(name)
         field = profile.sections[section].component.fields[symbol]
-        believed = bench.options.leeway if name in weighed else None
+        believed = bench.options.leeway if name in loose else None
         found.append(Retuned(name, field.label, field.unit, float(box.pre[k]), float(value), stderr, believed))
     told = [one for one in found if one.believed is None or one.far]
     return sorted(told, key=_distance, reverse=True)

@@ -22,13 +22,13 @@ from ..networks import (
 from ..objective import spread
 from ..predictor import Predictor, as_predictor
 from ..resources import MODEL
+from ..run_folders import CHECKPOINTS
 from ..simulation import simulate
 from ..trial import Trial
 from ..validation import score, summary
 from .choosing import pieces_of
 from .ensemble_run import LearnedEnsemble
 from .hybrid_run import LearnedHybrid
-from .keeping import CHECKPOINTS
 from .reading import read_network
 from .run import Learned
 

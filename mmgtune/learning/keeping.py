@@ -14,9 +14,8 @@ from ..backends.twins import jax_module
 from ..errors import OptionError, Problem, reason
 from ..files import atomic
 from ..fitting.checkpoint import differing, nothing_to_resume
+from ..run_folders import CHECKPOINTS
 from .training import Progressed
-
-CHECKPOINTS = "training-*.safetensors"
 
 
 def named(number: int) -> str:

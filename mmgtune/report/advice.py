@@ -196,6 +196,11 @@ def _groups(command: str) -> list[list[str]]:
     return groups
 
 
+def _without(options: list[list[str]], left_out: tuple[str, ...]) -> list[str]:
+    """The words of options but for some."""
+    return [word for option in options if option[0].partition("=")[0] not in left_out for word in option]
+
+
 def chosen_in(command: str, name: str, but: tuple[str, ...] = ()) -> str:
     """What was chosen in a command that was given before, each with a space before it, for one that differs from it.
 
@@ -205,16 +210,13 @@ def chosen_in(command: str, name: str, but: tuple[str, ...] = ()) -> str:
     first, *options = _groups(command) or [[]]
     if first != ["mmgtune", name]:
         return ""
-    left_out = {*_SAID_ANEW, *_OF_THE_RUN, *but}
-    kept = [word for option in options if option[0].partition("=")[0] not in left_out for word in option]
-    return "".join(f" {shlex.quote(word)}" for word in kept)
+    return "".join(f" {shlex.quote(word)}" for word in _without(options, (*_SAID_ANEW, *_OF_THE_RUN, *but)))
 
 
 def gone_on(command: str, folder: str) -> str:
     """A command that was stopped, as it goes on in its folder."""
     first, *options = _groups(command) or [[]]
-    left_out = ("-o", "--out", "--force", "--resume")
-    kept = [word for option in options if option[0].partition("=")[0] not in left_out for word in option]
+    kept = _without(options, ("-o", "--out", "--force", "--resume"))
     return shlex.join([*first, *kept, "--out", folder, "--resume"])
 
 

@@ -2,12 +2,18 @@
 
 import pytest
 
-from tests.importing.made import logged, turn
+from tests.importing.made import imported, logged, turn, write_csv
 
 
 @pytest.fixture
 def columns():
     return {name: values.copy() for name, values in logged(turn()).items()}
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory):
+    """The trial that the columns make."""
+    return imported(write_csv(tmp_path_factory.mktemp("plain") / "log.csv", logged(turn())))
 
 
 @pytest.fixture

@@ -34,6 +34,7 @@ r = { column = "rate", unit = "deg/min", positive = "starboard" }
 n = { column = "shaft", unit = "rpm" }
 delta = { column = "rudder", unit = "deg", positive = "starboard" }
 """
+UNITLESS = MAP.replace('column = "time"\nunit = "s"', 'column = "time"')
 """The map of ``logged``."""
 
 

@@ -20,21 +20,9 @@ from mmgtune.importing.proposing.sampling import sample_of
 from mmgtune.importing.sides import sided
 from mmgtune.limits import MATLAB_BYTES, SHEET_BYTES
 
-from .made import MAP, close, imported, logged, printed, refusal, said, turn, with_sides, write_csv
+from .made import MAP, UNITLESS, close, imported, printed, refusal, said, with_sides, write_csv
 
-UNITLESS = MAP.replace('column = "time"\nunit = "s"', 'column = "time"')
 START = "2024-05-01 23:57:00"
-
-
-@pytest.fixture(scope="module")
-def columns():
-    return logged(turn())
-
-
-@pytest.fixture(scope="module")
-def plain(columns, tmp_path_factory):
-    """The trial that the columns make."""
-    return imported(write_csv(tmp_path_factory.mktemp("plain") / "log.csv", columns))
 
 
 def stamped(columns, form, start=START):

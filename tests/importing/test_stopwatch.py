@@ -8,21 +8,9 @@ from mmgtune.errors import LogError
 from mmgtune.importing import import_logs, parse_map, propose_map
 from mmgtune.importing.stopwatch import times_told
 
-from .made import MAP, close, imported, logged, refusal, turn, write_csv
+from .made import UNITLESS, close, imported, refusal, write_csv
 
-UNITLESS = MAP.replace('column = "time"\nunit = "s"', 'column = "time"')
 VELOCITIES = ("ahead", "abeam")
-
-
-@pytest.fixture(scope="module")
-def columns():
-    return logged(turn())
-
-
-@pytest.fixture(scope="module")
-def plain(columns, tmp_path_factory):
-    """The trial that the columns make."""
-    return imported(write_csv(tmp_path_factory.mktemp("plain") / "log.csv", columns))
 
 
 def stopped(seconds, over=False):
