@@ -12,7 +12,7 @@ from mmgtune.errors import OptionError
 from mmgtune.options import SimulateOptions
 from mmgtune.predictor import PhysicsPredictor
 from mmgtune.resources import folder
-from mmgtune.simulation import as_trial, breakdown
+from mmgtune.simulation import Motion, as_trial, breakdown
 from mmgtune.stated import compare_stated
 from mmgtune.trial import TrialSet
 from mmgtune.trial.index_trial import IndexTrial, Stated
@@ -91,6 +91,13 @@ def test_what_diverged_is_not_written(suzaku, lost, tmp_path):
     assert [motion.diverged for motion in simulated] == [False, True]
     assert [path.name for path in simulated.write(tmp_path)] == ["drifting_0.parquet"]
     assert mmgtune.read_trial(tmp_path / "drifting_0.parquet").source == "generated"
+
+
+@pytest.mark.parametrize(("turn", "diverged"), [(3.1, False), (3.2, True), (-3.2, True)])
+def test_a_ship_spins_that_turns_by_more_than_half_a_turn_between_samples(turn, diverged):
+    states = np.zeros((4, 6))
+    states[2:, 2] = turn
+    assert Motion("run", np.arange(4.0), states, np.zeros((4, 2)), diverged=False).diverged is diverged
 
 
 def test_a_ship_that_spins_is_said_and_is_not_good(tmp_path):
