@@ -27,6 +27,7 @@ _FACTORS: dict[str, dict[str, float]] = {
     "1/s": {"1/s": 1.0, "rps": 1.0, "rpm": 1.0 / 60.0},
     "1/s^2": {"1/s^2": 1.0, "rpm/s": 1.0 / 60.0},
     "N": {"N": 1.0, "kN": 1e3},
+    "N m": {"N m": 1.0, "kN m": 1e3},
     "s": {"s": 1.0, "min": 60.0, "h": 3600.0, "d": 86400.0, "ms": 1e-3, "us": 1e-6},
     "kg/m^3": {"kg/m^3": 1.0, "t/m^3": 1e3},
     "deg/s": {"deg/s": 1.0, "deg/min": 1.0 / 60.0, "rad/s": 1.0 / DEG},
@@ -56,7 +57,7 @@ DIMENSIONLESS = ("-", "prime")
 _SHOWN = {"rad": "deg", "rad/s": "deg/s", "1/s": "rpm", "1/s^2": "rpm/s"}
 """SI units that people read something else for."""
 
-_IN_SENTENCES = {"rad/s^2": "deg/s^2", "N": "kN", "m/s^2": "m/s in ten minutes", "s/m": "per m/s"}
+_IN_SENTENCES = {"rad/s^2": "deg/s^2", "N": "kN", "N m": "kN m", "m/s^2": "m/s in ten minutes", "s/m": "per m/s"}
 """More of these, for sizes of causes."""
 
 _SIGNS = {"deg": "°", "deg/s": "°/s", "deg/s^2": "°/s²"}

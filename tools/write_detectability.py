@@ -5,7 +5,6 @@ python tools/write_detectability.py
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 from mmgtune.diagnose import Diagnosis, diagnose
@@ -13,6 +12,7 @@ from mmgtune.diagnose.causes import Detectability
 from mmgtune.files import write_text
 from mmgtune.profile import load_profile
 from mmgtune.trial import load_trials
+from mmgtune.units import read_as
 
 HEAD = """# What the bundled trials could tell
 
@@ -31,14 +31,6 @@ for, it says of each effect
 |---|---|---|---|
 """
 
-READ = {
-    "rad": (180.0 / math.pi, "°"),
-    "rad/s": (180.0 / math.pi, "°/s"),
-    "rad/s^2": (180.0 / math.pi, "°/s²"),
-    "N": (1e-3, "kN"),
-    "-": (1.0, ""),
-}
-
 
 def page(result: Diagnosis) -> str:
     """The page."""
@@ -51,7 +43,7 @@ def line(one: Detectability) -> str:
     limits = []
     for name, value in one.limit.items():
         if value is not None:
-            factor, unit = READ.get(one.units[name], (1.0, one.units[name]))
+            unit, factor = ("", 1.0) if one.units[name] == "-" else read_as(one.units[name])
             digits = 4 if unit == "" else 2
             limits.append(f"{name} {factor * value:.{digits}g} {unit}".strip())
     twins = ", ".join(f"{tag} {angle:.0f}°" for tag, angle in one.twins)

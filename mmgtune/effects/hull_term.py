@@ -11,7 +11,7 @@ from .effect import ForceEffect, Parameter
 
 _X = ("vv", "vr", "rr", "absv", "absr", "vvvv", "vvrr", "rrrr")
 _ODD = ("v", "r", "uv", "ur", "vabsv", "rabsr", "vabsr", "rabsv", "vvv", "vvr", "vrr", "rrr")
-_EVEN = ("one", "absr", "vv", "rr", "rrabsr")
+_EVEN = ("absr", "vv", "rr", "rrabsr")
 TERMS = (*(f"X_{t}" for t in _X), *(f"{f}_{t}" for f in "YN" for t in (*_ODD, *_EVEN)))
 """Terms of X' (even in v', r': the same to port and starboard), of Y' and N' (odd, then those that favour one side)."""
 
@@ -40,12 +40,12 @@ def hull_term(state: State, around: Surroundings, found: Forces, components: Any
     Y_ = (
         v * (e.Y_v + e.Y_uv * u + e.Y_vabsv * av + e.Y_vabsr * ar + e.Y_vvv * vv + e.Y_vvr * (v * r) + e.Y_vrr * rr)
         + r * (e.Y_r + e.Y_ur * u + e.Y_rabsr * ar + e.Y_rabsv * av + e.Y_rrr * rr)
-        + (e.Y_one + e.Y_absr * ar + e.Y_vv * vv + e.Y_rr * rr + e.Y_rrabsr * (rr * ar))
+        + (e.Y_absr * ar + e.Y_vv * vv + e.Y_rr * rr + e.Y_rrabsr * (rr * ar))
     )
     N_ = (
         v * (e.N_v + e.N_uv * u + e.N_vabsv * av + e.N_vabsr * ar + e.N_vvv * vv + e.N_vvr * (v * r) + e.N_vrr * rr)
         + r * (e.N_r + e.N_ur * u + e.N_rabsr * ar + e.N_rabsv * av + e.N_rrr * rr)
-        + (e.N_one + e.N_absr * ar + e.N_vv * vv + e.N_rr * rr + e.N_rrabsr * (rr * ar))
+        + (e.N_absr * ar + e.N_vv * vv + e.N_rr * rr + e.N_rrabsr * (rr * ar))
     )
     force = force_unit(p.ship.rho, p.ship.L_pp, p.ship.d, found.flow.U)
     moment = moment_unit(p.ship.rho, p.ship.L_pp, p.ship.d, found.flow.U)
@@ -54,7 +54,7 @@ def hull_term(state: State, around: Surroundings, found: Forces, components: Any
 
 def symbol(term: str) -> str:
     """The term as papers write it: N_rabsr is N_r|r|."""
-    return term.replace("absr", "|r|").replace("absv", "|v|").replace("_one", "_0")
+    return term.replace("absr", "|r|").replace("absv", "|v|")
 
 
 _SIZE = {"X": 0.006, "Y": 0.02, "N": 0.004}
@@ -66,11 +66,7 @@ _DRIFT, _YAW = 0.3, 1.5
 
 def _coefficient(term: str) -> Parameter:
     monomial = term[2:].replace("abs", "")
-    size = _SIZE[term[0]]
-    if monomial == "one":  # acts on straight courses too, where very little is enough
-        size *= 0.1
-    else:
-        size /= _DRIFT ** monomial.count("v") * _YAW ** monomial.count("r")
+    size = _SIZE[term[0]] / (_DRIFT ** monomial.count("v") * _YAW ** monomial.count("r"))
     return Parameter(
         f"coefficient of the term {symbol(term)}",
         "prime",

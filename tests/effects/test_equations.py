@@ -191,6 +191,19 @@ def test_a_propeller_pushes_the_stern_aside_by_a_share_of_its_thrust(added):
     np.testing.assert_allclose(force, [0.0, 0.05 * thrust, -0.05 * thrust * L / 2.0])
 
 
+def test_a_steady_force_is_the_same_at_any_speed_and_heading(added):
+    for state in (MOVING, MOVING._replace(u=0.5, psi=2.0), MOVING._replace(u=-1.0, r=0.0)):
+        force, _ = added("steady-force", {"side": 3000.0, "moment": -4e4}, state)
+        np.testing.assert_allclose(force, [0.0, 3000.0, -4e4], atol=1e-6)
+
+
+def test_a_hull_that_is_not_alike_on_both_sides_is_pushed_by_the_square_of_the_speed(added):
+    for state in (MOVING, MOVING._replace(u=0.5, v_m=0.0)):
+        force, _ = added("hull-asymmetry", {"Y_0": 0.002, "N_0": -4e-4}, state)
+        half = 0.5 * RHO * L * D * (state.u**2 + state.v_m**2)
+        np.testing.assert_allclose(force, [0.0, 0.002 * half, -4e-4 * half * L], rtol=1e-9, atol=1e-9)
+
+
 def test_memory_is_a_lag_of_first_order():
     e = find_effect("memory").params(6.0, 0.0, 0.0, 1.0)
     found = SimpleNamespace(hull=Force(1.0, 10.0, 100.0))

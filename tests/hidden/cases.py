@@ -146,6 +146,18 @@ def _side_force(k: int, rng: np.random.Generator) -> dict[str, float]:
     return {"force": factor, "moment": factor}
 
 
+def _thruster(k: int, rng: np.random.Generator) -> dict[str, float]:
+    """A push to either side somewhere between the perpendiculars."""
+    force = _sign(rng) * _motion(3000.0)[k]
+    return {"side": force, "moment": force * float(rng.uniform(-0.5, 0.5)) * PROFILE["particulars.L_pp"]}
+
+
+def _skew(k: int, rng: np.random.Generator) -> dict[str, float]:
+    """A push like that one, which grows with the square of the speed."""
+    force = _sign(rng) * _motion(0.002)[k]
+    return {"Y_0": force, "N_0": force * float(rng.uniform(-0.5, 0.5))}
+
+
 def _sides(k: int, rng: np.random.Generator) -> dict[str, float]:
     """A blade that moves more to one side than to the other: by as much less to the other, or right there."""
     share = _sign(rng) * _motion(0.15)[k]
@@ -198,6 +210,8 @@ LADDER: dict[str, Draw] = {
     ),
     "wind": _from("speed", (0.2, 1.0, 4.0, 8.0, 12.0)),
     "wave-drift": _from("force", _motion(6000.0)),
+    "steady-force": _thruster,
+    "hull-asymmetry": _skew,
     "propeller-side-force": _side_force,
     "memory": _one_of(*(_plain(name, (0.1, 0.4, 2.0, 8.0, 16.0)) for name in ("time_constant", "sway", "yaw"))),
     "rudder-stall": _degrees(_plain("angle", (38.0, 35.0, 32.0, 28.0, 22.0))),
@@ -230,7 +244,7 @@ LADDER: dict[str, Draw] = {
 }
 """By tag, the effect at five levels: below visible, hardly, small, typical, and well above."""
 
-DRAWN = [tag for tag in LADDER if tag != "water-log"]
+DRAWN = [tag for tag in LADDER if tag not in ("water-log", "steady-force", "hull-asymmetry")]
 """Those that pairs and triples are drawn from: as when they were first drawn, so that results stay comparable."""
 
 

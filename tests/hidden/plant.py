@@ -116,7 +116,7 @@ def flap_angle(delta, scale):
 
 @njit(cache=True)
 def hull(s, t, U, v_, r_):
-    """X [N], Y [N], N [N m] of the hull (14-15), with the terms of a hidden hull-term."""
+    """X [N], Y [N], N [N m] of the hull (14-15), with the terms of a hidden hull-term and asymmetry."""
     growth = s.resistance_factor + s.resistance_slope * (U - SPEED) / np.sqrt(G * s.L_pp)
     R_0 = s.R_0 * growth * (1.0 + s.unknown_fouling_growing * t / 600.0)
     X = -R_0 + s.X_vv * v_**2 + s.X_vr * v_ * r_ + s.X_rr * r_**2 + s.X_vvvr * v_**3 * r_ + s.X_vvvv * v_**4
@@ -124,6 +124,8 @@ def hull(s, t, U, v_, r_):
     N = s.N_v * v_ + s.N_r * r_ + s.N_vvv * v_**3 + s.N_vvr * v_**2 * r_ + s.N_vrr * v_ * r_**2 + s.N_rrr * r_**3
     Y += s.Y_vabsv * v_ * abs(v_) + s.Y_rabsr * r_ * abs(r_)
     N += s.N_vabsv * v_ * abs(v_) + s.N_rabsr * r_ * abs(r_) + s.N_rrabsr * r_**2 * abs(r_)
+    Y += s.Y_0
+    N += s.N_0
     held = 1.0 - s.unknown_hull_stall * np.tanh(max(0.0, abs(v_) - 0.15) / 0.1)
     return s.force * U**2 * X, s.force * U**2 * Y * held, s.moment * U**2 * N * held
 
@@ -194,7 +196,7 @@ def current(s, t, x):
 
 @njit(cache=True)
 def outside(s, t, y, psi, u_g, v_g):
-    """X [N], Y [N], N [N m] of wind, waves, a gust, a tug and a bank; still air is no force, R_0' has it in."""
+    """X [N], Y [N], N [N m] of wind, waves, a gust, tugs and a bank; still air is no force, R_0' has it in."""
     X = Y = N = 0.0
     if s.wind_speed != 0.0:
         X, Y, N = wind_force(s, s.wind_speed, s.wind_direction, psi, u_g, v_g)
@@ -209,6 +211,8 @@ def outside(s, t, y, psi, u_g, v_g):
     if 60.0 <= t < 180.0:
         Y += s.unknown_tug
         N += 0.4 * s.L_pp * s.unknown_tug
+    Y += s.steady_side
+    N += s.steady_moment
     X += suction * np.sin(psi)
     Y += suction * np.cos(psi)
     N -= 0.1 * s.L_pp * suction * np.cos(psi)

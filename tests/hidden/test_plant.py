@@ -153,6 +153,21 @@ def test_signs_of_wind_and_waves():
     assert plant.outside(s, 0.0, 0.0, 0.5 - np.pi / 2.0, 3.0, 0.0) == pytest.approx((0.0, -1e4, 0.0), abs=1e-9)
 
 
+def test_a_steady_force_stays_with_the_ship_whatever_she_does():
+    s = coefficients({}, {"steady-force": {"side": 3e3, "moment": -9e4}})
+    for psi, u in ((0.0, 3.0), (2.0, 1.0), (-1.0, -0.5)):
+        assert plant.outside(s, 40.0, 0.0, psi, u, 0.0) == pytest.approx((0.0, 3e3, -9e4))
+
+
+def test_a_hull_that_is_not_alike_on_both_sides_is_pushed_by_the_square_of_the_speed():
+    half = 0.5 * 1025.0 * 83.0 * 3.8
+    for speed in (1.0, 3.0):
+        skew = plant.hull(coefficients({}, {"hull-asymmetry": {"Y_0": 2e-3, "N_0": -4e-4}}), 0.0, speed, 0.0, 0.0)
+        alike = plant.hull(coefficients({}, {}), 0.0, speed, 0.0, 0.0)
+        added = np.subtract(skew, alike) / (half * speed**2)
+        assert added == pytest.approx((0.0, 2e-3, -4e-4 * 83.0))
+
+
 def test_a_symmetric_ship_turns_alike_to_both_sides():
     """Without side force of the propeller and with one gamma_R: the mirror image, also of a rudder offset."""
     ship = {"rudder.gamma_Rn": PROFILE["rudder.gamma_Rp"]}
