@@ -7,11 +7,11 @@ from .checking import read_baseline as read_baseline
 from .checking import record_baseline as record_baseline
 from .checking import update_baseline as update_baseline
 from .checking import write_baseline as write_baseline
-from .comparing import Comparison as Comparison
-from .comparing import compare as compare
 from .comparing_models import ModelComparison as ModelComparison
 from .comparing_models import compare_models as compare_models
 from .comparing_models import write_model_comparison as write_model_comparison
+from .comparing_profiles import Comparison as Comparison
+from .comparing_profiles import compare_profiles as compare_profiles
 from .diagnose import Diagnosis as Diagnosis
 from .diagnose import diagnose as diagnose
 from .diagnose import write_diagnosis as write_diagnosis

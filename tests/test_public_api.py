@@ -227,7 +227,7 @@ def test_a_result_goes_wherever_a_ship_does():
     assert mmgtune.validate([tuned, SHIP], turn).profiles[1].name == "suzaku (2)"
     assert mmgtune.simulate(tuned, turn)[0].id == "turn_p35"
     assert mmgtune.score(tuned, turn)[0].J == mmgtune.score(SHIP, turn)[0].J
-    assert mmgtune.compare(tuned, "suzaku_fam").profiles[0] == "suzaku"
+    assert mmgtune.compare_profiles(tuned, "suzaku_fam").profiles[0] == "suzaku"
     assert mmgtune.fit(tuned, turn, QUICK).profile is SHIP
     assert as_predictor(tuned).name == "suzaku"
     name = "hull.Y_v"
@@ -307,7 +307,7 @@ def test_nothing_is_replaced_unless_that_is_asked_for(name):
 
 
 def test_a_result_is_not_replaced_in_silence(tmp_path):
-    result = mmgtune.compare("suzaku", "suzaku_fam")
+    result = mmgtune.compare_profiles("suzaku", "suzaku_fam")
     baseline = mmgtune.record_baseline("suzaku", TRIALS["turn_p35"])
     predicted = mmgtune.predict("suzaku", options=mmgtune.PredictOptions(turn=("35",)))
     for write in (

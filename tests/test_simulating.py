@@ -128,7 +128,7 @@ def test_a_comparison_with_a_ship_that_diverges_is_written(tmp_path):
     hull = sections["hull"]
     far = replace(hull.coefficients["X_vvvv"], value=1e9)
     sections["hull"] = replace(hull, coefficients={**hull.coefficients, "X_vvvv": far})
-    found = mmgtune.compare("suzaku", replace(wild, sections=sections))
+    found = mmgtune.compare_profiles("suzaku", replace(wild, sections=sections))
     assert set(found.data["manoeuvres"]["motions"]["turn_p35"]) == {"a"}
     assert "NaN" not in found.write(tmp_path).read_text()
     mmgtune.render(tmp_path)

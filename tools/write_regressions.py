@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from mmgtune import EstimateOptions, estimate, load_profile, read_particulars, simulate
-from mmgtune.comparing import TURNS, ZIGZAGS
+from mmgtune.comparing_profiles import TURNS, ZIGZAGS
 from mmgtune.files import write_text
 from mmgtune.options import SimulateOptions
 from mmgtune.profile import ShipProfile

@@ -17,7 +17,7 @@ from . import completing
 from .options import App, takes
 
 if TYPE_CHECKING:
-    from ..comparing import Comparison
+    from ..comparing_profiles import Comparison
     from ..estimating import Particulars
 
 app = App(help="Look at ship profiles, make one from main dimensions, compare two.")
@@ -220,11 +220,11 @@ def compare(
 
       mmgtune profile compare before.toml after.toml --out compared
     """
-    from ..comparing import compare as compared
+    from ..comparing_profiles import compare_profiles
     from ..report import render
 
     with c.placed(out, force=force, anew=True):
-        found = compared(a, b)
+        found = compare_profiles(a, b)
         if out is not None:
             c.say(f"wrote {found.write(out, overwrite=True)}")
             for path in render(out):

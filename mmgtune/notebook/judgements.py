@@ -12,8 +12,8 @@ from .view import Line, Row, View
 
 if TYPE_CHECKING:
     from ..checking import CheckReport
-    from ..comparing import Comparison
     from ..comparing_models import ModelComparison
+    from ..comparing_profiles import Comparison
     from ..diagnose import Diagnosis
     from ..validating import Validation
     from ..voyages import VoyageValidation

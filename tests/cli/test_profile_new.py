@@ -96,7 +96,7 @@ def test_an_output_that_exists_is_found_before_the_work(tmp_path, monkeypatch):
     def work(*_args, **_named):
         raise AssertionError("worked before it looked")
 
-    monkeypatch.setattr("mmgtune.comparing.compare", work)
+    monkeypatch.setattr("mmgtune.comparing_profiles.compare_profiles", work)
     monkeypatch.setattr("mmgtune.simulating.simulate", work)
     for module, names in (("fitting", ("plan_fit", "plan_sweep", "plan_leave_out")), ("diagnose", ("plan_diagnosis",))):
         for name in names:

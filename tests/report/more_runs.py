@@ -35,7 +35,7 @@ from tests.hidden.cases import single
 from tests.hidden.plant import simulate as sail
 from tests.hidden.plant import write as write_trials
 from tests.predicting.test_predict import scattered, two_trials
-from tests.test_comparing import known
+from tests.test_comparing_profiles import known
 
 from . import fake_run
 

@@ -4,13 +4,13 @@ import functools
 
 import pytest
 
-from mmgtune import ValidateOptions, compare, load_profile, load_trials, validate
+from mmgtune import ValidateOptions, compare_profiles, load_profile, load_trials, validate
 from mmgtune.profile import tuned
 from mmgtune.report import render
 
 pytestmark = pytest.mark.xdist_group("compared")
 
-known = functools.cache(compare)
+known = functools.cache(compare_profiles)
 """Of bundled names, once for all tests."""
 
 
@@ -21,7 +21,7 @@ def _compiled() -> None:
 
 
 def test_a_profile_against_itself_differs_in_nothing():
-    found = compare("kvlcc2", "kvlcc2")
+    found = compare_profiles("kvlcc2", "kvlcc2")
     assert found.profiles == ("kvlcc2 (1)", "kvlcc2 (2)")
     assert all(row["a"] == row["b"] for row in found.data["coefficients"])
     assert all(row["a"] == row["b"] for row in found.data["manoeuvres"]["indices"])
@@ -30,7 +30,7 @@ def test_a_profile_against_itself_differs_in_nothing():
 
 def test_forces_are_those_of_the_equations():
     """Y_v and N_r of KVLCC2 are the slopes at the origin."""
-    found = compare("kvlcc2", "suzaku").data["forces"]
+    found = compare_profiles("kvlcc2", "suzaku").data["forces"]
     drift, yaw = found["over_drift"], found["over_yaw_rate"]
     middle = len(drift["beta_deg"]) // 2
     step = drift["beta_deg"][middle + 1] * 3.14159265 / 180.0
@@ -44,7 +44,7 @@ def test_distance_counts_in_scatters_of_the_formula(tmp_path):
     fam = load_profile("suzaku_fam")
     scatter = fam.coefficient("hull.N_v").scatter
     other = tuned(fam, {"hull.N_v": fam.value("hull.N_v") - 2.0 * scatter}, {}, {})
-    found = compare(fam, other)
+    found = compare_profiles(fam, other)
     (row,) = [row for row in found.data["coefficients"] if row["a"] != row["b"]]
     assert row["name"] == "hull.N_v"
     assert (row["a"] - row["b"]) / row["scatter"] == pytest.approx(2.0)

@@ -80,7 +80,7 @@ class Comparison(Displayed):
         return write_json(self.to_dict(), path, overwrite)
 
 
-def compare(a: ShipGiven, b: ShipGiven) -> Comparison:
+def compare_profiles(a: ShipGiven, b: ShipGiven) -> Comparison:
     """Two profiles: objects, paths or bundled names.
 
     Forces are at the approach speed of the first, with the revolutions of each, in the prime system of each.
