@@ -75,8 +75,8 @@ def check(made: LogMap, reader: TomlReader) -> None:
         reader.problem("the map has both local and geographic positions", "columns.latitude", fix="remove one of them")
     if {"u", "sog"} <= set(sources):
         reader.problem("the map has both u and speed over ground", "columns.sog", fix="remove one of them")
-    if len({"sog", "cog"} & set(sources)) == 1:
-        reader.problem("speed and course over ground are of use only together", "columns", fix="name both")
+    if "cog" in sources and "sog" not in sources:
+        reader.problem("a course over ground is of no use without the speed", "columns.cog", fix="name sog too")
     if made.axes == "earth" and len({"u", "v"} & set(sources)) == 1:
         reader.problem("velocities in earth axes are of use only together", "velocity", "axes", fix="name u and v")
     if made.antenna and {"u", "v"} & set(sources) and made.point is None:

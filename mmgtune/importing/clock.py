@@ -14,12 +14,14 @@ from ..errors import LogError, Problem
 from ..trial.schema import impossible
 from .dates import ORDERS, Dates, is_date, order_told
 from .mapping import TimeSource
-from .numerals import numbers_in
-from .stopwatch import EITHER, MINUTES, TIME_OF_DAY, of_day, of_watch, times_told
+from .numerals import holds_numbers, numbers_in
+from .stopwatch import DIGITS, EITHER, MINUTES, TIME_OF_DAY, of_day, of_digits, of_watch, times_told
 
 DAY, HOUR = 86400.0, 3600.0
 OUTLIERS = 3
 """Rows in a row whose stamps may be off while the clock as a whole is right."""
+NEWEST_FIRST = 0.98
+"""Share of steps back in time from which rows are written newest first, and are in order otherwise."""
 ISO = r"\d{4}-?\d{2}-?\d{2}[T ](?!.*[A-Ya-z]{2}$)"
 """Beginning of a date that the library reads, which knows no zones by name."""
 
@@ -41,7 +43,7 @@ class Stamps:
     @property
     def clock(self) -> bool:
         """Whether stamps are dates or clocks, so that what is returned is in s."""
-        return self.format in ("iso", TIME_OF_DAY, MINUTES, "date", *ORDERS)
+        return self.format in ("iso", TIME_OF_DAY, DIGITS, MINUTES, "date", *ORDERS)
 
     def of(self, values: Any, rows: IntArray) -> FloatArray:
         """Time (n_rows,) of a pandas column: as printed, or in s from the first stamp; NaN where there is none.
@@ -57,11 +59,15 @@ class Stamps:
         if pd.api.types.is_numeric_dtype(values.dtype) and self.format in (None, "number"):
             self.format = "number"
             return np.asarray(values.to_numpy(dtype=np.float64, na_value=np.nan))
+        if self.format == DIGITS and holds_numbers(values):
+            return self.over_midnight(of_digits(values.to_numpy(dtype=np.float64, na_value=np.nan)))
         text = values.astype("string").str.strip()
         if self.format is None:
             self.format = self._seen(text, rows)
         if self.format == "number":
             return numbers_in(text, self.decimal)
+        if self.format == DIGITS:
+            return self.over_midnight(of_digits(numbers_in(text, self.decimal)))
         if self.format == TIME_OF_DAY:
             return self.over_midnight(of_day(text))
         if self.format == MINUTES:
@@ -157,9 +163,15 @@ class Stamps:
 
     def _unreadable(self, text: Any, rows: IntArray, how: str) -> None:
         shown = text.iloc[0] if len(text) else ""
-        fix = 'say format = "number", "iso", "clock", "mm:ss", "dmy", "mdy" or "ymd" in [time]'
+        fix = 'say format = "number", "iso", "clock", "hhmmss", "mm:ss", "dmy", "mdy" or "ymd" in [time]'
         place = f"{self.path}, line {rows[0] if len(rows) else 0}"
         raise LogError(Problem(f"time cannot be read {how}", place, f"the first stamp is '{shown}'", fix))
+
+
+def falls(t: FloatArray) -> bool:
+    """Whether stamps (n_rows,) stand newest first."""
+    steps = np.diff(t[np.isfinite(t)])
+    return len(steps) > 2 and float(np.mean(steps <= 0.0)) > NEWEST_FIRST and float(np.median(steps)) < 0.0
 
 
 @dataclass

@@ -23,7 +23,7 @@ from ..trial.schema import ATTRIBUTES, directions, known_column
 from ..trial.unusable import unusable
 from . import conventions, motion
 from .cleaning import without_spikes
-from .clock import put_right
+from .clock import falls, put_right
 from .cutting import kept, pull_out
 from .doubts import fix_in_map
 from .forms import form_of, refuse_binary
@@ -236,6 +236,7 @@ def _records(log: Path, log_map: LogMap) -> tuple[list[Record], LogMap]:
     readers = {"csv": read_text, "parquet": read_parquet, "xlsx": read_workbook, "mat": read_matlab}
     table = readers[form](log, log_map)
     log_map = as_cells_say(log_map, table.sided, table.headers)
+    _turn_round(table)
     _drop_duplicates(table)
     line = put_right(time_in_seconds(table, log_map), log_map.time, table.place)
     table.columns = {name: values[line.keep] for name, values in table.columns.items()}
@@ -251,6 +252,14 @@ def _records(log: Path, log_map: LogMap) -> tuple[list[Record], LogMap]:
         record.notes += [*table.notes, *line.notes]
         records.append(record)
     return records, log_map
+
+
+def _turn_round(table: Table) -> None:
+    """Put rows that were written newest first in the order of time, in place."""
+    if falls(table.t):
+        table.t, table.rows = table.t[::-1], table.rows[::-1]
+        table.columns = {name: values[::-1] for name, values in table.columns.items()}
+        table.notes.append("the rows are written newest first, and were turned round")
 
 
 def _drop_duplicates(table: Table) -> None:
@@ -276,14 +285,17 @@ def _of_record(record: Record, log_map: LogMap, step: float | None) -> list[Piec
     grid = on_grid(record, log_map, step)
     columns = dict(grid.columns)
     measured = {name for name in record.series if name in ("u", "v", "r")}
-    if {"sog", "cog"} <= set(columns):
+    notes = list(record.notes)
+    along_track = "sog" in columns and "cog" not in columns
+    if along_track:
+        notes += motion.with_course(grid.t, columns)
+    if "sog" in columns:
         sog, cog = columns.pop("sog"), columns.pop("cog")
         columns["north"], columns["east"] = sog * np.cos(cog), sog * np.sin(cog)
     if "u" in measured or "north" not in columns:
         same_units_throughout(grid.t, columns, where)
     if "latitude" in log_map.sources or log_map.format == "nmea":
         not_mirrored(columns, where)
-    notes = list(record.notes)
     if grid.bridged:
         notes.append(f"holes of up to {log_map.gap:g} steps in inputs were bridged linearly")
     notes += motion.at_midship(columns, log_map)
@@ -296,7 +308,7 @@ def _of_record(record: Record, log_map: LogMap, step: float | None) -> list[Piec
     except conventions.NoYawRate as error:
         raise _elsewhere(error, record.path, log_map) from error
     notes += motion.over_ground(columns, log_map)
-    before |= {"u", "v"} & set(columns)
+    before |= ({"u"} if along_track else {"u", "v"}) & set(columns)
     notes += motion.with_velocities(grid.t, columns)
     derived = tuple(name for name in ("u", "v", "r") if name in columns and name not in before)
     notes += with_mean(columns, "n", log_map)

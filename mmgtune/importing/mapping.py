@@ -12,7 +12,7 @@ from ..trial.schema import MAIN_INPUTS
 ASKS = "?"
 """How a value begins that is a question to who uses the map."""
 FORMATS = ("csv", "parquet", "nmea", "xlsx", "mat")
-TIME_FORMATS = ("number", "iso", "clock", "mm:ss", "date", "dmy", "mdy", "ymd")
+TIME_FORMATS = ("number", "iso", "clock", "hhmmss", "mm:ss", "date", "dmy", "mdy", "ymd")
 PROJECTIONS = ("transverse-mercator", "azimuthal-equidistant")
 TABLES = {
     "": (

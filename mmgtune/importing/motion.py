@@ -37,6 +37,13 @@ def with_yaw_rate(t: FloatArray, columns: dict[str, FloatArray]) -> list[str]:
     return [f"r was not measured: it is the slope of the heading, smoothed with a time scale of {tau:.3g} s"]
 
 
+def with_course(t: FloatArray, columns: dict[str, FloatArray]) -> list[str]:
+    """Add the course over ground [rad], which was not measured, from the positions; what was done, in sentences."""
+    (north, east), tau = _rates(t, [columns["x"], columns["y"]])
+    columns["cog"] = np.arctan2(east, north)
+    return [f"the course over ground is the direction of the track, smoothed with a time scale of {tau:.3g} s"]
+
+
 def over_ground(columns: dict[str, FloatArray], log_map: LogMap) -> list[str]:
     """Turn velocity over ground, ``north`` and ``east``, into u and v of midship, in place.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -23,8 +24,24 @@ def numbers_in(texts: Any, decimal: str) -> FloatArray:
     """
     import pandas as pd
 
-    bare = texts.str.replace(",", ".", regex=False) if decimal == "," else texts
+    if decimal == ",":
+        bare = texts.str.replace(",", ".", regex=False)
+    else:
+        bare = texts.str.replace(",", "", regex=False) if _in_thousands(texts) else texts
     return np.asarray(pd.to_numeric(bare, errors="coerce").to_numpy(dtype=np.float64, na_value=np.nan))
+
+
+_THOUSANDS = re.compile(r"[-+]?\d{1,3}(,\d{3})+(\.\d*)?")
+_PLAINLY = re.compile(r"[-+]?\d{1,3}(,\d{3})+\.\d*|[-+]?\d{1,3}(,\d{3}){2,}")
+"""Such as 1,001.5 and 1,234,567: a comma that no decimal sign can be."""
+
+
+def _in_thousands(texts: Any) -> bool:
+    """Whether commas divide the thousands of a column: all that have one read so, and some cannot read otherwise."""
+    commas = texts[texts.str.contains(",", regex=False).fillna(False)]
+    return bool(
+        len(commas) and commas.str.fullmatch(_PLAINLY).any() and commas.str.fullmatch(_THOUSANDS).fillna(False).all()
+    )
 
 
 def number_in(text: str, decimal: str) -> float | None:

@@ -103,10 +103,16 @@ def unit_of(name: str, table: Table, source: Source | TimeSource, target: str, v
 
     Raises LogError where neither says it, with the question to answer, and where they contradict each other.
     """
-    if name in table.stated:
-        return table.stated[name]
     header, stated = table.headers[name], source.unit
     known = units.factors(target)
+    if in_cells := table.stated.get(name):
+        if stated not in (None, in_cells):
+            what, why = f"the map says '{header}' is in {stated}, its cells say {in_cells}", "one of them is wrong"
+            raise LogError(Problem(what, place, why, "correct the map's unit or remove it"))
+        if in_cells not in known:
+            what = f"the cells of '{header}' say {in_cells}, which is no unit of {meaning(name) or name}"
+            raise LogError(Problem(what, place, fix="name another column in the map"))
+        return in_cells
     printed = unit_in(header)
     printed = printed if printed in known else None
     if stated and printed and printed not in (stated, source.header_says):

@@ -1,4 +1,4 @@
-"""Stamps of two or three numbers between colons: the time of day, or minutes and seconds of a stopwatch."""
+"""Stamps of two or three numbers, with colons or without: the time of day, or minutes and seconds of a stopwatch."""
 
 from __future__ import annotations
 
@@ -14,6 +14,8 @@ WATCH = r"(?:(\d{1,2}):)?(\d{1,3}):(\d{2}(?:[.,]\d*)?)"
 """Hours, if any, minutes and seconds."""
 TIME_OF_DAY, MINUTES, EITHER = "clock", "mm:ss", "clock or mm:ss"
 """What stamps are: hours first, minutes first, or one as well as the other."""
+DIGITS = "hhmmss"
+"""The same without colons: a time of day as one number."""
 _TWO, _SPLIT = r"(\d{1,3}):(\d{2})", r"(\d{1,3}):(\d{2})[.,]\d*"
 _FEW = 0.02
 """Share of damaged stamps that tells nothing."""
@@ -61,6 +63,28 @@ def of_day(texts: Any) -> FloatArray:
     h = np.where(half.notna().to_numpy(dtype=bool), np.mod(h, 12.0), h)
     h = h + 12.0 * (half == "p").to_numpy(dtype=bool, na_value=False)
     return np.asarray(3600.0 * h + 60.0 * m + s)
+
+
+def of_digits(numbers: FloatArray) -> FloatArray:
+    """Seconds since midnight (n_rows,) of times of day written as one number, 235959.5; NaN where it is none."""
+    h, rest = np.divmod(numbers, 1e4)
+    m, s = np.divmod(rest, 100.0)
+    return np.where((numbers >= 0.0) & (h < 24.0) & (m < 60.0) & (s < 60.0), 3600.0 * h + 60.0 * m + s, np.nan)
+
+
+def in_digits(numbers: FloatArray) -> bool:
+    """Whether numbers (n_rows,) are such times: all can be, and read so they grow evenly, but not as they stand.
+
+    The first full minute tells it: from 59 to 100.
+    """
+    known = numbers[np.isfinite(numbers)]
+    t = of_digits(known)
+    if len(t) < 10 or not np.isfinite(t).all() or np.ptp(known) == 0.0:
+        return False
+    steps = np.mod(np.diff(t), 86400.0)
+    usual = float(np.median(steps))
+    jumps = np.abs(np.diff(known) - np.diff(t)) > 1.0  # a minute, an hour or midnight between
+    return bool(jumps.any() and not jumps.all() and usual > 0.0 and (steps[jumps] < 5.0 * max(usual, 1.0)).mean() > 0.9)
 
 
 def of_watch(texts: Any) -> FloatArray:

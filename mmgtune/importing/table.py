@@ -17,6 +17,7 @@ from .degrees import degrees
 from .mapping import LogMap
 from .numerals import holds_numbers, number_in, numbers_in
 from .sides import SIGNED, sided, takes_side
+from .with_units import WITH_UNIT, numbers_with_unit
 
 MOST_ROWS = 1_000_000
 """Rows kept of one log; of longer ones every second, fourth, ... row, so that memory stays bounded."""
@@ -105,8 +106,6 @@ class BadCells:
 
 _ONE, _SEVERAL = ("cell", "says no side or ", "is no number"), ("cells", "say no side or ", "are no numbers")
 
-_WITH_UNIT = re.compile(r"[-+]?[\d.,]+(?:[eE][-+]?\d+)?\s*([^\d\s].*)")
-
 
 class Cells:
     """Turns cells into numbers and remembers what could not be turned."""
@@ -123,7 +122,7 @@ class Cells:
     def of(self, name: str, values: Any, rows: IntArray) -> FloatArray:
         """Numbers (n_rows,) of a pandas column, NaN where a cell holds none."""
 
-        side_said = False
+        side_said = says_more = False
         if holds_numbers(values):
             numbers = values.to_numpy(dtype=np.float64, na_value=np.nan)
         else:
@@ -134,13 +133,18 @@ class Cells:
                 written = degrees(text)
                 # One way of writing in a column: a plain number among others is of no known unit.
                 if np.isfinite(written).any():
-                    numbers, self.stated[name] = written, "deg"
+                    numbers, self.stated[name], says_more = written, "deg", True
             elif takes_side(name) and np.isnan(numbers).any():
                 with_side = sided(text, self.decimal)
                 # Zeros alone say no side.
                 if (np.isfinite(with_side) & np.isnan(numbers)).any():
                     numbers, side_said = with_side, True
-            wrong = np.isnan(numbers) & ~text.str.lower().isin(self.missing).to_numpy() & text.notna().to_numpy()
+            there = ~text.str.lower().isin(self.missing).to_numpy() & text.notna().to_numpy()
+            if there.any() and np.isnan(numbers[there]).all():
+                with_unit, unit = numbers_with_unit(text.where(there), self.decimal)
+                if unit and self.stated.get(name, unit) == unit:
+                    numbers, self.stated[name], says_more = with_unit, unit, True
+            wrong = np.isnan(numbers) & there
             if wrong.any():
                 k = int(np.flatnonzero(wrong)[0])
                 bad = self.bad.setdefault(name, BadCells(0, int(rows[k]), str(text.iloc[k])))
@@ -149,7 +153,7 @@ class Cells:
             numbers = np.where(numbers == number, np.nan, numbers)
         if side_said:
             self.sided.add(name)
-        elif (plain := np.flatnonzero(np.abs(numbers) > 0.0)).size:
+        elif not says_more and (plain := np.flatnonzero(np.abs(numbers) > 0.0)).size:
             self.plain.setdefault(name, int(rows[plain[0]]))
         return np.asarray(numbers)
 
@@ -159,6 +163,10 @@ class Cells:
         table.stated |= self.stated
         table.sided = tuple(name for name in table.columns if name in self.sided)
         no_side, plainly = "only some cells of the column say a side, such as 10 P", "those to starboard positive"
+        for name in set(self.stated) & set(self.plain):  # of a long log too
+            place = f"{table.path}, {table.unit} {self.plain[name]}, column '{table.headers[name]}'"
+            what, why = f"only some cells of the column say a unit, {self.stated[name]}", "here a number has none"
+            problems.append(Problem(what, place, why, "write the column as plain numbers in one unit"))
         for name in self.sided & set(self.plain):  # a long log, read in blocks that differ
             place = f"{table.path}, {table.unit} {self.plain[name]}, column '{table.headers[name]}'"
             fix = f"write the column as plain numbers, {plainly}"
@@ -181,9 +189,9 @@ class Cells:
             elif takes_side(name) and SIGNED.fullmatch(bad.text):
                 fix = f"write the column as plain numbers, {plainly}, and remove the sides"
                 problems.append(Problem("a cell has both a sign and a side", place, cells, fix))
-            elif match := None if is_unit(bad.text) else _WITH_UNIT.fullmatch(bad.text):
+            elif match := None if is_unit(bad.text) else WITH_UNIT.fullmatch(bad.text):
                 fix = "write the column in one unit, as plain numbers, and say the unit in the map"
-                problems.append(Problem(f"a cell has a unit of its own, '{match.group(1)}'", place, cells, fix))
+                problems.append(Problem(f"a cell has a unit of its own, '{match.group(2)}'", place, cells, fix))
             elif bad.count > 0.5 * n_rows:
                 fix = f"name the column that holds '{name}'; texts for no value go into missing = [...] of [log]"
                 problems.append(Problem(f"the column of '{name}' holds text", place, cells, fix))

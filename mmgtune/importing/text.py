@@ -144,21 +144,21 @@ def look(path: Path, log_map: LogMap) -> Layout:
     LOG_LINE.hold(max(len(line) for line in lines) + 1, str(path), LogError)
     delimiter = log_map.delimiter or _delimiter(lines[at:])
     if log_map.header:
-        names = _fields(lines[at], delimiter)
+        names = fields_of(lines[at], delimiter)
         LOG_COLUMNS.hold(len(names), f"{path}, line {at + 1}", LogError)
         if all(_is_number(name) for name in names):
             why = f"the line is '{lines[at][:60]}'"
             fix = "say header = false in [log] and give columns by number, or correct 'skip'"
             raise LogError(Problem("numbers where names of columns should be", f"{path}, line {at + 1}", why, fix))
         for number, line in enumerate(lines[at + 1 :], start=at + 2):
-            fields = _fields(line, delimiter)
+            fields = fields_of(line, delimiter)
             if len(fields) == len(names) + 1 and not fields[-1]:
                 # Lines that end with a delimiter: one column more, without a name.
                 names = [*names, ""]
             elif len(fields) > len(names) and number == at + 2:
                 raise _too_wide(path, number, f"it has {len(fields)} fields, the header has {len(names)}")
         return Layout(names, at + 1, delimiter, f"{path}, line {at + 1}")
-    width = max(len(_fields(line, delimiter)) for line in lines[at : at + 20])
+    width = max(len(fields_of(line, delimiter)) for line in lines[at : at + 20])
     LOG_COLUMNS.hold(width, f"{path}, line {at + 1}", LogError)
     if log_map.fields not in (None, width):
         why = f"its rows have {width} fields, and the map is for rows of {log_map.fields}"
@@ -226,10 +226,20 @@ def _delimiter(lines: list[str]) -> str:
     return " "
 
 
-def _fields(line: str, delimiter: str) -> list[str]:
+COMMENT = ("#", "%", "//", "!", ";", "*")
+"""What stands alone before names of columns that are written as a comment."""
+_UNIT_APART = re.compile(r"\s+(?=[\[(][^\s\])]*[\])](\s|$))")
+
+
+def fields_of(line: str, delimiter: str) -> list[str]:
+    """The fields of a line; between blanks the names of a comment, "% t [s]  x [m]", are those without its mark."""
     if delimiter == " ":
-        return line.split()
-    return [field.strip() for field in next(csv.reader([line], delimiter=delimiter), [])]
+        found = line.split()
+        return _UNIT_APART.sub("", line).split()[1:] if found and found[0] in COMMENT else found
+    try:
+        return [field.strip() for field in next(csv.reader([line], delimiter=delimiter), [])]
+    except csv.Error:
+        return [field.strip() for field in line.split(delimiter)]
 
 
 def _is_number(text: str) -> bool:

@@ -16,8 +16,10 @@ import scipy.io
 from mmgtune.importing import matlab, propose_map, workbook
 from mmgtune.importing.dates import Dates
 from mmgtune.importing.degrees import degrees
+from mmgtune.importing.numerals import numbers_in
 from mmgtune.importing.proposing.sampling import sample_of
 from mmgtune.importing.sides import sided
+from mmgtune.importing.stopwatch import in_digits, of_digits
 from mmgtune.limits import MATLAB_BYTES, SHEET_BYTES
 
 from .made import MAP, UNITLESS, close, imported, printed, refusal, said, with_sides, write_csv
@@ -32,6 +34,78 @@ def stamped(columns, form, start=START):
 
 
 # dates
+
+
+@pytest.mark.parametrize("as_text", [True, False])
+def test_times_of_day_in_digits(tmp_path, columns, plain, as_text):
+    """235959 is followed by 000000; as numbers they jump at every full minute, and no longitude is a time."""
+    stamps = stamped(columns, "%H%M%S")["time"]
+    columns["time"] = [f"{one}.00" for one in stamps] if as_text else [int(one) for one in stamps]
+    log = write_csv(tmp_path / "log.csv", {**columns, "lon": np.linspace(139.0, 139.1, 400)})
+    proposal = propose_map([log])
+    assert proposal.map().time.format == "hhmmss"
+    assert proposal.asks == ()
+    close(imported(log, proposal.text), plain, 1e-8)
+
+
+def test_numbers_that_are_no_times_of_day():
+    assert not in_digits(np.arange(0.0, 400.0))
+    assert not in_digits(np.arange(0.0, 4000.0, 100.0))
+    assert in_digits(np.array([5957.0, 5958.0, 5959.0, *np.arange(10000.0, 10008.0)]))
+    assert of_digits(np.array([235959.5, 240000.0, 6000.0, -1.0])) == pytest.approx(
+        [86399.5] + 3 * [np.nan], nan_ok=True
+    )
+
+
+@pytest.mark.parametrize("form", ["%Y-%m-%dT%H:%M:%S", "%H:%M:%S", ""])
+def test_rows_that_are_written_newest_first(tmp_path, columns, plain, form):
+    found = stamped(columns, form) if form else columns
+    log = write_csv(tmp_path / "log.csv", pd.DataFrame(found)[::-1].to_dict("list"))
+    proposal = propose_map([log])
+    assert proposal.asks == proposal.problems == ()
+    close(imported(log, proposal.text), plain, 1e-8)
+    assert "the rows are written newest first, and were turned round" in said(log, proposal.text)
+
+
+# numbers
+
+
+def test_thousands_with_a_comma(tmp_path, columns, plain):
+    columns["north"] = [f"{one:,.9f}" for one in columns["north"]]
+    columns["east"] = [f"{one + 1e6:,.6f}" for one in columns["east"]]
+    log = write_csv(tmp_path / "log.csv", columns, quoting=1)
+    back = imported(log)
+    assert np.abs(back.x - plain.x).max() < 1e-6
+    assert np.abs(back.y - 1e6 - plain.y).max() < 1e-5
+    assert propose_map([log]).problems == ()
+
+
+@pytest.mark.parametrize(
+    ("texts", "numbers"),
+    [
+        (["1,001.5", "999", "-2,000"], [1001.5, 999.0, -2000.0]),
+        (["1,234,567", "3"], [1234567.0, 3.0]),
+        (["3,141", "2,5"], [np.nan, np.nan]),  # decimal commas
+        (["3,141", "2,718"], [np.nan, np.nan]),  # as good as those
+        (["1,001.5", "2,5"], [np.nan, np.nan]),
+    ],
+)
+def test_commas_that_no_decimal_sign_can_be(texts, numbers):
+    assert numbers_in(pd.Series(texts, dtype="string"), ".") == pytest.approx(numbers, nan_ok=True)
+
+
+def test_cells_that_say_their_unit(tmp_path, columns, plain):
+    units = {"ahead": " kn", "abeam": "kn", "heading": "°", "rate": " °/min", "rudder": " deg", "shaft": " rpm"}
+    for name, unit in units.items():
+        columns[name] = [f"{one:.9f}{unit}" for one in columns[name]]
+    columns["rate"][7] = "N/A"
+    log = write_csv(tmp_path / "log.csv", columns)
+    assert propose_map([log]).problems == ()
+    assert np.abs(imported(log).u - plain.u).max() < 1e-8
+    wrong = MAP.replace('column = "ahead", unit = "kn"', 'column = "ahead", unit = "m/s"')
+    assert "the map says 'ahead' is in m/s, its cells say kn" in refusal(lambda: imported(log, wrong))
+    columns["ahead"][5] = "3.1 m/s"
+    assert "a cell has a unit of its own, 'kn'" in refusal(lambda: imported(write_csv(tmp_path / "b.csv", columns)))
 
 
 @pytest.mark.parametrize("order", ["dmy", "mdy", "ymd"])

@@ -183,10 +183,10 @@ def test_a_circle_at_a_degree_a_second_without_names(tmp_path, head):
     proposal = propose_map([circle(tmp_path / "log.csv", head)])
     guesses = proposal.guesses
     assert {name: one.column for name, one in guesses.items()} == {
-        "t": 0, "x": 1, "y": 2, "psi": 3, "u": 4, "r": 5, "n": 6, "delta": 7,
+        "t": 0, "x": 1, "y": 2, "psi": 3, "sog": 4, "r": 5, "n": 6, "delta": 7,
     }  # fmt: skip
-    units = {name: guesses[name].keys["unit"] for name in ("u", "r", "n", "delta")}
-    assert units == {"u": "kn", "r": "deg/min", "n": "rpm", "delta": "deg"}
+    units = {name: guesses[name].keys["unit"] for name in ("sog", "r", "n", "delta")}
+    assert units == {"sog": "kn", "r": "deg/min", "n": "rpm", "delta": "deg"}
     assert [row[1] for row in proposal.table()] == [f"column {k + 1}" for k in (0, 1, 2, 3, 4, 5, 6, 7)]
 
 
@@ -415,6 +415,66 @@ def test_json_and_console(tmp_path):
     assert (tmp_path / "map.toml").read_text() == "mine"
 
 
+def test_a_rudder_ordered_is_taken_before_a_velocity_that_looks_like_one(tmp_path):
+    columns = logged(suzaku("zigzag_10"))
+    columns["rudder_cmd"] = columns.pop("rudder")
+    del columns["ahead"]
+    columns["CH 4"] = columns.pop("abeam")
+    found = propose_map([write_csv(tmp_path / "log.csv", columns)])
+    assert found.map().sources["delta"].column == "rudder_cmd"
+    assert found.asks == ()
+
+
+@pytest.mark.parametrize(("name", "track"), [("SOG", True), ("Speed", True), ("Speed", False)])
+def test_one_speed_is_the_track_s_or_its_part_ahead(tmp_path, name, track):
+    """Of a tight turn drift tells them apart; a speed along the track has the direction of the positions."""
+    trial = suzaku("turn_p35")
+    columns = logged(trial)
+    both = columns.pop("ahead"), columns.pop("abeam")
+    columns[f"{name} [kn]"] = np.hypot(*both) if track else both[0]
+    log = write_csv(tmp_path / "log.csv", columns)
+    proposal = propose_map([log])
+    assert ("sog" in proposal.guesses) == track
+    assert ("u" in proposal.guesses) != track
+    assert proposal.asks == proposal.problems == ()
+    back = imported(log, proposal.text)
+    drifting = slice(60, None)
+    apart = np.hypot(trial.u, trial.v_m)[drifting] - trial.u[drifting]
+    assert np.sqrt(np.mean((back.u - trial.u)[drifting] ** 2)) < 0.2 * np.sqrt(np.mean(apart**2))
+
+
+def test_a_speed_whose_cells_and_name_are_in_cm(tmp_path):
+    columns = logged(turn())
+    for name, new in (("ahead", "u (cm/s)"), ("abeam", "v (cm/s)")):
+        columns[new] = columns.pop(name) * KNOT * 100.0
+    found = propose_map([write_csv(tmp_path / "log.csv", columns)]).map().sources
+    assert [(found[name].column, found[name].unit) for name in "uv"] == [("u (cm/s)", "cm/s"), ("v (cm/s)", "cm/s")]
+
+
+@pytest.mark.parametrize("head", ["% t [s]  north [m]  east[m] HDG (deg)  RUD [deg] RPM", "# t north east HDG RUD RPM"])
+def test_names_in_a_comment_between_blanks(tmp_path, head):
+    columns = logged(turn())
+    kept = [columns[name] for name in ("time", "north", "east", "heading", "rudder", "shaft")]
+    log = tmp_path / "log.dat"
+    rows = [" ".join(f"{one:.6f}" for one in row) for row in zip(*kept, strict=True)]
+    log.write_text("\n".join(["% zigzag, full scale", head, *rows]))
+    proposal = propose_map([log])
+    assert proposal.problems == ()
+    text = proposal.text.replace('? "deg"', "deg")
+    assert "RUD" in str(parse_map(text).sources["delta"].column)
+    close(imported(log, text), imported(write_csv(tmp_path / "log.csv", {**columns, "ahead": np.nan}), _WITHOUT), 1e-5)
+
+
+_WITHOUT = "\n".join(line for line in MAP.splitlines() if not line.startswith(("u =", "v =", "r =", "[vel", "axes")))
+
+
+def test_a_log_without_positions_says_so(tmp_path):
+    columns = {name: values for name, values in logged(turn()).items() if name not in ("north", "east")}
+    proposal = propose_map([write_csv(tmp_path / "log.csv", columns)])
+    assert any("no column is called a position" in note for note in proposal.notes)
+    assert {"columns.x.column", "columns.y.column"} <= set(proposal.asks)
+
+
 # names
 
 
@@ -425,6 +485,8 @@ def test_json_and_console(tmp_path):
         ("Vitesse de giration (°/min)", "r", "deg/min"), ("対地速力 [ノット]", "sog", "kn"), ("船首方位", "psi", ""),
         ("Geschwindigkeit quer", "v", ""), ("Heading_deg", "psi", "deg"), ("Rudder Order", "order", ""),
         ("Wind dir app", "wind_dir_app", ""), ("shaft_rpm", "n", "rpm"), ("Telegraph rpm", "order", "rpm"),
+        ("vel_n", "u", ""), ("vel_e", "v", ""), ("pos_n", "x", ""), ("utm_e", "y", ""), ("RPM", "n", "rpm"),
+        ("sog_ms", "sog", "m/s"), ("Speed [ms]", "u", "m/s"), ("timestamp_ms", "time", "ms"),
     ],
 )  # fmt: skip
 def test_names(name, quantity, unit):

@@ -10,11 +10,17 @@ import numpy as np
 
 from ... import units
 from ...arrays import FloatArray
-from ..stopwatch import EITHER, MINUTES, TIME_OF_DAY
+from ..clock import falls
+from ..stopwatch import DIGITS, EITHER, MINUTES, TIME_OF_DAY, in_digits
 from .sampling import Sample, seconds
 from .words import TIME
 
-CELLS = {TIME_OF_DAY: "clock times", MINUTES: "minutes and seconds", EITHER: "two numbers with a colon"}
+CELLS = {
+    TIME_OF_DAY: "clock times",
+    DIGITS: "clock times in digits",
+    MINUTES: "minutes and seconds",
+    EITHER: "two numbers with a colon",
+}
 """What cells are that are times without a date."""
 _NAMED = {TIME_OF_DAY: re.compile(r"\bh{1,2} ?: ?m"), MINUTES: re.compile(r"\bm(in)?m? ?: ?s")}
 
@@ -49,7 +55,13 @@ def clocks(sample: Sample, said: Sequence[str], units_said: Sequence[str]) -> li
                 what = CELLS.get(stamps[1], "dates")
                 found.append(Clock(k, stamps[1], "", 0.9 + named, f"its cells are {what}, such as {shown}"))
             continue
+        if said[k] in ("latitude", "longitude"):
+            continue  # a ship that holds her course makes one grow as evenly
         known = numbers[np.isfinite(numbers)]
+        if said[k] in ("", TIME) and in_digits(numbers):
+            words = f"its cells are {CELLS[DIGITS]}, hours, minutes and seconds, such as {known[0]:06.0f}"
+            found.append(Clock(k, DIGITS, "", 0.9 + named, words))
+            continue
         steps = np.diff(known)
         if len(steps) < 5 or known[-1] <= known[0] or np.mean(steps < 0.0) > 0.01:
             continue
@@ -64,6 +76,15 @@ def clocks(sample: Sample, said: Sequence[str], units_said: Sequence[str]) -> li
         by_name = units_said[k] in units.factors("s")
         found.append(Clock(k, "", unit, score, f"it grows steadily, by {usual:.4g} a row{words}", by_name))
     return sorted(found, key=lambda one: -one.score)
+
+
+def in_order(sample: Sample, said: Sequence[str]) -> Sample:
+    """A log whose rows stand newest first by what is called time, turned round; another one as it is."""
+    for k, numbers in enumerate(sample.numbers):
+        stamps = None if np.isfinite(numbers).mean() >= 0.5 else seconds(sample, k)
+        if falls(numbers if stamps is None else stamps[0]) and (said[k] == TIME or stamps is not None):
+            return sample.turned_round()
+    return sample
 
 
 def _unit(values: FloatArray, step: float, said: str) -> tuple[str, str]:

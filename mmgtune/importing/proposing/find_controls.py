@@ -56,6 +56,8 @@ def _rudder_among(find: Finder, columns: Sequence[int], remark: str = "") -> boo
     if not ranked:
         return False
     best = ranked[0][0]
+    if best not in named and not sides[best] and find.orders("delta"):
+        return False  # what may be anything is no rudder where one is ordered
     rival = next((weights[key] for key in ranked if key[0] != best), 0.0)
     clear = best in named or (weights[ranked[0]] > 1.5 * rival and bool(sides[best]))
     _rudder(find, "delta", best, weights, sides, strongest, clear and not remark, remark)

@@ -17,6 +17,9 @@ from .look import Look
 from .motions import Match, courses, speeds, through_water, velocities, yaw_rates
 from .words import LOG_SPEED, ORDER, OTHER, ROLL
 
+CLEAR = 0.15
+"""Standard error of the share of what drift takes off a speed, from which that share tells which speed it is."""
+
 
 def yaw_rate(find: Finder) -> None:
     votes: dict[tuple[int, str, bool], list[tuple[float, float]]] = defaultdict(list)
@@ -220,8 +223,29 @@ def _one_speed(find: Finder, among: Sequence[int]) -> None:
         find.used.add(column)
         return
     own, words = find.unit_of(column, "m/s", unit)
+    miss = float(np.median(votes[best]))
+    confidence = SURE if miss < FITS else LIKELY
+    if not minus and _along_the_track(find, column, unit):
+        said = f"it is the speed along the track within {100.0 * miss:.2g} %, in {unit}{words}"
+        find.add(Guess("sog", column, own, (said, "its direction is that of the positions"), confidence))
+        return
     own["positive"] = "aft" if minus else "forward"
     find.axes = "ship"
-    miss = float(np.median(votes[best]))
-    find.add(Guess("u", column, own, (f"it is the speed ahead within {100.0 * miss:.2g} %, in {unit}{words}",),
-                   SURE if miss < FITS else LIKELY))  # fmt: skip
+    said = f"it is the speed ahead within {100.0 * miss:.2g} %, in {unit}{words}"
+    find.add(Guess("u", column, own, (said,), confidence))
+
+
+def _along_the_track(find: Finder, column: int, unit: str) -> bool:
+    """Whether a speed is that of the track, not its part ahead: what drift takes off tells, or else the name."""
+    drifts, takes = [], []
+    for look in find.looks:
+        logged = look.mean(column) * units.factors("m/s")[unit]
+        both = np.isfinite(logged) & np.isfinite(look.speed) & np.isfinite(look.ahead)
+        drifts.append((look.speed - look.ahead)[both])
+        takes.append((logged - look.ahead)[both])
+    drift, taken = np.concatenate(drifts), np.concatenate(takes)
+    weight = max(float(drift @ drift), 1e-300)
+    share = float(drift @ taken) / weight
+    if float(np.std(taken - share * drift)) > CLEAR * np.sqrt(weight):
+        return find.said[column] == "sog"
+    return share > 0.5

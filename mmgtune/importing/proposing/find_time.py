@@ -8,8 +8,8 @@ from typing import Any
 
 from ...errors import LogError, Problem
 from ..dates import ORDERS, Dates, order_told
-from ..stopwatch import EITHER, MINUTES, TIME_OF_DAY
-from .clocks import Clock, clocks, format_named
+from ..stopwatch import DIGITS, EITHER, MINUTES, TIME_OF_DAY
+from .clocks import Clock, clocks, format_named, in_order
 from .finder import MOST_COLUMNS, Finder, moves
 from .guess import ASKED, LIKELY, MARK, SURE, Guess
 from .words import DATE
@@ -20,6 +20,8 @@ READ_AS = {MINUTES: "minutes and seconds", TIME_OF_DAY: "hours and minutes"}
 
 
 def time(find: Finder) -> None:
+    find.samples = [in_order(one, find.said) for one in find.samples]
+    find.first = find.samples[0]
     usable = [k for k, one in enumerate(find.first.numbers) if any(moves(s.numbers[k]) for s in find.samples)]
     votes: dict[tuple[int, str], list[Clock]] = defaultdict(list)
     found = [clock for sample in find.samples for clock in clocks(sample, find.said, find.units_said)]
@@ -36,6 +38,8 @@ def time(find: Finder) -> None:
     best = max(votes.values(), key=lambda many: sum(one.score for one in many))
     find.clock = best[0]
     keys: dict[str, Any] = {}
+    if find.clock.format == DIGITS:
+        keys["format"] = DIGITS
     if find.clock.format in ("date", "?"):
         date_order(find, keys, best)
     column, words = find.clock.column, [best[0].words]

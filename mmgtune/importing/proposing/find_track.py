@@ -51,6 +51,8 @@ def position_and_heading(find: Finder) -> None:
         find.unit = likely_units(find.first, find.clock)[0]
         time_unit(find)
         find.notes.append("the motion shows neither position nor heading: what follows is by names alone")
+        if not {"x", "y", "latitude", "longitude"} & set(find.said):
+            find.notes.append("no column is called a position, and a trial needs the track: have it exported too")
         return
     _, find.unit, scores, words, windows = best
     time_unit(find)

@@ -72,7 +72,7 @@ def speeds(look: Look, target: FloatArray, among: Sequence[int], units_said: Seq
         both = np.isfinite(mean) & np.isfinite(target) & np.isfinite(look.rate)
         if both.sum() < 8 or size == 0.0:
             continue
-        for unit in SPEEDS:
+        for unit in SPEEDS if units_said[k] not in units.factors("m/s") else (units_said[k],):
             if units_said[k] and units_said[k] != unit:
                 continue
             logged = mean[both] * units.factors("m/s")[unit]

@@ -6,7 +6,7 @@ import io
 import re
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +24,8 @@ from ..parquet_log import is_text, shortened
 from ..sides import sided, takes_side
 from ..stopwatch import EITHER, TIME_OF_DAY, are_times, times_told
 from ..table import MISSING
-from ..text import PEEK, Lines, start_of
+from ..text import PEEK, Lines, fields_of, start_of
+from ..with_units import is_with_unit, numbers_with_unit
 from .words import known_unit, quantity_named
 
 ROWS = 60_000
@@ -59,6 +60,11 @@ class Sample:
     written: frozenset[int] = frozenset()
     sided: frozenset[int] = frozenset()
     notes: list[str] = field(default_factory=list)
+
+    def turned_round(self) -> Sample:
+        """The same with the rows in the other order."""
+        texts = [one[::-1].reset_index(drop=True) for one in self.texts]
+        return replace(self, texts=texts, numbers=[one[::-1] for one in self.numbers])
 
     def reference(self, k: int) -> str | int:
         """How a map names a column: by its name where that is its own, else by its number."""
@@ -99,6 +105,7 @@ def _made(path: Path, layout: dict[str, Any], names: Sequence[str], units: Seque
     if layout["format"] != "csv" and any(_has_commas(one) for one in texts):
         layout["decimal"] = ","
     decimal = layout.get("decimal", ".")
+    units = list(units)
     numbers, written, with_side = [], set(), set()
     for k, text in enumerate(texts):
         if holds_numbers(text):
@@ -120,6 +127,10 @@ def _made(path: Path, layout: dict[str, Any], names: Sequence[str], units: Seque
                 elif told[0] > 0.5 > plain:
                     found = angles
                     written.add(k)
+                else:
+                    with_unit, unit = numbers_with_unit(text.where(~text.str.lower().isin(MISSING)), decimal)
+                    if unit:
+                        found, units[k] = with_unit, unit
         with np.errstate(over="ignore"):
             numbers.append(np.where(np.abs(found) < 1e14, found, np.nan))
     return Sample(path, layout, tuple(names), tuple(units), texts, numbers, frozenset(written), frozenset(with_side))
@@ -152,7 +163,7 @@ def _of_text(path: Path) -> Sample:
     LOG_LINE.hold(max((len(line) for line in lines), default=0) + 1, str(path), LogError)
     whole = lines[:400]
     mark, decimal = _separator(whole)
-    rows = [_fields(line, mark) for line in whole]
+    rows = [fields_of(line, mark) for line in whole]
     first, header, unit_row, width = heading(rows)
     layout: dict[str, Any] = {"format": "csv", "delimiter": SHOWN.get(mark, mark)}
     if encoding != "utf-8":
@@ -313,21 +324,16 @@ def _are_units(row: Sequence[str]) -> bool:
 def _numeric_share(row: Sequence[str]) -> float:
     cells = [cell.strip() for cell in row if cell.strip()]
     told = [
-        bool(_NUMBER.fullmatch(one) or _COMMA.fullmatch(one) or _DATED.fullmatch(one) or one.lower() in MISSING)
+        bool(
+            _NUMBER.fullmatch(one)
+            or _COMMA.fullmatch(one)
+            or _DATED.fullmatch(one)
+            or one.lower() in MISSING
+            or is_with_unit(one)
+        )
         for one in cells
     ]
     return sum(told) / len(told) if told else 0.0
-
-
-def _fields(line: str, mark: str) -> list[str]:
-    if mark == " ":
-        return line.split()
-    import csv
-
-    try:
-        return [one.strip() for one in next(csv.reader([line], delimiter=mark), [])]
-    except csv.Error:
-        return line.split(mark)
 
 
 def _separator(lines: Sequence[str]) -> tuple[str, str]:
@@ -336,7 +342,7 @@ def _separator(lines: Sequence[str]) -> tuple[str, str]:
     body = body[len(body) // 4 :][:120]
     best: tuple[float, str, str] = (-1.0, ",", ".")
     for mark in MARKS:
-        rows = [_fields(line, mark) for line in body]
+        rows = [fields_of(line, mark) for line in body]
         counts = [len(row) for row in rows]
         usual = max(set(counts), key=counts.count, default=0)
         if usual < 2:

@@ -94,6 +94,18 @@ _WORDS: tuple[tuple[str, tuple[str, ...]], ...] = (
         r"rudder", r"\brud\b", r"\bdelta\b", r"ruder", r"helm", r"roer", r"gouvern", r"timon", r"timone", r"leme",
         r"\bror\b", r"rorvinkel", r"barre", r"舵", r"타각",
     )),
+    ("u", (
+        r"\b(v|vel|velocity|speed) n\b",
+    )),
+    ("v", (
+        r"\b(v|vel|velocity|speed) e\b",
+    )),
+    ("x", (
+        r"\b(pos|position|utm|grid) n\b",
+    )),
+    ("y", (
+        r"\b(pos|position|utm|grid) e\b",
+    )),
     ("n", (
         r"\brpm\b", r"\brps\b", r"\brev", r"\bn\b", r"\bn prop", r"prop", r"shaft", r"drehzahl", r"welle",
         r"schraube", r"toeren", r"schroef", r"\bas\b", r"\btours?\b", r"helice", r"\barbre\b", r"revol", r"giri",
@@ -187,11 +199,22 @@ def ordered(name: str) -> str:
 @lru_cache(maxsize=4096)
 def unit_named(name: str, row: str = "") -> str:
     """The unit that a name has in it, or that stands below it; "" where none is said."""
+    found = _unit_named(name, row)
+    return "m/s" if found == "ms" and quantity_named(name) in _SPEEDS else found
+
+
+_SPEEDS = ("u", "v", "sog", LOG_SPEED, "wind_speed", "wind_speed_app", "current_speed")
+"""What is in metres a second where a name says "ms"."""
+
+
+def _unit_named(name: str, row: str) -> str:
     for text in (row.strip().strip("[]()"), unit_in(name) or ""):
         if text and (known := known_unit(text)):
             return known
     words = re.split(r"[\s_]+", name.strip().lower())
     # A name that is one word alone is no unit: "s", "m" and "deg" are what people call columns.
+    if len(words) == 1 and words[0] in ("rpm", "rps"):
+        return str(words[0])
     for size in (2, 1):
         if len(words) > size and (known := known_unit("/".join(words[-size:]))):
             return known
