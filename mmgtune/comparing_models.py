@@ -27,6 +27,7 @@ from .options.choice import must_be
 from .predictor import Predictor, Sampling, Uncertain, particles_of, profile_of
 from .provenance import made_by
 from .recording import MOST, write_motions
+from .run_folders import MOTIONS
 from .trial import Trial, TrialSet
 from .validating import Scorable, predictors_of, sigma_of
 from .validation import L_MSE, TrialScore, by_manoeuvre, by_member, by_run, off_by, score, window_scores
@@ -315,7 +316,7 @@ def write_model_comparison(
     Raises OutputError where one is there already and ``overwrite`` is false, or the system refuses to write.
     """
     folder = path_of(folder)
-    refuse_existing([folder / RESULT], overwrite)
+    refuse_existing([folder / RESULT, folder / MOTIONS], overwrite)
     pieces = list(result.data.trials.values())[:MOST]
     names = write_motions({one.name: one.predictor for one in result.models}, pieces, folder)
     document = {

@@ -337,8 +337,9 @@ def profile_of(predictor: Predictor) -> ShipProfile | None:
 
 
 def draught_of(predictor: Predictor) -> float | None:
-    """Draught of the ship [m], None of a predictor that is no physics model."""
-    return predictor.model.draught if isinstance(predictor, PhysicsPredictor) else None
+    """Draught of the ship [m] of a predictor that has a physics model, alone or with a network; else None."""
+    model = getattr(predictor, "model", None)
+    return model.draught if isinstance(model, Model) else None
 
 
 def words_of(integrator: Integrator) -> str:

@@ -14,6 +14,7 @@ from .inputs import INPUTS
 from .physics.quantities import STATES
 from .predictor import Predictor, profile_of
 from .provenance import made_by
+from .run_folders import MOTIONS
 from .simulating import Simulated
 from .simulation import Motion, orders_of, simulate
 from .tables import write_table
@@ -68,7 +69,7 @@ def write_validation(
     Raises OutputError where a result is there already and ``overwrite`` is false, or the system refuses to write.
     """
     folder = path_of(folder)
-    refuse_existing([folder / "validate.json"], overwrite)
+    refuse_existing([folder / "validate.json", folder / MOTIONS], overwrite)
     restart = result.options.restart
     pieces = list((data.in_windows(restart) if restart else data).trials.values())[:MOST]
     names = write_motions({one.name: one.predictor for one in result.profiles}, pieces, folder)
@@ -101,7 +102,7 @@ def write_motions(models: Mapping[str, Predictor], pieces: Sequence[Trial], fold
             given = dict(zip(predictor.inputs, motion.controls.T, strict=True))
             driven = np.column_stack([given.get(name, np.full(len(motion.t), np.nan)) for name in names])
             _add(columns, motion.id, called, motion.t, motion.states, driven)
-    write_table(folder / "motions.parquet", _joined(columns))
+    write_table(folder / MOTIONS, _joined(columns))
     return names
 
 

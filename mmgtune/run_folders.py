@@ -54,7 +54,10 @@ MARKS = (
 )
 """What tells a run folder: files that nobody else has."""
 
-BESIDE = ("profile.toml", "calm.toml", "history.parquet", "motions.parquet", "report.html", "report.md")
+MOTIONS = "motions.parquet"
+"""Tracks that a report draws."""
+
+BESIDE = ("profile.toml", "calm.toml", "history.parquet", MOTIONS, "report.html", "report.md")
 """What lies beside them, and may be somebody's own where they are not."""
 
 FIGURES = "figures"

@@ -127,6 +127,8 @@ def test_what_cannot_be_studied_is_said():
         study_heading_keeping([SHIP], replace(SHIP, steering_gear=None, actuators={}), FEW)
     with pytest.raises(OptionError, match="0 gains"):
         HeadingOptions(gain_step=10.0, gain_most=5.0)
+    with pytest.raises(OptionError, match="step is 1e-09"):
+        HeadingOptions(step=1e-9)
 
 
 def test_what_is_left_behind(tmp_path):

@@ -41,7 +41,9 @@ class Cases:
     weight: FloatArray
 
     def __post_init__(self) -> None:
-        """Raises ValueError where the first sample counts: no simulation can differ there."""
+        """Raises ValueError where the first sample counts, where no simulation can differ, or a weight is no size."""
+        if not np.all((self.weight >= 0.0) & (self.weight < np.inf)):
+            raise ValueError("weights that are negative, infinite or no numbers")
         if self.weight[:, 0].any():
             raise ValueError("weights at the first sample, which is where simulations begin")
 

@@ -69,6 +69,7 @@ def command(
     from ..learning import learn_mixture
     from ..networks import named_ship
     from ..networks.naming import file_of
+    from ..options import CompareModelsOptions
     from ..report import render
     from ..resources import MODEL
     from ..run_folders import claimed
@@ -86,9 +87,11 @@ def command(
             several = {"model of forces": given, **dict(zip(alone, networks, strict=True))}
             if 0.0 < document["share"] < 1.0:
                 several[f"mixture ({document['share']:g})"] = str(folder / MODEL)
-            write_model_comparison(
-                compare_models(several, trials), folder, c.command_line(), notes(document), overwrite=True
+            windows = (
+                CompareModelsOptions() if options.restart is None else CompareModelsOptions(restart=options.restart)
             )
+            compared = compare_models(several, trials, windows)
+            write_model_comparison(compared, folder, c.command_line(), notes(document), overwrite=True)
             render(folder)
     if json:
         c.print_json(document)

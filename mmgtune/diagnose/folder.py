@@ -9,6 +9,7 @@ from ..documents import write_json
 from ..files import path_of, refuse_existing, write_text
 from ..fitting.folder import motions_table
 from ..fitting.journal import finished
+from ..run_folders import MOTIONS
 from ..tables import write_table
 from .calm import calm_profile
 from .result import Diagnosis
@@ -25,7 +26,7 @@ def write_diagnosis(result: Diagnosis, folder: Path | str, *, overwrite: bool = 
     Raises OutputError where a result is there already and ``overwrite`` is false, or the system refuses to write.
     """
     folder = path_of(folder)
-    refuse_existing([folder / RESULT], overwrite)
+    refuse_existing([folder / RESULT, folder / MOTIONS], overwrite)
     extended = result.extended_profile()
     write_text(folder / "profile.toml", extended.text)
     calm = calm_profile(extended)
@@ -34,7 +35,7 @@ def write_diagnosis(result: Diagnosis, folder: Path | str, *, overwrite: bool = 
     else:
         (folder / CALM).unlink(missing_ok=True)
     inputs = [one.name for one in result.profile.arrangement.inputs]
-    write_table(folder / "motions.parquet", motions_table(result.gain.compared, inputs))
+    write_table(folder / MOTIONS, motions_table(result.gain.compared, inputs))
     document = {**result.to_dict(), "out": str(folder)}
     write_json(document, folder / RESULT)
     if not result.interrupted:

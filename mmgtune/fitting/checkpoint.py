@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray
-from ..errors import OptionError, Problem, reason
+from ..errors import OptionError, Problem, brief, reason
 from ..files import atomic
 from ..run_folders import RESULTS
 
@@ -86,13 +86,23 @@ def nothing_to_resume(folder: Path, lacking: str, so: str = "the run never began
     return OptionError(Problem("nothing to resume", str(folder), why, fix))
 
 
+def _changes(key: str, before: Any, now: Any) -> list[str]:
+    """What differs of one part of an identity, in words; of options which, with both values."""
+    if before == now:
+        return []
+    if key != "options" or not isinstance(before, dict) or not isinstance(now, dict):
+        return [key]
+    names = [name for name in sorted({*before, *now}) if before.get(name) != now.get(name)]
+    return [f"{name} ({brief(now.get(name))}, was {brief(before.get(name))})" for name in names]
+
+
 def differing(recorded: dict[str, Any], now: dict[str, Any], path: Path) -> None:
     """Raises OptionError where what a file was made from is not what the run is of now."""
-    changed = sorted(key for key in {*recorded, *now} if recorded.get(key) != now.get(key))
+    changed = [word for key in sorted({*recorded, *now}) for word in _changes(key, recorded.get(key), now.get(key))]
     if changed:
         raise OptionError(
             Problem(
-                "the checkpoint belongs to another fit",
+                "the checkpoint belongs to another run",
                 str(path),
                 f"different now: {', '.join(changed)}",
                 "repeat the command it was made with, or run without resume=True",

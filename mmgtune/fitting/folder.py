@@ -15,6 +15,7 @@ from ..files import (
     refuse_existing,
     write_text,
 )
+from ..run_folders import MOTIONS
 from ..tables import write_table
 from .cmaes import Generation
 from .comparison import TrialComparison
@@ -30,11 +31,11 @@ def write_run(result: FitResult, folder: Path | str, *, overwrite: bool = False)
     Raises OutputError where a result is there already and ``overwrite`` is false, or the system refuses to write.
     """
     folder = path_of(folder)
-    refuse_existing([folder / RESULT], overwrite)
+    refuse_existing([folder / RESULT, folder / MOTIONS], overwrite)
     write_text(folder / "profile.toml", result.tuned_text())
     write_table(folder / "history.parquet", _history(result.history))
     inputs = [one.name for one in result.profile.arrangement.inputs]
-    write_table(folder / "motions.parquet", motions_table(result.compared, inputs))
+    write_table(folder / MOTIONS, motions_table(result.compared, inputs))
     document = {**result.to_dict(), "out": str(folder)}
     write_document(document, folder)
     if not result.interrupted:

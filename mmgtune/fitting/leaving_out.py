@@ -30,6 +30,7 @@ from ..predictor import as_predictor, words_of
 from ..profile import ShipProfile
 from ..profile.doubts import Doubt, in_words
 from ..repeating import Repeated, document, repeat
+from ..run_folders import MOTIONS
 from ..stated import IndexComparison, compare_stated
 from ..tables import write_table
 from ..threads import blas_on_one_thread
@@ -266,8 +267,8 @@ def write_left_out(result: LeftOut, folder: Path | str, *, overwrite: bool = Fal
     Raises OutputError where a result is there already and ``overwrite`` is false, or the system refuses to write.
     """
     folder = path_of(folder)
-    refuse_existing([folder / RESULT], overwrite)
-    write_table(folder / "motions.parquet", motions_table(result.compared, result.inputs))
+    refuse_existing([folder / RESULT, folder / MOTIONS], overwrite)
+    write_table(folder / MOTIONS, motions_table(result.compared, result.inputs))
     document = {**result.to_dict(), "out": str(folder)}
     write_json(document, folder / RESULT)
     if not result.interrupted:

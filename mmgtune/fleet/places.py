@@ -35,7 +35,8 @@ def matching(pattern: str, base: Path) -> list[str]:
             return sorted(str(system.unstrip_protocol(one)) for one in system.glob(inner))
     path = Path(pattern)
     root, inner = (Path(path.anchor), str(path.relative_to(path.anchor))) if path.is_absolute() else (base, pattern)
-    return sorted(str(one.absolute()) for one in root.glob(inner)) if inner not in ("", ".") else [str(root)]
+    literal = re.sub(r"[\[?]", r"[\g<0>]", inner)  # of what globs know, patterns have * alone
+    return sorted(str(one.absolute()) for one in root.glob(literal)) if inner not in ("", ".") else [str(root)]
 
 
 def hashes(place: str) -> dict[str, str]:

@@ -60,10 +60,16 @@ def made_before(out: Path) -> dict[str, Any]:
     path = out / RECORD
     try:
         document = json.loads(limits.text(path, limits.RECORD_BYTES, OptionError))
+        if not isinstance(document, dict):
+            raise ValueError("it holds no table")
         return {key: document[key] for key in ("mmgtune", "created", "command", "environment", "table")}
     except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
         fix = "give the folder that --out of mmgtune fleet run named; one that was stopped goes on with resume=True"
-        raise OptionError(Problem("there is no record of a fleet", str(path), reason(error), fix)) from error
+        what = "there is no record of a fleet"
+        if path.is_file():
+            what = "the record of a fleet cannot be read"
+            fix = "remove that file and run the fleet again with resume=True: it is written anew"
+        raise OptionError(Problem(what, str(path), reason(error), fix)) from error
 
 
 def _listed(out: Path) -> set[str]:

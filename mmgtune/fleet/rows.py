@@ -138,18 +138,32 @@ def read(out: Path | str) -> list[dict[str, Any]]:
         )
         rows: list[dict[str, Any]] = found.to_table(columns=[*whole.names, _FROM]).to_pylist()
     except (OSError, ValueError, pa.ArrowException) as error:
-        raise OptionError(
-            Problem("the results cannot be read", str(folder), reason(error), "run the fleet again with resume=True")
-        ) from error
+        damaged = [(path, why) for path in keys_of if (why := _unreadable(path))] or [(str(folder), reason(error))]
+        what = "the result of a job cannot be read"
+        raise OptionError(*(Problem(what, path, why, ANEW) for path, why in damaged)) from error
     of_file: dict[str, list[dict[str, Any]]] = {path: [] for path in keys_of}
     for row in rows:
         of_file[str(row.pop(_FROM))].append(row)
     damaged = [(path, why) for path, several in of_file.items() if (why := _unsound(several, keys_of[path]))]
     if damaged:
         what = "the row of a job does not hold what such rows hold"
-        fix = "remove that file and run the fleet again with resume=True: the job is run anew"
-        raise OptionError(*(Problem(what, path, why, fix) for path, why in damaged))
+        raise OptionError(*(Problem(what, path, why, ANEW) for path, why in damaged))
     return sorted(rows, key=lambda row: (row["ship"], row["date"], row["name"]))
+
+
+ANEW = "remove that file and run the fleet again with resume=True: the job is run anew"
+
+
+def _unreadable(path: str) -> str:
+    """Why a file of rows cannot be read; "" where it can."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    try:
+        pq.read_table(path, partitioning=None)
+    except (OSError, ValueError, pa.ArrowException) as error:
+        return reason(error)
+    return ""
 
 
 def _unsound(several: Sequence[Mapping[str, Any]], key: str) -> str:

@@ -116,6 +116,8 @@ class _Reader(TomlReader):
             if key not in job:
                 examples = {"command": '"fit"', "profile": '"ships/{ship}.toml"', "trials": '"logs/{ship}/{date}"'}
                 self.problem(f"the entry has no '{key}'", "jobs", "", fix=f"write {key} = {examples[key]}")
+            elif texts[key] == "" and job[key] == "":
+                self.problem(f"'{key}' is empty", "jobs", key, fix="write what is meant")
         for key in ("ship", "date"):
             said = f"{{{key}}}" in texts["trials"]
             if not said and not texts[key] and texts["trials"]:

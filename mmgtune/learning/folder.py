@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..arrays import FloatArray
-from ..documents import write_json
+from ..documents import finite_values, write_json
 from ..files import path_of, refuse_existing
 from ..networks import (
     Ensemble,
@@ -91,7 +91,10 @@ def hybrid_document(result: LearnedHybrid) -> dict[str, Any]:
         "window_s": result.options.restart,
         "sigma": result.sigma,
         "gains": [one.to_dict() for one in result.gains],
-        "tried": [{"penalty": penalty, "curve": rows} for penalty, rows in result.tried.items()],
+        "tried": [
+            {"penalty": penalty, "curve": [finite_values(row) for row in rows]}
+            for penalty, rows in result.tried.items()
+        ],
         "reading": _reading(result),
         "parts": [[trial.id for trial in split.choose] for split in result.splits],
         "held_out": [trial.id for trial in result.test],
@@ -206,7 +209,7 @@ def write_learned(
         network, document, name = result.ensemble, ensemble_document(result), ENSEMBLE_RESULT
     else:
         network, document, name = result.network, document_of(result), RESULT
-    refuse_existing([folder / name], overwrite)
+    refuse_existing([folder / name, folder / MODEL], overwrite)
     save_network(network, folder / MODEL, overwrite=True)
     document["out"] = str(folder)
     write_json(document, folder / name)

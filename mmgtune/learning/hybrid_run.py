@@ -214,11 +214,11 @@ class _Work:
         """The model of forces as it would be had it been tuned to these trials alone."""
         ids = tuple(trial.id for trial in learn)
         if ids not in self._without:
-            refit = self.options.refit and tuned_names(self.profile)
-            if refit:
+            self._without[ids] = self.model
+            if self.options.refit and tuned_names(self.profile):
                 self.hooks.on_progress(self.done, self.total, "tuning the model of forces without the runs kept back")
-            again = refitted(self.profile, learn, restart=self.options.restart, stop=self.hooks.stop)
-            self._without[ids] = Model(again) if refit else self.model
+                again = refitted(self.profile, learn, restart=self.options.restart, stop=self.hooks.stop)
+                self._without[ids] = Model(again)
         return self._without[ids]
 
     def samples(self, trials: Sequence[Trial]) -> Samples:

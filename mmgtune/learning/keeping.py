@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -62,17 +62,10 @@ def save(path: Path, now: Progressed, identity: dict[str, Any]) -> None:
     """Write where a training stands.  Raises OutputError."""
     from safetensors.numpy import save as as_bytes
 
-    leaves = jax_module().tree.leaves(_trees(now))
+    stood = [now] if now.good is None else [now, now.good]
+    leaves = [leaf for one in stood for leaf in jax_module().tree.leaves(_trees(one))]
     arrays = {f"{k:05d}": np.array(leaf, order="C") for k, leaf in enumerate(leaves)}
-    numbers = {
-        "best_score": repr(now.best_score),
-        "step": now.step,
-        "factor": now.factor,
-        "lost": now.lost,
-        "curve": now.curve,
-        "events": now.events,
-        "identity": identity,
-    }
+    numbers = {**_numbers(now), "good": None if now.good is None else _numbers(now.good), "identity": identity}
     content = as_bytes(arrays, metadata={"training": json.dumps(numbers)})
     with atomic(path) as part:
         part.write_bytes(content)
@@ -90,23 +83,46 @@ def load(path: Path, like: Progressed, identity: dict[str, Any]) -> Progressed:
     try:
         with safe_open(path, framework="numpy") as file:
             numbers = json.loads((file.metadata() or {})["training"])
-            arrays = [np.asarray(file.get_tensor(f"{k:05d}")) for k in range(len(leaves))]
+            several = [numbers] if numbers.get("good") is None else [numbers, numbers["good"]]
+            n = len(leaves)
+            arrays = [np.asarray(file.get_tensor(f"{k:05d}")) for k in range(n * len(several))]
         recorded = dict(numbers["identity"])
-        stood = (
-            float(numbers["best_score"]),
-            int(numbers["step"]),
-            float(numbers["factor"]),
-            int(numbers["lost"]),
-            list(numbers["curve"]),
-            list(numbers["events"]),
-        )
+        stood = [_stood(one) for one in several]
     except Exception as error:  # the library raises what it comes across where a file is damaged
         raise _unreadable(path, reason(error)) from error
     differing(recorded, identity, path)
-    if any(a.shape != np.shape(b) or a.dtype != b.dtype for a, b in zip(arrays, leaves, strict=True)):
+    if any(a.shape != np.shape(b) or a.dtype != b.dtype for a, b in zip(arrays, leaves * len(stood), strict=True)):
         raise _unreadable(path, "its arrays have other shapes or types")
-    parameters, state, mean, best = jax.tree.unflatten(tree, [jax.numpy.asarray(one) for one in arrays])
-    return Progressed(parameters, state, mean, best, *stood)
+    trees = [
+        jax.tree.unflatten(tree, [jax.numpy.asarray(one) for one in arrays[k : k + n]])
+        for k in range(0, len(arrays), n)
+    ]
+    now, *good = (Progressed(*own, *numbers) for own, numbers in zip(trees, stood, strict=True))
+    return replace(now, good=good[0] if good else None)
+
+
+def _numbers(one: Progressed) -> dict[str, Any]:
+    """What a training stands at besides its arrays, for JSON."""
+    return {
+        "best_score": repr(one.best_score),
+        "step": one.step,
+        "factor": one.factor,
+        "lost": one.lost,
+        "curve": one.curve,
+        "events": one.events,
+    }
+
+
+def _stood(numbers: dict[str, Any]) -> tuple[Any, ...]:
+    """The same from JSON, in the order of ``Progressed``."""
+    return (
+        float(numbers["best_score"]),
+        int(numbers["step"]),
+        float(numbers["factor"]),
+        int(numbers["lost"]),
+        list(numbers["curve"]),
+        list(numbers["events"]),
+    )
 
 
 def _trees(now: Progressed) -> tuple[Any, ...]:

@@ -108,7 +108,7 @@ class LearnedMixture:
         Raises OutputError where one is there already and ``overwrite`` is false, or the system refuses to write.
         """
         folder = path_of(folder)
-        refuse_existing([folder / RESULT], overwrite)
+        refuse_existing([folder / RESULT, folder / MODEL], overwrite)
         document = {**self.to_dict(), "out": str(folder)}
         save_network(self.model, folder / MODEL, overwrite=True)
         write_json(document, folder / RESULT)
@@ -154,7 +154,7 @@ def learn_mixture(
     else:
         data = trials_of(trials).series_only("a mixture")
         chosen = [data.trials[id] for id in data.tune]
-        learned = {id for of in parts for id in _learned(of)}
+        learned = {*_tuned_on(hybrid.profile), *(id for of in parts for id in _learned(of))}
         seen = tuple(one.id for one in chosen if {one.id, one.run} & learned)
         candidates: list[_Candidate] = [
             _Candidate(0.0, hybrid, HybridPredictor(hybrid)),
@@ -215,6 +215,12 @@ def _network(given: Any) -> Network:
         what = f"{found!r} is no recurrent network"[:200]
         raise OptionError(Problem(what, "NETWORK", "", "give a model.safetensors of mmgtune learn rnn"))
     return found
+
+
+def _tuned_on(profile: ShipProfile) -> Sequence[str]:
+    """Ids of the runs that a profile was tuned on, as far as it says."""
+    found = profile.provenance.get("tuned_on")
+    return [str(one) for one in found] if isinstance(found, list) else ()
 
 
 def _learned(facts: dict[str, Any]) -> Sequence[str]:

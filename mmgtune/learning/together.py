@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray
 from ..backends.twins import jax_module
-from .training import LOST, Progressed, Trainer, batch, copied, past
+from .training import LOST, Progressed, Trainer, batch, copied, past, standing
 
 PRECISION = "float32"
 """Of products of matrices, whose factors a GPU would round to ten bits."""
@@ -62,7 +62,7 @@ class Together:
         Those that stand at an earlier step go on first, until they have met the others.  Where one is lost, what it did
         since its last validation is dropped.  Raises what ``Trainer.run`` does.
         """
-        found, good = list(now), [copied(one) for one in now]
+        found, good = list(now), [copied(one.good or one) for one in now]
         while behind := [k for k, one in enumerate(found) if one.step < self.plan.steps]:
             first = min(found[k].step for k in behind)
             group = [k for k in behind if found[k].step == first]
@@ -74,12 +74,12 @@ class Together:
                 found[k] = one
                 if own.validated(one, told.loss[told.sound].tolist(), float(np.max(told.norm[told.sound], initial=0))):
                     good[k] = copied(one)
-                on_validation(k, one)
+                on_validation(k, standing(one, good[k]))
             if stop():
                 break
         for one, own in zip(found, self.trainers, strict=True):
             own.ended(one, self.plan.steps)
-        return found
+        return [standing(one, back) for one, back in zip(found, good, strict=True)]
 
     def _to_validation(
         self, found: list[Progressed], group: list[int], seeds: Sequence[int]

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from copy import copy
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -79,6 +79,7 @@ class Progressed:
     curve                    a row for each validation: step, mean loss since the last, norm of the gradient, and what
                              the aim says
     events                   what went wrong, with its step
+    good                     where it stood at the last validation that it can go back to; None where that is here
     factor                   on the rate, halved each time training went back
     """
 
@@ -92,6 +93,7 @@ class Progressed:
     lost: int = 0
     curve: list[dict[str, float]] = field(default_factory=list)
     events: list[dict[str, Any]] = field(default_factory=list)
+    good: Progressed | None = None
 
 
 class Trainer:
@@ -152,7 +154,7 @@ class Trainer:
         Raises OptionError where no step ever had a finite loss.
         """
         plan, last = self.plan, until or self.plan.steps
-        good = copied(now)
+        good = copied(now.good or now)
         losses: list[float] = []
         largest = 0.0
         while now.step < last:
@@ -181,11 +183,11 @@ class Trainer:
                 if self.validated(now, losses, largest):
                     good = copied(now)
                 losses, largest = [], 0.0
-                on_validation(now)
+                on_validation(standing(now, good))
                 if stop():
                     break
         self.ended(now, last)
-        return now
+        return standing(now, good)
 
     def validated(self, now: Progressed, losses: list[float], largest: float) -> bool:
         """Whether a training can go back to where it stands now, which is judged and written down.
@@ -259,6 +261,11 @@ def optax_module() -> Any:
             Problem("Optax is not installed", "", reason(error), "install it with: pip install 'mmgtune[learn]'")
         ) from error
     return optax
+
+
+def standing(now: Progressed, good: Progressed) -> Progressed:
+    """Where a training stands, with where it would go back to: what it goes on from when it was stopped."""
+    return replace(now, good=None if good.step == now.step else good)
 
 
 def copied(one: Progressed) -> Progressed:

@@ -33,9 +33,16 @@ FIX = "give a file that mmgtune learn has written, or train the model again"
 
 def save_network(network: Trained, path: Path | str, *, overwrite: bool = False) -> Path:
     """Write networks, with the profile where there is one, whole or not at all.  Raises OutputError."""
+    path, content = path_of(path), content_of(network)
+    with atomic(path, overwrite) as part:
+        part.write_bytes(content)
+    return path
+
+
+def content_of(network: Trained) -> bytes:
+    """The file of networks: the same for the same weights and facts."""
     from safetensors.numpy import save
 
-    path = path_of(path)
     header, groups = _described(network)
     arrays = {
         f"{group}.{name}": np.ascontiguousarray(values, dtype=np.float32)
@@ -44,10 +51,7 @@ def save_network(network: Trained, path: Path | str, *, overwrite: bool = False)
     }
     text = json.dumps(header, sort_keys=True, allow_nan=False)
     schema = SEVERAL if "networks" in header else SCHEMA
-    content = in_order(save(arrays, metadata={"format": FORMAT, "schema": str(schema), "network": text}))
-    with atomic(path, overwrite) as part:
-        part.write_bytes(content)
-    return path
+    return in_order(save(arrays, metadata={"format": FORMAT, "schema": str(schema), "network": text}))
 
 
 def in_order(content: bytes) -> bytes:

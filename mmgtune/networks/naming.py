@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from pathlib import Path
 from typing import TypeVar, cast
 
@@ -9,10 +10,11 @@ from ..backends import Integrator
 from ..errors import ProfileError
 from ..given import Found, ship_of
 from ..particles import FILE, ParticlePredictor, Particles, load_particles
+from ..predictor import PhysicsPredictor, Predictor
 from ..profile import ShipProfile
 from ..resources import MODEL, folder, in_run, must_be_name, taken
 from .ensemble import Ensemble, EnsemblePredictor
-from .file import SUFFIX, Trained, load_network
+from .file import SUFFIX, Trained, content_of, load_network
 from .hybrid import Hybrid, HybridPredictor
 from .mixture import Mixture, MixturePredictor
 from .model import Network
@@ -56,6 +58,26 @@ def file_of(given: str | Path) -> Path | None:
         return Path(given)
     bundled = folder("ship_profiles") / f"{given}{SUFFIX}"
     return taken(given, str(given).endswith(SUFFIX), bundled)
+
+
+def sha256_of(predictor: Predictor) -> str:
+    """What tells the coefficients or weights of a predictor from others of its name; "" of one of somebody's own."""
+    match predictor:
+        case ParticlePredictor(particles=Particles() as particles):
+            content = predictor.model.profile.sha256.encode() + particles.values.tobytes()
+        case PhysicsPredictor():
+            content = predictor.model.profile.sha256.encode() + predictor.theta.tobytes()
+        case NetworkPredictor():
+            content = content_of(predictor.network)
+        case HybridPredictor():
+            content = content_of(predictor.hybrid)
+        case EnsemblePredictor():
+            content = content_of(predictor.ensemble)
+        case MixturePredictor():
+            content = content_of(predictor.mixture)
+        case _:
+            return ""
+    return hashlib.sha256(content).hexdigest()
 
 
 def predictor_of(model: Trained, integrator: Integrator = Integrator()) -> TrainedPredictor:

@@ -42,5 +42,5 @@ def off_flag(flag: str) -> str:
     return flag if flag.startswith("--no-") else f"--no-{flag.lstrip('-')}"
 
 
-_KEYWORD = re.compile(r'(?<![\w.-])([a-z]\w*)=("[^"]*"|[^\s;)?]*[^\s;,.)?])')
+_KEYWORD = re.compile(r'(?<![\w.-])([a-z]\w*)=("[^"]*"|[^\s;)?]*[^\s;:,.)?])')
 """A keyword argument in a sentence, without the sentence's own signs after it."""

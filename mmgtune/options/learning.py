@@ -88,6 +88,7 @@ class HybridOptions(TrainingOptions):
         (15.0,),
         "Weights of the penalty on what the network adds, with commas, tried in turn; validation chooses.",
         least=0.0,
+        most=1e6,
         panel=TRAINING,
     )
     folds: int = choice(

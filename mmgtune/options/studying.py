@@ -21,7 +21,7 @@ class HeadingOptions(ParticleOptions):
     )
     gain_most: float = choice(100.0, "Largest gain.", above=0.0, most=100_000.0, panel=INPUT)
     step: float = choice(
-        0.1, "Time between orders where a model has no step of its own.", unit="s", above=0.0, panel=INPUT
+        0.1, "Time between orders where a model has no step of its own.", unit="s", least=1e-3, panel=INPUT
     )
     particles: int = again(
         ParticleOptions, "particles", but="Members of an ensemble are taken as they are where each keeps its path."

@@ -46,15 +46,16 @@ def read_question(text: str, predictor: Predictor, approach: Approach) -> Questi
         )
     name = _index(words)
     kind, rest = _manoeuvre(manoeuvre)
-    options = {
-        "turn": lambda: PredictOptions(turn=(rest,)),
-        "zigzag": lambda: PredictOptions(zigzag=(rest,)),
-        "stop": lambda: PredictOptions(stop=True),
-    }[kind]()
     if _OF[kind] not in _shown_by(name):
         fitting = tuple(one.words for other, one in KNOWN.items() if _OF[kind] in _shown_by(other))
         raise OptionError(Problem(f"a {kind} has no {KNOWN[name].words}", "question", **among(words.strip(), fitting)))
-    (one,) = asked(predictor, options, approach)
+    try:
+        turns, zigzags = ((rest,) if kind == such else () for such in ("turn", "zigzag"))
+        options = PredictOptions(turn=turns, zigzag=zigzags, stop=kind == "stop")
+        (one,) = asked(predictor, options, approach)
+    except OptionError as error:  # whose fixes speak of options that a question does not have
+        why = "; ".join(problem.what + (f": {problem.why}" if problem.why else "") for problem in error.problems)
+        raise OptionError(Problem(f"'{manoeuvre.strip()[:60]}' cannot be sailed", "question", why, SUCH_AS)) from error
     return Question(text, f"{kind} {rest}".strip(), KNOWN[name], one)
 
 

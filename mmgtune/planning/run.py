@@ -246,7 +246,10 @@ def _noise(particles: Particles) -> FloatArray:
     least = least_noise(particles.profile)
     if not isinstance(known, list) or len(known) != len(least):
         return least
-    return np.maximum([float(one) if isinstance(one, (int, float)) else 0.0 for one in known], least)
+    if not all(isinstance(one, (int, float)) and 0.0 <= one < np.inf for one in known):
+        what, why = "the particles say a noise that no sensor has", f"it is {known}"
+        raise ProfileError(Problem(what, "noise", why, "draw them with mmgtune posterior"))
+    return np.maximum(known, least)
 
 
 def _notes(particles: Particles, band: IndexBand, linear: float) -> list[str]:

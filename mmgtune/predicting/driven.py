@@ -10,22 +10,28 @@ import numpy as np
 from .. import limits
 from ..arrays import BoolArray, FloatArray
 from ..backends import pad
-from ..errors import OptionError, TrialError
+from ..errors import OptionError, Problem, TrialError
 from ..evaluation import Measured, TrialRecord
+from ..inputs import INPUTS
 from ..manoeuvres.summary import indices_of
 from ..orders import sample_of
 from ..predictor import Predictor, cases_from, draught_of, portions, predicted
 from ..simulation import Motion
 from ..trial import Trial
+from ..units import read_as
 from ..validation import window_scores
-from .asked import Approach, actuators_of
+from .asked import Approach, actuators_of, no_reverse
 from .order_list import OrderList
 from .reading import Values, of_records
 from .result import Foretold
 
 
 def on_orders(predictor: Predictor, orders: OrderList, approach: Approach) -> Foretold:
-    """All particles through a list of orders, from straight ahead.  Raises OptionError for one that takes too long."""
+    """All particles through a list of orders, from straight ahead.
+
+    Raises OptionError for one that takes too long, and for orders that the ship cannot carry out.
+    """
+    _possible(predictor, orders)
     step = sample_of(predictor.L_pp, approach.speed)
     limits.ORDERS_STEPS.hold(orders.duration / step * predictor.n_members, str(orders.path), OptionError)
     t, controls = orders.carried_out(tuple(predictor.inputs), actuators_of(predictor), approach.n, step)
@@ -39,6 +45,23 @@ def on_orders(predictor: Predictor, orders: OrderList, approach: Approach) -> Fo
     indices = of_records([_shown(motion, predictor.L_pp) for motion in motions])
     words = f"{len(orders.t) - 1} orders of {orders.path.name}"
     return Foretold(orders.path.stem, "orders", words, t, states, diverged, indices, approach=approach)
+
+
+def _possible(predictor: Predictor, orders: OrderList) -> None:
+    """Raises OptionError for orders beyond what moves an input, and astern for a ship whose equations end there."""
+    for name, gear in zip(predictor.inputs, actuators_of(predictor), strict=True):
+        ordered = orders.ordered.get(name, np.zeros(0))
+        where = f"{orders.path}, column '{name}'"
+        word, factor = read_as(INPUTS[name].unit)
+        if gear is not None:
+            beyond = np.flatnonzero((ordered < gear.low - 1e-9) | (ordered > gear.high + 1e-9))
+            if len(beyond):
+                what = f"'{name}' is ordered to {factor * ordered[beyond[0]]:.4g} {word}"
+                why = f"it goes from {factor * gear.low:.4g} to {factor * gear.high:.4g} {word}"
+                raise OptionError(Problem(what, where, why, "order less, or correct the limits of the profile"))
+        astern = INPUTS[name].role == "propeller" and bool((ordered < 0.0).any())
+        if astern and (problem := no_reverse(predictor, where, "order no revolutions below 0")):
+            raise OptionError(problem)
 
 
 def on_trials(predictor: Predictor, trials: Sequence[Trial], restart: float | None) -> Iterator[Foretold]:

@@ -83,10 +83,11 @@ def problems_in(facts: Mapping[str, Any], where: str, columns: Sequence[str]) ->
     if not isinstance(derived, list) or not set(map(str, derived)) <= set(MOTION):
         fix = f"write a list of any of {', '.join(MOTION)}, or leave it out"
         problems.append(Problem(f"'derived' is {brief(derived)}, not a list of motion columns", where, fix=fix))
-    return problems + _noise(facts.get("noise", {}), where, columns)
+    return problems + noise_problems(facts.get("noise", {}), where, columns)
 
 
-def _noise(noise: object, where: str, columns: Sequence[str]) -> list[Problem]:
+def noise_problems(noise: object, where: str, columns: Sequence[str]) -> list[Problem]:
+    """What is wrong with standard deviations by column."""
     if not isinstance(noise, dict):
         fix = 'write {"x": 0.5, ...}, or leave it out'
         return [Problem("'noise' is not an object of standard deviations", where, fix=fix)]

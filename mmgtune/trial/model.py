@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from ..displayed import Plotted, inert
 from ..errors import Problem, TrialError
 from ..inputs import INPUTS, meant_by
 from ..phrases import counted
+from .metadata import noise_problems
 from .schema import ATTRIBUTES, CHANNELS
 
 
@@ -41,7 +43,8 @@ class Trial(Plotted):
     derived    motion columns, by their names in the file, that were worked out from others and measured by nothing
     cut_from   name of the run that this and other trials were cut from, "" where it is a run of its own
 
-    Raises TrialError for arrays without numbers or of other lengths than ``t``, and for ``extra`` that repeats a field.
+    Raises TrialError for arrays without numbers or of other lengths than ``t``, for ``extra`` that repeats a field, and
+    for ``noise`` that is none.
     """
 
     id: str
@@ -79,6 +82,9 @@ class Trial(Plotted):
         object.__setattr__(self, "_motion", motion)
         for name, column in zip(CHANNELS, motion.T, strict=True):  # one copy of each
             object.__setattr__(self, name, column)
+        plain = {name: float(size) if isinstance(size, Real) else size for name, size in self.noise.items()}
+        if problems := noise_problems(plain, "noise", tuple(self.extra)):
+            raise TrialError(*problems)
         repeated = sorted(set(self.extra) & {*ATTRIBUTES, *ATTRIBUTES.values()})
         if repeated:
             why = "these columns are fields of their own"

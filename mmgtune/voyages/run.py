@@ -20,6 +20,7 @@ from ..fitting.journal import journalled, remembered
 from ..given import trials_of
 from ..hooks import Hooks
 from ..made_from import facts_of_profile
+from ..networks.naming import sha256_of
 from ..objective import spread
 from ..options import VoyageOptions
 from ..options.choice import must_be
@@ -200,12 +201,8 @@ def _notes(predictor: Predictor, around: Mapping[str, FloatArray]) -> tuple[str,
 def _identity(predictors: Mapping[str, Predictor], data: VoyageSet, options: VoyageOptions) -> dict[str, Any]:
     """Everything a run depends on but what is in the voyages, which is noted with each."""
     made = made_by("")
-    profiles = {name: profile_of(one) for name, one in predictors.items()}
     return {
-        "profiles": {
-            name: own.sha256 if (own := profiles[name]) is not None else [one.name, one.method]
-            for name, one in predictors.items()
-        },
+        "profiles": {name: [one.name, one.method, sha256_of(one)] for name, one in predictors.items()},
         "trials": [one.id for one in data.voyages],
         "options": options.to_dict(),
         "versions": {**made["environment"], "mmgtune": made["mmgtune"]},

@@ -247,6 +247,15 @@ def test_weights_at_the_first_sample_are_refused(suzaku):
         pad([cases.t[0]], [cases.controls[0]], [cases.initial[0]], [0.0 * weight], [weight])
 
 
+@pytest.mark.parametrize("size", [float("nan"), float("inf"), -1.0])
+def test_weights_that_are_no_sizes_are_refused(suzaku, size):
+    """A weight without a row among the residuals was written where there is none."""
+    cases = turn(suzaku, 20.0)
+    weight = np.vstack([np.zeros((1, 6)), np.full((len(cases.t[0]) - 1, 6), size)])
+    with pytest.raises(ValueError, match="no numbers"):
+        pad([cases.t[0]], [cases.controls[0]], [cases.initial[0]], [np.zeros_like(weight)], [weight])
+
+
 def test_a_process_may_be_told_how_many_cores_it_has():
     say = "from mmgtune.backends.compiled import _pool, cores; print(cores(), _pool()._max_workers)"
     done = subprocess.run(

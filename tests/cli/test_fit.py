@@ -130,8 +130,8 @@ def test_kill_9_and_resume_gives_the_same_result(tmp_path):
     assert run(*search, "--out", "cut", cwd=tmp_path).code == 2  # the half-finished run is not overwritten either
     other = run("fit", "--no-report", "--seed", "6", "--resume", "--out", "cut", cwd=tmp_path)
     assert other.code == 2
-    assert "belongs to another fit" in other.err
-    assert "options" in other.err
+    assert "belongs to another run" in other.err
+    assert "seed (6, was " in other.err
     resumed = run(*search, "--json", "--resume", "--out", "cut", cwd=tmp_path)
     assert resumed.code == 0
     a, b = whole.json(), resumed.json()

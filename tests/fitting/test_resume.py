@@ -91,7 +91,7 @@ def test_a_stopped_sweep_recommends_nothing_and_goes_on(tmp_path):
     assert "stopped" in cut.recommended()["sentence"]
     assert cut.overfitting()["found"] is None
     assert (tmp_path / "ar_0.2" / "fit.json").exists()
-    with pytest.raises(OptionError, match="different now: options"):
+    with pytest.raises(OptionError, match="different now: method"):
         sweep("suzaku", "suzaku", SweepOptions(widths=(0.2, 0.4), starts=2), folder=tmp_path, resume=True)
     resumed = sweep("suzaku", "suzaku", options, folder=tmp_path, resume=True)
     assert same(resumed.to_dict()) == same(whole.to_dict())
@@ -190,7 +190,7 @@ def test_kill_9_of_a_diagnosis_and_resume(tmp_path):
     assert killed.code == -signal.SIGKILL
     other = run(*asked, "--seed", "3", "--resume", "--out", "cut", cwd=tmp_path)
     assert other.code == 2
-    assert "different now: options" in other.err
+    assert "different now: seed (3, was " in other.err
     resumed = run(*asked, "--resume", "--json", "--out", "cut", cwd=tmp_path)
     assert resumed.code == 0, resumed.err
     whole = run(*asked, "--json", "--out", "whole", cwd=tmp_path)

@@ -104,3 +104,17 @@ def test_lists_of_another_form(name: str, text: str, copied: Path) -> None:
     ended = command("fleet", "report", "out", cwd=copied)
     keys = name == "jobs.json" and "key" in text  # keys of jobs that there are no results of
     assert ended.code == (0 if keys else 2), ended.err
+
+
+def test_a_row_that_cannot_be_read_is_named(copied: Path) -> None:
+    path = next(copied.glob("out/results/ship=a2/*/*.parquet"))
+    path.write_bytes(path.read_bytes()[:-20])
+    said = refused(copied, path)
+    assert "remove that file and run the fleet again with --resume: the job is run anew" in said
+
+
+def test_a_record_that_is_there_is_not_looked_for(copied: Path) -> None:
+    (copied / "out" / "fleet.json").write_text("[]", encoding="utf-8")
+    said = refused(copied, copied / "out" / "fleet.json")
+    assert "why: it holds no table" in said
+    assert "remove that file" in said

@@ -9,6 +9,7 @@ import pytest
 from mmgtune.errors import MmgtuneError, OptionError
 from mmgtune.fleet import read_table
 from mmgtune.fleet.expanding import expand
+from mmgtune.fleet.places import matching
 from mmgtune.fleet.table import iso_date
 
 from .conftest import QUICK, TABLE, make_logs
@@ -106,6 +107,7 @@ def test_a_store_that_cannot_be_reached_is_said(fleet: Path) -> None:
         ({"options": "{ stats = 3 }"}, "did you mean 'starts'"),
         ({"options": '{ starts = "two" }'}, "give a whole number"),
         ({"profile": ""}, "the entry has no 'profile'"),
+        ({"trials": '""'}, "'trials' is empty"),
         ({"head": "schema = 2"}, "schema is 2, not 1"),
     ],
 )
@@ -135,3 +137,10 @@ def test_dates() -> None:
         "2025-01-31", "2025-01-31", "2025-01", "2025"
     ]  # fmt: skip
     assert [iso_date(text) for text in ("2025-02-30", "2025-13", "31.1.2025", "")] == ["", "", "", ""]
+
+
+def test_folders_with_brackets_in_their_names(tmp_path: Path) -> None:
+    inside = tmp_path / "logs[1]" / "what?" / "a"
+    inside.mkdir(parents=True)
+    assert matching("logs[1]/what?/*", tmp_path) == [str(inside)]
+    assert matching("logs*/what?/a", tmp_path) == [str(inside)]

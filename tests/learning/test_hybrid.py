@@ -12,7 +12,8 @@ import pytest
 pytest.importorskip("jax", reason="networks are trained with the extra mmgtune[learn]")
 
 from mmgtune.cli.learn import hybrid_summary
-from mmgtune.learning import Hooks, learn_hybrid, write_learned
+from mmgtune.errors import OptionError
+from mmgtune.learning import Hooks, hybrid_run, learn_hybrid, write_learned
 from mmgtune.learning.gains import ratios, relative
 from mmgtune.learning.hybrid import HybridAim, ResidualLoss, balanced, first_residual, ranges_of
 from mmgtune.learning.refitting import refitted, tuned_names
@@ -183,6 +184,23 @@ def test_where_nothing_is_missing_it_says_no_gain():
     result = learn_hybrid(profile, TrialSet(own, tuple(own), ()), SMALL)
     assert not result.gained
     assert not result.hybrid.weights.W_3.any()
+
+
+def test_losses_that_are_no_numbers_are_null_in_the_record(trained, tmp_path):
+    spoiled = replace(trained, tried={15.0: [{"step": 8, "loss": float("nan"), "norm": float("inf"), "score": 1.0}]})
+    write_learned(spoiled, tmp_path)
+    (row,) = json.loads((tmp_path / "hybrid.json").read_text())["tried"][0]["curve"]
+    assert row == {"step": 8, "loss": None, "norm": None, "score": 1.0}
+    with pytest.raises(OptionError, match="penalty"):
+        HybridOptions(penalty=(15.0, 1e39))
+
+
+def test_a_profile_is_not_tuned_anew_where_that_is_not_asked_for(monkeypatch):
+    def never(*_, **__):
+        raise AssertionError("tuned anew")
+
+    monkeypatch.setattr(hybrid_run, "refitted", never)
+    learn_hybrid("suzaku", "suzaku", replace(SMALL, steps=8, refit=False))
 
 
 def test_a_tuned_profile_is_tuned_anew_without_the_runs():

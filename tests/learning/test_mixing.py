@@ -157,7 +157,7 @@ def test_the_command_leaves_a_model_that_the_others_take(parts, made, tmp_path, 
     for trial in made.trials.values():
         write_trial(trial, tmp_path / "sailed" / f"{trial.id}.parquet")
     (tmp_path / "sailed" / "split.toml").write_text(f"tune = {json.dumps(list(made.tune))}\ntest = []\n")
-    line = "learn mixture suzaku net.safetensors sailed --share 0.2,0.4 --out mixed"
+    line = "learn mixture suzaku net.safetensors sailed --share 0.2,0.4 --restart 60 --out mixed"
     result = CliRunner().invoke(app, line.split())
     assert result.exit_code == 0, result.output
     assert "0.4" in result.output
@@ -165,6 +165,7 @@ def test_the_command_leaves_a_model_that_the_others_take(parts, made, tmp_path, 
     assert document["share"] == 0.4
     assert load_network(tmp_path / "mixed" / "model.safetensors").share == 0.4
     assert (tmp_path / "mixed" / "report.html").is_file()
+    assert json.loads((tmp_path / "mixed" / "model_comparison.json").read_text())["window_s"] == 60.0
     again = CliRunner().invoke(app, ["validate", "mixed/model.safetensors", "sailed", "--json"])
     assert again.exit_code == 0, again.output
     refused = CliRunner().invoke(app, line.split())
@@ -202,3 +203,20 @@ def test_the_command_takes_several_networks_and_then_trials(parts, other, tmp_pa
     missing = run(*mixture, "nowhere.safetensors", "--share", "0.3", "--out", "x", cwd=tmp_path)
     assert missing.code == 2
     assert "no such trained model" in missing.err
+
+
+def test_runs_that_the_model_was_tuned_on_are_named(parts, made):
+    profile, net = parts
+    tuned_on = replace(profile, provenance={**profile.provenance, "tuned_on": [made.tune[0]]})
+    assert learn_mixture(tuned_on, net, made, FEW).seen == (made.tune[0],)
+
+
+def test_results_of_others_are_not_written_over(parts, tmp_path):
+    profile, net = parts
+    save_network(net, tmp_path / "model.safetensors")
+    before = (tmp_path / "model.safetensors").read_bytes()
+    mixture = learn_mixture(profile, net, None, MixtureOptions(share=(0.3,)))
+    with pytest.raises(OutputError, match="exists"):
+        mixture.write(tmp_path)
+    assert (tmp_path / "model.safetensors").read_bytes() == before
+    mixture.write(tmp_path, overwrite=True)

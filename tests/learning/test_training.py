@@ -16,7 +16,7 @@ from mmgtune.errors import OptionError
 from mmgtune.learning import Hooks, learn_hybrid, learn_rnn, write_learned
 from mmgtune.learning import run as runs
 from mmgtune.learning.aims import RecurrentAim
-from mmgtune.learning.keeping import named
+from mmgtune.learning.keeping import Kept, named
 from mmgtune.learning.planning import plan_rnn
 from mmgtune.learning.starting import first_weights, scales_of
 from mmgtune.learning.training import Plan, Trainer
@@ -125,7 +125,7 @@ def test_under_one_compiled_step_networks_become_the_same(monkeypatch, kept):
 def test_a_checkpoint_of_another_training_or_damaged_is_refused(tmp_path):
     hooks = Hooks(stop=lambda: True)
     learn_rnn("suzaku", "suzaku", SMALL, hooks=hooks, folder=tmp_path)
-    with pytest.raises(OptionError, match="another fit"):
+    with pytest.raises(OptionError, match=r"another run(?s:.*)rate \(0.001, was 0.0"):
         learn_rnn("suzaku", "suzaku", replace(SMALL, rate=1e-3), folder=tmp_path, resume=True)
     path = tmp_path / named(1)
     path.write_bytes(path.read_bytes()[:-40])
@@ -297,6 +297,45 @@ def test_gradients_that_are_never_numbers_are_an_error(monkeypatch):
     with pytest.raises(OptionError, match="diverged 6 times, the last time at step 60") as error:
         learn_rnn("suzaku", "suzaku", replace(SMALL, steps=100, validate_every=5))
     assert error.value.problems[0].where == "rate"
+
+
+class Climbing:
+    """A loss that falls along with a weight, and is no number past an edge: validations fall between lost steps."""
+
+    def __init__(self):
+        import jax.numpy as jnp
+
+        self.starts, self.data = np.arange(50), {"nothing": jnp.zeros(1)}
+
+    def loss(self, w, starts, data):
+        import jax.numpy as jnp
+
+        return jnp.where(w["a"] > 0.031, jnp.nan, -w["a"])
+
+    def judged(self, w):
+        return {"score": float(-w["a"])}
+
+
+@pytest.mark.parametrize("stopped_after", [1, 2, 3, 5])
+def test_resumed_equals_not_interrupted_where_training_goes_back(tmp_path, stopped_after):
+    """Stopped at a validation that there is no going back to: the one before is in the checkpoint too."""
+    trainer = Trainer(Climbing(), Plan(60, 4, 0.01, 5))
+    first = {"a": np.float32(0.0)}
+    whole = trainer.run(trainer.begin(first), 1)
+    assert {event["back_to"] for event in whole.events} == {5}
+    kept, told = Kept(tmp_path, {"of": "a test"}, False), []
+
+    def keep(now):
+        kept.keep(0, now)
+        told.append(now.step)
+
+    trainer.run(trainer.begin(first), 1, on_validation=keep, stop=lambda: len(told) >= stopped_after)
+    again = Kept(tmp_path, {"of": "a test"}, True).begun(0, trainer.begin(first))
+    assert again.step == told[-1] < 60
+    resumed = trainer.run(again, 1)
+    assert resumed.events == whole.events
+    assert resumed.curve == whole.curve
+    assert float(resumed.parameters["a"]) == float(whole.parameters["a"])
 
 
 def test_what_is_left_behind_is_json_and_a_predictor(trained, tmp_path):

@@ -6,6 +6,7 @@ import pytest
 
 from mmgtune.errors import ProfileError
 from mmgtune.networks import load_network, named_ship, save_network
+from mmgtune.networks.naming import sha256_of
 from mmgtune.profile import load_profile
 from mmgtune.trial import load_trials, write_trial
 from tests.command import run
@@ -79,3 +80,42 @@ def test_what_needs_coefficients_says_so(models, command):
     assert found.code == 2
     assert "rnn.safetensors" in found.err
     assert "Traceback" not in found.err
+
+
+def test_what_tells_models_of_one_name_apart():
+    """A run that goes on takes no other weights under the same name."""
+    from dataclasses import replace
+
+    from mmgtune.model import Model
+    from mmgtune.predictor import PhysicsPredictor
+
+    ship, nets = load_profile("suzaku"), [network(step=1.0, seed=seed) for seed in (1, 1, 2)]
+    one, same, other = (sha256_of(named_ship(net)) for net in nets)
+    assert one == same != other
+    assert len(one) == 64
+    hybrids = [replace(a_hybrid(size=size), profile=ship) for size in (0.01, 0.01, 0.02)]
+    one, same, other = (sha256_of(named_ship(hybrid)) for hybrid in hybrids)
+    assert one == same != other
+    theta = Model(ship).matrix()
+    assert sha256_of(PhysicsPredictor(Model(ship), theta)) != sha256_of(PhysicsPredictor(Model(ship), 1.01 * theta))
+
+
+def test_a_silent_hybrid_is_in_the_current_that_its_profile_is_in():
+    """A current that was logged in layers acts over the draught, with a network beside the model or without."""
+    from dataclasses import replace
+
+    import numpy as np
+
+    from mmgtune.networks.hybrid import HybridPredictor, silent
+    from mmgtune.profile import with_effects
+    from mmgtune.simulation import simulate
+
+    ship = with_effects(load_profile("suzaku"), {"current": {"measured": 1.0}}, "a test")
+    trial = load_trials("suzaku").trials["turn_p35"]
+    still, nothing = np.ones(trial.n_samples), np.zeros(trial.n_samples)
+    at = {"current_speed_at_1m": still, "current_dir_at_1m": nothing}
+    at |= {"current_speed_at_30m": nothing, "current_dir_at_30m": nothing}
+    trial = replace(trial, extra={**trial.extra, **at})
+    (alone,), (beside,) = simulate(ship, [trial]), simulate(HybridPredictor(silent(ship)), [trial])
+    np.testing.assert_allclose(beside.states, alone.states, atol=1e-9)
+    assert np.ptp(alone.states[:, 0]) > 100.0

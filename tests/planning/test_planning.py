@@ -112,6 +112,8 @@ def test_questions_as_people_write_them(ship, text, index, manoeuvre):
         ("stopping time, stop", "astern"),
         ("stopping time, stop 5", "no angle"),
         ("advance, turn fast", "fast"),
+        ("advance, turn 35 to port -35", "'turn 35 to port -35' cannot be sailed (question)"),
+        ("advance, turn 0", "'turn 0' cannot be sailed (question)"),
         ("advance, turn -20 deg to starboard", "contradict"),
         ("advance, turn +20 deg to port", "contradict"),
     ],
@@ -178,6 +180,8 @@ def test_particles_that_do_not_say_how_they_were_made(particles):
     with pytest.raises(ProfileError, match="believed"):
         plan_trial(silent, QUESTION)
     known = {"temper": particles.facts["temper"]}
+    with pytest.raises(ProfileError, match="a noise that no sensor has"):
+        plan_trial(replace(particles, facts={**known, "noise": [float("nan")] * 6}), QUESTION)
     found = plan_trial(replace(particles, facts=known), QUESTION, PlanOptions(kind=("straight",)))
     assert any("noise" in note for note in found.notes)
 

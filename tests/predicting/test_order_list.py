@@ -82,6 +82,8 @@ def test_a_turn_as_a_list_is_the_turn(suzaku, tmp_path):
         ("t [s], delta [deg]\n-1e308, 5\n1e308, 5", "column 't'"),
         ("t [s], n [rpm]\n0, 1e300\n9, 5", "line 2, column 'n'"),
         ("t [s], delta [rad]\n0, 0\n9, 35", "no ship is ordered more than 2 rad"),
+        ("t [s], delta [deg]\n0, 0\n5, 60\n9, 0", "it goes from -45 to 45 °"),
+        ("t [s], n [rpm]\n0, 100\n5, -90\n9, 5", "has no revolutions astern"),
         ("t [s], delta [deg]\n0, 1e300\n9, 5", "line 2, column 'delta'"),
         ('t [s], delta [deg]\n0, "' + 140_000 * "1" + '"\n9, 5', "no CSV file"),
     ],

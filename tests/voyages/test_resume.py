@@ -54,7 +54,7 @@ def test_a_stopped_validation_goes_on_behind_the_last_finished_voyage(logs, tmp_
     assert cut.interrupted
     write_voyages(cut, tmp_path)
     assert len((tmp_path / NAME).read_text().splitlines()) == 1 + 2  # what it belongs to, a and b
-    with pytest.raises(OptionError, match="different now: options"):
+    with pytest.raises(OptionError, match=r"different now: restart \(None, was 100.0\)"):
         validate_voyages(profiles, logs, folder=tmp_path, resume=True)
     scored: list[int] = []
     real = running.windows_of

@@ -130,7 +130,7 @@ def kernel(
                     c = case_of[block, l]
                     for channel in range(6):
                         w = weight[c, i, channel]
-                        if w != 0.0:
+                        if w > 0.0:
                             difference = seen[channel * {W} + l] - target[c, i, channel]
                             J[l] += w * difference * difference
                             if list_residuals:
@@ -139,7 +139,7 @@ def kernel(
                 for channel in range(6):
                     w = weight[case, i, channel]
                     goal = target[case, i, channel]
-                    if w != 0.0:
+                    if w > 0.0:
                         for l in range({W}):
                             difference = seen[channel * {W} + l] - goal
                             J[l] += w * difference * difference
