@@ -121,10 +121,26 @@ def _summary(sets: dict[str, list[Row]]) -> list[str]:
     done = sum(len(rows) for rows in sets.values())
     codes = Counter(row.get("code", "earlier") for rows in sets.values() for row in rows)
     told = ", ".join(f"{n} by {code}" for code, n in codes.most_common())
-    head = f"{done} of the {N_CASES} cases of the study have been run so far; `make hidden` runs the rest.\n\n"
+    head = f"{done} of the {N_CASES} cases of the study have been run so far; `make hidden` runs the rest."
+    head += f"{_first(sets)}\n\n"
     table = ["| | result | aim |\n|---|---|---|\n", *(f"| {what} | {share} | {aim} |\n" for what, share, aim in lines)]
     by_code = f"\nCases by fingerprint of the source that diagnosed them: {told}.\n" if len(codes) > 1 else ""
     return [head if done < N_CASES else "", *table, by_code]
+
+
+def _first(sets: dict[str, list[Row]]) -> str:
+    """Which effects were run in full before others, and what is left of the shares without these."""
+    first = [tag for tag in LADDER if all(len(sets.get(f"{tag}:{level}", [])) == SEEDS for level in range(5))]
+    if not first:
+        return ""
+    rest = [row for name, rows in sets.items() if ":" in name and name.split(":")[0] not in first for row in rows]
+    above = [row for row in rest if row["above_limit"]]
+    nulls = len(sets.get("null", []))
+    return (
+        f" They are no even sample: all sizes of {', '.join(f'`{tag}`' for tag in first)} and {nulls} cases of nothing "
+        f"hidden were run ahead of the others. Without these effects {_share(above, 'right', 'grouped')} of what is "
+        f"larger than its limit is named, or in the group, and {_share(above, 'right')} alone."
+    )
 
 
 def _limits(sets: dict[str, list[Row]]) -> list[str]:
