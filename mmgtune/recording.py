@@ -42,7 +42,7 @@ def write_simulation(result: Simulated, rows: Sequence[Mapping[str, Any]], folde
             seen.add(trial.id)
         if motion.member == 0:
             _add(columns, motion.id, "simulated", motion.t, motion.states, motion.controls)
-    write_table(folder / DRAWN / "motions.parquet", _joined(columns))
+    write_table(folder / DRAWN / MOTIONS, _joined(columns))
     if result.ship is not None:
         write_text(folder / DRAWN / "profile.toml", result.ship.text)
     _write(

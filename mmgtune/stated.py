@@ -32,6 +32,8 @@ LANES = 1024
 ASTERN = ("reversible",)
 """Propellers whose equations hold for revolutions astern."""
 
+NO_REVERSE = "its equations end where the propeller is reversed"
+
 TURNED = 5.0 * DEG
 """How far a turn goes on beyond the last heading that is needed."""
 
@@ -81,6 +83,16 @@ class IndexComparison:
         }
 
 
+def no_reverse(profile: ShipProfile, where: str = "", instead: str = "", why: str = NO_REVERSE) -> Problem | None:
+    """What is wrong with revolutions astern of a ship; None where her equations have them."""
+    propeller = profile.sections["propeller"].component.tag if "propeller" in profile.sections else ""
+    if propeller in ASTERN:
+        return None
+    what = f"the propeller '{propeller}' of '{profile.id}' has no revolutions astern"
+    fix = f"take a profile with the propeller {', '.join(map(repr, ASTERN))}, or {instead}"
+    return Problem(what, where, why, fix)
+
+
 def possible(profile: ShipProfile, trials: Sequence[IndexTrial]) -> None:
     """Raises OptionError for what the ship cannot be asked for: all of it at once."""
     problems = []
@@ -100,16 +112,9 @@ def possible(profile: ShipProfile, trials: Sequence[IndexTrial]) -> None:
                     "correct the order, or the limits of the profile",
                 )
             )
-        propeller = profile.sections["propeller"].component.tag if "propeller" in profile.sections else ""
-        if one.astern is not None and propeller not in ASTERN:
-            problems.append(
-                Problem(
-                    f"the propeller '{propeller}' of '{profile.id}' has no revolutions astern",
-                    where,
-                    "a stop is simulated with the propeller going astern",
-                    f"take a profile with the propeller {', '.join(map(repr, ASTERN))}, or leave the trial out",
-                )
-            )
+        why, instead = "a stop is simulated with the propeller going astern", "leave the trial out"
+        if one.astern is not None and (problem := no_reverse(profile, where, instead, why)):
+            problems.append(problem)
         values = one.stated(profile.L_pp)
         for less, more in SMALLER:
             if less in values and more in values and values[less][0] >= values[more][0]:

@@ -5,6 +5,7 @@ from typing import NamedTuple
 from ..physics.quantities import Lanes, State
 from .effect import FilterEffect, Parameter
 from .heading_bias import heading_shown
+from .signs import each
 
 
 class GyroDrift(NamedTuple):
@@ -80,7 +81,5 @@ EFFECT = FilterEffect(
     variants=(("heading",), ("heading_alone",), ("yaw_rate",)),
     varies=("heading", "heading_alone"),
     subject="drift of the gyro",
-    sentence=lambda v: (
-        "The gyro drifted: " + " and ".join(_WORDS[name].format(v[name]) for name in _WORDS if name in v)
-    ),
+    sentence=lambda v: "The gyro drifted: " + each(_WORDS, v),
 )

@@ -5,7 +5,7 @@ from typing import NamedTuple
 from ..physics.frame import to_ship
 from ..physics.quantities import Lanes, State
 from .effect import Parameter, SensorEffect, angle_about_zero
-from .signs import signed
+from .signs import each
 
 
 class HeadingBias(NamedTuple):
@@ -54,8 +54,5 @@ EFFECT = SensorEffect(
     besides=("alone",),
     varies=("angle", "alone"),
     subject="error of the compass",
-    sentence=lambda v: (
-        "The compass showed "
-        + " and ".join(_WORDS[name].format(signed(v[name], "too much", "too little")) for name in _WORDS if name in v)
-    ),
+    sentence=lambda v: "The compass showed " + each(_WORDS, v, ("too much", "too little")),
 )

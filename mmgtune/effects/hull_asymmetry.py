@@ -1,12 +1,11 @@
 """A hull that is not alike on both sides: going straight, she is pushed aside and turned."""
 
-from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from ..physics.prime import force_unit, moment_unit
 from ..physics.quantities import Force, Lanes, State, Surroundings
 from .effect import ForceEffect, Parameter
-from .signs import signed
+from .signs import each
 
 
 class HullAsymmetry(NamedTuple):
@@ -38,15 +37,6 @@ def _coefficient(words: str, size: float) -> Parameter:
 
 _WORDS = {"Y_0": "a side force Y_0' of {}", "N_0": "a yaw moment N_0' of {}"}
 
-
-def _sentence(v: Mapping[str, str]) -> str:
-    pushes = [_WORDS[name].format(signed(v[name], "to starboard", "to port")) for name in _WORDS if name in v]
-    return (
-        f"The hull is not alike on both sides, as with a list: it has {' and '.join(pushes)} where the ship neither "
-        "drifts nor turns"
-    )
-
-
 EFFECT = ForceEffect(
     kind="effects.hull-asymmetry",
     tag="hull-asymmetry",
@@ -59,5 +49,9 @@ EFFECT = ForceEffect(
         "N_0": _coefficient("yaw moment without drift and yaw, bow to starboard", 0.0004),
     },
     variants=(("Y_0", "N_0"),),
-    sentence=_sentence,
+    sentence=lambda v: (
+        "The hull is not alike on both sides, as with a list: it has "
+        + each(_WORDS, v, ("to starboard", "to port"))
+        + " where the ship neither drifts nor turns"
+    ),
 )

@@ -9,6 +9,7 @@ import numpy as np
 from ..physics.constants import GRAVITY
 from ..physics.quantities import Flow, Force, Forces, Lanes, State, Surroundings
 from .effect import ForceEffect, Parameter, Scale
+from .signs import each
 from .visited import Visited
 
 
@@ -74,8 +75,5 @@ EFFECT = ForceEffect(
     variants=(("factor",), ("slope",)),
     unvisited=unvisited,
     absorbed={"factor": "hull.R_0"},
-    sentence=lambda v: (
-        "The resistance differed from the model's: "
-        + " and ".join(_WORDS[name].format(v[name]) for name in _WORDS if name in v)
-    ),
+    sentence=lambda v: "The resistance differed from the model's: " + each(_WORDS, v),
 )

@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 from ..physics.quantities import Force, Lanes, State, Surroundings
 from .effect import ForceEffect, Parameter
-from .signs import signed
+from .signs import each
 
 
 class SteadyForce(NamedTuple):
@@ -51,7 +51,7 @@ EFFECT = ForceEffect(
     variants=(("side", "moment"),),
     sentence=lambda v: (
         "A steady "
-        + " and ".join(_WORDS[name].format(signed(v[name], "to starboard", "to port")) for name in _WORDS if name in v)
+        + each(_WORDS, v, ("to starboard", "to port"))
         + " acted on the ship, as of a thruster left on or a tow"
     ),
 )

@@ -8,6 +8,7 @@ from ..physics.elementary import where
 from ..physics.following import INSTANT, followed
 from ..physics.quantities import Lanes
 from .effect import ActuatorEffect, Parameter
+from .signs import each
 
 
 class SteeringLag(NamedTuple):
@@ -77,8 +78,5 @@ EFFECT = ActuatorEffect(
     },
     variants=(("time_constant",), ("rate_limit",), ("to_starboard", "to_port")),
     besides=("to_starboard", "to_port"),
-    sentence=lambda v: (
-        "The rudder followed the logged angle "
-        + " and ".join(_WORDS[name].format(v[name]) for name in _WORDS if name in v)
-    ),
+    sentence=lambda v: "The rudder followed the logged angle " + each(_WORDS, v),
 )

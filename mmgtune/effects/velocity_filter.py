@@ -6,6 +6,7 @@ from ..physics.following import followed
 from ..physics.frame import to_earth, to_ship
 from ..physics.quantities import Lanes, State
 from .effect import FilterEffect, Parameter
+from .signs import each
 
 
 class VelocityFilter(NamedTuple):
@@ -92,5 +93,5 @@ EFFECT = FilterEffect(
     },
     variants=(("over_ground",), ("along_axes",), ("ahead",), ("yaw_rate",)),
     besides=("ahead",),
-    sentence=lambda v: "The log smooths " + " and ".join(_WORDS[name].format(v[name]) for name in _WORDS if name in v),
+    sentence=lambda v: "The log smooths " + each(_WORDS, v),
 )

@@ -14,7 +14,7 @@ from ..errors import LogError, Problem
 from ..trial.schema import impossible
 from .dates import ORDERS, Dates, is_date, order_told
 from .mapping import TimeSource
-from .numerals import holds_numbers, numbers_in
+from .numerals import numbers_in
 from .stopwatch import DIGITS, EITHER, MINUTES, TIME_OF_DAY, of_day, of_digits, of_watch, times_told
 
 DAY, HOUR = 86400.0, 3600.0
@@ -59,8 +59,6 @@ class Stamps:
         if pd.api.types.is_numeric_dtype(values.dtype) and self.format in (None, "number"):
             self.format = "number"
             return np.asarray(values.to_numpy(dtype=np.float64, na_value=np.nan))
-        if self.format == DIGITS and holds_numbers(values):
-            return self.over_midnight(of_digits(values.to_numpy(dtype=np.float64, na_value=np.nan)))
         text = values.astype("string").str.strip()
         if self.format is None:
             self.format = self._seen(text, rows)

@@ -17,7 +17,7 @@ from ..predicting.asked import Approach
 from ..profile import ShipProfile
 from ..simulating import turn_name, zigzag_name
 from ..simulation import Motion, as_trial
-from ..stated import ASTERN
+from ..stated import no_reverse
 from ..trial import Trial
 from ..trial.schema import MOTION
 from ..units import DEG
@@ -122,8 +122,7 @@ def _others(profile: ShipProfile, approach: Approach) -> Iterator[Candidate]:
         words = f"spiral from {most / DEG:.0f} deg to {_side(side)}"
         name = f"spiral_{'p' if side > 0.0 else 'm'}{most / DEG:.0f}"
         yield Candidate(name, "spiral", words, spiral, approach, 1.1 * 9.0 * HOLD * unit)
-    propeller = profile.sections["propeller"].component.tag if "propeller" in profile.sections else ""
-    if propeller in ASTERN:
+    if no_reverse(profile) is None:
         yield Candidate("stop", "stop", "crash stop", Straight(), approach, LONGEST * unit, astern=True)
     yield Candidate("straight", "straight", "straight run", Straight(), approach, SHORT * unit)
     if _reached(profile, 25.0 * DEG) and _reached(profile, -25.0 * DEG):

@@ -20,7 +20,7 @@ from ..simulating import (
     zigzag_angles,
     zigzag_name,
 )
-from ..stated import ASTERN
+from ..stated import no_reverse
 from ..units import DEG
 
 Manoeuvre = Literal["turning", "zigzag", "stopping"]
@@ -120,20 +120,9 @@ def _stop(predictor: Predictor, options: PredictOptions, approach: Approach) -> 
     if options.astern:
         n = revolutions(options.astern.lstrip("-"))
         possible_approach(None, n, predictor.L_pp, profile.approach if profile else None, option="astern")
-    if problem := no_reverse(predictor, "stop", "leave the stop out"):
+    if profile is not None and (problem := no_reverse(profile, "stop", "leave the stop out")):
         raise OptionError(problem)
     return Asked("stop", "stopping", f"crash stop at {60.0 * n:.4g} rpm astern", 0.0, None, -n)
-
-
-def no_reverse(predictor: Predictor, where: str, instead: str) -> Problem | None:
-    """What is wrong with revolutions astern of a ship; None where her equations have them, or she has none."""
-    profile = profile_behind(predictor)
-    propeller = profile.sections["propeller"].component.tag if profile and "propeller" in profile.sections else ""
-    if profile is None or propeller in ASTERN:
-        return None
-    what = f"the propeller '{propeller}' of '{profile.id}' has no revolutions astern"
-    fix = f"take a profile with the propeller {', '.join(map(repr, ASTERN))}, or {instead}"
-    return Problem(what, where, "its equations end where the propeller is reversed", fix)
 
 
 def _possible(predictor: Predictor, found: list[Asked]) -> None:

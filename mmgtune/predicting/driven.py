@@ -17,10 +17,11 @@ from ..manoeuvres.summary import indices_of
 from ..orders import sample_of
 from ..predictor import Predictor, cases_from, draught_of, portions, predicted
 from ..simulation import Motion
+from ..stated import no_reverse
 from ..trial import Trial
 from ..units import read_as
 from ..validation import window_scores
-from .asked import Approach, actuators_of, no_reverse
+from .asked import Approach, actuators_of, profile_behind
 from .order_list import OrderList
 from .reading import Values, of_records
 from .result import Foretold
@@ -49,6 +50,7 @@ def on_orders(predictor: Predictor, orders: OrderList, approach: Approach) -> Fo
 
 def _possible(predictor: Predictor, orders: OrderList) -> None:
     """Raises OptionError for orders beyond what moves an input, and astern for a ship whose equations end there."""
+    profile = profile_behind(predictor)
     for name, gear in zip(predictor.inputs, actuators_of(predictor), strict=True):
         ordered = orders.ordered.get(name, np.zeros(0))
         where = f"{orders.path}, column '{name}'"
@@ -60,7 +62,7 @@ def _possible(predictor: Predictor, orders: OrderList) -> None:
                 why = f"it goes from {factor * gear.low:.4g} to {factor * gear.high:.4g} {word}"
                 raise OptionError(Problem(what, where, why, "order less, or correct the limits of the profile"))
         astern = INPUTS[name].role == "propeller" and bool((ordered < 0.0).any())
-        if astern and (problem := no_reverse(predictor, where, "order no revolutions below 0")):
+        if profile is not None and astern and (problem := no_reverse(profile, where, "order none below 0")):
             raise OptionError(problem)
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +14,7 @@ from ..displayed import Plotted, inert
 from ..errors import Problem, TrialError
 from ..inputs import INPUTS, meant_by
 from ..phrases import counted
-from .metadata import noise_problems
+from .metadata import as_json, noise_problems
 from .schema import ATTRIBUTES, CHANNELS
 
 
@@ -82,8 +81,7 @@ class Trial(Plotted):
         object.__setattr__(self, "_motion", motion)
         for name, column in zip(CHANNELS, motion.T, strict=True):  # one copy of each
             object.__setattr__(self, name, column)
-        plain = {name: float(size) if isinstance(size, Real) else size for name, size in self.noise.items()}
-        if problems := noise_problems(plain, "noise", tuple(self.extra)):
+        if problems := noise_problems(as_json({"noise": self.noise})["noise"], "noise", tuple(self.extra)):
             raise TrialError(*problems)
         repeated = sorted(set(self.extra) & {*ATTRIBUTES, *ATTRIBUTES.values()})
         if repeated:
