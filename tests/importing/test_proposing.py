@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+import tomlkit
 
 from mmgtune.errors import LogError
 from mmgtune.importing import import_logs, load_map, parse_map, propose_map
@@ -473,6 +474,34 @@ def test_a_log_without_positions_says_so(tmp_path):
     proposal = propose_map([write_csv(tmp_path / "log.csv", columns)])
     assert any("no column is called a position" in note for note in proposal.notes)
     assert {"columns.x.column", "columns.y.column"} <= set(proposal.asks)
+
+
+def test_axes_east_and_north_with_bare_names_leave_a_note_that_can_be_followed(tmp_path):
+    trial = suzaku("zigzag_10")
+    columns = {
+        "time": trial.t, "pose.x": trial.y, "pose.y": trial.x, "pose.yaw": 0.5 * np.pi - trial.psi, "u": trial.u,
+        "v": -trial.v_m, "r": -trial.r, "delta": -trial.delta, "rpm": trial.n * 60.0,
+    }  # fmt: skip
+    log = write_csv(tmp_path / "log.csv", columns)
+    proposal = propose_map([log])
+    (note,) = [one for one in proposal.notes if "mirror image" in one]
+    assert "exchange" in note
+    as_said = tomlkit.parse(proposal.text)
+    entries = as_said["columns"]
+    entries["x"]["column"], entries["y"]["column"] = entries["y"]["column"], entries["x"]["column"]
+    entries["psi"]["positive"], entries["psi"]["zero"] = "counterclockwise", "east"
+    for name in ("v", "r", "delta"):
+        entries[name]["positive"] = {"port": "starboard", "starboard": "port"}[entries[name]["positive"]]
+    back = imported(log, tomlkit.dumps(as_said))
+    assert np.abs(back.x - trial.x).max() < 1e-3
+    assert np.abs(back.motion[:, 2:] - trial.motion[:, 2:]).max() < 1e-4
+    assert np.abs(back.delta - trial.delta).max() < 1e-6
+
+
+def test_names_of_directions_leave_no_note_of_mirror_images(tmp_path):
+    columns = logged(suzaku("zigzag_10"))
+    columns["yaw"] = columns.pop("heading")
+    assert not any("mirror" in one for one in propose_map([write_csv(tmp_path / "log.csv", columns)]).notes)
 
 
 # names

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from ... import units
 from ...trial.kinematics import FITS
+from ..headers import bare
 from .bearings import Track, keys_of, tracks
 from .clocks import in_seconds, likely_units
 from .find_time import CLEARLY, time_unit
@@ -18,6 +20,10 @@ from .look import Look
 from .motions import courses, speeds, velocities, yaw_rates
 from .windows import Windows
 from .words import ORDER, OTHER, ROLL, TIME
+
+_ANGLES_OF_ROBOTS = ("yaw", "theta")
+_DIVIDER = re.compile(r"[./]")
+"""Between the parts of a name such as pose.position.x."""
 
 
 def position_and_heading(find: Finder) -> None:
@@ -93,6 +99,22 @@ def position_and_heading(find: Finder) -> None:
         and scores[track] < 1.05 * mirrored
     ):
         find.notes.append("no motion shows its mirror image: y is taken to the east and the heading clockwise")
+    elif _as_robots_have_them(find, track):
+        x, y, psi = (find.shown(k) for k in (track.x, track.y, track.psi))
+        find.notes.append(
+            f"no motion shows its mirror image, and names do not tell: {x} is taken to the north, {y} to the east and "
+            f"{psi} clockwise. If {x} is to the east, {y} to the north and {psi} to port from east, as of robots, "
+            'exchange the columns of x and y, give psi positive = "counterclockwise" and zero = "east", and exchange '
+            "port and starboard under v, r and the rudder"
+        )
+
+
+def _as_robots_have_them(find: Finder, track: Track) -> bool:
+    """Whether the names are those that robots give to axes east and north with the angle of yaw to port, although it is
+    the mirror image that is read."""
+    x, y, psi = (_DIVIDER.split(bare(find.first.names[k]).lower())[-1] for k in (track.x, track.y, track.psi))
+    plain = not (track.geographic or track.south or track.west or track.left or track.east)
+    return plain and (x, y) == ("x", "y") and psi in _ANGLES_OF_ROBOTS
 
 
 def _against_its_name(find: Finder, track: Track) -> bool:
