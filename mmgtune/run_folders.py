@@ -50,6 +50,7 @@ MARKS = (
     "windows.parquet",
     "drawn.parquet",
     "journal.jsonl",
+    "posterior.journal.jsonl",
     "checkpoint.npz",
 )
 """What tells a run folder: files that nobody else has."""

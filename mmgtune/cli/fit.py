@@ -85,7 +85,13 @@ def command(
         document = write_run(result, folder, overwrite=True)
         progress.saved(result.interrupted)
         if bands and not result.interrupted:
-            drawn = posterior(result.tuned_profile(), data, options.posterior_options(), command=c.command_line())
+            drawn = posterior(
+                result.tuned_profile(),
+                data,
+                options.posterior_options(),
+                hooks=progress.hooks(),
+                command=c.command_line(),
+            )
             found, notes = bands_on(drawn.particles.predictor(options.make_integrator()), PredictOptions())
             made = write_posterior(drawn, folder, overwrite=True)
             document["bands"] = {**made, "warnings": [*made["warnings"], *notes], "predicted": found}

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from ..options import PosteriorOptions
 from ..phrases import counted
 from . import common as c
-from .options import takes
+from .options import RunOptions, takes
+from .progress import Progress
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -17,24 +16,17 @@ if TYPE_CHECKING:
     from ..posterior import Posterior
 
 
-@takes(options=PosteriorOptions)
+@takes(options=PosteriorOptions, run=RunOptions)
 def command(
     profile: c.Profile = "suzaku",
     trials: c.Trials = "suzaku",
     *,
     options: PosteriorOptions,
-    out: Annotated[
-        str | None,
-        typer.Option(
-            "--out", "-o", help="Folder for the particles. Default: runs/TIME-PROFILE.", rich_help_panel=c.OUTPUT
-        ),
-    ] = None,
-    force: Annotated[
-        bool, typer.Option("--force", help="Replace particles in the folder.", rich_help_panel=c.OUTPUT)
-    ] = False,
-    json: c.Json = False,
+    run: RunOptions,
 ) -> None:
     """Draw ships that the trials leave possible, the form of the model not taken as right: bands for predictions.
+
+    The folder may be that of the fit whose profile is given; particles lie beside its results then.
 
     Examples:
 
@@ -42,23 +34,28 @@ def command(
 
       mmgtune posterior -p runs/today/profile.toml --out runs/today
     """
-    from pathlib import Path
-
-    from ..files import alone_in, make_folder, refuse_existing
-    from ..posterior import posterior, write_posterior
+    from ..files import refuse_existing
+    from ..posterior import plan_posterior, posterior, write_posterior
     from ..posterior.folder import FILES
+    from ..run_folders import claimed
 
     ship, data = c.load(profile, trials)
-    folder = Path(out) if out else c.default_out(ship)
-    refuse_existing([folder / name for name in FILES], force)
-    make_folder(folder)
-    with alone_in(folder):
-        result = posterior(ship, data, options, command=c.command_line())
-        document = write_posterior(result, folder, overwrite=force)
-    if json:
+    folder = run.out or c.default_out(ship)
+    if run.dry_run:
+        c.print_plan(plan_posterior(ship, data, options), folder, run.json)
+        return
+    refuse_existing([folder / name for name in FILES], run.force or run.resume)
+    with claimed(folder, resume=True), Progress(run.quiet, folder) as progress:
+        result = posterior(
+            ship, data, options, hooks=progress.hooks(), folder=folder, resume=run.resume, command=c.command_line()
+        )
+        document = write_posterior(result, folder, overwrite=True)
+        progress.saved(result.interrupted)
+    if run.json:
         c.print_json(document)
     else:
         c.show(summary(result, folder))
+    progress.leave()
 
 
 def summary(result: Posterior, folder: Path) -> str:

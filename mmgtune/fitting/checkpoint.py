@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import shlex
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -72,12 +73,15 @@ class Checkpoint:
         return parts
 
 
-def nothing_to_resume(folder: Path, lacking: str, so: str = "the run never began") -> OptionError:
+def nothing_to_resume(
+    folder: Path, lacking: str, so: str = "the run never began", results: Sequence[str] = RESULTS
+) -> OptionError:
     """The error of a run that cannot be continued; of one that has ended it says so, and how to have its report.
 
     lacking, so  what the folder does not hold, and what that means
+    results      what a run that has ended leaves
     """
-    result = next((name for name in RESULTS if (folder / name).is_file()), None)
+    result = next((name for name in results if (folder / name).is_file()), None)
     why, fix = f"the folder holds no {lacking}: {so}", "run without resume=True"
     if result is not None:
         why = f"the run there has ended: {result} is its result"

@@ -40,8 +40,10 @@ class Journal:
     stop      whether the run is being stopped: what ends after that is not as it would have been, and is not noted
     """
 
-    def __init__(self, folder: Path, identity: dict[str, Any], stop: Callable[[], bool] = lambda: False):
-        self.path = folder / NAME
+    def __init__(
+        self, folder: Path, identity: dict[str, Any], stop: Callable[[], bool] = lambda: False, name: str = NAME
+    ):
+        self.path = folder / name
         self.identity = identity
         self.stop = stop
         self._noted: list[dict[str, Any]] = []
@@ -71,7 +73,9 @@ class Journal:
 
     def _lines(self) -> list[str]:
         if not self.path.is_file():
-            raise nothing_to_resume(self.path.parent, "journal")
+            if self.path.name == NAME:
+                raise nothing_to_resume(self.path.parent, "journal")
+            raise nothing_to_resume(self.path.parent, self.path.name, "the run never began, or has ended", results=())
         return self.path.read_text(encoding="utf-8", errors="replace").splitlines()
 
     def remember(self, what: str, asked: str, do: Callable[[], Any], note: Callable[[Any], Any], recall: Any) -> Any:
@@ -122,17 +126,19 @@ _ACTIVE: ContextVar[Journal | None] = ContextVar("journal", default=None)
 
 @contextmanager
 def journalled(
-    folder: Path | None, identity: dict[str, Any], stop: Callable[[], bool], *, resume: bool
+    folder: Path | None, identity: dict[str, Any], stop: Callable[[], bool], *, resume: bool, name: str = NAME
 ) -> Iterator[None]:
     """What is searched for within this context is noted in the folder; part of a longer run is noted in its journal.
 
     The journal stays until the result of the run is written: see ``finished``.
+
+    name  of its file, for what may share a folder with another run
     Raises OptionError where there is nothing to resume, or it belongs to another run.
     """
     if folder is None or _ACTIVE.get() is not None:
         yield
         return
-    journal = Journal(folder, identity, stop)
+    journal = Journal(folder, identity, stop, name)
     journal.begin(resume)
     token = _ACTIVE.set(journal)
     try:
@@ -142,9 +148,10 @@ def journalled(
         journal.close()
 
 
-def finished(folder: Path) -> None:
-    """Delete what a run in this folder would be continued from: its result is written."""
-    for name in (CHECKPOINT, NAME):
+def finished(folder: Path, *names: str) -> None:
+    """Delete what a run in this folder would be continued from, or the journals of those names: its result is
+    written."""
+    for name in names or (CHECKPOINT, NAME):
         (folder / name).unlink(missing_ok=True)
 
 
@@ -197,7 +204,14 @@ class remembered(Generic[R]):
                 counter.evaluations += noted["evaluations"]
                 return self.recall(noted["result"])
 
-            result: R = journal.remember(do.__name__, asked, lambda: do(*given, **named), note, recall)
+            def whole() -> R:
+                token = _ACTIVE.set(None)  # what is remembered in the course of it is a part of it
+                try:
+                    return do(*given, **named)
+                finally:
+                    _ACTIVE.reset(token)
+
+            result: R = journal.remember(do.__name__, asked, whole, note, recall)
             return result
 
         return through

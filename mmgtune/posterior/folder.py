@@ -7,8 +7,9 @@ from typing import Any
 
 from ..documents import write_json
 from ..files import path_of
+from ..fitting.journal import finished
 from ..particles import FILE, save_particles
-from .run import Posterior
+from .run import JOURNAL, Posterior
 
 RESULT = "posterior.json"
 FILES = (FILE, RESULT)
@@ -23,4 +24,6 @@ def write_posterior(result: Posterior, folder: Path | str, overwrite: bool = Fal
     save_particles(result.particles, folder / FILE, overwrite)
     document = {**result.to_dict(), "out": str(folder)}
     write_json(document, folder / RESULT, overwrite)
+    if not result.interrupted:
+        finished(folder, JOURNAL)
     return document

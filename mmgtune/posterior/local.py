@@ -9,14 +9,16 @@ covariance of its residuals.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..backends import STATES, Backend, Cases, Integrator
 from ..fitting.initial import noise_of
+from ..fitting.journal import remembered
 from ..model import Model
 from ..objective import PAPER_CHANNELS, Objective, cases_of
 from ..profile import ShipProfile, scale_of
@@ -97,6 +99,11 @@ class Windowed:
         return found[:, 0], np.nan_to_num((found[:, 1:] - found[:, :1]) / steps)
 
     @property
+    def asked(self) -> list[Any]:
+        """What tells these residuals from others of one run."""
+        return [self.room.profile.sha256, list(self.room.names), [trial.id for trial in self.trials]]
+
+    @property
     def n_series(self) -> int:
         """Channels of runs: time series that may each be off by a misfit of its own."""
         return len(self.trials) * len(PAPER_CHANNELS)
@@ -169,18 +176,44 @@ class Mode:
         return float(len(self.z) - np.trace(self.gaussian(temper)[1]))
 
 
-def find_mode(data: Windowed, temper: float = 1.0, start: FloatArray | None = None) -> Mode:
+@dataclass(frozen=True, eq=False)
+class _Ended:
+    """Where a search for the mode ended; residual and slopes there, None where a journal says no more."""
+
+    z: FloatArray
+    converged: bool
+    linear: tuple[FloatArray, FloatArray] | None = None
+
+
+def find_mode(
+    data: Windowed,
+    temper: float = 1.0,
+    start: FloatArray | None = None,
+    stop: Callable[[], bool] = lambda: False,
+) -> Mode:
     """Damped Gauss-Newton steps within the room from ``start``, the centre where None; all dampings as lanes of a call.
 
     temper  variance of residuals
+    stop    asked at each step; it has not converged then
     What is at the edge of the room and would leave it is held there, and the step is that of the others: beyond the
     edge nothing changes, and a step that counts on what is there goes astray.  Where every step leads uphill, shorter
     ones are tried.  It has converged where no step of full length finds anything better: that a short one does not
     may be for its shortness.
     """
+    ended = _searched(data, temper, np.zeros(len(data.room)) if start is None else start, stop)
+    residual, slopes = ended.linear if ended.linear else data.linearised(ended.z)
+    return Mode(ended.z, np.nan_to_num(residual), slopes, ended.converged)
+
+
+@remembered(
+    asked=lambda data, temper, start, stop: [*data.asked, temper, start],
+    note=lambda ended: [ended.z.tolist(), ended.converged],
+    recall=lambda noted: _Ended(np.array(noted[0]), bool(noted[1])),
+)
+def _searched(data: Windowed, temper: float, start: FloatArray, stop: Callable[[], bool]) -> _Ended:
     n = len(data.room)
     low, high = data.room.box
-    z = np.zeros(n) if start is None else np.clip(start, low, high)
+    z = np.clip(start, low, high)
     r, J = data.linearised(z)
 
     def cost(values: FloatArray, at: FloatArray) -> FloatArray:
@@ -190,6 +223,9 @@ def find_mode(data: Windowed, temper: float = 1.0, start: FloatArray | None = No
     now = float(cost(r[:, None], z[:, None])[0])
     converged = False
     for _ in range(ITERATIONS if np.isfinite(now) else 0):  # no slope leads out of what cannot be simulated
+        if stop():
+            converged = False
+            break
         H = J.T @ J / temper + np.eye(n)
         g = J.T @ np.nan_to_num(r) / temper + z
         tried = _steps(z, H, g, low, high, DAMPING)
@@ -206,7 +242,7 @@ def find_mode(data: Windowed, temper: float = 1.0, start: FloatArray | None = No
             r, J = data.linearised(z)
         if ends:
             break
-    return Mode(z, np.nan_to_num(r), J, converged)
+    return _Ended(z, converged, (r, J))
 
 
 def _steps(

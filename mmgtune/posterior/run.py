@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,18 +14,25 @@ from ..backends import Integrator, get_backend
 from ..components import split_name
 from ..displayed import Plotted
 from ..errors import Problem, ProfileError, TrialError
+from ..files import path_of
+from ..fitting.journal import journalled
 from ..fitting.lost import runs_away
 from ..given import ShipGiven, TrialsGiven, list_of, ship_of, trials_of
-from ..made_from import make_provenance
+from ..hooks import Hooks
+from ..made_from import identity_of, make_provenance
 from ..options import PosteriorOptions
 from ..options.choice import must_be
 from ..particles import Particles
+from ..phrases import counted
 from ..profile import ShipProfile, tuned
 from ..threads import blas_on_one_thread
 from ..trial import Trial
 from .local import Mode, Windowed, find_mode, make_windowed, particles_about
 from .room import Room, make_room, tags_of
 from .sizing import Shown, Sized, own_variance, shown_by, size
+
+JOURNAL = "posterior.journal.jsonl"
+"""Of a name of its own: particles may lie beside the fit they are about."""
 
 EXPECTED = 4.0
 """Squares of residuals of particles over what a linear model has, up to which bands of generated ships held."""
@@ -39,6 +47,7 @@ class Posterior(Plotted):
     learnt      number of combinations of numbers that the trials determine
     nonlinear   median over particles of the squares of residuals above those of the mode, over what it is if the
                 distribution is Gaussian
+    interrupted whether it was stopped before its end
     """
 
     written_by = "write_posterior"
@@ -51,6 +60,7 @@ class Posterior(Plotted):
     converged: bool
     shown: Shown
     provenance: Mapping[str, Any]
+    interrupted: bool = False
 
     def __repr__(self) -> str:
         """In a line."""
@@ -64,7 +74,9 @@ class Posterior(Plotted):
         """What a reader must know before trusting the bands."""
         one_sided = self.shown.one_sided()
         found = [one_sided] if one_sided else []
-        if not self.converged:
+        if self.interrupted:
+            found.append("Stopped before its end: the bands are less than they would have become.")
+        elif not self.converged:
             found.append("The most probable coefficients were not found to the end; bands are about the best so far.")
         if self.nonlinear > EXPECTED:
             found.append(
@@ -113,6 +125,7 @@ class Posterior(Plotted):
             "learnt": self.learnt,
             "nonlinear": self.nonlinear,
             "converged": self.converged,
+            "interrupted": self.interrupted,
             "sentences": self.sentences(),
             "warnings": self.warnings(),
             "numbers": numbers,
@@ -125,12 +138,18 @@ def posterior(
     trials: TrialsGiven,
     options: PosteriorOptions = PosteriorOptions(),
     *,
+    hooks: Hooks = Hooks(),
+    folder: Path | str | None = None,
+    resume: bool = False,
     command: str = "",
 ) -> Posterior:
     """Particles of a ship from the tune trials of a set, or from all of a list.
 
     profile, trials  objects, paths or bundled names; where coefficients are tuned, the room is about what they were
-    command          what to call this in the provenance
+    hooks    what is told on the way, and what ends it: see ``until_interrupted`` for Ctrl-C
+    folder   where each finished search is noted at once; None for nowhere, as for a list of trials
+    resume   continue what was stopped in the folder
+    command  what to call this in the provenance
     Raises TrialError where there is no time series to learn from, OptionError for choices that make no sense,
     ProfileError where no likely ship can be simulated on the trials.
     """
@@ -138,11 +157,23 @@ def posterior(
     ship = ship_of(profile)
     if isinstance(trials, Sequence) and not isinstance(trials, str):
         chosen = list_of(trials)
-        provenance: dict[str, Any] = {"trials": [trial.id for trial in chosen]}
-    else:
-        data = trials_of(trials)
-        chosen = [data.trials[name] for name in data.tune]
-        provenance = make_provenance(ship, data, command)
+        return _drawn(ship, chosen, options, hooks, {"trials": [trial.id for trial in chosen]})
+    data = trials_of(trials)
+    provenance = make_provenance(ship, data, command)
+    identity = identity_of(ship, data, options, provenance)
+    kept = None if folder is None else path_of(folder)
+    with journalled(kept, identity, hooks.stop, resume=resume, name=JOURNAL):
+        return _drawn(ship, [data.trials[name] for name in data.tune], options, hooks, provenance)
+
+
+def _drawn(
+    ship: ShipProfile,
+    chosen: Sequence[Trial],
+    options: PosteriorOptions,
+    hooks: Hooks,
+    provenance: Mapping[str, Any],
+) -> Posterior:
+    """Particles from trials."""
     if not chosen:
         raise TrialError(Problem("no time series to learn from", "trials", fix="give trial files, and tune to them"))
     room = make_room(ship, size=options.room, without=options.without)
@@ -153,14 +184,16 @@ def posterior(
         return make_windowed(room, some, backend, integrator)
 
     windowed = remake(chosen)
-    mode = find_mode(windowed, 1.0)
+    hooks.on_phase(f"looking for the most probable ship in a room of {counted(len(room), 'number')}")
+    mode = find_mode(windowed, 1.0, stop=hooks.stop)
     if not np.isfinite(mode.residual).all():
         raise _lost(ship, chosen)
     if options.leave_out:
-        sized = size(windowed, mode, remake, options.seed)
+        sized = size(windowed, mode, remake, options.seed, hooks)
     else:
         sized = Sized(mode.misfit, own_variance(windowed, mode))
-    mode = find_mode(windowed, sized.temper, mode.z)
+    hooks.on_phase(f"drawing {counted(options.particles, 'particle')}")
+    mode = find_mode(windowed, sized.temper, mode.z, hooks.stop)
     z, nonlinear = sound(windowed, mode, sized.temper, options.particles, options.seed)
     if not z.shape[1]:
         raise _lost(ship, chosen)
@@ -177,6 +210,7 @@ def posterior(
         converged=mode.converged,
         shown=shown_by(chosen),
         provenance=provenance,
+        interrupted=sized.stopped or (hooks.stop() and not mode.converged),
     )
 
 

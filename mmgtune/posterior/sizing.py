@@ -15,6 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..displayed import Brief
+from ..fitting.journal import remembered
+from ..hooks import Hooks
 from ..manoeuvres import manoeuvre_kind
 from ..predictor import PhysicsPredictor, cases_from
 from ..simulation import track_if_whole
@@ -58,6 +60,7 @@ class Sized(Brief):
                single one nothing could be
     factor     on ``own`` from which bands cover them, 1 where nothing was left out
     covered    share of left-out samples within bands, by factor as far as these were tried
+    stopped    whether that was stopped before its end
     """
 
     misfit: float
@@ -65,6 +68,7 @@ class Sized(Brief):
     groups: tuple[str, ...] = ()
     factor: float = 1.0
     covered: tuple[float, ...] = ()
+    stopped: bool = False
 
     @property
     def temper(self) -> float:
@@ -77,6 +81,8 @@ class Sized(Brief):
         said = f"Residuals count with {variance}"
         if not self.groups:
             return f"{said}; no kind or side was left out to check it."
+        if self.stopped:
+            return f"{said}; leaving out {', '.join(self.groups)} to check it was stopped before its end."
         if len(self.groups) < 2:
             return f"{said}; all trials are of one kind and side, so nothing could be left out to check it."
         share, of = 100.0 * self.covered[GRID.index(self.factor)], ", ".join(self.groups)
@@ -147,35 +153,62 @@ def shown_by(trials: Sequence[Trial]) -> Shown:
     return Shown((starboard, port), circles, any(np.nanmin(trial.n) < 0.0 for trial in trials))
 
 
-def size(data: Windowed, mode: Mode, remake: Callable[[Sequence[Trial]], Windowed], seed: int = 1) -> Sized:
+def left_out_of(trials: Sequence[Trial]) -> tuple[tuple[str, ...], list[list[Trial]]]:
+    """Groups of trials in words, and what is left out in turn: each group, then parts of those of several runs; nothing
+    where there is but one group."""
+    groups: dict[str, list[Trial]] = {}
+    for trial in trials:
+        groups.setdefault(group_of(trial), []).append(trial)
+    if len(groups) < 2:
+        return tuple(groups), []
+    parts = [[one for one in some if one.run in runs] for some in groups.values() for runs in _shares(some)]
+    return tuple(groups), [*groups.values(), *parts]
+
+
+def size(
+    data: Windowed,
+    mode: Mode,
+    remake: Callable[[Sequence[Trial]], Windowed],
+    seed: int = 1,
+    hooks: Hooks = Hooks(),
+) -> Sized:
     """How much the trials of ``data`` are to be believed.
 
     remake  the same with other trials
     """
     own = own_variance(data, mode)
-    groups: dict[str, list[Trial]] = {}
-    for trial in data.trials:
-        groups.setdefault(group_of(trial), []).append(trial)
-    if len(groups) < 2:
-        return Sized(mode.misfit, own, tuple(groups))
-    parts = [[one for one in some if one.run in runs] for some in groups.values() for runs in _shares(some)]
-    left_out = [*groups.values(), *parts]
+    groups, left_out = left_out_of(data.trials)
+    if not left_out:
+        return Sized(mode.misfit, own, groups)
     rests = [remake([one for one in data.trials if not any(one is other for other in left)]) for left in left_out]
-    modes = [find_mode(rest, own) for rest in rests]
+    modes = []
+    for k, rest in enumerate(rests):
+        hooks.on_phase(f"most probable ships without a part of the trials, {k + 1} of {len(rests)}")
+        modes.append(find_mode(rest, own, stop=hooks.stop))
     variances = [own_variance(rest, found) for rest, found in zip(rests, modes, strict=True)]
     covered: list[float] = []
     for factor in GRID:
         shares = []
         for k, left in enumerate(left_out):
+            if hooks.stop():
+                return Sized(mode.misfit, own, groups, _chosen(covered), tuple(covered), stopped=True)
+            variance = f"{factor:.2g} times" if factor != 1.0 else "just"
+            hooks.on_phase(f"bands of what was left out with {variance} that variance, {k + 1} of {len(left_out)}")
             temper = factor * variances[k]
-            modes[k] = find_mode(rests[k], temper, modes[k].z)
+            modes[k] = find_mode(rests[k], temper, modes[k].z, hooks.stop)
             shares.append(coverage(rests[k], modes[k], temper, left, seed))
         of_groups, of_parts = shares[: len(groups)], shares[len(groups) :] or [1.0]
         covered.append(float(min(np.mean(of_groups), np.mean(of_parts))))
         if covered[-1] >= NOMINAL:
             break
-    chosen = len(covered) - 1 if covered[-1] >= NOMINAL else int(np.argmax(covered))
-    return Sized(mode.misfit, own, tuple(groups), GRID[chosen], tuple(covered))
+    return Sized(mode.misfit, own, groups, _chosen(covered), tuple(covered))
+
+
+def _chosen(covered: Sequence[float]) -> float:
+    """The factor of those tried with which bands cover what they should, or nearly."""
+    if not covered:
+        return 1.0
+    return GRID[len(covered) - 1 if covered[-1] >= NOMINAL else int(np.argmax(covered))]
 
 
 def _shares(trials: Sequence[Trial]) -> list[set[str]]:
@@ -184,6 +217,11 @@ def _shares(trials: Sequence[Trial]) -> list[set[str]]:
     return [set(runs[k::SHARES]) for k in range(min(SHARES, len(runs)))] if len(runs) > 1 else []
 
 
+@remembered(
+    asked=lambda data, mode, temper, trials, seed: [*data.asked, mode.z, temper, [one.id for one in trials], seed],
+    note=float,
+    recall=float,
+)
 def coverage(data: Windowed, mode: Mode, temper: float, trials: Sequence[Trial], seed: int) -> float:
     """Share of samples of position and heading of whole left-out trials that bands of ``NOMINAL`` content cover.
 

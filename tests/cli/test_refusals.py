@@ -48,8 +48,8 @@ TRIAL = resources.folder("trials") / "suzaku" / "turn_p35.parquet"
         (("trials", "make", "suzaku"), ("--out is missing (mmgtune trials make)", "Folder for", "mmgtune trials make")),
         (("fit", "--metod", "x"), ("unknown option --metod (mmgtune fit)", "none is called that", "'--method'")),
         (
-            ("posterior", "--resume"),
-            ("unknown option --resume", "these have it: diagnose, fit, fleet run", "fix: mmgtune posterior --help"),
+            ("simulate", "--resume"),
+            ("unknown option --resume", "these have it: diagnose, fit, fleet run", "fix: mmgtune simulate --help"),
         ),
         (
             ("leave-out", "--method", "cma-es"),
