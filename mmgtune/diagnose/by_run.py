@@ -148,10 +148,10 @@ class ByRun:
         if len(shown) == 1 and others:
             value, error = self.size(shown[0])
             size = quantity(value, None if error is None else NORMAL * error, self.unit) + self._of_what
-            text += f"{size} in {name_of(self.groups[shown[0]])}, and none shows in the other {others}"
+            text += f"{size} in {name_of(self.groups[shown[0]])}, and none for certain in the other {others}"
         else:
             text += range_in_words(min(sizes), max(sizes), self.unit) + self._of_what
-            text += f", and none shows in {others} of {len(self.groups)}" if shown and others else ""
+            text += f", and none for certain in {others} of {len(self.groups)}" if shown and others else ""
         return text + self._within()
 
     def _in_step_in_words(self, beside: float) -> str:

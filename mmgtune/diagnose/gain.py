@@ -45,6 +45,10 @@ MISSED = 2.0
 MOST = 0.9
 """Share of the error above noise on held-out trials that the right causes remove at least."""
 
+MOST_RUNS, FAR_BEYOND = 2.0 / 3.0, 10.0
+"""Share of the runs, at least two, that the others tell to their noise with the right causes, and how many times what
+noise may bring these err without."""
+
 HeldOut = Literal["test", "each", "only"]
 HELD_OUT: dict[HeldOut, str] = {
     "test": "test trials",
@@ -84,12 +88,41 @@ class Gain(Brief):
 
     @property
     def remains(self) -> bool:
-        """Whether the causes leave on held-out trials more than noise, and not much less than there was."""
-        return self.leaves_beside(BAND * self.unsure) and self.share_removed[0] < MOST
+        """Whether the causes leave on held-out trials more than noise, and not much less than there was, nor tell most
+        runs to their noise."""
+        left = self.leaves_beside(BAND * self.unsure) and self.share_removed[0] < MOST
+        return left and not self.tells_most_runs
 
     def leaves_beside(self, excused: float = 0.0) -> bool:
         """Whether the causes leave on held-out trials more than noise and so much chi-squared."""
         return float(self.excess[:, 1].sum()) > RELEVANT * self.floor + 3.0 * self.chance + excused
+
+    @property
+    def tells_most_runs(self) -> bool:
+        """Whether most of several runs are told to their noise by the others, and none worse than without causes."""
+        told, runs = self.runs_told
+        return told > 1 and told >= MOST_RUNS * runs
+
+    @cached_property
+    def runs_told(self) -> tuple[int, int]:
+        """Of the runs left out in turn those that the others tell to their noise with the causes, and far beyond it
+        without; and of how many.  None where a run is told worse with them.
+
+        What a single run shows of coefficients the others do not tell: it is told badly whatever the cause.
+        """
+        runs = [one.trial.run for one in self.compared]
+        if self.held_out != "each":
+            return 0, len(dict.fromkeys(runs))
+        samples = np.array([one.trial.n_samples for one in self.compared], dtype=float)
+        told, worse = 0, False
+        for run in dict.fromkeys(runs):
+            own = np.array([one == run for one in runs])
+            share = float(samples[own].sum() / samples.sum())
+            noise = RELEVANT * share * self.floor + 3.0 * np.sqrt(share) * self.chance
+            before, after = self.excess[own].sum(axis=0)
+            told += bool(after <= noise and before > FAR_BEYOND * noise)
+            worse = worse or bool(after > max(before, noise))
+        return 0 if worse else told, len(dict.fromkeys(runs))
 
     @property
     def left(self) -> float:
@@ -100,6 +133,11 @@ class Gain(Brief):
     def missed(self) -> bool:
         """Whether test trials are told so badly that something is wrong which the others do not show."""
         return self.held_out == "test" and self.remains and self.left > MISSED
+
+    @property
+    def too_few(self) -> bool:
+        """Whether the others tell a run badly: where all together are fitted, they are too few for what is re-tuned."""
+        return self.held_out == "each" and self.left > MISSED
 
     @property
     def worse(self) -> bool:

@@ -57,6 +57,7 @@ def error_of(bench: Workbench, found: Found, told: Leftover) -> Whereabouts:
     odd = oddest({trial.id: trial for trial in bench.trials}, bench.model.L_pp)
     of_runs = {trial.run: odd[trial.id] for trial in bench.trials if trial.id in odd}
     where = whereabouts(_forces(bench, found.base), by_run, ranked, told.offsets, of_runs)
+    where = replace(where, channel=told.alone)
     changed = {trial: f"the factor of the {LOGGED[name]} changes" for name, of in told.changed.items() for trial in of}
     return replace(where, odd=changed) if changed else where
 

@@ -32,6 +32,9 @@ from .workbench import Point, Workbench, least_noise
 NOTICED = 0.05
 """Variance beyond the white noise of the sensors, as a share of it, that is worth speaking of."""
 
+NEARLY_ALL = 0.95
+"""Share of what all channels have beyond their noise from which it is in one alone."""
+
 SLACK = 0.25
 """Share by which slow noise may have been estimated too small: records hold few of its time constants."""
 
@@ -101,6 +104,14 @@ class Leftover(Brief):
     def unknown(self) -> float:
         """Variance of the residuals that no noise of the sensors accounts for, as a share of their white noise."""
         return self.excess if self.structured else self.excess - min((1.0 + SLACK) * self.slow, max(self.excess, 0.0))
+
+    @property
+    def alone(self) -> str:
+        """The channel of ``LOGGED`` in which alone anything is left; "" where others err too, or none does."""
+        beyond = [name for name, excess in self.channels.items() if excess > NOTICED]
+        whole = sum(max(excess, 0.0) for excess in self.channels.values())
+        alone = len(beyond) == 1 and beyond[0] in LOGGED and self.channels[beyond[0]] > NEARLY_ALL * whole
+        return beyond[0] if alone else ""
 
     @property
     def noticed(self) -> bool:

@@ -200,7 +200,7 @@ class Diagnosis(Plotted):
         """
         brought = [one for _, one in self.contributions]
         if self._told_by_none:
-            return "with it any run is told little better by the others"
+            return "fitted to the other runs, it tells the one left out little better"
         if self._excused_by_gusts:
             return "it leaves far more than noise, and more than gusts of such a wind would"
         unsized = [cause.tag for cause in self.causes if not cause.sized]
@@ -215,8 +215,11 @@ class Diagnosis(Plotted):
             return "not all of them can be told from others"
         if len(brought) > 2 and sum(bool(cause.runs) for cause in self.causes) > 1:
             return "more than one of them differs from run to run"
-        if self.gain.share_removed[0] < TOLD:
+        share, low, _ = self.gain.share_removed
+        if share < TOLD:
             return "it removes little of the error where nothing was fitted"
+        if low < AT_ALL and any(cause.runs for cause in self.causes):
+            return "what it removes of the error where nothing was fitted may be next to nothing"
         if not_told:
             return not_told
         if sum(one.seen for one in brought) < NEEDED:
@@ -360,22 +363,29 @@ class Diagnosis(Plotted):
         """That no cause shows, and what re-tuning took or the log of the inputs leaves open."""
         if self.leaves_open:
             return (
-                f"No cause shows. The re-tuned model leaves {_of_noise(self.leftover.left_open)} of the sensors "
-                "besides, no more than what revolutions and rudder angle did between two samples of their log leaves "
+                f"No cause shows. The re-tuned model leaves {_of_noise(self.leftover.left_open)} of the sensors, "
+                "no more than what revolutions and rudder angle did between two samples of their log leaves "
                 "open: inputs logged more often would tell more."
             )
         alone = ", ".join(dict.fromkeys(one.cause.tag for one in self.traces if one.contribution.harmful))
         none = (
             f"what alone shows, {alone}, tells held-out trials worse" if alone else "no cause that was looked for shows"
         )
+        few = ""
+        if self.gain.too_few and self.choice is None:
+            few = (
+                f"Fitted to the other runs, it errs by {self.gain.left:,.2g} times the noise on one left out: these "
+                "are too few for all that is re-tuned."
+            )
         if far := moved_in_words(self.moved):
             said = f"Re-tuning is all it takes: with {far}, the model fits these trials to their noise, and {none}."
-            return " ".join(filter(None, (said, besides(self.moved), weighed(self.moved))))
+            return " ".join(filter(None, (said, besides(self.moved), weighed(self.moved), few)))
         parts = (
             f"Nothing is wrong beyond the noise of the measurements: the re-tuned model fits these trials, and {none}.",
             far_off(self.moved),
             weighed(self.moved),
             self.instead.sentence if self.instead else "",
+            few,
         )
         return " ".join(filter(None, parts))
 
@@ -408,7 +418,7 @@ class Diagnosis(Plotted):
             return f"Something is wrong with a sensor, and no known cause shows: {told}."
         excess = self.leftover.unknown
         left = (
-            f"{_of_noise(excess)} of the measurements besides"
+            f"{_of_noise(excess)} of the measurements"
             if excess < LARGE
             else f"an error {math.sqrt(1.0 + excess):,.0f} times the noise of the sensors"
         )
@@ -441,6 +451,13 @@ class Diagnosis(Plotted):
     def _gained(self, them: str, where: str) -> str:
         """What adding the causes removes of the error on held-out trials, in a sentence."""
         share, low, _ = self.gain.share_removed
+        told, runs = self.gain.runs_told
+        if self.gain.tells_most_runs and share < MOST:
+            rest = "the other" if runs == told + 1 else "the others"
+            return (
+                f"Adding {them} removes all of the error in {told} of {runs} runs left out in turn; {rest} "
+                f"show{'s' if runs == told + 1 else ''} coefficients that the rest do not tell."
+            )
         if share <= 0.0:
             return (
                 f"How much {'that' if them == 'it' else 'these'} would remove of the error {where} does not show: that "
@@ -587,8 +604,8 @@ class Diagnosis(Plotted):
 
 
 def _of_noise(variance: float) -> str:
-    """A variance as a share of that of the noise."""
-    return f"{100.0 * variance:.0f} % of the noise"
+    """A variance beside that of the noise."""
+    return f"an error with {100.0 * variance:.0f} % of the variance of the noise"
 
 
 def _percent(share: float) -> str:

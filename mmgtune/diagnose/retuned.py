@@ -160,8 +160,8 @@ def besides(moved: Sequence[Retuned]) -> str:
         return ""
     they = "Another coefficient is" if n == 1 else f"{n} other coefficients are"
     return (
-        f"{they} a tenth or more off too, but may only take up what those beside them are off by: "
-        "what fouling changes is named alone."
+        f"{they} a tenth or more off too, and not named: of coefficients that are re-tuned together each may take up "
+        "what another is off by, but for what fouling changes."
     )
 
 

@@ -126,6 +126,7 @@ class Whereabouts:
     removable  by effect, the largest share of the error beyond noise that it alone removes when refitted
     offsets    by channel, what its log shows more than the model in every run alike [rad, m/s or rad/s]
     odd        what the logs of runs warn of, by run, where these have most of the error
+    channel    of ``LOGGED`` that which alone errs, "" where others do too: its log is wrong, not a force
     """
 
     runs: Mapping[str, float]
@@ -138,6 +139,7 @@ class Whereabouts:
     removable: Mapping[str, float]
     offsets: Mapping[str, float]
     odd: Mapping[str, str] = field(default_factory=dict)
+    channel: str = ""
 
     @property
     def strongest(self) -> tuple[str, str, float] | None:
@@ -157,6 +159,8 @@ class Whereabouts:
             return f"the {LOGGED[first]} from a second sensor in the same runs"
         if self.odd:
             return f"the same without what is odd: {odd_in_words(self.odd)}"
+        if self.channel:
+            return f"the {LOGGED[self.channel]} from a second sensor in the same runs"
         best = self.strongest
         return TELLS[best[1]] if best else REPEAT
 
@@ -177,6 +181,18 @@ class Whereabouts:
             f"{in_words(name, offset)}: look at its sensor first, how it is mounted and how it was calibrated."
             for name, offset in self.offsets.items()
         ]
+        if self.channel:
+            found.append(
+                f"What is left is in the log of the {LOGGED[self.channel]} alone, and the rest of the motion is told "
+                "to its noise: look at that sensor, its filter and its clock first. No force is read where it is wrong."
+            )
+        found += [*([] if self.channel else self._of_forces()), *self._of_effects()]
+        found.append(f"What would tell: {self.suggestion}.")
+        return found
+
+    def _of_forces(self) -> list[str]:
+        """Which force stands out, when, and what it follows."""
+        found = []
         axis = max(self.axes, key=lambda one: self.axes[one], default=None)
         if axis is not None and self.axes[axis] > 0.0:
             size = math.sqrt(self.axes[axis])
@@ -197,15 +213,15 @@ class Whereabouts:
             )
         elif self.follows:
             found.append("No force follows any single quantity that was logged.")
-        if self.removable and max(self.removable.values()) >= LITTLE:
-            tag = next(iter(self.removable))
-            most = _percent(self.removable[tag])
-            found.append(
-                f"Of {len(self.removable)} effects tried alone, with one value for all runs, {tag} would remove the "
-                f"largest share of the error, {most}."
-            )
-        found.append(f"What would tell: {self.suggestion}.")
         return found
+
+    def _of_effects(self) -> list[str]:
+        """What a single known effect would do, where that is worth saying."""
+        if not self.removable or max(self.removable.values()) < LITTLE:
+            return []
+        tag = next(iter(self.removable))
+        said = f"Of {len(self.removable)} effects tried alone, with one value for all runs, {tag} would remove the "
+        return [f"{said}largest share of the error, {_percent(self.removable[tag])}."]
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
@@ -222,6 +238,7 @@ class Whereabouts:
             "histories": list(self.histories),
             "removable": dict(self.removable),
             "offsets": dict(self.offsets),
+            "channel": self.channel or None,
             "suggestion": self.suggestion,
         }
 

@@ -102,7 +102,7 @@ def test_a_current_in_one_run_only(tmp_path):
     result = said_of(case, tmp_path, ("current", "rudder-offset"))
     (cause,) = result.causes
     assert [cause.runs.shows(k) for k in range(5)] == [label == f"trial:{name}" for label in cause.runs.groups]
-    assert f"in {name}, and none shows in the other 4" in result.sentence()
+    assert f"in {name}, and none for certain in the other 4" in result.sentence()
 
 
 @pytest.mark.long
@@ -124,7 +124,7 @@ def test_a_rudder_that_stopped_half_way_in_one_run(tmp_path):
     assert (result.verdict, cause.tag, cause.runs.by) == ("found", "rudder-gain", "trial"), result.sentence()
     assert [cause.runs.shows(k) for k in range(5)] == [label == "trial:turn_p35" for label in cause.runs.groups]
     assert "The gain of the rudder differed from run to run: 0.5" in result.sentence()
-    assert "in turn_p35, and none shows in the other 4" in result.sentence()
+    assert "in turn_p35, and none for certain in the other 4" in result.sentence()
 
 
 def test_a_gyro_that_was_set_anew_for_each_run(tmp_path):
@@ -207,7 +207,7 @@ def test_what_is_common_to_all_errors_is_told_once():
 @pytest.mark.parametrize(("stderr", "apart"), [(0.03, 0.02), (0.03, None), (0.03, 0.05)])
 def test_values_known_no_better_beside_each_other_are_told_alone(stderr, apart):
     found = of_loading((0.99, 0.81, 0.93), stderr, apart)
-    assert "none shows in 2 of 3" in found.sentence or "in the other 2" in found.sentence
+    assert "none for certain in 2 of 3" in found.sentence or "in the other 2" in found.sentence
     assert len(found.table()[0]) == 2
     assert found.to_dict()["values"][0]["from_mean"] is None
 

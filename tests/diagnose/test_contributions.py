@@ -290,6 +290,7 @@ def sum_of(
     remains=False,
     by_run=0,
     removed=0.99,
+    low=0.9,
     sized=True,
     excused=False,
     more=False,
@@ -305,7 +306,7 @@ def sum_of(
         groups=groups,
         leftover=SimpleNamespace(structured=structured, unknown=left),
         explains_all=explains_all,
-        gain=SimpleNamespace(mostly_remains=remains, share_removed=(removed, 0.0, 1.0)),
+        gain=SimpleNamespace(mostly_remains=remains, share_removed=(removed, low, 1.0)),
         _told_by_none=False,
         _excused_by_gusts=excused,
         more=more,
@@ -333,6 +334,9 @@ GROUP = (("a", "b"),)
         (sum_of(CLEAR, CLEAR, CLEAR, by_run=2), "from run to run"),
         (sum_of(CLEAR, CLEAR, CLEAR, by_run=1), ""),
         (sum_of(CLEAR, CLEAR, by_run=2), ""),
+        (sum_of(CLEAR, CLEAR, by_run=1, removed=0.58, low=-0.07), "next to nothing"),
+        (sum_of(CLEAR, CLEAR, removed=0.58, low=-0.07), ""),
+        (sum_of(CLEAR, by_run=1, removed=0.58, low=-0.07), ""),
         (sum_of(CLEAR, CLEAR, CLEAR, removed=0.46), "removes little"),
         (sum_of(CLEAR, CLEAR, removed=-0.16), "removes little"),
         (sum_of(CLEAR, CLEAR, sized=False), "how large wind"),
@@ -552,16 +556,17 @@ def test_a_cause_that_is_alone_and_slight_is_a_trace(suzaku, degrees, trace):
 
 
 @pytest.mark.parametrize(
-    ("removed", "said"),
+    ("removed", "most", "said"),
     [
-        ((0.96, 0.0, 0.999), "Adding it removes 96 % of the error on trials not used, of which there are too few"),
-        ((0.96, 0.9, 0.99), "Adding it removes 96 % of the error on trials not used."),
-        ((0.4, 0.0, 0.9), "a model whose hull may be 5 % off"),
-        ((-0.1, -0.5, 0.6), "of the error on trials not used does not show"),
+        ((0.96, 0.0, 0.999), False, "removes 96 % of the error on trials not used, of which there are too few"),
+        ((0.96, 0.9, 0.99), False, "Adding it removes 96 % of the error on trials not used."),
+        ((0.4, 0.0, 0.9), False, "a model whose hull may be 5 % off"),
+        ((-0.1, -0.5, 0.6), False, "of the error on trials not used does not show"),
+        ((0.4, 0.0, 0.9), True, "all of the error in 2 of 3 runs left out in turn; the other shows coefficients that"),
+        ((0.96, 0.9, 0.99), True, "Adding it removes 96 % of the error on trials not used."),
     ],
 )
-def test_how_sure_a_gain_is_stands_beside_it(removed, said):
-    seen = SimpleNamespace(
-        gain=SimpleNamespace(share_removed=removed), options=SimpleNamespace(leeway=0.05), choice=None
-    )
+def test_how_sure_a_gain_is_stands_beside_it(removed, most, said):
+    gain = SimpleNamespace(share_removed=removed, tells_most_runs=most, runs_told=(2, 3))
+    seen = SimpleNamespace(gain=gain, options=SimpleNamespace(leeway=0.05), choice=None)
     assert said in Diagnosis._gained(seen, "it", "on trials not used")

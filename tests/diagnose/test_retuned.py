@@ -41,7 +41,9 @@ def test_words():
     stands_in = Retuned("propeller.t_P", "thrust deduction", "1", 0.2, 0.24, 0.001)
     assert stands_in.far
     assert in_words([stands_in]) == ""
-    assert besides([up, stands_in]).startswith("Another coefficient is a tenth or more off too, but may only take up")
+    assert besides([up, stands_in]).startswith(
+        "Another coefficient is a tenth or more off too, and not named: of coeff"
+    )
     assert besides([up]) == ""
     assert in_words([up]) == "resistance going straight (R_0) 40 ± 4 % above its pre-determined value"
     assert in_words([up, down]).endswith(

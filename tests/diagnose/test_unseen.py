@@ -1,5 +1,7 @@
 """Fitted points on trials that they were not fitted to."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -54,6 +56,35 @@ def test_causes_are_told_worse_by_most_test_trials_or_not_at_all(before, after, 
     assert gain.mostly_remains  # in all of these
     assert not Gain("test", (), excess, floor=100.0, chance=5.0, unsure=1e5).mostly_remains
     assert not Gain("each", (), excess, floor=100.0, chance=5.0).worse
+
+
+def left_out(*excess: tuple[float, float], held_out="each") -> Gain:
+    """Runs of 100 samples each that were left out in turn, with chi-squared beyond noise before and after causes."""
+    compared = [SimpleNamespace(trial=SimpleNamespace(run=str(k), n_samples=100)) for k in range(len(excess))]
+    return Gain(held_out, tuple(compared), np.array(excess), floor=600.0 * len(excess), chance=40.0)
+
+
+@pytest.mark.parametrize(
+    ("gain", "told", "remains"),
+    [
+        (left_out((3e5, 40.0), (1.5e8, 9e7), (1e6, 30.0)), (2, 3), False),
+        (left_out((3e5, 40.0), (1.5e8, 9e7), (1e6, 2e5)), (1, 3), True),
+        (left_out((3e5, 40.0), (1.5e8, 1.6e8), (1e6, 30.0)), (0, 3), True),
+        (left_out((50.0, 40.0), (1.5e8, 9e7), (60.0, 30.0)), (0, 3), True),
+        (left_out((3e5, 40.0), (1.5e8, 9e7)), (1, 2), True),
+        (left_out((3e5, 40.0), (1.5e8, 9e7), (1e6, 30.0), held_out="test"), (0, 3), True),
+    ],
+    ids=["two of three", "one of three", "one is worse", "nothing to tell", "one of two", "kept for testing"],
+)
+def test_a_run_that_alone_shows_a_coefficient_does_not_refute_what_tells_the_others(gain, told, remains):
+    assert gain.runs_told == told
+    assert gain.remains is remains
+
+
+def test_runs_that_the_others_tell_badly_are_too_few():
+    assert left_out((5e3, 5e3), (200.0, 200.0)).too_few
+    assert not left_out((300.0, 300.0), (200.0, 200.0)).too_few
+    assert not left_out((5e3, 5e3), (200.0, 200.0), held_out="test").too_few
 
 
 def test_a_point_is_refitted_without_each_run_once(monkeypatch):

@@ -10,7 +10,7 @@ from scipy.stats import ttest_1samp
 
 from mmgtune.diagnose.evidence import ResidualForces
 from mmgtune.diagnose.evidence.forces import time_since_order
-from mmgtune.diagnose.leftover import by_chance, offsets_of
+from mmgtune.diagnose.leftover import Leftover, by_chance, offsets_of
 from mmgtune.diagnose.whereabouts import PHASES, REPEAT, TELLS, Whereabouts, phases_of, whereabouts
 from mmgtune.trial import load_trials
 from mmgtune.units import DEG
@@ -172,6 +172,29 @@ def test_an_offset_of_a_log_is_one_number_in_every_run(by_run, found):
         said = whereabouts([], {}, {}, offsets).sentences()
         assert "sway velocity is off by +0.0" in said[0]
         assert said[-1] == "What would tell: the sway velocity from a second sensor in the same runs."
+
+
+@pytest.mark.parametrize(
+    ("channels", "alone"),
+    [
+        ({"x": -0.03, "psi": 0.04, "u": 11.3, "v_m": 0.02}, "u"),
+        ({"x": 1.2, "psi": 0.04, "u": 11.3, "v_m": 0.02}, ""),
+        ({"x": 11.3, "psi": 0.04, "u": 0.0, "v_m": 0.02}, ""),
+        ({"x": 0.0, "psi": 0.04, "u": 0.02, "v_m": 0.02}, ""),
+    ],
+    ids=["a log", "positions too", "positions", "nothing"],
+)
+def test_what_is_left_in_one_log_alone_is_of_its_sensor_and_of_no_force(channels, alone):
+    left = Leftover(sum(channels.values()), channels, {}, {}, {}, {})
+    assert left.alone == alone
+    forces = [run(f"run_{i}", "rudder", 1, 3.0, seed=i) for i in range(4)]
+    found = replace(whereabouts(forces, {"run_0": 30.0, "run_1": 10.0}, {"wind": 0.3}, {}), channel=left.alone)
+    said = " ".join(found.sentences())
+    assert ("surge velocity alone" in said) == bool(alone)
+    assert ("By inverse dynamics" in said) != bool(alone)
+    assert ("surge velocity from a second sensor" in said) == bool(alone)
+    assert "wind would remove the largest share" in said
+    assert found.to_dict()["channel"] == (alone or None)
 
 
 @pytest.mark.parametrize("values", [[0.4, 0.5, 0.45], [0.1, -0.3, 0.2, 0.05], [1.0, 1.0]])
