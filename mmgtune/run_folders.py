@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from .errors import OutputError, Problem
@@ -113,16 +113,36 @@ def _left_before(folder: Path) -> dict[Path, tuple[int, int]]:
     return {path: (path.stat().st_ino, path.stat().st_mtime_ns) for path in there if path.is_file()}
 
 
+def _refuse_read(folder: Path, reads: Iterable[str | None]) -> None:
+    """Raises OutputError where what a command reads lies in the folder whose files it is to replace."""
+    for given in reads:
+        path = Path(given) if given else None
+        with contextlib.suppress(OSError, ValueError):
+            if path and path.exists() and folder.resolve() in (path.resolve(), path.resolve().parent):
+                why = "force=True would replace what is read, or take it away with what runs before left there"
+                raise OutputError(Problem("the folder holds what is read", str(path), why, "choose another folder"))
+
+
 @contextlib.contextmanager
-def claimed(folder: Path, *, force: bool = False, resume: bool = False, anew: bool = False) -> Iterator[Path]:
+def claimed(
+    folder: Path,
+    *,
+    force: bool = False,
+    resume: bool = False,
+    anew: bool = False,
+    reads: Iterable[str | None] = (),
+) -> Iterator[Path]:
     """The folder made ready as by ``prepare``, and no other run's while the context lasts.
 
-    anew  what runs before left there goes at the end where ``force`` let this one in: a report or a ship of another
-          run would be taken for its own
+    anew   what runs before left there goes at the end where ``force`` let this one in: a report or a ship of another
+           run would be taken for its own
+    reads  paths, or names, of what the run is made from: that is not to go
 
-    Raises OutputError as ``prepare`` does, and where another run is writing there.
+    Raises OutputError as ``prepare`` does, where another run is writing there, and where what is read would go.
     """
     refuse_file(folder)
+    if anew and force:
+        _refuse_read(folder, reads)
     made = [one for one in (folder, *folder.parents) if not one.exists()]
     if made:
         make_folder(folder)

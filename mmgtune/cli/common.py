@@ -142,7 +142,9 @@ def needs_folder(**asked: bool) -> None:
 
 
 @contextlib.contextmanager
-def placed(out: Path | None, *, force: bool, anew: bool = False, **asked: bool) -> Iterator[None]:
+def placed(
+    out: Path | None, *, force: bool, anew: bool = False, reads: Sequence[str | None] = (), **asked: bool
+) -> Iterator[None]:
     """A context in which results are written to ``out``, as ``claimed`` gives it; where there is none nothing is.
 
     asked  what else was asked for which only files have
@@ -153,7 +155,7 @@ def placed(out: Path | None, *, force: bool, anew: bool = False, **asked: bool) 
         needs_folder(**asked, force=force)
         yield
     else:
-        with claimed(out, force=force, anew=anew):
+        with claimed(out, force=force, anew=anew, reads=reads):
             yield
 
 

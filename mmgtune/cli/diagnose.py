@@ -107,7 +107,7 @@ def command(
         c.say_odd(data, ship.L_pp)
     left = Left(plan.seconds, options.most).words
     with (
-        claimed(folder, force=run.force, resume=run.resume, anew=True),
+        claimed(folder, force=run.force, resume=run.resume, anew=True, reads=(profile, trials)),
         Progress(run.quiet, folder, left=left) as progress,
     ):
         result = diagnose(

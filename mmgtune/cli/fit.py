@@ -72,7 +72,10 @@ def command(
         return
     if not run.quiet and plan.seconds[0] > LONG:
         c.say(f"note: {in_time_of(plan)}")
-    with claimed(folder, force=run.force, resume=run.resume, anew=True), Progress(run.quiet, folder) as progress:
+    with (
+        claimed(folder, force=run.force, resume=run.resume, anew=True, reads=(profile, trials)),
+        Progress(run.quiet, folder) as progress,
+    ):
         result = fit(
             ship,
             data,

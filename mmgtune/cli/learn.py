@@ -138,7 +138,7 @@ def _train(
         c.print_plan(plan(ship, data, options), folder, run.json)
         return
     progress = Progress(run.quiet, folder, kept="what was learned so far")
-    with claimed(folder, force=run.force, resume=run.resume, anew=True), progress:
+    with claimed(folder, force=run.force, resume=run.resume, anew=True, reads=(profile, trials)), progress:
         hooks = Hooks(on_progress=progress.on_share, stop=lambda: progress.stopped)
         result = learn(ship, data, options, hooks=hooks, folder=folder, resume=run.resume, command=c.command_line())
         document = write_learned(result, folder, overwrite=True)

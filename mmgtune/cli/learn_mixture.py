@@ -79,7 +79,7 @@ def command(
     networks = names if trials is None else names[:-1]
     given = named_ship(model)
     folder = run.out or c.default_out(given)
-    with claimed(folder, force=run.force, anew=True):
+    with claimed(folder, force=run.force, anew=True, reads=(model, *names)):
         result = learn_mixture(given, networks, trials, options, command=c.command_line())
         document = result.write(folder, overwrite=True)
         if trials is not None and not no_report:

@@ -55,7 +55,10 @@ def command(
     if run.dry_run:
         c.print_plan(plan, folder, run.json)
         return
-    with claimed(folder, force=run.force, resume=run.resume, anew=True), Progress(run.quiet, folder) as progress:
+    with (
+        claimed(folder, force=run.force, resume=run.resume, anew=True, reads=(profile, trials)),
+        Progress(run.quiet, folder) as progress,
+    ):
         work = leave_out_with_bands if bands else leave_out
         result = work(
             ship, data, options, hooks=progress.hooks(), folder=folder, resume=run.resume, command=c.command_line()

@@ -223,7 +223,7 @@ def compare(
     from ..comparing_profiles import compare_profiles
     from ..report import render
 
-    with c.placed(out, force=force, anew=True):
+    with c.placed(out, force=force, anew=True, reads=(a, b)):
         found = compare_profiles(a, b)
         if out is not None:
             c.say(f"wrote {found.write(out, overwrite=True)}")

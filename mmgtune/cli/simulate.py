@@ -61,7 +61,8 @@ def command(
     from ..report import render
     from ..simulating import simulate
 
-    with c.placed(out, force=force, anew=True, forces=forces, no_report=no_report):
+    reads = (profile, trials)
+    with c.placed(out, force=force, anew=True, reads=reads, forces=forces, no_report=no_report):
         result = simulate(profile, trials, options)
         rows = result.rows()
         notes = list(result.notes)

@@ -43,7 +43,10 @@ def command(
     if run.dry_run:
         c.print_plan(plan, folder, run.json)
         return
-    with claimed(folder, force=run.force, resume=run.resume, anew=True), Progress(run.quiet, folder) as progress:
+    with (
+        claimed(folder, force=run.force, resume=run.resume, anew=True, reads=(profile, trials)),
+        Progress(run.quiet, folder) as progress,
+    ):
         result = sweep(
             ship, data, options, hooks=progress.hooks(), folder=folder, resume=run.resume, command=c.command_line()
         )

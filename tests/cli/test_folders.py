@@ -76,6 +76,22 @@ def stopped(note=None):
     raise KeyboardInterrupt
 
 
+@pytest.mark.parametrize("given", ["-p here/profile.toml", "-p here", "-t here/turn_p35.parquet"])
+def test_what_a_command_reads_does_not_go_with_what_is_replaced(tmp_path, given):
+    """With --force a simulation took away the fit whose profile it had read."""
+    here = tmp_path / "here"
+    here.mkdir()
+    write_text(here / "profile.toml", load_profile("suzaku").text)
+    write_text(here / "fit.json", "{}")
+    write_trial(load_trials("suzaku").trials["turn_p35"], here / "turn_p35.parquet")
+    before = {path.name: path.read_bytes() for path in here.iterdir()}
+    orders = () if "-t" in given else ("--turn", "35")
+    ended = run("simulate", *given.split(), *orders, "--out", "here", "--force", "--no-report", cwd=tmp_path)
+    assert ended.code == 2
+    assert "the folder holds what is read" in ended.err
+    assert {path.name: path.read_bytes() for path in here.iterdir()} == before
+
+
 def test_of_a_refused_command_no_folder_stays_that_it_made(tmp_path):
     (tmp_path / "mine").mkdir()
     with pytest.raises(KeyboardInterrupt), claimed(tmp_path / "mine" / "runs" / "one"):
