@@ -125,6 +125,13 @@ def test_what_cannot_be_studied_is_said():
         study_heading_keeping([SHIP], replace(SHIP, approach=None), FEW)
     with pytest.raises(OptionError, match="does not say how delta moves"):
         study_heading_keeping([SHIP], replace(SHIP, steering_gear=None, actuators={}), FEW)
+    for given in ({"gain_step": 0.0}, {"gain_step": np.nan}, {"gain_most": np.nan}, {"gain_most": np.inf}):
+        (name,) = given
+        with pytest.raises(OptionError, match=f"^{name} is ") as error:
+            HeadingOptions(**given)
+        assert [one.where for one in error.value.problems] == [name]
+    with pytest.raises(OptionError, match="inf gains"):
+        HeadingOptions(gain_step=1e-320)
     with pytest.raises(OptionError, match="0 gains"):
         HeadingOptions(gain_step=10.0, gain_most=5.0)
     with pytest.raises(OptionError, match="step is 1e-09"):

@@ -14,6 +14,7 @@ from mmgtune.options import (
     DiagnoseOptions,
     EnsembleOptions,
     FitOptions,
+    HeadingOptions,
     HybridOptions,
     LearnOptions,
     LeaveOutOptions,
@@ -50,6 +51,9 @@ from mmgtune.trial import load_trials
         (ValidateOptions, {"restart": "100"}),
         (SimulateOptions, {"turn": (35,)}),
         (CheckOptions, {"metrics": ("J", 1)}),
+        (FitOptions, {"window": (0.0, 10**400)}),
+        (HeadingOptions, {"gain_step": 10**400}),
+        (HeadingOptions, {"gain_most": 10**400}),
     ],
 )
 def test_of_another_kind(of, given):

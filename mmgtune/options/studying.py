@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from ..errors import Problem
 from .choice import INPUT, again, choice
 from .particles import ParticleOptions
@@ -30,9 +32,11 @@ class HeadingOptions(ParticleOptions):
     def problems(self) -> list[Problem]:
         """A grid of gains has at least one, and not too many."""
         found = super().problems()
-        n = int(self.gain_most / self.gain_step + 1e-9)
-        if not 1 <= n <= MOST_GAINS:
-            what = f"{n} gains from {self.gain_step:g} to {self.gain_most:g}"
+        if found:  # they may be no numbers to divide by
+            return found
+        n = self.gain_most / self.gain_step + 1e-9
+        if not 1.0 <= n < MOST_GAINS + 1.0:
+            what = f"{np.floor(n):g} gains from {self.gain_step:g} to {self.gain_most:g}"
             found.append(Problem(what, "gain_step", fix=f"let there be between 1 and {MOST_GAINS}"))
         return found
 
