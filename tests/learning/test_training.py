@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 from dataclasses import replace
 
@@ -122,6 +123,40 @@ def test_under_one_compiled_step_networks_become_the_same(monkeypatch, kept):
         assert one.best == pytest.approx(same.best, rel=1e-3)
 
 
+def in_header(old, new):
+    """A change of the numbers of a checkpoint, of the same length."""
+    assert len(old) == len(new)
+    return lambda content: content.replace(old, new, 1)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        in_header(rb"\"curve\": []", rb"\"curve\": 10"),
+        in_header(rb"\"factor\": 1.0", rb"\"factor\": 8.0"),
+        in_header(b'"sha256":"', b'"sha255":"'),
+        lambda content: content[:-2] + bytes([content[-2] ^ 1]) + content[-1:],
+        lambda content: b"",
+    ],
+)
+def test_a_checkpoint_changed_anywhere_is_refused_before_training(tmp_path, change):
+    trainer, path = Trainer(Climbing(), Plan(60, 4, 0.01, 5)), tmp_path / named(0)
+    first = trainer.begin({"a": np.float32(0.0)})
+    Kept(tmp_path, {}, False).keep(0, first)
+    assert Kept(tmp_path, {}, True).begun(0, first).step == 0
+    assert change(path.read_bytes()) != path.read_bytes()
+    path.write_bytes(change(path.read_bytes()))
+    with pytest.raises(OptionError, match="checkpoint cannot be read"):
+        Kept(tmp_path, {}, True)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no pipes by name")
+def test_a_checkpoint_that_is_a_pipe_is_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / named(0))
+    with pytest.raises(OptionError, match=r"cannot be read(?s:.*)a pipe"):
+        Kept(tmp_path, {}, True)
+
+
 def test_a_checkpoint_of_another_training_or_damaged_is_refused(tmp_path):
     hooks = Hooks(stop=lambda: True)
     learn_rnn("suzaku", "suzaku", SMALL, hooks=hooks, folder=tmp_path)
@@ -130,6 +165,10 @@ def test_a_checkpoint_of_another_training_or_damaged_is_refused(tmp_path):
     path = tmp_path / named(1)
     path.write_bytes(path.read_bytes()[:-40])
     with pytest.raises(OptionError, match="cannot be read"):
+        learn_rnn("suzaku", "suzaku", SMALL, folder=tmp_path, resume=True)
+    path.unlink()
+    path.mkdir()
+    with pytest.raises(OptionError, match=r"cannot be read(?s:.*)a folder"):
         learn_rnn("suzaku", "suzaku", SMALL, folder=tmp_path, resume=True)
     with pytest.raises(OptionError, match="nothing to resume"):
         learn_rnn("suzaku", "suzaku", SMALL, folder=tmp_path / "other", resume=True)
