@@ -11,6 +11,7 @@ it says nothing of it either.  An optimum on a bound of the box is taken to be t
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Self
@@ -18,6 +19,9 @@ from typing import Any, Self
 import numpy as np
 
 from ..arrays import FloatArray
+
+ROUNDING = 1e-6
+"""Share of the largest entry, in units of what was known before, by which a matrix of a file may miss its form."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,9 +80,38 @@ class Information:
     @classmethod
     def from_dict(cls, document: Mapping[str, Any]) -> Self:
         """Of a document.  Raises KeyError or ValueError where it is none."""
-        n = len(document["names"])
+        if not isinstance(document, Mapping):
+            raise ValueError("it is no table")
+        names = document["names"]
+        if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+            raise ValueError("'names' is no list of names")
+        if len(set(names)) < len(names):
+            raise ValueError("'names' has a name twice")
+        n = len(names)
         shapes = {"H": (n, n), "b": (n,), "before": (n,), "known": (n,)}
-        arrays = {name: np.asarray(document[name], dtype=float).reshape(shape) for name, shape in shapes.items()}
-        if not all(np.isfinite(one).all() for one in arrays.values()):
-            raise ValueError("numbers that are not finite")
-        return cls(tuple(str(name) for name in document["names"]), **arrays)
+        found = cls(tuple(names), **{name: _numbers(document[name], name, shape) for name, shape in shapes.items()})
+        if not (found.known > 0.0).all():
+            raise ValueError("'known' holds standard deviations, which are above 0")
+        if not _is_information(found.H, found.known):
+            raise ValueError("'H' is not symmetric, or not positive semidefinite: no trials say that")
+        return found
+
+
+def _numbers(value: object, name: str, shape: tuple[int, ...]) -> FloatArray:
+    """Finite numbers of a document in a shape.  Raises ValueError for anything else."""
+    found = np.asarray(value)
+    if found.dtype.kind not in "iuf" or not np.isfinite(found).all():
+        raise ValueError(f"'{name}' has something in it that is no finite number")
+    if found.size != math.prod(shape):
+        raise ValueError(f"'{name}' has {found.size} numbers for {math.prod(shape)}")
+    return found.astype(float).reshape(shape)
+
+
+def _is_information(H: FloatArray, known: FloatArray) -> bool:
+    """Whether a matrix is one of second derivatives about a maximum, but for rounding."""
+    with np.errstate(all="ignore"):
+        whole = H * np.outer(known, known)
+    rounding = ROUNDING * np.abs(whole).max(initial=1.0)
+    if not np.isfinite(rounding) or (np.abs(whole - whole.T) > rounding).any():
+        return False
+    return bool(np.linalg.eigvalsh(whole).min(initial=0.0) >= -rounding)

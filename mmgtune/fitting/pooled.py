@@ -23,7 +23,8 @@ import numpy as np
 
 from .. import limits
 from ..arrays import FloatArray
-from ..errors import OptionError, Problem, reason
+from ..errors import FEW, OptionError, Problem, brief, reason
+from ..files import hold_regular
 from ..resources import must_be_name
 from .box import Box
 from .information import Information
@@ -120,7 +121,8 @@ def pooled(sisters: SisterClass) -> Pooled:
     Raises OptionError where it has fewer than three ships, or what their trials say is not of any trials.
     """
     try:
-        return _pooled(sisters)
+        with np.errstate(all="ignore"):  # of numbers beyond all measure, which are told below
+            return _pooled(sisters)
     except np.linalg.LinAlgError as error:
         fix = "run the fleet of the class again; if nothing but mmgtune wrote the file, please report it"
         what = f"what the trials of the class '{sisters.name}' say cannot be put together"
@@ -153,7 +155,7 @@ def _pooled(sisters: SisterClass) -> Pooled:
         mean = each.sum(axis=0) / spread**2 / (n_ships / spread**2 + 1.0)
         new = np.sqrt(np.mean((each - mean) ** 2 + np.diagonal(P, axis1=1, axis2=2), axis=0))
         new = np.maximum(new, FLOOR)
-        change = float(np.max(np.abs(new / spread - 1.0)))
+        change = float(np.abs(new / spread - 1.0).max(initial=0.0))
         spread = new
         if change < SETTLED:
             break
@@ -162,6 +164,8 @@ def _pooled(sisters: SisterClass) -> Pooled:
     of_mean = np.sum(H - H @ P @ H, axis=0) + np.eye(len(names))
     error = np.sqrt(np.diag(np.linalg.inv(of_mean)))
     each = np.einsum("ijk,ik->ij", P, b + mean / spread**2)
+    if not all(np.isfinite(one).all() for one in (mean, error, spread, each)):
+        raise np.linalg.LinAlgError("its numbers run away")
     return Pooled(
         names,
         before + known * mean,
@@ -191,22 +195,55 @@ def with_sisters(box: Box, found: Pooled) -> Box:
     return replace(box, centre=centre, scatter=scatter)
 
 
+def unheard(box: Box, found: Pooled | None) -> list[str]:
+    """The sentence on a class that knows none of the targets; nothing where there is no class."""
+    if found is None or any(name in found.names and k not in box.charted for k, name in enumerate(box.names)):
+        return []
+    more = len(found.names) - FEW
+    only = f", only of {', '.join(found.names[:FEW])}" if found.names else ""
+    only += f" and {more} more" if more > 0 else ""
+    return [f"The class of sister ships has no effect: their trials say nothing of the targets{only}."]
+
+
 def read_sisters(path: Path, ship: str) -> SisterClass:
     """The class of a file, or of the folder of a fleet: the only one there, or that which the ship is in.
 
     Raises OptionError where there is none, or it cannot be told which.
     """
     must_be_name(path, "prior", OptionError)
-    file = path if path.is_file() else _chosen(path, ship)
+    file = path if path.exists() and not path.is_dir() else _chosen(path, ship)
     try:
-        document = json.loads(limits.text(file, limits.RECORD_BYTES, OptionError))
-        if document.get("kind") != "sister-class" or document.get("schema") != SCHEMA:
+        document = json.loads(_text(file))
+        if not isinstance(document, dict) or document.get("kind") != "sister-class" or document.get("schema") != SCHEMA:
             raise ValueError('it has no "kind": "sister-class" of schema 1')
-        members = {str(name): Information.from_dict(one) for name, one in document["members"].items()}
-        return SisterClass(str(document["name"]), members)
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-        fix = "give the folder that mmgtune fleet run wrote, or a file of its folder classes"
-        raise OptionError(Problem("this is no class of sister ships", str(file), reason(error), fix)) from error
+        if not isinstance(document["members"], dict) or not isinstance(document["name"], str):
+            raise ValueError("its members and its name are of another kind")
+        return SisterClass(document["name"], dict(map(_member, document["members"].items())))
+    except (ValueError, KeyError, RecursionError) as error:
+        raise _no_class(file, error) from error
+
+
+def _member(told: tuple[str, Any]) -> tuple[str, Information]:
+    """A ship, and what her trials say.  Raises ValueError where that is none."""
+    ship, document = told
+    try:
+        return ship, Information.from_dict(document)
+    except (KeyError, ValueError) as error:
+        raise ValueError(f"of {brief(ship)}: {reason(error)}") from error
+
+
+def _text(file: Path) -> str:
+    """What stands in the file of a class, which is read more than once.  Raises OptionError."""
+    try:
+        hold_regular(file)
+        return limits.text(file, limits.RECORD_BYTES, OptionError)
+    except (OSError, ValueError) as error:
+        raise _no_class(file, error) from error
+
+
+def _no_class(file: Path, error: Exception) -> OptionError:
+    fix = "give the folder that mmgtune fleet run wrote, or a file of its folder classes"
+    return OptionError(Problem("this is no class of sister ships", str(file), reason(error), fix))
 
 
 def _chosen(folder: Path, ship: str) -> Path:
@@ -215,7 +252,7 @@ def _chosen(folder: Path, ship: str) -> Path:
         why = "a fleet has classes where three ships or more of a class were fitted"
         fix = 'write class = "..." into the entries of its table, and run it'
         raise OptionError(Problem("there is no class of sister ships", str(folder), why, fix))
-    own = [file for file in files if f'"{ship}": {{' in file.read_text(encoding="utf-8", errors="replace")]
+    own = [file for file in files if f'"{ship}": {{' in _text(file)]
     if len(files) == 1 or len(own) == 1:
         return (own or files)[0]
     fix = "name one of: " + ", ".join(str(file) for file in files)

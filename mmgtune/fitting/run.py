@@ -31,7 +31,7 @@ from .journal import journalled
 from .least_squares import fit_offsets
 from .lost import hold_simulated
 from .optimum import Seeking
-from .pooled import read_sisters
+from .pooled import read_sisters, unheard
 from .problem import FitProblem
 from .result import Beside, FitResult
 from .setting import Setting, in_pieces, make_problem, make_setting
@@ -156,7 +156,7 @@ def _fit(
         channels=setting.objective.channels,
         provenance=provenance,
         interrupted=hooks.stop(),
-        oddities=tuple(odd),
+        oddities=(*odd, *unheard(problem.box, setting.sisters)),
     )
 
 

@@ -36,7 +36,7 @@ def _told(path: Path) -> Information:
     """What the trials of a job say.  Raises OptionError where the file does not hold that."""
     try:
         return Information.from_dict(json.loads(limits.text(path, limits.RECORD_BYTES, OptionError)))
-    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
+    except (OSError, ValueError, KeyError, RecursionError) as error:
         fix = "remove the row of the job from results and run the fleet again with resume=True: the job is run anew"
         what = "the file does not hold what trials say of coefficients"
         raise OptionError(Problem(what, str(path), reason(error), fix)) from error
@@ -50,6 +50,6 @@ def write_classes(out: Path, classes: Sequence[SisterClass]) -> list[dict[str, A
         write_text(out / CLASSES / f"{one.name}.json", json.dumps(document, allow_nan=False) + "\n")
         documents.append(document)
     for path in (out / CLASSES).glob("*.json"):
-        if path.stem not in [one.name for one in classes]:
+        if path.stem not in [one.name for one in classes] and not path.is_dir():
             path.unlink()
     return documents

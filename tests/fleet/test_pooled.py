@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import json
+import os
+import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,6 +16,7 @@ import pytest
 from mmgtune.errors import OptionError
 from mmgtune.fitting import FitOptions, Information, SisterClass, fit, information_of, make_problem, pooled
 from mmgtune.fitting.pooled import read_sisters
+from mmgtune.fleet.pooling import write_classes
 from mmgtune.trial import load_trials
 from tests.command import run
 
@@ -74,6 +79,68 @@ def test_open_parameters_and_two_sets_of_trials() -> None:
     assert both.b[0] == whole.b[0] + left.b[0]
 
 
+def in_all(**entries: object) -> Callable[[dict[str, Any]], object]:
+    """A change of the document of a class: entries of each member."""
+    return lambda document: [one.update(entries) for one in document["members"].values()]
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        (in_all(b=[10**400, 0.0, 0.0]), "of 's0': 'b' has something in it that is no finite number"),
+        (in_all(b=[float("inf"), 0.0, 0.0]), "'b' has something in it that is no finite number"),
+        (in_all(b=["1", "2", "3"]), "'b' has something in it that is no finite number"),
+        (in_all(b=[1.0, 2.0]), "'b' has 2 numbers for 3"),
+        (in_all(known=[0.0, 0.0, 0.0]), "'known' holds standard deviations"),
+        (in_all(known=[-1.0, 1.0, 1.0]), "'known' holds standard deviations"),
+        (in_all(H=[[800.0, 1.0, 0.0], [2.0, 7.0, 0.0], [0.0, 0.0, 0.0]]), "'H' is not symmetric"),
+        (in_all(H=[[-800.0, 0.0, 0.0], [0.0, 7.0, 0.0], [0.0, 0.0, 7.0]]), "'H' is not symmetric"),
+        (in_all(H=[[1e308, 0.0, 0.0], [0.0, 7.0, 0.0], [0.0, 0.0, 7.0]], known=[1e300] * 3), "'H' is not symmetric"),
+        (in_all(names=["a", "b", "a"]), "a name twice"),
+        (in_all(names="abc"), "no list of names"),
+        (lambda document: document["members"].update(s0=[]), "of 's0': it is no table"),
+        (lambda document: document.update(members=[]), "of another kind"),
+    ],
+)
+def test_what_no_trials_say_is_no_class(tmp_path: Path, change: Callable[[Any], object], why: str) -> None:
+    document = a_class(3)[0].to_dict()
+    path = tmp_path / "class.json"
+    path.write_text(json.dumps(document))
+    pooled(read_sisters(path, "s1"))
+    change(document)
+    path.write_text(json.dumps(document))
+    with pytest.raises(OptionError, match=f"no class of sister ships(?s:.*){why}") as error:
+        read_sisters(path, "s1")
+    assert error.value.problems[0].fix
+
+
+def test_rounding_is_forgiven_and_numbers_that_run_away_are_said() -> None:
+    sisters, _ = a_class(3)
+    one = sisters.members["s0"]
+    document = {**one.to_dict(), "H": (one.H * (1.0 + 1e-12 * np.arange(9.0).reshape(3, 3))).tolist()}
+    assert Information.from_dict(document).names == one.names
+    far = replace(one, b=np.array([1e308, -1e308, 1e308]), before=np.full(3, 1e306))
+    with pytest.raises(OptionError, match="cannot be put together"):
+        pooled(replace(sisters, members={**sisters.members, "s0": far}))
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no pipes by name")
+def test_a_pipe_or_a_folder_is_no_class(tmp_path: Path) -> None:
+    classes = tmp_path / "classes"
+    classes.mkdir()
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(OptionError, match=r"no class(?s:.*)it is a pipe"):
+        read_sisters(tmp_path / "pipe", "s1")
+    (classes / "a.json").mkdir()
+    with pytest.raises(OptionError, match=r"no class(?s:.*)it is a folder"):
+        read_sisters(tmp_path, "s1")
+    write_classes(tmp_path, [])
+    os.mkfifo(classes / "b.json")
+    (classes / "a.json").rmdir()
+    with pytest.raises(OptionError, match=r"no class(?s:.*)it is a pipe"):
+        read_sisters(tmp_path, "s1")
+
+
 @pytest.fixture
 def sisters_file(tmp_path: Path) -> Path:
     """A class that fits to three pieces of trials make, in the folder of a fleet."""
@@ -99,6 +166,11 @@ def test_a_fit_begins_from_what_sisters_say(sisters_file: Path, tmp_path: Path) 
     assert any("sister ships" in line for line in result.beside.words())
     drawn, alone = (np.abs(np.array([one.theta[name] for name in NAMES]) - box.centre) for one in (result, plain))
     assert (drawn / box.scatter).sum() < (alone / box.scatter).sum()
+    silent = "The class of sister ships has no effect: their trials say nothing of the targets, only of hull.R_0, hull."
+    assert not any(line.startswith(silent) for line in result.warnings())
+    assert any(
+        line.startswith(silent) for line in fit("suzaku", data, replace(options, targets=("hull.N_r",))).warnings()
+    )
 
 
 def test_what_trials_say_does_not_hold_what_was_known_before(tmp_path: Path) -> None:
