@@ -18,7 +18,7 @@ from typing import Any, TypeVar, cast
 from .bands import Pooled, WindowScore, pooled
 from .displayed import Brief, Displayed
 from .documents import write_json
-from .errors import OptionError, Problem, closest
+from .errors import OptionError, Problem, closest, must_be_a
 from .files import path_of, refuse_existing
 from .given import TrialsGiven, trials_of
 from .inputs import INPUTS
@@ -316,6 +316,7 @@ def write_model_comparison(
     Raises OutputError where one is there already and ``overwrite`` is false, or the system refuses to write.
     """
     folder = path_of(folder)
+    must_be_a(result, ModelComparison, "result")
     refuse_existing([folder / RESULT, folder / MOTIONS], overwrite)
     pieces = list(result.data.trials.values())[:MOST]
     names = write_motions({one.name: one.predictor for one in result.models}, pieces, folder)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from json import JSONDecodeError
+from types import NoneType
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -71,7 +74,7 @@ FEW = 12
 """Names that are listed where one of them is meant; of more it is said how many there are."""
 
 
-def among(name: str, known: Sequence[str]) -> dict[str, str]:
+def among(name: object, known: Sequence[str]) -> dict[str, str]:
     """Why a name is not understood and what to do, by the names there are: ``Problem(what, where, **among(...))``."""
     if not known:
         return {"why": "there is nothing here that it could mean", "fix": "leave it out"}
@@ -82,12 +85,12 @@ def among(name: str, known: Sequence[str]) -> dict[str, str]:
     return {"why": few if len(known) <= FEW else f"it is none of the {len(known)} names known here", "fix": near}
 
 
-def closest(name: str, known: Sequence[str]) -> str:
+def closest(name: object, known: Sequence[str]) -> str:
     """A sentence naming the nearest known names, or what is known if nothing is near."""
     return near_to(name, known) or _listed(known)
 
 
-def near_to(name: str, known: Sequence[str], cutoff: float = 0.62) -> str:
+def near_to(name: object, known: Sequence[str], cutoff: float = 0.62) -> str:
     """A question naming the nearest known names, "" where none is near; capitals count as small letters.
 
     Where none is near, those that begin with the name are.
@@ -101,7 +104,7 @@ def near_to(name: str, known: Sequence[str], cutoff: float = 0.62) -> str:
     for other in known[:1000]:
         if len(other) <= 80:
             short.setdefault(other.lower(), []).append(other)
-    asked = name[:80].lower()
+    asked = str(name)[:80].lower()
     alike = difflib.get_close_matches(asked, short, n=3, cutoff=cutoff)
     alike = alike or [one for one in short if asked and one.startswith(asked)]
     near = [other for one in alike for other in short[one]][:3]
@@ -129,8 +132,58 @@ def brief(value: object) -> str:
 
 def kind_of(value: object) -> str:
     """The type of a value with its article: "a dict", "an int"."""
-    name = type(value).__name__
-    return f"{'an' if name[0] in 'aeiou' else 'a'} {name}"
+    return article(type(value).__name__)
+
+
+def must_be_a(value: object, of: type | tuple[type, ...], name: str) -> None:
+    """Raises OptionError for an argument that is of none of some classes; one that belongs elsewhere is told where.
+
+    name  of the argument
+    """
+    several = of if isinstance(of, tuple) else (of,)
+    if isinstance(value, several):
+        return
+    words = " or ".join(_called(one) for one in several if one is not NoneType)
+    writer = getattr(value, "written_by", "")
+    fix = (
+        f"mmgtune.{writer}(RESULT, FOLDER) writes it"
+        if isinstance(writer, str) and writer
+        else f"give {article(words)}"
+    )
+    raise OptionError(Problem(f"{kind_of(value)} is no {words}", name, f"{article(words)} is wanted here", fix))
+
+
+def all_of(given: object, of: type, name: str) -> tuple[Any, ...]:
+    """Several of a class as a tuple.  Raises OptionError for anything else, a single one too."""
+    words = _called(of)
+    parts = parts_of(given)
+    others = [one for one in parts or () if not isinstance(one, of)]
+    if parts is None or others:
+        what = f"{kind_of(others[0])} in {name} is no {words}" if others else f"{name} is {brief(given)}"
+        fix = f"give a list, each part {article(words)}"
+        raise OptionError(Problem(what, name, f"several may be wanted, each of them {article(words)}", fix))
+    return tuple(parts)
+
+
+def parts_of(given: object) -> list[Any] | None:
+    """What several things are given as, one by one; None for a text, a mapping and what is but one thing."""
+    if isinstance(given, (str, bytes, Mapping)) or not isinstance(given, Iterable):
+        return None
+    try:
+        return list(given)
+    except TypeError:  # an array of no axis
+        return None
+
+
+def _called(of: type) -> str:
+    """A class in sentences."""
+    words: dict[Any, str] = {str: "text", Mapping: "dict", Callable: "function"}
+    return words.get(of, of.__name__)
+
+
+def article(word: str) -> str:
+    """A word with its article."""
+    return f"{'an' if word[0].lower() in 'aeiou' else 'a'} {word}"
 
 
 def reason(error: BaseException) -> str:
@@ -143,6 +196,8 @@ def reason(error: BaseException) -> str:
         return "it is a folder"
     if isinstance(error, KeyError) and error.args:
         return f"it has no '{error.args[0]}'"
+    if isinstance(error, (TypeError, AttributeError)) and re.search(r"'\w+' object|unsupported operand", str(error)):
+        return "something in it is of another kind than was written"  # Python's own words are for programmers
     said = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
     return (said.strip().splitlines() or [type(error).__name__])[0][:300]
 

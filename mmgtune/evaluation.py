@@ -11,6 +11,7 @@ import contextlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from types import NoneType
 from typing import Any
 
 import numpy as np
@@ -18,8 +19,8 @@ import numpy as np
 from .arrays import FloatArray
 from .backends import STATES, Integrator
 from .displayed import Plotted, inert
-from .errors import TrialError
-from .given import ShipGiven, TrialsGiven, list_of
+from .errors import TrialError, must_be_a
+from .given import ShipGiven, TrialsGiven, some_of
 from .manoeuvres import Track, manoeuvre_kind, turning_indices, zigzag_indices
 from .manoeuvres.summary import indices_of
 from .measures import UNITS, Reference, distance_measures, reference_of
@@ -27,7 +28,7 @@ from .model import Model
 from .networks import named_ship
 from .objective import Objective, make_objective, weights_of
 from .predictor import Predictor, as_predictor
-from .simulation import Motion, motions, ordered_angles, track_if_whole, trial_indices
+from .simulation import Motion, motions, ordered_angles, sized, track_if_whole, trial_indices
 from .trial import Trial
 
 
@@ -218,10 +219,15 @@ def evaluate(
     -> trial by trial, and of each all members
 
     Gaps: each sample of each channel after the first counts where it was measured.
-    Raises OptionError where window or gaps leave a trial without a sample to compare; never for a run that diverges.
+    Raises TrialError where there are no trials, OptionError where window or gaps leave a trial without a sample to
+    compare; never for a run that diverges.
     """
     predictor = as_predictor(named_ship(ship, integrator), theta=theta, integrator=integrator, backend=backend)
-    return tuple(records(predictor, list_of(trials), objective, offsets=offsets))
+    must_be_a(objective, (Objective, NoneType), "objective")
+    several = some_of(trials)
+    if offsets is not None:
+        offsets = sized(offsets, "offsets", (len(several), len(STATES)), "each trial has its own first state")
+    return tuple(records(predictor, several, objective, offsets=offsets))
 
 
 def records(

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
-from .errors import OptionError, Problem, TrialError, brief, kind_of
+from .errors import OptionError, Problem, TrialError, brief, kind_of, parts_of
 from .profile import ShipProfile, load_profile
 from .trial import IndexTrial, Trial, TrialSet, load_trials
+from .trial.unusable import increasing
 
 
 @runtime_checkable
@@ -52,6 +53,7 @@ def trials_of(given: TrialsGiven) -> TrialSet:
     Raises TrialError, OptionError for anything else.
     """
     if isinstance(given, TrialSet):
+        _hold_timed(given.trials.values())
         return given
     return load_trials(given) if isinstance(given, (str, Path)) else _set_of(_several(given))
 
@@ -79,10 +81,11 @@ def some_of(given: TrialsGiven) -> list[Trial]:
 def _several(given: object) -> list[Trial | IndexTrial]:
     """What is given as one trial or several.  Raises OptionError for anything else."""
     if isinstance(given, (Trial, IndexTrial)):
-        return [given]
-    parts = list(given) if isinstance(given, Iterable) and not isinstance(given, Mapping) else None
+        given = [given]
+    parts = parts_of(given)
     others = [one for one in parts or () if not isinstance(one, (Trial, IndexTrial))]
     if parts is not None and not others:
+        _hold_timed(one for one in parts if isinstance(one, Trial))
         return parts
     what = f"{kind_of(given)} is no set of trials"
     if others and isinstance(given, Sequence):
@@ -93,6 +96,14 @@ def _several(given: object) -> list[Trial | IndexTrial]:
     if others and all(isinstance(one, str) for one in others) and isinstance(given, Sequence):
         fix = f"ids are looked up in their set: [TRIALS[{others[0]!r}]], where TRIALS is load_trials(NAME)"
     raise OptionError(Problem(what, brief(given), "measured trials are wanted here", fix))
+
+
+def _hold_timed(trials: Iterable[Trial]) -> None:
+    """Raises TrialError for trials in memory whose time a file of them could not have."""
+    for one in trials:
+        if not increasing(one.t):
+            what, fix = "time does not strictly increase", "give finite times, each sample later than the one before"
+            raise TrialError(Problem(what, one.id, "it is what everything else is simulated along", fix))
 
 
 def _set_of(several: Sequence[Trial | IndexTrial]) -> TrialSet:

@@ -17,7 +17,7 @@ import numpy as np
 from .arrays import FloatArray
 from .displayed import Displayed
 from .documents import write_json
-from .errors import OptionError, Problem
+from .errors import OptionError, Problem, must_be_a
 from .files import path_of, refuse_existing
 from .given import ShipGiven, ship_of
 from .inputs import INPUTS
@@ -196,6 +196,7 @@ def write_heading_study(
     Raises OutputError where one is there already and ``overwrite`` is false, or the system refuses to write.
     """
     folder = path_of(folder)
+    must_be_a(result, HeadingStudy, "result")
     refuse_existing([folder / RESULT], overwrite)
     document = {**result.to_dict(command), "out": str(folder)}
     write_json(document, folder / RESULT)

@@ -6,10 +6,12 @@ no file and no option fills the machine.
 
 from __future__ import annotations
 
+import math
 import os
 import stat
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from .errors import MmgtuneError, Problem
 
@@ -85,6 +87,14 @@ ROWS_PER_BYTE = 8
 FREE_ROWS = 1_000_000
 
 
+def as_float(number: Any) -> float:
+    """A number as a float; infinite where it is more than any holds, such as a whole one of a thousand digits."""
+    try:
+        return float(number)
+    except OverflowError:
+        return math.inf if number > 0 else -math.inf
+
+
 def text(path: Path, limit: Limit, error: type[MmgtuneError]) -> str:
     """A file's text, its lines ended as on any system, a byte-order mark in front passed over.
 
@@ -106,6 +116,8 @@ def _start_of(path: Path, most: int) -> bytearray:
 
     Raises OSError, also for a pipe that nobody writes into.
     """
+    if "\0" in str(path):
+        raise OSError("its name has a zero byte")
     # One read would take the room for ``most`` at once, and not everything that is opened has a size.
     with open(path, "rb", buffering=0, opener=_without_waiting) as file:
         block: bytes | None = file.read(1 << 20)  # None of a pipe whose writer has written nothing yet

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from .arrays import FloatArray
 from .components import Component
 from .effects import ClockEffect, CoefficientsEffect, Effect
+from .errors import all_of
 from .given import ShipGiven, ship_of
 
 E = TypeVar("E", bound=Effect)
@@ -37,7 +38,7 @@ class Model:
 
     def __init__(self, profile: ShipGiven, ties: Sequence[Tie] = ()):
         self.profile = profile = ship_of(profile)
-        self.ties = tuple(ties)
+        self.ties = all_of(ties, Tie, "ties")
         self.arrangement = profile.arrangement
         self.parts: tuple[Component, ...] = tuple(profile.sections[kind].component for kind in self.arrangement.kinds)
         self.components = self.arrangement.components(*(part.function for part in self.parts[1:]))

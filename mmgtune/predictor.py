@@ -309,7 +309,7 @@ def as_predictor(
 def _columns(theta: object, n_rows: int) -> FloatArray:
     """Coefficients as they are.  Raises OptionError for what is no array of a column for each member."""
     shape = np.shape(theta) if isinstance(theta, np.ndarray) else ()
-    if isinstance(theta, np.ndarray) and len(shape) == 2 and shape[0] == n_rows:
+    if isinstance(theta, np.ndarray) and len(shape) == 2 and shape[0] == n_rows and shape[1]:
         return theta
     what = f"theta has shape {shape}" if isinstance(theta, np.ndarray) else f"theta is {kind_of(theta)}"
     why = f"it is an array of {n_rows} coefficients of the model, and of each a value for every member"

@@ -16,7 +16,7 @@ import numpy as np
 from .arrays import FloatArray
 from .displayed import Brief
 from .errors import TrialError
-from .given import ShipGiven, TrialsGiven, list_of
+from .given import ShipGiven, TrialsGiven, some_of
 from .inputs import INPUTS
 from .manoeuvres import (
     Track,
@@ -89,7 +89,7 @@ def repeat(
     predictor = as_predictor(named_ship(ship), theta=theta)
     read: dict[str, _Read] = {"turning": _turn, "zigzag": _zigzag}
     given = []
-    for trial in list_of(trials):
+    for trial in some_of(trials):
         track = track_if_whole(trial)
         kind = "other" if track is None else manoeuvre_kind(track)
         order = read[kind](predictor.L_pp, trial, track) if track is not None and kind in read else None

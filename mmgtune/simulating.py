@@ -6,12 +6,13 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import NoneType
 from typing import Any, overload
 
 from .backends import Integrator
 from .circumstances import notes_on
 from .displayed import Plotted, inert
-from .errors import OptionError, Problem
+from .errors import OptionError, Problem, must_be_a
 from .evaluation import TrialRecord, evaluate
 from .files import path_of, refuse_existing
 from .given import ShipGiven, TrialsGiven, some_of
@@ -174,6 +175,8 @@ def simulate(
     profile that is given no trials.
     """
     must_be(options, SimulateOptions)
+    must_be_a(integrator, (Integrator, NoneType), "integrator")
+    must_be_a(backend, (str, NoneType), "backend")
     predictor = as_predictor(
         named_ship(ship, integrator or options.make_integrator()),
         integrator=integrator or options.make_integrator(),

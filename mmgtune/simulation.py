@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .arrays import FloatArray
+from .arrays import FloatArray, numbers_of
 from .backends import STATES, Integrator, LaneModel
 from .displayed import Plotted, inert
 from .errors import OptionError, Problem, TrialError, among, kind_of
@@ -152,15 +152,13 @@ def breakdown(
     lags count as settled.  Raises OptionError for arrays of other shapes.
     """
     model = ship if isinstance(ship, Model) else Model(ship_of(ship))
-    rows = _sized(states, "states", (None, len(STATES)), f"each row is {', '.join(STATES)}")
+    rows = sized(states, "states", (None, len(STATES)), f"each row is {', '.join(STATES)}")
     n_samples, inputs = len(rows), model.inputs
-    controls = _sized(
-        controls, "controls", (n_samples, len(inputs)), f"the inputs of this ship are {', '.join(inputs)}"
-    )
+    controls = sized(controls, "controls", (n_samples, len(inputs)), f"the inputs of this ship are {', '.join(inputs)}")
     if around is not None:
-        around = _sized(around, "around", (n_samples, len(Surroundings._fields)), "each row is as in Motion.around")
+        around = sized(around, "around", (n_samples, len(Surroundings._fields)), "each row is as in Motion.around")
     if theta is not None:
-        theta = _sized(theta, "theta", (len(model.matrix()),), "it is one set of coefficients of the model")
+        theta = sized(theta, "theta", (len(model.matrix()),), "it is one set of coefficients of the model")
     own = model.matrix() if theta is None else theta[:, None]
     lanes = LaneModel(model, np.repeat(own, n_samples, axis=1))
     logged = model.arrangement.control(*controls.T)
@@ -169,14 +167,13 @@ def breakdown(
     return lanes.breakdown(lanes.unsensed(State(*rows.T)), control, measured, lanes.here(measured))
 
 
-def _sized(given: object, name: str, shape: tuple[int | None, ...], why: str) -> FloatArray:
+def sized(given: object, name: str, shape: tuple[int | None, ...], why: str) -> FloatArray:
     """Numbers as an array of that shape, None standing for any length.  Raises OptionError for what is none."""
     wanted = f"({', '.join('n_samples' if size is None else str(size) for size in shape)}{',' * (len(shape) == 1)})"
     fix = f"give an array of shape {wanted}"
-    try:
-        found = np.asarray(given, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise OptionError(Problem(f"{name} is {kind_of(given)}, no array of numbers", name, why, fix)) from None
+    found = numbers_of(given)
+    if found is None:
+        raise OptionError(Problem(f"{name} is {kind_of(given)}, no array of numbers", name, why, fix))
     if found.ndim != len(shape) or any(
         size not in (None, there) for size, there in zip(shape, found.shape, strict=True)
     ):

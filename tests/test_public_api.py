@@ -5,6 +5,8 @@ import re
 import signal
 import sys
 from dataclasses import replace
+from fractions import Fraction
+from functools import partial
 from typing import get_type_hints
 
 import numpy as np
@@ -14,6 +16,7 @@ import pytest
 import mmgtune
 from mmgtune.networks import Ensemble, Hybrid, Mixture, Network
 from mmgtune.orders import SpiralOrder
+from mmgtune.planning.question import read_question
 from mmgtune.predictor import as_predictor
 from mmgtune.provenance import own_version
 
@@ -366,3 +369,82 @@ def test_whatever_takes_a_path_takes_a_text():
             for parameter in inspect.signature(function).parameters.values() if function else ():
                 kinds = re.findall(r"[\w.]+", str(parameter.annotation))
                 assert "Path" not in kinds or "str" in kinds, f"{name}: {parameter}"
+
+
+A_MAP = mmgtune.load_map("nmea-0183", preset=True)
+A_BASELINE = mmgtune.record_baseline(SHIP, TRIALS["turn_p35"], ("J",))
+BACK = replace(TRIALS["turn_p35"], t=TRIALS["turn_p35"].t[::-1])
+TURN = mmgtune.TurningOrder(0.6)
+HUGE = 10**400
+JUDGING = (mmgtune.score, mmgtune.evaluate, mmgtune.record_baseline)
+NUMBERS = ("speed", "n", "heading", "longest", "sample", "step")
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        *((partial(of, SHIP, TRIALS, backend=None), "unknown back end None") for of in JUDGING),
+        *((partial(of, SHIP, TRIALS, backend=[]), "unknown back end []") for of in JUDGING),
+        *((partial(of, SHIP, TRIALS, backend=b"numpy"), "unknown back end b'numpy'") for of in JUDGING),
+        (lambda: mmgtune.check(SHIP, TRIALS, A_BASELINE, backend=None), "unknown back end None"),
+        (lambda: mmgtune.check(SHIP, TRIALS, A_BASELINE, names="suzaku"), "names is 'suzaku'"),
+        (lambda: mmgtune.check(SHIP, TRIALS, A_BASELINE, metrics=None), "metrics is None"),
+        (lambda: mmgtune.check(SHIP, TRIALS, A_BASELINE, metrics="J"), "metrics is 'J'"),
+        (lambda: mmgtune.check(SHIP, TRIALS, A_BASELINE, metrics=["J", b"J"]), "a bytes in metrics is no text"),
+        (lambda: mmgtune.check(SHIP, TRIALS, A_BASELINE, integrator="x"), "a str is no Integrator (integrator)"),
+        (lambda: mmgtune.record_baseline(SHIP, TRIALS, before=1), "an int is no Baseline (before)"),
+        (lambda: mmgtune.simulate(SHIP, TRIALS, integrator=np.ones(2)), "no Integrator (integrator)"),
+        (lambda: mmgtune.make_trials(None, "out"), "a NoneType is no text (ship)"),
+        (lambda: mmgtune.make_trials([], "out"), "a list is no text (ship)"),
+        (lambda: read_question(None, as_predictor(SHIP), SHIP.approach), "a NoneType is no text (question)"),
+        (lambda: mmgtune.propose_map([]), "the list of logs is empty"),
+        (lambda: mmgtune.propose_map(None), "a NoneType is no list of logs"),
+        (lambda: mmgtune.import_logs(None, A_MAP, "out"), "no list of logs"),
+        (lambda: mmgtune.import_logs("log", A_MAP, "out", step=HUGE), "the step is"),
+        (lambda: mmgtune.run_manoeuvre(SHIP, TURN, engine=1), "an int is no function (engine)"),
+        (lambda: mmgtune.run_manoeuvre(SHIP, TURN, id=1), "an int is no text (id)"),
+        (lambda: mmgtune.run_manoeuvre(SHIP, TURN, theta=1), "theta has shape ()"),
+        (lambda: mmgtune.run_manoeuvres(SHIP, np.array(1.0)), "no helmsman"),
+        *((partial(mmgtune.Sailing, TURN, **{name: HUGE}), "a number of 40") for name in NUMBERS),
+        (lambda: mmgtune.TurningOrder(HUGE), "a number of 40"),
+        (lambda: mmgtune.TurningOrder(0.6, at=HUGE), "a number of 40"),
+        (lambda: mmgtune.ZigzagOrder(0.2, HUGE), "a number of 40"),
+        (lambda: mmgtune.evaluate(SHIP, np.array(1.0)), "no set of trials"),
+        (lambda: mmgtune.evaluate(SHIP, []), "the list of trials is empty"),
+        (lambda: mmgtune.repeat(SHIP, []), "the list of trials is empty"),
+        (lambda: mmgtune.evaluate(SHIP, TRIALS, 1), "an int is no Objective (objective)"),
+        (lambda: mmgtune.evaluate(SHIP, TRIALS, offsets="x"), "offsets is a str"),
+        (lambda: mmgtune.score(SHIP, TRIALS, theta=mmgtune.Model(SHIP).matrix()[:, :0]), "theta has shape"),
+        (lambda: mmgtune.fit(SHIP, TRIALS, QUICK, hooks=None), "a NoneType is no Hooks (hooks)"),
+        (lambda: mmgtune.sweep(SHIP, TRIALS, hooks=None), "a NoneType is no Hooks (hooks)"),
+        (lambda: mmgtune.fit(SHIP, TRIALS, QUICK, more_starts=None), "more_starts is None"),
+        (lambda: mmgtune.Model(SHIP, ties=None), "ties is None"),
+        (lambda: mmgtune.Model(SHIP, ties=["x"]), "a str in ties is no Tie"),
+        (lambda: mmgtune.read_trial("a\0b"), "its name has a zero byte"),
+        (lambda: mmgtune.read_results("a\0b"), "no results of a fleet"),
+        (lambda: mmgtune.sweep(SHIP, TRIALS, folder="\udcff"), "not UTF-8 text"),
+        *((partial(of, SHIP, BACK), "time does not strictly increase (turn_p35)") for of in (*JUDGING, mmgtune.fit)),
+        (lambda: mmgtune.validate(SHIP, replace(TRIALS, trials={"a": BACK}, tune=("a",), test=())), "time does not"),
+    ],
+)  # fmt: skip
+def test_arguments_of_another_kind_are_refused_in_words(call, words):
+    with pytest.raises(mmgtune.MmgtuneError) as caught:
+        call()
+    assert words in str(caught.value)
+    assert all(problem.fix for problem in caught.value.problems)
+
+
+def test_a_fraction_is_a_number():
+    (half,) = mmgtune.run_manoeuvres(SHIP, mmgtune.Sailing(TURN, speed=Fraction(1, 2), longest=20))
+    (same,) = mmgtune.run_manoeuvres(SHIP, mmgtune.Sailing(TURN, speed=0.5, longest=20.0))
+    assert np.array_equal(half.states, same.states)
+
+
+@pytest.mark.parametrize("wrong", [None, [1], AResult(SHIP), SHIP])
+@pytest.mark.parametrize("name", WRITERS)
+def test_what_is_no_result_is_not_written(name, wrong, tmp_path):
+    with pytest.raises(mmgtune.MmgtuneError, match=" is no ") as caught:
+        getattr(mmgtune, name)(wrong, tmp_path / "out")
+    assert not list(tmp_path.iterdir())
+    if isinstance(wrong, AResult) and name != "write_trial":
+        assert caught.value.problems[0].fix == "mmgtune.write_run(RESULT, FOLDER) writes it"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from ..errors import OptionError, Problem, among
+from ..errors import OptionError, Problem, among, brief
 from ..model import Model
 from ..physics.quantities import STATES
 from .cases import Backend, Cases, Integrator, LaneResult, pad
@@ -29,18 +29,22 @@ __all__ = [
 ]
 
 
-@lru_cache(maxsize=len(BACKENDS))
 def get_backend(name: str = "compiled") -> Backend:
     """The back end of that name.  Raises OptionError for an unknown one, and where JAX is missing."""
+    if not isinstance(name, str) or name not in BACKENDS:
+        raise OptionError(Problem(f"unknown back end {brief(name)}", "backend", **among(name, BACKENDS)))
+    return _made(name)
+
+
+@lru_cache(maxsize=len(BACKENDS))
+def _made(name: str) -> Backend:
     if name == "compiled":
         return Compiled()
     if name == "numpy":
         return NumpyLanes()
-    if name == "jax":
-        from .differentiable import JaxLanes
+    from .differentiable import JaxLanes
 
-        return JaxLanes()
-    raise OptionError(Problem(f"unknown back end '{name}'", "backend", **among(name, BACKENDS)))
+    return JaxLanes()
 
 
 def get_ready_backend(model: Model) -> Backend | None:

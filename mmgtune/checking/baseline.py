@@ -12,7 +12,7 @@ from typing import Any
 from .. import limits
 from ..backends import Integrator
 from ..documents import finite_values, write_json
-from ..errors import OptionError, Problem, among, reason
+from ..errors import OptionError, Problem, among, must_be_a, reason
 from ..files import path_of
 from ..metrics import METRICS
 from ..options import SimulationOptions
@@ -95,6 +95,7 @@ class Baseline:
 def write_baseline(baseline: Baseline, path: Path | str, *, overwrite: bool = False) -> None:
     """Write the file.  Raises OutputError where one is there and ``overwrite`` is false, or the system refuses."""
     path = path_of(path)
+    must_be_a(baseline, Baseline, "baseline")
     write_json(baseline.to_dict(), path, overwrite)
 
 

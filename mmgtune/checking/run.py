@@ -7,9 +7,10 @@ import time
 from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
+from types import NoneType
 
 from ..backends import Integrator
-from ..errors import OptionError, Problem, among, brief, kind_of
+from ..errors import OptionError, Problem, all_of, among, brief, kind_of, must_be_a
 from ..given import ShipGiven, TrialsGiven, trials_of
 from ..metrics import METRICS
 from ..predictor import PhysicsPredictor, Predictor
@@ -41,6 +42,8 @@ def record_baseline(
     before   the baseline this one takes the place of: its tolerances stay
     Raises OptionError for an unknown metric.
     """
+    must_be_a(before, (Baseline, NoneType), "before")
+    must_be_a(integrator, Integrator, "integrator")
     ship, trials = subject_of(profile, integrator, backend), trials_of(trials)
     names = _known(metrics) or (before.metrics if before else list(METRICS))
     found = _measured(ship, trials, names, backend)
@@ -85,7 +88,8 @@ def check(
     integrator, or a metric is unknown.
     """
     began = time.perf_counter()
-    names = names or called(profile, trials, baseline)
+    must_be_a(integrator, (Integrator, NoneType), "integrator")
+    names = called(profile, trials, baseline) if names is None else _three(names)
     baseline = baseline_of(baseline)
     chosen = _integrator(baseline, integrator, names[2] or "baseline")
     ship, trials = subject_of(profile, chosen, backend), trials_of(trials)
@@ -217,7 +221,16 @@ def made_by() -> str:
     return f"mmgtune {version('mmgtune')}"
 
 
+def _three(names: tuple[str, str, str | None]) -> tuple[str, str, str | None]:
+    """What the user called profile, trials and baseline.  Raises OptionError for anything else."""
+    if isinstance(names, tuple) and len(names) == 3 and all(isinstance(one, (str, NoneType)) for one in names):
+        return names
+    why = "messages call profile, trials and baseline by them"
+    raise OptionError(Problem(f"names is {brief(names)}", "names", why, "give three, or leave them out"))
+
+
 def _known(metrics: Sequence[str]) -> list[str]:
+    metrics = all_of(metrics, str, "metrics")
     for name in metrics:
         if name not in METRICS:
             raise OptionError(Problem(f"unknown metric '{name}'", "metrics", **among(name, tuple(METRICS))))

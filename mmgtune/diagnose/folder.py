@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from ..documents import write_json
+from ..errors import must_be_a
 from ..files import path_of, refuse_existing, write_text
 from ..fitting.folder import motions_table
 from ..fitting.journal import finished
@@ -26,6 +27,7 @@ def write_diagnosis(result: Diagnosis, folder: Path | str, *, overwrite: bool = 
     Raises OutputError where a result is there already and ``overwrite`` is false, or the system refuses to write.
     """
     folder = path_of(folder)
+    must_be_a(result, Diagnosis, "result")
     refuse_existing([folder / RESULT, folder / MOTIONS], overwrite)
     extended = result.extended_profile()
     write_text(folder / "profile.toml", extended.text)

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ..errors import ProfileError
+from ..errors import ProfileError, must_be_a
 from ..files import path_of
 from ..fitting.extending import with_width
 from ..fitting.journal import journalled
@@ -68,6 +68,7 @@ def diagnose(
     """
     folder = None if folder is None else path_of(folder)
     must_be(options, DiagnoseOptions)
+    must_be_a(hooks, Hooks, "hooks")
     profile = ship_of(profile)
     options = with_width(profile, options)
     trials, choice = looked_at(profile, trials, options)

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..backends import STATES
 from ..documents import write_json
+from ..errors import must_be_a
 from ..files import (
     path_of,
     refuse_existing,
@@ -31,6 +32,7 @@ def write_run(result: FitResult, folder: Path | str, *, overwrite: bool = False)
     Raises OutputError where a result is there already and ``overwrite`` is false, or the system refuses to write.
     """
     folder = path_of(folder)
+    must_be_a(result, FitResult, "result")
     refuse_existing([folder / RESULT, folder / MOTIONS], overwrite)
     write_text(folder / "profile.toml", result.tuned_text())
     write_table(folder / "history.parquet", _history(result.history))

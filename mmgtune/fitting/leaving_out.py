@@ -15,7 +15,7 @@ from ..bands import Pooled
 from ..circumstances import notes_on
 from ..displayed import Displayed
 from ..documents import finite, finite_values, write_json
-from ..errors import OptionError, Problem
+from ..errors import OptionError, Problem, must_be_a
 from ..evaluation import TrialRecord, evaluate
 from ..files import path_of, refuse_existing
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
@@ -253,6 +253,7 @@ def leave_out(
     """
     folder = None if folder is None else path_of(folder)
     must_be(options, LeaveOutOptions)
+    must_be_a(hooks, Hooks, "hooks")
     profile, trials = ship_of(profile), trials_of(trials)
     profile, options = settled(profile, options, trials)
     provenance = make_provenance(profile, trials, command)
@@ -267,6 +268,7 @@ def write_left_out(result: LeftOut, folder: Path | str, *, overwrite: bool = Fal
     Raises OutputError where a result is there already and ``overwrite`` is false, or the system refuses to write.
     """
     folder = path_of(folder)
+    must_be_a(result, LeftOut, "result")
     refuse_existing([folder / RESULT, folder / MOTIONS], overwrite)
     write_table(folder / MOTIONS, motions_table(result.compared, result.inputs))
     document = {**result.to_dict(), "out": str(folder)}

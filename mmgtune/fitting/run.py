@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray
+from ..errors import all_of, must_be_a
 from ..files import path_of
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..hooks import Hooks
@@ -63,6 +64,8 @@ def fit(
     """
     folder = None if folder is None else path_of(folder)
     must_be(options, FitOptions)
+    must_be_a(hooks, Hooks, "hooks")
+    more_starts = all_of(more_starts, Mapping, "more_starts")
     profile, trials = ship_of(profile), trials_of(trials)
     profile, options = settled(profile, options, trials)
     provenance = make_provenance(profile, trials, command)

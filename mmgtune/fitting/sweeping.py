@@ -11,6 +11,7 @@ import numpy as np
 
 from ..displayed import Plotted
 from ..documents import finite_values, write_json
+from ..errors import must_be_a
 from ..files import path_of
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..hooks import Hooks
@@ -230,6 +231,7 @@ def sweep(
     """
     folder = None if folder is None else path_of(folder)
     must_be(options, SweepOptions)
+    must_be_a(hooks, Hooks, "hooks")
     profile, trials = ship_of(profile), trials_of(trials)
     profile, options = settled(profile, options, trials)
     identity = identity_of(profile, trials, options, make_provenance(profile, trials, command))

@@ -112,7 +112,7 @@ def _files(out: Path) -> Iterator[tuple[Path, re.Match[str]]]:
 def _inside(folder: Path) -> list[Path]:
     try:
         return [folder / name for name in sorted(os.listdir(folder))]
-    except (FileNotFoundError, NotADirectoryError):
+    except (FileNotFoundError, NotADirectoryError, ValueError):  # the last for a zero byte in the name
         return []
 
 

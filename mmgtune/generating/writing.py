@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray
-from ..errors import OptionError, Problem, among
+from ..errors import OptionError, Problem, among, must_be_a
 from ..files import path_of, refuse_existing, write_text
 from ..inputs import INPUTS
 from ..model import Model
@@ -77,6 +77,7 @@ def make_trials(ship: str, out: Path | str, options: MakeOptions = MakeOptions()
     other sets are made.  Raises OptionError for an unknown ship, OutputError where there are such files already.
     """
     must_be(options, MakeOptions)
+    must_be_a(ship, str, "ship")
     if ship not in SHIPS:
         raise OptionError(Problem(f"no trials can be made of '{ship}'", "ship", **among(ship, tuple(SHIPS))))
     model = Model(load_profile(SHIPS[ship]))

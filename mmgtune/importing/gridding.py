@@ -11,7 +11,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import LogError, OptionError, Problem, brief
-from ..limits import GRID_FREE, GRID_PER_ROW, GRID_SAMPLES
+from ..limits import GRID_FREE, GRID_PER_ROW, GRID_SAMPLES, as_float
 from .mapping import LogMap
 from .quantities import MEASURED, meaning
 from .record import Record, Series
@@ -43,7 +43,7 @@ def hold_step(step: object) -> None:
     if isinstance(step, bool) or not isinstance(step, Real):
         why, fix = "it is in seconds", "give a number, such as step=0.5"
         raise OptionError(Problem(f"the step is {brief(step)}, not a number", "step", why, fix))
-    if not 0.0 < float(step) < math.inf:
+    if not 0.0 < as_float(step) < math.inf:
         why, fix = "samples follow one another", "give a time above 0 s, or leave it out"
         raise OptionError(Problem(f"the step is {brief(step)}", "step", why, fix))
 

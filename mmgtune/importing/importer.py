@@ -14,7 +14,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..documents import write_json
-from ..errors import LogError, Problem
+from ..errors import LogError, Problem, kind_of, parts_of
 from ..files import path_of, refuse_existing, refuse_file, true_path
 from ..phrases import counted
 from ..resources import must_be_name
@@ -165,8 +165,11 @@ def import_logs(
 
 
 def paths_of(logs: Path | str | Sequence[Path | str]) -> tuple[Path, ...]:
-    """The paths of logs, each once; of one the path alone does.  Raises LogError for what is none."""
-    several = [logs] if isinstance(logs, (str, Path)) else logs
+    """The paths of logs, each once; of one the path alone does.  Raises LogError for what is none, and for no logs."""
+    several = [logs] if isinstance(logs, (str, Path)) else parts_of(logs)
+    if not several:
+        what = "the list of logs is empty" if several == [] else f"{kind_of(logs)} is no list of logs"
+        raise LogError(Problem(what, "logs", "their paths are wanted here", "give one path or several"))
     for one in several:
         must_be_name(one, "log", LogError)
     return tuple(dict.fromkeys(Path(one) for one in several))

@@ -20,7 +20,7 @@ import numpy as np
 from ..backends.compiled import cores
 from ..backends.twins import accelerated, jax_module
 from ..documents import finite
-from ..errors import OptionError, Problem
+from ..errors import OptionError, Problem, must_be_a
 from ..files import path_of
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..hooks import Hooks
@@ -128,6 +128,7 @@ def learn_ensemble(
     """
     folder = None if folder is None else path_of(folder)
     must_be(options, EnsembleOptions)
+    must_be_a(hooks, Hooks, "hooks")
     began = time.perf_counter()
     needed()
     task = ensemble_task(ship_of(ship), trials_of(trials).series_only("a network"), options)

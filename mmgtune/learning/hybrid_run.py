@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..backends import STATES
-from ..errors import OptionError, Problem
+from ..errors import OptionError, Problem, must_be_a
 from ..files import path_of
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..hooks import Hooks
@@ -113,6 +113,7 @@ def learn_hybrid(
     """
     folder = None if folder is None else path_of(folder)
     must_be(options, HybridOptions)
+    must_be_a(hooks, Hooks, "hooks")
     began = time.perf_counter()
     needed()
     profile, data = ship_of(ship), trials_of(trials).series_only("a network")

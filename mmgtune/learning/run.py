@@ -13,7 +13,7 @@ import numpy as np
 
 from ..backends.twins import accelerated
 from ..documents import finite
-from ..errors import OptionError, Problem
+from ..errors import OptionError, Problem, must_be_a
 from ..files import path_of
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..hooks import Hooks
@@ -127,6 +127,7 @@ def learn_rnn(
     """
     folder = None if folder is None else path_of(folder)
     must_be(options, LearnOptions)
+    must_be_a(hooks, Hooks, "hooks")
     began = time.perf_counter()
     needed()
     task = make_task(ship_of(ship), trials_of(trials).series_only("a network"), options)

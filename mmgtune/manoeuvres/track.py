@@ -7,7 +7,7 @@ from typing import Any, Literal, get_type_hints
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, numbers_of
 from ..errors import Problem, TrialError
 from ..trial.schema import FEWEST_SAMPLES
 from ..units import DEG
@@ -41,15 +41,20 @@ class Track:
     n: FloatArray | None = None
 
     def __post_init__(self) -> None:
-        problems = []
+        problems: list[Problem] = []
+        shape: tuple[int, ...] | None = None
         for name in (item.name for item in fields(self)):
             if (given := getattr(self, name)) is None:
                 continue
-            values = np.asarray(given, dtype=np.float64)
+            values = numbers_of(given)
+            if values is None:
+                problems.append(Problem("channel holds what is no number", name, fix=f"give {name} as numbers"))
+                continue
             object.__setattr__(self, name, values)
-            if values.ndim != 1 or values.shape != np.shape(self.t) or values.size < FEWEST_SAMPLES:
-                shape = f"(n_samples,) as t, {FEWEST_SAMPLES} at least"
-                problems.append(Problem(f"channel has shape {values.shape}", name, shape))
+            shape = values.shape if shape is None else shape  # that of t, which comes first
+            if values.ndim != 1 or values.shape != shape or values.size < FEWEST_SAMPLES:
+                wanted = f"(n_samples,) as t, {FEWEST_SAMPLES} at least"
+                problems.append(Problem(f"channel has shape {values.shape}", name, wanted))
             elif not np.all(np.isfinite(values)):
                 problems.append(Problem("channel has gaps (NaN or infinite)", name, fix="cut or fill them first"))
             elif name == "t" and np.any(np.diff(values) <= 0.0):

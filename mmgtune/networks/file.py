@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .. import limits
-from ..errors import NetworkError, Problem, brief, reason
+from ..errors import NetworkError, Problem, brief, must_be_a, reason
 from ..files import atomic, hold_regular, path_of
 from ..profile import parse_profile
 from ..resources import MODEL, folder, in_run, looked_for, must_be_name, network_names, taken
@@ -33,7 +33,9 @@ FIX = "give a file that mmgtune learn has written, or train the model again"
 
 def save_network(network: Trained, path: Path | str, *, overwrite: bool = False) -> Path:
     """Write networks, with the profile where there is one, whole or not at all.  Raises OutputError."""
-    path, content = path_of(path), content_of(network)
+    path = path_of(path)
+    must_be_a(network, (Network, Hybrid, Ensemble, Mixture), "network")
+    content = content_of(network)
     with atomic(path, overwrite) as part:
         part.write_bytes(content)
     return path

@@ -14,6 +14,7 @@ from types import NoneType, UnionType
 from typing import Any, get_args, get_type_hints
 
 from ..errors import OptionError, Problem, among, brief, kind_of
+from ..limits import as_float
 
 INPUT, SEARCH, OUTPUT, REPRODUCE = "Input", "Search", "Output", "Reproducibility"
 """Panels of the help, in its order."""
@@ -264,22 +265,13 @@ def _of_another_kind(name: str, value: Any, hint: Any, unit: str = "") -> list[P
         return [problem for part in value for problem in _of_another_kind(name, part, parts[0])][:1]
     known, words = _KINDS[kind]
     if isinstance(value, known) and (kind is bool or not isinstance(value, bool)):
-        beyond = kind is float and not _is_held(value)
+        beyond = kind is float and isinstance(value, Integral) and math.isinf(as_float(value))
         return (
             [Problem(f"{name} is {brief(value)}, more than a number can be", name, fix="give less")] if beyond else []
         )
     such = f": {_part(value, kind, unit)}" if kind is str and isinstance(value, (int, float)) else ""
     of = " with its unit" if kind is str and unit else ""
     return [Problem(f"{name} is {_short(value)}", name, fix=f"give {words}{of}{such}")]
-
-
-def _is_held(value: Any) -> bool:
-    """Whether a float can hold a number, infinite or not."""
-    try:
-        float(value)
-    except OverflowError:
-        return False
-    return True
 
 
 def _as_tuple(name: str, value: Any, parts: tuple[Any, ...]) -> str:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-
-import numpy as np
 
 from ..errors import Problem
 from .choice import INPUT, again, choice
@@ -36,7 +35,7 @@ class HeadingOptions(ParticleOptions):
             return found
         n = self.gain_most / self.gain_step + 1e-9
         if not 1.0 <= n < MOST_GAINS + 1.0:
-            what = f"{np.floor(n):g} gains from {self.gain_step:g} to {self.gain_most:g}"
+            what = f"{math.floor(n) if n < math.inf else n:g} gains from {self.gain_step:g} to {self.gain_most:g}"
             found.append(Problem(what, "gain_step", fix=f"let there be between 1 and {MOST_GAINS}"))
         return found
 

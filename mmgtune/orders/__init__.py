@@ -5,15 +5,17 @@ The rudder depends on the motion here, so the inputs of these runs are known as 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
 from ..arrays import FloatArray
 from ..backends import get_ready_backend
+from ..errors import parts_of
 from ..given import ShipGiven, ship_of
 from ..model import Model
-from ..simulation import Motion
+from ..simulation import Motion, sized
 from .helmsmen import Helmsman, SpiralOrder, Straight, TurningOrder, Weave, ZigzagOrder, in_radians
 from .ordering import order_by_order, serves
 from .possible import possible_approach
@@ -80,13 +82,14 @@ def run_manoeuvres(
     theta     (n_rows, n_sailings) coefficients, those of the profile where None
     Raises OptionError for what is no order, and where the profile has no approach condition and none is given.
     """
-    given = list(sailings) if isinstance(sailings, Iterable) else [sailings]
+    parts = parts_of(sailings)
+    given: list[Any] = [sailings] if parts is None else parts
     several = [one if isinstance(one, Sailing) else Sailing(one) for one in given]
     if not several:
         return []
     model = ship if isinstance(ship, Model) else Model(ship_of(ship))
-    if theta is None:
-        theta = np.repeat(model.matrix()[:, :1], len(several), axis=1)
+    own = np.repeat(model.matrix()[:, :1], len(several), axis=1)
+    theta = own if theta is None else sized(theta, "theta", own.shape, "each manoeuvre has coefficients of its own")
     watches = [Watch(sailing, model) for sailing in several]
     backend = get_ready_backend(model)
     quick = [k for k, watch in enumerate(watches) if backend and serves(watch)]

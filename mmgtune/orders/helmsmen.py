@@ -8,6 +8,7 @@ from numbers import Integral, Real
 from typing import Protocol
 
 from ..errors import OptionError, Problem, brief
+from ..limits import as_float
 
 RUDDER_MOST, HEADING_MOST = 1.6, 2.0 * math.pi
 """Rudder angle and check heading [rad] beyond which degrees are meant."""
@@ -15,7 +16,8 @@ RUDDER_MOST, HEADING_MOST = 1.6, 2.0 * math.pi
 
 def is_number(value: object, *, least: float = -math.inf, above: float = -math.inf) -> bool:
     """Whether a value is a finite number, not below one limit and above the other."""
-    return isinstance(value, Real) and math.isfinite(value) and float(value) >= least and float(value) > above
+    number = as_float(value) if isinstance(value, Real) else math.nan
+    return math.isfinite(number) and number >= least and number > above
 
 
 def positive(**given: float) -> None:
@@ -42,8 +44,9 @@ def started(at: float) -> None:
 
 def in_radians(angle: float, name: str, most: float) -> None:
     """Raises OptionError where an angle [rad] is no number, or so large that it must be in degrees."""
-    if not isinstance(angle, Real):
-        what, fix = f"the {name} is {brief(angle)}, not a number", "write math.radians(35.0) for 35 deg"
+    if not isinstance(angle, Real) or math.isinf(as_float(angle)):
+        kind = "" if isinstance(angle, Real) else ", not a number"
+        what, fix = f"the {name} is {brief(angle)}{kind}", "write math.radians(35.0) for 35 deg"
         raise OptionError(Problem(what, "", "orders are in radians", fix))
     if not abs(angle) <= most:
         fix = f"write math.radians({angle:g}) if {angle:g} deg is meant"

@@ -6,11 +6,13 @@ import math
 from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass
+from numbers import Rational
+from types import NoneType
 
 import numpy as np
 
 from ..arrays import FloatArray
-from ..errors import OptionError, Problem, brief, kind_of
+from ..errors import OptionError, Problem, brief, kind_of, must_be_a
 from ..inputs import Role
 from ..limits import TRIAL_SAMPLES
 from ..model import Model
@@ -67,6 +69,8 @@ class Sailing:
             why = f"it has no {' and no '.join(lacking)}: how the rudder is moved is not known"
             fix = "give orders, such as TurningOrder(radians(35)) or ZigzagOrder(radians(10))"
             raise OptionError(Problem(what, "helmsman", why, fix))
+        must_be_a(self.id, str, "id")
+        must_be_a(self.engine, (Callable, NoneType), "engine")  # type: ignore[arg-type]
         positive(longest=self.longest, sample=self.sample, **({} if self.step is None else {"step": self.step}))
         TRIAL_SAMPLES.hold(self.longest / self.sample, "longest", OptionError)
         if not (self.speed is None or is_number(self.speed, above=0.0)):
@@ -78,6 +82,9 @@ class Sailing:
         if not is_number(self.heading):
             what = f"the approach heading is {brief(self.heading)}"
             raise OptionError(Problem(what, "heading", "it is in radians", "write math.radians(90.0) for 90 deg"))
+        for name in ("speed", "n", "heading", "longest", "sample", "step"):
+            if isinstance(given := getattr(self, name), Rational):
+                object.__setattr__(self, name, float(given))
 
     def helmsman_of_its_own(self) -> Helmsman:
         """A copy of the helmsman, who may remember what he has seen, for one simulation."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from ..errors import OptionError, Problem, among
+from ..errors import OptionError, Problem, among, must_be_a
 from ..options import PredictOptions
 from ..predicting.asked import Approach, Asked, asked
 from ..predicting.reading import KNOWN, Known
@@ -37,6 +37,7 @@ class Question:
 
 def read_question(text: str, predictor: Predictor, approach: Approach) -> Question:
     """A question as people write it.  Raises OptionError where it is none, with what is near."""
+    must_be_a(text, str, "question")
     words, comma, manoeuvre = text.partition(",")
     if not comma:
         raise OptionError(

@@ -16,7 +16,7 @@ from ..backends import get_backend
 from ..bands import IndexBand, index_band
 from ..displayed import Displayed
 from ..documents import write_json
-from ..errors import OptionError, Problem, ProfileError
+from ..errors import OptionError, Problem, ProfileError, must_be_a
 from ..files import path_of, refuse_existing
 from ..networks import named_ship
 from ..options import PlanOptions, PredictOptions
@@ -203,6 +203,7 @@ def write_plan(result: TrialPlan, folder: Path | str, command: str = "", *, over
     Raises OutputError where one is there already and ``overwrite`` is false, or the system refuses to write.
     """
     folder = path_of(folder)
+    must_be_a(result, TrialPlan, "result")
     refuse_existing([folder / RESULT], overwrite)
     document = {**result.to_dict(command), "out": str(folder)}
     write_json(document, folder / RESULT)

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from ..documents import write_json
+from ..errors import must_be_a
 from ..files import path_of
 from ..fitting.journal import finished
 from ..particles import FILE, save_particles
@@ -21,6 +22,7 @@ def write_posterior(result: Posterior, folder: Path | str, overwrite: bool = Fal
     Returns the document.  Raises OutputError where a file is there already and ``overwrite`` is false.
     """
     folder = path_of(folder)
+    must_be_a(result, Posterior, "result")
     save_particles(result.particles, folder / FILE, overwrite)
     document = {**result.to_dict(), "out": str(folder)}
     write_json(document, folder / RESULT, overwrite)

@@ -13,7 +13,7 @@ from ..arrays import FloatArray
 from ..backends import Integrator, get_backend
 from ..components import split_name
 from ..displayed import Plotted
-from ..errors import Problem, ProfileError, TrialError
+from ..errors import Problem, ProfileError, TrialError, must_be_a
 from ..files import path_of
 from ..fitting.journal import journalled
 from ..fitting.lost import runs_away
@@ -154,6 +154,7 @@ def posterior(
     ProfileError where no likely ship can be simulated on the trials.
     """
     must_be(options, PosteriorOptions)
+    must_be_a(hooks, Hooks, "hooks")
     ship = ship_of(profile)
     if isinstance(trials, Sequence) and not isinstance(trials, str):
         chosen = list_of(trials)

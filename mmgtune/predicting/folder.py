@@ -9,6 +9,7 @@ import numpy as np
 
 from ..backends import STATES
 from ..documents import write_json
+from ..errors import must_be_a
 from ..files import path_of, refuse_existing
 from ..tables import write_table
 from .result import Predicted
@@ -37,6 +38,7 @@ def write_prediction(
     to write.
     """
     folder = path_of(folder)
+    must_be_a(result, Predicted, "result")
     refuse_existing([folder / RESULT], overwrite)
     document = {**result.to_dict(command), "out": str(folder)}
     _write(folder / BANDS, _bands(result), ("run", "variable", "t", *FAN, "measured"))

@@ -45,7 +45,7 @@ def trial_of(table: Any, id: str, **facts: Any) -> Trial:
         if column is None and name not in REQUIRED:
             ignored.append(str(name))
             continue
-        columns[str(name)] = np.full(len(table[name]), np.nan) if column is None else column
+        columns[str(name)] = np.full(np.size(table[name]), np.nan) if column is None else column
     lengths = {len(column) for column in columns.values()}
     if len(lengths) > 1:
         longest = max(columns, key=lambda name: len(columns[name]))

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, numbers_of
 from ..displayed import Plotted, inert
 from ..errors import Problem, TrialError
 from ..inputs import INPUTS, meant_by
@@ -175,11 +175,10 @@ def fields_of(columns: Mapping[str, FloatArray]) -> dict[str, Any]:
 
 
 def _frozen(name: str, values: object, shape: tuple[int, ...]) -> FloatArray:
-    try:
-        column = np.array(values, dtype=np.float64)
-    except (TypeError, ValueError):
+    column = numbers_of(values)
+    if column is None:
         why, fix = "a trial has a number for each sample", f"give {name} as numbers, NaN in gaps"
-        raise TrialError(Problem(f"{name} holds what is no number", name, why, fix)) from None
+        raise TrialError(Problem(f"{name} holds what is no number", name, why, fix))
     if column.shape != shape:
         what = f"{name} has shape {column.shape}, t has {shape[0]} samples"
         raise TrialError(Problem(what, name, "a trial has a number for each sample", f"give {shape[0]} numbers"))

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..backends import STATES
 from ..documents import write_json
+from ..errors import must_be_a
 from ..files import path_of, refuse_existing
 from ..fitting.journal import finished
 from ..tables import write_table
@@ -24,6 +25,7 @@ def write_voyages(result: VoyageValidation, folder: Path | str, *, overwrite: bo
     Raises OutputError where a result is there already and ``overwrite`` is false, or the system refuses to write.
     """
     folder = path_of(folder)
+    must_be_a(result, VoyageValidation, "result")
     refuse_existing([folder / RESULT], overwrite)
     if result.table is not None:
         write_table(folder / "windows.parquet", result.columns(), GROUP_ROWS)

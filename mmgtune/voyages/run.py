@@ -6,6 +6,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import NoneType
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from ..arrays import FloatArray
 from ..backends import Cases
 from ..bands import Pooled
 from ..circumstances import acts_on_surroundings, extremes, notes
-from ..errors import OptionError, Problem, TrialError
+from ..errors import OptionError, Problem, TrialError, must_be_a
 from ..files import path_of
 from ..fitting.journal import journalled, remembered
 from ..given import trials_of
@@ -135,6 +136,7 @@ def validate_voyages(
     """
     folder = None if folder is None else path_of(folder)
     must_be(options, VoyageOptions)
+    must_be_a(hooks, (Hooks, NoneType), "hooks")
     began = time.perf_counter()
     if options.manoeuvres:
         why = "a voyage is no turning circle and no zigzag"

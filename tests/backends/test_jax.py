@@ -6,7 +6,7 @@ import sys
 import numpy as np
 import pytest
 
-from mmgtune.backends import Integrator, get_backend, pad
+from mmgtune.backends import Integrator, _made, get_backend, pad
 from mmgtune.backends.differentiable import Log, matrix_of, rates_of, rollout
 from mmgtune.backends.numpy_lanes import LaneModel
 from mmgtune.backends.twins import twin
@@ -415,7 +415,7 @@ def test_what_is_compiled_is_kept_beside_the_kernels(tmp_path):
 
 def test_without_jax(monkeypatch, suzaku):
     monkeypatch.setitem(sys.modules, "jax", None)
-    get_backend.cache_clear()
+    _made.cache_clear()
     try:
         with pytest.raises(OptionError, match=r"pip install 'mmgtune\[learn\]'"):
             get_backend("jax")
@@ -426,4 +426,4 @@ def test_without_jax(monkeypatch, suzaku):
         assert "pip install 'mmgtune[learn]'" in ended.err
         assert "Traceback" not in ended.err
     finally:
-        get_backend.cache_clear()
+        _made.cache_clear()

@@ -20,6 +20,14 @@ def test_a_record_names_every_channel_that_is_wrong():
     assert {problem.where for problem in caught.value.problems} == {"t", "x", "psi", "u"}
 
 
+@pytest.mark.parametrize("wrong", ["", 1 + 2j, np.zeros(3, dtype=complex), 10**400, [[1.0, 2.0], [3.0]], ["1", "2"]])
+def test_a_channel_without_numbers_is_named(wrong):
+    channels = dict.fromkeys(("t", "x", "y", "psi", "u", "v_m", "delta"), np.arange(20.0) / 10.0)
+    for name in ("t", "delta"):
+        with pytest.raises(TrialError, match=rf"no number \({name}\)"):
+            Track(**{**channels, name: wrong})
+
+
 @pytest.mark.parametrize("rate", [1.0 * DEG, 2.3 * DEG, 20.0 * DEG, 1000.0 * DEG])
 @pytest.mark.parametrize("side", [1, -1])
 def test_execute_is_the_last_sample_before_the_rudder_moves(rate, side):
