@@ -9,6 +9,7 @@ from typing import Any
 
 from ..arrays import FloatArray
 from ..documents import finite_values, write_json
+from ..errors import must_be_a
 from ..files import path_of, refuse_existing
 from ..networks import (
     Ensemble,
@@ -29,6 +30,7 @@ from ..validation import score, summary
 from .choosing import pieces_of
 from .ensemble_run import LearnedEnsemble
 from .hybrid_run import LearnedHybrid
+from .mixing import LearnedMixture
 from .reading import read_network
 from .run import Learned
 
@@ -195,13 +197,16 @@ def _short(value: float, name: str) -> float:
 
 
 def write_learned(
-    result: Learned | LearnedHybrid | LearnedEnsemble, folder: Path | str, *, overwrite: bool = False
+    result: Learned | LearnedHybrid | LearnedEnsemble | LearnedMixture, folder: Path | str, *, overwrite: bool = False
 ) -> dict[str, Any]:
     """Write a run folder, the record last; checkpoints stay where the training was stopped.  Returns the record.
 
     Raises OutputError where a record is there already and ``overwrite`` is false, or the system refuses to write.
     """
     folder = path_of(folder)
+    must_be_a(result, (Learned, LearnedHybrid, LearnedEnsemble, LearnedMixture), "result")
+    if isinstance(result, LearnedMixture):
+        return result.write(folder, overwrite=overwrite)
     network: Network | Hybrid | Ensemble
     if isinstance(result, LearnedHybrid):
         network, document, name = result.hybrid, hybrid_document(result), HYBRID_RESULT

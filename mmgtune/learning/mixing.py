@@ -70,6 +70,8 @@ class LearnedMixture:
     network  which of several networks is kept alone, counted from 1; None where none is
     """
 
+    written_by = "write_learned"
+
     model: Mixture | Hybrid | Network
     tried: tuple[Tried, ...]
     seen: tuple[str, ...]

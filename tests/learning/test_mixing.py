@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 from mmgtune.cli import app
 from mmgtune.cli.learn_mixture import notes, summary
 from mmgtune.errors import OptionError, OutputError
-from mmgtune.learning import learn_mixture
+from mmgtune.learning import learn_mixture, write_learned
 from mmgtune.networks import Hybrid, Mixture, MixturePredictor, Network, load_network, save_network
 from mmgtune.networks.hybrid import silent
 from mmgtune.options import MixtureOptions
@@ -149,6 +149,15 @@ def test_what_does_not_fit_is_refused(parts):
         MixtureOptions(share=(1.5,))
     with pytest.raises(OptionError, match="no recurrent network"):
         learn_mixture(profile, "esso_osaka_3m_hybrid", options=MixtureOptions(share=(0.3,)))
+
+
+def test_the_function_that_writes_what_was_learned_writes_mixtures(parts, tmp_path):
+    mixed = learn_mixture(*parts, options=MixtureOptions(share=(0.3,)))
+    document = write_learned(mixed, tmp_path)
+    assert document == json.loads((tmp_path / "mixture.json").read_text())
+    assert load_network(tmp_path).share == 0.3
+    with pytest.raises(OutputError, match="exists already"):
+        write_learned(mixed, tmp_path)
 
 
 def test_the_command_leaves_a_model_that_the_others_take(parts, made, tmp_path, monkeypatch):
