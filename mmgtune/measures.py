@@ -5,11 +5,12 @@ All take (n_samples, 6) arrays of x, y [m], psi [rad], u, v_m [m/s], r [rad/s] a
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from .arrays import BoolArray, FloatArray
+from .arrays import BoolArray, FloatArray, numbers_of
 
 UNITS = {"MMD": "m", "MED": "m", "ASD": "mixed", "MSD": "mixed", "PMD": "%", "PED": "%", "cVDM": "%"}
 """Unit of each measure; "mixed" adds metres, radians and their rates as they are."""
@@ -28,21 +29,37 @@ class Reference:
     speed: float
     r_max: float
 
+    def __post_init__(self) -> None:
+        """Raises ValueError where one of them is no number above 0."""
+        if not all(0.0 < one < math.inf for one in (self.length, self.speed, self.r_max)):
+            raise ValueError("the measured ship does not move: relative distances do not exist")
+
 
 def reference_of(measured: FloatArray, r_max: float | None = None) -> Reference:
     """Path length and mean speed of a measured trajectory (n_samples, 6), and its largest yaw rate where none is given.
 
-    Raises ValueError where fewer than two samples are complete or the ship does not move.
+    Raises ValueError for what is no such array of numbers, where one is infinite, fewer than two samples are complete
+    or the ship does not move.
     """
+    measured = _states(measured)
     whole = measured[~np.isnan(measured).any(axis=1)]
     if len(whole) < 2:
         raise ValueError("fewer than two complete samples")
     length = float(np.sum(np.hypot(*np.diff(whole[:, :2], axis=0).T)))
     speed = float(np.mean(np.hypot(whole[:, 3], whole[:, 4])))
     r = float(np.abs(whole[:, 5]).max()) if r_max is None else r_max
-    if min(length, speed, r) <= 0.0:
-        raise ValueError("the measured ship does not move: relative distances do not exist")
     return Reference(length, speed, r)
+
+
+def _states(given: FloatArray) -> FloatArray:
+    """States (n_samples, 6), NaN in gaps.  Raises ValueError for anything else."""
+    found = numbers_of(given)
+    if found is None or found.ndim != 2 or found.shape[1] != 6:
+        there = "what holds no numbers" if found is None else f"{found.shape}"
+        raise ValueError(f"states come in shapes (n_samples, 6), not {there}")
+    if np.isinf(found).any():
+        raise ValueError("a state is infinite")
+    return found
 
 
 def distance_measures(
@@ -56,7 +73,8 @@ def distance_measures(
     on where the origin is; the paper's denominator of PMD can be zero or negative, and the sum of absolute values is
     used instead.  Raises ValueError where shapes differ or no sample is complete, and as ``reference_of`` does.
     """
-    if measured.shape != simulated.shape or measured.ndim != 2 or measured.shape[1] != 6:
+    measured, simulated = _states(measured), _states(simulated)
+    if measured.shape != simulated.shape:
         raise ValueError(f"shapes {measured.shape} and {simulated.shape} are not (n_samples, 6) both")
     whole = ~(np.isnan(measured).any(axis=1) | np.isnan(simulated).any(axis=1))
     if not whole.any():

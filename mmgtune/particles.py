@@ -18,7 +18,7 @@ from .arrays import FloatArray
 from .backends import Integrator
 from .components import split_name
 from .effects import FilterEffect, FlowEffect, SensorEffect
-from .errors import OptionError, Problem, ProfileError, reason
+from .errors import OptionError, Problem, ProfileError, must_be_a, reason
 from .files import hold_regular, path_of
 from .model import Model
 from .predictor import PhysicsPredictor, Sampling
@@ -78,6 +78,7 @@ class Particles:
 
         as_logged  in the surroundings and by the sensors of the trials; else the ship alone, both as in the profile
         """
+        hold_usable(self)
         model = Model(self.profile if as_logged else self.without_the_day())
         return ParticlePredictor(model, model.matrix(), integrator, particles=self, as_logged=as_logged)
 
@@ -129,9 +130,12 @@ class ParticlePredictor(PhysicsPredictor):
 def save_particles(particles: Particles, path: Path | str, overwrite: bool = False) -> Path:
     """Write particles as Parquet, a column a number and a row a particle; the profile is in the file.
 
-    Raises OutputError where the file exists and ``overwrite`` is false, or the system refuses to write.
+    Raises OptionError for particles that are no finite numbers, OutputError where the file exists and ``overwrite`` is
+    false, or the system refuses to write.
     """
     path = path_of(path)
+    must_be_a(particles, Particles, "particles")
+    hold_usable(particles)
     facts = {"schema": SCHEMA, "profile": particles.profile.text, "facts": dict(particles.facts)}
     columns = dict(zip(particles.names, particles.values, strict=True))
     write_table(path, columns, overwrite=overwrite, metadata={KEY: json.dumps(facts, allow_nan=False).encode()})
@@ -173,13 +177,29 @@ def load_particles(path: Path | str) -> Particles:
         raise _unusable(what, path, "the file has no columns, or others than were written")
     if len(set(names)) < len(names):
         raise _unusable("a column of the particles is there twice", path, "each number has one column")
-    if not floats or not values.size or not np.isfinite(values).all():
+    if not floats:
         raise _unusable("particles that are no finite numbers", path, "each column holds floating-point numbers")
-    beyond = np.abs(values).max(axis=1) > LARGEST
-    if beyond.any():
-        name = names[int(np.flatnonzero(beyond)[0])]
-        raise _unusable(f"particles of '{name}' beyond {LARGEST:g}", path, "no ship has such a number")
+    if wrong := _wrong(names, values):
+        raise _unusable(wrong[0], path, wrong[1])
     return Particles(profile, names, values, known)
+
+
+def _wrong(names: tuple[str, ...], values: FloatArray) -> tuple[str, str] | None:
+    """What no particles can be, and why; None where they can."""
+    if np.ndim(values) != 2 or len(values) != len(names) or not values.size or not np.isfinite(values).all():
+        return "particles that are no finite numbers", "each column holds floating-point numbers"
+    beyond = np.abs(values).max(axis=1) > LARGEST
+    if not beyond.any():
+        return None
+    return f"particles of '{names[int(np.flatnonzero(beyond)[0])]}' beyond {LARGEST:g}", "no ship has such a number"
+
+
+def hold_usable(particles: Particles) -> None:
+    """Raises OptionError for particles in memory that no file of them could hold."""
+    if wrong := _wrong(particles.names, particles.values):
+        raise OptionError(
+            Problem(wrong[0], "particles", wrong[1], "take them as load_particles or posterior gives them")
+        )
 
 
 def _unusable(what: str, path: Path, why: str) -> ProfileError:

@@ -63,6 +63,20 @@ def test_shapes_must_agree(wrong):
         distance_measures(MEASURED, wrong, REFERENCE)
 
 
+def test_what_is_no_track_has_no_distance():
+    track = np.random.default_rng(1).normal(size=(9, 6))
+    assert distance_measures(track.tolist(), track.tolist()) == distance_measures(track, track)
+    infinite, texts = np.where(track == track.max(), np.inf, track), track.astype(str)
+    for wrong, words in ((infinite, "infinite"), (texts, "no numbers"), (None, r"not \(\)"), (track[0], r"not \(6,\)")):
+        with pytest.raises(ValueError, match=words):
+            distance_measures(track, wrong)
+        with pytest.raises(ValueError, match=words):
+            reference_of(wrong)
+    for given in ((np.nan, 1.0, 1.0), (1.0, 0.0, 1.0), (1.0, 1.0, -1.0), (np.inf, 1.0, 1.0)):
+        with pytest.raises(ValueError, match="does not move"):
+            Reference(*given)
+
+
 def test_a_ship_at_rest_has_no_relative_distance():
     with pytest.raises(ValueError, match="does not move"):
         reference_of(np.zeros((5, 6)))

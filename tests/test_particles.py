@@ -111,6 +111,19 @@ def test_a_damaged_file_says_what_is_wrong(particles, tmp_path, change, words):
     assert all(problem.fix for problem in raised.value.problems)
 
 
+@pytest.mark.parametrize(
+    "change",
+    [lambda v: v * np.nan, lambda v: v[:, :0], lambda v: v[:1], lambda v: v * 1e13],
+)
+def test_what_no_file_could_hold_is_neither_written_nor_predicted_with(particles, tmp_path, change):
+    wrong = replace(particles, values=change(particles.values))
+    with pytest.raises(OptionError, match=r"particles (that are no finite|of 'effects)"):
+        save_particles(wrong, tmp_path / "particles.parquet")
+    assert not list(tmp_path.iterdir())
+    with pytest.raises(OptionError, match=r"particles (that are no finite|of 'effects)"):
+        wrong.predictor()
+
+
 def test_a_file_that_expands_without_end_is_not_read(particles, tmp_path):
     path = save_particles(replace(particles, values=np.full((2, 3_000_000), 0.01)), tmp_path / "particles.parquet")
     assert path.stat().st_size < 200_000
