@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import re
 import secrets
@@ -23,7 +24,11 @@ _LEFT = re.compile(r"\..+\.[a-z0-9_]{8}\.part")
 def path_of(given: object) -> Path:
     """The path that a text or a Path gives.  Raises OptionError for what is neither."""
     if isinstance(given, (str, os.PathLike)):
-        return Path(given)
+        path = Path(given)
+        if any("\ud800" <= letter <= "\udfff" for letter in str(path)):
+            why, fix = "no file of results could name it", "give another name"
+            raise OptionError(Problem("a path that is not UTF-8 text", brief(str(path)), why, fix))
+        return path
     why = f"files and folders are given as a text or a Path, and {kind_of(given)} is neither"
     raise OptionError(Problem("no path", brief(given), why, "write where the file or folder is to be"))
 
@@ -176,7 +181,11 @@ def refuse_existing(paths: Iterable[Path], overwrite: bool = False) -> None:
 
 
 def refuse_file(folder: Path) -> None:
-    """Raises OutputError where a folder for results, or one that it lies in, is a file."""
+    """Raises OutputError where a folder for results, or one that it lies in, is a file, or cannot be looked at."""
+    try:
+        folder.exists()
+    except OSError as error:  # such as a name that is too long
+        raise cannot_write(folder, error) from error
     found = _file_in(folder)
     if found is not None:
         raise OutputError(_no_folder(found))
@@ -214,6 +223,10 @@ def cannot_write(path: Path, error: OSError | ValueError) -> OutputError:
             what="cannot write the output",
             where=str(path),
             why=reason(error),
-            fix="choose a folder with room that you may write to",
+            fix="write a shorter name" if _is_too_long(error) else "choose a folder with room that you may write to",
         )
     )
+
+
+def _is_too_long(error: OSError | ValueError) -> bool:
+    return isinstance(error, OSError) and error.errno == errno.ENAMETOOLONG

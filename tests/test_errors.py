@@ -16,6 +16,8 @@ def test_a_reason_is_one_line_without_numbers_and_paths(tmp_path):
     assert cannot_write_reason(missing.value) == f"No such file or directory: {tmp_path / 'none'}"
     assert reason(ValueError("first\nsecond")) == "first"
     assert reason(ValueError()) == "ValueError"
+    assert reason(TypeError("'float' object is not iterable")) == "something in it is of another kind than was written"
+    assert reason(TypeError("an angle is wanted")) == "an angle is wanted"
     assert len(reason(ValueError("x" * 10_000))) == 300
     assert reason(KeyError("name")) == "it has no 'name'"
     with pytest.raises(OSError) as folder:

@@ -269,3 +269,13 @@ def test_two_commands_at_one_time_have_a_folder_each(tmp_path, monkeypatch):
     (one / "fit.json").touch()
     common.tidy()
     assert (one.is_dir(), other.exists()) == (True, False)
+
+
+def test_a_name_that_no_folder_can_have_is_refused_with_a_way_out(tmp_path):
+    for name in (300 * "a", f"{300 * 'a'}/run"):
+        ended = run("simulate", "-p", "suzaku", "--turn", "35", "--out", name, cwd=tmp_path)
+        assert ended.code == 2
+        assert "cannot write the output" in ended.err
+        assert "why: File name too long" in ended.err
+        assert "fix: write a shorter name" in ended.err
+    assert not list(tmp_path.iterdir())
