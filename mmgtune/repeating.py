@@ -84,12 +84,16 @@ def repeat(
     throughout.  A turn gets the angle held; a zigzag the median angle held, with counter-orders at its check angle: the
     one its trial names ("zigzag 35/5"), else the usual one nearest to where the rudder was reversed.
     The rudder moves as the profile's steering gear does, at once where it has none.  There is no measured wind.
-    Any predictor can be steered, see ``predictor.stepper_of``.
+    Any predictor can be steered, see ``predictor.stepper_of``.  Raises TrialError where there are no trials.
     """
-    predictor = as_predictor(named_ship(ship), theta=theta)
+    return repetitions(as_predictor(named_ship(ship), theta=theta), some_of(trials))
+
+
+def repetitions(predictor: Predictor, trials: Sequence[Trial]) -> list[Repeated]:
+    """As ``repeat``; none of no trials."""
     read: dict[str, _Read] = {"turning": _turn, "zigzag": _zigzag}
     given = []
-    for trial in some_of(trials):
+    for trial in trials:
         track = track_if_whole(trial)
         kind = "other" if track is None else manoeuvre_kind(track)
         order = read[kind](predictor.L_pp, trial, track) if track is not None and kind in read else None

@@ -20,7 +20,7 @@ from .options import ParticleOptions, SimulationOptions, ValidateOptions
 from .options.choice import must_be
 from .predictor import PhysicsPredictor, Predictor, as_predictor, particles_of, profile_of, words_of
 from .profile.doubts import Doubt
-from .repeating import Repeated, document, repeat
+from .repeating import Repeated, document, repetitions
 from .stated import IndexComparison, compare_stated, physics_of, possible
 from .trial import Trial, TrialSet, oddities
 from .validation import L_MSE, TrialScore, score, summary, window_scores
@@ -147,7 +147,7 @@ def validate(
     odd = oddities(data.trials, next(iter(several.values())).L_pp)
     scored = []
     for name, predictor in several.items():
-        repeated = tuple(repeat(predictor, whole)) if options.manoeuvres else ()
+        repeated = tuple(repetitions(predictor, whole)) if options.manoeuvres else ()
         notes = notes_on(predictor.model, whole) if isinstance(predictor, PhysicsPredictor) else ()
         own = getattr(predictor, "id", None) if profile_of(predictor) is None else None
         if own and data.ship and data.ship != own:

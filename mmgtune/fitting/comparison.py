@@ -12,7 +12,7 @@ from ..arrays import FloatArray
 from ..backends import STATES
 from ..displayed import inert
 from ..documents import finite
-from ..evaluation import TrialRecord, evaluate
+from ..evaluation import TrialRecord, records
 from ..objective import Objective
 from ..simulation import Motion
 from ..trial import Trial
@@ -99,7 +99,7 @@ def compare(
     found: dict[str, tuple[TrialRecord, ...]] = {}
     for which, unit in (("before", before), ("after", after)):
         offsets = None if problem.sigma is None else fit_offsets(problem, unit)
-        found[which] = evaluate(problem.predictor(unit[:, None]), trials, objective, offsets=offsets)
+        found[which] = tuple(records(problem.predictor(unit[:, None]), trials, objective, offsets=offsets))
     return [
         TrialComparison(trial, roles[trial.id], {which: of[i] for which, of in found.items()})
         for i, trial in enumerate(trials)

@@ -29,7 +29,7 @@ from ..options.choice import must_be
 from ..predictor import as_predictor, words_of
 from ..profile import ShipProfile
 from ..profile.doubts import Doubt, in_words
-from ..repeating import Repeated, document, repeat
+from ..repeating import Repeated, document, repetitions
 from ..run_folders import MOTIONS
 from ..stated import IndexComparison, compare_stated
 from ..tables import write_table
@@ -310,7 +310,7 @@ def _leave_out(
         len(dealt),
         len(parts) < len(dealt),
         fit.weight,
-        tuple(repeat(model, _named(whole, seen))) if asked.manoeuvres else (),
+        tuple(repetitions(as_predictor(model), _named(whole, seen))) if asked.manoeuvres else (),
         tuple(repeated[name] for name in dict.fromkeys(trial.whole for trial in seen) if name in repeated),
         tuple(index for name in trials.tune_stated for index in stated if index.trial == name),
         model.L_pp,
@@ -410,7 +410,8 @@ class _ToAllRuns:
         repeated = {}
         if self.asked.manoeuvres:
             hooks.on_phase(f"repeating {', '.join(runs)}")
-            repeated = {one.id: one for one in repeat(model, _named(self.whole, series), theta=theta)}
+            again = repetitions(as_predictor(model, theta=theta), _named(self.whole, series))
+            repeated = {one.id: one for one in again}
         return _Part(runs, values, records, repeated, stated)
 
 
