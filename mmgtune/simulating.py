@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from types import NoneType
 from typing import Any, overload
@@ -17,21 +18,28 @@ from .evaluation import TrialRecord, evaluate
 from .files import path_of, refuse_existing
 from .given import ShipGiven, TrialsGiven, some_of
 from .inputs import INPUTS
+from .manoeuvres.criteria import Criterion, check_stopping
+from .manoeuvres.stopping import stopping_indices
 from .manoeuvres.summary import criteria_of, indices_of
 from .model import Model
 from .networks import named_ship
 from .options import SimulateOptions
 from .options.choice import must_be
-from .orders import Helmsman, Sailing, TurningOrder, ZigzagOrder, possible_approach, run_manoeuvres, sample_of
+from .options.orders import ORDERS
+from .orders import Helmsman, Sailing, Straight, TurningOrder, ZigzagOrder, possible_approach, run_manoeuvres, sample_of
 from .predictor import PhysicsPredictor, Predictor, as_predictor, profile_of
 from .profile import ShipProfile
 from .simulation import Motion, as_trial
+from .stated import no_reverse
 from .steering import APPROACH, STEP
 from .trial import Coverage, write_trial
 from .units import DEG, quantity
 
 ORDERED = "rk4"
 """How manoeuvres given as orders are simulated, at steps of their own."""
+
+STOP = "stop"
+"""What a crash stop is called."""
 
 RADIANS = 2.0
 """A plain number of degrees below this is likely meant as radians."""
@@ -123,6 +131,12 @@ class Simulated(Plotted, Sequence[Motion]):
         V = ship.approach.speed if ship and ship.approach else float(motion.states[0, 3])
         track = None if motion.diverged else motion.track()
         measured = record.measured.indices if record else None
+        stop = (
+            stopping_indices(track, L_pp, _ordered_at(L_pp, V)) if track and not record and motion.id == STOP else None
+        )
+        criteria: tuple[Criterion, ...] = ()
+        if track:
+            criteria = check_stopping(stop, L_pp, V) if stop else criteria_of(track, L_pp, V, measured)
         return {
             "id": motion.id,
             **({"member": motion.member} if self.predictor.n_members > 1 else {}),
@@ -130,11 +144,17 @@ class Simulated(Plotted, Sequence[Motion]):
             "duration_s": float(motion.t[-1]),
             "approach": self._begins(motion),
             "integrator": record.method if record else ORDERED,
-            "indices": record.indices if record else indices_of(track, L_pp) if track else {},
+            "indices": record.indices
+            if record
+            else stop.to_dict()
+            if stop
+            else indices_of(track, L_pp)
+            if track
+            else {},
             "measured": measured,
             "measures": record.measures if record and not motion.diverged else None,
             "unvisited": unvisited(ship, [motion]) if ship else [],
-            "criteria": [criterion.to_dict() for criterion in criteria_of(track, L_pp, V, measured)] if track else [],
+            "criteria": [criterion.to_dict() for criterion in criteria],
         }
 
 
@@ -185,13 +205,13 @@ def simulate(
     if trials is None:
         ordered = tuple(_on_orders(predictor, options))
         return Simulated(predictor, ordered, (), options, tuple(_beyond(profile_of(predictor), ordered)))
-    if options.turn or options.zigzag or options.speed or options.rpm:
+    if options.given(ORDERS):
         raise OptionError(
             Problem(
                 "trials have their own inputs",
                 "trials",
                 "rudder and propeller follow what was measured, not orders",
-                "leave out turn, zigzag, speed and rpm",
+                "leave out turn, zigzag, stop, speed and rpm",
             )
         )
     several = some_of(trials)
@@ -211,14 +231,44 @@ def _on_orders(predictor: Predictor, options: SimulateOptions) -> list[Motion]:
     n = None if options.rpm is None else revolutions(options.rpm)
     possible_approach(speed, n, ship.L_pp, ship.approach)
     L, V = ship.L_pp, speed or (ship.approach.speed if ship.approach else 1.0)
-    sample = sample_of(L, V)
+    sample, at = sample_of(L, V), _ordered_at(L, V)
     longest = max(600.0, 150.0 * L / V)
-    # The approach of ``predict`` and stated indices, rounded up to a sample.
-    at = sample * math.ceil(APPROACH * STEP * L / V / sample - 1e-9)
     sailings = [
         Sailing(helmsman, name, speed, n, longest=longest, sample=sample) for name, helmsman in _orders(options, at)
     ]
+    if options.stop:
+        ahead = n if n is not None else ship.approach.n if ship.approach else 0.0
+        back = astern_of(options, ahead, L, ship)
+        telegraph = partial(_reversed, ahead, -back, at)
+        sailings.append(
+            Sailing(Straight(), STOP, speed, n, 0.0, longest, sample, telegraph=telegraph, until_stopped=True)
+        )
     return run_manoeuvres(model, sailings, theta=predictor.theta.repeat(len(sailings), axis=1))
+
+
+def _ordered_at(L_pp: float, V: float) -> float:
+    """Time of the order [s]: after the approach of ``predict`` and stated indices, rounded up to a sample."""
+    sample = sample_of(L_pp, V)
+    return sample * math.ceil(APPROACH * STEP * L_pp / V / sample - 1e-9)
+
+
+def _reversed(ahead: float, astern: float, at: float, t: float) -> float:
+    """Revolutions ordered at a time."""
+    return ahead if t < at - 1e-9 else astern
+
+
+def astern_of(options: SimulateOptions, ahead: float, L_pp: float, ship: ShipProfile | None) -> float:
+    """Revolutions of a crash stop [1/s], a number above 0: those of the options, as many as ahead where they say none.
+
+    Raises OptionError where no ship turns so fast, and where the equations end at reversed propellers.
+    """
+    n = ahead
+    if options.astern:
+        n = revolutions(options.astern.lstrip("-"))
+        possible_approach(None, n, L_pp, ship.approach if ship else None, option="astern")
+    if ship is not None and (problem := no_reverse(ship, "stop", "leave the stop out")):
+        raise OptionError(problem)
+    return n
 
 
 def _orders(options: SimulateOptions, at: float = 0.0) -> list[tuple[str, Helmsman]]:
@@ -227,7 +277,7 @@ def _orders(options: SimulateOptions, at: float = 0.0) -> list[tuple[str, Helmsm
     Raises OptionError for orders that make no sense.
     """
     orders: dict[str, Helmsman] = {}
-    turns = options.turn or (() if options.zigzag else ("35", "-35"))
+    turns = options.turn or (() if options.zigzag or options.stop else ("35", "-35"))
     for text in turns:
         angle = rudder_angle(text)
         orders[turn_name(angle)] = TurningOrder(angle, at)

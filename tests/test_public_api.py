@@ -149,7 +149,7 @@ CONTROLS = np.tile([1.7, 0.1], (9, 1))
         (lambda: mmgtune.indices_of(A_TRACK, -83.0), "the length is -83 m (L_pp)", "in m, above 0"),
         (lambda: mmgtune.indices_of(A_TRACK, np.nan), "the length is nan m (L_pp)", "in m, above 0"),
         (lambda: criteria_of(A_TRACK, -83.0, 7.0), "the length is -83 m (L_pp)", "in m, above 0"),
-        (lambda: criteria_of(A_TRACK, 83.0, 0.0), "the speed is 0 m/s (V)", "the test speed in m/s, above 0"),
+        (lambda: criteria_of(A_TRACK, 83.0, -7.0), "the speed is -7 m/s (V)", "the test speed in m/s, above 0"),
         (lambda: criteria_of(A_TRACK, 83.0, "7"), "a str is no speed (V)", "profile.approach.speed"),
         (lambda: criteria_of(None, 83.0, 7.0), "is no track", "give a Track"),
         (lambda: mmgtune.score(SHIP, []), "the list of trials is empty", "one at least"),

@@ -132,3 +132,54 @@ def test_a_comparison_with_a_ship_that_diverges_is_written(tmp_path):
     assert set(found.data["manoeuvres"]["motions"]["turn_p35"]) == {"a"}
     assert "NaN" not in found.write(tmp_path).read_text()
     mmgtune.render(tmp_path)
+
+
+def test_a_crash_stop_is_that_of_predict_and_ends_with_the_ship_at_rest():
+    esso = mmgtune.load_profile("esso_osaka")
+    stop, slower = (mmgtune.simulate(esso, options=SimulateOptions(stop=True, astern=n)) for n in (None, "50"))
+    (row,), (motion,) = stop.rows(), stop
+    assert motion.states[-1, 3] <= 0.0 < motion.states[-2, 3]
+    n, begins = motion.mean_of("propeller"), row["indices"]["execute_time_s"]
+    assert n[motion.t < begins - 1e-9] == pytest.approx(esso.approach.n)
+    assert n[-1] == pytest.approx(-esso.approach.n)
+    assert 0.4 < begins * esso.approach.speed / esso.L_pp < 0.6
+    assert not motion.controls[:, motion.inputs.index("delta")].any()
+
+    foretold = mmgtune.predict(esso, options=mmgtune.PredictOptions(stop=True)).to_dict()["runs"][0]["indices"]
+    by_name = {one["index"]: one["median"] for one in foretold}
+    for name in ("track_reach_m", "head_reach_m", "stopping_time_s"):
+        assert row["indices"][name] == pytest.approx(by_name[name], rel=0.01)
+    (reach,) = row["criteria"]
+    assert (reach["name"], reach["limit"], reach["passed"]) == ("track reach", 15.0, True)
+    assert reach["value"] == pytest.approx(row["indices"]["track_reach_m"] / esso.L_pp)
+    assert slower.rows()[0]["indices"]["track_reach_m"] > 1.1 * row["indices"]["track_reach_m"]
+
+
+@pytest.mark.parametrize(
+    ("ship", "options", "said"),
+    [
+        ("suzaku", {"stop": True}, "no revolutions astern"),
+        ("esso_osaka", {"stop": True, "astern": "1e6"}, "(astern)"),
+        ("esso_osaka", {"stop": True, "rpm": "1e6"}, "(rpm)"),
+    ],
+)
+def test_a_stop_that_no_ship_makes_is_refused(ship, options, said):
+    with pytest.raises(OptionError, match=re.escape(said)):
+        mmgtune.simulate(ship, options=SimulateOptions(**options))
+
+
+def test_orders_beside_trials_and_revolutions_astern_without_a_stop_are_refused():
+    with pytest.raises(OptionError, match="no stop is asked for"):
+        SimulateOptions(astern="50")
+    with pytest.raises(OptionError, match="trials have their own inputs"):
+        mmgtune.simulate("esso_osaka", [TURN], SimulateOptions(stop=True))
+
+
+def test_a_stop_in_words(tmp_path):
+    ended = typed("simulate", "-p", "esso_osaka", "--stop", "--out", tmp_path / "run")
+    assert ended.code == 0
+    assert "crash stop" in ended.out
+    assert "IMO track reach" in ended.out
+    assert "turn" not in ended.out
+    assert "crash stop" in (tmp_path / "run" / "report.md").read_text()
+    assert (tmp_path / "run" / "stop.parquet").is_file()

@@ -46,11 +46,13 @@ def command(
     json: c.Json = False,
     no_report: c.NoReport = False,
 ) -> None:
-    """Simulate turning circles, zigzags or whole trials; print their indices and the IMO criteria.
+    """Simulate turning circles, zigzags, a crash stop or whole trials; print their indices and the IMO criteria.
 
     Examples:
 
       mmgtune simulate --turn 35 --turn -35 --zigzag 10/10
+
+      mmgtune simulate -p esso_osaka --stop --astern 50
 
       mmgtune simulate -p kvlcc2 --turn 35 --speed "15.5 kn" --json
 
@@ -101,7 +103,7 @@ def _show(result: Simulated, rows: list[dict[str, Any]], notes: list[str], files
 
 def _add_bands(rows: list[dict[str, Any]], ship: Uncertain, options: SimulateOptions) -> list[str]:
     """Give each run ``bands``: rows by index, as ``predict`` has them.  Returns notes."""
-    turn = options.turn or (() if options.zigzag else ("35", "-35"))
+    turn = options.turn or (() if options.zigzag or options.stop else ("35", "-35"))
     found, notes = bands_on(ship, PredictOptions(**{**options.shared_with(PredictOptions), "turn": turn}))
     if found is None:
         return notes

@@ -1,9 +1,16 @@
-"""Manoeuvring indices: the numbers a turning circle or a zigzag is summed up in, and the IMO criteria on them.
+"""Manoeuvring indices: the numbers a turning circle, a zigzag or a stop is summed up in, and the IMO criteria on them.
 
 The same functions read measured and simulated records, so that the two differ by the ship and not by the reading.
 """
 
-from .criteria import Criterion, check_turning, check_zigzag, first_overshoot_limit, second_overshoot_limit
+from .criteria import (
+    Criterion,
+    check_stopping,
+    check_turning,
+    check_zigzag,
+    first_overshoot_limit,
+    second_overshoot_limit,
+)
 from .stopping import StoppingIndices, stopping_indices
 from .summary import criteria_of, indices_of
 from .track import Execute, Track, find_execute, find_executes
@@ -17,6 +24,7 @@ __all__ = [
     "Track",
     "TurningIndices",
     "ZigzagIndices",
+    "check_stopping",
     "check_turning",
     "check_zigzag",
     "criteria_of",

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..units import DEG
+from .stopping import StoppingIndices
 from .turning import TurningIndices
 from .zigzag import ZigzagIndices
 
@@ -19,6 +20,10 @@ ADVANCE_LIMIT = 4.5
 TACTICAL_DIAMETER_LIMIT = 5.0
 INITIAL_TURNING_LIMIT = 2.5
 """Limits of distances [L]."""
+
+TRACK_REACH_LIMIT = 15.0
+"""Limit of the track reach of a full astern stop [L]; an Administration may allow up to 20 for ships of large
+displacement, which is not judged here."""
 
 FIRST_OVERSHOOT_LIMIT_20_20 = 25.0
 """First overshoot of the 20/20 zigzag [deg]."""
@@ -103,6 +108,12 @@ def check_zigzag(indices: ZigzagIndices, L: float, V: float) -> tuple[Criterion,
     if _is_zigzag(indices, 20.0):
         return (_criterion("first overshoot 20/20", first, FIRST_OVERSHOOT_LIMIT_20_20, "deg", ".3.3", why),)
     return ()
+
+
+def check_stopping(indices: StoppingIndices, L: float, V: float) -> tuple[Criterion, ...]:
+    """Track reach of a full astern stop."""
+    why = _unfit(False, indices.approach_speed, V)
+    return (_criterion("track reach", _lengths(indices.track_reach, L), TRACK_REACH_LIMIT, "L", ".4", why),)
 
 
 def _between(L: float, V: float, short: float, base: float, slope: float, long: float) -> float:

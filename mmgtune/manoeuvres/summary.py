@@ -37,10 +37,10 @@ def _hold_kinds(track: object, L_pp: object) -> None:
         why = "indices are read from the record of one manoeuvre"
         fix = "give a Track: simulate(SHIP, TRIAL)[0].track(), or Track(t=..., x=..., ...) of what was measured"
         raise OptionError(Problem(f"{kind_of(track)} is no track", brief(track), why, fix))
-    _hold_above_0("L_pp", L_pp)
+    _hold_number("L_pp", L_pp)
 
 
-_ABOVE_0 = {
+_NUMBERS = {
     "L_pp": (
         "length",
         "m",
@@ -50,15 +50,15 @@ _ABOVE_0 = {
     ),
     "V": ("speed", "m/s", "the test speed", "profile.approach.speed", "criteria depend on the test speed"),
 }
-"""Numbers that are above 0: what each is, its unit, the same in full, where a profile has it, and what it is for."""
+"""What each is, its unit, the same in full, where a profile has it, and what it is for."""
 
 
-def _hold_above_0(name: str, value: object) -> None:
-    of, unit, whole, where, why = _ABOVE_0[name]
+def _hold_number(name: str, value: object, above_0: bool = True) -> None:
+    of, unit, whole, where, why = _NUMBERS[name]
     if not isinstance(value, Real):
         why, fix = f"it is {whole} in {unit}", f"give a number; a profile has it as {where}"
         raise OptionError(Problem(f"{kind_of(value)} is no {of}", name, why, fix))
-    if not 0.0 < float(value) < math.inf:
+    if above_0 and not 0.0 < float(value) < math.inf:  # at a test speed of 0 no criterion is judged
         what, fix = f"the {of} is {float(value):g} {unit}", f"give {whole} in {unit}, above 0"
         raise OptionError(Problem(what, name, why, fix))
 
@@ -75,10 +75,10 @@ def criteria_of(
     """Criteria of IMO MSC.137(76) for the manoeuvre shown; L_pp [m], V test speed [m/s].
 
     measured  as in ``indices_of``
-    Raises OptionError for what is no record, and for a length or a speed that is not above 0.
+    Raises OptionError for what is no record, a length not above 0, and a speed below 0.
     """
     _hold_kinds(track, L_pp)
-    _hold_above_0("V", V)
+    _hold_number("V", V, V != 0.0)
     kind = manoeuvre_kind(track)
     if kind == "turning":
         return check_turning(turning_indices(track, L_pp), L_pp, V)

@@ -29,7 +29,8 @@ WORTH = 1000
 def serves(watch: Watch) -> bool:
     """Whether a manoeuvre is worth it: of few orders and, perhaps, of many steps."""
     sailing = watch.sailing
-    return type(sailing.helmsman) in OF_FEW_ORDERS and sailing.engine is None and watch.samples * watch.steps >= WORTH
+    steady = sailing.engine is None and sailing.telegraph is None
+    return type(sailing.helmsman) in OF_FEW_ORDERS and steady and watch.samples * watch.steps >= WORTH
 
 
 def order_by_order(model: Model, theta: FloatArray, watches: Sequence[Watch], backend: Backend) -> None:

@@ -49,6 +49,8 @@ class Sailing:
     sample   time [s] between samples
     step     longest step of the integration and of the helmsman [s]; chosen from length and speed where None
     engine   revolutions as a share of ``n`` from the share of the approach speed left; constant where None
+    telegraph      revolutions [1/s] ordered by the time [s], in the place of ``n``; constant where None
+    until_stopped  whether the run ends once the ship makes no way ahead
     """
 
     helmsman: Helmsman
@@ -60,6 +62,8 @@ class Sailing:
     sample: float = 1.0
     step: float | None = None
     engine: Callable[[float], float] | None = None
+    telegraph: Callable[[float], float] | None = None
+    until_stopped: bool = False
 
     def __post_init__(self) -> None:
         """Raises OptionError for a helmsman that cannot steer, such as a bare angle, and for numbers that are none."""
@@ -71,6 +75,7 @@ class Sailing:
             raise OptionError(Problem(what, "helmsman", why, fix))
         must_be_a(self.id, str, "id")
         must_be_a(self.engine, (Callable, NoneType), "engine")  # type: ignore[arg-type]
+        must_be_a(self.telegraph, (Callable, NoneType), "telegraph")  # type: ignore[arg-type]
         positive(longest=self.longest, sample=self.sample, **({} if self.step is None else {"step": self.step}))
         TRIAL_SAMPLES.hold(self.longest / self.sample, "longest", OptionError)
         if not (self.speed is None or is_number(self.speed, above=0.0)):
@@ -131,9 +136,11 @@ class Watch:
         if self.over:
             return 0.0, self.n_0, 0.0
         sample, k = divmod(step, self.steps)
-        rudder = self.helmsman.order(sample * sailing.sample + k * self.h, float(shown[2]) - sailing.heading)
+        t = sample * sailing.sample + k * self.h
+        rudder = self.helmsman.order(t, float(shown[2]) - sailing.heading)
+        n = self.n_0 if sailing.telegraph is None else sailing.telegraph(t)
         share = 1.0 if sailing.engine is None else sailing.engine(math.hypot(state[3], state[4]) / self.U_0)
-        return rudder, self.n_0 * share, 0.0
+        return rudder, n * share, 0.0
 
     def due(self, step: int) -> bool:
         """Whether a sample is to be taken after so many steps."""
@@ -148,6 +155,7 @@ class Watch:
         """Whether the manoeuvre is over with this sample."""
         self.diverged = not sound
         done = self.helmsman.finished(float(self.states[-1][2] - self.sailing.heading))
+        done = done or (self.sailing.until_stopped and self.states[-1][3] <= 0.0)
         self.over = self.diverged or done or len(self.states) > self.samples
 
     def motion(self, model: Model) -> Motion:

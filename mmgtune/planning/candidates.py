@@ -6,8 +6,6 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from ..arrays import FloatArray
 from ..inputs import INPUTS
 from ..model import Model
@@ -16,7 +14,7 @@ from ..orders import Helmsman, Sailing, SpiralOrder, Straight, TurningOrder, Wea
 from ..predicting.asked import Approach
 from ..profile import ShipProfile
 from ..simulating import turn_name, zigzag_name
-from ..simulation import Motion, as_trial
+from ..simulation import as_trial
 from ..stated import no_reverse
 from ..trial import Trial
 from ..trial.schema import MOTION
@@ -67,7 +65,8 @@ class Candidate:
             longest=self.longest,
             sample=sample,
             step=sample,
-            engine=(lambda _: -1.0) if self.astern else None,
+            telegraph=(lambda _: -self.approach.n) if self.astern else None,
+            until_stopped=self.astern,
         )
 
 
@@ -75,12 +74,7 @@ def logs(profile: ShipProfile, asked: Sequence[Candidate], noise: FloatArray) ->
     """What a profile's log of each would be, with the deviations (6,) of its sensors; None where it diverges."""
     deviations = dict(zip(MOTION, noise.tolist(), strict=True))
     motions = run_manoeuvres(profile, [one.sailing(profile.L_pp) for one in asked])
-    return [
-        None
-        if motion.diverged
-        else replace(as_trial(profile, _until_stopped(motion) if one.astern else motion), noise=deviations)
-        for one, motion in zip(asked, motions, strict=True)
-    ]
+    return [None if motion.diverged else replace(as_trial(profile, motion), noise=deviations) for motion in motions]
 
 
 def candidates(profile: ShipProfile, approach: Approach, kinds: Sequence[str], half: bool) -> list[Candidate]:
@@ -128,12 +122,6 @@ def _others(profile: ShipProfile, approach: Approach) -> Iterator[Candidate]:
     if _reached(profile, 25.0 * DEG) and _reached(profile, -25.0 * DEG):
         words = "rudder orders of changing size every two ship lengths"
         yield Candidate("weave", "weave", words, Weave(2.0 * unit), approach, 30.0 * unit)
-
-
-def _until_stopped(found: Motion) -> Motion:
-    stopped = np.flatnonzero(found.states[:, 3] <= 0.0)
-    end = int(stopped[0]) + 1 if len(stopped) else len(found.t)
-    return replace(found, t=found.t[:end], states=found.states[:end], controls=found.controls[:end])
 
 
 def _limits(profile: ShipProfile) -> list[tuple[float, float]]:

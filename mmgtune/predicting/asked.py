@@ -13,14 +13,15 @@ from ..orders import possible_approach
 from ..predictor import Predictor
 from ..profile import Actuator, ShipProfile
 from ..simulating import (
+    STOP,
     approach_speed,
+    astern_of,
     revolutions,
     rudder_angle,
     turn_name,
     zigzag_angles,
     zigzag_name,
 )
-from ..stated import no_reverse
 from ..units import DEG
 
 Manoeuvre = Literal["turning", "zigzag", "stopping"]
@@ -115,14 +116,8 @@ def _zigzag(rudder: float, heading: float, approach: Approach) -> Asked:
 
 
 def _stop(predictor: Predictor, options: PredictOptions, approach: Approach) -> Asked:
-    profile = profile_behind(predictor)
-    n = approach.n
-    if options.astern:
-        n = revolutions(options.astern.lstrip("-"))
-        possible_approach(None, n, predictor.L_pp, profile.approach if profile else None, option="astern")
-    if profile is not None and (problem := no_reverse(profile, "stop", "leave the stop out")):
-        raise OptionError(problem)
-    return Asked("stop", "stopping", f"crash stop at {60.0 * n:.4g} rpm astern", 0.0, None, -n)
+    n = astern_of(options, approach.n, predictor.L_pp, profile_behind(predictor))
+    return Asked(STOP, "stopping", f"crash stop at {60.0 * n:.4g} rpm astern", 0.0, None, -n)
 
 
 def _possible(predictor: Predictor, found: list[Asked]) -> None:

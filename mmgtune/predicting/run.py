@@ -15,7 +15,8 @@ from ..model import Model
 from ..networks import named_ship
 from ..options import PredictOptions
 from ..options.choice import must_be
-from ..options.predicting import OF_TRIALS, ORDERS
+from ..options.orders import ORDERS
+from ..options.predicting import OF_TRIALS
 from ..predictor import PhysicsPredictor, Predictor, Sampling, Uncertain, as_predictor, particles_of
 from ..resources import must_be_name, trial_set_names
 from ..trial import Trial, TrialSet

@@ -238,6 +238,8 @@ _RUN = re.compile(r"(turn|zigzag)_([pm])(\d+(?:\.\d+)?)(?:_(\d+(?:\.\d+)?))?")
 
 def run_words(name: Any) -> str:
     """A manoeuvre by orders in words: turn_p35 is a turn 35° to starboard; other names as they are."""
+    if name == "stop":
+        return "crash stop"
     found = _RUN.fullmatch(str(name))
     if found is None:
         return clean(name)

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from mmgtune.manoeuvres import (
+    StoppingIndices,
+    check_stopping,
     check_turning,
     check_zigzag,
     first_overshoot_limit,
@@ -119,3 +121,15 @@ def test_criterion_as_a_dictionary():
     assert found["value"] == pytest.approx(2.5, rel=1e-3)
     assert isinstance(found["passed"], bool)
     assert not isinstance(found["passed"], np.bool_)
+
+
+@pytest.mark.parametrize(("reach", "passed"), [(14.9 * L, True), (15.1 * L, False), (None, None)])
+def test_a_stop_is_judged_by_its_track_reach(reach, passed):
+    stop = StoppingIndices(
+        L_pp=L, execute_time=0.0, approach_speed=U, track_reach=reach, head_reach=reach, lateral_deviation=0.0,
+        stopping_time=600.0,
+    )  # fmt: skip
+    (found,) = check_stopping(stop, L, U)
+    assert (found.name, found.unit, found.passed) == ("track reach", "L", passed)
+    assert found.source == "IMO MSC.137(76), 5.3.4"
+    assert check_stopping(replace(stop, approach_speed=0.5 * U), L, U)[0].passed is None
