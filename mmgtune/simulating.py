@@ -264,7 +264,7 @@ def astern_of(options: SimulateOptions, ahead: float, L_pp: float, ship: ShipPro
     """
     n = ahead
     if options.astern:
-        n = revolutions(options.astern.lstrip("-"))
+        n = revolutions(options.astern.lstrip("-"), "astern")
         possible_approach(None, n, L_pp, ship.approach if ship else None, option="astern")
     if ship is not None and (problem := no_reverse(ship, "stop", "leave the stop out")):
         raise OptionError(problem)
@@ -321,17 +321,16 @@ def approach_speed(text: str) -> float:
     return speed
 
 
-def revolutions(text: str) -> float:
-    """Propeller revolutions [1/s] of "106", "106 rpm" or "1.77 1/s".  Raises OptionError."""
+def revolutions(text: str, option: str = "rpm") -> float:
+    """Propeller revolutions [1/s] of "106", "106 rpm" or "1.77 1/s".  Raises OptionError, naming the option."""
     written = _plain(text)
     if written is not None and 0.0 < written < PER_SECOND:
         fix = f'write {60.0 * written:.4g} for 1/min, "{text} 1/s", or "{text} rpm" if that is meant'
-        raise OptionError(Problem(f"{text} revolutions look like 1/s", "rpm", "rpm is in 1/min", fix))
-    n = written / 60.0 if written is not None else quantity(text, "rpm", "1/s", '106 or "1.77 1/s"', bare=True)
+        raise OptionError(Problem(f"{text} revolutions look like 1/s", option, f"{option} is in 1/min", fix))
+    n = written / 60.0 if written is not None else quantity(text, option, "1/s", '106 or "1.77 1/s"', bare=True)
     if not (n > 0.0 and math.isfinite(n)):
-        raise OptionError(
-            Problem(f"the revolutions are {text}", "rpm", "manoeuvres begin ahead", "give a number above 0")
-        )
+        why = "manoeuvres begin ahead" if option == "rpm" else "the propeller is to turn astern"
+        raise OptionError(Problem(f"the revolutions are {text}", option, why, "give a number above 0"))
     return n
 
 

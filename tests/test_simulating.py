@@ -160,6 +160,9 @@ def test_a_crash_stop_is_that_of_predict_and_ends_with_the_ship_at_rest():
     [
         ("suzaku", {"stop": True}, "no revolutions astern"),
         ("esso_osaka", {"stop": True, "astern": "1e6"}, "(astern)"),
+        ("esso_osaka", {"stop": True, "astern": "1"}, "astern is in 1/min"),
+        ("esso_osaka", {"stop": True, "astern": "0"}, "the revolutions are 0 (astern)"),
+        ("esso_osaka", {"stop": True, "astern": "1,5"}, "'1,5' cannot be read (astern)"),
         ("esso_osaka", {"stop": True, "rpm": "1e6"}, "(rpm)"),
     ],
 )
