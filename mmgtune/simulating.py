@@ -277,14 +277,18 @@ def _orders(options: SimulateOptions, at: float = 0.0) -> list[tuple[str, Helmsm
     Raises OptionError for orders that make no sense.
     """
     orders: dict[str, Helmsman] = {}
-    turns = options.turn or (() if options.zigzag or options.stop else ("35", "-35"))
-    for text in turns:
+    for text in turns_of(options):
         angle = rudder_angle(text)
         orders[turn_name(angle)] = TurningOrder(angle, at)
     for text in options.zigzag:
         rudder, heading = zigzag_angles(text)
         orders[zigzag_name(rudder, heading)] = ZigzagOrder(rudder * DEG, heading * DEG, at)
     return [*orders.items()]
+
+
+def turns_of(options: SimulateOptions) -> tuple[str, ...]:
+    """The turns asked for; both hard ones where nothing is."""
+    return options.turn or (() if options.zigzag or options.stop else ("35", "-35"))
 
 
 def turn_name(angle: float) -> str:

@@ -103,7 +103,9 @@ def _show(result: Simulated, rows: list[dict[str, Any]], notes: list[str], files
 
 def _add_bands(rows: list[dict[str, Any]], ship: Uncertain, options: SimulateOptions) -> list[str]:
     """Give each run ``bands``: rows by index, as ``predict`` has them.  Returns notes."""
-    turn = options.turn or (() if options.zigzag or options.stop else ("35", "-35"))
+    from ..simulating import turns_of
+
+    turn = turns_of(options)
     found, notes = bands_on(ship, PredictOptions(**{**options.shared_with(PredictOptions), "turn": turn}))
     if found is None:
         return notes

@@ -6,7 +6,7 @@ import time
 
 import numpy as np
 
-from ..backends import Integrator, get_backend, get_ready_backend
+from ..backends import get_backend, get_ready_backend
 from ..fitting.planning import ROUGHLY, Plan
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..model import Model
@@ -15,6 +15,7 @@ from ..phrases import counted
 from .folder import FILES
 from .local import make_windowed
 from .room import make_room, tags_of
+from .run import hold_some
 from .sizing import left_out_of
 
 SLOPES = (8, 40)
@@ -23,14 +24,15 @@ from few to many."""
 
 
 def plan_posterior(profile: ShipGiven, trials: TrialsGiven, options: PosteriorOptions) -> Plan:
-    """What drawing particles would do.  Raises OptionError for what it would refuse."""
+    """What drawing particles would do.  Raises OptionError and TrialError for what it would refuse."""
     ship, data = ship_of(profile), trials_of(trials)
     chosen = [data.trials[name] for name in data.tune]
+    hold_some(chosen)
     room = make_room(ship, size=options.room, without=options.without)
     groups, parts = left_out_of(chosen) if options.leave_out else ((), [])
-    backend, integrator = get_backend(options.backend), Integrator(options.integrator, options.substeps)
+    backend, integrator = get_backend(options.backend), options.make_integrator()
     tried = backend.name != "compiled" or get_ready_backend(Model(room.profile)) is not None
-    if tried and chosen:
+    if tried:
         windowed = make_windowed(room, chosen, backend, integrator)
         began = time.perf_counter()
         windowed.linearised(np.zeros(len(room)))

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray
-from ..backends import Integrator, get_backend
+from ..backends import get_backend
 from ..components import split_name
 from ..displayed import Plotted
 from ..errors import Problem, ProfileError, TrialError, must_be_a
@@ -175,11 +175,10 @@ def _drawn(
     provenance: Mapping[str, Any],
 ) -> Posterior:
     """Particles from trials."""
-    if not chosen:
-        raise TrialError(Problem("no time series to learn from", "trials", fix="give trial files, and tune to them"))
+    hold_some(chosen)
     room = make_room(ship, size=options.room, without=options.without)
     backend = get_backend(options.backend)
-    integrator = Integrator(options.integrator, options.substeps)
+    integrator = options.make_integrator()
 
     def remake(some: Sequence[Trial]) -> Windowed:
         return make_windowed(room, some, backend, integrator)
@@ -213,6 +212,12 @@ def _drawn(
         provenance=provenance,
         interrupted=sized.stopped or (hooks.stop() and not mode.converged),
     )
+
+
+def hold_some(chosen: Sequence[Trial]) -> None:
+    """Raises TrialError where there is no time series to learn from."""
+    if not chosen:
+        raise TrialError(Problem("no time series to learn from", "trials", fix="give trial files, and tune to them"))
 
 
 def _lost(ship: ShipProfile, trials: Sequence[Trial]) -> ProfileError:

@@ -9,7 +9,7 @@ from itertools import count
 import numpy as np
 import pytest
 
-from mmgtune.errors import OptionError
+from mmgtune.errors import OptionError, TrialError
 from mmgtune.hooks import Hooks
 from mmgtune.options import PosteriorOptions
 from mmgtune.posterior import plan_posterior, posterior, write_posterior
@@ -88,6 +88,11 @@ def test_the_plan_says_what_would_be_left_out():
     assert "starboard turning" in str(plan)
     assert "5 parts" in str(plan)
     assert plan_posterior("suzaku", "suzaku", replace(OPTIONS, leave_out=False)).seconds[1] < plan.seconds[1]
+
+
+def test_what_it_would_refuse_has_no_plan(trials):
+    with pytest.raises(TrialError, match="no time series to learn from"):
+        plan_posterior("suzaku", replace(trials, tune=()), OPTIONS)
 
 
 def test_particles_lie_beside_what_is_in_the_folder_and_are_not_replaced_unasked(tmp_path):
