@@ -119,7 +119,7 @@ def with_memory(profile):
 
 
 @pytest.mark.parametrize("backend", ["compiled", "numpy"])
-@pytest.mark.parametrize("kind", ["gear", "at once", "memory", "astern"])
+@pytest.mark.parametrize("kind", ["gear", "at once", pytest.param("memory", marks=pytest.mark.long), "astern"])
 def test_lanes_are_those_stepped_with_their_helmsmen(kvlcc2, esso_osaka, kind, backend):
     rudder, check, known = [TURN, -TEN, TWENTY, -TEN], [np.inf, TEN, TWENTY, 5.0 * DEG], {"until": 100.0 * DEG}
     model = kvlcc2

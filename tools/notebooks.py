@@ -36,8 +36,9 @@ class Cell:
     images: tuple[bytes, ...] = ()
 
 
-def run(path: Path) -> list[Cell]:
-    """Run a notebook.  Whatever a cell raises is raised here, with the cell's number."""
+def run(path: Path, code: bool = True) -> list[Cell]:
+    """Run a notebook, or read it where code is not to be run.  Whatever a cell raises is raised here, with the cell's
+    number."""
     import matplotlib as mpl
 
     mpl.use("agg")
@@ -46,8 +47,8 @@ def run(path: Path) -> list[Cell]:
     found = []
     for k, cell in enumerate(cells, 1):
         source = "".join(cell["source"])
-        if cell["cell_type"] != "code":
-            found.append(Cell("markdown", source))
+        if not code or cell["cell_type"] != "code":
+            found.append(Cell(cell["cell_type"], source))
             continue
         try:
             found.append(_run(source, names, f"{path.name}, cell {k}"))
@@ -83,10 +84,10 @@ def as_html(value: object) -> str:
     return own() if own is not None else f"<pre><code>{html.escape(repr(value))}</code></pre>"
 
 
-def page(path: Path) -> str:
-    """A notebook as Markdown, run."""
+def page(path: Path, code: bool = True) -> str:
+    """A notebook as Markdown, run where its code is to be."""
     parts = []
-    for cell in run(path):
+    for cell in run(path, code):
         if cell.kind == "markdown":
             parts.append(cell.source)
             continue

@@ -1,12 +1,14 @@
 """What the site has beyond the pages in docs/: equations as MathML, and pages made from the program at each build.
 
-mkdocs calls these functions; see ``hooks`` in mkdocs.yml.
+mkdocs calls these functions; see ``hooks`` in mkdocs.yml.  With MMGTUNE_SITE=pages nothing is fitted or simulated for
+it: pictures are their captions and notebooks their cells, and the rest of the site is there in a third of the time.
 """
 
 from __future__ import annotations
 
 import atexit
 import html
+import os
 import re
 import shutil
 import subprocess
@@ -50,9 +52,14 @@ PICTURE = re.compile(r"^<!-- picture: (\S+) \| (.*?) -->$", flags=re.M)
 NOTEBOOK = re.compile(r"^<!-- notebook: (\S+) -->$", flags=re.M)
 """A notebook that is run at the build."""
 
+RUN = os.environ.get("MMGTUNE_SITE") != "pages"
+"""Whether the gallery and the notebooks are run."""
+
 
 def on_files(files: Files, config: Any) -> Files:
     """Run the gallery, and add the pictures and reports that its commands make."""
+    if not RUN:
+        return files
     made = Path(tempfile.mkdtemp(prefix="mmgtune-site-"))
     atexit.register(shutil.rmtree, made, ignore_errors=True)
     run = [sys.executable, "-m", "tools.site_examples", str(ROOT / "docs" / EXAMPLES), str(made)]
@@ -71,18 +78,20 @@ def on_page_markdown(text: str, page: Any, config: Any, files: Files) -> str:
     if uri in FROM_ROOT:
         text = from_root(FROM_ROOT[uri])
     text = text.replace(COMMANDS, commands() if COMMANDS in text else "")
-    text = NOTEBOOK.sub(lambda found: notebooks.page(ROOT / "docs" / "notebooks" / found[1]), text)
+    text = NOTEBOOK.sub(lambda found: notebooks.page(ROOT / "docs" / "notebooks" / found[1], RUN), text)
     return PICTURE.sub(lambda found: figure(found[1], found[2], uri, files), text)
 
 
 def figure(name: str, words: str, uri: str, files: Files) -> str:
     """A picture with what is seen in it, and with the report it is from where there is one."""
     up = "../" * uri.count("/")
+    seen = html.escape(words)
+    if not RUN:
+        return f'<figure class="made"><figcaption>{seen}</figcaption></figure>\n'
     if files.get_file_from_path(f"made/{name}") is None:
         raise PluginError(f"{uri}: no command of {EXAMPLES} makes the picture {name}")
     report = f"made/{name.partition('/')[0]}/report.html"
     more = f' <a href="{up}{report}">The whole report</a>.' if files.get_file_from_path(report) else ""
-    seen = html.escape(words)
     picture = f'<img src="{up}made/{name}" alt="{seen}">'
     return f'<figure class="made">{picture}<figcaption>{seen}{more}</figcaption></figure>\n'
 

@@ -183,7 +183,7 @@ def test_lanes_over_cases_and_candidates_are_bit_equal_to_single_runs(esso_osaka
             assert np.array_equal(alone.residuals[:, 0], together.residuals[own, candidate])
 
 
-@pytest.mark.parametrize("backend", ["compiled", "numpy", "jax"])
+@pytest.mark.parametrize("backend", ["compiled", "numpy", pytest.param("jax", marks=pytest.mark.long)])
 def test_a_candidate_for_each_case_is_the_same_as_every_case_with_every_candidate(suzaku, backend):
     """Cases of many lengths and steps, with a lag that remembers and a clock that is late."""
     if backend == "jax":
@@ -226,7 +226,7 @@ def test_a_candidate_for_each_case_is_the_same_as_every_case_with_every_candidat
     ("backend", "n_candidates"),
     [
         ("compiled", 1), ("compiled", 9), ("numpy", 1), ("numpy", 9),
-        pytest.param("jax", 9),
+        pytest.param("jax", 9, marks=pytest.mark.long),
     ],
 )  # fmt: skip
 def test_candidates_that_differ_from_case_to_case_are_those_of_each_case_alone(suzaku, backend, n_candidates):

@@ -26,6 +26,20 @@ jax = pytest.importorskip("jax")
 EULER, RK4 = Integrator("euler"), Integrator("rk4")
 
 
+@pytest.fixture(
+    params=[
+        "esso_osaka",
+        *(
+            pytest.param(name, marks=pytest.mark.long)
+            for name in ("esso_osaka_3m_tuned", "kvlcc2", "suzaku", "suzaku_fam", "vectwin_3m")
+        ),
+    ]
+)
+def ship(request):
+    """A model of each kind of profile; each is compiled for seconds, so that test takes one."""
+    return Model(load_profile(request.param))
+
+
 @pytest.fixture(autouse=True)
 def _double():
     with jax.enable_x64(True):
@@ -44,11 +58,11 @@ def agree(model, cases, integrator=RK4, theta=None, initial=None):
     return found
 
 
-def test_every_profile_moves_as_on_numpy(any_model):
+def test_every_profile_moves_as_on_numpy(ship):
     integrator = Integrator("rk4", 2)  # euler is that of the tests below
-    name = f"{any_model.parts[-1].kind}.{any_model.parts[-1].params._fields[0]}"
-    theta = any_model.matrix([name], any_model.profile.value(name) * np.linspace(0.8, 1.2, 5)[None])
-    agree(any_model, zigzag_like(any_model, 150), integrator, theta)
+    name = f"{ship.parts[-1].kind}.{ship.parts[-1].params._fields[0]}"
+    theta = ship.matrix([name], ship.profile.value(name) * np.linspace(0.8, 1.2, 5)[None])
+    agree(ship, zigzag_like(ship, 150), integrator, theta)
 
 
 def test_ahead_and_astern(esso_osaka):
@@ -82,13 +96,16 @@ def test_gaps_and_cases_of_different_length(suzaku, integrator):
     agree(suzaku, cases, integrator, suzaku.matrix(["hull.R_0"], [[0.01, 0.017, 0.03]]), initial)
 
 
-@pytest.mark.parametrize(("integrator", "strong"), [(EULER, False), (Integrator("rk4", 2), True)])
+@pytest.mark.parametrize(
+    ("integrator", "strong"), [(EULER, True), pytest.param(Integrator("rk4", 2), False, marks=pytest.mark.long)]
+)
 def test_every_effect_at_once_and_at_null(integrator, strong):
     ship = load_profile("suzaku")
     model = Model(with_effects(ship, STRONG, "test") if strong else with_all_effects(ship))
     agree(model, of_many_lengths(model, np.random.default_rng(2)), integrator)
 
 
+@pytest.mark.long
 def test_portions_change_nothing(suzaku, monkeypatch):
     """Lanes are run some at a time where there are many, each with its own case."""
     from mmgtune.backends import differentiable
@@ -178,18 +195,18 @@ def close(names, derivatives, expected, rounding):
     assert not bad.any(), [(names[k], off[k], size[k], rounding[k]) for k in np.flatnonzero(bad)]
 
 
-def test_rates_have_derivatives_wherever_a_ship_can_be(any_model):
+def test_rates_have_derivatives_wherever_a_ship_can_be(ship):
     """By all coefficients, state and inputs: finite, and off the special places those of central differences."""
-    rates = rates_of(any_model)
-    states, controls = special(any_model)
-    U, n = any_model.profile.approach.speed, any_model.profile.approach.n
-    plain = [0.0, 0.0, 0.4, 0.9 * U, -0.12 * U, 0.3 * U / any_model.L_pp]
+    rates = rates_of(ship)
+    states, controls = special(ship)
+    U, n = ship.profile.approach.speed, ship.profile.approach.n
+    plain = [0.0, 0.0, 0.4, 0.9 * U, -0.12 * U, 0.3 * U / ship.L_pp]
     states = np.vstack([states, plain, plain])
-    controls = np.vstack([controls, driven(any_model, [1.1 * n, 1.1 * n], [0.21, 0.0])])
-    theta = np.repeat(any_model.matrix(), len(states), axis=1)
+    controls = np.vstack([controls, driven(ship, [1.1 * n, 1.1 * n], [0.21, 0.0])])
+    theta = np.repeat(ship.matrix(), len(states), axis=1)
     for name in ("effects.wind.speed", "effects.waves.height"):  # jump, or begin with a square, where there are none
-        if name in any_model.rows:
-            theta[any_model.rows[name], -2:] = 1.0
+        if name in ship.rows:
+            theta[ship.rows[name], -2:] = 1.0
 
     def of_one(theta, state, control):
         return rates(theta, state, control, UNKNOWN, 1.0)
@@ -199,17 +216,17 @@ def test_rates_have_derivatives_wherever_a_ship_can_be(any_model):
     assert finite(found)
 
     def on_numpy(values):
-        rows = len(any_model.rows)
-        control = any_model.arrangement.control(*values[rows + 6 :])
-        return LaneModel(any_model, values[:rows]).rates(values[rows : rows + 6], control, UNKNOWN, 1.0)
+        rows = len(ship.rows)
+        control = ship.arrangement.control(*values[rows + 6 :])
+        return LaneModel(ship, values[:rows]).rates(values[rows : rows + 6], control, UNKNOWN, 1.0)
 
     for lane in (-2, -1):
         values = np.concatenate([theta[:, lane], states[lane], controls[lane]])
         expected, rounding = differences(on_numpy, values, U)
         derivatives = np.concatenate([one[lane] for one in found], axis=1).T
-        if lane == -1 and any_model.parts[-1].tag == "slip":  # other coefficients with the rudder on the other side
+        if lane == -1 and ship.parts[-1].tag == "slip":  # other coefficients with the rudder on the other side
             derivatives[-1] = expected[-1]
-        close(names_of(any_model), derivatives, expected, rounding)
+        close(names_of(ship), derivatives, expected, rounding)
 
 
 def few_steps(model, integrator, around, steps):
@@ -238,6 +255,7 @@ def with_effects_of(strong, places=PLACES):
     return Model(with_effects(load_profile("suzaku"), chosen, "test"))
 
 
+@pytest.mark.long
 def test_rates_have_derivatives_with_every_effect():
     """Backwards, from everywhere a ship can be, at the nulls and off them, with all measured and with nothing."""
     null, strong = (with_effects_of(off, ("flow", "coefficients", "factors", "force")) for off in (False, True))
@@ -255,6 +273,7 @@ def test_rates_have_derivatives_with_every_effect():
             assert finite(by_lane(values, *special(null), around))
 
 
+@pytest.mark.long
 def test_runs_have_derivatives_backwards_where_a_limit_is_infinite():
     """A rudder without a limit of its rate, behind a clock, remembered by the hull."""
     model = with_effects_of(False, ("clock", "actuator", "lag"))
@@ -269,6 +288,7 @@ def test_runs_have_derivatives_backwards_where_a_limit_is_infinite():
     assert finite(by_lane(model.base, states, controls, weights))
 
 
+@pytest.mark.long
 def test_runs_have_derivatives_with_every_effect():
     """Forwards, by all that all effects have, on the way from parameters to what sensors show: finite from everywhere
     a ship can be, and off the special places those of central differences.
@@ -305,6 +325,7 @@ def test_runs_have_derivatives_with_every_effect():
     close(names_of(model), derivatives, expected, rounding)
 
 
+@pytest.mark.long
 def test_a_clock_at_a_sample_has_the_mean_of_two_slopes(suzaku):
     """A clock offset of nothing looks at the log where its slope changes: what a central difference sees there."""
     model = Model(with_effects(suzaku.profile, {"clock-offset": {}}, "test"))

@@ -48,6 +48,7 @@ def cache(made, tmp_path):
     return Path(shutil.copytree(made, tmp_path / "cache"))
 
 
+@pytest.mark.long
 def test_what_is_broken_is_made_anew(cache):
     def cut(pattern, keep):
         (path,) = (cache / "kernels").rglob(pattern)

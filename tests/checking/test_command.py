@@ -244,6 +244,7 @@ def test_what_would_be_ignored_is_refused(ready, asked, said):
     assert not (ready / "j.xml").exists()
 
 
+@pytest.mark.long
 def test_the_sensitivity_as_json_by_either_name(ready):
     one, other = (check(ready, "--sensitivity", "0.02", *more) for more in (("--json",), ("--format", "json")))
     assert one.json() == other.json()

@@ -17,7 +17,11 @@ COMPILED = ("simulate", "--trials", "suzaku", "--no-report", "--out", "out")
 
 @pytest.mark.parametrize(
     ("name", "value"),
-    [("NUMBA_DISABLE_JIT", "1"), ("NUMBA_NUM_THREADS", "0"), ("NUMBA_NUM_THREADS", "-1")],
+    [
+        ("NUMBA_DISABLE_JIT", "1"),
+        ("NUMBA_NUM_THREADS", "0"),
+        pytest.param("NUMBA_NUM_THREADS", "-1", marks=pytest.mark.long),
+    ],
 )
 def test_settings_that_numba_cannot_work_with(name, value, tmp_path):
     ended = run(*COMPILED, cwd=tmp_path, env={name: value}, fresh=True)

@@ -115,6 +115,7 @@ def test_a_rudder_zero_that_differs(tmp_path):
     assert "The zero of the rudder differed from run to run" in result.sentence()
 
 
+@pytest.mark.long
 def test_a_rudder_that_stopped_half_way_in_one_run(tmp_path):
     """Of 35 deg to starboard she got 20, while the log holds the order."""
     case = of_runs("rudder-gain", 0, seed=5)
@@ -127,6 +128,7 @@ def test_a_rudder_that_stopped_half_way_in_one_run(tmp_path):
     assert "in turn_p35, and none for certain in the other 4" in result.sentence()
 
 
+@pytest.mark.long
 def test_a_gyro_that_was_set_anew_for_each_run(tmp_path):
     case = of_runs("rudder-offset", 0, seed=3)
     off = dict(zip(sorted(TUNING), (3, -2, 0.5, -4, 1), strict=True))
@@ -138,6 +140,7 @@ def test_a_gyro_that_was_set_anew_for_each_run(tmp_path):
     assert "The error of the compass differed from run to run: -4 to 3°." in result.sentence()
 
 
+@pytest.mark.long
 def test_a_resistance_that_differs_though_it_is_a_target_too(tmp_path):
     """As between runs before and after docking: no one value of R_0 will do, and in no box."""
     case = of_runs("rudder-offset", 0, seed=1)
@@ -162,6 +165,7 @@ def test_a_current_that_changes_within_the_runs(tmp_path):
     assert "changed within a run by up to" in result.sentence()
 
 
+@pytest.mark.long
 def test_two_days_of_several_runs_are_told_apart_by_day(tmp_path):
     case = of_runs("current", 0, seed=1)
     first = {*sorted(TUNING)[:3], *sorted({*NAMES} - {*TUNING})[:3]}

@@ -151,6 +151,7 @@ def test_slow_noise_of_sensors_is_nothing_unknown(certainty, left):
     assert elsewhere.unknown == pytest.approx(0.25)  # heading and yaw rate fit
 
 
+@pytest.mark.long
 def test_what_uncertain_coefficients_bring_is_expected_of_held_out_trials(suzaku):
     """Ships that differ in their targets, tuned on two runs and looked at on the others."""
     profile, trials = suzaku.profile, load_trials("suzaku")

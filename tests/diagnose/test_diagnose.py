@@ -87,6 +87,7 @@ QUICK_GEAR = single("steering-lag", 1, seed=2)
 """Orders logged once a second, and a gear so quick that hardly more than the moment in between is its lag."""
 
 
+@pytest.mark.long
 def test_what_the_log_leaves_open_is_not_called_unexplained(tmp_path):
     assert "rate_limit" in QUICK_GEAR.effects["steering-lag"]
     late = {"steering-lag", "clock-offset", "dead-time"}  # what explains it is not asked for
@@ -177,6 +178,7 @@ def test_two_effects_are_both_found(tmp_path):
     assert outcome(case.effects, document) in ("right", "grouped")
 
 
+@pytest.mark.long
 def test_a_resistance_beyond_the_box_of_its_target_is_a_cause(tmp_path):
     case = null(1)
     fouled = {**case.ship, "hull.R_0": 2.2 * PROFILE["hull.R_0"]}  # the box ends at 1.5 times
@@ -191,6 +193,7 @@ def test_a_resistance_beyond_the_box_of_its_target_is_a_cause(tmp_path):
     assert extended.value("effects.resistance.factor") == pytest.approx(2.2, rel=0.02)
 
 
+@pytest.mark.long
 def test_a_cause_that_would_be_believed_alone_is_named_though_a_hull_unlike_the_profile_s_adds_terms(tmp_path):
     case = single("rudder-offset", 3, seed=1)
     rng = np.random.default_rng(1)
@@ -234,6 +237,7 @@ def test_the_extended_profile_is_a_profile_like_any_other(drifted):
     assert profile.provenance["not_believed"] == ["current"]
 
 
+@pytest.mark.long
 def test_names_order_and_metadata_of_the_files_do_not_matter(drifted, tmp_path):
     _, folder, told = drifted
     names = {path.stem: f"log_{k:02d}" for k, path in enumerate(sorted(folder.glob("*.parquet"))[::-1])}

@@ -11,9 +11,10 @@ from tests.hidden.plant import simulate, write
 LATE = ("clock-offset", "dead-time", "steering-lag")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "besides",
-    [pytest.param({}, marks=pytest.mark.long), {"clock-offset": {"seconds": 4.0}}],
+    [{}, {"clock-offset": {"seconds": 4.0}}],
     ids=["alone", "and a late clock"],
 )
 def test_inputs_logged_now_and_then_are_named(besides, tmp_path):

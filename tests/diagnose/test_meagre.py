@@ -28,7 +28,9 @@ def straight(trial: Trial) -> Trial:
     return replace(trial, **still, x=3.0 * trial.t, u=u, n=n)
 
 
-@pytest.mark.parametrize("made", [short, straight], ids=["short", "straight and free of noise"])
+@pytest.mark.parametrize(
+    "made", [short, pytest.param(straight, marks=pytest.mark.long)], ids=["short", "straight and free of noise"]
+)
 def test_every_number_of_the_answer_is_one(made):
     trials = load_trials("suzaku")
     few = {name: made(trials.trials[name]) for name in ("turn_p35", "turn_m40")}

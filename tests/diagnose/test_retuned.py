@@ -81,7 +81,11 @@ def test_what_else_is_far_off_is_told_where_nothing_is_wrong():
     )
 
 
-@pytest.mark.parametrize("hidden", [{}, {"rudder-offset": {"angle": 0.03}}], ids=["nothing else", "and a cause"])
+@pytest.mark.parametrize(
+    "hidden",
+    [{}, pytest.param({"rudder-offset": {"angle": 0.03}}, marks=pytest.mark.long)],
+    ids=["nothing else", "and a cause"],
+)
 def test_a_fouled_hull_is_told(tmp_path, hidden):
     """Resistance 40 % above the profile's, a target: no effect has to stand for it."""
     ship = load_profile("suzaku")

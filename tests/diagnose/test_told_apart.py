@@ -23,6 +23,7 @@ def said_of(effects, folder, *asked):
     return diagnose(load_profile("suzaku"), load_trials(folder), DiagnoseOptions(effects=asked))
 
 
+@pytest.mark.long
 def test_a_dead_time_and_a_late_clock_are_a_group_and_a_change_of_revolutions_would_tell(tmp_path):
     result = said_of({"dead-time": {"seconds": 3.0}}, tmp_path, "clock-offset", "dead-time", "steering-lag")
     assert result.verdict == "not-separable"
@@ -54,6 +55,7 @@ def test_the_quadrantal_deviation_of_a_compass_is_found(tmp_path):
         assert abs(found[name]["value"]) < 0.1 * D, name
 
 
+@pytest.mark.long
 def test_a_stall_that_leaves_the_force_some_of_its_slope_is_no_gain_of_the_rudder():
     profile = load_profile("suzaku")
     rng = np.random.default_rng(12)
@@ -91,6 +93,7 @@ def test_no_trial_is_suggested_that_was_sailed():
     assert not any(holds(slower, one, ship.approach.n) for one in menu(ship.L_pp / ship.approach.speed))
 
 
+@pytest.mark.long
 def test_of_terms_alike_on_one_side_that_of_a_hull_of_two_like_sides_is_named(tmp_path):
     case = Case("one-sided", null(4).ship, {"hull-term": {"Y_vabsv": -0.3}}, 4, WHITE)
     write(simulate(case.ship, case.effects, case.seed, case.noise), tmp_path)

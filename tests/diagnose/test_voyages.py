@@ -24,6 +24,7 @@ def of(result, tag):
     return next(one for one in result.differing if one.quantity.tag == tag)
 
 
+@pytest.mark.long
 def test_fouling_that_grows_over_twelve_voyages_is_growing_resistance(tmp_path):
     serve(tmp_path, [{"resistance": {"factor": 1.0 + 0.03 * k}} for k in range(12)], seed=1)
     result = diagnose("suzaku", tmp_path, DiagnoseOptions(effects=("resistance",), targets=FEW, windows=36))
@@ -38,6 +39,7 @@ def test_fouling_that_grows_over_twelve_voyages_is_growing_resistance(tmp_path):
     json.dumps(result.to_dict(), allow_nan=False)
 
 
+@pytest.mark.long
 def test_a_log_whose_wind_is_low_is_found_from_voyages_alone(tmp_path):
     draw = np.random.default_rng(3)
     winds = [{"wind": {"speed": draw.uniform(5.0, 9.0), "direction": draw.uniform(0.0, 6.28)}} for _ in range(5)]

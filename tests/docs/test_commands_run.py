@@ -33,6 +33,8 @@ PAGES = [
     *ROOT.glob("*/README.md"),
     *ROOT.glob("*/*/README.md"),
 ]
+DAILY = ("README.md", "bands.md", "ci.md", "diagnose.md", "import.md", "validate.md")
+"""Pages of what is done every day; those of the others are run by make long."""
 MAKES_TRIALS = "trials import"
 TRIALS = ("turn_p35", "turn_m20", "zigzag_10", "zigzag_20")
 
@@ -106,7 +108,11 @@ def shorter(words):
 
 @pytest.mark.parametrize(
     "page",
-    [pytest.param(page, id=page.name) for page in PAGES if commands(page)],
+    [
+        pytest.param(page, id=page.name, marks=() if page.name in DAILY else pytest.mark.long)
+        for page in PAGES
+        if commands(page)
+    ],
 )
 def test_commands_of_a_page_run(page, desk):
     lines = commands(page)

@@ -27,19 +27,29 @@ OVERFLOW = "document.documentElement.scrollWidth - document.documentElement.clie
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The site, built so that a warning is an error."""
+    """The site without what is fitted and simulated for it, built so that a warning is an error."""
+    return built(tmp_path_factory.mktemp("site"), MMGTUNE_SITE="pages")
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The site as it is read."""
+    return built(tmp_path_factory.mktemp("whole"))
+
+
+def built(folder: Path, **env: str) -> Path:
+    """The site in a folder, or a skip."""
     missing = [name for name in ("mkdocs", "material", "mkdocstrings", "latex2mathml") if not found(name)]
     if missing:
         pytest.skip(f"{', '.join(missing)} not installed: pip install '.[docs]'")
-    folder = tmp_path_factory.mktemp("site")
-    built = subprocess.run(
+    ended = subprocess.run(
         [sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", str(folder)],
         cwd=ROOT,
-        env={**os.environ, "NO_MKDOCS_2_WARNING": "1"},
+        env={**os.environ, "NO_MKDOCS_2_WARNING": "1", **env},
         capture_output=True,
         text=True,
     )
-    assert built.returncode == 0, built.stderr
+    assert ended.returncode == 0, ended.stderr
     return folder
 
 
@@ -119,25 +129,27 @@ def test_commands_say_types_choices_and_defaults(site):
     assert "<code>float | None</code>" in html.unescape(options)
 
 
-def test_the_gallery_has_ten_tasks_with_their_pictures(site):
-    text = (site / "gallery.html").read_text(encoding="utf-8")
+@pytest.mark.long
+def test_the_gallery_has_ten_tasks_with_their_pictures(whole):
+    text = (whole / "gallery.html").read_text(encoding="utf-8")
     assert len(re.findall(r"<h2\b", text)) == 10
     pictures = re.findall(r'<figure class="made"><img src="(.*?)" alt="(.*?)"', text)
     assert len(pictures) == 10
     for name, words in pictures:
-        assert (site / name).read_text(encoding="utf-8").count("<path") > 5
+        assert (whole / name).read_text(encoding="utf-8").count("<path") > 5
         assert words
-    assert (site / "made" / "fit" / "report.html").is_file()
-    assert "made/fit/figures/tracks.svg" in (site / "index.html").read_text(encoding="utf-8")
+    assert (whole / "made" / "fit" / "report.html").is_file()
+    assert "made/fit/figures/tracks.svg" in (whole / "index.html").read_text(encoding="utf-8")
 
 
-def test_notebooks_were_run(site):
-    found = html.unescape((site / "notebooks" / "diagnose.html").read_text(encoding="utf-8"))
+@pytest.mark.long
+def test_notebooks_were_run(whole):
+    found = html.unescape((whole / "notebooks" / "diagnose.html").read_text(encoding="utf-8"))
     (north,) = re.findall(r"'effects.current.north': '([\d.]+) m/s'", found)
     (east,) = re.findall(r"'effects.current.east': '(-[\d.]+) m/s'", found)
     # What the notebook hides: noise of 0.4 m over ten minutes leaves a thousandth of a metre a second open.
     assert (float(north), float(east)) == pytest.approx((0.3, -0.2), abs=0.004)
-    calibrate = (site / "notebooks" / "calibrate.html").read_text(encoding="utf-8")
+    calibrate = (whole / "notebooks" / "calibrate.html").read_text(encoding="utf-8")
     assert calibrate.count("data:image/png;base64,") == 3
     assert "4 of 4 of these trials improve" in calibrate
 
@@ -189,9 +201,18 @@ def test_equations_are_shown(visit):
 @pytest.mark.parametrize(
     "name",
     [
-        "tutorial/index.html", "guides/calibrate.html", "theory/effects.html", "nomenclature.html", "formats.html",
-        "reference/commands.html", "reference/api/fitting.html", "esso-osaka.html", "kvlcc2.html", "hidden.html",
-        "limits.html", "changelog.html",
+        "tutorial/index.html",
+        "theory/effects.html",
+        "reference/commands.html",
+        "reference/api/fitting.html",
+        "hidden.html",
+        *(
+            pytest.param(name, marks=pytest.mark.long)
+            for name in (
+                "guides/calibrate.html", "nomenclature.html", "formats.html", "esso-osaka.html", "kvlcc2.html",
+                "limits.html", "changelog.html",
+            )
+        ),
     ],
 )  # fmt: skip
 def test_every_kind_of_page(visit, name):
@@ -220,7 +241,14 @@ def test_search(visit):
 
 
 @pytest.mark.browser
-@pytest.mark.parametrize("name", ["networks.html", "theory/bands.html", "esso-osaka.html", "reference/commands.html"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "networks.html",
+        "reference/commands.html",
+        *(pytest.param(name, marks=pytest.mark.long) for name in ("theory/bands.html", "esso-osaka.html")),
+    ],
+)
 def test_no_table_is_cut_at_1400_pixels(browser, site, name):
     cut = """[...document.querySelectorAll('.md-content table')].filter(one => {
       const holder = one.closest('.md-typeset__scrollwrap');

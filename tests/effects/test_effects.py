@@ -169,6 +169,7 @@ def test_each_changes_the_run_and_can_be_written_and_read(ship, base, tag):
     assert np.abs(changed - without).max() > 3e-4
 
 
+@pytest.mark.long
 def test_a_propeller_walks_where_the_profile_has_no_side_force_of_it():
     ship = load_profile("suzaku_fam")
     cases = zigzag_like(Model(ship), 200)

@@ -103,6 +103,7 @@ def python(environment: dict[str, str], *arguments: str) -> str:
     return done.stdout
 
 
+@pytest.mark.long
 def test_lags_may_remember_any_force_in_any_number_of_states(environment):
     assert python(environment, "-c", LAGGING).strip() == "lags"
 

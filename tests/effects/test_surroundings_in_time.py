@@ -121,7 +121,7 @@ def test_a_head_sea_slows_the_ship_down():
     assert speed(0.2) == pytest.approx(speed(-0.5), abs=1e-3)
 
 
-@pytest.mark.parametrize("profile", ["suzaku", "esso_osaka_3m"])
+@pytest.mark.parametrize("profile", ["suzaku", pytest.param("esso_osaka_3m", marks=pytest.mark.long)])
 def test_depth_along_the_track_changes_the_linear_derivatives(profile):
     """Of either hull and in both back ends: a measured depth that does not change is the steady depth, to rounding; one
     that does lies between deep and shallow."""

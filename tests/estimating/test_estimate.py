@@ -118,6 +118,7 @@ def test_outside_a_formulas_range_is_a_warning_with_the_numbers():
     assert len(in_words(found)) == len(set(told.values()))
 
 
+@pytest.mark.long
 def test_starboard_circle_is_wider_than_port_where_the_slipstream_makes_it_so():
     """The paper's finding of its own model, and a model without such a term turns alike."""
     for form, wider in (("fam", True), ("mmg", False)):

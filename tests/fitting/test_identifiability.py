@@ -77,6 +77,7 @@ def test_identifiable_option_holds_one_member(suzaku, noisy):
     assert result.identifiability.null_directions == ()
 
 
+@pytest.mark.long
 def test_standard_errors_cover_the_truth(suzaku):
     """Over repeated noise the error of what is known stays within three standard errors in most cases."""
     from tests.fitting import conftest

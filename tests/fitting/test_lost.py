@@ -81,6 +81,7 @@ def test_so_do_particles(wild):
         posterior(wild, [load_trials("suzaku").trials["turn_p35"]], PosteriorOptions(particles=20))
 
 
+@pytest.mark.long
 def test_a_diagnosis_of_trials_that_can_be_simulated_stands_beside_others_that_cannot(wild):
     trials = load_trials("suzaku")
     chosen = {name: trials.trials[name] for name in ("turn_p10", "zigzag_10", "turn_p35")}

@@ -137,6 +137,7 @@ def test_twice_the_data_half_the_pull(suzaku):
     assert off[2] / off[4] == pytest.approx(2.0, rel=0.15)
 
 
+@pytest.mark.long
 def test_ships_drawn_from_the_prior_are_recovered_better_with_it(suzaku):
     names = tuple(dict.fromkeys((*MANY, *suzaku.profile.targets)))
     profile = scattered(suzaku.profile, 0.15, names)

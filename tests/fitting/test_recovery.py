@@ -67,6 +67,7 @@ def test_estimated_initial_states_recover_more_than_measured_ones(suzaku, noisy)
     assert errors["estimated"].max() < 0.1
 
 
+@pytest.mark.long
 def test_a_tenfold_finer_set_of_starts_finds_nothing_better(suzaku, noisy):
     few, many = (fit(suzaku.profile, noisy, FitOptions(method="least-squares", starts=k)).J for k in (2, 20))
     assert few == pytest.approx(many, rel=1e-4)

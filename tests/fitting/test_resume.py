@@ -247,6 +247,7 @@ def test_names_do_for_objects():
     assert mmgtune.load_profile("suzaku").id == mmgtune.simulate("suzaku", "suzaku").ship.id
 
 
+@pytest.mark.long
 def test_nothing_is_lost_between_the_end_of_a_run_and_its_result(tmp_path, monkeypatch):
     """The journal was gone before the result was written: a kill in between cost the whole run."""
 

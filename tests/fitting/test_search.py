@@ -71,6 +71,7 @@ def test_same_seed_same_search_and_numpy_s_stream_is_left_alone(problem):
     assert not np.array_equal(one.unit, other.unit)
 
 
+@pytest.mark.long
 def test_replay_is_bit_identical(problem, searched):
     start, whole = problem.box.to_unit(problem.box.pre), searched
     asked = []
@@ -321,7 +322,9 @@ def test_impossible_widths_are_refused_before_any_work(suzaku, noisy, widths):
         sweep(suzaku.profile, noisy, SweepOptions(widths=widths, method="least-squares"))
 
 
-@pytest.mark.parametrize("a_r", [0.2, 0.4, pytest.param(0.6, marks=pytest.mark.long)])  # from most bounds met to fewest
+@pytest.mark.parametrize(
+    "a_r", [0.2, pytest.param(0.4, marks=pytest.mark.long), pytest.param(0.6, marks=pytest.mark.long)]
+)  # from most bounds met to fewest
 def test_cma_es_and_least_squares_agree_on_the_bundled_trials(suzaku, a_r):
     problem = make_problem(suzaku.profile, load_trials("suzaku"), FitOptions(a_r=a_r))
     start = problem.box.to_unit(problem.box.pre)

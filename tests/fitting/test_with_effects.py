@@ -67,7 +67,10 @@ def test_a_null_at_infinity_is_a_point_of_the_box(ship):
     [
         # A time constant does nearly the same to a single order, so it is held.
         FitOptions(method="least-squares", starts=3, initial="estimated", targets=(*SOME, RATE_LIMIT)),
-        FitOptions(starts=2, initial="estimated", targets=("wake.w_P0", "rudder.eps", "rudder.l_R_", RATE_LIMIT)),
+        pytest.param(
+            FitOptions(starts=2, initial="estimated", targets=("wake.w_P0", "rudder.eps", "rudder.l_R_", RATE_LIMIT)),
+            marks=pytest.mark.long,
+        ),
     ],
     ids=["least-squares", "cma-es"],
 )

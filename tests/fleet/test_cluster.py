@@ -36,6 +36,7 @@ def test_without_the_extra_the_error_says_how_to_get_it(monkeypatch: pytest.Monk
     assert "pip install 'mmgtune[cluster]'" in error.value.problems[0].fix
 
 
+@pytest.mark.long
 def test_a_cluster_of_its_own_does_the_same_and_listens_on_loopback_only(tmp_path: Path) -> None:
     pytest.importorskip("distributed")
     make_logs(tmp_path, ("a1", "a2"), ("2025-01",))

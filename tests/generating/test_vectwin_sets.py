@@ -116,6 +116,7 @@ def test_manoeuvres_are_what_they_are_called(folder):
     assert np.median(drawn) == pytest.approx(-80.0 * DEG, abs=12.0 * DEG)
 
 
+@pytest.mark.long
 def test_pilots_stop_their_ships():
     """At the end of the whole time the ships lie nearly still, wherever they began; they hover and use the thruster."""
     model = Model(load_profile("vectwin_3m"))

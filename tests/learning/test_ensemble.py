@@ -76,6 +76,7 @@ def spread_of(ensemble, trials, sampling="TS-infinity"):
     return pooled(scores, dict.fromkeys(("x", "y", "psi", "u", "v_m", "r"), 1.0))
 
 
+@pytest.mark.long
 def test_training_comes_near_to_the_noise(trained):
     """With three velocities a model that is right has a loss of 3."""
     for one in trained.members:
@@ -107,6 +108,7 @@ def test_outside_the_data_errors_grow_and_so_does_the_band(trained):
     assert 0.1 < far.L_Maha / near.L_Maha < 10.0
 
 
+@pytest.mark.long
 def test_estimated_starts_bring_the_fit_nearer_to_the_truth(data, trained):
     """L_fit, eq. 29: roll-outs along the windows learned from, against motions without noise."""
     one = learn_ensemble(SHIP, data, replace(TRAINED, members=1, initial=0)).ensemble
@@ -215,6 +217,7 @@ def test_windows_that_watch_do_not_overlap(task):
     assert moments(np.array([[1.0, 2.0], [3.0, 2.0]]))[1].tolist() == [[1.0, 1.0]]
 
 
+@pytest.mark.long
 def test_the_same_seed_gives_the_same_weights_and_another_others(data, small, monkeypatch):
     monkeypatch.setattr(ensemble_run, "cores", lambda: 2)  # side by side, and one after the other
     again = learn_ensemble(SHIP, data, SMALL)
@@ -243,6 +246,7 @@ def test_resumed_equals_not_interrupted(data, small, tmp_path, after):
         learn_ensemble(SHIP, data, SMALL, folder=tmp_path, resume=True)
 
 
+@pytest.mark.long
 def test_under_one_compiled_step_members_become_the_same(data, small, tmp_path, monkeypatch):
     """As on a GPU, here on a processor: to the rounding of single precision, and bit for bit where it was stopped.
 
@@ -266,7 +270,7 @@ def test_under_one_compiled_step_members_become_the_same(data, small, tmp_path, 
             assert row == pytest.approx(same, rel=1e-3)
 
 
-@pytest.mark.parametrize("one_step", [False, True])
+@pytest.mark.parametrize("one_step", [False, pytest.param(True, marks=pytest.mark.long)])
 def test_divergence_goes_back_in_its_member_alone(data, monkeypatch, one_step):
     monkeypatch.setattr(ensemble_run, "accelerated", lambda: one_step)
     drawn = training.batch

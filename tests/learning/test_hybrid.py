@@ -136,6 +136,7 @@ def test_gradients_are_those_of_finite_differences():
             assert float(np.sum(getattr(gradient, name) * way)) == pytest.approx(float(up - down) / (2 * h), rel=2e-4)
 
 
+@pytest.mark.long
 def test_gradients_are_finite_at_rest_and_astern():
     import jax
 
@@ -195,6 +196,7 @@ def test_losses_that_are_no_numbers_are_null_in_the_record(trained, tmp_path):
         HybridOptions(penalty=(15.0, 1e39))
 
 
+@pytest.mark.long
 def test_a_profile_is_not_tuned_anew_where_that_is_not_asked_for(monkeypatch):
     def never(*_, **__):
         raise AssertionError("tuned anew")

@@ -181,6 +181,7 @@ def test_the_command_leaves_a_model_that_the_others_take(parts, made, tmp_path, 
     assert isinstance(refused.exception, OutputError)
 
 
+@pytest.mark.long
 def test_the_command_takes_several_networks_and_then_trials(parts, other, tmp_path):
     """As a user runs it, with what it says where the last word is no trial, and where steps differ."""
     save_network(parts[1], tmp_path / "net.safetensors")

@@ -149,6 +149,7 @@ def test_a_log_has_what_was_ordered(ship):
     assert list(trial.noise.values()) == noise.tolist()
 
 
+@pytest.mark.long
 def test_the_side_that_no_trial_shows_is_to_be_sailed_and_it_keeps_the_promise(ship, sailed, particles):
     plan = plan_trial(particles, QUESTION, PlanOptions(half_speed=False, kind=("turn", "zigzag")))
     ids = [one.id for one in plan.trials]
@@ -175,6 +176,7 @@ def test_the_room_of_particles_is_that_they_were_drawn_in(ship, particles):
         room_of(other)
 
 
+@pytest.mark.long
 def test_particles_that_do_not_say_how_they_were_made(particles):
     silent = replace(particles, facts={})
     with pytest.raises(ProfileError, match="believed"):

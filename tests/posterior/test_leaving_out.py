@@ -41,6 +41,7 @@ def test_every_run_is_held_against_bands_that_have_not_seen_it(whole, monkeypatc
         assert others | set(part) == set(trials.tune)
 
 
+@pytest.mark.long
 def test_stopped_and_resumed_is_the_same(whole, tmp_path):
     said = []
     stopped = leave_out_with_bands(
@@ -67,6 +68,7 @@ def test_what_is_recalled_is_what_was_noted():
     assert repr(_recalled(json.loads(json.dumps(_noted(scores))))) == repr(scores)
 
 
+@pytest.mark.long
 def test_the_command_prints_and_writes_them(tmp_path):
     ended = run(
         "leave-out", "--folds", "2", "--starts", "1", "--targets", "hull.N_v", "--bands", "--out", "out", cwd=tmp_path

@@ -32,6 +32,7 @@ PAGES = ("fit", "sweep", "leave-out", "diagnosis", "nothing", "unexplained", "va
          "comparison", "model-comparison", "simulate", "trials", "check", "learning", "plan", "fleet")  # fmt: skip
 OF_EVERY_BLOCK = ("fit", "diagnosis", "nothing", "unexplained", "validate", "trials")
 """Pages that have all blocks between them."""
+PAGES_NOW = [one if one in OF_EVERY_BLOCK else pytest.param(one, marks=pytest.mark.long) for one in PAGES]
 
 
 @pytest.fixture(scope="module")
@@ -52,7 +53,7 @@ def test_every_kind_is_here(runs: dict[str, Path]) -> None:
     assert files == {one.file for one in KINDS for folder in runs.values() if (folder / one.file).is_file()}
 
 
-@pytest.mark.parametrize("name", PAGES)
+@pytest.mark.parametrize("name", PAGES_NOW)
 def test_screens(browser: Any, runs: dict[str, Path], name: str) -> None:
     rules = axe.script() if _has_axe() else ""
     with Visit(browser, runs[name] / "report.html") as visit:
@@ -115,9 +116,7 @@ def test_paper(browser: Any, runs: dict[str, Path], name: str) -> None:
         assert visit.page.evaluate(empty) == 0  # no heading stands alone
 
 
-@pytest.mark.parametrize(
-    "name", [one if one in OF_EVERY_BLOCK else pytest.param(one, marks=pytest.mark.long) for one in PAGES]
-)
+@pytest.mark.parametrize("name", PAGES_NOW)
 def test_the_keyboard_reaches_everything(browser: Any, runs: dict[str, Path], name: str) -> None:
     with Visit(browser, runs[name] / "report.html", viewport={"width": 390, "height": 844}) as visit:
         wanted = visit.page.evaluate(

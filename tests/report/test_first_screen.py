@@ -73,6 +73,7 @@ def test_of_a_check(tmp_path: Path) -> None:
     assert text.splitlines()[2] == "suzaku on suzaku against base.json"
 
 
+@pytest.mark.long
 def test_of_misfits(fit_folder: Path, voyages_folder: Path) -> None:
     assert lead(fit_folder).startswith("The misfit J: squared differences of simulated and measured motion")
     assert lead(voyages_folder).startswith("cVDM, a distance measure of Mathioudakis et al., adds up how far off")

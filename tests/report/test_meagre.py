@@ -132,6 +132,7 @@ def test_no_trials_and_no_coefficients(tmp_path: Path) -> None:
     assert '<section id="provenance"' in read(folder)
 
 
+@pytest.mark.long
 def test_many_long_trials_are_thinned(tmp_path: Path) -> None:
     import pandas as pd
 

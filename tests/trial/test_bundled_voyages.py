@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from mmgtune.resources import folder
 from mmgtune.trial import check_trial, load_voyages, read_trial, write_trial
@@ -12,6 +13,7 @@ from mmgtune.trial import check_trial, load_voyages, read_trial, write_trial
 VOYAGES = folder("trials") / "voyages"
 
 
+@pytest.mark.long
 def test_a_voyage_is_made_again_to_the_last_bit(tmp_path):
     from tools import generate_suzaku_voyages as making
 

@@ -56,6 +56,7 @@ def test_a_file_that_says_it_wrongly_is_refused(tmp_path, derived):
         read_trial(path)
 
 
+@pytest.mark.long
 def test_a_log_without_speeds_and_yaw_rate_hides_nothing(tmp_path):
     """What smoothing leaves is no noise of a sensor: taken for one, the rest would be something unknown."""
     case = null(5)

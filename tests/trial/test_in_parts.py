@@ -75,6 +75,7 @@ def test_a_short_record_says_nothing():
     assert changes_within(replace(ZIGZAG, **cut, extra={})) == {}
 
 
+@pytest.mark.long
 def test_a_diagnosis_does_not_call_it_noise(suzaku):
     """Taken for noise that lasts for minutes it would pass for nothing."""
     wrong = [replace(one, r=one.r * later(one, 0.9)) for one in (ZIGZAG, TRIALS["zigzag_10"])]

@@ -78,6 +78,7 @@ def test_each_field_has_one_source():
     assert {name for name in Surroundings._fields if name.endswith(("known", "rate"))} == set(HELD)
 
 
+@pytest.mark.long
 def test_another_is_one_field_and_one_source(tmp_path):
     """In a copy of the program with these two edits: both back ends give it to an effect, step by step."""
     shutil.copytree(ROOT / "mmgtune", tmp_path / "mmgtune", ignore=shutil.ignore_patterns("__pycache__"))

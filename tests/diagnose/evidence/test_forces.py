@@ -68,6 +68,7 @@ def test_a_force_of_the_earth_frame_is_found_with_its_size_and_direction(suzaku,
     assert (north, east) == pytest.approx((WIND * np.cos(1.0), WIND * np.sin(1.0)), abs=0.15 * WIND)
 
 
+@pytest.mark.long
 def test_what_was_measured_around_the_ship_acts_as_in_the_simulation(suzaku):
     """A wind that turns, a current that grows, waves and a shoal: nothing is left of a model that acts on them."""
     acting = {tag: {"measured": 1.0} for tag in ("wind", "current", "waves", "shallow-water")}
@@ -93,6 +94,7 @@ def test_what_was_measured_around_the_ship_acts_as_in_the_simulation(suzaku):
         assert np.sqrt(np.mean(blind.prime[:, 1] ** 2)) > 5e-3
 
 
+@pytest.mark.long
 def test_water_carried_along_in_shallow_water_is_set_in_motion_too(suzaku):
     depth = 1.5 * suzaku.profile.value("particulars.d")
     ship = with_effects(suzaku.profile, {"shallow-water": {"depth": depth, "inertia": 0.8}}, "a test")
