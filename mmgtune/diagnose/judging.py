@@ -149,6 +149,7 @@ class Judge:
             differing=tuple(self.differing),
             doubted=doubted,
             more=found.more,
+            read_off=bench.read_off,
             wall_s=0.0,
             interrupted=self.hooks.stop(),
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from ..displayed import Plotted
@@ -110,6 +110,7 @@ class Diagnosis(Plotted):
     groups    causes that cannot be told apart, each a list of tags
     chi2      of the trials it looked at per residual: before, after
     evidence  residuals, residual forces and what explains them, for the report
+    read_off  pivots of effects that these trials say themselves, by full name
     coverage  what the trials it looked at visit; warnings: what of that a reader must know
     whereabouts  where the error lives, where nothing explains it; None else
     contradicted what the logs say against each other, in a sentence; told first where the answer is unexplained
@@ -152,6 +153,7 @@ class Diagnosis(Plotted):
     choice: Choice | None = None
     differing: tuple[Difference, ...] = ()
     more: bool = False
+    read_off: Mapping[str, float] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         """In a line."""
@@ -537,6 +539,10 @@ class Diagnosis(Plotted):
                     name = full.rpartition(".")[2]
                     values.setdefault(cause.tag, {})[name] = estimate.value
                     stderr.setdefault(cause.tag, {})[name] = estimate.stderr
+        for full, value in self.read_off.items():
+            _, tag, name = full.split(".")
+            if tag in values:
+                values[tag][name] = value
         told = self.provenance["trials"]
         data = {"licence": told.get("licence", ""), "citation": told.get("citation", "")}
         retuned = tuned(self.profile, self.kept, {}, facts, "extended", **data)

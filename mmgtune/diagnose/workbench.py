@@ -13,7 +13,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..backends import STATES, Integrator, get_backend
 from ..components import split_name
-from ..effects import Visited
+from ..effects import Visited, effect_tags
 from ..fitting.box import Box, base_of, choose_targets, group_of, make_box
 from ..fitting.least_squares import LeastSquaresResult, solve
 from ..fitting.one_sided import followers, tied
@@ -21,7 +21,7 @@ from ..fitting.problem import FitProblem
 from ..model import Model
 from ..objective import LEAST, Objective, cases_of
 from ..options import DiagnoseOptions
-from ..profile import ShipProfile, with_all_effects
+from ..profile import ShipProfile, read_off, with_all_effects
 from ..trial import Coverage, Held, Trial, visited_by
 from ..trial.kinematics import motion_noise
 from .beliefs import Beliefs, forms, let_go
@@ -126,6 +126,12 @@ class Workbench:
     def visited(self) -> Visited:
         """What the trials visit."""
         return visited_by(self.trials, self.model.L_pp)
+
+    @property
+    def read_off(self) -> dict[str, float]:
+        """Pivots of effects that these trials say themselves, by full name."""
+        names = [f"{effect.kind}.{name}" for effect in self.model.effects for name in effect.read_off]
+        return {name: self.model.profile.value(name) for name in names}
 
     @cached_property
     def factors(self) -> dict[str, str]:
@@ -331,7 +337,8 @@ def make_workbench(
     targets = choose_targets(own, options.targets, options.fixed)
     targets, ties = tied(profile, targets, coverage or Coverage.of(trials, own.L_pp))
     asked = {*options.effects, *(name.split(".")[1] for name in names)} if options.effects else set()
-    model = Model(with_all_effects(profile, asked), ties)
+    whole = with_all_effects(profile, asked)
+    model = Model(read_off(whole, visited_by(trials, own.L_pp), effect_tags()), ties)
     sigma = noise_levels(trials)
     channels = [c for c in STATES if not options.channels or c in {"v_m" if o == "v" else o for o in options.channels}]
     objective = _in_noise(sigma, channels)

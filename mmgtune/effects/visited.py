@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +14,13 @@ MOMENT = 5.0
 
 SPEEDS = 0.1
 """Share by which speed must vary to say how something changes with it."""
+
+
+FEW = 20
+"""Samples below which noise is not told from motion."""
+
+OF_MEDIAN = 1.4826
+"""Standard deviations in the median of the absolute value of what is normally distributed, turned round."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +66,19 @@ class Visited:
         """How far positive values (n,) vary, as a share of the highest; 0 without any."""
         low, high = self.span(values)
         return (high - low) / high if high > 0.0 else 0.0
+
+    @property
+    def rudder_noise(self) -> float:
+        """Standard deviation [rad] of white noise in the log of the rudder; 0 of one that has none, or too few samples.
+
+        By differences of the second to the fourth order, which a rudder that rests, or turns evenly, does not have: the
+        least of the three, as motion shows in them unevenly.  Half of the samples may be anything else.
+        """
+        known = self.rudder[np.isfinite(self.rudder)]
+        if len(known) < FEW:
+            return 0.0
+        off = [np.median(np.abs(np.diff(known, k))) / np.sqrt(math.comb(2 * k, k)) for k in (2, 3, 4)]
+        return float(OF_MEDIAN * min(off))
 
     @property
     def lacking_speeds(self) -> str:

@@ -11,9 +11,9 @@ from ..effects import effect_tags, find_effect
 from ..errors import OptionError, Problem, among
 from ..model import Model
 from ..options import DiagnoseOptions, FitOptions, LeaveOutOptions, Options, TuningOptions
-from ..profile import ShipProfile, missing_for
+from ..profile import ShipProfile, missing_for, read_off
 from ..profile import with_effects as put_in
-from ..trial import Trial, TrialSet
+from ..trial import Trial, TrialSet, visited_by
 from .box import A_R, choose_targets
 
 T = TypeVar("T", bound=TuningOptions)
@@ -29,6 +29,7 @@ def settled(profile: ShipProfile, options: T, trials: TrialSet) -> tuple[ShipPro
     """
     asked = {*(options.targets or profile.targets), *options.fixed}
     profile, options = with_effects(profile, options)
+    profile = read_off(profile, visited_by(tune_trials(trials), profile.L_pp), options.with_effects)
     idle = [name for name in _unmeasured(options.with_effects, tune_trials(trials)) if name not in asked]
     if idle:
         options = replace(options, fixed=(*options.fixed, *idle))

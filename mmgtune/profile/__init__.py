@@ -1,6 +1,6 @@
 """Ship profiles: TOML files with every number, its unit and its source."""
 
-from .changing import missing_for, scale_of, tuned, with_all_effects, with_effects
+from .changing import missing_for, read_off, scale_of, tuned, with_all_effects, with_effects
 from .model import Actuator, Approach, Coefficient, Section, ShipProfile, SteeringGear
 from .reading import find_profile, load_profile, parse_profile
 from .scaling import froude_scaled
@@ -19,6 +19,7 @@ __all__ = [
     "missing_for",
     "parse_profile",
     "profile_text",
+    "read_off",
     "scale_of",
     "tuned",
     "with_all_effects",

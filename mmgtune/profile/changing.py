@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from ..components import split_name
-from ..effects import Effect, Parameter, Scale, effects
+from ..effects import Effect, Parameter, Scale, Visited, effects
 from ..physics.constants import GRAVITY
 from .model import ABSENT, Coefficient, Section, ShipProfile
 
@@ -101,6 +101,16 @@ def with_effects(
         given[tag] = replace(old, coefficients=coefficients)
     sections.update({f"effects.{tag}": given[tag] for tag in by_tag if tag in given})
     return replace(profile, sections=sections)
+
+
+def read_off(profile: ShipProfile, visited: Visited, tags: Collection[str]) -> ShipProfile:
+    """The profile with what effects of these tags, which it has, read off the trials, such as the noise of a log."""
+    values = {
+        effect.tag: {name: of(visited) for name, of in effect.read_off.items()}
+        for effect in effects()
+        if effect.read_off and effect.tag in tags and effect.kind in profile.sections
+    }
+    return with_effects(profile, values, "read off the trials") if values else profile
 
 
 def with_all_effects(profile: ShipProfile, tags: Collection[str] = ()) -> ShipProfile:

@@ -1,17 +1,22 @@
 """What filters the log, and what makes a ship answer late, put against what they say written out another way."""
 
 import math
-from itertools import pairwise
+from dataclasses import replace
+from itertools import accumulate, pairwise
 
 import numpy as np
 import pytest
 
 from mmgtune.backends import Integrator, pad
 from mmgtune.effects import FilterEffect, effects, find_effect
+from mmgtune.fitting import fit
 from mmgtune.model import Model
+from mmgtune.options import FitOptions
 from mmgtune.orders import TurningOrder, run_manoeuvre
 from mmgtune.physics.quantities import State
 from mmgtune.profile import load_profile, parse_profile, with_effects
+from mmgtune.units import DEG
+from tests.hidden.plant import simulate
 from tests.runs import states, turn
 
 STEP = 0.02
@@ -145,7 +150,7 @@ def test_deviation_of_a_compass():
 
 def test_play_is_taken_up_before_the_blade_follows():
     effect = find_effect("backlash")
-    e = effect.params(4.0)
+    e = effect.params(4.0, 0.0)
     blade, found = 0.0, {}
     way = [*range(11), *range(9, -11, -1), *range(-9, 1)]
     for before, now in pairwise(way):
@@ -156,6 +161,38 @@ def test_play_is_taken_up_before_the_blade_follows():
     assert found[5] == [3.0, 7.0]
     assert found[-10] == [-8.0]
     assert found[0] == [2.0, -2.0]
+
+
+def test_noise_of_the_log_moves_no_blade_and_hides_no_play():
+    """The blade comes to rest where it does without noise, though the largest of many samples carried it along."""
+    effect, rng = find_effect("backlash"), np.random.default_rng(3)
+    ordered = np.repeat([0.0, 10.0, -10.0, 0.0], 100)
+    noisy = ordered + 0.2 * rng.standard_normal(400)
+
+    def moved(logged, e):
+        return list(accumulate(logged, lambda blade, now: effect.function(now, now, blade, 1.0, e), initial=0.0))[
+            100::100
+        ]
+
+    still = moved(ordered, effect.params(2.0, 0.0))
+    assert still == [0.0, 9.0, -9.0, -1.0]
+    assert np.max(np.abs(np.subtract(moved(noisy, effect.params(2.0, 0.0)), still))) > 0.4
+    assert np.max(np.abs(np.subtract(moved(noisy, effect.params(2.0, 0.5)), still))) < 0.2
+    assert moved(noisy, effect.params(0.0, 0.5)) == moved(noisy, effect.params(0.0, 0.0))  # without play it is absent
+
+
+def test_play_is_found_as_it_is_though_the_log_of_the_rudder_is_noisy():
+    """Without ``noise`` it would be found 0.6 deg too large."""
+    rng = np.random.default_rng(1)
+    sailed = simulate({}, {"backlash": {"play": 2.0 * DEG}}, seed=1)
+    noisy = [replace(one, delta=one.delta + 0.1 * DEG * rng.standard_normal(one.n_samples)) for one in sailed]
+    options = FitOptions(
+        method="least-squares", starts=4, initial="estimated", targets=("hull.R_0", "hull.N_v", "hull.N_r"),
+        with_effects=("backlash",),
+    )  # fmt: skip
+    found = fit("suzaku", noisy, options).tuned_profile()
+    assert found.value("effects.backlash.noise") == pytest.approx(0.25 * DEG, rel=0.2)
+    assert found.value("effects.backlash.play") == pytest.approx(2.0 * DEG, abs=0.1 * DEG)
 
 
 def test_the_rudder_may_move_more_to_one_side():

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mmgtune.effects import Visited
 from mmgtune.trial import Coverage, load_trials, visited_by
 from mmgtune.units import DEG
 
@@ -141,3 +142,21 @@ def test_bundled_trials_visit_both_sides():
     seen = Coverage.of(trials, L)
     assert seen.sides == ("port", "starboard")
     assert visited_by(trials, L).largest_rudder == pytest.approx(40.0 * DEG, abs=0.5 * DEG)
+
+
+def test_noise_of_the_rudder_is_told_from_its_motion():
+    rng = np.random.default_rng(2)
+    t = np.arange(400.0)
+    noise = 0.1 * rng.standard_normal(400)
+    for still in (20.0 * (t % 80 > 40), np.clip(2.0 * (t - 100.0), 0.0, 35.0), 15.0 * np.sin(t / 8.0)):
+        assert seen(still).rudder_noise < 0.02
+        assert seen(still + noise).rudder_noise == pytest.approx(0.1, rel=0.2)
+    assert seen(np.round(20.0 * (t % 80 > 40) + noise)).rudder_noise == 0.0  # a log in steps hides what it has
+    assert seen(noise[:19]).rudder_noise == 0.0
+    gaps = np.where(t % 7 == 0, np.nan, noise)
+    assert seen(gaps).rudder_noise == pytest.approx(0.1, rel=0.2)
+
+
+def seen(rudder):
+    """What is visited, of which nothing but the rudder matters."""
+    return Visited(np.ones(len(rudder)), rudder, *np.zeros((5, len(rudder))))
