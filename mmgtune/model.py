@@ -131,15 +131,25 @@ class Model:
             )
         )
 
-    def logged_in_time(self, theta: FloatArray) -> FloatArray:
-        """Coefficients (n_rows, ...) without what makes a log late, for runs of which none is given.
+    def without_log(self, theta: FloatArray) -> FloatArray:
+        """Coefficients (n_rows, ...) without what makes a log late, and what is read off it, for runs of which none is
+        given.
 
         Dead times of the ship stay.
         """
-        theta = np.array(theta)
+        theta = self.without_readings(theta)
         for clock in self.clocks:
             if clock.late == "log":
                 theta[self.fields(clock)[0]] = 0.0
+        return theta
+
+    def without_readings(self, theta: FloatArray) -> FloatArray:
+        """Coefficients (n_rows, ...) without what effects read off a log, for runs that have one but are not driven by
+        it."""
+        theta = np.array(theta)
+        for effect in self.effects:
+            for name in effect.read_off:
+                theta[self.rows[f"{effect.kind}.{name}"]] = effect.parameters[name].null
         return theta
 
     def coefficients(self, theta: FloatArray) -> Any:

@@ -116,7 +116,7 @@ class ModelLanes:
     """
 
     def __init__(self, model: Model, theta: FloatArray, backend: Backend):
-        self.model, self.theta, self.backend = model, model.logged_in_time(theta), backend
+        self.model, self.theta, self.backend = model, model.without_log(theta), backend
         self.L_pp, self.inputs = model.L_pp, model.inputs
         self.actuators = [model.profile.actuator(name) for name in model.inputs]
 

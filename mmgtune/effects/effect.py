@@ -117,7 +117,8 @@ class Effect(Component):
     told_as    pairs of parameters, north and east [SI], told as a size and a direction too: names of these two
     pivots     parameters about which others are meant, {parameter: its value by ship where the effect is put into a
                profile}; they are never searched for
-    read_off   pivots that the trials themselves say, {parameter: its value by what they visit}
+    read_off   pivots that the log of the trials says, {parameter: its value by what they visit}; at their null in
+               manoeuvres from orders, which are no log
     rough      whether its formula is right to no more than some per cent of itself, so that what it leaves says little
     rough_with parameters with which it is so, as a change that is never quite even
     akin       tags of effects that act much alike: where one fits best, the others are fitted too

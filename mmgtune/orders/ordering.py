@@ -35,7 +35,7 @@ def serves(watch: Watch) -> bool:
 
 def order_by_order(model: Model, theta: FloatArray, watches: Sequence[Watch], backend: Backend) -> None:
     """Sail every watch to its end, a lane to each; theta (n_rows, n_watches)."""
-    ship = model.logged_in_time(theta)
+    ship = model.without_log(theta)
     late = LaneModel(model, theta).late_log
     ways = [_Way(watch, model) for watch in watches]
     for k, watch in enumerate(watches):

@@ -18,7 +18,7 @@ RK4 = Integrator("rk4")
 
 def step_by_step(model: Model, theta: FloatArray, watches: list[Watch]) -> None:
     """Sail every watch to its end, a lane to each; theta (n_rows, n_watches)."""
-    fleet = _Fleet(model, theta, list(watches))
+    fleet = _Fleet(model, model.without_readings(theta), list(watches))
     while fleet.under_way:
         fleet.step()
 

@@ -12,7 +12,7 @@ from mmgtune.effects import FilterEffect, effects, find_effect
 from mmgtune.fitting import fit
 from mmgtune.model import Model
 from mmgtune.options import FitOptions
-from mmgtune.orders import TurningOrder, run_manoeuvre
+from mmgtune.orders import TurningOrder, ZigzagOrder, run_manoeuvre
 from mmgtune.physics.quantities import State
 from mmgtune.profile import load_profile, parse_profile, with_effects
 from mmgtune.units import DEG
@@ -179,6 +179,17 @@ def test_noise_of_the_log_moves_no_blade_and_hides_no_play():
     assert np.max(np.abs(np.subtract(moved(noisy, effect.params(2.0, 0.0)), still))) > 0.4
     assert np.max(np.abs(np.subtract(moved(noisy, effect.params(2.0, 0.5)), still))) < 0.2
     assert moved(noisy, effect.params(0.0, 0.5)) == moved(noisy, effect.params(0.0, 0.0))  # without play it is absent
+
+
+@pytest.mark.parametrize("engine", [None, lambda _: 1.5], ids=["order by order", "step by step"])
+def test_orders_are_no_log(ship, engine):
+    """A play read off noisy logs is one of a clean order."""
+
+    def zigzag(**values):
+        put_in = with_effects(ship, {"backlash": {"play": 2.0 * DEG, **values}}, "a test")
+        return run_manoeuvre(put_in, ZigzagOrder(10.0 * DEG, 10.0 * DEG, legs=2), engine=engine, longest=300.0)
+
+    np.testing.assert_array_equal(zigzag(noise=0.5 * DEG).states, zigzag().states)
 
 
 def test_play_is_found_as_it_is_though_the_log_of_the_rudder_is_noisy():

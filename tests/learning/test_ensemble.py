@@ -84,6 +84,7 @@ def test_training_comes_near_to_the_noise(trained):
         assert one.curve[0]["loss"] > 2.0 * one.curve[-1]["loss"]
 
 
+@pytest.mark.long
 def test_more_members_know_better_what_they_do_not_know(trained):
     """L_Maha falls with the number of members, L_Eucl stays: inside the data and outside."""
     for largest in (12.0, 35.0):
