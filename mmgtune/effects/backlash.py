@@ -11,6 +11,9 @@ from .effect import ActuatorEffect, Parameter
 REACH = 2.5
 """Standard deviations that the largest of a hundred samples of noise reaches: as many as between two orders."""
 
+NOISIEST = 0.2 * DEG
+"""Noise of an indicator [rad] beyond which it is a rudder moved by hand between samples far apart."""
+
 
 class Backlash(NamedTuple):
     """See the parameters below."""
@@ -51,7 +54,7 @@ EFFECT = ActuatorEffect(
         "noise": Parameter("how far noise of the logged angle reaches, which moves no blade", "rad", low=-1e-12),
     },
     pivots={"noise": lambda _: 0.0},
-    read_off={"noise": lambda visited: REACH * visited.rudder_noise},
+    read_off={"noise": lambda visited: REACH * min(visited.rudder_noise, NOISIEST)},
     variants=(("play",),),
     sentence=lambda v: f"The linkage of the rudder had a play of {v['play']}",
 )

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mmgtune.backends import Integrator, pad
-from mmgtune.effects import FilterEffect, effects, find_effect
+from mmgtune.effects import FilterEffect, Visited, effects, find_effect
 from mmgtune.fitting import fit
 from mmgtune.model import Model
 from mmgtune.options import FitOptions
@@ -190,6 +190,12 @@ def test_orders_are_no_log(ship, engine):
         return run_manoeuvre(put_in, ZigzagOrder(10.0 * DEG, 10.0 * DEG, legs=2), engine=engine, longest=300.0)
 
     np.testing.assert_array_equal(zigzag(noise=0.5 * DEG).states, zigzag().states)
+
+
+def test_a_rudder_moved_by_hand_between_samples_is_no_noise_without_end():
+    angles = 10.0 * DEG * np.random.default_rng(1).standard_normal(100)
+    seen = Visited(np.full(100, 10.0), angles, *np.zeros((5, 100)))
+    assert find_effect("backlash").read_off["noise"](seen) == pytest.approx(0.5 * DEG)
 
 
 def test_play_is_found_as_it_is_though_the_log_of_the_rudder_is_noisy():
