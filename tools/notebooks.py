@@ -47,8 +47,9 @@ def run(path: Path, code: bool = True) -> list[Cell]:
     found = []
     for k, cell in enumerate(cells, 1):
         source = "".join(cell["source"])
-        if not code or cell["cell_type"] != "code":
-            found.append(Cell(cell["cell_type"], source))
+        kind = "code" if cell["cell_type"] == "code" else "markdown"
+        if kind != "code" or not code:
+            found.append(Cell(kind, source))
             continue
         try:
             found.append(_run(source, names, f"{path.name}, cell {k}"))
