@@ -1,4 +1,4 @@
-"""Types of arrays, as annotations name them; shapes stand in the docstrings."""
+"""Types of arrays, as annotations name them, and what any array is asked; shapes stand in the docstrings."""
 
 from __future__ import annotations
 
@@ -19,3 +19,11 @@ def numbers_of(given: Any) -> FloatArray | None:
         return found.astype(np.float64) if found.dtype.kind in "biufO" else None
     except (TypeError, ValueError, OverflowError):  # parts of different lengths, objects, numbers that no float holds
         return None
+
+
+def robust_deviation(off: FloatArray) -> float:
+    """Standard deviation of what is normally distributed about zero, as most of the values do; any may be elsewhere.
+
+    1.4826 times the median of their sizes: half of what is normal lies within 0.6745 standard deviations.
+    """
+    return 1.4826 * float(np.median(np.abs(off)))

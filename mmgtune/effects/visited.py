@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, robust_deviation
 
 MOMENT = 5.0
 """Time [s] that trials must stay beyond a value for it to count as visited."""
@@ -15,12 +15,8 @@ MOMENT = 5.0
 SPEEDS = 0.1
 """Share by which speed must vary to say how something changes with it."""
 
-
 FEW = 20
 """Samples below which noise is not told from motion."""
-
-OF_MEDIAN = 1.4826
-"""Standard deviations in the median of the absolute value of what is normally distributed, turned round."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,8 +73,7 @@ class Visited:
         known = self.rudder[np.isfinite(self.rudder)]
         if len(known) < FEW:
             return 0.0
-        off = [np.median(np.abs(np.diff(known, k))) / np.sqrt(math.comb(2 * k, k)) for k in (2, 3, 4)]
-        return float(OF_MEDIAN * min(off))
+        return min(robust_deviation(np.diff(known, k)) / math.sqrt(math.comb(2 * k, k)) for k in (2, 3, 4))
 
     @property
     def lacking_speeds(self) -> str:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, robust_deviation
 from ..backends import Cases
 from .least_squares import LeastSquaresResult, solve
 from .problem import FitProblem
@@ -34,7 +34,7 @@ def huber_weights(cases: Cases, residuals: FloatArray) -> FloatArray:
         here = counted[:, :, channel]
         if not here.any():
             continue
-        usual = USUAL * 1.4826 * float(np.median(size[:, :, channel][here]))
+        usual = USUAL * robust_deviation(size[:, :, channel][here])
         if usual > 0.0:
             factors[:, :, channel] = np.minimum(1.0, usual / np.maximum(size[:, :, channel], usual))
     return factors

@@ -7,7 +7,7 @@ from typing import Any, Literal, get_type_hints
 
 import numpy as np
 
-from ..arrays import FloatArray, numbers_of
+from ..arrays import FloatArray, numbers_of, robust_deviation
 from ..errors import Problem, TrialError
 from ..trial.schema import FEWEST_SAMPLES
 from ..units import DEG
@@ -178,7 +178,7 @@ def noise_level(t: FloatArray, values: FloatArray) -> float:
     """
     weight = (t[2:] - t[1:-1]) / (t[2:] - t[:-2])
     off = values[1:-1] - weight * values[:-2] - (1.0 - weight) * values[2:]
-    return float(1.4826 * np.median(np.abs(off) / np.sqrt(1.0 + weight**2 + (1.0 - weight) ** 2)))
+    return robust_deviation(off / np.sqrt(1.0 + weight**2 + (1.0 - weight) ** 2))
 
 
 def heading_at(track: Track, index: int, L_pp: float) -> float:

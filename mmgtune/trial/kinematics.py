@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray
+from ..arrays import BoolArray, FloatArray, robust_deviation
 from ..physics.frame import to_earth
 from ..units import DEG, KNOT
 
@@ -241,7 +241,7 @@ def _windows(values: FloatArray, window: int) -> FloatArray:
 def white_noise(values: FloatArray) -> float:
     """Standard deviation of white noise on a smooth channel, from second differences; NaN samples are left out."""
     bends = np.diff(values[np.isfinite(values)], n=2)
-    return 1.4826 * float(np.median(np.abs(bends))) / np.sqrt(6.0) if len(bends) else 0.0
+    return robust_deviation(bends) / float(np.sqrt(6.0)) if len(bends) else 0.0
 
 
 def rounding_noise(values: FloatArray) -> float:
