@@ -69,7 +69,8 @@ LEFT_AT_END = 1.0
 """Variance beyond noise, as a share of it, from which a single cause at the end of its range is not believed."""
 
 NEEDED = 0.15
-"""Share of the fall of chi-squared that the terms of a sum must lose, one left out at a time, all added up."""
+"""Share of the fall of chi-squared that the terms of a sum must lose, one left out at a time, all added up, unless all
+together leave nothing but noise of far more than noise: what stands for something else does not."""
 
 
 @dataclass(frozen=True)
@@ -224,8 +225,8 @@ class Diagnosis(Plotted):
             return "what it removes of the error where nothing was fitted may be next to nothing"
         if not_told:
             return not_told
-        if sum(one.seen for one in brought) < NEEDED:
-            return "each of them can be left out with little loss"
+        if sum(one.seen for one in brought) < NEEDED and (self.leftover.structured or not self.explains_all):
+            return "without any one of them the others, re-tuned, do nearly as well on the trials it was found on"
         if self.gain.mostly_remains:
             return "they leave most of the error on test trials"
         if self.leftover.structured and not self.explains_all:
