@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from scipy.special import fdtrc
 
+from ..arrays import FloatArray
 from ..documents import finite
-from ..effects import Effect
+from ..effects import Effect, Visited
 from ..fitting.box import AT
-from ..trial import Trial
+from ..trial import Trial, visited_by
 from .intervals import NORMAL, Estimate
 from .runs import IN_WORDS, groups_of, name_of
 from .wording import error_in_words, quantity, range_in_words
@@ -27,6 +29,17 @@ IN_STEP = 2.0
 """Standard error of a value over that of its distance from the mean of all, from which all are known better beside each
 other than alone: what they have in common is then told once."""
 
+GIVEN: dict[str, tuple[Callable[[Visited], float], str]] = {
+    "the largest rudder angle": (lambda run: run.largest_rudder, "rad"),
+    "the revolutions": (lambda run: float(np.nanmean(run.shaft)) if np.isfinite(run.shaft).any() else math.nan, "1/s"),
+}
+"""What is ordered in a run and may be behind values that differ from run to run, and its unit.  Not how she moves: that
+follows from such values."""
+
+FEWEST_KINDS, APART, BY_CHANCE = 3, 0.1, 3e-3
+"""Kinds of runs it takes, share of the largest by which what was ordered differs between those of different kinds, and
+probability (F-test) that values lie along a line with it by chance from which they do not."""
+
 Told = tuple[float, float | None]
 """A value and its standard error."""
 
@@ -39,6 +52,7 @@ class ByRun:
     groups  labels of the groups
     trials  ids of the trials of each
     values  estimates by group and parameter, in profile units
+    given   what was ordered in the runs of each, by what it is called in words: see ``GIVEN``
     """
 
     effect: Effect
@@ -47,6 +61,7 @@ class ByRun:
     groups: tuple[str, ...]
     trials: tuple[tuple[str, ...], ...]
     values: tuple[Mapping[str, Estimate], ...]
+    given: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
 
     @classmethod
     def of(
@@ -60,11 +75,12 @@ class ByRun:
     ) -> ByRun:
         """Out of estimates by the name of the target."""
         order = sorted(groups)
-        of_group = [
-            tuple(dict.fromkeys(t.whole for t in trials if f"{by}:{groups_of(t)[by]}" == label)) for label in order
-        ]
+        of_group = [[trial for trial in trials if f"{by}:{groups_of(trial)[by]}" == label] for label in order]
+        ids = [tuple(dict.fromkeys(trial.whole for trial in own)) for own in of_group]
         values = [{name: found[f"{effect.kind}.{name}{AT}{label}"] for name in variant} for label in order]
-        return cls(effect, variant, by, tuple(order), tuple(of_group), tuple(values))
+        visited = [visited_by(own, 1.0) for own in of_group]
+        given = {what: tuple(asked(one) for one in visited) for what, (asked, _) in GIVEN.items()}
+        return cls(effect, variant, by, tuple(order), tuple(ids), tuple(values), given)
 
     @property
     def unit(self) -> str:
@@ -118,6 +134,27 @@ class ByRun:
         return one.apart is not None and one.stderr is not None and one.stderr > IN_STEP * one.apart
 
     @property
+    def goes_with(self) -> str:
+        """What was ordered in the runs that the values follow along a line, by no chance, with some of them: then it is
+        nothing of a run.  In words; "" for none.
+
+        Only of what has one size: two may follow anything.
+        """
+        if len(self.variant) > 1:
+            return ""
+        values = np.array([self.size(k)[0] for k in range(len(self.groups))])
+        for what, (_, unit) in GIVEN.items():
+            at = np.array(self.given.get(what, ()))
+            if _along_a_line(at, values):
+                some = {0: None, len(values) // 2: None, len(values) - 1: None}
+                order = np.argsort(at)
+                told = [
+                    f"{quantity(values[k], None, self.unit)} at {quantity(at[k], None, unit)}" for k in order[[*some]]
+                ]
+                return f"{what} of the runs ({', '.join(told)})"
+        return ""
+
+    @property
     def _differ_in_step(self) -> float | None:
         """Standard error of distances from the mean of all, where some are beyond doubt other than none; else None."""
         apart = [told for k in range(len(self.groups)) if (told := self.from_mean(k))]
@@ -165,12 +202,9 @@ class ByRun:
     @property
     def _much_alike(self) -> bool:
         """Whether what has a direction differs little beside its mean."""
-        pair = next((pair for pair in self.effect.told_as if set(pair) <= set(self.variant)), None)
-        if pair is None:
-            return False
-        values = np.array([[one[name].value for name in pair] for one in self.values])
-        mean = values.mean(axis=0)
-        return bool(np.hypot(*(values - mean).T).max() < ALIKE * np.hypot(*mean))
+        towards = [self.towards(k) for k in range(len(self.groups))]
+        values = np.array([self.size(k)[0] * np.exp(1j * told[0]) for k, told in enumerate(towards) if told])
+        return bool(len(values)) and bool(np.abs(values - values.mean()).max() < ALIKE * abs(values.mean()))
 
     @property
     def _of_what(self) -> str:
@@ -242,6 +276,20 @@ class ByRun:
                 for name, one in self.values[k].items()
             },
         }
+
+
+def _along_a_line(at: FloatArray, values: FloatArray) -> bool:
+    """Whether values (n,) follow what was ordered (n,) along a line, by no chance."""
+    if len(at) <= FEWEST_KINDS or not np.isfinite(at).all() or not np.isfinite(values).all():
+        return False
+    kinds = 1 + np.count_nonzero(np.diff(np.sort(at)) > APART * np.abs(at).max())
+    if kinds < FEWEST_KINDS or not np.ptp(values):
+        return False
+    line = np.polynomial.Polynomial.fit(at, values, 1)
+    left = float(np.sum((values - line(at)) ** 2))
+    free = len(values) - 2
+    ratio = free * (float(np.sum((values - values.mean()) ** 2)) - left) / max(left, 1e-300)
+    return float(fdtrc(1, free, ratio)) < BY_CHANCE
 
 
 def _degrees(angle: float, error: float | None) -> str:

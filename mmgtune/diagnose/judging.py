@@ -27,7 +27,7 @@ from .leftover import Leftover, leftover
 from .legs import Difference
 from .refit import WORTH, Refit, kin_among
 from .result import Diagnosis, Doubted
-from .retuned import retuned
+from .retuned import retuned, unlike_any
 from .search import Found, Step, rivals_of, step_of
 from .separate import Suggestion, suggest
 from .unseen import Unseen
@@ -150,6 +150,7 @@ class Judge:
             doubted=doubted,
             more=found.more,
             read_off=bench.read_off,
+            unlike_any=unlike_any(retuned(bench, found.final)) if any(one.by for one in found.causes) else "",
             wall_s=0.0,
             interrupted=self.hooks.stop(),
         )

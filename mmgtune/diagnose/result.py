@@ -112,6 +112,7 @@ class Diagnosis(Plotted):
     chi2      of the trials it looked at per residual: before, after
     evidence  residuals, residual forces and what explains them, for the report
     read_off  pivots of effects that these trials say themselves, by full name
+    unlike_any what values of each run take of mass and inertia that no ship has, in words; "" for nothing
     coverage  what the trials it looked at visit; warnings: what of that a reader must know
     whereabouts  where the error lives, where nothing explains it; None else
     contradicted what the logs say against each other, in a sentence; told first where the answer is unexplained
@@ -155,6 +156,7 @@ class Diagnosis(Plotted):
     differing: tuple[Difference, ...] = ()
     more: bool = False
     read_off: Mapping[str, float] = field(default_factory=dict)
+    unlike_any: str = ""
 
     def __repr__(self) -> str:
         """In a line."""
@@ -206,6 +208,8 @@ class Diagnosis(Plotted):
             return "fitted to the other runs, it tells the one left out little better"
         if self._excused_by_gusts:
             return "it leaves far more than noise, and more than gusts of such a wind would"
+        if why := self._bent:
+            return why
         unsized = [cause.tag for cause in self.causes if not cause.sized]
         not_told = f"how large {' and '.join(unsized)} would be is not told" if unsized else ""
         if len(brought) == 1 and self.causes[0].at_ends and self.leftover.unknown > LEFT_AT_END:
@@ -258,6 +262,14 @@ class Diagnosis(Plotted):
         before, after = self.chi2
         blows = any(winds.blows(cause.effect) for cause in self.causes)
         return blows and self.leftover.left_open > GUSTS_LEAVE and after > OF_WIND * before
+
+    @property
+    def _bent(self) -> str:
+        """Why values of each run are none of the runs, in words: they bend to what is elsewhere; "" for nothing."""
+        for runs in filter(None, (cause.runs for cause in self.causes)):
+            if with_what := runs.goes_with:
+                return f"its values go with {with_what}, and so with something else than the run"
+        return f"beside values of each run it takes {self.unlike_any}" if self.unlike_any else ""
 
     @property
     def is_chance(self) -> bool:

@@ -140,6 +140,12 @@ def in_words(moved: Sequence[Retuned]) -> str:
     return listed(told)
 
 
+def unlike_any(moved: Sequence[Retuned]) -> str:
+    """Mass and inertia where no ship's are, the surest: in a sentence; "" for none."""
+    far = [one for one in moved if one.believed is not None and one.far and abs(one.change or 0.0) > IMPLAUSIBLE]
+    return far[0].words if far else ""
+
+
 def _targets(moved: Sequence[Retuned]) -> list[Retuned]:
     return [one for one in moved if one.believed is None]
 

@@ -208,6 +208,64 @@ def test_what_is_common_to_all_errors_is_told_once():
     assert (row["from_mean"], row["from_mean_stderr"]) == (pytest.approx(-0.1), 0.003)
 
 
+def of_gains(values, rudder=(), shaft=()):
+    """Gains of the rudder in runs with these largest rudder angles [deg] and revolutions [rpm]."""
+    rows = [{"factor": Estimate("x", value, None, None, 0.004, 0.001)} for value in values]
+    labels = tuple(f"trial:run{k}" for k in range(len(values)))
+    given = {
+        "the largest rudder angle": tuple(angle * DEG for angle in rudder),
+        "the revolutions": tuple(rpm / 60.0 for rpm in shaft),
+    }
+    ids = tuple((one,) for one in labels)
+    return ByRun(find_effect("rudder-gain"), ("factor",), "trial", labels, ids, tuple(rows), given)
+
+
+@pytest.mark.parametrize(
+    ("values", "rudder", "shaft", "said"),
+    [
+        (
+            (0.893, 0.985, 0.958, 0.959, 0.985),
+            (35.0, 10.0, 20.0, 20.0, 10.0),
+            (106.0,) * 5,
+            "the largest rudder angle of the runs (0.985 at 10°, 0.959 at 20°, 0.893 at 35°)",
+        ),
+        (
+            (1.02, 1.04, 1.06, 1.08),
+            (35.0, 20.0, 20.0, 35.0),
+            (60.0, 80.0, 100.0, 120.0),
+            "the revolutions of the runs (1.02 at 60 rpm, 1.06 at 100 rpm, 1.08 at 120 rpm)",
+        ),
+        ((0.893, 0.985, 0.958, 0.959, 0.935), (35.0, 10.0, 20.0, 20.0, 10.0), (106.0,) * 5, ""),  # any values
+        ((0.893, 0.985, 0.985, 0.893), (35.0, 10.0, 10.0, 35.0), (), ""),  # two kinds of runs: a line through any
+        ((0.893, 0.958, 0.985), (35.0, 20.0, 10.0), (), ""),
+        ((0.95, 0.95, 0.95, 0.95), (35.0, 20.0, 10.0, 15.0), (), ""),
+        ((0.893, 0.985, 0.958, 0.959, 0.985), (35.0, 10.0, 20.0, math.nan, 10.0), (), ""),
+    ],
+)
+def test_values_that_follow_what_was_ordered_are_nothing_of_the_run(values, rudder, shaft, said):
+    assert of_gains(values, rudder, shaft).goes_with == said
+
+
+def test_a_wind_that_is_nearly_the_same_in_each_run_is_said_to_be():
+    def runs(*pairs):
+        rows = [
+            {
+                "speed": Estimate("x", speed, None, None, 0.9),
+                "direction": Estimate("x", degrees * DEG, None, None, 0.05),
+            }
+            for speed, degrees in pairs
+        ]
+        labels = tuple(f"trial:run{k}" for k in range(len(pairs)))
+        ids = tuple((one,) for one in labels)
+        return ByRun(find_effect("wind"), ("speed", "direction"), "trial", labels, ids, tuple(rows))
+
+    assert runs((10.2, 239.6), (10.2, 244.2), (9.6, 242.4), (11.6, 238.0)).sentence == (
+        "The wind was much the same in each run: 9.6 to 11.6 m/s"
+    )
+    assert runs((10.2, 359.0), (10.2, 1.0)).sentence.startswith("The wind was much the same")
+    assert runs((10.2, 239.6), (10.2, 59.6)).sentence.startswith("The wind differed from run to run")
+
+
 @pytest.mark.parametrize(("stderr", "apart"), [(0.03, 0.02), (0.03, None), (0.03, 0.05)])
 def test_values_known_no_better_beside_each_other_are_told_alone(stderr, apart):
     found = of_loading((0.99, 0.81, 0.93), stderr, apart)

@@ -297,6 +297,7 @@ def sum_of(
     more=False,
     at_ends=False,
     left=0.0,
+    bent="",
 ):
     """What ``Diagnosis.unclear`` sees of a sum of causes."""
     return SimpleNamespace(
@@ -310,6 +311,7 @@ def sum_of(
         gain=SimpleNamespace(mostly_remains=remains, share_removed=(removed, low, 1.0)),
         _told_by_none=False,
         _excused_by_gusts=excused,
+        _bent=bent,
         more=more,
     )
 
@@ -354,6 +356,7 @@ GROUP = (("a", "b"),)
         (sum_of(CLEAR, remains=True), ""),
         (sum_of(CLEAR, structured=True), ""),
         (sum_of(CLEAR, excused=True), "more than gusts"),
+        (sum_of(CLEAR, by_run=1, bent="its values go with the rudder"), "go with"),
         (sum_of(CLEAR, SMALL_BUT_CLEAR, structured=True, explains_all=True), ""),
     ],
 )
