@@ -6,6 +6,7 @@ cause in place, the smallest mismatch of the model's form passes it under some n
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -75,7 +76,7 @@ class Contribution:
     own      by channel, such a share of the error in that channel alone
     whole    whether it removes nearly all of what the others leave, which no form of theirs would let it
     bends    whether it has values of each run, which bend to what is elsewhere, on held-out trials too
-    slight   whether it is alone and of a size that is not worth speaking of
+    slight   whether it is alone, of a size that is not worth speaking of, and nothing is noticed without it
 
     Where ``seen`` is enough to tell that it is no trace, the others are not asked for: NaN and empty.
     """
@@ -198,7 +199,7 @@ def set_aside(
     brought = _brought(bench, found, fewer, unseen)
     if unseen.test and len(brought) == 1 and not before.structured:
         brought = [_alone(found, unseen)]
-    if len(brought) == 1 and size_of(bench, found.final, found.causes[0]) < WORTH:
+    if len(brought) == 1 and not before.noticed and size_of(bench, found.final, found.causes[0]) < WORTH:
         brought = [replace(brought[0], slight=True)]
     while any(one.unnoticed for one in brought):
         k = min((i for i, one in enumerate(brought) if one.unnoticed), key=lambda i: brought[i].seen)
@@ -212,10 +213,10 @@ def set_aside(
 
 
 def size_of(bench: Workbench, point: Point, cause: Hypothesis) -> float:
-    """Largest distance of a parameter of a cause from its null, in typical sizes."""
+    """Distance of the parameters of a cause from their null, in typical sizes."""
     unit = dict(zip(point.names, point.unit, strict=True))
     null = bench.null(cause.names)
-    return float(max(abs(unit[name] - z) / typical(bench, name) for name, z in zip(cause.names, null, strict=True)))
+    return math.hypot(*((unit[name] - z) / typical(bench, name) for name, z in zip(cause.names, null, strict=True)))
 
 
 def with_only(bench: Workbench, found: Found, causes: Sequence[Hypothesis]) -> Found:

@@ -291,8 +291,15 @@ class Diagnosis(Plotted):
 
     @property
     def _misses_each(self) -> bool:
-        """Whether the others tell a run that is left out far worse than its noise with the causes, yet otherwise."""
+        """Whether the others tell a run that is left out far worse than its noise with the causes, yet otherwise.
+
+        A single cause that leaves nothing but noise of all runs together is not refuted by it, unless the logged inputs
+        leave much open: few runs leave some coefficients open, and no cause that stood for another was seen to do that.
+        """
         if self.gain.held_out != "each" or self.gain.share_removed[0] < AT_ALL:
+            return False
+        alone = len(self.contributions) == 1 and not self.leaves_open
+        if alone and self.explained_share >= ALL and not self.leftover.noticed:
             return False
         return self.gain.left**2 > BEYOND_OPEN * (1.0 + self.leftover.left_open)
 

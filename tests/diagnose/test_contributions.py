@@ -486,19 +486,24 @@ def test_whether_the_size_of_a_cause_is_told(tag, estimated, sized):
 
 
 @pytest.mark.parametrize(
-    ("held_out", "share", "left", "open_", "misses"),
+    ("held_out", "share", "left", "open_", "explained", "misses"),
     [
-        ("each", 0.55, 52.0, 383.0, True),  # the blade stuck for a minute in two runs of five
-        ("each", 0.55, 30.0, 383.0, False),  # no more than logs of a sample a second leave open
-        ("each", -0.08, 2.3, 0.0, False),  # two turns and two zigzags: the targets are known too badly without one
-        ("each", 0.55, 1.5, 0.0, False),
-        ("test", 0.55, 52.0, 0.0, False),  # said beside the answer
+        ("each", 0.55, 52.0, 383.0, 0.999, True),  # the blade stuck for a minute in two runs of five
+        ("each", 0.55, 30.0, 383.0, 0.999, False),  # no more than logs of a sample a second leave open
+        ("each", -0.08, 2.3, 0.0, 0.9, False),  # two turns and two zigzags: the targets are known too badly without one
+        ("each", 0.55, 1.5, 0.0, 0.9, False),
+        ("each", 0.64, 52.0, 0.0, 0.999, False),  # a slow gear, all that there is in three runs of different kinds
+        ("each", 0.64, 52.0, 0.0, 0.9, True),
+        ("test", 0.55, 52.0, 0.0, 0.9, False),  # said beside the answer
     ],
 )
-def test_what_tells_no_run_from_the_others_is_not_believed(held_out, share, left, open_, misses):
+def test_what_tells_no_run_from_the_others_is_not_believed(held_out, share, left, open_, explained, misses):
     seen = SimpleNamespace(
         gain=SimpleNamespace(held_out=held_out, left=left, share_removed=(share, 0.0, 1.0)),
-        leftover=SimpleNamespace(left_open=open_),
+        leftover=SimpleNamespace(left_open=open_, noticed=False),
+        leaves_open=open_ > 0.3,
+        explained_share=explained,
+        contributions=[("steering-lag", CLEAR)],
     )
     assert Diagnosis._misses_each.fget(seen) is misses
 
@@ -542,9 +547,17 @@ def test_a_cause_that_is_alone_is_a_trace_where_nothing_needs_it_and_it_does_har
     assert stays or traces[0].contribution.harmful
 
 
-@pytest.mark.parametrize(("degrees", "trace"), [(0.04, True), (0.3, False)])
-def test_a_cause_that_is_alone_and_slight_is_a_trace(suzaku, degrees, trace):
-    """A rudder's zero of a few hundredths of a degree may be beyond doubt, and nobody would notice it."""
+NOTHING_NOTICED = Leftover(0.0, {}, {}, {}, {}, {})
+NOTICED = Leftover(0.4, {"x": 0.4}, {}, {"position and velocity": 9.0}, {}, {})
+
+
+@pytest.mark.parametrize(
+    ("degrees", "before", "trace"),
+    [(0.04, NOTHING_NOTICED, True), (0.3, NOTHING_NOTICED, False), (0.04, NOTICED, False)],
+)
+def test_a_cause_that_is_alone_and_slight_is_a_trace(suzaku, degrees, before, trace):
+    """A rudder's zero of a few hundredths of a degree may be beyond doubt, and nobody would notice it; but where more
+    than noise is left without it, it is the answer to what that is."""
     profile, trials = suzaku.profile, load_trials("suzaku")
     rng = np.random.default_rng(5)
     sailed = [trials.trials[name] for name in ("turn_p35", "turn_m20", "zigzag_20")]
@@ -556,7 +569,7 @@ def test_a_cause_that_is_alone_and_slight_is_a_trace(suzaku, degrees, trace):
     base = base_fit(bench)
     start = np.append(base.unit, bench.null(cause.names))[:, None]
     found = Found(base, bench.refit((*base.names, *cause.names), start, base.offsets), [cause])
-    traces, brought = set_aside(bench, found, Unseen(bench, []), Leftover(0.0, {}, {}, {}, {}, {}))
+    traces, brought = set_aside(bench, found, Unseen(bench, []), before)
     assert [one.hypothesis for one in traces] == ([cause] if trace else [])
     assert [one.slight for one in brought] == ([] if trace else [False])
 
