@@ -33,6 +33,19 @@ def path_of(given: object) -> Path:
     raise OptionError(Problem("no path", brief(given), why, "write where the file or folder is to be"))
 
 
+def kept_in(folder: Path | str | None, resume: bool) -> Path | None:
+    """The folder in which long work keeps what it has; None for nowhere.
+
+    Raises OptionError for what is no path, and where there is nothing to go on from.
+    """
+    if folder is not None:
+        return path_of(folder)
+    if resume:
+        why, fix = "a run goes on from what it left there", "add folder=FOLDER, or leave resume out"
+        raise OptionError(Problem("resume=True needs the folder of the interrupted run", "resume", why, fix))
+    return None
+
+
 @contextlib.contextmanager
 def atomic(path: Path, overwrite: bool = True) -> Iterator[Path]:
     """A temporary path beside ``path``, renamed to it when the block ends well and removed when it does not.

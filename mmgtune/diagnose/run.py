@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import ProfileError, must_be_a
-from ..files import path_of
+from ..files import kept_in
 from ..fitting.extending import with_width
 from ..fitting.journal import journalled
 from ..fitting.setting import in_pieces
@@ -66,7 +66,7 @@ def diagnose(
     Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to, ProfileError
     where the simulation of a trial runs away wherever the targets are.
     """
-    folder = None if folder is None else path_of(folder)
+    folder = kept_in(folder, resume)
     must_be(options, DiagnoseOptions)
     must_be_a(hooks, Hooks, "hooks")
     profile = ship_of(profile)

@@ -17,7 +17,7 @@ from ..displayed import Displayed
 from ..documents import finite, finite_values, write_json
 from ..errors import OptionError, Problem, must_be_a
 from ..evaluation import TrialRecord, evaluate
-from ..files import path_of, refuse_existing
+from ..files import kept_in, path_of, refuse_existing
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..hooks import Hooks
 from ..inputs import INPUTS
@@ -251,7 +251,7 @@ def leave_out(
     Every fit starts from the fit to all runs; that one takes the starts of the options.
     Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to.
     """
-    folder = None if folder is None else path_of(folder)
+    folder = kept_in(folder, resume)
     must_be(options, LeaveOutOptions)
     must_be_a(hooks, Hooks, "hooks")
     profile, trials = ship_of(profile), trials_of(trials)

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import all_of, must_be_a
-from ..files import path_of
+from ..files import kept_in
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..hooks import Hooks
 from ..made_from import identity_of, make_provenance
@@ -62,7 +62,7 @@ def fit(
     Raises OptionError for choices that make no sense, OutputError where the checkpoint cannot be written, ProfileError
     where the simulation of a tune trial runs away wherever the targets are.
     """
-    folder = None if folder is None else path_of(folder)
+    folder = kept_in(folder, resume)
     must_be(options, FitOptions)
     must_be_a(hooks, Hooks, "hooks")
     more_starts = all_of(more_starts, Mapping, "more_starts")

@@ -12,7 +12,7 @@ import numpy as np
 from ..displayed import Plotted
 from ..documents import finite_values, write_json
 from ..errors import must_be_a
-from ..files import path_of
+from ..files import kept_in
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..hooks import Hooks
 from ..made_from import identity_of, make_provenance
@@ -229,7 +229,7 @@ def sweep(
     resume  continue the sweep in the folder that was stopped: what is finished there is read back
     Raises OptionError for choices that make no sense, OutputError where the folder cannot be written to.
     """
-    folder = None if folder is None else path_of(folder)
+    folder = kept_in(folder, resume)
     must_be(options, SweepOptions)
     must_be_a(hooks, Hooks, "hooks")
     profile, trials = ship_of(profile), trials_of(trials)

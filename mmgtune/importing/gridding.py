@@ -27,7 +27,7 @@ class Grid:
     t        (n_samples,) [s], on the log's clock
     columns  (n_samples,) by quantity; NaN in holes
     step     [s]
-    bridged  number of samples interpolated over short holes of inputs, by quantity
+    bridged  number of samples interpolated over short holes, by quantity; of motions those of missing rows alone
     """
 
     t: FloatArray
@@ -100,7 +100,7 @@ def on_grid(record: Record, log_map: LogMap, step: float | None) -> Grid:
     for name, one in series.items():
         driving = name in logged
         columns[name], filled = resampled(one, t, chosen, log_map.gap, keep_spikes=not driving)
-        if driving and filled:
+        if filled:
             bridged[name] = filled
     start = columns["psi"][np.isfinite(columns["psi"])][:1]
     if len(start) and abs(start[0]) > np.pi:

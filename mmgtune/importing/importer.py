@@ -300,7 +300,7 @@ def _of_record(record: Record, log_map: LogMap, step: float | None) -> list[Piec
     if "latitude" in log_map.sources or log_map.format == "nmea":
         not_mirrored(columns, where)
     if grid.bridged:
-        notes.append(f"holes of up to {log_map.gap:g} steps in inputs were bridged linearly")
+        notes.append(f"holes of up to {log_map.gap:g} steps were bridged linearly")
     notes += motion.at_midship(columns, log_map)
     if log_map.antenna is None and log_map.point is None:
         notes.append("positions are taken to be of midship, as the map has no [antenna]")

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..backends import STATES
 from ..errors import OptionError, Problem, must_be_a
-from ..files import path_of
+from ..files import kept_in
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..hooks import Hooks
 from ..model import Model
@@ -111,7 +111,7 @@ def learn_hybrid(
     resume  go on with what is there: the result is that of a run without a stop, bit for bit
     Raises OptionError for too few runs or trials from which nothing can be learned, and where JAX is missing.
     """
-    folder = None if folder is None else path_of(folder)
+    folder = kept_in(folder, resume)
     must_be(options, HybridOptions)
     must_be_a(hooks, Hooks, "hooks")
     began = time.perf_counter()

@@ -14,7 +14,7 @@ import numpy as np
 from ..backends.twins import accelerated
 from ..documents import finite
 from ..errors import OptionError, Problem, must_be_a
-from ..files import path_of
+from ..files import kept_in
 from ..given import ShipGiven, TrialsGiven, ship_of, trials_of
 from ..hooks import Hooks
 from ..networks import Network, NetworkPredictor
@@ -125,7 +125,7 @@ def learn_rnn(
     resume  go on with what is there: the result is that of a run without a stop, bit for bit
     Raises what ``make_task`` does, and OptionError where JAX is missing.
     """
-    folder = None if folder is None else path_of(folder)
+    folder = kept_in(folder, resume)
     must_be(options, LearnOptions)
     must_be_a(hooks, Hooks, "hooks")
     began = time.perf_counter()

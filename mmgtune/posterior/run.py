@@ -14,7 +14,7 @@ from ..backends import get_backend
 from ..components import split_name
 from ..displayed import Plotted
 from ..errors import Problem, ProfileError, TrialError, must_be_a
-from ..files import path_of
+from ..files import kept_in
 from ..fitting.journal import journalled
 from ..fitting.lost import runs_away
 from ..given import ShipGiven, TrialsGiven, list_of, ship_of, trials_of
@@ -64,7 +64,8 @@ class Posterior(Plotted):
 
     def __repr__(self) -> str:
         """In a line."""
-        return f"Posterior({self.particles.profile.id}: {len(self.particles)} particles of {len(self.room)} numbers)"
+        size = f"{len(self.particles)} particles of {len(self.room)} numbers"
+        return f"Posterior({self.particles.profile.id}: {size}{', interrupted' if self.interrupted else ''})"
 
     def as_ship(self) -> Particles:
         """The particles: what the result stands for where a ship is wanted."""
@@ -75,7 +76,7 @@ class Posterior(Plotted):
         one_sided = self.shown.one_sided()
         found = [one_sided] if one_sided else []
         if self.interrupted:
-            found.append("Stopped before its end: the bands are less than they would have become.")
+            found.append("Stopped before its end: bands are about the best so far, and may be too wide or too narrow.")
         elif not self.converged:
             found.append("The most probable coefficients were not found to the end; bands are about the best so far.")
         if self.nonlinear > EXPECTED:
@@ -162,7 +163,7 @@ def posterior(
     data = trials_of(trials)
     provenance = make_provenance(ship, data, command)
     identity = identity_of(ship, data, options, provenance)
-    kept = None if folder is None else path_of(folder)
+    kept = kept_in(folder, resume)
     with journalled(kept, identity, hooks.stop, resume=resume, name=JOURNAL):
         return _drawn(ship, [data.trials[name] for name in data.tune], options, hooks, provenance)
 

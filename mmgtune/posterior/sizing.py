@@ -82,7 +82,7 @@ class Sized(Brief):
         if not self.groups:
             return f"{said}; no kind or side was left out to check it."
         if self.stopped:
-            return f"{said}; leaving out {', '.join(self.groups)} to check it was stopped before its end."
+            return f"{said}; it was stopped before {', '.join(self.groups)} had been left out to check that."
         if len(self.groups) < 2:
             return f"{said}; all trials are of one kind and side, so nothing could be left out to check it."
         share, of = 100.0 * self.covered[GRID.index(self.factor)], ", ".join(self.groups)

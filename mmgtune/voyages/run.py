@@ -16,7 +16,7 @@ from ..backends import Cases
 from ..bands import Pooled
 from ..circumstances import acts_on_surroundings, extremes, notes
 from ..errors import OptionError, Problem, TrialError, must_be_a
-from ..files import path_of
+from ..files import kept_in
 from ..fitting.journal import journalled, remembered
 from ..given import trials_of
 from ..hooks import Hooks
@@ -134,7 +134,7 @@ def validate_voyages(
     another run; OutputError where the folder cannot be written to; TrialError for what is wrong with a file, and where
     no window could be cut.
     """
-    folder = None if folder is None else path_of(folder)
+    folder = kept_in(folder, resume)
     must_be(options, VoyageOptions)
     must_be_a(hooks, (Hooks, NoneType), "hooks")
     began = time.perf_counter()

@@ -269,3 +269,10 @@ def test_nothing_is_lost_between_the_end_of_a_run_and_its_result(tmp_path, monke
         "history.parquet",
         "motions.parquet",
     }
+
+
+@pytest.mark.parametrize("work", [mmgtune.fit, mmgtune.sweep, mmgtune.leave_out, mmgtune.diagnose, mmgtune.posterior])
+def test_the_library_too_goes_on_from_a_folder_only(work):
+    with pytest.raises(OptionError, match="resume=True needs the folder") as refused:
+        work("suzaku", "suzaku", resume=True)
+    assert "add folder=FOLDER" in str(refused.value)

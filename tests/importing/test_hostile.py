@@ -1,5 +1,6 @@
 """Hostile logs: each is refused with what, where, why and the fix, or its faults are marked; all logs are generated."""
 
+import re
 from functools import reduce
 from operator import xor
 
@@ -296,6 +297,19 @@ def test_gaps_of_motion_are_marked_not_invented(log, columns):
     assert np.isnan(back.x[100:120]).all()
     assert np.isfinite(np.delete(back.x, [*range(100, 120), 200, 201])).all()
     assert "gap       x: 20 samples from 100 to 119 s" in said(log)
+
+
+def test_rows_that_are_missing_are_bridged_and_counted(log, columns):
+    kept = np.delete(np.arange(len(columns["time"])), [200, 201])
+    result = import_logs(
+        [write_csv(log, {name: values[kept] for name, values in columns.items()})], parse_map(MAP), log.parent / "out"
+    )
+    (trial,) = result.trials
+    assert trial.n_samples == len(columns["time"])
+    (counted,) = re.findall("bridged   .*", result.text())
+    for name in ("x", "y", "psi", "n", "delta"):
+        assert f"{name}: 2 samples" in counted
+    assert "holes of up to 5 steps were bridged linearly" in result.text()
 
 
 def test_gap_of_a_control_cuts_the_trial(log, columns):
