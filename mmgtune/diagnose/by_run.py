@@ -146,11 +146,8 @@ class ByRun:
         for what, (_, unit) in GIVEN.items():
             at = np.array(self.given.get(what, ()))
             if _along_a_line(at, values):
-                some = {0: None, len(values) // 2: None, len(values) - 1: None}
-                order = np.argsort(at)
-                told = [
-                    f"{quantity(values[k], None, self.unit)} at {quantity(at[k], None, unit)}" for k in order[[*some]]
-                ]
+                some = np.argsort(at)[[0, len(at) // 2, -1]]
+                told = [f"{quantity(values[k], None, self.unit)} at {quantity(at[k], None, unit)}" for k in some]
                 return f"{what} of the runs ({', '.join(told)})"
         return ""
 
