@@ -282,11 +282,9 @@ def _along_a_line(at: FloatArray, values: FloatArray) -> bool:
     kinds = 1 + np.count_nonzero(np.diff(np.sort(at)) > APART * np.abs(at).max())
     if kinds < FEWEST_KINDS or not np.ptp(values):
         return False
-    line = np.polynomial.Polynomial.fit(at, values, 1)
-    left = float(np.sum((values - line(at)) ** 2))
+    told = float(np.corrcoef(at, values)[0, 1]) ** 2
     free = len(values) - 2
-    ratio = free * (float(np.sum((values - values.mean()) ** 2)) - left) / max(left, 1e-300)
-    return float(fdtrc(1, free, ratio)) < BY_CHANCE
+    return float(fdtrc(1, free, free * told / max(1.0 - told, 1e-15))) < BY_CHANCE
 
 
 def _degrees(angle: float, error: float | None) -> str:
