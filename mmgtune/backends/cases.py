@@ -71,7 +71,7 @@ class Cases:
         rows[counts] = np.arange(int(counts.sum()))
         return rows
 
-    @property
+    @cached_property
     def n_residuals(self) -> int:
         """Number of differences that count."""
         return int(self.rows.max(initial=-1)) + 1

@@ -72,6 +72,13 @@ NEEDED = 0.15
 """Share of the fall of chi-squared that the terms of a sum must lose, one left out at a time, all added up, unless all
 together leave nothing but noise of far more than noise: what stands for something else does not."""
 
+BESIDE = 0.02
+"""Variance beyond noise, as a share of it, from which a sum of causes leaves more than noise."""
+
+FAINT = 0.1
+"""Fall of chi-squared per residual that a sum of causes must bring: of less, sums that stand for another cause bring as
+much."""
+
 
 @dataclass(frozen=True)
 class Doubted:
@@ -218,6 +225,10 @@ class Diagnosis(Plotted):
             return not_told if self.gain.share_removed[0] < TOLD else ""
         if self.more or len(brought) >= TOO_MANY:
             return f"it takes {'more than ' if self.more else ''}{len(brought)} terms"
+        if self.chi2[0] - self.chi2[1] < FAINT:
+            return "all that they remove is little beside noise, and other sums would"
+        if self.leftover.unknown > BESIDE and not self.explains_all:
+            return "what they leave is more than noise"
         if len(brought) > 2 and self.groups:
             return "not all of them can be told from others"
         if len(brought) > 2 and sum(bool(cause.runs) for cause in self.causes) > 1:
@@ -233,8 +244,6 @@ class Diagnosis(Plotted):
             return "without any one of them the others, re-tuned, do nearly as well on the trials it was found on"
         if self.gain.mostly_remains:
             return "they leave most of the error on test trials"
-        if self.leftover.structured and not self.explains_all:
-            return "what they leave is no noise"
         return ""
 
     @property

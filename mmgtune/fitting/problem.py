@@ -298,7 +298,7 @@ class FitProblem:
             slopes /= steps.T[:, None, :]
             by_offset = values[:, :, 1 + n_moved :] - base
             if self.sigma is not None:
-                self._over_offsets(by_offset, step)
+                by_offset[:, : self.n_residuals] /= self._offset_steps(step)
         return base[:, :, 0], slopes, by_offset
 
     def offset_slopes(self, unit: FloatArray, offsets: FloatArray, step: float = 1e-6) -> tuple[FloatArray, FloatArray]:
@@ -308,7 +308,7 @@ class FitProblem:
         values = self.residuals(np.repeat(unit[:, None], 7, axis=1), moved).T
         with np.errstate(invalid="ignore"):
             slopes = values[:, 1:] - values[:, :1]
-            self._over_offsets(slopes[None], step)
+            slopes[: self.n_residuals] /= self._offset_steps(step)
         return values[:, 0], slopes
 
     def _move_offsets(self, moved: FloatArray, step: float) -> None:
@@ -317,11 +317,11 @@ class FitProblem:
         for k in range(6):
             moved[:, :, k, k] += step * self.sigma[:, None, k] * 1e3
 
-    def _over_offsets(self, changed: FloatArray, step: float) -> None:
-        """Make derivatives of what that changed, (n_points, n_rows, 6)."""
+    def _offset_steps(self, step: float) -> FloatArray:
+        """(n_residuals, 6) how far the offsets of the case a residual belongs to are moved by that."""
         assert self.sigma is not None
-        for case, rows in enumerate(self.rows_of_cases):
-            changed[:, rows] /= step * self.sigma[case] * 1e3
+        counts = [rows.stop - rows.start for rows in self.rows_of_cases]
+        return np.repeat(step * self.sigma * 1e3, counts, axis=0)
 
     def _moved_together(self) -> list[list[int]]:
         """Targets by number that no case has two of: values of one coefficient for different groups."""

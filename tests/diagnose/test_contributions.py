@@ -298,6 +298,7 @@ def sum_of(
     at_ends=False,
     left=0.0,
     bent="",
+    before=3.0,
 ):
     """What ``Diagnosis.unclear`` sees of a sum of causes."""
     return SimpleNamespace(
@@ -306,7 +307,8 @@ def sum_of(
         ],
         contributions=[("tag", one) for one in brought],
         groups=groups,
-        leftover=SimpleNamespace(structured=structured, unknown=left),
+        leftover=SimpleNamespace(structured=structured, unknown=left or 0.2 * structured),
+        chi2=(before, 1.0),
         explains_all=explains_all,
         gain=SimpleNamespace(mostly_remains=remains, share_removed=(removed, low, 1.0)),
         _told_by_none=False,
@@ -334,7 +336,14 @@ GROUP = (("a", "b"),)
         (sum_of(SMALL_BUT_CLEAR, SMALL_BUT_CLEAR), "do nearly as well"),
         (sum_of(SMALL_BUT_CLEAR, SMALL_BUT_CLEAR, explains_all=True), ""),
         (sum_of(SMALL_BUT_CLEAR, SMALL_BUT_CLEAR, explains_all=True, structured=True), "do nearly as well"),
-        (sum_of(CLEAR, SMALL_BUT_CLEAR, structured=True), "no noise"),
+        (sum_of(CLEAR, SMALL_BUT_CLEAR, structured=True), "more than noise"),
+        (sum_of(CLEAR, SMALL_BUT_CLEAR, left=0.03), "more than noise"),
+        (sum_of(CLEAR, SMALL_BUT_CLEAR, left=0.03, explains_all=True), ""),
+        (sum_of(CLEAR, SMALL_BUT_CLEAR, left=0.01), ""),
+        (sum_of(CLEAR, left=0.03), ""),
+        (sum_of(CLEAR, CLEAR, before=1.09), "little beside noise"),
+        (sum_of(CLEAR, CLEAR, before=1.12), ""),
+        (sum_of(CLEAR, before=1.03), ""),
         (sum_of(CLEAR, SMALL_BUT_CLEAR, remains=True), "on test trials"),
         (sum_of(CLEAR, CLEAR, CLEAR, by_run=2), "from run to run"),
         (sum_of(CLEAR, CLEAR, CLEAR, by_run=1), ""),
