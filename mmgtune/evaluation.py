@@ -63,7 +63,7 @@ class Measured:
     @cached_property
     def reference(self) -> Reference | None:
         """What cVDM is relative to; None for a ship at rest, or one that has no two complete samples."""
-        with contextlib.suppress(ValueError):
+        with contextlib.suppress(TrialError):
             return reference_of(self.motion)
         return None
 

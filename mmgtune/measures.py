@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .arrays import BoolArray, FloatArray, numbers_of
+from .errors import OptionError, Problem, TrialError, brief
 
 UNITS = {"MMD": "m", "MED": "m", "ASD": "mixed", "MSD": "mixed", "PMD": "%", "PED": "%", "cVDM": "%"}
 """Unit of each measure; "mixed" adds metres, radians and their rates as they are."""
@@ -30,35 +31,45 @@ class Reference:
     r_max: float
 
     def __post_init__(self) -> None:
-        """Raises ValueError where one of them is no number above 0."""
-        if not all(0.0 < one < math.inf for one in (self.length, self.speed, self.r_max)):
-            raise ValueError("the measured ship does not move: relative distances do not exist")
+        """Raises TrialError where one of them is no number above 0."""
+        numbers = (numbers_of(one) for one in (self.length, self.speed, self.r_max))
+        if not all(one is not None and one.ndim == 0 and 0.0 < one < math.inf for one in numbers):
+            said = f"length {brief(self.length)}, speed {brief(self.speed)}, r_max {brief(self.r_max)}"
+            why = f"relative distances are divided by numbers above 0, and here are {said}"
+            fix = "give a trajectory of a ship that moves and turns, or r_max"
+            raise TrialError(Problem("the measured ship does not move", "reference", why, fix))
 
 
 def reference_of(measured: FloatArray, r_max: float | None = None) -> Reference:
     """Path length and mean speed of a measured trajectory (n_samples, 6), and its largest yaw rate where none is given.
 
-    Raises ValueError for what is no such array of numbers, where one is infinite, fewer than two samples are complete
-    or the ship does not move.
+    Raises OptionError for what is no such array of numbers and where one is infinite, TrialError where fewer than two
+    samples are complete or the ship does not move.
     """
-    measured = _states(measured)
+    measured = _states(measured, "measured")
     whole = measured[~np.isnan(measured).any(axis=1)]
     if len(whole) < 2:
-        raise ValueError("fewer than two complete samples")
+        why, fix = "a path lies between two samples at least", "give one with two samples in which no state is NaN"
+        raise TrialError(Problem("fewer than two complete samples", "measured", why, fix))
     length = float(np.sum(np.hypot(*np.diff(whole[:, :2], axis=0).T)))
     speed = float(np.mean(np.hypot(whole[:, 3], whole[:, 4])))
     r = float(np.abs(whole[:, 5]).max()) if r_max is None else r_max
     return Reference(length, speed, r)
 
 
-def _states(given: FloatArray) -> FloatArray:
-    """States (n_samples, 6), NaN in gaps.  Raises ValueError for anything else."""
+def _states(given: FloatArray, name: str) -> FloatArray:
+    """States (n_samples, 6), NaN in gaps.  Raises OptionError for anything else."""
     found = numbers_of(given)
     if found is None or found.ndim != 2 or found.shape[1] != 6:
         there = "what holds no numbers" if found is None else f"{found.shape}"
-        raise ValueError(f"states come in shapes (n_samples, 6), not {there}")
+        what = f"states come in shapes (n_samples, 6), not {there}"
+        own = next((f"{name} has them: give .{one}" for one in ("motion", "states") if hasattr(given, one)), "")
+        fix = own or "give x, y [m], psi [rad], u, v_m [m/s] and r [rad/s] of each sample"
+        raise OptionError(Problem(what, name, "distances are between states", fix))
     if np.isinf(found).any():
-        raise ValueError("a state is infinite")
+        raise OptionError(
+            Problem("a state is infinite", name, "it is at no distance", "write NaN where there is a gap")
+        )
     return found
 
 
@@ -71,14 +82,16 @@ def distance_measures(
 
     Headings are compared as they are: both unwrapped.  PMD and PED divide by the measured coordinates, so they depend
     on where the origin is; the paper's denominator of PMD can be zero or negative, and the sum of absolute values is
-    used instead.  Raises ValueError where shapes differ or no sample is complete, and as ``reference_of`` does.
+    used instead.  Raises OptionError where shapes differ or no sample is complete, and as ``reference_of`` does.
     """
-    measured, simulated = _states(measured), _states(simulated)
+    measured, simulated = _states(measured, "measured"), _states(simulated, "simulated")
     if measured.shape != simulated.shape:
-        raise ValueError(f"shapes {measured.shape} and {simulated.shape} are not (n_samples, 6) both")
+        what = f"shapes {measured.shape} and {simulated.shape} are not (n_samples, 6) both"
+        raise OptionError(Problem(what, "simulated", "samples are compared one by one", "give both at the same times"))
     whole = ~(np.isnan(measured).any(axis=1) | np.isnan(simulated).any(axis=1))
     if not whole.any():
-        raise ValueError("no complete sample to compare")
+        why, fix = "every one has a state that is NaN", "give trajectories that have a sample without a gap in common"
+        raise TrialError(Problem("no complete sample to compare", "measured", why, fix))
     reference = reference_of(measured) if reference is None else reference
     found = distances(measured[None], simulated[None])
     length, speed = np.array([reference.length]), np.array([reference.speed])

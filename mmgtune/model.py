@@ -9,10 +9,10 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from .arrays import FloatArray
+from .arrays import FloatArray, numbers_of
 from .components import Component
 from .effects import ClockEffect, CoefficientsEffect, Effect
-from .errors import all_of
+from .errors import OptionError, Problem, ProfileError, all_of, among
 from .given import ShipGiven, ship_of
 
 E = TypeVar("E", bound=Effect)
@@ -90,14 +90,20 @@ class Model:
         """Coefficients of candidates: ``values`` (n_names, n_candidates) for ``names``, the profile's elsewhere.
 
         Effects on coefficients have acted on what is returned.
-        -> (n_rows, n_candidates); one column where there are no names.  Raises KeyError for an unknown name.
+        -> (n_rows, n_candidates); one column where there are no values.
+        Raises ProfileError for an unknown name, OptionError for values of another shape.
         """
+        rows = self.rows_of(names)
         if values is None:
             theta = self.base[:, None].copy()
         else:
-            changed = np.asarray(values, dtype=float)
+            changed = numbers_of(values)
+            if changed is None or changed.ndim != 2 or len(changed) != len(rows):
+                there = "what holds no numbers" if changed is None else f"shape {changed.shape}"
+                why, fix = "each name has a row, each candidate a column", f"give ({len(rows)}, n_candidates) numbers"
+                raise OptionError(Problem(f"values come in {there}", "values", why, fix))
             theta = np.repeat(self.base[:, None], changed.shape[1], axis=1)
-            theta[[self.rows[name] for name in names]] = changed
+            theta[rows] = changed
             for tie in self.ties:
                 if tie.to in names and tie.name not in names:
                     theta[self.rows[tie.name]] = tie.ratio * theta[self.rows[tie.to]]
@@ -109,6 +115,16 @@ class Model:
             for name, value in effect.function(now, e).items():
                 theta[self.rows[name]] = value
         return theta
+
+    def rows_of(self, names: Sequence[str]) -> list[int]:
+        """Rows of numbers by their names.  Raises ProfileError for a name that no number has."""
+        several = [names] if isinstance(names, str) else names
+        unknown = [name for name in several if name not in self.rows]
+        if unknown:
+            where = str(self.profile.path or self.profile.id)
+            found = (Problem(f"no number '{name}'", where, **among(name, list(self.rows))) for name in unknown)
+            raise ProfileError(*found)
+        return [self.rows[name] for name in several]
 
     def fields(self, component: Component) -> list[list[int]]:
         """Rows of each field of a component's tuple of coefficients: one, or those of a table."""

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import mmgtune
+from mmgtune.errors import OptionError, TrialError
 from mmgtune.measures import UNITS, Reference, distance_measures, reference_of
 
 # Two samples; differences (3, 4, 0.1, 0.2, 0.3, 0.01) and zero.
@@ -59,7 +60,7 @@ def test_gaps_do_not_count():
 
 @pytest.mark.parametrize("wrong", [SIMULATED[:1], SIMULATED[:, :5]])
 def test_shapes_must_agree(wrong):
-    with pytest.raises(ValueError, match="shapes"):
+    with pytest.raises(OptionError, match="shapes"):
         distance_measures(MEASURED, wrong, REFERENCE)
 
 
@@ -68,19 +69,25 @@ def test_what_is_no_track_has_no_distance():
     assert distance_measures(track.tolist(), track.tolist()) == distance_measures(track, track)
     infinite, texts = np.where(track == track.max(), np.inf, track), track.astype(str)
     for wrong, words in ((infinite, "infinite"), (texts, "no numbers"), (None, r"not \(\)"), (track[0], r"not \(6,\)")):
-        with pytest.raises(ValueError, match=words):
+        with pytest.raises(OptionError, match=words):
             distance_measures(track, wrong)
-        with pytest.raises(ValueError, match=words):
+        with pytest.raises(OptionError, match=words):
             reference_of(wrong)
     for given in ((np.nan, 1.0, 1.0), (1.0, 0.0, 1.0), (1.0, 1.0, -1.0), (np.inf, 1.0, 1.0)):
-        with pytest.raises(ValueError, match="does not move"):
+        with pytest.raises(TrialError, match="does not move"):
             Reference(*given)
 
 
+def test_who_gives_a_trial_is_told_what_of_it_is_wanted():
+    trial = next(iter(mmgtune.load_trials("suzaku")))
+    with pytest.raises(OptionError, match=r"\(measured\)[\s\S]*fix: measured has them: give \.motion"):
+        reference_of(trial)
+
+
 def test_a_ship_at_rest_has_no_relative_distance():
-    with pytest.raises(ValueError, match="does not move"):
+    with pytest.raises(TrialError, match="does not move"):
         reference_of(np.zeros((5, 6)))
-    with pytest.raises(ValueError, match="complete"):
+    with pytest.raises(TrialError, match="complete"):
         reference_of(np.full((5, 6), np.nan))
 
 

@@ -77,9 +77,9 @@ def rates_of(model: Model) -> Callable[[Array, Array, Any, Surroundings, Array],
 def matrix_of(model: Model, names: Sequence[str] = ()) -> Callable[[Array], Array]:
     """``Model.matrix`` as a function that JAX can trace: values (n_names, ...) -> coefficients (n_rows, ...).
 
-    Effects on coefficients have acted on what it returns.  Raises KeyError for an unknown name.
+    Effects on coefficients have acted on what it returns.  Raises ProfileError for an unknown name.
     """
-    rows = np.array([model.rows[name] for name in names], dtype=np.int64)
+    rows = np.array(model.rows_of(names), dtype=np.int64)
     base = model.base
 
     def matrix(values: Array) -> Array:

@@ -1,6 +1,6 @@
 """Ship profiles: TOML files with every number, its unit and its source."""
 
-from .changing import missing_for, read_off, scale_of, tuned, with_all_effects, with_effects
+from .changing import missing_for, read_off, scale_of, tuned, with_all_effects, with_effects, with_values
 from .model import Actuator, Approach, Coefficient, Section, ShipProfile, SteeringGear
 from .reading import find_profile, load_profile, parse_profile
 from .scaling import froude_scaled
@@ -24,4 +24,5 @@ __all__ = [
     "tuned",
     "with_all_effects",
     "with_effects",
+    "with_values",
 ]

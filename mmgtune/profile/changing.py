@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Any
 
+from ..arrays import numbers_of
 from ..components import split_name
 from ..effects import Effect, Parameter, Scale, Visited, effects
+from ..errors import Problem, ProfileError, among, brief, must_be_a
 from ..physics.constants import GRAVITY
 from .model import ABSENT, Coefficient, Section, ShipProfile
+from .possible import impossible
 
 TUNED = "tuned by mmgtune; before: "
 
@@ -42,30 +46,73 @@ def tuned(
     """The profile with ``values`` {section.symbol: value in the field's unit} in place.
 
     Each tuned number keeps the value it had before any tuning and gets its standard error, where known.  Licence and
-    citation of the data it was tuned to join those the profile has.  Raises KeyError for a name it does not have.
+    citation of the data it was tuned to join those the profile has.  Raises ProfileError for a name that the profile
+    does not have, and for what its coefficient cannot be.
     """
-    sections = dict(profile.sections)
-    for name, value in values.items():
-        kind, symbol = split_name(name)
+    numbers = _numbers(profile, values)
+    changed = {}
+    for name, value in numbers.items():
         before = profile.coefficient(name)
-        now = replace(
+        changed[name] = replace(
             before,
-            value=float(value),
+            value=value,
             pre_determined=profile.value(name) if before.pre_determined is None else before.pre_determined,
             stderr=stderr.get(name),
             source=before.source if before.source.startswith(TUNED) else TUNED + before.source,
             assumption=False,
         )
-        section = sections[kind]
-        sections[kind] = replace(section, coefficients={**section.coefficients, symbol: now})
     return replace(
         profile,
         name=profile.name if f"({suffix})" in profile.name else f"{profile.name} ({suffix})",
-        sections=sections,
+        sections=_sections(profile, changed),
         provenance=dict(provenance),
         licence=joined(profile.licence, licence),
         citation=joined(profile.citation, citation),
     )
+
+
+def with_values(profile: ShipProfile, values: Mapping[str, float], source: str) -> ShipProfile:
+    """The profile with numbers changed by hand: ``values`` {section.symbol: value in the unit of its field}.
+
+    What the profile said of the number before, such as its bounds and standard error, is of the old one and goes.
+
+    source  where the numbers are from
+    Raises ProfileError for a name that the profile does not have, and for what its coefficient cannot be.
+    """
+    numbers = _numbers(profile, values)
+    changed = {name: Coefficient(value, source=source) for name, value in numbers.items()}
+    return replace(profile, sections=_sections(profile, changed))
+
+
+def _numbers(profile: ShipProfile, values: Mapping[str, float]) -> dict[str, float]:
+    """Values of coefficients as numbers.  Raises ProfileError for all that are none of that profile."""
+    must_be_a(values, Mapping, "values")
+    found, problems, where = {}, [], str(profile.path or profile.id)
+    for name, value in values.items():
+        profile.value(name)  # a name that is there, and no table
+        kind, symbol = split_name(name)
+        field = profile.sections[kind].component.fields[symbol]
+        number = numbers_of(value)
+        if number is None or number.ndim:
+            fix = f"give a number in the unit of profiles in memory: {field.unit}"
+            problems.append(Problem(f"'{name}' is {brief(value)}", where, "a coefficient is one number", fix))
+        elif wrong := impossible(name, field, float(number)):
+            problems.append(Problem(where=where, **wrong))
+        else:
+            found[name] = float(number)
+    if problems:
+        raise ProfileError(*problems)
+    return found
+
+
+def _sections(profile: ShipProfile, changed: Mapping[str, Coefficient]) -> dict[str, Section]:
+    """The sections with these coefficients in place."""
+    sections = dict(profile.sections)
+    for name, now in changed.items():
+        kind, symbol = split_name(name)
+        section = sections[kind]
+        sections[kind] = replace(section, coefficients={**section.coefficients, symbol: now})
+    return sections
 
 
 def with_effects(
@@ -77,16 +124,24 @@ def with_effects(
     """The profile with effects {tag: {parameter: value}} put in or changed; other parameters of new ones at their null,
     or where they are pivots, at what suits the ship.
 
-    stderr  standard errors in the same form, where known.  Raises KeyError for an unknown effect or parameter.
+    stderr  standard errors in the same form, where known.  Raises ProfileError for an unknown effect or parameter,
+            and for what is no number.
     """
     by_tag = {effect.tag: effect for effect in effects()}
     sections = {kind: section for kind, section in profile.sections.items() if not kind.startswith("effects.")}
     given = {kind.partition(".")[2]: section for kind, section in profile.sections.items() if "." in kind}
     for tag, parameters in values.items():
+        if tag not in by_tag:
+            raise ProfileError(Problem(f"no effect '{tag}'", "values", **among(tag, list(by_tag))))
         effect = by_tag[tag]
-        unknown = set(parameters) - set(effect.fields)
-        if unknown:
-            raise KeyError(f"effect '{tag}' has no {', '.join(sorted(unknown))}")
+        for name, number in parameters.items():
+            if name not in effect.fields:
+                raise ProfileError(Problem(f"effect '{tag}' has no '{name}'", tag, **among(name, list(effect.fields))))
+            plain = numbers_of(number)
+            if plain is None or plain.ndim or math.isnan(float(plain)):
+                fix = f"give a number in the unit of profiles in memory: {effect.fields[name].unit}"
+                what = f"'{effect.kind}.{name}' is {brief(number)}"
+                raise ProfileError(Problem(what, "values", "only finite numbers can be simulated", fix))
         old = given.get(tag, Section(effect, {}, source))
         errors = (stderr or {}).get(tag, {})
         coefficients = {}

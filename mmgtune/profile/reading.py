@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 import shlex
 from dataclasses import replace
@@ -32,6 +31,7 @@ from ..resources import (
 from ..toml_reading import TomlReader, toml_of
 from .changing import missing_for
 from .model import ABSENT, Actuator, Approach, Coefficient, Section, ShipProfile, SteeringGear
+from .possible import impossible, may_be_infinite
 
 SCHEMA = 1
 PLAIN = ("steering_gear", "actuators", "approach", "tuning", "limits", "provenance")
@@ -40,9 +40,6 @@ REGRESSION = "Fujiwara, Ueno & Nimura 1998, regression on the geometry"
 DEFAULT = "default of the program"
 STEERING_GEAR = {"max_angle": Field("", "rad", low=0.0, high=1.6), "rate": Field("", "rad/s", low=0.0)}
 APPROACH = {"speed": Field("", "m/s", low=0.0), "n": Field("", "1/s")}
-ALMOST_ZERO = 1e-12
-"""Limits that are no farther from 0 let 0 itself in."""
-
 IDENTIFIER = re.compile(r"\w[\w. -]{0,79}")
 """What a ship's id may be."""
 VALUE_KEYS = ("value", "source", "assumption", "note", "bounds", "pre_determined", "stderr", "scatter", "warning")
@@ -347,7 +344,7 @@ class _Reader(TomlReader):
                 return (field.choices[written],)
             self.problem(f"'{name}' is {brief(written)}", kind, symbol, fix=f"one of: {', '.join(field.choices)}")
             return None
-        numbers = self.quantities(kind, symbol, written, field.unit, infinite=_may_be_infinite(field))
+        numbers = self.quantities(kind, symbol, written, field.unit, infinite=may_be_infinite(field))
         if numbers is None:
             return None
         point = units.with_point(written) if isinstance(written, str) and not field.table else None
@@ -364,20 +361,8 @@ class _Reader(TomlReader):
             self.problem(f"'{name}' has {len(numbers)} values, not {expected}", kind, symbol, fix=f"give {expected}")
             return False
         for number in numbers:
-            if number == math.inf and _may_be_infinite(field):
-                continue
-            if not math.isfinite(number):
-                why, fix = "only finite numbers can be simulated", "check the number; a large one may lack a point"
-                self.problem(f"'{name}' is {number}", kind, symbol, why, fix)
-                return False
-            if (field.low is not None and number <= field.low) or (field.high is not None and number >= field.high):
-                self.problem(
-                    f"'{name}' = {number:g} is impossible",
-                    kind,
-                    symbol,
-                    why=f"{field.label or symbol} must be {_limits(field)}",
-                    fix="check number and unit",
-                )
+            if wrong := impossible(name, field, number):
+                self.problem(wrong.pop("what"), kind, symbol, **wrong)
                 return False
         return True
 
@@ -473,22 +458,6 @@ def limit_field(metric: str) -> Field:
     """What a limit of that metric is written in."""
     unit = METRICS[metric].unit
     return Field("", "-" if unit == "mixed" else unit, low=0.0)
-
-
-def _limits(field: Field) -> str:
-    """What a coefficient may be, in words."""
-    low, high, unit = field.low, field.high, f" {field.unit}" if field.unit else ""
-    words = []
-    if low is not None:
-        words.append("0 or more" if -ALMOST_ZERO <= low < 0.0 else f"above {low:g}{unit}")
-    if high is not None:
-        words.append("0 or less" if 0.0 < high <= ALMOST_ZERO else f"below {high:g}{unit}")
-    return " and ".join(words)
-
-
-def _may_be_infinite(field: Field) -> bool:
-    """Whether infinity is a value: the null of an effect that fades only towards it."""
-    return isinstance(field, Parameter) and math.isinf(field.null)
 
 
 def default_of(field: Field) -> Coefficient | None:

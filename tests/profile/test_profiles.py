@@ -2,6 +2,7 @@
 
 from contextlib import suppress
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -12,7 +13,8 @@ from mmgtune.errors import MmgtuneError, ProfileError
 from mmgtune.estimating import read_particulars
 from mmgtune.fleet.table import read_table
 from mmgtune.importing import load_map
-from mmgtune.profile import load_profile, parse_profile, tuned, with_effects
+from mmgtune.model import Model
+from mmgtune.profile import Coefficient, load_profile, parse_profile, tuned, with_effects, with_values
 from mmgtune.resources import profile_names
 from mmgtune.trial import load_trials
 
@@ -172,3 +174,54 @@ def test_a_profile_in_the_place_of_another_file_is_told_as_one(tmp_path, read, w
     (problem,) = refused.value.problems
     assert problem.what == "this is a ship profile"
     assert problem.fix.startswith(f"give {wanted}")
+
+
+@pytest.mark.parametrize("change", [lambda *given: tuned(*given, {}, {}), lambda *given: with_values(*given, "a test")])
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({"hull.R_0": np.nan}, "'hull.R_0' is nan"),
+        ({"particulars.L_pp": -1.0}, "'particulars.L_pp' = -1 is impossible .*\n.*must be above 0 m"),
+        ({"hull.R_0": "0.02"}, "'hull.R_0' is '0.02'"),
+        ({"hull.nope": 1.0}, "no number 'hull.nope'"),
+        ({"rudder.flap": 1.0}, "'rudder.flap' is a table"),
+        ([("hull.R_0", 1.0)], "a list is no dict"),
+    ],
+)
+def test_a_coefficient_is_changed_to_what_it_can_be(change, values, words):
+    with pytest.raises(MmgtuneError, match=words) as told:
+        change(load_profile("suzaku"), values)
+    assert told.value.problems[0].where
+    assert told.value.problems[0].fix
+
+
+def test_a_number_that_is_changed_by_hand_says_where_it_is_from():
+    ship = load_profile("suzaku")
+    changed = with_values(tuned(ship, {"hull.R_0": 0.02}, {"hull.R_0": 0.001}, {}), {"hull.R_0": 0.018}, "by hand")
+    assert changed.coefficient("hull.R_0") == Coefficient(0.018, source="by hand")
+    assert parse_profile(changed.text) == changed
+
+
+def test_effects_that_are_none_are_named():
+    ship = load_profile("suzaku")
+    for values, words in (
+        ({"curent": {}}, "did you mean 'current'"),
+        ({"current": {"nord": 1.0}}, "effect 'current' has no 'nord'"),
+        ({"current": {"north": np.nan}}, "'effects.current.north' is nan"),
+        ({"current": {"north": "1 m/s"}}, "'effects.current.north' is '1 m/s'"),
+    ):
+        with pytest.raises(ProfileError, match=words):
+            with_effects(ship, values, "a test")
+
+
+def test_a_matrix_is_of_numbers_that_are_there():
+    model = Model("suzaku")
+    for names, values, words in (
+        (["nope"], None, "no number 'nope'"),
+        (["hull.R0"], [[1.0]], "did you mean 'hull.R_0'"),
+        (["hull.R_0"], [1.0], r"shape \(1,\)"),
+        (["hull.R_0"], [[1.0], [2.0]], r"give \(1, n_candidates\)"),
+        (["hull.R_0"], [["a"]], "no numbers"),
+    ):
+        with pytest.raises(MmgtuneError, match=words):
+            model.matrix(names, values)

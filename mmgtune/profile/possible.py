@@ -1,0 +1,43 @@
+"""Which numbers a coefficient may have: one rule for files and for profiles that are changed in memory."""
+
+from __future__ import annotations
+
+import math
+
+from ..components import Field
+from ..effects import Parameter
+
+ALMOST_ZERO = 1e-12
+"""Limits that are no farther from 0 let 0 itself in."""
+
+
+def impossible(name: str, field: Field, number: float) -> dict[str, str] | None:
+    """What is wrong with a number in the unit of its field, why, and the fix; None where nothing is.
+
+    name  of the coefficient, for the message
+    """
+    if number == math.inf and may_be_infinite(field):
+        return None
+    if not math.isfinite(number):
+        why, fix = "only finite numbers can be simulated", "check the number; a large one may lack a point"
+        return {"what": f"'{name}' is {number}", "why": why, "fix": fix}
+    if (field.low is not None and number <= field.low) or (field.high is not None and number >= field.high):
+        why = f"{field.label or name.rpartition('.')[2]} must be {_limits(field)}"
+        return {"what": f"'{name}' = {number:g} is impossible", "why": why, "fix": "check number and unit"}
+    return None
+
+
+def may_be_infinite(field: Field) -> bool:
+    """Whether infinity is a value: the null of an effect that fades only towards it."""
+    return isinstance(field, Parameter) and math.isinf(field.null)
+
+
+def _limits(field: Field) -> str:
+    """What a coefficient may be, in words."""
+    low, high, unit = field.low, field.high, f" {field.unit}" if field.unit else ""
+    words = []
+    if low is not None:
+        words.append("0 or more" if -ALMOST_ZERO <= low < 0.0 else f"above {low:g}{unit}")
+    if high is not None:
+        words.append("0 or less" if 0.0 < high <= ALMOST_ZERO else f"below {high:g}{unit}")
+    return " and ".join(words)
