@@ -37,6 +37,12 @@ SCHEMA = 1
 LARGEST = 1e12
 """Size of a number, in the units of profiles, that is damage whichever coefficient it is of."""
 
+SO_FAR = "bands are about the best so far, and may be too wide or too narrow"
+"""What to know of particles whose drawing was stopped."""
+
+STOPPED = f"the drawing of the particles was stopped before its end (mmgtune posterior): {SO_FAR}"
+"""The same as a note of what they were used for."""
+
 AIR_AND_WAVES = ("wind", "waves", "wave-drift")
 """Effects of what was around the ship that are forces."""
 
@@ -62,6 +68,11 @@ class Particles:
     def __repr__(self) -> str:
         """In a line."""
         return f"Particles({self.profile.id}: {len(self)} of {len(self.names)} numbers)"
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether their drawing was stopped before its end."""
+        return self.facts.get("interrupted") is True
 
     def of_the_day(self) -> tuple[str, ...]:
         """Names of what belongs to the trials and not to the ship: current, wind, waves and faults of sensors."""

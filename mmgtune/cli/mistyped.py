@@ -155,6 +155,15 @@ def _help(parameter: Any) -> str:
 
 
 def _example(ctx: Any) -> str:
-    """The first example of the command's help."""
+    """The first example of the command's help, with the arguments that were typed in the place of its own."""
     lines = [line.strip() for line in inspect.cleandoc(ctx.command.help or "").splitlines()]
-    return next((line for line in lines if line.startswith(f"{path_of(ctx)} ")), "")
+    before = f"{path_of(ctx)} "
+    example = next((line for line in lines if line.startswith(before)), "")
+    words = example.removeprefix(before).split(" ")
+    arguments = [one for one in ctx.command.params if one.param_type_name == "argument"]
+    for k, (one, word) in enumerate(zip(arguments, words, strict=False)):
+        if one.nargs != 1 or word.startswith("-"):
+            break
+        typed = ctx.params.get(one.name)
+        words[k] = shlex.quote(str(typed)) if typed is not None else word
+    return f"{before}{' '.join(words)}" if example else ""

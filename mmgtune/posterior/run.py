@@ -22,7 +22,7 @@ from ..hooks import Hooks
 from ..made_from import identity_of, make_provenance
 from ..options import PosteriorOptions
 from ..options.choice import must_be
-from ..particles import Particles
+from ..particles import SO_FAR, Particles
 from ..phrases import counted
 from ..profile import ShipProfile, tuned
 from ..threads import blas_on_one_thread
@@ -76,7 +76,7 @@ class Posterior(Plotted):
         one_sided = self.shown.one_sided()
         found = [one_sided] if one_sided else []
         if self.interrupted:
-            found.append("Stopped before its end: bands are about the best so far, and may be too wide or too narrow.")
+            found.append(f"Stopped before its end: {SO_FAR}.")
         elif not self.converged:
             found.append("The most probable coefficients were not found to the end; bands are about the best so far.")
         if self.nonlinear > EXPECTED:
@@ -199,7 +199,8 @@ def _drawn(
     if not z.shape[1]:
         raise _lost(ship, chosen)
     said = {"made_by": "mmgtune posterior", "trials": [trial.id for trial in chosen], "temper": sized.temper}
-    facts = {"seed": options.seed, "room": options.room, "noise": windowed.sigma.tolist()}
+    interrupted = sized.stopped or (hooks.stop() and not mode.converged)
+    facts = {"seed": options.seed, "room": options.room, "noise": windowed.sigma.tolist(), "interrupted": interrupted}
     best = dict(zip(room.names, room.values(mode.z[:, None])[:, 0].tolist(), strict=True))
     likely = tuned(room.profile, best, {}, said, suffix="most probable")
     return Posterior(
@@ -211,7 +212,7 @@ def _drawn(
         converged=mode.converged,
         shown=shown_by(chosen),
         provenance=provenance,
-        interrupted=sized.stopped or (hooks.stop() and not mode.converged),
+        interrupted=interrupted,
     )
 
 

@@ -82,6 +82,10 @@ TRIAL = resources.folder("trials") / "suzaku" / "turn_p35.parquet"
         ),
         (("simulate", "--turn", "35", "--speed", "500kn"), ("500 kn (--speed)", "Froude", "a speed below")),
         (("simulate", "--turn", "35", "--rpm", "1e9"), ("1e+09 rpm (--rpm)", "times the", "less than")),
+        (
+            ("plan", "my bands", "x"),
+            ("'x' is one word too many", "argument MODEL", "mmgtune plan 'my bands' --question "),
+        ),
         (("report", "a", "b"), ("'b' is one word too many", "takes argument RUN", "write mmgtune report ")),
         (
             ("fit", "--starts", "many"),

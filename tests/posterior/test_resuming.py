@@ -11,11 +11,12 @@ import pytest
 
 from mmgtune.errors import OptionError, TrialError
 from mmgtune.hooks import Hooks
-from mmgtune.options import PosteriorOptions
+from mmgtune.options import PosteriorOptions, PredictOptions
 from mmgtune.posterior import plan_posterior, posterior, write_posterior
 from mmgtune.posterior.local import Windowed
 from mmgtune.posterior.room import make_room
 from mmgtune.posterior.run import JOURNAL
+from mmgtune.predicting import predict
 from mmgtune.profile import load_profile
 from mmgtune.resources import folder
 from mmgtune.trial import load_trials
@@ -51,6 +52,10 @@ def after(phases: int) -> Hooks:
     return Hooks(on_phase=on_phase, stop=lambda: reached[0] >= phases)
 
 
+def foretold(folder):
+    return predict(folder, options=PredictOptions(turn=("20",), particles=4))
+
+
 def test_what_was_stopped_gives_the_best_so_far_and_goes_on_to_the_same(tmp_path, trials, searched):
     said: list[str] = []
     expected = posterior("suzaku", trials, OPTIONS, hooks=Hooks(on_phase=said.append))
@@ -64,6 +69,7 @@ def test_what_was_stopped_gives_the_best_so_far_and_goes_on_to_the_same(tmp_path
         assert "Stopped before its end" in " ".join(stopped.warnings())
         assert write_posterior(stopped, tmp_path)["interrupted"]
         assert (tmp_path / JOURNAL).is_file()
+        assert any("stopped before its end" in note for note in foretold(tmp_path).notes)
 
         searched.clear()
         resumed = posterior("suzaku", trials, OPTIONS, folder=tmp_path, resume=True)
@@ -72,6 +78,7 @@ def test_what_was_stopped_gives_the_best_so_far_and_goes_on_to_the_same(tmp_path
         assert np.array_equal(resumed.particles.values, expected.particles.values)
         assert resumed.sized.covered == expected.sized.covered
         write_posterior(resumed, tmp_path, overwrite=True)
+        assert not any("stopped before its end" in note for note in foretold(tmp_path).notes)
         assert not (tmp_path / JOURNAL).exists()
 
 
