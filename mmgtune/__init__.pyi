@@ -107,6 +107,7 @@ from .report import render as render
 from .simulating import Simulated as Simulated
 from .simulating import simulate as simulate
 from .simulation import breakdown as breakdown
+from .simulation import track_of as track_of
 from .trial import Trial as Trial
 from .trial import TrialSet as TrialSet
 from .trial import load_trials as load_trials

@@ -35,7 +35,7 @@ def indices_of(track: Track, L_pp: float, measured: Mapping[str, Any] | None = N
 def _hold_kinds(track: object, L_pp: object) -> None:
     if not isinstance(track, Track):
         why = "indices are read from the record of one manoeuvre"
-        fix = "give a Track: simulate(SHIP, TRIAL)[0].track(), or Track(t=..., x=..., ...) of what was measured"
+        fix = "give a Track: track_of(TRIAL), simulate(SHIP, TRIAL)[0].track(), or Track(t=..., x=..., ...)"
         raise OptionError(Problem(f"{kind_of(track)} is no track", brief(track), why, fix))
     _hold_number("L_pp", L_pp)
 

@@ -11,6 +11,7 @@ from ..inputs import INPUTS
 from ..phrases import counted
 from ..physics.quantities import STATES
 from ..report.wording import PRINCIPAL, index_words
+from ..trial.schema import FILE_CHANNELS, REQUIRED
 from .view import Line, Row, View
 
 if TYPE_CHECKING:
@@ -22,8 +23,6 @@ if TYPE_CHECKING:
 
 FIRST = ("advance_m", "tactical_diameter_m", "overshoot_1_deg")
 """Indices that text shows where there is no room for more."""
-
-MOTION = {"x": "x [m]", "y": "y [m]", "psi": "psi [rad]", "u": "u [m/s]", "v_m": "v_m [m/s]", "r": "r [rad/s]"}
 
 
 def profile(ship: ShipProfile) -> View:
@@ -76,10 +75,9 @@ def named(name: str) -> str:
 
 
 def _unit(name: str) -> str:
-    own = {"v": "v_m", **{key: key for key in MOTION}}.get(name)
-    if own:
-        return MOTION[own].partition("[")[2][:-1]
-    return "s" if name == "t" else INPUTS[name].unit if name in INPUTS else ""
+    if name in REQUIRED:
+        return REQUIRED[name].unit
+    return INPUTS[name].unit if name in INPUTS else ""
 
 
 def trials(data: TrialSet) -> View:
@@ -113,12 +111,12 @@ def _stated(one: IndexTrial, role: str) -> Row:
 def motion(run: Motion) -> View:
     """Its last state; as a frame all samples."""
     says = [] if not run.diverged else ["The simulation left the world of ships; its states mean nothing."]
-    states = dict(zip(STATES, run.states.T, strict=True))
+    states = dict(zip(FILE_CHANNELS, run.states.T, strict=True))
     rows = [
         {"channel": name, "first": float(of[0]), "last": float(of[-1]), "unit": _unit(name)}
         for name, of in states.items()
     ]
-    columns = {MOTION[name]: of for name, of in states.items()}
+    columns = {named(name): of for name, of in states.items()}
     columns |= {named(name): run.controls[:, k] for k, name in enumerate(run.inputs)}
     return View(
         repr(run), says, rows, frame={"t [s]": run.t, **columns}, along="t [s]",
@@ -151,7 +149,8 @@ def alike(rows: list[Row]) -> list[Row]:
 
 def record(one: TrialRecord) -> View:
     """One trial beside one simulation of it."""
-    rows = [{"error, rms": name, "value": value, "unit": _unit(name)} for name, value in one.rms.items()]
+    called = dict(zip(STATES, FILE_CHANNELS, strict=True))
+    rows = [{"error, rms": called[key], "value": value, "unit": _unit(called[key])} for key, value in one.rms.items()]
     return View(repr(one), [f"J ({one.method}) {one.J:.4g}."], rows, motions=lambda: {one.trial.id: of_record(one)})
 
 

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import Problem, TrialError, brief, kind_of
+from ..units import canonical
 from .metadata import as_json, problems_in
 from .model import Trial, fields_of
-from .schema import REQUIRED
+from .schema import REQUIRED, known_column
 from .unusable import unusable
 
 FACTS = ("ship", "manoeuvre", "source", "note", "group", "cut_from", "noise", "derived")
@@ -21,7 +23,8 @@ def trial_of(table: Any, id: str, **facts: Any) -> Trial:
     """A trial from columns as a trial file has them: SI units, angles in radians, ``v`` to starboard.
 
     table  a DataFrame, or a mapping of names to (n_samples,) numbers; time may be the index of a DataFrame, called "t";
-           columns the program does not know are kept where they hold numbers
+           columns the program does not know are kept where they hold numbers; units may stand behind the names of those
+           it knows, as in ``to_frame()`` of a trial and of a simulated run: "u [m/s]"
     id     name of the trial, unique within a data set; files are named after it
     facts  fields of ``Trial``: ship, manoeuvre, source ("measured" or "generated"), note, group, cut_from, noise and
            derived
@@ -33,19 +36,23 @@ def trial_of(table: Any, id: str, **facts: Any) -> Trial:
         what, fix = f"a trial has no fact '{unknown[0]}'", f"known here: {', '.join(FACTS)}"
         raise TrialError(Problem(what, unknown[0], "what a trial is beside its columns has a name", fix))
     index = getattr(table, "index", None)
-    if getattr(index, "name", None) == "t" and "t" not in table:
-        table = {"t": index, **{name: table[name] for name in table}}
+    time = str(getattr(index, "name", None))
+    if _divided(time)[0] == "t" and time not in table and "t" not in table:
+        table = {time: index, **{name: table[name] for name in table}}
     if not hasattr(table, "keys"):
         fix = "give a DataFrame, or a dict of arrays"
         raise TrialError(Problem("this is no table", "table", f"{kind_of(table)} has no named columns", fix))
     columns: dict[str, FloatArray] = {}
     ignored = []
-    for name in table.keys():  # noqa: SIM118  the names of a DataFrame, and of a mapping
-        column = _numbers(table[name])
+    for given in table.keys():  # noqa: SIM118  the names of a DataFrame, and of a mapping
+        name, column = _named(str(given)), _numbers(table[given])
+        if name in columns:
+            why, fix = f"'{given}' is '{name}', and a trial has one of it", "leave one of the two out"
+            raise TrialError(Problem(f"column '{name}' is there twice", str(id), why, fix))
         if column is None and name not in REQUIRED:
-            ignored.append(str(name))
+            ignored.append(name)
             continue
-        columns[str(name)] = np.full(np.size(table[name]), np.nan) if column is None else column
+        columns[name] = np.full(np.size(table[given]), np.nan) if column is None else column
     lengths = {len(column) for column in columns.values()}
     if len(lengths) > 1:
         longest = max(columns, key=lambda name: len(columns[name]))
@@ -59,6 +66,27 @@ def trial_of(table: Any, id: str, **facts: Any) -> Trial:
         raise TrialError(*problems)
     named = {"ship": "", "manoeuvre": "", "source": "", **facts}
     return Trial(id=id, **named, **fields_of(columns), ignored=tuple(ignored))
+
+
+def _divided(header: str) -> tuple[str, str]:
+    """Name and unit of "u [m/s]", "" for a unit where there is none."""
+    found = re.fullmatch(r"(.*\S)\s*\[([^\[\]]*)\]", header)
+    return (found[1], found[2]) if found else (header, "")
+
+
+def _named(header: str) -> str:
+    """A column by its name alone, where the program knows it.  Raises TrialError for one in another unit."""
+    name, unit = _divided(header)
+    known = known_column(name)
+    if known is None or not unit:
+        return header
+    if canonical(unit) != known.unit:
+        why, fix = (
+            f"columns of trials are in SI units, and {name} in {known.unit}",
+            f"give it as '{name} [{known.unit}]'",
+        )
+        raise TrialError(Problem(f"column '{name}' is in {unit}", header, why, fix))
+    return name
 
 
 def _numbers(column: Any) -> FloatArray | None:

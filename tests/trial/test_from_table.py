@@ -34,6 +34,17 @@ def test_time_may_be_the_index_and_a_dict_will_do(table):
         np.testing.assert_array_equal(trial_of(other, "one").t, usual.t)
 
 
+def test_a_frame_goes_back_into_a_trial():
+    trial = next(iter(load_trials("suzaku")))
+    again = trial_of(trial.to_frame(), trial.id)
+    assert list(again.columns) == list(trial.columns)
+    for name, values in trial.columns.items():
+        np.testing.assert_array_equal(again.columns[name], values)
+    (motion,) = mmgtune.simulate("suzaku", [trial])
+    assert list(motion.to_frame())[:6] == list(trial.to_frame())[:6]
+    np.testing.assert_array_equal(trial_of(motion.to_frame().reset_index(), "simulated").motion, motion.states)
+
+
 @pytest.mark.parametrize(
     ("change", "said"),
     [
@@ -42,6 +53,8 @@ def test_time_may_be_the_index_and_a_dict_will_do(table):
         (lambda table: table.assign(delta=table.delta * 57.3), "probably in degrees"),
         (lambda table: table.assign(u="fast"), "'u' has no values at all"),
         (lambda table: {**table, "u": table.u[:9]}, "samples, 'u' 9"),
+        (lambda table: table.rename(columns={"psi": "psi [deg]"}), "give it as 'psi [rad]'"),
+        (lambda table: table.assign(**{"u [m/s]": table.u}), "'u' is there twice"),
         (lambda _: [1, 2, 3], "this is no table"),
         (lambda table: table.iloc[::-1], "time"),
     ],
