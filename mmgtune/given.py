@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
@@ -22,7 +23,7 @@ class Found(Protocol):
 
 
 ShipGiven = ShipProfile | Found | str | Path
-TrialsGiven = TrialSet | Trial | IndexTrial | Sequence[Trial | IndexTrial] | str | Path
+TrialsGiven = TrialSet | Trial | IndexTrial | Sequence[Trial | IndexTrial | str | Path] | str | Path
 
 _NONE = Problem("the list of trials is empty", "trials", "nothing was measured", "give one at least")
 
@@ -50,7 +51,7 @@ def ship_of(given: ShipGiven) -> ShipProfile:
 def trials_of(given: TrialsGiven) -> TrialSet:
     """A data set, or the one of that path or bundled name; a trial, or several, as a set that tunes to all of them.
 
-    Raises TrialError, OptionError for anything else.
+    Files of trials may stand for them in a list.  Raises TrialError, OptionError for anything else.
     """
     if isinstance(given, TrialSet):
         _hold_timed(given.trials.values())
@@ -79,10 +80,15 @@ def some_of(given: TrialsGiven) -> list[Trial]:
 
 
 def _several(given: object) -> list[Trial | IndexTrial]:
-    """What is given as one trial or several.  Raises OptionError for anything else."""
+    """What is given as one trial or several, in a list also by their files.
+
+    Raises OptionError for anything else, TrialError for files that cannot be read.
+    """
     if isinstance(given, (Trial, IndexTrial)):
         given = [given]
     parts = parts_of(given)
+    if parts is not None:
+        parts = [trial for one in parts for trial in (load_trials(one) if _is_file(one) else (one,))]
     others = [one for one in parts or () if not isinstance(one, (Trial, IndexTrial))]
     if parts is not None and not others:
         _hold_timed(one for one in parts if isinstance(one, Trial))
@@ -93,9 +99,21 @@ def _several(given: object) -> list[Trial | IndexTrial]:
     fix = "give a TrialSet, a Trial, a list of these, a path or a bundled name; load_trials(NAME) reads a set"
     if isinstance(given, ShipProfile):
         fix = "give the ship first, then the trials"
-    if others and all(isinstance(one, str) for one in others) and isinstance(given, Sequence):
+    if others and all(_is_folder(one) for one in others):
+        fix = f"a set is given by itself: {brief(others[0])}; in a list stand trials and their files"
+    elif others and all(isinstance(one, str) for one in others) and isinstance(given, Sequence):
         fix = f"ids are looked up in their set: [TRIALS[{others[0]!r}]], where TRIALS is load_trials(NAME)"
     raise OptionError(Problem(what, brief(given), "measured trials are wanted here", fix))
+
+
+def _is_file(one: object) -> bool:
+    """Whether what stands in a list of trials is a file of one: a path, or a text that plainly is one."""
+    plainly = isinstance(one, Path) or (isinstance(one, str) and (one.endswith((".parquet", ".toml")) or os.sep in one))
+    return plainly and not _is_folder(one)
+
+
+def _is_folder(one: object) -> bool:
+    return isinstance(one, (str, Path)) and os.path.isdir(one)
 
 
 def _hold_timed(trials: Iterable[Trial]) -> None:

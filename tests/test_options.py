@@ -49,7 +49,8 @@ from mmgtune.trial import load_trials
         (DiagnoseOptions, {"most": 2.5}),
         (DiagnoseOptions, {"effects": "current"}),
         (ValidateOptions, {"restart": "100"}),
-        (SimulateOptions, {"turn": (35,)}),
+        (SimulateOptions, {"turn": (True,)}),
+        (SimulateOptions, {"speed": 7}),
         (CheckOptions, {"metrics": ("J", 1)}),
         (FitOptions, {"window": (0.0, 10**400)}),
         (HeadingOptions, {"gain_step": 10**400}),
@@ -122,3 +123,22 @@ def test_windows_too_short_for_slow_errors():
 def test_few_updates_need_no_other_option():
     for kind in (LearnOptions, HybridOptions, EnsembleOptions):
         assert kind(steps=5).problems() == []
+
+
+@pytest.mark.parametrize(
+    ("given", "same"),
+    [
+        ({"turn": 35}, {"turn": ("35",)}),
+        ({"turn": [35, -12.5, "0.61 rad"]}, {"turn": ("35", "-12.5", "0.61 rad")}),
+        ({"turn": np.float64(35.0), "rpm": 106}, {"turn": ("35",), "rpm": "106"}),
+        ({"stop": True, "astern": 60.0}, {"stop": True, "astern": "60"}),
+    ],
+)
+def test_numbers_stand_for_the_texts_that_mean_the_same(given, same):
+    assert SimulateOptions(**given) == SimulateOptions(**same)
+
+
+@pytest.mark.parametrize("given", [20, (20, 20), "20/20"])
+def test_a_zigzag_that_is_no_list_of_texts_is_told_what_one_is(given):
+    with pytest.raises(OptionError, match="20/20"):
+        SimulateOptions(zigzag=given)

@@ -39,6 +39,8 @@ class Choice:
     called  what it is called where a word is wrong
     unit    of a number, or one that a text has to name; for messages
     least, above, most, below  limits of a number: from, more than, up to, less than
+    bare    whether a number may stand for the text of it, such as 35 for "35"
+    example  of a text that no number stands for, "" where the number as a text shows what is meant
     """
 
     help: str
@@ -53,6 +55,8 @@ class Choice:
     above: float | None = None
     most: float | None = None
     below: float | None = None
+    bare: bool = False
+    example: str = ""
 
     def problems(self, name: str, value: Any) -> list[Problem]:
         """What is wrong with a value; None is never wrong, each part of a tuple is looked at."""
@@ -186,6 +190,11 @@ class Options(metaclass=_Named):
 
         Numbers of other libraries become Python's, which every writer of documents knows.
         """
+        for name, known in choices(type(self)).items():
+            if known.bare:
+                object.__setattr__(
+                    self, name, _as_text(getattr(self, name), isinstance(getattr(type(self), name), tuple))
+                )
         problems = self._of_other_kinds()
         if not problems:
             for one in fields(self):
@@ -207,7 +216,7 @@ class Options(metaclass=_Named):
         return [
             problem
             for name, known in choices(type(self)).items()
-            for problem in _of_another_kind(name, getattr(self, name), hints[name], known.unit)
+            for problem in _of_another_kind(name, getattr(self, name), hints[name], known.unit, known.example)
         ]
 
     def to_dict(self) -> dict[str, Any]:
@@ -246,10 +255,11 @@ def _hints(of: Any) -> dict[str, Any]:
     return get_type_hints(of)
 
 
-def _of_another_kind(name: str, value: Any, hint: Any, unit: str = "") -> list[Problem]:
+def _of_another_kind(name: str, value: Any, hint: Any, unit: str = "", example: str = "") -> list[Problem]:
     """The problem of a value that is not of the type of its field; a list does for a tuple, None where it may be.
 
-    unit  that a text has to have, "" where it needs none
+    unit     that a text has to have, "" where it needs none
+    example  of a text
     """
     kinds = get_args(hint) if isinstance(hint, UnionType) else (hint,)
     if value is None and NoneType in kinds:
@@ -258,18 +268,18 @@ def _of_another_kind(name: str, value: Any, hint: Any, unit: str = "") -> list[P
     parts = get_args(kind)
     if parts:
         if isinstance(value, str) or not isinstance(value, Sequence):
-            fix = f"give a tuple, each part {_KINDS[parts[0]][1]}{_as_tuple(name, value, parts)}"
+            fix = f"give a tuple, each part {_KINDS[parts[0]][1]}{_as_tuple(name, example or value, parts)}"
             return [Problem(f"{name} is {_short(value)}", name, fix=fix)]
         if ... not in parts and len(value) != len(parts):
             return [Problem(f"{name} is {_short(value)}", name, fix=f"give {len(parts)} numbers")]
-        return [problem for part in value for problem in _of_another_kind(name, part, parts[0])][:1]
+        return [problem for part in value for problem in _of_another_kind(name, part, parts[0], example=example)][:1]
     known, words = _KINDS[kind]
     if isinstance(value, known) and (kind is bool or not isinstance(value, bool)):
         beyond = kind is float and isinstance(value, Integral) and math.isinf(as_float(value))
         return (
             [Problem(f"{name} is {brief(value)}, more than a number can be", name, fix="give less")] if beyond else []
         )
-    such = f": {_part(value, kind, unit)}" if kind is str and isinstance(value, (int, float)) else ""
+    such = f": {_part(example or value, kind, unit)}" if kind is str and isinstance(value, (int, float)) else ""
     of = " with its unit" if kind is str and unit else ""
     return [Problem(f"{name} is {_short(value)}", name, fix=f"give {words}{of}{such}")]
 
@@ -287,6 +297,17 @@ def _as_tuple(name: str, value: Any, parts: tuple[Any, ...]) -> str:
     except ValueError:
         return ""
     return f": {name}=({', '.join(map(repr, numbers))}{',' * (len(numbers) == 1)})"
+
+
+def _as_text(value: Any, several: bool) -> Any:
+    """Numbers as the texts that mean the same, one as the only one of several; everything else as it is."""
+    if isinstance(value, (list, tuple)):
+        return tuple(_as_text(part, False) for part in value)
+    if not isinstance(value, Real) or isinstance(value, bool):
+        return value
+    number = as_float(value)
+    text = str(int(number)) if number.is_integer() and abs(number) < 1e15 else str(number)
+    return (text,) if several else text
 
 
 def _pythons(value: Any) -> Any:

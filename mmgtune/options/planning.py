@@ -30,7 +30,7 @@ class PlanOptions(SimulationOptions):
         None, 'Approach speed, such as "12 kn". Default: the profile\'s.', unit="m/s", panel=MANOEUVRE
     )
     rpm: str | None = choice(
-        None, 'Propeller revolutions: 106 (1/min) or "1.77 1/s". Default: the profile\'s.', panel=MANOEUVRE
+        None, 'Propeller revolutions: 106 (1/min) or "1.77 1/s". Default: the profile\'s.', panel=MANOEUVRE, bare=True
     )
     particles: int = choice(400, "Particles that answer the question.", least=20, most=2000, panel=BAND)
     level: float = choice(90.0, "Percent of what may happen that a band holds.", unit="%", least=1, most=99, panel=BAND)

@@ -81,10 +81,8 @@ def _named(header: str) -> str:
     if known is None or not unit:
         return header
     if canonical(unit) != known.unit:
-        why, fix = (
-            f"columns of trials are in SI units, and {name} in {known.unit}",
-            f"give it as '{name} [{known.unit}]'",
-        )
+        why = f"columns of trials are in SI units, and {name} in {known.unit}"
+        fix = f"give it as '{name} [{known.unit}]'"
         raise TrialError(Problem(f"column '{name}' is in {unit}", header, why, fix))
     return name
 
