@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Protocol
 
-from .errors import OptionError, Problem
+from .errors import OptionError, Problem, all_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -37,7 +37,7 @@ class Display(Protocol):
         """Which pictures there are of it: "tracks", "histories", "coefficients"."""
         ...
 
-    def plot(self, of: object, what: str, *which: str, **how: Any) -> Any:
+    def plot(self, of: object, what: str, *which: str | Sequence[str], **how: Any) -> Any:
         """One of these pictures."""
         ...
 
@@ -137,10 +137,10 @@ class Plots:
         why = "each picture has a name" if there else f"there is no picture of a {type(self._of).__name__}"
         raise OptionError(Problem("no picture is named", "plot", why, f"write {there}" if there else "see summary()"))
 
-    def tracks(self, *trials: str, ax: Axes | None = None) -> Any:
+    def tracks(self, *trials: str | Sequence[str], ax: Axes | None = None) -> Any:
         """Tracks on the water, north up, measured and simulated.
 
-        trials  ids, all (of many the first 16) where none is named
+        trials  ids, one by one or in a list; all (of many the first 16) where none is named
         ax      axes to draw them all into; where None each trial gets its own
         -> the axes, or for several trials without ``ax`` an array of them
         Raises OptionError for an id that is not there.
@@ -148,18 +148,20 @@ class Plots:
         return _display().plot(self._of, "tracks", *trials, ax=ax)
 
     def histories(
-        self, trial: str | None = None, channels: Sequence[str] = (), *, ax: Axes | Sequence[Axes] | None = None
+        self, trial: str | None = None, channels: str | Sequence[str] = (), *, ax: Axes | Sequence[Axes] | None = None
     ) -> Any:
         """Motions and inputs of one trial over time, measured and simulated.
 
         trial     its id, the first where None
-        channels  such as "psi", "u", "delta"; all motions but the position, and what drives the ship, where none
+        channels  one or several, such as "psi", "u", "delta"; where none all motions but the position, and what drives
+                  the ship
         ax        axes to draw into, as many as channels; new ones where None
         -> an array of axes, one a channel
         Raises OptionError for what is not there.
         """
         named = () if trial is None else (trial,)
-        return _display().plot(self._of, "histories", *named, channels=tuple(channels), ax=ax)
+        several = (channels,) if isinstance(channels, str) else all_of(channels, str, "channels")
+        return _display().plot(self._of, "histories", *named, channels=several, ax=ax)
 
     def coefficients(self, *, ax: Axes | None = None) -> Any:
         """The coefficients in the room they had, with what is known of each.

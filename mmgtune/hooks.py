@@ -6,8 +6,18 @@ import signal
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
+
+from .errors import OptionError, Problem, brief
+
+_TAKES = {
+    "on_phase": " words: print(words)",
+    "on_progress": " done, of, words: print(done, of)",
+    "on_generation": " search: None",
+    "stop": ": False",
+}
+"""What each function of hooks takes, and a body."""
 
 
 @dataclass(frozen=True)
@@ -25,6 +35,16 @@ class Hooks:
     on_progress: Callable[[int, int, str], None] = lambda *_: None
     on_generation: Callable[[Any], None] = lambda _: None
     stop: Callable[[], bool] = lambda: False
+
+    def __post_init__(self) -> None:
+        """Raises OptionError for what cannot be called."""
+        for one in fields(self):
+            given = getattr(self, one.name)
+            if not callable(given):
+                fix = f"give a function: Hooks({one.name}=lambda{_TAKES[one.name]})"
+                raise OptionError(
+                    Problem(f"{one.name} is {brief(given)}", one.name, "it is called while work goes on", fix)
+                )
 
 
 @contextmanager

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from types import NoneType
-from typing import Any, overload
+from typing import Any, SupportsIndex, overload
 
 from .backends import Integrator
 from .circumstances import notes_on
 from .displayed import Plotted, inert
-from .errors import OptionError, Problem, must_be_a
+from .errors import OptionError, Problem, among, brief, must_be_a
 from .evaluation import TrialRecord, evaluate
 from .files import path_of, refuse_existing
 from .given import ShipGiven, TrialsGiven, some_of
@@ -48,6 +48,10 @@ PER_SECOND = 20.0
 """A plain number of revolutions a minute below this is likely meant as revolutions a second."""
 
 
+class NoSuchRun(OptionError, IndexError):
+    """A number of a run that there is not; sequences end where they meet the second."""
+
+
 @dataclass(frozen=True, eq=False)
 class Simulated(Plotted, Sequence[Motion]):
     """Simulated runs, a sequence of ``Motion``, with what they are judged by: trial by trial, of each all members.
@@ -65,11 +69,36 @@ class Simulated(Plotted, Sequence[Motion]):
     def __len__(self) -> int:
         return len(self.motions)
 
+    def __iter__(self) -> Iterator[Motion]:
+        return iter(self.motions)
+
     @overload
-    def __getitem__(self, k: int) -> Motion: ...
+    def __getitem__(self, k: int | str) -> Motion: ...
     @overload
     def __getitem__(self, k: slice) -> Sequence[Motion]: ...
-    def __getitem__(self, k: int | slice) -> Motion | Sequence[Motion]:
+    def __getitem__(self, k: int | str | slice) -> Motion | Sequence[Motion]:
+        """The run of that number, from 0, or of that id.
+
+        Raises OptionError for one that there is not, and for an id of which there are several members.
+        """
+        if isinstance(k, slice):
+            return self.motions[k]
+        if isinstance(k, str):
+            found = [motion for motion in self.motions if motion.id == k]
+            if len(found) == 1:
+                return found[0]
+            if found:
+                why = f"it is that of {len(found)} members"
+                fix = f"write [run for run in RUNS if run.id == {k!r}]"
+                raise OptionError(Problem(f"'{k}' is the id of several runs", "simulated", why, fix))
+            known = list(dict.fromkeys(motion.id for motion in self.motions))
+            raise OptionError(Problem(f"no run '{k}'", "simulated", **among(k, known)))
+        if not isinstance(k, SupportsIndex):
+            why = "a run is had by its number or its id"
+            raise OptionError(Problem(f"no run {brief(k)}", "simulated", why, "write [0]"))
+        if not -len(self.motions) <= k.__index__() < len(self.motions):
+            there = f"there are {len(self.motions)}, from 0"
+            raise NoSuchRun(Problem(f"no run {k}", "simulated", there, "write a number below that"))
         return self.motions[k]
 
     def __repr__(self) -> str:

@@ -196,6 +196,13 @@ CONTROLS = np.tile([1.7, 0.1], (9, 1))
         (lambda: mmgtune.ZigzagOrder(0, 0), "the rudder angle is 0", "math.radians(35.0)"),
         (lambda: mmgtune.ZigzagOrder(0.2, 0.0), "the check heading is 0", "math.radians(35.0)"),
         (lambda: SpiralOrder(0.0, 60.0), "the rudder angle is 0", "Straight()"),
+        (lambda: TRIALS.plot.tracks(3), "3 is no id", "write one of these"),
+        (lambda: TRIALS.plot.histories(["turn_p35", "turn_m10"]), "2 trials are named", ".plot.histories('turn_p35')"),
+        (lambda: TRIALS.plot.histories("turn_p35", 5), "channels is 5", "give a list"),
+        (lambda: mmgtune.simulate(SHIP, TRIALS["turn_p35"])["turn_p3"], "no run 'turn_p3'", "'turn_p35'"),
+        (lambda: mmgtune.simulate(SHIP, TRIALS["turn_p35"])[99], "no run 99", "a number below"),
+        (lambda: mmgtune.simulate(SHIP, TRIALS["turn_p35"])[None], "no run None", "write [0]"),
+        (lambda: mmgtune.Hooks(stop=True), "stop is True (stop)", "Hooks(stop=lambda: False)"),
         (lambda: mmgtune.load_profile(None), "no name of a ship profile (None)", "a text or a Path"),
     ],
 )
@@ -234,6 +241,21 @@ class AResult:
 
     def as_ship(self):
         return self.ship
+
+
+def test_a_run_is_had_by_its_id_as_by_its_number():
+    runs = mmgtune.simulate(SHIP, [TRIALS["turn_p35"], TRIALS["zigzag_20"]])
+    assert runs["zigzag_20"] is runs[1] is runs[-1]
+    assert [run.id for run in runs] == ["turn_p35", "zigzag_20"]
+    with pytest.raises(ValueError):
+        runs.index("turn_p35")
+
+
+def test_equal_profiles_have_the_same_hash():
+    other = replace(SHIP, template="")
+    assert other == SHIP
+    assert {SHIP: 1}[other] == 1
+    assert hash(mmgtune.load_profile("suzaku_fam")) != hash(SHIP)
 
 
 def test_files_stand_for_trials_in_a_list():

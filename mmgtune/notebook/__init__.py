@@ -43,7 +43,7 @@ def plots(of: object) -> Sequence[str]:
     return [*found, "coefficients"] if view.rooms is not None else found
 
 
-def plot(of: object, what: str, *which: str, **how: Any) -> Any:
+def plot(of: object, what: str, *which: str | Sequence[str], **how: Any) -> Any:
     """See ``displayed.Display``.  Raises OptionError for a picture that there is not."""
     there = plots(of)
     if what not in there:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..columns import cut
 from ..displayed import inert
-from ..errors import OptionError, Problem, among
+from ..errors import OptionError, Problem, among, brief, parts_of
 from ..inputs import INPUTS
 from ..report.svg import FILE_COLORS
 from ..report.wording import CHANNELS, Channel, input_channel
@@ -58,7 +58,7 @@ def plain(draw: Callable[..., Any]) -> Callable[..., Any]:
 
 
 @plain
-def draw_tracks(view: View, *trials: str, ax: Axes | None = None) -> Any:
+def draw_tracks(view: View, *trials: str | Sequence[str], ax: Axes | None = None) -> Any:
     """See ``displayed.Plots.tracks``."""
     motions = view.motions() if view.motions else {}
     names = _named(motions, trials) if trials else [*motions][:MOST]
@@ -82,12 +82,17 @@ def draw_tracks(view: View, *trials: str, ax: Axes | None = None) -> Any:
 
 
 @plain
-def draw_histories(view: View, *trials: str, channels: Sequence[str] = (), ax: Any = None) -> Any:
+def draw_histories(view: View, *trials: str | Sequence[str], channels: Sequence[str] = (), ax: Any = None) -> Any:
     """See ``displayed.Plots.histories``."""
     motions = view.motions() if view.motions else {}
     if not motions:
         raise _nothing()
-    (name,) = _named(motions, trials) if trials else [*motions][:1]
+    names = _named(motions, trials) if trials else [*motions][:1]
+    if len(names) != 1:
+        why = "histories are of one trial, over its own time"
+        fix = f"name one: .plot.histories({(names or [*motions])[0]!r})"
+        raise OptionError(Problem(f"{len(names)} trials are named", "plot", why, fix))
+    (name,) = names
     lines = motions[name]
     shown = [_channel(one, lines) for one in channels or _usual(lines)]
     if ax is None:
@@ -154,12 +159,17 @@ def _room(ax: Axes, row: int, shift: float, room: Room, colour: str, several: bo
                     textcoords="offset points", va="center", fontsize="small")  # fmt: skip
 
 
-def _named(motions: Mapping[str, Any], trials: Sequence[str]) -> list[str]:
-    """Ids that are there.  Raises OptionError for one that is not."""
-    unknown = [name for name in trials if name not in motions]
+def _named(motions: Mapping[str, Any], trials: Sequence[str | Sequence[str]]) -> list[str]:
+    """Ids that are there, given one by one or in lists.  Raises OptionError for one that is not."""
+    names: list[Any] = []
+    for given in trials:
+        parts = parts_of(given)
+        names += [given] if parts is None else parts
+    unknown = [name for name in names if not isinstance(name, str) or name not in motions]
     if unknown:
-        raise OptionError(Problem(f"there is no trial '{unknown[0]}'", "plot", **among(unknown[0], [*motions])))
-    return list(trials)
+        what = f"there is no trial '{unknown[0]}'" if isinstance(unknown[0], str) else f"{brief(unknown[0])} is no id"
+        raise OptionError(Problem(what, "plot", **among(unknown[0], [*motions])))
+    return names
 
 
 def _nothing() -> OptionError:

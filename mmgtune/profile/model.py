@@ -143,6 +143,11 @@ class ShipProfile(Displayed):
         gear = self.steering_gear.actuator if self.steering_gear and INPUTS[name].role == "rudder" else None
         return self.actuators.get(name, gear)
 
+    def __hash__(self) -> int:
+        """The same of profiles that are equal."""
+        numbers = (number for section in self.sections.values() for number in section.numbers.items())
+        return hash((self.id, self.name, tuple(numbers)))
+
     def __repr__(self) -> str:
         """In a line."""
         parts = ", ".join(f"{kind} {section.component.tag}" for kind, section in list(self.sections.items())[:6])

@@ -262,3 +262,8 @@ def test_each_kind_is_a_class_that_can_be_shown():
     shown = {name for name, of in public.items() if isinstance(of, type) and issubclass(of, Displayed)}
     assert shown <= set(KINDS)
     assert set(KINDS) - shown <= {"SweepResult", "LeftOut", "Motion"} | set(public)
+
+
+def test_ids_may_stand_in_a_list_and_a_channel_alone(trials):
+    assert len(trials.plot.tracks(["turn_p35", "turn_m10"])) == 2
+    assert len(trials.plot.histories("turn_p35", "psi")) == 1
