@@ -190,7 +190,7 @@ def test_the_command_writes_them_and_others_take_them(tmp_path):
     assert band["low"] < row["indices"]["advance_m"] < band["high"]
     ended = run("simulate", "-p", "bands", "--zigzag", "20/20", cwd=tmp_path)
     assert ended.code == 0, ended.err
-    assert re.search(r"overshoot 1 +[\d.]+ deg +[\d.]+ ± [\d.]+ deg\n", ended.out)
+    assert re.search(r"1st overshoot +[\d.]+ deg +[\d.]+ ± [\d.]+ deg\n", ended.out)
     assert "band of 90 % of 100 particles" in ended.err
     lengths = run("simulate", "-p", "bands", "--turn", "35", cwd=tmp_path).out
     assert re.search(r" advance +[\d.]+ m +[\d.]+ L +\d+ ± [\d.]+ m, [\d.]+ ± [\d.]+ L\n", lengths)

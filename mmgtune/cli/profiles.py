@@ -293,7 +293,7 @@ def _asked() -> Particulars:
 
 def _side_by_side(found: Comparison) -> str:
     """Coefficients and indices of two profiles in columns."""
-    from ..report.comparison_page import INDEX_WORDS
+    from ..report.comparison_page import words_of
     from ..report.wording import run_words
 
     def number(value: float | None) -> str:
@@ -306,6 +306,6 @@ def _side_by_side(found: Comparison) -> str:
             rows.append((row["name"] + unit, number(row["a"]), number(row["b"])))
     rows.append(("", "", ""))
     for row in found.data["manoeuvres"]["indices"]:
-        words = f"{run_words(row['manoeuvre'])}, {INDEX_WORDS.get(row['index'], row['index'])}"
+        words = f"{run_words(row['manoeuvre'])}, {words_of(row['index'])}"
         rows.append((words, number(row["a"]), number(row["b"])))
     return "\n".join(c.table(("", *(name[-22:] for name in found.profiles)), rows))

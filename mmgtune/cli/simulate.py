@@ -139,6 +139,7 @@ def _text(result: dict[str, Any]) -> str:
 
 def _indices(result: dict[str, Any]) -> list[tuple[str, ...]]:
     """Cells: an index, its value, the same in ship lengths, what was measured, the same in ship lengths, the band."""
+    from ..manoeuvres.named import in_order
     from ..report.wording import index_words, is_index, number
 
     def lengths(of: dict[str, Any], name: str) -> str:
@@ -147,7 +148,7 @@ def _indices(result: dict[str, Any]) -> list[tuple[str, ...]]:
 
     measured, bands = result["measured"] or {}, result.get("bands", {})
     found: list[tuple[str, ...]] = []
-    for name in filter(is_index, result["indices"]):
+    for name in filter(is_index, in_order(result["indices"])):
         value, true = number(result["indices"][name]), number(measured.get(name))
         words, unit = index_words(name)
         if value is not None:

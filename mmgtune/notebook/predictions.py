@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..predicting.reading import BY_KEY
+from ..manoeuvres.named import BY_KEY
 from .ships import measured
 from .view import Line, Row, View
 

@@ -6,9 +6,9 @@ import re
 from dataclasses import dataclass
 
 from ..errors import OptionError, Problem, among, must_be_a
+from ..manoeuvres.named import KNOWN, Known
 from ..options import PredictOptions
 from ..predicting.asked import Approach, Asked, asked
-from ..predicting.reading import KNOWN, Known
 from ..predictor import Predictor
 from ..trial.index_trial import INDICES
 

@@ -4,56 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray
-from ..trial.index_trial import INDICES
-from ..units import DEG
+from ..manoeuvres.named import BY_KEY, KNOWN
 
 Values = dict[str, FloatArray]
 """(n_particles,) of each index, in the unit of its key, NaN where a particle does not reach it."""
-
-
-@dataclass(frozen=True)
-class Known:
-    """An index: its key with the unit, words, the unit people read, the factor to it from SI.
-
-    endless  whether not to reach it is to lie above all that do
-    """
-
-    key: str
-    words: str
-    unit: str
-    factor: float
-    endless: bool
-
-
-_UNITS = {
-    "m": ("_m", "m", 1.0),
-    "s": ("_s", "s", 1.0),
-    "rad": ("_deg", "deg", 1.0 / DEG),
-    "m/s": ("_m_per_s", "m/s", 1.0),
-    "rad/s": ("_deg_per_s", "deg/s", 1.0 / DEG),
-    "-": ("", "-", 1.0),
-}
-
-
-def _known(name: str, words: str, unit: str) -> Known:
-    suffix, shown, factor = _UNITS[unit]
-    endless = (unit in ("m", "s") and name != "lateral_deviation") or name.startswith("overshoot")
-    return Known(name + suffix, words, shown, factor, endless)
-
-
-KNOWN: Mapping[str, Known] = {
-    **{name: _known(name, one.words, one.unit) for name, one in INDICES.items()},
-    "overshoot_4": _known("overshoot_4", "4th overshoot", "rad"),
-    "lateral_deviation": _known("lateral_deviation", "lateral deviation", "m"),
-}
-"""Indices that are shown, by the names of ``manoeuvres.on_lanes``."""
-
-BY_KEY: Mapping[str, Known] = {one.key: one for one in KNOWN.values()}
 
 
 def of_lanes(values: Mapping[str, FloatArray], sound: BoolArray) -> Values:

@@ -13,6 +13,7 @@ from ..arrays import BoolArray, FloatArray
 from ..backends import STATES
 from ..bands import IndexBand, Pooled, WindowScore, covariances, fan, index_band, pooled, widest
 from ..displayed import Plotted, inert
+from ..manoeuvres.named import BY_KEY
 from ..options import PredictOptions
 from ..predictor import Predictor
 from ..profile import ShipProfile
@@ -20,7 +21,7 @@ from ..provenance import made_by
 from ..trial import Trial
 from ..units import DEG
 from .asked import Approach, profile_behind
-from .reading import BY_KEY, Values
+from .reading import Values
 
 END = {
     "x": ("north", "m", 1.0),

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ..manoeuvres.named import KNOWN
 from . import advice, motion_block, motions
 from .blocks import Block, Card, Cell, Commands, Fold, Page, Prose, Section, Table, cells
 from .common import doubts, picture
 from .load import Kind
 from .plot import Axis, Figure, Line, Look, Mark, Panel
-from .wording import NONE, clean, coefficient_text, number, percent, run_words, shown
+from .wording import NONE, clean, coefficient_text, index_words, number, percent, run_words, shown
 
 LONG = 20
 """Coefficients that differ, more than which are folded away."""
@@ -29,18 +30,14 @@ _FORCES = (
         ("X", "Y", "N"),
     ),
 )
-INDEX_WORDS = {
-    "advance_over_L": "advance [L_pp]",
-    "transfer_over_L": "transfer [L_pp]",
-    "tactical_diameter_over_L": "tactical diameter [L_pp]",
-    "steady_diameter_over_L": "steady diameter [L_pp]",
-    "speed_ratio_360": "speed after a full turn, over the approach speed [–]",
-    "steady_drift_angle_deg": "steady drift angle [°]",
-    "overshoot_1_deg": "first overshoot [°]",
-    "overshoot_2_deg": "second overshoot [°]",
-    "initial_turning_distance_over_L": "initial turning distance [L_pp]",
-    "period_s": "period [s]",
-}
+
+
+def words_of(key: str) -> str:
+    """An index of a comparison with its unit, lengths in those of the ship."""
+    if key.endswith("_over_L"):
+        return f"{KNOWN[key.removesuffix('_over_L')].words} [L_pp]"
+    words, unit = index_words(key)
+    return f"{words} [{unit or '–'}]"
 
 
 @dataclass(frozen=True)
@@ -194,7 +191,7 @@ def _indices(names: tuple[str, str], manoeuvres: Mapping[str, Any]) -> Table:
         rows.append(
             cells(
                 run_words(row["manoeuvre"]),
-                INDEX_WORDS.get(row["index"], row["index"]),
+                words_of(row["index"]),
                 shown(a, 4),
                 shown(b, 4),
                 moved,

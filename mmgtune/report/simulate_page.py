@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..manoeuvres.named import in_order
 from . import advice, approaches, codes, measures, motion_block, motions
 from .blocks import Block, Card, Cell, Commands, Fold, Page, Section, Table, cells
 from .common import doubts, made_table
@@ -181,7 +182,8 @@ def _indices(record: SimulationRecord) -> Section | None:
     banded = any(run.get("bands") for run in record.runs)
     for run in record.runs:
         measured = run["measured"] or {}
-        for key, value in run["indices"].items():
+        for key in in_order(run["indices"]):
+            value = run["indices"][key]
             if not is_index(key) or number(value) is None:
                 continue
             words, unit = index_words(key)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from ..manoeuvres.named import in_order
 from .blocks import Cell, Table, cells
 from .findings import off_heading, off_track
 from .tracks import ROLES
@@ -109,7 +110,7 @@ def indices(record: RunRecord) -> Table | None:
     for row in record.results:
         values = row.get("indices") or {}
         measured, before, after = (values.get(which) or {} for which in ("measured", "before", "after"))
-        for key in filter(is_index, dict.fromkeys([*measured, *before, *after])):
+        for key in filter(is_index, in_order(dict.fromkeys([*measured, *before, *after]))):
             true, first, last = number(measured.get(key)), number(before.get(key)), number(after.get(key))
             if true is None and first is None and last is None:
                 continue

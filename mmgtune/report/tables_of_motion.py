@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from ..manoeuvres.named import in_order
 from .blocks import Cell, Table, cells
 from .tables import tone
 from .tracks import distance_from
@@ -51,7 +52,8 @@ def index_errors(results: Sequence[Mapping[str, Any]]) -> Table | None:
                 if relative is not None:
                     errors.setdefault(key, []).append((abs(first - true) * relative, abs(last - true) * relative))
     rows = []
-    for key, pairs in errors.items():
+    for key in in_order(errors):
+        pairs = errors[key]
         if key not in PRINCIPAL and errors.keys() & set(PRINCIPAL):
             continue
         words, unit = index_words(key)

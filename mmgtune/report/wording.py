@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ..manoeuvres.named import BY_KEY
 from ..options import in_flags
 from ..phrases import counted, listed
 from ..units import DEG, shown_in
@@ -72,10 +73,6 @@ _CIRCUMSTANCES = re.compile(
 )
 
 
-_AT_HEADING = (
-    (re.compile(r"time_(\d+)_s"), "time to {} deg", "s"),
-    (re.compile(r"speed_ratio_(\d+)"), "speed at {} deg over approach speed", ""),
-)
 PRINCIPAL = (
     "advance_m", "transfer_m", "tactical_diameter_m", "steady_diameter_m", "steady_speed_m_per_s",
     "steady_drift_angle_deg", "time_90_s", "overshoot_1_deg", "overshoot_2_deg", "initial_turning_time_s", "period_s",
@@ -214,9 +211,8 @@ def sentence(text: Any) -> str:
 
 def index_words(key: str) -> tuple[str, str]:
     """Words and unit of an index of a manoeuvre, from its key: tactical_diameter_m is a tactical diameter in m."""
-    for pattern, words, unit in _AT_HEADING:
-        if match := pattern.fullmatch(key):
-            return words.format(match.group(1)), unit
+    if known := BY_KEY.get(key):
+        return known.words, unit_words(known.unit)
     for suffix, unit in _SUFFIXES:
         if key.endswith(suffix):
             return clean(key.removesuffix(suffix)).replace("_", " "), unit

@@ -150,11 +150,21 @@ def test_simulate_trials_beside_the_measured_indices(tmp_path):
     assert set(runs["turn_m10"]["measures"]) == {"MMD", "MED", "ASD", "MSD", "PMD", "PED", "cVDM"}
 
 
+def test_indices_have_one_name_and_one_order(tmp_path):
+    orders = ("--turn", "35", "--zigzag", "10/10")
+    simulated, predicted = (run(*start, *orders, cwd=tmp_path).out for start in (("simulate",), ("predict", "suzaku")))
+    rows = r"^  (?!IMO)(\S.*?)  +[\d.]+(?: |$)"
+    names = re.findall(rows, predicted, re.M)
+    assert "speed ratio at 90 deg" in names
+    assert names[-3:] == ["4th overshoot", "reach", "period"]
+    assert [name for name in re.findall(rows, simulated, re.M) if name in names] == names
+
+
 def test_simulate_says_indices_in_words_with_units(tmp_path):
     ended = run("simulate", "--turn", "35", "--zigzag", "10/10", cwd=tmp_path)
     assert re.search(r"^turn_p35  \(turn 35° to starboard, \d+ s, rk4\)\n  advance +[\d.]+ m +[\d.]+ L\n", ended.out)
     assert re.search(r"^  steady yaw rate +[\d.]+ deg/s$", ended.out, re.M)
-    assert re.search(r"^  overshoot 1 +[\d.]+ deg$", ended.out, re.M)
+    assert re.search(r"^  1st overshoot +[\d.]+ deg$", ended.out, re.M)
     assert "_" not in ended.out.replace("turn_p35", "").replace("zigzag_p10_10", "")
     ended = run("simulate", "--trials", "suzaku", cwd=tmp_path)
     assert re.search(r"^  advance +[\d.]+ m +[\d.]+ L +measured +[\d.]+ m +[\d.]+ L$", ended.out, re.M)

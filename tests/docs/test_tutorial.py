@@ -37,9 +37,23 @@ def follow(folder: Path) -> list[str]:
                 ["bash", "-e", "-o", "pipefail", "-c", text], cwd=folder, env=env, capture_output=True, text=True
             )
             assert ended.returncode == 0, (text, ended.stdout, ended.stderr)
-            said = [words(line) for line in (ended.stdout + ended.stderr).splitlines()]
+            said = [line.rstrip() for line in (ended.stdout + ended.stderr).splitlines() if line.strip()]
         elif language == "text":
-            missing += [line for line in text.splitlines() if line.strip() != "..." and words(line) not in said]
+            missing += not_said(text, said)
+    return missing
+
+
+def not_said(shown: str, said: list[str]) -> list[str]:
+    """Lines that are shown and not said, to the letter; between two that stand below each other nothing is left out."""
+    missing, at, left_out = [], -1, True
+    for line in shown.splitlines():
+        if line.strip() == "...":
+            left_out = True
+        elif line.strip():
+            places = [k for k, other in enumerate(said) if k > at and other == line.rstrip()]
+            places = places if left_out else [k for k in places if k == at + 1]
+            missing += [] if places else [line]
+            at, left_out = (places[0] if places else at), False
     return missing
 
 

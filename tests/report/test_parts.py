@@ -88,7 +88,7 @@ def test_fixed_has_no_negative_zero() -> None:
     [
         ("advance_m", ("advance", "m")), ("steady_yaw_rate_deg_per_s", ("steady yaw rate", "deg/s")),
         ("time_90_s", ("time to 90 deg", "s")), ("steady_speed_m_per_s", ("steady speed", "m/s")),
-        ("speed_ratio_90", ("speed at 90 deg over approach speed", "")), ("overshoot_1_deg", ("overshoot 1", "deg")),
+        ("speed_ratio_90", ("speed ratio at 90 deg", "")), ("overshoot_1_deg", ("1st overshoot", "deg")),
     ],
 )  # fmt: skip
 def test_index_words(key: str, words: tuple[str, str]) -> None:
