@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+import textwrap
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +14,7 @@ from .blocks import Card, Commands, Page, Prose, Section, Table, cells
 from .common import picture
 from .load import Kind
 from .plot import Axis, Bar, Figure, Look, Mark, Panel, Rule
+from .svg import LETTERS
 from .tables import pairs
 from .wording import NONE, clean, count, fixed, percent, sentence, shown
 
@@ -103,19 +105,20 @@ def _picture(record: PlanRecord, level: str) -> Any:
             for k, row in enumerate(rows)
         ),
     ]
-    ticks = tuple((float(k), _short(row)) for k, row in enumerate(rows))
+    ticks = tuple((float(k), beside_its_bar(row)) for k, row in enumerate(rows))
     y = Axis(low=len(rows) - 0.4, high=-0.6, ticks=ticks, grid=False)
     unit = record.unit.strip() or "–"
     x = Axis(f"half the band of {level} % after it [{unit}]", low=0.0, high=1.05 * now)
-    panel = Panel(tuple(marks), x, y, shape=-(25.0 * len(rows) + 60.0))
+    lines = max(words.count("\n") + 1 for _, words in ticks)
+    panel = Panel(tuple(marks), x, y, shape=-((11.0 + 14.0 * lines) * len(rows) + 60.0))
     drawn = Figure("trials", "Half the band after each trial", (panel,), (("now", Look("flag", 1.4, "dash")),))
     more = f" Drawn are {len(rows)} of {len(record.trials)}." if len(rows) < len(record.trials) else ""
     return picture(drawn, "Trials", f"Half the band that each trial would leave, the shortest first.{more}")
 
 
-def _short(row: Mapping[str, Any]) -> str:
-    """A trial in the room of an axis."""
-    return clean(row["trial"]).replace(" deg", "°")
+def beside_its_bar(row: Mapping[str, Any]) -> str:
+    """A trial in the room of an axis, also of a narrow one."""
+    return "\n".join(textwrap.wrap(clean(row["trial"]).replace(" deg", "°"), LETTERS))
 
 
 def _table(record: PlanRecord) -> Table:

@@ -40,6 +40,9 @@ _LINE = 13.5
 _MARGIN = 12.0
 """Room beside a panel, at least."""
 
+LETTERS = 24
+"""Letters of a line beside a vertical axis that narrow panels have room for; wide ones have for twice as many."""
+
 _POINTS = 900
 """Points of a curve that a page of this width can show."""
 
@@ -199,7 +202,7 @@ def _panel(panel: Panel, width: int, height: int, ink: Ink) -> str:
     if y_places is None:
         few = max(2, int((height - top - bottom) / 34))
         y_places = tuple(ticks.logarithmic(y_low, y_high) if panel.y.log else ticks.linear(y_low, y_high, few))
-    longest = 24 if narrow else 48
+    longest = LETTERS if narrow else 2 * LETTERS
     y_places = tuple(
         (place, "\n".join(shortened(line, longest) for line in text.split("\n"))) for place, text in y_places
     )

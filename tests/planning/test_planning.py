@@ -20,6 +20,8 @@ from mmgtune.posterior.room import make_room, room_of
 from mmgtune.predicting.asked import Approach
 from mmgtune.predictor import as_predictor
 from mmgtune.profile import load_profile
+from mmgtune.report.plan_page import beside_its_bar
+from mmgtune.report.svg import LETTERS
 from tests.command import run
 from tests.hidden.cases import null
 from tests.hidden.plant import simulate
@@ -129,6 +131,13 @@ def test_trials_are_what_gear_and_equations_reach(ship):
     assert len({one.id for one in every}) == len(every) == 24
     assert not any(one.kind == "stop" for one in every)
     assert {one.kind for one in candidates(ship, APPROACH, ("zigzag",), False)} == {"zigzag"}
+
+
+def test_what_a_trial_is_called_stands_whole_beside_its_bar_on_a_narrow_page(ship):
+    for one in candidates(ship, ship.approach, (), half=True):
+        lines = beside_its_bar({"trial": one.words}).split("\n")
+        assert max(map(len, lines)) <= LETTERS, lines
+        assert " ".join(lines).replace("°", " deg") == one.words
 
 
 def test_a_stop_ends_where_she_has_no_way():
