@@ -204,6 +204,15 @@ def test_the_command(tmp_path, data):
     assert "90 % holds" in shown.out
     assert "±" in shown.out
     assert "begun once in each whole run" in shown.out
+    assert "deviation over networks" in shown.out
+
+
+def test_a_comparison_of_profiles_does_not_speak_of_networks(tmp_path, data):
+    for trial in data.trials.values():
+        write_trial(trial, tmp_path / "log" / f"{trial.id}.parquet")
+    ended = run("compare", "suzaku", "kvlcc2", "log", "--out", "compared", cwd=tmp_path)
+    assert "network" not in ended.out
+    assert "network" not in (tmp_path / "compared" / "report.md").read_text()
 
 
 @pytest.mark.parametrize(

@@ -88,9 +88,10 @@ def summary(document: Mapping[str, Any]) -> str:
     kinds = [k for k, one in enumerate(columns) if one["run"] is None]
     runs = [k for k, one in enumerate(columns) if one["run"] is not None]
     words = {"windows": f"begun anew every {document['window_s']:g} s", "whole": "begun once in each whole run"}
+    over = ": mean ± deviation over networks" if any(one["members"] > 1 for one in document["models"]) else ""
     lines: list[str] = []
     for convention, said in words.items():
-        lines += ["", f"L_MSE, {said}: mean ± deviation over networks (ratio to the first model)"]
+        lines += ["", f"L_MSE, {said}{over} (ratio to the first model)"]
         for of in filter(None, (kinds, runs)):
             lines += _table(document["models"], columns, of, convention)
     for convention, said in words.items():

@@ -21,12 +21,15 @@ if TYPE_CHECKING:
 
     Motion = Mapping[str, FloatArray]
 
-_MEANING = (
+_ERROR = (
     "L_MSE is the mean over time of the sum over all six states of squared differences over their variance (Wakita et "
-    "al. 2022, eq. 26): 0 is perfect. Mean and standard deviation over the networks of a model, each begun from a seed "
-    "of its own; in brackets the ratio to the first model. The best of a column is marked. A model of which a network "
-    "diverged has no mean there: the others alone would flatter it."
+    "al. 2022, eq. 26): 0 is perfect."
 )
+_OF_NETWORKS = (
+    " Mean and standard deviation over the networks of a model, each begun from a seed of its own. A model of which a "
+    "network diverged has no mean there: the others alone would flatter it."
+)
+_BESIDE = " In brackets the ratio to the first model. The best of a column is marked."
 
 
 @dataclass(frozen=True)
@@ -56,6 +59,11 @@ class ModelsRecord:
             "whole": "begun once in each whole run",
         }
 
+    @property
+    def several(self) -> bool:
+        """Whether one of the models is several networks, each begun from a seed of its own."""
+        return any(one["members"] > 1 for one in self.models)
+
     def columns(self, runs: bool) -> list[tuple[int, Mapping[str, Any]]]:
         """Places and facts of the columns: those of single runs, or the others."""
         return [(k, one) for k, one in enumerate(self.data["columns"]) if (one["run"] is not None) == runs]
@@ -68,8 +76,10 @@ def build(record: ModelsRecord) -> Page:
         Section(f"{key}-scores", f"Models {words}", tuple(_tables(record, key)))
         for key, words in record.conventions.items()
     ]
-    caption = "L_MSE by kind of manoeuvre: mean and standard deviation over the networks; the number of runs below."
-    sections.insert(0, Section("errors", "Errors", (picture(_figure(record), "Errors", caption), Prose((_MEANING,)))))
+    over = "mean and standard deviation over the networks; " if record.several else ""
+    caption = f"L_MSE by kind of manoeuvre: {over}the number of runs below."
+    meaning = _ERROR + (_OF_NETWORKS if record.several else "") + _BESIDE
+    sections.insert(0, Section("errors", "Errors", (picture(_figure(record), "Errors", caption), Prose((meaning,)))))
     if record.motions:
         sections.insert(0, _motions(record))
     if "bands" in data["models"][0]["windows"][0]:  # records of older versions have none
@@ -135,7 +145,7 @@ def _tables(record: ModelsRecord, convention: str) -> list[Table]:
             continue
         rows = []
         for model in record.models:
-            row: list[str | Cell] = [model["called"], str(model["members"])]
+            row: list[str | Cell] = [model["called"], *([str(model["members"])] if record.several else [])]
             for k, column in columns:
                 text = _mean(model[convention][k], model["members"])
                 if number(model[convention][k]["ratio"]) is not None:
@@ -146,10 +156,9 @@ def _tables(record: ModelsRecord, convention: str) -> list[Table]:
             rows.append(cells(*row))
         heads = [f"{clean(one['name'])}, {count(one['runs'], 'run')}" for _, one in columns]
         caption = f"L_MSE {words}, {record.conventions[convention]}; * the best of a column"
-        numeric = range(1, 2 + len(columns))
-        found.append(
-            Table(f"{convention}-{id}-table", caption, ("model", "networks", *heads), tuple(rows), numeric=numeric)
-        )
+        first = ("model", "networks") if record.several else ("model",)
+        numeric = range(1, len(first) + len(columns))
+        found.append(Table(f"{convention}-{id}-table", caption, (*first, *heads), tuple(rows), numeric=numeric))
     return found
 
 
@@ -217,9 +226,8 @@ def _motions(record: ModelsRecord) -> Section:
         motions.Run(str(one["name"]), one["called"], replace(model_look(k), marker="o"))
         for k, one in enumerate(record.models)
     ]
-    several = any(one["members"] > 1 for one in record.models)
     caption = "Whole trials from the first measured state, with the measured inputs" + (
-        "; of several networks the first." if several else "."
+        "; of several networks the first." if record.several else "."
     )
     block = motion_block.of_manoeuvres(
         [motions.Manoeuvre(clean(id), found) for id, found in record.motions.items()],

@@ -78,6 +78,8 @@ def test_screens(browser: Any, runs: dict[str, Path], name: str) -> None:
             page.evaluate(f"document.documentElement.style.fontSize = '{size}'")
             page.wait_for_timeout(60)
             assert page.evaluate(OVERFLOW) == 0, size
+        boxes = [box for one in page.locator('input[type="checkbox"]').all() if (box := one.bounding_box())]
+        assert all(box["width"] == box["height"] > 24.0 for box in boxes)  # with the letters, not 13 pixels as before
         text = page.locator("body").inner_text()
         assert not re.search(r"[−-]0\.0+\s%|\d{5,}\s%|NaN|undefined", text)
         assert visit.complaints == []
