@@ -104,7 +104,7 @@ def near_to(name: object, known: Sequence[str], cutoff: float = 0.62) -> str:
     for other in known[:1000]:
         if len(other) <= 80:
             short.setdefault(other.lower(), []).append(other)
-    asked = str(name)[:80].lower()
+    asked = (name if isinstance(name, str) else brief(name))[:80].lower()
     alike = difflib.get_close_matches(asked, short, n=3, cutoff=cutoff)
     alike = alike or [one for one in short if asked and one.startswith(asked)]
     near = [other for one in alike for other in short[one]][:3]
@@ -128,6 +128,14 @@ def brief(value: object) -> str:
     short.maxlevel, short.maxstring, short.maxother = 3, 80, 80
     short.maxlist = short.maxdict = short.maxtuple = 8
     return short.repr(value)
+
+
+def repr_of(value: object) -> str:
+    """The ``repr`` of a value, or where that fails what kind it is."""
+    try:
+        return repr(value)
+    except Exception:  # whatever a class of somebody else raises
+        return f"<{kind_of(value)}>"
 
 
 def kind_of(value: object) -> str:

@@ -46,12 +46,20 @@ def kept_in(folder: Path | str | None, resume: bool) -> Path | None:
     return None
 
 
+def hold_flag(overwrite: object) -> None:
+    """Raises OptionError for what is neither true nor false."""
+    if not isinstance(overwrite, bool) and type(overwrite).__name__ not in ("bool", "bool_"):  # those of NumPy
+        why, fix = "it says whether files that are there may be replaced", "give True or False"
+        raise OptionError(Problem(f"overwrite is {brief(overwrite)}", "overwrite", why, fix))
+
+
 @contextlib.contextmanager
 def atomic(path: Path, overwrite: bool = True) -> Iterator[Path]:
     """A temporary path beside ``path``, renamed to it when the block ends well and removed when it does not.
 
     Raises OutputError where ``path`` exists and ``overwrite`` is false, or the system refuses to write.
     """
+    hold_flag(overwrite)
     if not overwrite and os.path.lexists(path):  # a link to nowhere would be replaced too
         raise OutputError(exists(path))
     with half(path) as part:
@@ -186,6 +194,7 @@ def refuse_existing(paths: Iterable[Path], overwrite: bool = False) -> None:
     paths = tuple(paths)
     for folder in dict.fromkeys(path.parent for path in paths):
         refuse_file(folder)
+    hold_flag(overwrite)
     if overwrite:
         return
     found = [exists(path) for path in dict.fromkeys(paths) if os.path.lexists(path)]

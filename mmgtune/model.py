@@ -12,7 +12,7 @@ import numpy.typing as npt
 from .arrays import FloatArray, numbers_of
 from .components import Component
 from .effects import ClockEffect, CoefficientsEffect, Effect
-from .errors import OptionError, Problem, ProfileError, all_of, among
+from .errors import OptionError, Problem, ProfileError, all_of, among, brief
 from .given import ShipGiven, ship_of
 
 E = TypeVar("E", bound=Effect)
@@ -119,10 +119,10 @@ class Model:
     def rows_of(self, names: Sequence[str]) -> list[int]:
         """Rows of numbers by their names.  Raises ProfileError for a name that no number has."""
         several = [names] if isinstance(names, str) else names
-        unknown = [name for name in several if name not in self.rows]
+        unknown = [name for name in several if not isinstance(name, str) or name not in self.rows]
         if unknown:
             where = str(self.profile.path or self.profile.id)
-            found = (Problem(f"no number '{name}'", where, **among(name, list(self.rows))) for name in unknown)
+            found = (Problem(f"no number {brief(name)}", where, **among(name, list(self.rows))) for name in unknown)
             raise ProfileError(*found)
         return [self.rows[name] for name in several]
 

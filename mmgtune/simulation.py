@@ -12,7 +12,7 @@ import numpy as np
 from .arrays import FloatArray, numbers_of
 from .backends import STATES, Integrator, LaneModel
 from .displayed import Plotted, inert
-from .errors import OptionError, Problem, TrialError, among, kind_of
+from .errors import OptionError, Problem, TrialError, among, kind_of, must_be_a
 from .given import ShipGiven, ship_of
 from .inputs import INPUTS, Role
 from .manoeuvres import Track, manoeuvre_kind, zigzag_indices
@@ -76,6 +76,7 @@ class Motion(Plotted):
 
         Raises OptionError for a name that is no channel of motion.
         """
+        must_be_a(name, str, "channel")
         state = ATTRIBUTES.get(name, name)
         if state in STATES:
             return self.states[:, STATES.index(state)]
@@ -83,7 +84,7 @@ class Motion(Plotted):
         known |= {one: f"write motion.controls[:, {k}]" for k, one in enumerate(self.inputs)}
         problem = {"why": f"channels are {', '.join(FILE_CHANNELS)}", "fix": known.get(name, "")}
         raise OptionError(
-            Problem(f"no channel '{name}'", "channel", **problem if name in known else among(str(name), FILE_CHANNELS))
+            Problem(f"no channel '{name}'", "channel", **problem if name in known else among(name, FILE_CHANNELS))
         )
 
     def track(self) -> Track:

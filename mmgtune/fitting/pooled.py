@@ -41,6 +41,9 @@ ROUNDS = 500
 """Rounds of expectation and maximisation at most; SETTLED is the change of a spread, as a share, that ends them."""
 SETTLED = 1e-4
 
+FARTHEST = 1e4
+"""Distance of a class from what was known before, in units of how well it was, that no trials show: damage."""
+
 FLOOR = 1e-3
 """Least spread, as a share of how well a coefficient was known before: more alike no sisters are."""
 
@@ -164,7 +167,7 @@ def _pooled(sisters: SisterClass) -> Pooled:
     of_mean = np.sum(H - H @ P @ H, axis=0) + np.eye(len(names))
     error = np.sqrt(np.diag(np.linalg.inv(of_mean)))
     each = np.einsum("ijk,ik->ij", P, b + mean / spread**2)
-    if not all(np.isfinite(one).all() for one in (mean, error, spread, each)):
+    if not all((np.abs(one) < FARTHEST).all() for one in (mean, error, spread, each)):
         raise np.linalg.LinAlgError("its numbers run away")
     return Pooled(
         names,

@@ -15,7 +15,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..documents import write_json
 from ..errors import LogError, Problem, kind_of, parts_of
-from ..files import path_of, refuse_existing, refuse_file, true_path
+from ..files import hold_flag, path_of, refuse_existing, refuse_file, true_path
 from ..phrases import counted
 from ..resources import must_be_name
 from ..trial import Trial, write_trial
@@ -130,6 +130,7 @@ def import_logs(
     paths = paths_of(logs)
     log_map = log_map if isinstance(log_map, LogMap) else load_map(log_map)
     refuse_file(out)
+    hold_flag(overwrite)
     if not dry_run and not overwrite:
         # Known before the work is done; parts of a log that is cut are found out later.
         refuse_existing([out / REPORT, *(out / f"{_name(log_map.of(log).id, log)}.parquet" for log in paths)])

@@ -13,7 +13,7 @@ from pathlib import Path
 from types import NoneType, UnionType
 from typing import Any, get_args, get_type_hints
 
-from ..errors import OptionError, Problem, among, brief, kind_of
+from ..errors import OptionError, Problem, among, brief, kind_of, repr_of
 from ..limits import as_float
 
 INPUT, SEARCH, OUTPUT, REPRODUCE = "Input", "Search", "Output", "Reproducibility"
@@ -326,7 +326,7 @@ def _part(value: Any, kind: type, unit: str = "") -> str:
 
 
 def _short(value: Any) -> str:
-    return textwrap.shorten(repr(value), 60, placeholder=" ...")
+    return textwrap.shorten(repr_of(value), 60, placeholder=" ...")
 
 
 def _plain(value: Any) -> Any:

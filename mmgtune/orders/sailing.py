@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 from collections.abc import Callable
 from copy import copy
@@ -11,8 +12,8 @@ from types import NoneType
 
 import numpy as np
 
-from ..arrays import FloatArray
-from ..errors import OptionError, Problem, brief, kind_of, must_be_a
+from ..arrays import FloatArray, numbers_of
+from ..errors import OptionError, Problem, brief, kind_of, must_be_a, reason
 from ..inputs import Role
 from ..limits import TRIAL_SAMPLES
 from ..model import Model
@@ -74,8 +75,8 @@ class Sailing:
             fix = "give orders, such as TurningOrder(radians(35)) or ZigzagOrder(radians(10))"
             raise OptionError(Problem(what, "helmsman", why, fix))
         must_be_a(self.id, str, "id")
-        must_be_a(self.engine, (Callable, NoneType), "engine")  # type: ignore[arg-type]
-        must_be_a(self.telegraph, (Callable, NoneType), "telegraph")  # type: ignore[arg-type]
+        for name in _TAKES:
+            _hold_function(name, getattr(self, name))
         positive(longest=self.longest, sample=self.sample, **({} if self.step is None else {"step": self.step}))
         TRIAL_SAMPLES.hold(self.longest / self.sample, "longest", OptionError)
         if not (self.speed is None or is_number(self.speed, above=0.0)):
@@ -113,6 +114,39 @@ class Sailing:
         return U_0, n_0
 
 
+_TAKES = {
+    "engine": ("the share of the approach speed left", "the revolutions as a share of n", "lambda share: 1.0"),
+    "telegraph": ("the time [s]", "revolutions [1/s]", "lambda t: 1.7 if t < 60.0 else 0.0"),
+}
+"""What each function of a sailing takes and returns, and how one is written."""
+
+
+def _hold_function(name: str, given: object) -> None:
+    """Raises OptionError for what cannot be called with one number; None is no function at all."""
+    must_be_a(given, (Callable, NoneType), name)  # type: ignore[arg-type]
+    if given is None:
+        return
+    takes, returns, example = _TAKES[name]
+    try:
+        inspect.signature(given).bind(0.0)  # type: ignore[arg-type]
+    except TypeError as error:
+        why, fix = f"it is given one number, {takes}, and returns {returns}", f"write {name}={example}"
+        raise OptionError(Problem(f"{name} cannot be called: {reason(error)}", name, why, fix)) from error
+    except ValueError:  # functions in C that do not say what they take
+        return
+
+
+def _number(name: str, function: Callable[[float], float], at: float) -> float:
+    """What a function of a sailing returns.  Raises OptionError where it is no finite number."""
+    found = function(at)
+    number = found if isinstance(found, float) else numbers_of(found)
+    if number is not None and np.ndim(number) == 0 and math.isfinite(number):
+        return float(number)
+    takes, returns, example = _TAKES[name]
+    what = f"{name} returns {brief(found)} for {at:g}"
+    raise OptionError(Problem(what, name, f"it is given {takes} and returns {returns}", f"write {name}={example}"))
+
+
 class Watch:
     """One manoeuvre on its way: orders given step by step, and the log."""
 
@@ -138,8 +172,11 @@ class Watch:
         sample, k = divmod(step, self.steps)
         t = sample * sailing.sample + k * self.h
         rudder = self.helmsman.order(t, float(shown[2]) - sailing.heading)
-        n = self.n_0 if sailing.telegraph is None else sailing.telegraph(t)
-        share = 1.0 if sailing.engine is None else sailing.engine(math.hypot(state[3], state[4]) / self.U_0)
+        n, share = self.n_0, 1.0
+        if sailing.telegraph is not None:
+            n = _number("telegraph", sailing.telegraph, t)
+        if sailing.engine is not None:
+            share = _number("engine", sailing.engine, math.hypot(state[3], state[4]) / self.U_0)
         return rudder, n * share, 0.0
 
     def due(self, step: int) -> bool:

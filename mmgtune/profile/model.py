@@ -10,7 +10,7 @@ from typing import Any
 
 from ..components import ARRANGEMENTS, Arrangement, Component, split_name
 from ..displayed import Brief, Displayed
-from ..errors import Problem, ProfileError, among
+from ..errors import Problem, ProfileError, among, must_be_a
 from ..inputs import INPUTS
 from ..physics.actuation import moved
 from ..units import DIMENSIONLESS
@@ -155,7 +155,8 @@ class ShipProfile(Displayed):
         return f"ShipProfile({self.id}: {parts}{more})"
 
     def coefficient(self, name: str) -> Coefficient:
-        """The coefficient called 'section.symbol'.  Raises ProfileError if there is none."""
+        """The coefficient called 'section.symbol'.  Raises ProfileError if there is none, OptionError for no text."""
+        must_be_a(name, str, "name")
         section, symbol = split_name(name)
         found = self.sections[section].coefficients.get(symbol) if section in self.sections else None
         if found is None:

@@ -66,7 +66,7 @@ class TrialSet(Plotted):
         found = (self.trials.get(name) or self.stated.get(name)) if isinstance(name, str) else None
         if found is None:
             known = [*self.trials, *self.stated]
-            said = among(str(name), known)
+            said = among(name, known)
             if not isinstance(name, str):
                 such = f"['{known[0]}']" if known else "[ID]"
                 why = f"a trial is had by its id, and {kind_of(name)} is none"

@@ -35,6 +35,7 @@ def trial_of(table: Any, id: str, **facts: Any) -> Trial:
     if unknown:
         what, fix = f"a trial has no fact '{unknown[0]}'", f"known here: {', '.join(FACTS)}"
         raise TrialError(Problem(what, unknown[0], "what a trial is beside its columns has a name", fix))
+    where = id if isinstance(id, str) else brief(id)
     index = getattr(table, "index", None)
     time = str(getattr(index, "name", None))
     if _divided(time)[0] == "t" and time not in table and "t" not in table:
@@ -48,7 +49,7 @@ def trial_of(table: Any, id: str, **facts: Any) -> Trial:
         name, column = _named(str(given)), _numbers(table[given])
         if name in columns:
             why, fix = f"'{given}' is '{name}', and a trial has one of it", "leave one of the two out"
-            raise TrialError(Problem(f"column '{name}' is there twice", str(id), why, fix))
+            raise TrialError(Problem(f"column '{name}' is there twice", where, why, fix))
         if column is None and name not in REQUIRED:
             ignored.append(name)
             continue
@@ -59,9 +60,9 @@ def trial_of(table: Any, id: str, **facts: Any) -> Trial:
         shortest = min(columns, key=lambda name: len(columns[name]))
         what = f"'{longest}' has {len(columns[longest])} samples, '{shortest}' {len(columns[shortest])}"
         raise TrialError(
-            Problem(what, str(id), "all columns of a trial are as long as t", "write NaN where one has a gap")
+            Problem(what, where, "all columns of a trial are as long as t", "write NaN where one has a gap")
         )
-    problems = problems_in(as_json({"id": id, **facts}), brief(id), tuple(columns)) + unusable(columns, str(id))
+    problems = problems_in(as_json({"id": id, **facts}), brief(id), tuple(columns)) + unusable(columns, where)
     if problems:
         raise TrialError(*problems)
     named = {"ship": "", "manoeuvre": "", "source": "", **facts}
