@@ -41,9 +41,14 @@ def kept_in(folder: Path | str | None, resume: bool) -> Path | None:
     if folder is not None:
         return path_of(folder)
     if resume:
-        why, fix = "a run goes on from what it left there", "add folder=FOLDER, or leave resume out"
-        raise OptionError(Problem("resume=True needs the folder of the interrupted run", "resume", why, fix))
+        raise OptionError(resumed_nowhere("folder"))
     return None
+
+
+def resumed_nowhere(option: str) -> Problem:
+    """The problem of a run that is to be continued, where its folder is not given; ``option`` gives it."""
+    what, why = "resume=True needs the folder of the interrupted run", "a run goes on from what it left there"
+    return Problem(what, "resume", why, f"add {option}=FOLDER, or leave resume out")
 
 
 def hold_flag(overwrite: object) -> None:

@@ -15,7 +15,7 @@ from typer.core import TyperCommand
 from typer.models import OptionInfo
 
 from ..errors import MmgtuneError, OptionError, OutputError, Problem
-from ..files import refuse_file
+from ..files import refuse_file, resumed_nowhere
 from ..options import FLAGS, Options, again, choice, flags_of, in_flags
 from ..options.choice import OUTPUT
 from ..options.flags import off_flag
@@ -68,8 +68,7 @@ def _of_resuming(out: Path | None, force: bool, resume: bool) -> list[Problem]:
     """A run to continue needs its folder, and is not replaced."""
     found = []
     if resume and out is None:
-        what, why = "resume=True needs the folder of the interrupted run", "a run goes on from what it left there"
-        found.append(Problem(what, "resume", why, "add out=FOLDER"))
+        found.append(resumed_nowhere("out"))
     if resume and force:
         what = "resume=True and force=True do not go together"
         why = "resume=True goes on with what is there, force=True replaces it"

@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal
 
+import numpy as np
+
+from ..arrays import FloatArray
 from ..errors import OptionError, Problem
 from ..inputs import INPUTS
 from ..model import Model
@@ -22,7 +25,7 @@ from ..simulating import (
     zigzag_angles,
     zigzag_name,
 )
-from ..units import DEG
+from ..units import DEG, read_as
 
 Manoeuvre = Literal["turning", "zigzag", "stopping"]
 
@@ -123,15 +126,20 @@ def _stop(predictor: Predictor, options: PredictOptions, approach: Approach) -> 
 def _possible(predictor: Predictor, found: list[Asked]) -> None:
     """Raises OptionError for a rudder angle that the steering gear does not reach."""
     for name, gear in zip(predictor.inputs, actuators_of(predictor), strict=True):
-        for one in found:
-            within = gear is None or gear.low - 1e-9 <= one.rudder <= gear.high + 1e-9
-            if gear is None or within or INPUTS[name].role != "rudder":
-                continue
-            raise OptionError(
-                Problem(
-                    f"the order is {one.rudder / DEG:.3g} deg of rudder",
-                    one.manoeuvre if one.manoeuvre == "zigzag" else "turn",
-                    f"the rudder of '{predictor.name}' goes from {gear.low / DEG:.3g} to {gear.high / DEG:.3g} deg",
-                    "order less, or correct the limits of the profile",
-                )
-            )
+        for one in found if INPUTS[name].role == "rudder" else ():
+            hold_reached(name, gear, np.array([one.rudder]), "zigzag" if one.manoeuvre == "zigzag" else "turn")
+
+
+def hold_reached(name: str, gear: Actuator | None, ordered: FloatArray, where: str) -> None:
+    """Raises OptionError for the first of the orders (n,) to an input, in SI, that is beyond what moves it.
+
+    where  they are given
+    """
+    if gear is None:
+        return
+    beyond = ordered[(ordered < gear.low - 1e-9) | (ordered > gear.high + 1e-9)]
+    if len(beyond):
+        word, factor = read_as(INPUTS[name].unit)
+        what = f"'{name}' is ordered to {factor * beyond[0]:.4g} {word}"
+        why = f"it goes from {factor * gear.low:.4g} to {factor * gear.high:.4g} {word}"
+        raise OptionError(Problem(what, where, why, "order less, or correct the limits of the profile"))

@@ -10,7 +10,7 @@ import numpy as np
 from .. import limits
 from ..arrays import BoolArray, FloatArray
 from ..backends import pad
-from ..errors import OptionError, Problem, TrialError
+from ..errors import OptionError, TrialError
 from ..evaluation import Measured, TrialRecord
 from ..inputs import INPUTS
 from ..manoeuvres.summary import indices_of
@@ -19,9 +19,8 @@ from ..predictor import Predictor, cases_from, draught_of, portions, predicted
 from ..simulation import Motion
 from ..stated import no_reverse
 from ..trial import Trial
-from ..units import read_as
 from ..validation import window_scores
-from .asked import Approach, actuators_of, profile_behind
+from .asked import Approach, actuators_of, hold_reached, profile_behind
 from .order_list import OrderList
 from .reading import Values, of_records
 from .result import Foretold
@@ -54,13 +53,7 @@ def _possible(predictor: Predictor, orders: OrderList) -> None:
     for name, gear in zip(predictor.inputs, actuators_of(predictor), strict=True):
         ordered = orders.ordered.get(name, np.zeros(0))
         where = f"{orders.path}, column '{name}'"
-        word, factor = read_as(INPUTS[name].unit)
-        if gear is not None:
-            beyond = np.flatnonzero((ordered < gear.low - 1e-9) | (ordered > gear.high + 1e-9))
-            if len(beyond):
-                what = f"'{name}' is ordered to {factor * ordered[beyond[0]]:.4g} {word}"
-                why = f"it goes from {factor * gear.low:.4g} to {factor * gear.high:.4g} {word}"
-                raise OptionError(Problem(what, where, why, "order less, or correct the limits of the profile"))
+        hold_reached(name, gear, ordered, where)
         astern = INPUTS[name].role == "propeller" and bool((ordered < 0.0).any())
         if profile is not None and astern and (problem := no_reverse(profile, where, "order none below 0")):
             raise OptionError(problem)

@@ -18,6 +18,7 @@ from ..errors import OptionError, Problem, reason
 from ..inputs import INPUTS, Role
 from ..physics.quantities import STATES
 from ..resources import looked_for
+from ..run_folders import MOTIONS
 from ..trial.footer import rows_of
 from .forces import NO_SHIP, Ship
 from .wording import Channel, clean, input_channel
@@ -226,7 +227,7 @@ def motions_in(folder: Path, inputs: Sequence[Channel]) -> dict[str, dict[str, M
     """The motions of a run folder by trial and which."""
     import numpy as np
 
-    path = folder / "motions.parquet"
+    path = folder / MOTIONS
     if not path.is_file():
         raise _problem(
             "the run folder is not whole", path, "it lacks the measured and simulated motions", "run the fit again"

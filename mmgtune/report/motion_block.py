@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from ..run_folders import MOTIONS
 from . import findings, motions, tables_of_motion, tracks
 from .blocks import Motions, Picture, Table
 from .common import picture
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
     Motion = Mapping[str, FloatArray]
 
-FULL = "All samples are in motions.parquet in the run folder."
+FULL = f"All samples are in {MOTIONS} in the run folder."
 THINNED = "Long motions are drawn from evenly spaced samples and the least and the greatest of every stretch."
 FORCES = "Forces are the model's own along its own track, without what is not known of wind and current."
 

@@ -141,7 +141,7 @@ def _motions(record: ValidationRecord) -> Section | None:
     block = motion_block.of_manoeuvres(
         manoeuvres, runs, record.inputs, "Simulated from the first measured state with the measured inputs.",
         said="Tracks as measured and simulated.", drawn=drawn, selected=worst[0], L_pp=number(record.data.get("L_pp")),
-        notes=("All samples are in motions.parquet in the run folder.",),
+        notes=(motion_block.FULL,),
         why=f", on which {first['called']} does worst",
     )  # fmt: skip
     return Section("motions", "Tracks and time histories", (block,))
