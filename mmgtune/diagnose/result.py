@@ -231,7 +231,8 @@ class Diagnosis(Plotted):
             return "what they leave is more than noise"
         if len(brought) > 2 and self.groups:
             return "not all of them can be told from others"
-        if len(brought) > 2 and sum(bool(cause.runs) for cause in self.causes) > 1:
+        several = sum(bool(cause.runs) for cause in self.causes) > 1
+        if several and (len(brought) > 2 or not self.explains_all):
             return "more than one of them differs from run to run"
         share, low, _ = self.gain.share_removed
         if share < TOLD:
