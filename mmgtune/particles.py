@@ -116,6 +116,11 @@ class ParticlePredictor(PhysicsPredictor):
         """Id of the ship."""
         return self.model.profile.id
 
+    @property
+    def doubted(self) -> tuple[str, ...]:
+        """That the drawing of the particles was stopped, where it was."""
+        return (STOPPED,) if self.particles is not None and self.particles.interrupted else ()
+
     def drawn(self, n: int, seed: int, sampling: Sampling = "TS-infinity") -> PhysicsPredictor:
         """n particles, none twice where there are as many.
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from .arrays import BoolArray, FloatArray, IntArray
 from .backends import STATES, Cases, Integrator, LaneModel, get_backend, pad
+from .circumstances import notes_on
 from .displayed import Brief
 from .errors import OptionError, Problem, brief, kind_of
 from .foreign import RETURNED, hold_described, hold_predicted, lacking
@@ -260,6 +261,11 @@ class PhysicsPredictor(Brief):
         """The integrator."""
         return words_of(self.integrator)
 
+    @property
+    def doubted(self) -> tuple[str, ...]:
+        """What a reader of anything that it predicts must know, in words."""
+        return ()
+
     def predict(self, cases: Cases) -> Prediction:
         """See ``Predictor``."""
         result = get_backend(self.backend).run(
@@ -340,6 +346,14 @@ def draught_of(predictor: Predictor) -> float | None:
     """Draught of the ship [m] of a predictor that has a physics model, alone or with a network; else None."""
     model = getattr(predictor, "model", None)
     return model.draught if isinstance(model, Model) else None
+
+
+def noted(predictor: Predictor, trials: Sequence[Trial]) -> list[str]:
+    """What a reader of what a model makes of trials must know of it and of their surroundings; nothing of what is no
+    model."""
+    if not isinstance(predictor, PhysicsPredictor):
+        return []
+    return [*predictor.doubted, *notes_on(predictor.model, trials)]
 
 
 def words_of(integrator: Integrator) -> str:

@@ -11,7 +11,6 @@ from types import NoneType
 from typing import Any, SupportsIndex, overload
 
 from .backends import Integrator
-from .circumstances import notes_on
 from .displayed import Plotted, inert
 from .errors import OptionError, Problem, among, brief, must_be_a
 from .evaluation import TrialRecord, evaluate
@@ -27,7 +26,7 @@ from .options import SimulateOptions
 from .options.choice import must_be
 from .options.orders import ORDERS
 from .orders import Helmsman, Sailing, Straight, TurningOrder, ZigzagOrder, possible_approach, run_manoeuvres, sample_of
-from .predictor import PhysicsPredictor, Predictor, as_predictor, profile_of
+from .predictor import PhysicsPredictor, Predictor, as_predictor, noted, profile_of
 from .profile import ShipProfile
 from .simulation import Motion, as_trial
 from .stated import no_reverse
@@ -245,7 +244,7 @@ def simulate(
         )
     several = some_of(trials)
     records = evaluate(predictor, several)
-    notes = notes_on(predictor.model, several) if isinstance(predictor, PhysicsPredictor) else ()
+    notes = noted(predictor, several)
     simulated = tuple(record.motion for record in records)
     return Simulated(predictor, simulated, records, options, (*notes, *_beyond(profile_of(predictor), simulated)))
 

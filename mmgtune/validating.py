@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 from .bands import Pooled, pooled, pooled_by
-from .circumstances import notes_on
 from .displayed import Plotted, inert
 from .errors import OptionError, Problem
 from .given import ShipGiven, TrialsGiven, trials_of
@@ -18,7 +17,7 @@ from .networks import named_ship
 from .objective import spread, varying
 from .options import ParticleOptions, SimulationOptions, ValidateOptions
 from .options.choice import must_be
-from .predictor import PhysicsPredictor, Predictor, as_predictor, particles_of, profile_of, words_of
+from .predictor import Predictor, as_predictor, noted, particles_of, profile_of, words_of
 from .profile.doubts import Doubt
 from .repeating import Repeated, document, repetitions
 from .stated import IndexComparison, compare_stated, physics_of, possible
@@ -148,7 +147,7 @@ def validate(
     scored = []
     for name, predictor in several.items():
         repeated = tuple(repetitions(predictor, whole)) if options.manoeuvres else ()
-        notes = notes_on(predictor.model, whole) if isinstance(predictor, PhysicsPredictor) else ()
+        notes = noted(predictor, whole)
         own = getattr(predictor, "id", None) if profile_of(predictor) is None else None
         if own and data.ship and data.ship != own:
             notes = [f"the trials are of '{data.ship}', '{name}' was trained for '{own}'", *notes]

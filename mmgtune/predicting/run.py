@@ -17,7 +17,6 @@ from ..options import PredictOptions
 from ..options.choice import must_be
 from ..options.orders import ORDERS
 from ..options.predicting import OF_TRIALS
-from ..particles import STOPPED, ParticlePredictor
 from ..predictor import PhysicsPredictor, Predictor, Sampling, Uncertain, as_predictor, particles_of
 from ..resources import must_be_name, trial_set_names
 from ..trial import Trial, TrialSet
@@ -82,8 +81,8 @@ def predict(
             )
             for one, found in zip(manoeuvres, sail(several, manoeuvres, approach), strict=True)
         )
-    if isinstance(whole, ParticlePredictor) and whole.particles is not None and whole.particles.interrupted:
-        notes.append(STOPPED)
+    if isinstance(whole, PhysicsPredictor):
+        notes += whole.doubted
     notes += _notes(several, options, runs, steered=trials is None)
     spent = time.perf_counter() - began
     return Predicted(name, several, runs, options, isinstance(whole, Uncertain), sigma, tuple(notes), spent)

@@ -19,7 +19,9 @@ from mmgtune.posterior.run import JOURNAL
 from mmgtune.predicting import predict
 from mmgtune.profile import load_profile
 from mmgtune.resources import folder
+from mmgtune.simulating import simulate
 from mmgtune.trial import load_trials
+from mmgtune.validating import validate
 from tests.command import run
 
 NARROW = ("wind", "wave-drift", "discrepancy", "loading", "current", "resistance", "flap", "antenna")
@@ -69,7 +71,9 @@ def test_what_was_stopped_gives_the_best_so_far_and_goes_on_to_the_same(tmp_path
         assert "Stopped before its end" in " ".join(stopped.warnings())
         assert write_posterior(stopped, tmp_path)["interrupted"]
         assert (tmp_path / JOURNAL).is_file()
-        assert any("stopped before its end" in note for note in foretold(tmp_path).notes)
+        (scored,) = validate(tmp_path, trials).profiles
+        for notes in (foretold(tmp_path).notes, scored.notes, simulate(tmp_path, trials).notes):
+            assert any("stopped before its end" in note for note in notes)
 
         searched.clear()
         resumed = posterior("suzaku", trials, OPTIONS, folder=tmp_path, resume=True)
