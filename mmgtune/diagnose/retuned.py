@@ -166,8 +166,8 @@ def besides(moved: Sequence[Retuned]) -> str:
         return ""
     they = "Another coefficient is" if n == 1 else f"{n} other coefficients are"
     return (
-        f"{they} a tenth or more off too, and not named: of coefficients that are re-tuned together each may take up "
-        "what another is off by, but for what fouling changes."
+        f"{they} a tenth or more off too, which may only stand for what others are off by: of all that is re-tuned "
+        "together, what fouling changes alone is told apart."
     )
 
 

@@ -42,7 +42,7 @@ def test_words():
     assert stands_in.far
     assert in_words([stands_in]) == ""
     assert besides([up, stands_in]).startswith(
-        "Another coefficient is a tenth or more off too, and not named: of coeff"
+        "Another coefficient is a tenth or more off too, which may only stand for"
     )
     assert besides([up]) == ""
     assert in_words([up]) == "resistance going straight (R_0) 40 ± 4 % above its pre-determined value"

@@ -82,7 +82,7 @@ def test_a_diagnosis_does_not_call_it_noise(suzaku):
     result = diagnose(suzaku.profile, wrong, DiagnoseOptions(effects=("current", "gyro-bias")))
     assert result.verdict == "unexplained"
     assert result.of_a_sensor
-    assert "the yaw rate has another factor from some time on in zigzag_10 and zigzag_20" in result.sentence()
+    assert "the yaw rate reads by another factor from some time on in zigzag_10 and zigzag_20" in result.sentence()
     odd = "the factor of the yaw rate changes (zigzag_10, and 1 more alike)"
     assert f"without what is odd: {odd}" in result.whereabouts.suggestion
     right = diagnose(suzaku.profile, [ZIGZAG, TURN], DiagnoseOptions(effects=("current", "gyro-bias")))
