@@ -174,8 +174,8 @@ def _changed(bench: Workbench) -> dict[str, tuple[str, ...]]:
 def change_in_words(name: str, ids: Sequence[str]) -> str:
     """A log whose factor changes as a sentence without its full stop."""
     return (
-        f"the log of the {LOGGED[name]} reads by another factor from some time on in {listed(ids)}; what that leaves looks "
-        "like noise that lasts for minutes"
+        f"the log of the {LOGGED[name]} reads by another factor from some time on in {listed(ids)}; what that leaves "
+        "looks like noise that lasts for minutes"
     )
 
 
