@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping
 from dataclasses import replace
+from types import NoneType
 from typing import Any
 
 from ..arrays import numbers_of
@@ -77,8 +78,10 @@ def with_values(profile: ShipProfile, values: Mapping[str, float], source: str) 
     What the profile said of the number before, such as its bounds and standard error, is of the old one and goes.
 
     source  where the numbers are from
-    Raises ProfileError for a name that the profile does not have, and for what its coefficient cannot be.
+    Raises ProfileError for a name that the profile does not have, and for what its coefficient cannot be, OptionError
+    for a source that is no text.
     """
+    must_be_a(source, str, "source")
     numbers = _numbers(profile, values)
     changed = {name: Coefficient(value, source=source) for name, value in numbers.items()}
     return replace(profile, sections=_sections(profile, changed))
@@ -93,7 +96,7 @@ def _numbers(profile: ShipProfile, values: Mapping[str, float]) -> dict[str, flo
         kind, symbol = split_name(name)
         field = profile.sections[kind].component.fields[symbol]
         number = numbers_of(value)
-        if number is None or number.ndim:
+        if number is None or number.ndim or isinstance(value, (bool, NoneType)):
             fix = f"give a number in the unit of profiles in memory: {field.unit}"
             problems.append(Problem(f"'{name}' is {brief(value)}", where, "a coefficient is one number", fix))
         elif wrong := impossible(name, field, float(number)):

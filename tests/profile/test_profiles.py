@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from mmgtune import units
 from mmgtune.components import COMPONENTS, KINDS
-from mmgtune.errors import MmgtuneError, ProfileError
+from mmgtune.errors import MmgtuneError, OptionError, ProfileError
 from mmgtune.estimating import read_particulars
 from mmgtune.fleet.table import read_table
 from mmgtune.importing import load_map
@@ -183,6 +183,8 @@ def test_a_profile_in_the_place_of_another_file_is_told_as_one(tmp_path, read, w
         ({"hull.R_0": np.nan}, "'hull.R_0' is nan"),
         ({"particulars.L_pp": -1.0}, "'particulars.L_pp' = -1 is impossible .*\n.*must be above 0 m"),
         ({"hull.R_0": "0.02"}, "'hull.R_0' is '0.02'"),
+        ({"hull.R_0": True}, "'hull.R_0' is True"),
+        ({"hull.R_0": None}, "'hull.R_0' is None"),
         ({"hull.nope": 1.0}, "no number 'hull.nope'"),
         ({"rudder.flap": 1.0}, "'rudder.flap' is a table"),
         ([("hull.R_0", 1.0)], "a list is no dict"),
@@ -200,6 +202,8 @@ def test_a_number_that_is_changed_by_hand_says_where_it_is_from():
     changed = with_values(tuned(ship, {"hull.R_0": 0.02}, {"hull.R_0": 0.001}, {}), {"hull.R_0": 0.018}, "by hand")
     assert changed.coefficient("hull.R_0") == Coefficient(0.018, source="by hand")
     assert parse_profile(changed.text) == changed
+    with pytest.raises(OptionError, match="source"):
+        with_values(ship, {"hull.R_0": 0.018}, 3)
 
 
 def test_effects_that_are_none_are_named():
