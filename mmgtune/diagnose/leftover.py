@@ -32,8 +32,9 @@ from .workbench import Point, Workbench, least_noise
 NOTICED = 0.05
 """Variance beyond the white noise of the sensors, as a share of it, that is worth speaking of."""
 
-NEARLY_ALL = 0.95
-"""Share of what all channels have beyond their noise from which it is in one alone."""
+NEARLY_ALL, MOST = 0.95, 0.75
+"""Share of what all channels have beyond their noise from which it is of one sensor alone; where it is noticed in no
+other channel."""
 
 SLACK = 0.25
 """Share by which slow noise may have been estimated too small: records hold few of its time constants."""
@@ -57,6 +58,12 @@ BLOCK = 20.0
 
 LOGGED = {"psi": "heading", "u": "surge velocity", "v_m": "sway velocity", "r": "yaw rate"}
 """Channels whose sensor can be off by a number; positions begin where they were measured."""
+
+POSITION = "position"
+"""What both channels of the position are called together: one receiver shows them."""
+
+SENSORS: Mapping[tuple[str, ...], str] = {**{(name,): name for name in LOGGED}, ("x", "y"): POSITION}
+"""What shows an error alone where that is no force, by the channels it is in."""
 
 OFF = 0.5
 """Share of what a channel has beyond its noise from which an offset is spoken of; by how much of it runs may differ."""
@@ -107,11 +114,14 @@ class Leftover(Brief):
 
     @property
     def alone(self) -> str:
-        """The channel of ``LOGGED`` in which alone anything is left; "" where others err too, or none does."""
-        beyond = [name for name, excess in self.channels.items() if excess > NOTICED]
+        """Of ``SENSORS`` the one in which alone anything is left; "" where others err too, or none does."""
+        beyond = {name for name, excess in self.channels.items() if excess > NOTICED}
         whole = sum(max(excess, 0.0) for excess in self.channels.values())
-        alone = len(beyond) == 1 and beyond[0] in LOGGED and self.channels[beyond[0]] > NEARLY_ALL * whole
-        return beyond[0] if alone else ""
+        for own, sensor in SENSORS.items():
+            there = sum(max(self.channels.get(name, 0.0), 0.0) for name in own)
+            if beyond.intersection(own) and there > (MOST if beyond.issubset(own) else NEARLY_ALL) * whole:
+                return sensor
+        return ""
 
     @property
     def noticed(self) -> bool:

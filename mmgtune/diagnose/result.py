@@ -72,6 +72,9 @@ NEEDED = 0.15
 """Share of the fall of chi-squared that the terms of a sum must lose, one left out at a time, all added up, unless all
 together leave nothing but noise of far more than noise: what stands for something else does not."""
 
+A_TENTH = 0.1
+"""Share of an error that nothing explains up to which what removes it is not spoken of."""
+
 BESIDE = 0.02
 """Variance beyond noise, as a share of it, from which a sum of causes leaves more than noise."""
 
@@ -212,13 +215,13 @@ class Diagnosis(Plotted):
         """
         brought = [one for _, one in self.contributions]
         if self._told_by_none:
-            return "fitted to the other runs, it tells the one left out little better"
+            return "fitted to all runs but one, it tells that one little better"
         if self._excused_by_gusts:
             return "it leaves far more than noise, and more than gusts of such a wind would"
         if why := self._bent:
             return why
         unsized = [cause.tag for cause in self.causes if not cause.sized]
-        not_told = f"how large {' and '.join(unsized)} would be is not told" if unsized else ""
+        not_told = f"{' and '.join(unsized)} may be nothing at all" if unsized else ""
         if len(brought) == 1 and self.causes[0].at_ends and self.leftover.unknown > LEFT_AT_END:
             return "its size is at the end of its range, and it leaves more than noise"
         if len(brought) < 2:
@@ -288,8 +291,13 @@ class Diagnosis(Plotted):
 
     @property
     def of_a_sensor(self) -> bool:
-        """Whether a log whose factor changes within trials shows, and no cause."""
-        return bool(self.leftover.changed) and not self.causes
+        """Whether a log whose factor changes within trials shows, and no cause worth speaking of."""
+        return bool(self.leftover.changed) and not self._tells_a_part
+
+    @property
+    def _tells_a_part(self) -> bool:
+        """Whether causes, though not believed perhaps, remove what is worth speaking of."""
+        return bool(self.causes) and not (self.unclear and self.explained_share < A_TENTH)
 
     @property
     def misses_test(self) -> bool:
@@ -424,14 +432,14 @@ class Diagnosis(Plotted):
     def _of_the_unknown(self, where: str) -> str:
         """That something is wrong, the best that is known of it, and how much is left."""
         tags = " + ".join(dict.fromkeys(cause.tag for cause in self.causes))
-        if self.unclear:
+        if self.unclear and self._tells_a_part:
             summed = " + ".join(dict.fromkeys(tag for tag, _ in self.contributions))
             return (
                 f"Something is wrong that this program cannot name. The best partial explanation, {summed}, removes "
                 f"{self._explained} of the error it was found on, but {self.unclear}: it stands for "
                 "something else, or for more than these trials can tell apart."
             )
-        if self.causes and not self.leftover.noticed:
+        if self._tells_a_part and not self.leftover.noticed:
             them = "it was" if len(self.causes) == 1 else "they were"
             share = self.gain.share_removed[0]
             held_out = f"leaves {_percent(1.0 - share)} of it" if share > 0.0 else "errs more"
@@ -456,11 +464,11 @@ class Diagnosis(Plotted):
         )
         told = (
             f"The best of what is known, {tags}, removes {self._explained} of the error and leaves {left}."
-            if self.causes
+            if self._tells_a_part
             else f"the re-tuned model leaves {left}, and no known cause accounts for it."
         )
         offsets = "".join(f" {in_words(*one)}." for one in self.leftover.offsets.items())
-        return f"Something is wrong that this program does not know{'.' if self.causes else ':'} {told}{offsets}"
+        return f"Something is wrong that this program does not know{'.' if self._tells_a_part else ':'} {told}{offsets}"
 
     def _of_the_named(self) -> str:
         """The causes, those last of which the trials cannot tell which it is."""
@@ -497,7 +505,7 @@ class Diagnosis(Plotted):
             )
         imitated = share < IMITATED and self.options.leeway > 0.0 and self.choice is None
         hull = f", counted from a model whose hull may be {100.0 * self.options.leeway:.3g} % off" if imitated else ""
-        few = ", of which there are too few to be sure" if low < TOLD <= share else ""
+        few = ", and runs are too few to be sure of that" if low < TOLD <= share else ""
         return f"Adding {them} removes {_percent(share)} of the error {where}{hull}{few}."
 
     def _assumptions(self) -> list[dict[str, Any]]:

@@ -20,7 +20,7 @@ from ..trial import Trial, measured_wind
 from ..trial.set_checks import odd_in_words
 from ..units import DEG
 from .evidence import FEWEST_BLOCKS, ResidualForces, share_explained
-from .leftover import LOGGED, in_words
+from .leftover import LOGGED, POSITION, in_words
 
 AXES = {"X": "surge force", "Y": "sway force", "N": "yaw moment"}
 PHASES = {
@@ -126,7 +126,7 @@ class Whereabouts:
     removable  by effect, the largest share of the error beyond noise that it alone removes when refitted
     offsets    by channel, what its log shows more than the model in every run alike [rad, m/s or rad/s]
     odd        what the logs of runs warn of, by run, where these have most of the error
-    channel    of ``LOGGED`` that which alone errs, "" where others do too: its log is wrong, not a force
+    channel    of ``leftover.SENSORS`` that which alone errs, "" where others do too: its log is wrong, not a force
     """
 
     runs: Mapping[str, float]
@@ -159,6 +159,8 @@ class Whereabouts:
             return f"the {LOGGED[first]} from a second sensor in the same runs"
         if self.odd:
             return f"the same without what is odd: {odd_in_words(self.odd)}"
+        if self.channel == POSITION:
+            return "positions of a second receiver in the same runs, and the speeds over ground and through the water"
         if self.channel:
             return f"the {LOGGED[self.channel]} from a second sensor in the same runs"
         best = self.strongest
@@ -181,10 +183,16 @@ class Whereabouts:
             f"{in_words(name, offset)}: look at its sensor first, how it is mounted and how it was calibrated."
             for name, offset in self.offsets.items()
         ]
-        if self.channel:
+        if self.channel == POSITION:
             found.append(
-                f"What is left is in the log of the {LOGGED[self.channel]} alone, and the rest of the motion is told "
-                "to its noise: look at that sensor, its filter and its clock first. No force is read where it is wrong."
+                "What is left is in the positions alone, and the rest of the motion is told to its noise: look at the "
+                "receiver first, its filter, its clock and an antenna that heels with the ship, then at water that "
+                "moved otherwise than is known. No force is read from that."
+            )
+        elif self.channel:
+            found.append(
+                f"What is left is in the log of the {LOGGED[self.channel]} alone, and hardly any in the rest of the "
+                "motion: look at that sensor, its filter and its clock first. No force is read where it is wrong."
             )
         found += [*([] if self.channel else self._of_forces()), *self._of_effects()]
         found.append(f"What would tell: {self.suggestion}.")

@@ -36,13 +36,13 @@ def test_water_that_moves_only_in_trials_kept_for_testing_is_no_nothing(keep, ve
         before, _ = result.gain.excess.T
         doubtful = replace(result, gain=replace(result.gain, excess=np.stack([before, 0.7 * before], axis=1)))
         assert doubtful.verdict == "unexplained"
-        assert "fitted to the other runs, it tells the one left out little better" in doubtful.sentence()
+        assert "fitted to all runs but one, it tells that one little better" in doubtful.sentence()
         alone = replace(doubtful, together=None)  # what differs between runs bends to much where it was found
         assert alone.verdict == "unexplained"
         assert "but the model with it leaves 70 % of it on each trial in turn" in alone.sentence()
         none = replace(alone, gain=replace(result.gain, excess=np.stack([before, before], axis=1), unsure=1e9))
         assert none.verdict == "unexplained"  # however little is known of what may have moved
-        assert "fitted to the other runs, it tells the one left out little better" in none.sentence()
+        assert "fitted to all runs but one, it tells that one little better" in none.sentence()
 
 
 @dataclass(frozen=True)

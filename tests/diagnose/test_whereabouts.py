@@ -179,10 +179,25 @@ def test_an_offset_of_a_log_is_one_number_in_every_run(by_run, found):
     [
         ({"x": -0.03, "psi": 0.04, "u": 11.3, "v_m": 0.02}, "u"),
         ({"x": 1.2, "psi": 0.04, "u": 11.3, "v_m": 0.02}, ""),
-        ({"x": 11.3, "psi": 0.04, "u": 0.0, "v_m": 0.02}, ""),
+        ({"x": 11.3, "psi": 0.04, "u": 0.0, "v_m": 0.02}, "position"),
         ({"x": 0.0, "psi": 0.04, "u": 0.02, "v_m": 0.02}, ""),
+        ({"x": 0.06, "y": 0.3, "psi": 80.8, "u": 0.04, "v_m": 0.49, "r": -0.01}, "psi"),
+        ({"x": 10.1, "y": 12.0, "psi": -0.04, "u": -0.07, "v_m": 0.0, "r": 0.06}, "position"),
+        ({"x": 0.20, "y": 0.12, "psi": 0.01, "u": 0.02, "v_m": 0.04, "r": 0.02}, "position"),
+        ({"x": 5.2, "y": 10.3, "psi": 5.1, "u": 0.9, "v_m": 0.5, "r": 0.5}, ""),
+        ({"x": 0.06, "y": 0.04, "psi": 0.04, "u": 0.04, "v_m": 0.04, "r": 0.04}, ""),
     ],
-    ids=["a log", "positions too", "positions", "nothing"],
+    ids=[
+        "a log",
+        "positions too",
+        "positions",
+        "nothing",
+        "course over ground as the heading of one run",
+        "positions that were filtered",
+        "an antenna that heels",
+        "a propeller that ventilates",
+        "hardly anything anywhere",
+    ],
 )
 def test_what_is_left_in_one_log_alone_is_of_its_sensor_and_of_no_force(channels, alone):
     left = Leftover(sum(channels.values()), channels, {}, {}, {}, {})
@@ -190,9 +205,11 @@ def test_what_is_left_in_one_log_alone_is_of_its_sensor_and_of_no_force(channels
     forces = [run(f"run_{i}", "rudder", 1, 3.0, seed=i) for i in range(4)]
     found = replace(whereabouts(forces, {"run_0": 30.0, "run_1": 10.0}, {"wind": 0.3}, {}), channel=left.alone)
     said = " ".join(found.sentences())
-    assert ("surge velocity alone" in said) == bool(alone)
+    words = {"u": "the log of the surge velocity", "psi": "the log of the heading", "position": "the positions"}
+    assert (f"in {words.get(alone)} alone" in said) == bool(alone)
     assert ("By inverse dynamics" in said) != bool(alone)
-    assert ("surge velocity from a second sensor" in said) == bool(alone)
+    assert ("surge velocity from a second sensor" in said) == (alone == "u")
+    assert ("positions of a second receiver" in said) == (alone == "position")
     assert "wind would remove the largest share" in said
     assert found.to_dict()["channel"] == (alone or None)
 
