@@ -137,6 +137,16 @@ class ByRun:
     def goes_with(self) -> str:
         """What was ordered in the runs that the values follow along a line, by no chance, with some of them: then it is
         nothing of a run.  In words; "" for none.
+        """
+        return self._following(lambda kinds: len(kinds) >= FEWEST_KINDS)
+
+    @property
+    def may_go_with(self) -> str:
+        """The same where there are two kinds of runs, some of each: they may as well have been run elsewhere."""
+        return self._following(lambda kinds: len(kinds) == 2 and min(kinds) > 1)
+
+    def _following(self, enough: Callable[[list[int]], bool]) -> str:
+        """What the values follow along a line, where there are enough runs of each kind; see ``goes_with``.
 
         Only of what has one size: two may follow anything.
         """
@@ -145,8 +155,8 @@ class ByRun:
         values = np.array([self.size(k)[0] for k in range(len(self.groups))])
         for what, (_, unit) in GIVEN.items():
             at = np.array(self.given.get(what, ()))
-            if _along_a_line(at, values):
-                some = np.argsort(at)[[0, len(at) // 2, -1]]
+            if enough(_kinds(at)) and _along_a_line(at, values):
+                some = np.argsort(at)[[0, len(at) // 2, -1] if len(_kinds(at)) > 2 else [0, -1]]
                 told = [f"{quantity(values[k], None, self.unit)} at {quantity(at[k], None, unit)}" for k in some]
                 return f"{what} of the runs ({', '.join(told)})"
         return ""
@@ -173,7 +183,8 @@ class ByRun:
         subject = self.effect.subject or self.effect.title
         shown = [k for k in range(len(self.groups)) if self.shows(k)]
         if (beside := self._differ_in_step) is not None:
-            return f"The {subject} differed from {word} to {word}: {self._in_step_in_words(beside)}"
+            told = self._in_step_in_words(beside)
+            return f"The {subject} differed from {word} to {word}: {told}{self._doubted}"
         sizes = [self.size(k)[0] for k in (shown or range(len(self.groups)))]
         others = len(self.groups) - len(shown)
         text = f"The {subject} differed from {word} to {word}: "
@@ -186,7 +197,14 @@ class ByRun:
         else:
             text += range_in_words(min(sizes), max(sizes), self.unit) + self._of_what
             text += f", and none for certain in {others} of {len(self.groups)}" if shown and others else ""
-        return text + self._within()
+        return text + self._within() + self._doubted
+
+    @property
+    def _doubted(self) -> str:
+        """That something else than the run may be behind it, in words; "" for nothing."""
+        if with_what := self.may_go_with:
+            return f"; it goes with {with_what}, so that what changes with it would look the same"
+        return ""
 
     def _in_step_in_words(self, beside: float) -> str:
         """From the least to the largest, with what is common to all errors told once."""
@@ -275,12 +293,18 @@ class ByRun:
         }
 
 
+def _kinds(at: FloatArray) -> list[int]:
+    """How many runs there are of each kind by what was ordered (n,), none where that is not known of all."""
+    if not len(at) or not np.isfinite(at).all():
+        return []
+    among = np.sort(at)
+    ends = np.flatnonzero(np.diff(among) > APART * np.abs(at).max()) + 1
+    return [len(one) for one in np.split(among, ends)]
+
+
 def _along_a_line(at: FloatArray, values: FloatArray) -> bool:
     """Whether values (n,) follow what was ordered (n,) along a line, by no chance."""
-    if len(at) <= FEWEST_KINDS or not np.isfinite(at).all() or not np.isfinite(values).all():
-        return False
-    kinds = 1 + np.count_nonzero(np.diff(np.sort(at)) > APART * np.abs(at).max())
-    if kinds < FEWEST_KINDS or not np.ptp(values):
+    if len(at) <= FEWEST_KINDS or not np.isfinite(values).all() or not np.ptp(values):
         return False
     told = float(np.corrcoef(at, values)[0, 1]) ** 2
     free = len(values) - 2

@@ -75,7 +75,8 @@ class Judge:
             fewer = with_only(self.bench, found, causes)
             brought = contributions(self.bench, fewer, self.unseen)
             other = self._compared(self._judged(fewer, brought, doubted), fewer)
-            if other.names_causes and other.explains_nearly_all:
+            differs = any(cause.runs for cause in other.causes)  # which bends to much
+            if other.names_causes and (other.explains_all if differs else other.explains_nearly_all):
                 result, found = other, fewer
                 break
         if result.is_chance and not self.before.noticed and not self.hooks.stop():

@@ -246,6 +246,25 @@ def test_values_that_follow_what_was_ordered_are_nothing_of_the_run(values, rudd
     assert of_gains(values, rudder, shaft).goes_with == said
 
 
+@pytest.mark.parametrize(
+    ("values", "rudder", "shaft", "said"),
+    [
+        (
+            (0.95, 0.951, 1.02, 1.021),
+            (35.0, 20.0, 20.0, 35.0),
+            (106.0, 106.0, 60.0, 60.0),
+            "the revolutions of the runs (1.02 at 60 rpm, 0.95 at 106 rpm)",
+        ),
+        ((0.95, 0.951, 1.02), (35.0, 20.0, 20.0), (106.0, 106.0, 60.0), ""),  # one of its kind
+        ((0.95, 0.99, 1.02, 0.96), (35.0, 20.0, 20.0, 35.0), (106.0, 106.0, 60.0, 60.0), ""),
+    ],
+)
+def test_values_of_two_kinds_of_runs_may_be_of_what_was_ordered(values, rudder, shaft, said):
+    found = of_gains(values, rudder, shaft)
+    assert (found.may_go_with, found.goes_with) == (said, "")
+    assert (f"; it goes with {said}, so that what changes with it" in found.sentence) == bool(said)
+
+
 def test_a_wind_that_is_nearly_the_same_in_each_run_is_said_to_be():
     def runs(*pairs):
         rows = [
