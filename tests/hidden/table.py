@@ -139,8 +139,8 @@ def _first(sets: dict[str, list[Row]]) -> str:
     return (
         f" They are no even sample: all sizes of {', '.join(f'`{tag}`' for tag in first)} and {nulls} cases of nothing "
         f"hidden were run ahead of the others. Without these effects {_share(above, 'right', 'grouped')} of what is "
-        f"larger than its limit is named, or in the group, and {_share(above, 'right')} alone. What sums of causes must be to be believed "
-        "was set on cases that are counted here: on new ones it may do worse."
+        f"larger than its limit is named, or in the group, and {_share(above, 'right')} alone. What sums of "
+        "causes must be to be believed was set on cases that are counted here: on new ones it may do worse."
     )
 
 
