@@ -197,7 +197,7 @@ def test_the_command_writes_them_and_others_take_them(tmp_path):
     steep = run("simulate", "-p", "bands", "--turn", "80", cwd=tmp_path)  # beyond the steering gear
     assert steep.code == 0, steep.err
     assert "±" not in steep.out
-    assert "No bands: the order is 80 deg" in steep.err
+    assert "No bands: rudder angle 'delta' is ordered to 80 °" in steep.err
     alone = run("simulate", "--turn", "35", "--json", cwd=tmp_path).json()
     assert "bands" not in alone["runs"][0]
 

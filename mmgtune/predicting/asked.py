@@ -140,6 +140,6 @@ def hold_reached(name: str, gear: Actuator | None, ordered: FloatArray, where: s
     beyond = ordered[(ordered < gear.low - 1e-9) | (ordered > gear.high + 1e-9)]
     if len(beyond):
         word, factor = read_as(INPUTS[name].unit)
-        what = f"'{name}' is ordered to {factor * beyond[0]:.4g} {word}"
+        what = f"{INPUTS[name].words} '{name}' is ordered to {factor * beyond[0]:.4g} {word}"
         why = f"it goes from {factor * gear.low:.4g} to {factor * gear.high:.4g} {word}"
         raise OptionError(Problem(what, where, why, "order less, or correct the limits of the profile"))

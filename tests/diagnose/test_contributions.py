@@ -587,7 +587,7 @@ def test_a_cause_that_is_alone_and_slight_is_a_trace(suzaku, degrees, before, tr
 @pytest.mark.parametrize(
     ("removed", "most", "said"),
     [
-        ((0.96, 0.0, 0.999), False, "removes 96 % of the error on trials not used, of which there are too few"),
+        ((0.96, 0.0, 0.999), False, "removes 96 % of the error on trials not used, and runs are too few"),
         ((0.96, 0.9, 0.99), False, "Adding it removes 96 % of the error on trials not used."),
         ((0.4, 0.0, 0.9), False, "a model whose hull may be 5 % off"),
         ((-0.1, -0.5, 0.6), False, "of the error on trials not used does not show"),
