@@ -74,6 +74,11 @@ class Particles:
         """Whether their drawing was stopped before its end."""
         return self.facts.get("interrupted") is True
 
+    @property
+    def doubted(self) -> tuple[str, ...]:
+        """What a reader of anything that is made with them must know, in words."""
+        return (STOPPED,) if self.interrupted else ()
+
     def of_the_day(self) -> tuple[str, ...]:
         """Names of what belongs to the trials and not to the ship: current, wind, waves and faults of sensors."""
         sections = self.profile.sections
@@ -118,8 +123,8 @@ class ParticlePredictor(PhysicsPredictor):
 
     @property
     def doubted(self) -> tuple[str, ...]:
-        """That the drawing of the particles was stopped, where it was."""
-        return (STOPPED,) if self.particles is not None and self.particles.interrupted else ()
+        """That of the particles."""
+        return self.particles.doubted if self.particles is not None else ()
 
     def drawn(self, n: int, seed: int, sampling: Sampling = "TS-infinity") -> PhysicsPredictor:
         """n particles, none twice where there are as many.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -67,9 +67,6 @@ class Simulated(Plotted, Sequence[Motion]):
 
     def __len__(self) -> int:
         return len(self.motions)
-
-    def __iter__(self) -> Iterator[Motion]:
-        return iter(self.motions)
 
     @overload
     def __getitem__(self, k: int | str) -> Motion: ...

@@ -155,8 +155,9 @@ class ByRun:
         values = np.array([self.size(k)[0] for k in range(len(self.groups))])
         for what, (_, unit) in GIVEN.items():
             at = np.array(self.given.get(what, ()))
-            if enough(_kinds(at)) and _along_a_line(at, values):
-                some = np.argsort(at)[[0, len(at) // 2, -1] if len(_kinds(at)) > 2 else [0, -1]]
+            kinds = _kinds(at)
+            if enough(kinds) and _along_a_line(at, values):
+                some = np.argsort(at)[[0, len(at) // 2, -1] if len(kinds) > 2 else [0, -1]]
                 told = [f"{quantity(values[k], None, self.unit)} at {quantity(at[k], None, unit)}" for k in some]
                 return f"{what} of the runs ({', '.join(told)})"
         return ""

@@ -299,9 +299,7 @@ class _Held:
                 found[case] -= np.linalg.lstsq(A, b, rcond=1e-12)[0]
             return found
 
-        at_rows = np.concatenate(
-            [np.repeat(self.leg[case], rows.stop - rows.start) for case, rows in enumerate(problem.rows_of_cases)]
-        )
+        at_rows = problem.by_row(self.leg)
         return _Linear(
             held=self,
             residual=left[:, 0],

@@ -5,17 +5,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Self
+from typing import Any, Self, TypeVar
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray
+from ..arrays import BoolArray, FloatArray, IntArray
 from ..backends import WIDTH, Backend, Cases, Integrator
 from ..model import Model
 from ..predictor import PhysicsPredictor, Prediction
 from .box import Box, base_of, group_of
 from .initial import prior_weight
 from .terms import Term
+
+PerCase = TypeVar("PerCase", FloatArray, IntArray)
 
 LANES_AT_ONCE = 512
 """Largest number of runs kept with their residuals at one time, but for the lanes of one block; bounds the memory."""
@@ -298,17 +300,18 @@ class FitProblem:
             slopes /= steps.T[:, None, :]
             by_offset = values[:, :, 1 + n_moved :] - base
             if self.sigma is not None:
-                by_offset[:, : self.n_residuals] /= self._offset_steps(step)
+                by_offset[:, : self.n_residuals] /= self.by_row(step * self.sigma * 1e3)
         return base[:, :, 0], slopes, by_offset
 
     def offset_slopes(self, unit: FloatArray, offsets: FloatArray, step: float = 1e-6) -> tuple[FloatArray, FloatArray]:
         """Residuals (n_rows,) and derivatives (n_rows, 6) by the offsets alone, as of ``jacobians``, at one point."""
+        assert self.sigma is not None  # asked where initial states are estimated
         moved = np.repeat(offsets[:, None], 7, axis=1)
         self._move_offsets(moved[:, None, 1:], step)
         values = self.residuals(np.repeat(unit[:, None], 7, axis=1), moved).T
         with np.errstate(invalid="ignore"):
             slopes = values[:, 1:] - values[:, :1]
-            slopes[: self.n_residuals] /= self._offset_steps(step)
+            slopes[: self.n_residuals] /= self.by_row(step * self.sigma * 1e3)
         return values[:, 0], slopes
 
     def _move_offsets(self, moved: FloatArray, step: float) -> None:
@@ -317,11 +320,9 @@ class FitProblem:
         for k in range(6):
             moved[:, :, k, k] += step * self.sigma[:, None, k] * 1e3
 
-    def _offset_steps(self, step: float) -> FloatArray:
-        """(n_residuals, 6) how far the offsets of the case a residual belongs to are moved by that."""
-        assert self.sigma is not None
-        counts = [rows.stop - rows.start for rows in self.rows_of_cases]
-        return np.repeat(step * self.sigma * 1e3, counts, axis=0)
+    def by_row(self, of_cases: PerCase) -> PerCase:
+        """What is of each case (n_cases, ...) for each of its residuals (n_residuals, ...)."""
+        return np.repeat(of_cases, [rows.stop - rows.start for rows in self.rows_of_cases], axis=0)
 
     def _moved_together(self) -> list[list[int]]:
         """Targets by number that no case has two of: values of one coefficient for different groups."""
@@ -367,8 +368,7 @@ class FitProblem:
             moved[:, 6 + k, k] -= step * self.sigma[:, k]
         values = self.residuals(np.repeat(unit[:, None], 12, axis=1), moved)
         slopes = (values[:6] - values[6:]).T
-        for case, rows in enumerate(self.rows_of_cases):
-            slopes[rows] /= 2.0 * step * self.sigma[case]
+        slopes[: self.n_residuals] /= self.by_row(2.0 * step * self.sigma)
         return slopes
 
     def without_offsets(

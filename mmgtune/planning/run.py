@@ -21,7 +21,7 @@ from ..files import path_of, refuse_existing
 from ..networks import named_ship
 from ..options import PlanOptions, PredictOptions
 from ..options.choice import must_be
-from ..particles import STOPPED, ParticlePredictor, Particles
+from ..particles import ParticlePredictor, Particles
 from ..posterior.local import least_noise
 from ..posterior.room import room_of
 from ..predicting.asked import Approach, approach_of
@@ -254,9 +254,7 @@ def _noise(particles: Particles) -> FloatArray:
 
 
 def _notes(particles: Particles, band: IndexBand, linear: float) -> list[str]:
-    found = []
-    if particles.interrupted:
-        found.append(STOPPED)
+    found = [*particles.doubted]
     if linear < MOSTLY:
         found.append(
             "the answer bends much over what is open: ships like that shrank their bands further than is said here, "

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import cast
 
 from ..bands import widest
-from ..circumstances import notes_on
 from ..errors import OptionError, Problem
 from ..given import ShipGiven, TrialsGiven, some_of
 from ..model import Model
@@ -17,7 +16,7 @@ from ..options import PredictOptions
 from ..options.choice import must_be
 from ..options.orders import ORDERS
 from ..options.predicting import OF_TRIALS
-from ..predictor import PhysicsPredictor, Predictor, Sampling, Uncertain, as_predictor, particles_of
+from ..predictor import Predictor, Sampling, Uncertain, as_predictor, noted, particles_of
 from ..resources import must_be_name, trial_set_names
 from ..trial import Trial, TrialSet
 from ..validating import sigma_of
@@ -55,13 +54,11 @@ def predict(
     several = particles_of(whole, options.particles, options.seed, cast(Sampling, options.sampling))
     name = str(model) if isinstance(model, (str, Path)) else whole.name
     sigma: dict[str, float] = {}
-    notes: list[str] = []
+    given = [] if trials is None else some_of(trials)
+    notes = noted(whole, given)
     if trials is not None:
-        given = some_of(trials)
         sigma = _sigma(given, options)
         runs = tuple(on_trials(several, given, options.restart))
-        if isinstance(whole, PhysicsPredictor):
-            notes += notes_on(whole.model, given)
     elif orders is not None:
         listed = read_orders(Path(str(orders)), tuple(several.inputs))
         runs = (on_orders(several, listed, approach_of(several, options)),)
@@ -81,8 +78,6 @@ def predict(
             )
             for one, found in zip(manoeuvres, sail(several, manoeuvres, approach), strict=True)
         )
-    if isinstance(whole, PhysicsPredictor):
-        notes += whole.doubted
     notes += _notes(several, options, runs, steered=trials is None)
     spent = time.perf_counter() - began
     return Predicted(name, several, runs, options, isinstance(whole, Uncertain), sigma, tuple(notes), spent)
