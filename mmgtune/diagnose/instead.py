@@ -9,9 +9,11 @@ from typing import Any
 import numpy as np
 
 from ..fitting.least_squares import fit_offsets
+from .base_fit import PRECISE
 from .hypotheses import Hypothesis
 from .intervals import Estimate
 from .linear import linearise
+from .refit import ENOUGH
 from .refitting import Known, Refitting, Stopped
 from .screening import scores
 from .wording import parameters_in_words
@@ -101,9 +103,15 @@ def instead_of_tuning(bench: Workbench, tuned: Point, hypotheses: Sequence[Hypot
     if other and other.gain < MATTERS * fall:  # it may not have been followed to its end
         other = None
     next_gain = other.gain if other else 0.0
-    if fall - best.gain > (FAR_LESS if next_gain > ALSO * fall else OF_OTHERS) * (fall - next_gain):
+    if best.point.chi2 < bench.problem.n_residuals and other is not None:
+        told = best.gain - next_gain > ENOUGH
+    else:
+        told = fall - best.gain <= (FAR_LESS if next_gain > ALSO * fall else OF_OTHERS) * (fall - next_gain)
+    if not told:
         return None
-    sizes = {name: Estimate(name, value, None, None, None) for name, value in bench.values(best.point).items()}
+    end = best.point
+    end = bench.refit(end.names, end.unit[:, None], end.offsets, integrator=end.integrator, tolerance=PRECISE)
+    sizes = {name: Estimate(name, value, None, None, None) for name, value in bench.values(end).items()}
     effect = best.hypothesis.effect
     own = {name: size for name, size in sizes.items() if name in best.hypothesis.names}
     words = effect.sentence(parameters_in_words(effect, own))

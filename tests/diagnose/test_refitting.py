@@ -53,24 +53,40 @@ def test_what_a_start_leaves_is_foretold_without_a_refit(look):
     bench, point = refitting.bench, refitting.point
     null, there = bench.null(NAMES), bench.sub_box(NAMES).to_unit(list(CURRENT.values()))
     starts = np.array([[*point.unit, *(null + share * (there - null))] for share in (0.0, 0.5, 1.0, -1.0)]).T
-    (left,) = refitting._foretold(point, [by_names[NAMES]], [starts])
+    left = refitting._foretelling(point, by_names.values()).left(by_names[NAMES].hypothesis, starts)
     assert (left < 0.05 * point.chi2).all()
     end = bench.refit((*point.names, *NAMES), starts[:, 2:3], point.offsets, max_iterations=8)
     assert end.chi2 < 1.1 * bench.problem.n_residuals  # the targets had gone far astray
     other = by_names["effects.flap.factor",]
-    (left,) = refitting._foretold(point, [other], [refitting._starts(point, other, ())])
+    starts = refitting._starts(point, other, ())
+    left = refitting._foretelling(point, [other]).left(other.hypothesis, starts)
     assert 0.5 * point.chi2 < left[0] <= point.chi2
 
 
-def test_all_that_is_asked_is_foretold_in_the_order_asked(look):
+def test_what_is_foretold_is_that_of_each_alone(look):
     refitting, by_names = look
-    asked = list(by_names.values())
-    starts = [refitting._starts(refitting.point, score, (1.0, 0.5)) for score in asked]
-    together = refitting._foretold(refitting.point, asked, starts)
-    assert [len(left) for left in together] == [those.shape[1] for those in starts]
-    for score, those, left in zip(asked, starts, together, strict=True):
-        (alone,) = refitting._foretold(refitting.point, [score], [those])
-        np.testing.assert_allclose(left, alone, rtol=1e-9)
+    together = refitting._foretelling(refitting.point, by_names.values())
+    for score in by_names.values():
+        starts = refitting._starts(refitting.point, score, (1.0, 0.5))
+        alone = refitting._foretelling(refitting.point, [score])
+        of_all, of_one = (one.left(score.hypothesis, starts) for one in (together, alone))
+        assert len(of_all) == starts.shape[1]
+        np.testing.assert_allclose(of_all, of_one, rtol=1e-9)
+
+
+def test_a_step_that_is_tried_leads_where_it_says_and_nowhere_worse(look):
+    refitting, by_names = look
+    point, score = refitting.point, by_names[NAMES]
+    foretelling = refitting._foretelling(point, [score])
+    starts = refitting._starts(point, score, (1.0, 0.5))
+    where, left = foretelling.tried(score.hypothesis, starts)
+    assert where.shape == starts.shape
+    np.testing.assert_array_equal(where[: -len(NAMES)], starts[: -len(NAMES)])  # what else is free follows linearly
+    np.testing.assert_array_equal(where, np.clip(where, 0.0, 1.0))
+    (there,) = refitting.bench.refits((*point.names, *NAMES), where[:, :1], point.offsets, max_iterations=4)
+    assert there.chi2 < 1.1 * left[0] < 0.1 * point.chi2
+    _, again = foretelling.tried(score.hypothesis, where)
+    assert (again <= left).all()
 
 
 def test_beside_one_that_leaves_noise_others_are_given_up(look):
