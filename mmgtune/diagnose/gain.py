@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Literal
@@ -70,7 +70,7 @@ class Gain(Brief):
 
     held_out    the test trials; each in turn where there are none; the only one where there is but one
     compared    every held-out trial, "before" and "after"
-    excess      (n_trials, 2) chi-squared beyond the noise of the sensors, before and after
+    excess      (n_trials, 2) chi-squared beyond the noise of the sensors, freed of its memory, before and after
     floor       chi-squared that noise brings to all of them
     chance      deviation of that
     first_part  share of each run that what differs between runs was estimated on; ``excess`` counts what follows alone
@@ -106,7 +106,8 @@ class Gain(Brief):
     @cached_property
     def runs_told(self) -> tuple[int, int]:
         """Of the runs left out in turn those that the others tell to their noise with the causes, and far beyond it
-        without; and of how many.  None where a run is told worse with them.
+        without; and of how many.  None where a run is told worse with them, by more than coefficients known no better
+        would bring.
 
         What a single run shows of coefficients the others do not tell: it is told badly whatever the cause.
         """
@@ -121,7 +122,7 @@ class Gain(Brief):
             noise = RELEVANT * share * self.floor + 3.0 * np.sqrt(share) * self.chance
             before, after = self.excess[own].sum(axis=0)
             told += bool(after <= noise and before > FAR_BEYOND * noise)
-            worse = worse or bool(after > max(before, noise))
+            worse = worse or bool(after > max(before, noise, self.unsure))
         return 0 if worse else told, len(dict.fromkeys(runs))
 
     @property
@@ -265,7 +266,7 @@ def expected(bench: Workbench, found: Found, trials: Sequence[Trial]) -> float:
     names, spread = covariance(bench, found.final)
     beside = Beside.of(bench, (found.base, found.final), trials)
     at = beside.units[-1]
-    offsets = fit_offsets(beside.scaled, at)
+    offsets = fit_offsets(beside.scaled, at, whiten=_freeing(bench, beside.scaled))
     rng = np.random.default_rng(0)
     drawn = np.zeros((DRAWS, 0))
     if names:  # what is at a bound is not in doubt, and a short list of targets may all be there
@@ -278,8 +279,9 @@ def expected(bench: Workbench, found: Found, trials: Sequence[Trial]) -> float:
     runs = _with_other_ties(problem, columns, np.repeat(offsets[:, None], DRAWS, axis=1), rng)
     runs = runs[:, np.isfinite(runs).all(axis=0)]
     winds = changes(problem, at, offsets, bench.options.seed, logged=False)[:, : runs.shape[1]]
-    moved = runs - base + winds
-    by_offset = problem.offset_slopes(at, offsets)[1]
+    moved, by_offset = runs - base + winds, problem.offset_slopes(at, offsets)[1]
+    if freeing := _freeing(bench, problem):
+        moved, by_offset = freeing(moved), freeing(by_offset)
     moved = problem.without_offsets(moved, by_offset, problem.prior)
     return float(np.median(np.sum(moved**2, axis=0))) if moved.shape[1] else 0.0
 
@@ -335,13 +337,22 @@ def _chance(bench: Workbench, trials: Sequence[Trial], point: Point | None = Non
 
 
 def _by_noise(bench: Workbench, n: float) -> tuple[float, float]:
-    """Expectation and deviation of chi-squared of n samples; noise with a memory has few independent samples."""
-    expected = n * sum(noise.variance for noise in bench.noise.channels.values())
-    variance = 0.0
-    for noise in bench.noise.channels.values():
-        longer = (1.0 + noise.phi**2) / (1.0 - noise.phi**2)
-        variance += 2.0 * n * (noise.white**2 + 2.0 * noise.white * noise.fading + longer * noise.fading**2)
-    return float(expected), float(np.sqrt(variance))
+    """Expectation and deviation of chi-squared of n samples."""
+    variances = np.array([_variance(bench, name) for name in bench.channels])
+    return float(n * variances.sum()), float(np.sqrt(2.0 * n * np.sum(variances**2)))
+
+
+def _variance(bench: Workbench, channel: str) -> float:
+    """What noise alone brings to a square that counts."""
+    return 1.0 if bench.noise.coloured else bench.noise.channels[channel].variance
+
+
+def _freeing(bench: Workbench, problem: FitProblem) -> Callable[[FloatArray], FloatArray] | None:
+    """What frees residuals (n_residuals, ...) of the memory of noise; None where it has none.
+
+    What wanders by metres for minutes, as positions of a satellite receiver do, would hide all that a cause explains.
+    """
+    return replace(bench.noise, cases=problem.cases).apply if bench.noise.coloured else None
 
 
 def J_of(bench: Workbench, point: Point, test: Sequence[Trial]) -> float | None:
@@ -365,12 +376,21 @@ def _on(
     floor = np.array([_floor(bench, judged, case) for case in range(len(trials))])
     excess = np.empty((len(trials), 2))
     for k, unit in enumerate(beside.units):
-        offsets = fit_offsets(beside.scaled, unit)
-        excess[:, k] = judged.costs_by_case(unit[:, None], offsets[:, None])[:, 0] - floor
+        offsets = fit_offsets(beside.scaled, unit, whiten=_freeing(bench, beside.scaled))
+        excess[:, k] = _squares_by_case(bench, judged, unit, offsets) - floor
     return compared, np.where(np.isfinite(excess), excess, LOST)
 
 
 def _floor(bench: Workbench, problem: FitProblem, case: int) -> float:
     """Chi-squared that noise alone brings to a case."""
     counts = (problem.cases.weight[case] > 0.0).sum(axis=0)
-    return float(sum(counts[STATES.index(name)] * noise.variance for name, noise in bench.noise.channels.items()))
+    return float(sum(counts[STATES.index(name)] * _variance(bench, name) for name in bench.channels))
+
+
+def _squares_by_case(bench: Workbench, problem: FitProblem, unit: FloatArray, offsets: FloatArray) -> FloatArray:
+    """(n_cases,) chi-squared at a point, not finite where a run left the world."""
+    freeing = _freeing(bench, problem)
+    if freeing is None:
+        return problem.costs_by_case(unit[:, None], offsets[:, None])[:, 0]
+    left = freeing(problem.residuals(unit[:, None], offsets[:, None]).T)
+    return np.array([np.sum(left[rows] ** 2) for rows in problem.rows_of_cases])

@@ -36,8 +36,9 @@ NEARLY_ALL, MOST = 0.95, 0.75
 """Share of what all channels have beyond their noise from which it is of one sensor alone; where it is noticed in no
 other channel."""
 
-SLACK = 0.25
-"""Share by which slow noise may have been estimated too small: records hold few of its time constants."""
+SLACK, ERRORS = 0.25, 2.0
+"""Share by which slow noise may have been estimated too small, as fitting takes much of it away, and standard errors of
+its variance besides: records hold few of its time constants."""
 
 ALIKE = 0.5
 """Share explained by the ship's state from which what is left is an error of the model."""
@@ -93,8 +94,9 @@ class Leftover(Brief):
     changed    channels, "u" and "r", whose factor changes within trials, by their ids: of those alone whose noise as
                estimated lasts so long that it hides that
     left_open  variance beyond that noise that what the logged inputs leave open accounts for, as a share of it
-    slow       variance that the noise as estimated has in a part that fades slowly, as a share of the white one: part
-               of ``excess``, and noise of the sensors where what is left has no structure
+    slows      by channel, variance that the noise as estimated has in a part that fades slowly, as a share of the white
+               one: part of ``channels``, and noise of the sensors where what is left has no structure
+    at_most    the same where it was estimated too small
     """
 
     excess: float
@@ -104,21 +106,31 @@ class Leftover(Brief):
     explained: dict[str, tuple[str, float]]
     offsets: dict[str, float]
     left_open: float = 0.0
-    slow: float = 0.0
+    slows: Mapping[str, float] = field(default_factory=dict)
+    at_most: Mapping[str, float] = field(default_factory=dict)
     changed: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     @property
     def unknown(self) -> float:
         """Variance of the residuals that no noise of the sensors accounts for, as a share of their white noise."""
-        return self.excess if self.structured else self.excess - min((1.0 + SLACK) * self.slow, max(self.excess, 0.0))
+        return self.excess if self.structured else self.excess - min(self._mean(self.at_most), max(self.excess, 0.0))
+
+    @property
+    def slow(self) -> float:
+        """The mean of ``slows`` over all channels."""
+        return self._mean(self.slows)
+
+    def _mean(self, of_channels: Mapping[str, float]) -> float:
+        return sum(of_channels.values()) / max(len(self.channels), 1)
 
     @property
     def alone(self) -> str:
-        """Of ``SENSORS`` the one in which alone anything is left; "" where others err too, or none does."""
-        beyond = {name for name, excess in self.channels.items() if excess > NOTICED}
-        whole = sum(max(excess, 0.0) for excess in self.channels.values())
+        """Of ``SENSORS`` the one in which alone more than slow noise is left; "" where others err too, or none does."""
+        left = {name: excess - self.at_most.get(name, 0.0) for name, excess in self.channels.items()}
+        beyond = {name for name, excess in left.items() if excess > NOTICED}
+        whole = sum(max(excess, 0.0) for excess in left.values())
         for own, sensor in SENSORS.items():
-            there = sum(max(self.channels.get(name, 0.0), 0.0) for name in own)
+            there = sum(max(left.get(name, 0.0), 0.0) for name in own)
             if beyond.intersection(own) and there > (MOST if beyond.issubset(own) else NEARLY_ALL) * whole:
                 return sensor
         return ""
@@ -153,6 +165,7 @@ def leftover(bench: Workbench, point: Point) -> Leftover:
             beyond = variance / level[k] ** 2 - 1.0
             excused[name] = min(float(left_open[k]) / level[k] ** 2, max(beyond, 0.0))
             excess[name] = beyond - excused[name]
+    slow = {name: _slow(bench, name, level[STATES.index(name)], value) for name, value in excess.items()}
     alike = {window: _alike(bench.trials, residuals, window) for window in WINDOWS}
     clearest = {pair: max((alike[window][pair] for window in WINDOWS), key=lambda one: one[1]) for pair in PAIRS}
     return Leftover(
@@ -163,7 +176,8 @@ def leftover(bench: Workbench, point: Point) -> Leftover:
         explained=_explained(bench, residuals, [name for name, value in excess.items() if value > NOTICED]),
         offsets=offsets_of(residuals, level),
         left_open=float(np.mean(list(excused.values()))),
-        slow=float(np.mean([_slow(bench, name, level[STATES.index(name)], value) for name, value in excess.items()])),
+        slows={name: slow for name, (slow, _) in slow.items()},
+        at_most={name: at_most for name, (_, at_most) in slow.items()},
         changed=_changed(bench),
     )
 
@@ -189,12 +203,17 @@ def change_in_words(name: str, ids: Sequence[str]) -> str:
     )
 
 
-def _slow(bench: Workbench, name: str, level: float, excess: float) -> float:
-    """Variance of the fading part of the noise of a channel over that of its white noise, no more than it has."""
+def _slow(bench: Workbench, name: str, level: float, excess: float) -> tuple[float, float]:
+    """Variance of the fading part of the noise of a channel over that of its white noise, as estimated and at most; no
+    more than it has."""
     noise = bench.noise.channels.get(name)
-    if noise is None:
-        return 0.0
-    return float(np.clip(noise.fading * (bench.sigma[STATES.index(name)] / level) ** 2, 0.0, max(excess, 0.0)))
+    if noise is None or not noise.fading:
+        return 0.0, 0.0
+    slow = noise.fading * (bench.sigma[STATES.index(name)] / level) ** 2
+    independent = sum(trial.n_samples for trial in bench.trials) * (1.0 - noise.phi) / (1.0 + noise.phi)
+    at_most = (1.0 + SLACK + ERRORS * math.sqrt(2.0 / max(independent, 1.0))) * slow
+    found = np.clip([slow, at_most], 0.0, max(excess, 0.0))
+    return float(found[0]), float(found[1])
 
 
 def residuals_of(bench: Workbench, point: Point) -> list[FloatArray]:

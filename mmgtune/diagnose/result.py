@@ -266,7 +266,8 @@ class Diagnosis(Plotted):
         settled = self.together is not None and self.together.settled
         bends = any(cause.runs for cause in self.causes) and self.gain.leaves_beside()
         share = self.gain.share_removed[0]
-        return bool(self.causes) and ((settled and share < TOLD) or (bends and share < AT_ALL))
+        untold = settled and share < TOLD and not self.gain.tells_most_runs
+        return bool(self.causes) and (untold or (bends and share < AT_ALL))
 
     @property
     def _excused_by_gusts(self) -> bool:

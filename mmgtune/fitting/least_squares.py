@@ -133,21 +133,37 @@ def solve(
     return under_way.results()
 
 
-def fit_offsets(problem: FitProblem, unit: FloatArray, max_iterations: int = 12) -> FloatArray:
+def fit_offsets(
+    problem: FitProblem,
+    unit: FloatArray,
+    max_iterations: int = 12,
+    whiten: Callable[[FloatArray], FloatArray] | None = None,
+) -> FloatArray:
     """Offsets (n_cases, 6) of the initial states that fit best with the targets held at ``unit`` (n_targets,).
 
     A case keeps the best offsets met, beginning with none, so J and prior together never rise; one that diverges keeps
     none.
+
+    whiten  linear map of residuals (n_residuals, ...) within each case, the squares of which stand for J then
     """
     point = unit[:, None]
+
+    def costs(offsets: FloatArray) -> FloatArray:
+        if whiten is None:
+            return problem.costs_by_case(point, offsets[:, None])[:, 0]
+        left = whiten(problem.residuals(point, offsets[:, None]).T)
+        return np.array([_squares(left[rows])[0] for rows in problem.rows_of_cases])
+
     best = np.zeros((len(problem.cases), 6))
-    value = problem.costs_by_case(point, best[:, None])[:, 0]
+    value = costs(best)
     for _ in range(max_iterations):
         residuals, slopes = problem.offset_slopes(unit, best)
         residuals, slopes = flat_where_lost(residuals), flat_where_lost(slopes)
+        if whiten is not None:
+            residuals, slopes = whiten(residuals), whiten(slopes)
         linear = Quadratic(problem, best, residuals, np.empty((len(residuals), 0)), slopes)
         tried = linear.offsets(np.empty(0))
-        found = problem.costs_by_case(point, tried[:, None])[:, 0] + np.sum(problem.prior * tried**2, axis=1)
+        found = costs(tried) + np.sum(problem.prior * tried**2, axis=1)
         better = found < value * (1.0 - 1e-9)
         best[better], value[better] = tried[better], found[better]
         if not better.any():

@@ -17,7 +17,8 @@ from mmgtune.diagnose.contributions import Contribution, set_aside, squares, tak
 from mmgtune.diagnose.gain import BAND, expected, held_out
 from mmgtune.diagnose.hypotheses import known_causes
 from mmgtune.diagnose.intervals import Estimate
-from mmgtune.diagnose.leftover import Leftover
+from mmgtune.diagnose.leftover import Leftover, _slow
+from mmgtune.diagnose.noise import ChannelNoise
 from mmgtune.diagnose.record import ANSWERS, kind_of, record_of
 from mmgtune.diagnose.search import Found
 from mmgtune.diagnose.unseen import Unseen
@@ -145,10 +146,34 @@ def test_a_trace_names_what_it_is_not_told_from():
     ("certainty", "left"), [(0.0, 0.25), (6.0, 4.0)], ids=["noise of a sensor", "the ship did move"]
 )
 def test_slow_noise_of_sensors_is_nothing_unknown(certainty, left):
-    found = Leftover(4.0, {"psi": 4.0}, {}, {"heading and yaw rate": certainty}, {}, {}, slow=3.0)
+    found = Leftover(4.0, {"psi": 4.0}, {}, {"heading and yaw rate": certainty}, {}, {}, at_most={"psi": 3.75})
     assert found.unknown == pytest.approx(left)
-    elsewhere = replace(found, channels={"x": 4.0, "psi": 0.01})
-    assert elsewhere.unknown == pytest.approx(0.25)  # heading and yaw rate fit
+    elsewhere = replace(found, excess=2.0, channels={"x": 3.99, "psi": 0.01}, at_most={"x": 3.75})
+    assert elsewhere.unknown == pytest.approx(0.125)  # heading and yaw rate fit
+
+
+def test_positions_that_wander_no_more_than_their_noise_may_point_to_no_sensor():
+    left = Leftover(6.0, {"x": 9.0, "y": 9.0, "r": 0.0}, {}, {}, {}, {})
+    assert left.alone == "position"
+    wandering = replace(left, slows={"x": 6.0, "y": 8.0}, at_most={"x": 9.0, "y": 9.0})
+    assert wandering.alone == ""
+    assert wandering.slow == pytest.approx(14.0 / 3.0)
+    assert replace(wandering, at_most={"x": 6.0, "y": 9.0}).alone == "position"
+
+
+def test_of_few_time_constants_slow_noise_is_known_no_better(suzaku):
+    """The fewer independent samples, the more may be noise."""
+    trials = list(load_trials("suzaku").trials.values())
+    found = {}
+    for n, some in (("few", trials[:1]), ("many", trials)):
+        bench = make_workbench(suzaku.profile, some, DiagnoseOptions())
+        channels = bench.noise.channels | {"x": ChannelNoise(phi=0.98, fading=4.0)}
+        bench.know(replace(bench.noise, channels=channels))
+        slow, found[n] = _slow(bench, "x", bench.sigma[0], 100.0)
+        assert slow == pytest.approx(4.0)
+        assert _slow(bench, "psi", bench.sigma[2], 100.0) == (0.0, 0.0)
+        assert _slow(bench, "x", bench.sigma[0], 3.0) == (3.0, 3.0)
+    assert 5.0 < found["many"] < found["few"]
 
 
 @pytest.mark.long

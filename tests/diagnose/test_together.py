@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mmgtune.diagnose import DiagnoseOptions, diagnose
+from mmgtune.diagnose import DiagnoseOptions, Diagnosis, diagnose
 from mmgtune.diagnose.contributions import share_lost
 from mmgtune.effects.signs import signed
 from mmgtune.profile import load_profile
@@ -43,6 +43,23 @@ def test_water_that_moves_only_in_trials_kept_for_testing_is_no_nothing(keep, ve
         none = replace(alone, gain=replace(result.gain, excess=np.stack([before, before], axis=1), unsure=1e9))
         assert none.verdict == "unexplained"  # however little is known of what may have moved
         assert "fitted to all runs but one, it tells that one little better" in none.sentence()
+
+
+@pytest.mark.parametrize(
+    ("share", "most", "by_run", "untold"),
+    [
+        (0.6, False, False, False),
+        (0.4, False, False, True),
+        (-2.0, True, False, False),
+        (-2.0, True, True, True),
+    ],
+    ids=["most of it", "little", "all of most runs", "values that bend"],
+)
+def test_what_all_trials_were_looked_at_for_must_be_told_by_the_others(share, most, by_run, untold):
+    gain = SimpleNamespace(share_removed=(share, share, share), tells_most_runs=most, leaves_beside=lambda: True)
+    causes = (SimpleNamespace(runs="of each" if by_run else None),)
+    seen = SimpleNamespace(gain=gain, causes=causes, together=SimpleNamespace(settled=True))
+    assert Diagnosis._told_by_none.fget(seen) is untold
 
 
 @dataclass(frozen=True)

@@ -1,19 +1,29 @@
 """Fitted points on trials that they were not fitted to."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from mmgtune.backends import Integrator
 from mmgtune.diagnose import DiagnoseOptions
-from mmgtune.diagnose.gain import Gain
+from mmgtune.diagnose.base_fit import base_fit
+from mmgtune.diagnose.gain import Gain, held_out
+from mmgtune.diagnose.hypotheses import known_causes
+from mmgtune.diagnose.noise import ChannelNoise
+from mmgtune.diagnose.search import Found
 from mmgtune.diagnose.unseen import Beside, Unseen
 from mmgtune.diagnose.workbench import Point, Workbench, make_workbench
-from mmgtune.profile import load_profile
+from mmgtune.profile import load_profile, with_effects
+from mmgtune.simulation import simulate as simulate_trials
 from mmgtune.trial import load_trials
+from tests.diagnose.sensors import NOISE, logged
 from tests.hidden.cases import of_runs
 from tests.hidden.plant import simulate, write
+
+LAG = "effects.steering-lag.time_constant"
 
 
 def test_values_of_runs_are_estimated_in_runs_held_out_and_each_run_is_compared_with_its_own(tmp_path):
@@ -79,6 +89,40 @@ def left_out(*excess: tuple[float, float], held_out="each") -> Gain:
 def test_a_run_that_alone_shows_a_coefficient_does_not_refute_what_tells_the_others(gain, told, remains):
     assert gain.runs_told == told
     assert gain.remains is remains
+
+
+def test_a_run_told_worse_refutes_nothing_where_coefficients_are_known_no_better():
+    gain = left_out((3e5, 40.0), (1.5e6, 1.6e8), (1e6, 30.0))
+    assert gain.runs_told == (0, 3)
+    assert replace(gain, unsure=1.5e8).runs_told == (0, 3)
+    assert replace(gain, unsure=1.7e8).runs_told == (2, 3)
+
+
+def test_positions_that_wander_do_not_hide_what_a_cause_explains_of_unseen_trials():
+    """A receiver errs by a metre for minutes, and the rudder lags: heading and yaw rate show what that explains."""
+    profile, rng = load_profile("suzaku"), np.random.default_rng(3)
+    trials = [load_trials("suzaku").trials[name] for name in ("turn_p35", "turn_m20", "zigzag_20", "zigzag_10")]
+    ship = with_effects(profile, {"steering-lag": {"time_constant": 1.5}}, "made")
+    noise = ChannelNoise(phi=0.99, fading=100.0)  # in white noise of the sensors
+    small = np.array([0.1, 0.1, *NOISE[2:]])
+    made = []
+    for trial, motion in zip(trials, simulate_trials(ship, trials), strict=True):
+        one = logged(trial, motion, rng, small)
+        steps = np.sqrt(1.0 - noise.phi**2) * rng.standard_normal((2, one.n_samples))
+        steps[:, 0] = rng.standard_normal(2)
+        x, y = small[:2, None] * lfilter([np.sqrt(noise.fading)], [1.0, -noise.phi], steps, axis=1)
+        made.append(replace(one, x=one.x + x, y=one.y + y))
+    options = DiagnoseOptions(targets=("hull.R_0", "hull.N_v", "hull.N_r"))
+    (cause,) = [one for one in known_causes(profile, made, options) if one.names == (LAG,)]
+    bench = make_workbench(profile, made[:2], options, cause.names)
+    bench.know(replace(bench.noise, channels=bench.noise.channels | {"x": noise, "y": noise}))
+    base = base_fit(bench)
+    final = bench.refit((*base.names, LAG), np.append(base.unit, 0.2)[:, None], base.offsets)
+    gain = held_out(Found(base, final, [cause]), Unseen(bench, made[2:]))
+    assert gain.floor == 6 * sum(one.n_samples for one in made[2:])
+    assert abs(gain.excess[:, 1].sum()) < 4.0 * gain.chance
+    assert gain.share_removed[0] > 0.9
+    assert not gain.remains
 
 
 def test_runs_that_the_others_tell_badly_are_too_few():
