@@ -504,6 +504,33 @@ def test_names_of_directions_leave_no_note_of_mirror_images(tmp_path):
     assert not any("mirror" in one for one in propose_map([write_csv(tmp_path / "log.csv", columns)]).notes)
 
 
+def over_ground(trial, start=0.0):
+    """A trial's columns as of a GPS and a gyro: speed and course over the ground instead of velocities."""
+    columns = logged(trial)
+    ahead, abeam = columns.pop("ahead"), columns.pop("abeam")
+    course = np.degrees(trial.psi + np.arctan2(abeam, ahead))
+    return columns | {"time": columns["time"] + start, "SOG [kn]": np.hypot(ahead, abeam), "COG [deg]": course % 360.0}
+
+
+@pytest.mark.parametrize("runs", [("turn_p35", "turn_m35"), ("turn_p35", "zigzag_10", "turn_m35")])
+def test_runs_with_pauses_between_them_in_one_log(tmp_path, runs):
+    """She comes out of a turn slow and begins the next fast: 5 kn between two rows were taken for an angle that wraps,
+    and the speed for one that contradicts the positions."""
+    columns, start = [], 0.0
+    for name in runs:
+        columns.append(pd.DataFrame(over_ground(suzaku(name), start)))
+        columns[-1]["SOG [kn]"] *= 7.3 / columns[-1]["SOG [kn]"].max()
+        for axis in ("north", "east"):
+            columns[-1][axis] *= 7.3 * KNOT / np.hypot(suzaku(name).u, suzaku(name).v_m).max()
+        start = columns[-1]["time"].iloc[-1] + 300.0
+    log = write_csv(tmp_path / "log.csv", pd.concat(columns))
+    proposal = propose_map([log])
+    found = {name: proposal.guesses[name] for name in ("psi", "sog", "cog", "r")}
+    assert [one.column for one in found.values()] == [3, 7, 8, 4]
+    assert {one.confidence for one in found.values()} == {"sure"}
+    assert not any("contradicts" in note for note in proposal.notes)
+
+
 # names
 
 

@@ -188,7 +188,8 @@ def ground_speed(find: Finder, among: Sequence[int]) -> None:
 
 def _turns_as_far(find: Finder, look: Look, key: tuple[int, str]) -> float:
     angle = look.mean(key[0]) * units.factors("rad")[key[1]]
-    course = np.unwrap(np.nan_to_num(np.arctan2(look.east, look.north)))
+    course = np.arctan2(look.east, look.north)
+    course = np.unwrap(course[np.isfinite(course)])
     return float(np.nanstd(angle) / max(float(np.nanstd(course)), 1e-9))
 
 

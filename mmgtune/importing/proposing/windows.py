@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...arrays import FloatArray
+from ...arrays import BoolArray, FloatArray
 from ...trial.motion_checks import spikes
 from ..clock import uniform
 from ..mapping import TimeSource
@@ -17,10 +17,12 @@ MOST = 120
 """Windows of a log."""
 ROWS = 12_000
 """Rows that are looked at, spread over the log."""
+PAUSE = 10.0
+"""Usual steps from row to row; over a longer one a log paused, and what a ship did meanwhile is not in it."""
 
 
 class Windows:
-    """A log in windows of equal numbers of rows.
+    """A log in windows of equal numbers of rows; what a window is over a pause longer than itself is not known.
 
     t        (n_rows,) time [s], strictly increasing
     columns  (n_rows,) each, spikes taken out, angles that wrap unwrapped
@@ -36,21 +38,41 @@ class Windows:
         kept = kept[:: max(1, len(kept) // ROWS)]
         self.t = t[kept]
         self.rows = kept
-        self.periods = [period(one[kept]) for one in columns]
+        resumed = np.zeros(len(kept), bool)
+        if len(kept) > 1:
+            steps = np.diff(self.t)
+            resumed[1:] = steps > PAUSE * np.median(steps)
+        self.periods = [period(one[kept], resumed) for one in columns]
         self.columns = [_clean(one[kept], turn) for one, turn in zip(columns, self.periods, strict=True)]
         count = int(np.clip(len(kept) // 6, 2, MOST))
         self.edges = np.unique(np.linspace(0, max(1, len(kept) - 1), count + 1).astype(np.intp))
+        self.pauses = self._pauses(resumed)
+
+    def _pauses(self, resumed: BoolArray) -> BoolArray:
+        """(n_windows,) whether a window, or what is taken around its edges, holds a pause longer than a window is."""
+        found = np.zeros(len(self.edges) - 1, bool)
+        if not resumed.any():
+            return found
+        usual = float(np.median(np.diff(self.t[self.edges])))
+        half = self._half
+        for k in np.flatnonzero(resumed):
+            if self.t[k] - self.t[k - 1] > usual:
+                found |= (self.edges[:-1] - half < k) & (k <= self.edges[1:] + half)
+        return found if found.mean() < 0.5 else np.zeros_like(found)
+
+    @property
+    def _half(self) -> int:
+        """Rows on either side of an edge that are taken with it."""
+        return max(0, int(np.diff(self.edges).min(initial=1)) // 4)
 
     def at_edges(self, values: FloatArray) -> FloatArray:
         """(n_windows + 1,) what values (n_rows,) are around the edges."""
-        half = max(0, int(np.diff(self.edges).min(initial=1)) // 4)
+        half = self._half
         return np.array([_middle(values[max(0, k - half) : k + half + 1]) for k in self.edges])
 
     def slope(self, values: FloatArray) -> FloatArray:
         """(n_windows,) change per second."""
-        half = max(0, int(np.diff(self.edges).min(initial=1)) // 4)
-        at = np.array([_middle(self.t[max(0, k - half) : k + half + 1]) for k in self.edges])
-        return np.asarray(np.diff(self.at_edges(values)) / np.diff(at))
+        return np.where(self.pauses, np.nan, np.diff(self.at_edges(values)) / np.diff(self.at_edges(self.t)))
 
     def mean(self, values: FloatArray) -> FloatArray:
         """(n_windows,) mean of values (n_rows,)."""
@@ -60,7 +82,7 @@ class Windows:
         )
         first, last = self.edges[:-1], self.edges[1:]
         number = counts[last] - counts[first]
-        return np.where(number > 0, (sums[last] - sums[first]) / np.maximum(number, 1.0), np.nan)
+        return np.where((number > 0) & ~self.pauses, (sums[last] - sums[first]) / np.maximum(number, 1.0), np.nan)
 
     @property
     def enough(self) -> bool:
@@ -68,12 +90,17 @@ class Windows:
         return len(self.edges) > 8
 
 
-def period(values: FloatArray) -> float:
-    """What a column wraps by: 360 or 2 pi where it jumps by about that and spans no more, else 0."""
-    known = values[np.isfinite(values)]
+def period(values: FloatArray, resumed: BoolArray) -> float:
+    """What a column wraps by: 360 or 2 pi where it jumps by about that and spans no more, else 0.
+
+    resumed  (n_rows,) rows after a pause: over one a speed may change by 6.3 kn, which is no angle that wraps
+    """
+    there = np.isfinite(values)
+    known = values[there]
     if len(known) < 10:
         return 0.0
-    steps, span = np.abs(np.diff(known)), float(np.ptp(known))
+    paused = np.diff(np.cumsum(resumed)[there]) > 0
+    steps, span = np.abs(np.diff(known))[~paused], float(np.ptp(known))
     for turn in (360.0, 2.0 * np.pi):
         if span <= 1.02 * turn and span > 0.8 * turn:
             jumps = steps > 0.7 * turn
