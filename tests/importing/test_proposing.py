@@ -531,6 +531,23 @@ def test_runs_with_pauses_between_them_in_one_log(tmp_path, runs):
     assert not any("contradicts" in note for note in proposal.notes)
 
 
+@pytest.mark.parametrize(
+    ("course", "heading"), [("Kurs", "Vorausrichtung"), ("Kurs", "Heading"), ("Koers", "CH 7"), ("Heading", "Gyro")]
+)
+def test_the_angle_that_leads_the_track_in_turns_is_the_heading(tmp_path, course, heading):
+    """The course of the positions follows itself best: a column that may be called so was the heading, surely."""
+    logs = []
+    for name in ("turn_p35", "zigzag_20"):
+        columns = over_ground(suzaku(name))
+        columns[f"{course} [°]"], columns[f"{heading} [°]"] = columns.pop("COG [deg]"), columns.pop("heading")
+        del columns["rate"]
+        logs.append(write_csv(tmp_path / f"{name}.csv", columns))
+    guesses = propose_map(logs).guesses
+    found = [next(iter(pd.read_csv(logs[0]).columns[[guesses[name].column]])) for name in ("psi", "cog")]
+    assert found == [f"{heading} [°]", f"{course} [°]"]
+    assert "leads it in turns" in " ".join(guesses["psi"].evidence)
+
+
 # names
 
 
@@ -541,7 +558,8 @@ def test_runs_with_pauses_between_them_in_one_log(tmp_path, runs):
         ("Vitesse de giration (°/min)", "r", "deg/min"), ("対地速力 [ノット]", "sog", "kn"), ("船首方位", "psi", ""),
         ("Geschwindigkeit quer", "v", ""), ("Heading_deg", "psi", "deg"), ("Rudder Order", "order", ""),
         ("Wind dir app", "wind_dir_app", ""), ("shaft_rpm", "n", "rpm"), ("Telegraph rpm", "order", "rpm"),
-        ("vel_n", "u", ""), ("vel_e", "v", ""), ("pos_n", "x", ""), ("utm_e", "y", ""), ("RPM", "n", "rpm"),
+        ("vel_n", "u", ""), ("Vorausrichtung", "psi", ""), ("Voorliggende koers", "psi", ""), ("Kurs over grunn", "cog", ""),
+        ("Senshu hoi", "psi", ""), ("Shinro", "cog", ""), ("Rumbo efectivo", "cog", ""), ("vel_e", "v", ""), ("pos_n", "x", ""), ("utm_e", "y", ""), ("RPM", "n", "rpm"),
         ("sog_ms", "sog", "m/s"), ("Speed [ms]", "u", "m/s"), ("timestamp_ms", "time", "ms"),
     ],
 )  # fmt: skip

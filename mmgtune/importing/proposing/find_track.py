@@ -5,11 +5,13 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from ... import units
 from ...trial.kinematics import FITS
+from ...units import DEG
 from ..headers import bare
 from .bearings import Track, keys_of, tracks
 from .clocks import in_seconds, likely_units
@@ -22,6 +24,11 @@ from .windows import Windows
 from .words import ORDER, OTHER, ROLL, TIME
 
 _ANGLES_OF_ROBOTS = ("yaw", "theta")
+DRIFTS = 2.0 * DEG
+"""Standard deviation of heading and course of each other from which a ship drifts in turns."""
+LEADS = (0.3, 0.4)
+"""Correlation of what an angle is ahead of the course with the rate of turn, from which it is a heading: where its name
+says so, and where it does not."""
 _DIVIDER = re.compile(r"[./]")
 """Between the parts of a name such as pose.position.x."""
 
@@ -62,9 +69,9 @@ def position_and_heading(find: Finder) -> None:
         return
     _, find.unit, scores, words, windows = best
     time_unit(find)
-    track = _better_heading(find, scores, windows)
+    track, course, led = _beside_the_course(find, scores, windows)
     find.looks = [Look(s, w, track) for s, w in zip(find.samples, windows, strict=True) if w.enough]
-    others = [one for one in scores if (one.x, one.y, one.psi) != (track.x, track.y, track.psi)]
+    others = [one for one in scores if (one.x, one.y, one.psi) != (track.x, track.y, track.psi) and one.psi != course]
     rival = max((scores[one] for one in others), default=0.0)
     mirrored = max((v for one, v in scores.items() if one.left != track.left and one.psi == track.psi), default=0.0)
     clear = scores[track] > 1.1 * rival
@@ -81,7 +88,7 @@ def position_and_heading(find: Finder) -> None:
         partner = track.y if column == track.x else track.x
         said = [f"with {find.shown(partner)} it makes a course that follows the heading, at {speed:.3g} m/s"]
         if quantity == "psi":
-            said = [words.get(track, "the course follows it")]
+            said = [words.get(track, "the course follows it"), *led]
             if find.units_said[column] == own["unit"]:
                 said.append(f"its name says {own['unit']}")
             elif _against_its_name(find, track):
@@ -144,6 +151,49 @@ def fits(find: Finder, scores: Mapping[Track, float], windows: Sequence[Windows]
         best = min(misses, default=FITS)
         speed = speed or best < FITS
     return float(rate) + float(speed)
+
+
+def _beside_the_course(
+    find: Finder, scores: Mapping[Track, float], windows: Sequence[Windows]
+) -> tuple[Track, int | None, list[str]]:
+    """The likeliest track; the column that is the course of the positions itself and not the heading, where another one
+    leads it in turns as a heading does, whatever names say; and that in words.
+    """
+    track = _better_heading(find, scores, windows)
+    looks = [(s, w) for s, w in zip(find.samples, windows, strict=True) if w.enough]
+    own, _ = _ahead_of_course([Look(s, w, track) for s, w in looks])
+    found: list[tuple[float, Track, float]] = []
+    for other, score in scores.items():
+        same = replace(other, psi=track.psi) == track and other.psi != track.psi
+        if not same or score < 0.3 * scores[track] or find.said[other.psi] == "cog":
+            continue
+        off, leads = _ahead_of_course([Look(s, w, other) for s, w in looks])
+        if off > max(DRIFTS, 2.0 * own) and leads > LEADS[find.said[other.psi] != "psi"]:
+            found.append((leads + (find.said[other.psi] == "psi"), other, off))
+    if not found or find.said[track.psi] == "cog":
+        return track, None, []
+    _, heading, off = max(found, key=lambda one: one[0])
+    find.said[track.psi] = "cog"
+    words = f"{find.shown(track.psi)} is the course of the positions within {own / DEG:.2g} deg, and this one leads it in "
+    return heading, track.psi, [words + f"turns: they differ by {off / DEG:.2g} deg"]
+
+
+def _ahead_of_course(looks: Sequence[Look]) -> tuple[float, float]:
+    """By how much a heading is now ahead of the course, now behind [rad], and the correlation of that with the rate."""
+    off, rates, spread = [], [], []
+    for look in looks:
+        known = np.isfinite(look.psi) & np.isfinite(look.rate) & (look.speed > 0.5 * look.usual_speed)
+        ahead = np.exp(1j * (look.psi - np.arctan2(look.east, look.north)))[known]
+        if known.sum() < 8:
+            continue
+        off.append(np.angle(ahead * np.conj(ahead.mean())))
+        rates.append(look.rate[known])
+        spread.append(float(np.std(off[-1])))
+    if not off:
+        return 0.0, 0.0
+    ahead, rate = np.concatenate(off), np.concatenate(rates)
+    size = float(np.sqrt((ahead @ ahead) * (rate @ rate)))
+    return float(np.median(spread)), float(ahead @ rate) / size if size > 0.0 else 0.0
 
 
 def _better_heading(find: Finder, scores: Mapping[Track, float], windows: Sequence[Windows]) -> Track:

@@ -67,8 +67,8 @@ _WORDS: tuple[tuple[str, tuple[str, ...]], ...] = (
         r"\blon", r"\blng\b", r"lange\b", r"longitud", r"lengte", r"経度", r"经度", r"경도",
     )),
     ("cog", (
-        r"\bcog\b", r"course.*ground", r"kurs uber grund", r"\bkug\b", r"\bkueg\b", r"grondkoers", r"route.*fond",
-        r"rumbo.*fondo", r"track angle", r"\bcourse\b", r"\btrack\b", r"rotta", r"对地航向", r"対地針路", r"針路",
+        r"\bcog\b", r"course.*ground", r"kurs.*(grund|grunn)", r"\bkurs u ?g\b", r"\bkug\b", r"\bkueg\b", r"grondkoers", r"koers.*grond",
+        r"\broute\b", r"rumbo.*(fondo|efectivo)", r"track angle", r"shinro", r"\bcourse\b", r"\btrack\b", r"rotta", r"对地航向", r"対地針路", r"針路",
         r"침로",
     )),
     ("sog", (
@@ -87,7 +87,7 @@ _WORDS: tuple[tuple[str, tuple[str, ...]], ...] = (
     )),
     ("psi", (
         r"\bhead", r"\bhdg\b", r"\bhdt\b", r"gyro", r"compass", r"\bpsi\b", r"kompass", r"\byaw\b", r"kurswinkel",
-        r"steuerkurs", r"\bkurs\b", r"\bcap\b", r"\brumbo\b", r"proa", r"koers", r"voorligg", r"giroscop", r"azim",
+        r"steuerkurs", r"voraus ?richt", r"\bkurs\b", r"\bcap\b", r"\brumbo\b", r"proa", r"koers", r"voorligg", r"vorlieg", r"stevning", r"sen(sh|sy)u ?ho", r"giroscop", r"azim",
         r"\bprora", r"stefning", r"kurssi", r"方位", r"艏向", r"航向", r"선수",
     )),
     ("delta", (
