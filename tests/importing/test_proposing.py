@@ -548,6 +548,37 @@ def test_the_angle_that_leads_the_track_in_turns_is_the_heading(tmp_path, course
     assert "leads it in turns" in " ".join(guesses["psi"].evidence)
 
 
+@pytest.mark.parametrize(
+    ("names", "expected"),
+    [
+        (("ME RPM", "Shaft RPM"), "sure"), (("Shaft RPM", "M/E RPM"), "sure"), (("RPM 1", "RPM 2"), "sure"),
+        (("ME RPM",), "likely"), (("RPM",), "likely"),
+    ],
+)  # fmt: skip
+def test_of_revolutions_before_and_behind_a_gear_those_behind_it_are_taken(tmp_path, names, expected):
+    """What the engine makes was taken, surely, where it stood first."""
+    columns = over_ground(suzaku("turn_p35"))
+    shaft = columns.pop("shaft")
+    engine = next((one for one in names if "M" in one.removesuffix("RPM")), names[0])
+    columns |= {name: shaft * (5.2 if name == engine else 1.0) for name in names}
+    guess = propose_map([write_csv(tmp_path / "log.csv", columns)]).guesses["n"]
+    assert list(columns)[guess.column] == next((one for one in names if one != engine), engine)
+    assert guess.confidence == expected
+    said = " ".join(guess.evidence)
+    assert ("on the other side of a gear" in said) == (len(names) == 2)
+    assert ("an engine before a gear?" in said) == (len(names) == 1)
+
+
+def test_the_shafts_of_both_sides_are_taken_before_their_engines(tmp_path):
+    columns = over_ground(suzaku("turn_p35"))
+    shaft = columns.pop("shaft")
+    for side in ("port", "stbd"):
+        columns |= {f"Shaft RPM {side}": shaft, f"ME RPM {side}": 3.0 * shaft}
+    proposal = propose_map([write_csv(tmp_path / "log.csv", columns)])
+    found = [list(columns)[proposal.guesses[name].column] for name in ("n_port", "n_stbd")]
+    assert found == ["Shaft RPM port", "Shaft RPM stbd"]
+
+
 # names
 
 
@@ -558,8 +589,10 @@ def test_the_angle_that_leads_the_track_in_turns_is_the_heading(tmp_path, course
         ("Vitesse de giration (°/min)", "r", "deg/min"), ("対地速力 [ノット]", "sog", "kn"), ("船首方位", "psi", ""),
         ("Geschwindigkeit quer", "v", ""), ("Heading_deg", "psi", "deg"), ("Rudder Order", "order", ""),
         ("Wind dir app", "wind_dir_app", ""), ("shaft_rpm", "n", "rpm"), ("Telegraph rpm", "order", "rpm"),
-        ("vel_n", "u", ""), ("Vorausrichtung", "psi", ""), ("Voorliggende koers", "psi", ""), ("Kurs over grunn", "cog", ""),
-        ("Senshu hoi", "psi", ""), ("Shinro", "cog", ""), ("Rumbo efectivo", "cog", ""), ("vel_e", "v", ""), ("pos_n", "x", ""), ("utm_e", "y", ""), ("RPM", "n", "rpm"),
+        ("vel_n", "u", ""), ("Vorausrichtung", "psi", ""), ("Voorliggende koers", "psi", ""),
+        ("Kurs over grunn", "cog", ""),
+        ("Senshu hoi", "psi", ""), ("Shinro", "cog", ""), ("Rumbo efectivo", "cog", ""),
+        ("vel_e", "v", ""), ("pos_n", "x", ""), ("utm_e", "y", ""), ("RPM", "n", "rpm"),
         ("sog_ms", "sog", "m/s"), ("Speed [ms]", "u", "m/s"), ("timestamp_ms", "time", "ms"),
     ],
 )  # fmt: skip

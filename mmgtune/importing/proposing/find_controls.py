@@ -13,10 +13,14 @@ from .finder import Finder
 from .guess import ASKED, LIKELY, MARK, SURE, Guess
 from .look import Look
 from .orders import rudders, shafts
-from .words import LOG_SPEED, ORDER, OTHER, ROLL
+from .words import LOG_SPEED, ORDER, OTHER, ROLL, turns
 
 WAY = (0.01, 0.04)
 """Ship lengths that ships make with each turn of the propeller."""
+HARDLY = 1.6
+"""Factor beyond those at which no ship is believed to make so much: the length is guessed from how she turns."""
+GEAR = 1.3
+"""Factor between two columns of revolutions, from which one is of what turns before a gear."""
 
 
 ORDERS_ONLY = "no column holds what was measured, and this one holds orders, which {} follows later"
@@ -120,13 +124,56 @@ def _shafts_among(find: Finder, columns: Sequence[int], remark: str = "") -> boo
             for unit, way in one.advance.items():
                 if np.isfinite(way):
                     per_column[one.column, unit].append(way)
-    named = {find.said[k]: k for k in ranks if find.said[k] in ("n_port", "n_stbd")}
-    chosen = list(named.items()) if len(named) == 2 else []
-    if not chosen and ranks:
-        chosen = [("n", max(ranks, key=lambda k: ranks[k]))]
-    for name, column in chosen:
-        _shaft(find, name, column, ranks, per_column, remark)
-    return bool(chosen)
+    sides = {side: [k for k in ranks if find.said[k] == side] for side in ("n_port", "n_stbd")}
+    among = sides if all(sides.values()) else {"n": list(ranks)} if ranks else {}
+    for name, columns in among.items():
+        column = max(columns, key=lambda k: ranks[k])
+        column, why, clear = _behind_the_gear(find, column, columns, per_column)
+        _shaft(find, name, column, ranks, per_column, (*why, *((remark,) if remark else ())), clear)
+    return bool(among)
+
+
+def _behind_the_gear(
+    find: Finder, column: int, columns: Sequence[int], ways: Mapping[tuple[int, str], list[float]]
+) -> tuple[int, list[str], bool]:
+    """Of columns that turn in proportion to one: that of the shaft, by names or else by the way a ship makes; why; and
+    whether that is clear.
+    """
+    alike = {k: times for k in columns if k != column and (times := _times(find, k, column))}
+    if not alike:
+        return column, [], True
+
+    def merit(k: int) -> tuple[int, float]:
+        said = _unit_said(find, k)
+        fits = [float(np.median(many)) for (one, unit), many in ways.items() if one == k and said in ("", unit)]
+        return turns(find.first.names[k]), -min((abs(np.log(way / 0.02)) for way in fits if way > 0.0), default=99.0)
+
+    best = max([column, *alike], key=merit)
+    others = [k for k in (column, *alike) if k != best]
+    second = max(others, key=merit)
+    times = _times(find, second, best)
+    by_name = merit(best)[0] > merit(second)[0]
+    why = "by their names" if by_name else "by the way she makes with each turn"
+    words = f"{find.shown(second)} turns {times:.3g} times as fast, on the other side of a gear, {why}"
+    return best, [words], by_name or merit(best)[1] > merit(second)[1] + np.log(2.0)
+
+
+def _times(find: Finder, k: int, other: int) -> float:
+    """How many times as fast one column of revolutions turns as another, 0.0 where they do not turn in proportion."""
+    if _unit_said(find, k) != _unit_said(find, other):
+        return 0.0
+    both = np.concatenate([np.stack([look.mean(k), look.mean(other)]) for look in find.looks], axis=1)
+    both = both[:, np.isfinite(both).all(axis=0)]
+    both = both[:, np.abs(both[1]) > 0.3 * np.abs(both[1]).max(initial=0.0)]
+    if both.shape[1] < 8 or not np.abs(both[1]).any():
+        return 0.0
+    low, usual, high = np.percentile(both[0] / both[1], [10.0, 50.0, 90.0])
+    apart = usual > 0.0 and abs(np.log(usual)) > np.log(GEAR)
+    return float(usual) if apart and high - low < 0.1 * usual else 0.0
+
+
+def _unit_said(find: Finder, k: int) -> str:
+    return find.units_said[k].replace("1/s", "rps")
 
 
 def _rudder_angle(find: Finder, look: Look, delta: Guess | None) -> float:
@@ -147,18 +194,25 @@ def _shaft(
     column: int,
     ranks: Mapping[int, float],
     ways: Mapping[tuple[int, str], list[float]],
-    remark: str = "",
+    remarks: Sequence[str] = (),
+    clear: bool = True,
 ) -> None:
-    said = find.units_said[column].replace("1/s", "rps")
+    said = _unit_said(find, column)
     fits = {unit: float(np.median(ways[column, unit])) for unit in ("rpm", "rps") if ways.get((column, unit))}
     sizes = {unit: abs(np.log(way / 0.02)) for unit, way in fits.items() if way > 0.0}
     seen = min(sizes, key=lambda one: sizes[one], default="")
     named = find.said[column].startswith("n")
     words = ["its name says so"] if named else ["it stays the same over long times, as revolutions do"]
-    confidence = SURE if named else LIKELY
+    confidence = SURE if named and clear else LIKELY
     if said in ("rpm", "rps"):
         unit = said
         words.append(f"in {said}, as its name says")
+        if said in fits and not WAY[0] / HARDLY < fits[said] < WAY[1] * HARDLY:
+            confidence = LIKELY
+            words.append(
+                f"but she makes some {fits[said]:.2g} of her length with each turn then, ships {WAY[0]:g} to "
+                f"{WAY[1]:g}: is it of an engine before a gear?"
+            )
     elif seen and sizes[seen] < np.log(12.0) and (named or WAY[0] <= fits[seen] <= WAY[1]):
         unit = seen
         ships = f"ships {WAY[0]:g} to {WAY[1]:g}"
@@ -174,6 +228,5 @@ def _shaft(
     rivals = [k for k, rank in ranks.items() if k != column and rank > 0.6 * ranks[column]]
     if rivals and confidence == LIKELY:
         words.append(f"{', '.join(find.shown(k) for k in rivals[:3])} might be it too")
-    if remark:
-        words.append(remark)
+    words.extend(remarks)
     find.add(Guess(name, column, own, tuple(words), confidence))

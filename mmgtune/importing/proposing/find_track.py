@@ -174,8 +174,8 @@ def _beside_the_course(
         return track, None, []
     _, heading, off = max(found, key=lambda one: one[0])
     find.said[track.psi] = "cog"
-    words = f"{find.shown(track.psi)} is the course of the positions within {own / DEG:.2g} deg, and this one leads it in "
-    return heading, track.psi, [words + f"turns: they differ by {off / DEG:.2g} deg"]
+    words = f"{find.shown(track.psi)} is the course of the positions within {own / DEG:.2g} deg, and this one"
+    return heading, track.psi, [f"{words} leads it in turns: they differ by {off / DEG:.2g} deg"]
 
 
 def _ahead_of_course(looks: Sequence[Look]) -> tuple[float, float]:

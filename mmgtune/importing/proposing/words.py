@@ -67,8 +67,9 @@ _WORDS: tuple[tuple[str, tuple[str, ...]], ...] = (
         r"\blon", r"\blng\b", r"lange\b", r"longitud", r"lengte", r"経度", r"经度", r"경도",
     )),
     ("cog", (
-        r"\bcog\b", r"course.*ground", r"kurs.*(grund|grunn)", r"\bkurs u ?g\b", r"\bkug\b", r"\bkueg\b", r"grondkoers", r"koers.*grond",
-        r"\broute\b", r"rumbo.*(fondo|efectivo)", r"track angle", r"shinro", r"\bcourse\b", r"\btrack\b", r"rotta", r"对地航向", r"対地針路", r"針路",
+        r"\bcog\b", r"course.*ground", r"kurs.*(grund|grunn)", r"\bkurs u ?g\b", r"\bkug\b", r"\bkueg\b",
+        r"grondkoers", r"koers.*grond", r"\broute\b", r"rumbo.*(fondo|efectivo)", r"track angle", r"shinro",
+        r"\bcourse\b", r"\btrack\b", r"rotta", r"对地航向", r"対地針路", r"針路",
         r"침로",
     )),
     ("sog", (
@@ -87,8 +88,9 @@ _WORDS: tuple[tuple[str, tuple[str, ...]], ...] = (
     )),
     ("psi", (
         r"\bhead", r"\bhdg\b", r"\bhdt\b", r"gyro", r"compass", r"\bpsi\b", r"kompass", r"\byaw\b", r"kurswinkel",
-        r"steuerkurs", r"voraus ?richt", r"\bkurs\b", r"\bcap\b", r"\brumbo\b", r"proa", r"koers", r"voorligg", r"vorlieg", r"stevning", r"sen(sh|sy)u ?ho", r"giroscop", r"azim",
-        r"\bprora", r"stefning", r"kurssi", r"方位", r"艏向", r"航向", r"선수",
+        r"steuerkurs", r"voraus ?richt", r"\bkurs\b", r"\bcap\b", r"\brumbo\b", r"proa", r"koers", r"voorligg",
+        r"vorlieg", r"stevning", r"sen(sh|sy)u ?ho", r"giroscop", r"azim", r"\bprora", r"stefning", r"kurssi", r"方位",
+        r"艏向", r"航向", r"선수",
     )),
     ("delta", (
         r"rudder", r"\brud\b", r"\bdelta\b", r"ruder", r"helm", r"roer", r"gouvern", r"timon", r"timone", r"leme",
@@ -144,6 +146,13 @@ _DIRECTION = re.compile(r"dir|angle|richtung|winkel|hoek|richt|rumbo|awa|twd|\bd
 _DRIVES = ("delta", "n")
 _SIDES = (re.compile(_PORT), re.compile(_STARBOARD))
 
+_SHAFT = re.compile(
+    r"shaft|prop|screw|welle|schraube|schroef|\bas\b|helice|\barbre|elica|\bejes?\b|\basse\b|aksel|propell|軸|プロペラ|轴|桨"
+)
+_ENGINE = re.compile(
+    r"\bm ?e\b|engine|motor|moteur|masch|machine|macchina|maquina|diesel|\bhm\b|\bmcr\b|主機|主机|엔진|機関"
+)
+
 _UNITS = {
     "knoten": "kn", "kt": "kn", "kts": "kn", "kn": "kn", "knots": "kn", "noeuds": "kn", "nudos": "kn", "nodi": "kn",
     "knopen": "kn", "knop": "kn", "节": "kn", "ノット": "kn", "노트": "kn",
@@ -183,6 +192,13 @@ def quantity_named(name: str) -> str:
         if port != starboard:
             return f"{found}_{'port' if port else 'stbd'}"
     return found
+
+
+@lru_cache(maxsize=4096)
+def turns(name: str) -> int:
+    """What turns by a name of revolutions: 1 for the propeller or its shaft, -1 for the engine, 0 for neither."""
+    text = plain(name)
+    return bool(_SHAFT.search(text)) - bool(_ENGINE.search(text))
 
 
 @lru_cache(maxsize=4096)
