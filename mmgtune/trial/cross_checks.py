@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..arrays import FloatArray
@@ -20,10 +22,20 @@ FASTEST = {
     "r": (3.0, "rad/s^2"),
 }  # fmt: skip
 """Change per second that neither ships nor models of a metre make, by channel."""
+AMIDSHIPS = 3.0 * DEG
+"""Rudder angle below which a ship goes about straight on."""
+FEWEST = 5
+"""Samples of an approach that say anything."""
+STEADY = 0.1
+"""Spread of the way per turn within an approach, as a share, beyond which the ship gathers or loses speed."""
 USUAL_RUDDER = 50.0 * DEG
 """Angle beyond which hardly any rudder goes: common ones stop at 35 to 45 deg."""
 ADVANCE = (0.004, 0.12)
 """Way a ship makes with each turn of her propeller, in her lengths; usual ones make 0.01 to 0.04."""
+ON_APPROACH = (0.006, 0.08)
+"""The same on a straight course at a steady speed, where neither turns nor changes of speed widen it."""
+WAY = "way"
+"""Code of a finding on that."""
 STRIDES = 24
 """Parts of a record in which the way is compared."""
 
@@ -119,21 +131,42 @@ def _revolutions(trial: Trial, where: str, L_pp: float | None) -> list[Finding]:
     if keeps and np.mean(n < 0.0) > 0.95:
         fix = "change the sign of 'n': ahead is positive"
         return [_warning("the propeller turns astern, and the ship keeps going ahead", place, said, fix)]
-    ahead = known & (u > 0.5 * np.nanmax(np.where(known, u, -np.inf))) & (n > 0.2 * largest)
-    if L_pp is None or not keeps or ahead.sum() < 20:
+    if L_pp is None:
         return []
-    way = float(np.median(u[ahead] / n[ahead])) / L_pp
-    if ADVANCE[0] <= way <= ADVANCE[1]:
-        return []
-    much = "little" if way < ADVANCE[0] else "much"
-    return [
-        _warning(
-            f"the ship makes {way * L_pp:.3g} m with each turn of the propeller, {way:.2g} of her length: too {much}",
-            place,
-            "ships make 0.01 to 0.04 of their length; a unit may be wrong, or a gear between engine and shaft",
-            "check the unit of 'n' (revolutions per second of the shaft) and of 'u'",
-        )
-    ]
+    steady = way_per_turn(trial)
+    way = steady if steady is not None else usual_way(trial) if keeps else None
+    low, high = ON_APPROACH if steady is not None else ADVANCE
+    return [] if way is None or low <= way / L_pp <= high else [way_finding(way, L_pp, trial, where)]
+
+
+def way_finding(way: float, L_pp: float, trial: Trial, where: str, as_others: bool = False) -> Finding:
+    """That a way with each turn of the propeller [m] is none that ships make."""
+    much = "little" if way < ON_APPROACH[0] * L_pp else "much"
+    others = ", as in the other trials" if as_others else ""
+    said = f"the ship makes {way:.3g} m with each turn of the propeller, {way / L_pp:.2g} of her length: too {much}"
+    why = "ships make 0.01 to 0.04 of their length; a unit may be wrong, or a gear between engine and shaft"
+    fix = "check the unit of 'n' (revolutions per second of the shaft) and of 'u'"
+    return replace(_warning(said + others, f"{where}, columns 'n' and 'u'", why, fix), code=WAY)
+
+
+def usual_way(trial: Trial) -> float | None:
+    """Metres ahead with each turn of the propeller, whatever the ship does; None where she hardly goes ahead."""
+    u, n = trial.u, trial.n
+    known = np.isfinite(u)
+    ahead = known & (u > 0.5 * np.nanmax(np.where(known, u, -np.inf))) & (n > 0.2 * float(np.abs(n).max()))
+    return float(np.median(u[ahead] / n[ahead])) if ahead.sum() >= 20 else None
+
+
+def way_per_turn(trial: Trial) -> float | None:
+    """Metres ahead with each turn of the propeller on the straight course a trial begins with; None where none is."""
+    with np.errstate(all="ignore"):
+        straight = (np.abs(trial.delta) < AMIDSHIPS) & (trial.u > 0.0) & (trial.n > 0.3 * np.abs(trial.n).max())
+        straight &= trial.u > 0.5 * np.nanmax(trial.u, initial=0.0)  # not while she gathers way
+        end = len(straight) if straight.all() else int(np.argmin(straight))
+        if end < FEWEST:
+            return None
+        low, usual, high = np.percentile(trial.u[:end] / trial.n[:end], [10.0, 50.0, 90.0])
+    return float(usual) if high - low < STEADY * usual else None
 
 
 def axis_factors(trial: Trial) -> dict[str, tuple[float, float]]:

@@ -7,18 +7,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ..units import DEG
 from .checks import check_trial
 from .control_checks import RUDDER_SIGN
+from .cross_checks import ON_APPROACH, WAY, usual_way, way_finding, way_per_turn
 from .finding import SEVERITIES, Finding
 from .model import Trial
 
-AMIDSHIPS = 3.0 * DEG
-"""Rudder angle below which a ship goes about straight on."""
-FEWEST = 5
-"""Samples of an approach that say anything."""
-STEADY = 0.1
-"""Spread of the way per turn within an approach, as a share, beyond which the ship gathers or loses speed."""
 NAMED = 3
 """Things told where a result says that trials are odd."""
 APART = 1.3
@@ -28,10 +22,11 @@ APART = 1.3
 def check_trials(trials: Mapping[str, Trial], L_pp: float | None = None) -> dict[str, list[Finding]]:
     """Everything a user should know about each trial of a set, worst first; arguments as for ``check_trial``.
 
-    Three or more approaches are held against each other besides: a unit that is wrong in one trial shows there.
+    Three or more approaches are held against each other besides: a unit that is wrong in one trial shows there.  What is wrong
+    in all that have an approach is told of the others too where it shows.
     """
     found = {name: check_trial(trial, L_pp) for name, trial in trials.items()}
-    for name, finding in _ways(trials).items():
+    for name, finding in (*_ways(trials).items(), *_of_a_gear(trials, found, L_pp).items()):
         found[name] = sorted([*found[name], finding], key=lambda one: SEVERITIES.index(one.severity))
     return found
 
@@ -75,15 +70,20 @@ def turn_away(trials: Mapping[str, Trial]) -> list[str]:
     return [id for id, one in trials.items() if any(f.code == RUDDER_SIGN for f in check_trial(one))]
 
 
-def way_per_turn(trial: Trial) -> float | None:
-    """Metres ahead with each turn of the propeller on the straight course a trial begins with; None where none is."""
-    with np.errstate(all="ignore"):
-        straight = (np.abs(trial.delta) < AMIDSHIPS) & (trial.u > 0.0) & (trial.n > 0.3 * np.abs(trial.n).max())
-        end = len(straight) if straight.all() else int(np.argmin(straight))
-        if end < FEWEST:
-            return None
-        low, usual, high = np.percentile(trial.u[:end] / trial.n[:end], [10.0, 50.0, 90.0])
-    return float(usual) if high - low < STEADY * usual else None
+def _of_a_gear(
+    trials: Mapping[str, Trial], found: Mapping[str, list[Finding]], L_pp: float | None
+) -> dict[str, Finding]:
+    """Trials without an approach that make too little or too much way with each turn, as all do that have one."""
+    steady = [name for name, trial in trials.items() if way_per_turn(trial) is not None]
+    wrong = [name for name, findings in found.items() if any(one.code == WAY for one in findings)]
+    if L_pp is None or len(wrong) < 2 or not set(steady) <= set(wrong):
+        return {}
+    ways = {name: usual_way(trial) for name, trial in trials.items() if name not in wrong}
+    return {
+        name: way_finding(way, L_pp, trials[name], str(trials[name].path or name), as_others=True)
+        for name, way in ways.items()
+        if way is not None and not ON_APPROACH[0] <= way / L_pp <= ON_APPROACH[1]
+    }
 
 
 def _ways(trials: Mapping[str, Trial]) -> dict[str, Finding]:

@@ -230,3 +230,17 @@ def test_results_say_what_is_odd_about_their_trials() -> None:
     assert diagnosis.to_dict()["warnings"][0].startswith(said.replace("10", "2"))
     without = leave_out("suzaku", trials, LeaveOutOptions(folds=2, starts=1, targets=("hull.R_0",)))
     assert without.to_dict()["warnings"][0].startswith(said.replace("10", "4"))  # those left out in turn
+
+
+def test_revolutions_before_a_gear_are_told_of_every_trial() -> None:
+    """Of a turn that takes her way off, and of one without an approach, nothing was said."""
+    geared = {name: replace(one, n=4.4 * one.n) for name, one in SUZAKU.items()}
+    name, other = "zigzag_10", geared["zigzag_10"]
+    rudder = np.array(other.delta)
+    rudder[:20] = 10.0 * DEG  # no approach
+    geared[name] = replace(other, delta=rudder)
+    said_ = {key: [one.what for one in found if "of her length: too little" in one.what]
+             for key, found in check_trials(geared, L_PP).items()}  # fmt: skip
+    assert all(len(one) == 1 for one in said_.values())
+    assert "as in the other trials" in said_[name][0]
+    assert not any("of her length" in one.what for found in check_trials(SUZAKU, L_PP).values() for one in found)
