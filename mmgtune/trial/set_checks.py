@@ -22,8 +22,8 @@ APART = 1.3
 def check_trials(trials: Mapping[str, Trial], L_pp: float | None = None) -> dict[str, list[Finding]]:
     """Everything a user should know about each trial of a set, worst first; arguments as for ``check_trial``.
 
-    Three or more approaches are held against each other besides: a unit that is wrong in one trial shows there.  What is wrong
-    in all that have an approach is told of the others too where it shows.
+    Three or more approaches are held against each other besides: a unit that is wrong in one trial shows there.
+    What is wrong in all that have an approach is told of the others too where it shows.
     """
     found = {name: check_trial(trial, L_pp) for name, trial in trials.items()}
     for name, finding in (*_ways(trials).items(), *_of_a_gear(trials, found, L_pp).items()):

@@ -579,6 +579,19 @@ def test_the_shafts_of_both_sides_are_taken_before_their_engines(tmp_path):
     assert found == ["Shaft RPM port", "Shaft RPM stbd"]
 
 
+@pytest.mark.parametrize(("name", "factor"), [("Logge", 1.06), ("EM log", 1.0), ("Corredera", 0.95), ("CH 5", 1.06)])
+def test_a_speed_of_a_log_is_the_speed_ahead_and_a_factor_is_not_sure(tmp_path, name, factor):
+    """It was the speed over the ground, surely, within 6 %."""
+    columns = logged(suzaku("turn_p35"))
+    del columns["abeam"]
+    columns[f"{name} [kn]"] = factor * columns.pop("ahead")
+    guesses = propose_map([write_csv(tmp_path / "log.csv", columns)]).guesses
+    guess = guesses["u" if name != "CH 5" or "u" in guesses else "sog"]
+    assert list(columns)[guess.column] == f"{name} [kn]"
+    assert guess.confidence == ("sure" if factor == 1.0 else "likely")
+    assert ("off by a factor" in " ".join(guess.evidence)) == (factor != 1.0)
+
+
 # names
 
 

@@ -17,6 +17,8 @@ from .look import Look
 from .motions import Match, courses, speeds, through_water, velocities, yaw_rates
 from .words import LOG_SPEED, ORDER, OTHER, ROLL
 
+FACTOR = 0.03
+"""Share by which a speed may be more or less than that of the positions throughout and still be surely what it is."""
 CLEAR = 0.15
 """Standard error of the share of what drift takes off a speed, from which that share tells which speed it is."""
 
@@ -214,7 +216,10 @@ def _one_speed(find: Finder, among: Sequence[int]) -> None:
     flows = (
         bool(told) and float(np.median([one[1] for one in told])) > 0.6 and current > 0.02 * find.looks[0].usual_speed
     )
-    if find.said[column] == LOG_SPEED or flows:
+    of_log = find.said[column] == LOG_SPEED
+    factor = _factor(find, column, unit)
+    # A current that no turn shows may be as large as what a log is off by.
+    if flows or (of_log and not told and abs(factor - 1.0) > FACTOR):
         why = (
             f"it differs from the speed over the ground by a steady flow of {current:.2g} m/s"
             if flows
@@ -225,8 +230,14 @@ def _one_speed(find: Finder, among: Sequence[int]) -> None:
         return
     own, words = find.unit_of(column, "m/s", unit)
     miss = float(np.median(votes[best]))
-    confidence = SURE if miss < FITS else LIKELY
-    if not minus and _along_the_track(find, column, unit):
+    off = abs(factor - 1.0) > FACTOR
+    confidence = SURE if miss < FITS and not off else LIKELY
+    if of_log:
+        words += "; its name says that it is of a log, which measures the speed ahead through the water"
+    if off:
+        more = f"{100.0 * abs(factor - 1.0):.2g} % {'more' if factor > 1.0 else 'less'}"
+        words += f"; it says {more} than the positions throughout: is it off by a factor?"
+    if not minus and not of_log and _along_the_track(find, column, unit):
         said = f"it is the speed along the track within {100.0 * miss:.2g} %, in {unit}{words}"
         find.add(Guess("sog", column, own, (said, "its direction is that of the positions"), confidence))
         return
@@ -234,6 +245,17 @@ def _one_speed(find: Finder, among: Sequence[int]) -> None:
     find.axes = "ship"
     said = f"it is the speed ahead within {100.0 * miss:.2g} %, in {unit}{words}"
     find.add(Guess("u", column, own, (said,), confidence))
+
+
+def _factor(find: Finder, column: int, unit: str) -> float:
+    """How many times the speed ahead of the positions a column says, usually."""
+    ratios = []
+    for look in find.looks:
+        with np.errstate(all="ignore"):
+            ratio = np.abs(look.mean(column)) * units.factors("m/s")[unit] / np.abs(look.ahead)
+        ratios.append(ratio[np.isfinite(ratio) & (np.abs(look.ahead) > 0.5 * look.usual_speed)])
+    every = np.concatenate(ratios) if ratios else np.empty(0)
+    return float(np.median(every)) if len(every) else 1.0
 
 
 def _along_the_track(find: Finder, column: int, unit: str) -> bool:

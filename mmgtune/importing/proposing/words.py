@@ -73,12 +73,13 @@ _WORDS: tuple[tuple[str, tuple[str, ...]], ...] = (
         r"침로",
     )),
     ("sog", (
-        r"\bsog\b", r"speed.*(ground|og\b)", r"\bfug\b", r"fahrt uber grund", r"grondsnelheid", r"vitesse.*fond",
+        r"\bsog\b", r"speed.*(ground|\bog\b)", r"\bfug\b", r"fahrt uber grund", r"grondsnelheid", r"vitesse.*fond",
         r"velocidad.*fondo", r"对地航速", r"対地速力", r"gps.*(speed|vel)",
     )),
     (LOG_SPEED, (
         r"\bstw\b", r"\bspeed.*(water|log)", r"\bfdw\b", r"fahrt durch", r"vitesse surface", r"对水", r"対水",
-        r"\blog speed",
+        r"\blog speed", r"\blogge\b", r"\b(em|doppler|dvl|speed|ship s) ?log\b", r"^log( (kn|kts?|knots|ms|m s))?$",
+        r"corredera", r"\bloch\b", r"solcometro",
     )),
     ("r", (
         r"\brot\b", r"yaw ?(rate|vel|ang)", r"yawrate", r"rate of turn", r"turn ?rate", r"angvel", r"ang vel",
