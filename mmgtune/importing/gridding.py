@@ -12,6 +12,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import LogError, OptionError, Problem, brief
 from ..limits import GRID_FREE, GRID_PER_ROW, GRID_SAMPLES, as_float
+from ..phrases import listed
 from .mapping import LogMap
 from .quantities import MEASURED, meaning
 from .record import Record, Series
@@ -163,6 +164,22 @@ def stretches(columns: dict[str, FloatArray], inputs: Sequence[str], fewest: int
         if len(rows) >= fewest:
             found.append(slice(first + int(rows[0]), first + int(rows[-1]) + 1))
     return found
+
+
+def missing_between(t: FloatArray, columns: dict[str, FloatArray], inputs: Sequence[str], apart: slice) -> str:
+    """Which inputs have no value between two stretches, where and for how long, as the end of "cut where ..."."""
+    step = float(np.median(np.diff(t)))
+    gone: dict[tuple[int, float], list[str]] = {}
+    for name in inputs:
+        rows = np.flatnonzero(~np.isfinite(columns[name][apart]))
+        if len(rows):
+            gone.setdefault((len(rows), float(t[apart][rows[0]])), []).append(name)
+    said = [
+        f"{listed(names)} {'is' if len(names) == 1 else 'are'} missing for {count * step:.4g} s "
+        f"(from {first:.6g} s of the log)"
+        for (count, first), names in gone.items()
+    ]
+    return " and ".join(said)
 
 
 def _ends(one: Series) -> tuple[float, float]:

@@ -28,7 +28,7 @@ from .cutting import kept, pull_out
 from .doubts import fix_in_map
 from .forms import form_of, refuse_binary
 from .geodesy import not_mirrored, with_local_positions
-from .gridding import FEWEST, Grid, hold_step, on_grid, stretches
+from .gridding import FEWEST, Grid, hold_step, missing_between, on_grid, stretches
 from .jumps import cut_at_jumps
 from .mapping import LogMap
 from .matlab import read_matlab
@@ -60,6 +60,7 @@ class Piece:
     notes    what was done, in sentences
     derived  columns of the motion that were worked out from others
     follows  "pull-out" where it is what follows the piece before it; else ""
+    cut      where the log was cut before it, as the end of "cut where ..."; "" where it was not
     """
 
     columns: dict[str, FloatArray]
@@ -69,6 +70,7 @@ class Piece:
     notes: list[str]
     derived: tuple[str, ...] = ()
     follows: str = ""
+    cut: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,14 +190,17 @@ def _trials(log: Path, log_map: LogMap, step: float | None) -> list[tuple[Trial,
     """The trials of one log with their quality.  Raises LogError."""
     read, log_map = _records(log, log_map)
     records = [part for record in read for part in cut_at_jumps(record, log_map, step)]
-    made = []
+    made: list[Piece] = []
     short = 0
     for record in records:
         if len(records) > 1 and max(len(one.t) for one in record.series.values()) < FEWEST:
             short += 1
             continue
         try:
-            made += _of_record(record, log_map, step)
+            pieces = _of_record(record, log_map, step)
+            if made:
+                pieces[0] = replace(pieces[0], cut=pieces[0].cut or "its time jumps")
+            made += pieces
         except LogError:
             # A few seconds between two settings of a clock are no trial; a whole log that is none is an error.
             if len(records) == 1 or max(len(one.t) for one in record.series.values()) > FEWEST:
@@ -215,7 +220,8 @@ def _trials(log: Path, log_map: LogMap, step: float | None) -> list[tuple[Trial,
         id = name if count == 1 else f"{name}_{number}"
         notes = list(piece.notes)
         if count > 1:
-            notes = [f"part {number} of {count} of the log", *notes]
+            cut = f", cut where {piece.cut}" if piece.cut else ""
+            notes = [f"part {number} of {count} of the log{cut}", *notes]
         if short:
             notes = [
                 *notes,
@@ -318,7 +324,8 @@ def _of_record(record: Record, log_map: LogMap, step: float | None) -> list[Piec
     notes += with_mean(columns, "n", log_map)
     notes += conventions.settle_rudders(grid.t, columns, log_map, where)
     notes += with_mean(columns, "delta", log_map)
-    found = []
+    found: list[Piece] = []
+    end = 0
     for part in stretches(columns, log_map.inputs):
         cut = {name: values[part] for name, values in columns.items()}
         t = grid.t[part]
@@ -329,7 +336,9 @@ def _of_record(record: Record, log_map: LogMap, step: float | None) -> list[Piec
         if rest and len(t[inside][rest[0]]) >= FEWEST:
             begun = t[inside][rest[0]]
             cut = {name: values[rest[0]] for name, values in cut.items()}
-            piece = Piece({"t": begun, **cut}, record, grid, float(begun[0]), [*notes, *dropped], derived)
+            why = missing_between(grid.t, columns, log_map.inputs, slice(end, part.start)) if found else ""
+            piece = Piece({"t": begun, **cut}, record, grid, float(begun[0]), [*notes, *dropped], derived, cut=why)
+            end = part.stop
             found += _split(piece) if log_map.cut.split else [piece]
     if not found:
         needed = [name for name in (*MEASURED, *log_map.inputs) if not np.isfinite(columns[name]).any()]
@@ -380,6 +389,7 @@ def _split(piece: Piece) -> list[Piece]:
             [*piece.notes, said],
             piece.derived,
             follows,
+            "its pull-out begins" if follows else piece.cut,
         )
         for follows, part, said in parts
     ]
@@ -411,4 +421,4 @@ def _trial(id: str, piece: Piece, notes: list[str], log_map: LogMap, cut_from: s
         cut_from=cut_from,
         derived=piece.derived,
     )
-    return trial, quality_of(trial, record, piece.grid, piece.began, notes, log_map)
+    return trial, {**quality_of(trial, record, piece.grid, piece.began, notes, log_map), "cut": piece.cut}

@@ -38,6 +38,7 @@ class Proposal:
     notes      what else is to be said
     problems   what the import of these logs by this map would be refused with, () where it asks, or where none is
     imported   number of trials that the logs would make, None where the map asks
+    cuts       why there are more trials than logs: logs that the import cuts, and where
     """
 
     text: str
@@ -49,6 +50,7 @@ class Proposal:
     problems: tuple[Problem, ...]
     imported: int | None
     sample: Sample | None
+    cuts: tuple[str, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         """As JSON."""
@@ -62,6 +64,7 @@ class Proposal:
             "notes": list(self.notes),
             "problems": [one.to_dict() for one in self.problems],
             "trials": self.imported,
+            "cuts": list(self.cuts),
             "map": self.text,
         }
 
@@ -95,6 +98,9 @@ class Proposal:
         elif not self.problems:
             logs = "the log" if len(self.logs) == 1 else f"all {len(self.logs)} logs"
             lines.append(f"the map imports {logs}, as {counted(self.imported or 0, 'trial')}")
+            lines += [f"  {one}" for one in self.cuts[:4]]
+            if len(self.cuts) > 4:
+                lines.append(f"  and {counted(len(self.cuts) - 4, 'more log is', 'more logs are')} cut")
         lead = f"next: mend what is refused, in {name} or in the logs; then " if self.problems else "next: "
         lines.append(f"{lead}mmgtune trials import {_given(self.logs)} --map {quote(name)} -o trials --dry-run")
         return lines
@@ -166,7 +172,23 @@ def _tried(proposal: Proposal, finder: Finder) -> Proposal:
         found, problems = _imported(proposal)
     if found is not None:
         proposal, found = _with_findings(proposal, finder, found)
-    return replace(proposal, problems=problems, imported=None if found is None else len(found.trials))
+    return _told(proposal, found, problems)
+
+
+def _told(proposal: Proposal, found: Imported | None, problems: tuple[Problem, ...]) -> Proposal:
+    """The proposal with what its import makes, or is refused with."""
+    if found is None:
+        return replace(proposal, problems=problems)
+    where: dict[str, list[str]] = {}
+    for quality in found.quality:
+        if quality["cut"]:
+            where.setdefault(quality["log"], []).append(quality["cut"])
+    cuts = tuple(
+        f"{Path(log).name} is cut where {said[0]}"
+        + (f", and {counted(len(said) - 1, 'time')} more" if said[1:] else "")
+        for log, said in where.items()
+    )
+    return replace(proposal, problems=problems, imported=len(found.trials), cuts=cuts)
 
 
 def _with_findings(proposal: Proposal, finder: Finder, found: Imported) -> tuple[Proposal, Imported]:
@@ -234,4 +256,4 @@ def _of_sentences(paths: tuple[Path, ...]) -> Proposal:
     if asks:
         return proposal
     found, problems = _imported(proposal)
-    return replace(proposal, problems=problems, imported=None if found is None else len(found.trials))
+    return _told(proposal, found, problems)

@@ -19,6 +19,10 @@ _PORT = ("P", "PT", "PORT", "BB")
 _STARBOARD = ("S", "SB", "STB", "STBD", "STARBOARD")
 _WORD = rf"({'|'.join(sorted((*_PORT, *_STARBOARD), key=len, reverse=True))})"
 _CELL = rf"^(?:{_WORD}(?:\.\s+|\s*))?(\d+[.,]?\d*|[.,]\d+)\s*{_WORD}?\.?$"
+_MIDSHIPS = (
+    r"(?:[0.,]+\s*)?(?:MID(?:[ -]?SHIPS?)?|AMID(?:[ -]?SHIPS?)?|CENT(?:RE|ER)D?|CTR|ZERO|NEUTRAL|MS|MITTE?"
+    r"|MITTSCHIFFS|MITTELLAGE|NULL-?LAGE|MIDDEN|MIDSCHEEPS|ZÉRO|MILIEU|CENTRO|MEDIO|中央)\.?(?:\s*[0.,]+)?"
+)
 SIGNED = re.compile(rf"{_WORD}\.?\s*[-+]\s*[\d.,]+|[-+]\s*[\d.,]+\s*{_WORD}\.?", re.IGNORECASE)
 """A number with a sign, and with a side too: neither says which counts."""
 
@@ -31,10 +35,16 @@ def takes_side(name: str) -> bool:
     return quantity.positive[0] == "starboard" or (quantity.positive[0] == "clockwise" and not quantity.origin)
 
 
+def midships(texts: Any) -> Any:
+    """(n_rows,) whether texts of a pandas column are words for a rudder that stands amidships: MID, MIDSHIPS."""
+    return texts.str.slice(0, 40).str.upper().str.fullmatch(_MIDSHIPS).fillna(False).to_numpy(dtype=bool)
+
+
 def sided(texts: Any, decimal: str) -> FloatArray:
     """Numbers (n_rows,) of a pandas column of texts with a side each, starboard positive; NaN where one has none.
 
-    A zero needs no side.  A number with a sign and a side is none: which of them counts is not told.
+    A zero needs no side, and a word for amidships is one.  A number with a sign and a side is none: which of them
+    counts is not told.
     """
     parts = texts.str.slice(0, 40).str.upper().str.extract(_CELL)
     size = numbers_in(parts[1], decimal)
@@ -43,7 +53,8 @@ def sided(texts: Any, decimal: str) -> FloatArray:
     one = ((before == "") | (behind == "")).to_numpy(dtype=bool, na_value=False)
     port = words.isin(_PORT).to_numpy(dtype=bool)
     starboard = words.isin(_STARBOARD).to_numpy(dtype=bool) | (size == 0.0)
-    return np.where(one & port, -size, np.where(one & starboard, size, np.nan))
+    with_side = np.where(one & port, -size, np.where(one & starboard, size, np.nan))
+    return np.where(midships(texts), 0.0, with_side)
 
 
 def as_cells_say(log_map: LogMap, names: Collection[str], headers: dict[str, str]) -> LogMap:

@@ -16,7 +16,7 @@ from ..units import is_unit
 from .degrees import degrees
 from .mapping import LogMap
 from .numerals import holds_numbers, number_in, numbers_in
-from .sides import SIGNED, sided, takes_side
+from .sides import SIGNED, midships, sided, takes_side
 from .with_units import WITH_UNIT, numbers_with_unit
 
 MOST_ROWS = 1_000_000
@@ -129,17 +129,18 @@ class Cells:
             text = values.astype("string").str.strip()
             # One text in it leaves a column of numbers as texts, decimal commas and all.
             numbers = numbers_in(text, self.decimal)
+            there = ~text.str.lower().isin(self.missing).to_numpy() & text.notna().to_numpy()
             if name in ("latitude", "longitude") and np.isnan(numbers).any():
                 written = degrees(text)
                 # One way of writing in a column: a plain number among others is of no known unit.
                 if np.isfinite(written).any():
                     numbers, self.stated[name], says_more = written, "deg", True
             elif takes_side(name) and np.isnan(numbers).any():
-                with_side = sided(text, self.decimal)
+                numbers = np.where(there & midships(text), 0.0, numbers)
+                with_side = np.where(there, sided(text, self.decimal), np.nan)
                 # Zeros alone say no side.
                 if (np.isfinite(with_side) & np.isnan(numbers)).any():
                     numbers, side_said = with_side, True
-            there = ~text.str.lower().isin(self.missing).to_numpy() & text.notna().to_numpy()
             if there.any() and np.isnan(numbers[there]).all():
                 with_unit, unit = numbers_with_unit(text.where(there), self.decimal)
                 if unit and self.stated.get(name, unit) == unit:

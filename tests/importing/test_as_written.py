@@ -258,6 +258,9 @@ def test_positions_in_degrees_and_minutes(tmp_path, columns):
     [
         ("35.0S", 35.0), ("0.1 P", -0.1), ("p10", -10.0), ("STBD 5", 5.0), ("5,5 StB", 5.5), ("12 BB", -12.0),
         ("3 Port", -3.0), (".5S", 0.5), ("Stb. 5", 5.0), ("0.0", 0.0), ("0P", 0.0),
+        ("MID", 0.0), ("Midships", 0.0), ("AMIDSHIPS", 0.0), ("Centre", 0.0), ("center", 0.0), ("zero", 0.0),
+        ("MS", 0.0), ("Mittschiffs", 0.0), ("mitt", 0.0), ("Mitte", 0.0), ("mid 0.0", 0.0), ("0 MID", 0.0),
+        ("MID 5", np.nan), ("null", np.nan), ("middle of it", np.nan),
         ("10", np.nan), ("-3P", np.nan), ("P 3 S", np.nan),
         ("P", np.nan), ("5 SE", np.nan), ("5N", np.nan), ("", np.nan), ("1" * 5000, np.nan), (None, np.nan),
     ],
@@ -282,6 +285,46 @@ def test_rudder_and_yaw_rate_with_sides(tmp_path, columns, plain, form, sides):
     assert (proposal.problems, proposal.asks, proposal.imported) == ((), (), 1)
     close(imported(log, proposal.text), plain, 1e-7)
     assert "its cells say the side" in proposal.guesses["delta"].evidence
+
+
+def amidships(columns):
+    """The same with a rudder that stands amidships from 150 to 190 s, and its cells with sides but for those."""
+    rudder = np.round(columns["rudder"], 9)
+    rudder[150:190] = 0.0
+    cells = ["MID" if one == 0.0 else cell for one, cell in zip(rudder, with_sides(rudder), strict=True)]
+    return {**columns, "rudder": rudder}, {**columns, "rudder": cells}
+
+
+def test_amidships_is_zero(tmp_path, columns):
+    """Not a gap, at which the log was cut into several trials; without sides, too."""
+    numbers, cells = amidships(columns)
+    text = MAP.replace('"deg", positive = "starboard"', '"deg"')
+    as_numbers = imported(write_csv(tmp_path / "plain.csv", numbers))
+    trial = imported(write_csv(tmp_path / "log.csv", cells), text)
+    close(trial, as_numbers, 1e-7)
+    assert "are no number" not in trial.note
+    proposal = propose_map([tmp_path / "log.csv"])
+    assert (proposal.problems, proposal.asks, proposal.imported, proposal.cuts) == ((), (), 1, ())
+    count = cells["rudder"].count("MID")
+    assert f"'rudder': {count} cells such as 'MID' are 0" in proposal.notes
+    signed = ["MID" if one == 0.0 else f"{one:.9f}" for one in numbers["rudder"]]
+    close(imported(write_csv(tmp_path / "signed.csv", {**cells, "rudder": signed})), as_numbers, 1e-7)
+    as_gaps = said(tmp_path / "log.csv", text.replace("[time]", '[log]\nmissing = ["MID"]\n[time]'))
+    assert "part 2 of 2 of the log, cut where delta is missing for 40 s (from 150 s of the log)" in as_gaps
+
+
+def test_cells_that_cannot_be_read_are_told_by_the_map(tmp_path, columns):
+    cells = amidships(columns)[1]
+    cells["rudder"] = [cell.replace("MID", "?!") for cell in cells["rudder"]]
+    proposal = propose_map([write_csv(tmp_path / "log.csv", cells)])
+    count = cells["rudder"].count("?!")
+    what = f"'rudder': {count} of 400 cells are no numbers and become gaps, the first is '?!' ({tmp_path / 'log.csv'})"
+    assert proposal.notes == (what,)
+    assert proposal.imported == 2
+    why = ("log.csv is cut where delta is missing for 40 s (from 150 s of the log)",)
+    assert proposal.cuts == why
+    lines = proposal.lines()
+    assert lines[lines.index("the map imports the log, as 2 trials") + 1].strip() == why[0]
 
 
 def test_a_wind_from_the_bow_with_its_side(tmp_path, columns):

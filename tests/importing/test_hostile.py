@@ -318,6 +318,7 @@ def test_gap_of_a_control_cuts_the_trial(log, columns):
     result = import_logs([write_csv(log, columns)], parse_map(MAP), log.parent / "out")
     assert [trial.n_samples for trial in result.trials] == [150, 210]
     assert "bridged   n: 2 samples" in result.text()
+    assert "part 2 of 2 of the log, cut where delta is missing for 40 s (from 150 s of the log)" in result.text()
     for path in result.files:
         read_trial(path)
 

@@ -13,6 +13,7 @@ from .find_wind import wind
 from .finder import Finder
 from .misnamed import doubt_units
 from .sampling import Sample
+from .unread import unread
 
 
 def found_in(samples: Sequence[Sample]) -> Finder:
@@ -30,5 +31,6 @@ def found_in(samples: Sequence[Sample]) -> Finder:
     by_name(find)
     few_digits(find)
     missing(find)
+    unread(find)
     doubt_rates(find)
     return find

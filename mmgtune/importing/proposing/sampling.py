@@ -21,7 +21,7 @@ from ..forms import form_of, refuse_binary
 from ..mapping import LogMap, TimeSource
 from ..numerals import holds_numbers, numbers_in
 from ..parquet_log import is_text, shortened
-from ..sides import sided, takes_side
+from ..sides import midships, sided, takes_side
 from ..stopwatch import EITHER, TIME_OF_DAY, are_times, times_told
 from ..table import MISSING
 from ..text import PEEK, Lines, fields_of, start_of
@@ -117,6 +117,8 @@ def _made(path: Path, layout: dict[str, Any], names: Sequence[str], units: Seque
             clock = are_times(text)
             plain = float(np.isfinite(found).mean()) if len(text) else 1.0
             named = takes_side(quantity_named(names[k]))
+            if named and not clock:
+                found = np.where(midships(text), 0.0, found)
             if plain < (1.0 if named else 0.5) and not clock:
                 angles, sides = degrees(text), sided(text, decimal)
                 told = [float(np.isfinite(one).mean()) for one in (angles, sides)]
