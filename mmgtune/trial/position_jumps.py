@@ -25,7 +25,8 @@ def position_jumps(trial: Trial) -> list[tuple[int, float]]:
     """Rows after a step of the position, and by how far [m] it goes.
 
     The way the velocities make is taken off the track; lines fitted to what is left before and after each moment must
-    meet there.  Drifts, currents and biases of the velocities are lines themselves and pass.
+    meet there.  Drifts, currents and biases of the velocities are lines themselves and pass.  Where a few velocities
+    are missing the way goes on between their neighbours; longer gaps are not judged, and a single outlier is no jump.
     """
     dt = np.diff(trial.t)
     n = int(np.clip(np.ceil(SPAN / np.median(dt)), FEWEST, MOST))
@@ -33,10 +34,13 @@ def position_jumps(trial: Trial) -> list[tuple[int, float]]:
         return []
     made = to_earth(halfway(trial.psi), middle(trial.u), middle(trial.v_m))
     left = [
-        _without_spikes(position) - np.concatenate([[0.0], np.cumsum(np.where(np.isfinite(way), way * dt, 0.0))])
+        _without_spikes(position) - np.concatenate([[0.0], np.cumsum(bridged(trial.t[:-1], way) * dt)])
         for position, way in zip((trial.x, trial.y), made, strict=True)
     ]
     ahead = _line_end(n)
+    for first, last in _gaps(made[0], n):
+        for one in left:
+            one[first : last + 1] = np.nan
     # Rows k + n: what lies before predicts the middle of the step to row k + n, and so does what lies after.
     steps = [
         np.lib.stride_tricks.sliding_window_view(one[n:], n) @ ahead[::-1]
@@ -48,7 +52,41 @@ def position_jumps(trial: Trial) -> list[tuple[int, float]]:
     usual = float(np.nanmedian(size)) if np.isfinite(size).any() else np.inf
     speed = np.hypot(trial.u, trial.v_m)
     least = max(BEYOND * usual, WAY * float(np.nanpercentile(speed, 90.0)))
-    return [(k + n, float(size[k])) for k in _peaks(np.nan_to_num(size), least, n)]
+    found = _peaks(np.nan_to_num(size), least, n)
+    return [(k + n, float(size[k])) for k in found if _stays([one[k : k + 2 * n] for one in left], 0.5 * least)]
+
+
+def bridged(t: FloatArray, values: FloatArray) -> FloatArray:
+    """Values (n,) at times ``t`` with gaps filled between their neighbours; as they are where nothing is known."""
+    known = np.isfinite(values)
+    return np.asarray(np.interp(t, t[known], values[known])) if known.any() else values
+
+
+def _gaps(values: FloatArray, longest: int) -> list[tuple[int, int]]:
+    """First row and the row after the last of gaps of more than ``longest`` rows."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], np.isnan(values).astype(np.int8), [0]])))
+    ends = zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
+    return [(first, last) for first, last in ends if last - first > longest]
+
+
+def _stays(around: list[FloatArray], least: float) -> bool:
+    """Whether a step in the middle of two channels (2 n,) exceeds ``least`` whichever one sample is left out.
+
+    An outlier comes back at the next sample: without it there is no step.
+    """
+    n = len(around[0]) // 2
+    k = np.arange(2 * n, dtype=np.float64) - n + 0.5
+    for out in range(2 * n):
+        step = []
+        for one in around:
+            ends = []
+            for half in (np.arange(n), np.arange(n, 2 * n)):
+                rows = half[half != out]
+                ends.append(float(np.polynomial.polynomial.polyfit(k[rows], one[rows], 1)[0]))
+            step.append(ends[1] - ends[0])
+        if np.hypot(step[0], step[1]) < least:
+            return False
+    return True
 
 
 def _without_spikes(values: FloatArray) -> FloatArray:
@@ -83,15 +121,14 @@ def jump_findings(trial: Trial, where: str) -> list[Finding]:
         return []
     row, size = max(found, key=lambda one: one[1])
     times = "once" if len(found) == 1 else f"{len(found)} times"
-    went = float(np.hypot(trial.u[row], trial.v_m[row]) * (trial.t[row] - trial.t[row - 1]))
+    speed = bridged(trial.t, np.hypot(trial.u, trial.v_m))
+    went = float(speed[row] * (trial.t[row] - trial.t[row - 1]))
     return [
         Finding(
             "warning",
             f"the position jumps {times}, by {'' if len(found) == 1 else 'up to '}{size:.3g} m",
             f"{where}, columns 'x' and 'y', row {row}",
-            f"'u', 'v' and 'psi' make {went:.2g} m there"
-            if np.isfinite(went)
-            else "'u', 'v' and 'psi' make none there",
+            f"'u', 'v' and 'psi' make {went:.2g} m there",
             "mark the positions that are wrong as NaN, or cut the trial there",
         )
     ]

@@ -188,19 +188,25 @@ def test_positions_that_jump(seed: int, by: float, lasting: int) -> None:
 
 @pytest.mark.parametrize("seed", range(6))
 def test_positions_that_only_seem_to_jump(seed: int) -> None:
-    """A spike, a receiver once in five seconds, velocities through water, an antenna at the bow, a gap."""
+    """Spikes, a receiver once in five seconds, velocities through water, an antenna at the bow, gaps."""
     trial = made(zigzag=bool(seed % 2), seed=seed)
     spiked = trial.x.copy()
     spiked[200] += 60.0
     held = 5 * (np.arange(trial.n_samples) // 5)
     psi = trial.psi
     gap = np.where((trial.t > 200) & (trial.t < 230), np.nan, trial.x)
+    unknown = np.where(np.isin(trial.t, (100, 250, 251, 252)), np.nan, trial.u)
+    long = np.where((trial.t > 150) & (trial.t < 260), np.nan, trial.u)
+    outlier = trial.y + 12.0 * (trial.t == 300)
     for other in (
         replace(trial, x=spiked),
         replace(trial, x=trial.x[held], y=trial.y[held]),
         replace(trial, x=trial.x + 0.7 * trial.t, y=trial.y - 0.5 * trial.t),
         replace(trial, x=trial.x + 40.0 * np.cos(psi), y=trial.y + 40.0 * np.sin(psi)),
         replace(trial, x=gap),
+        replace(trial, u=unknown, v_m=unknown - trial.u + trial.v_m),
+        replace(trial, u=long),
+        replace(trial, y=outlier),
         replace(trial, u=trial.u[0] + 0.0 * trial.u),
     ):
         assert not [one for one in warnings_of(other) if "position jumps" in one]
