@@ -1,5 +1,6 @@
 """``mmgtune trials map``: what columns are, from how they behave and what they are called."""
 
+import csv
 import os
 from pathlib import Path
 
@@ -17,7 +18,7 @@ from mmgtune.units import KNOT
 from tests.command import run
 from tools.map_disguises import SETS, bundled_logs, disguised, equal, judged, plain_logs
 
-from .made import MAP, close, imported, logged, nmea, refusal, suzaku, turn, write_csv
+from .made import MAP, close, imported, logged, nmea, printed, refusal, suzaku, turn, write_csv
 
 DATA = Path(os.environ.get("MMGTUNE_DATA", Path(__file__).parents[2].parent / "shared" / "data"))
 
@@ -379,6 +380,42 @@ def test_lines_above_and_a_line_of_units(tmp_path, turns):
 )
 def test_headings(rows, expected):
     assert heading(rows) == expected
+
+
+@pytest.mark.parametrize("turns", ["U/min", "1/min", "min-1", "min\u207b\u00b9", "tr/min", "omw/min", "giri/min"])
+def test_revolutions_that_are_called_by_their_unit_alone(tmp_path, turns):
+    columns = logged(turn())
+    called = {turns if name == "shaft" else name: one for name, one in columns.items()}
+    proposal = propose_map([write_csv(tmp_path / "log.csv", called)])
+    assert proposal.map().sources["n"].column == turns
+    assert proposal.map().sources["n"].unit == "rpm"
+    assert (quantity_named(f"Soll {turns}"), quantity_named(f"Welle Bb {turns}")) == ("order", "n_port")
+
+
+def test_decimal_commas_in_quotes_between_commas(tmp_path):
+    columns = logged(turn())
+    log = write_csv(tmp_path / "log.csv", printed(columns, ","), quoting=csv.QUOTE_ALL)
+    proposal = propose_map([log])
+    assert (proposal.map().delimiter, proposal.map().decimal) == (",", ",")
+    close(imported(log, proposal.text), imported(write_csv(tmp_path / "plain.csv", columns)), 1e-7)
+    thousands = printed({**columns, "shaft": columns["shaft"] + 0.5 - columns["shaft"] % 1.0}, digits=3)
+    thousands["shaft"] = [f"1,{one}" for one in thousands["shaft"]]
+    assert "decimal" not in sample_of(write_csv(tmp_path / "log2.csv", thousands, quoting=csv.QUOTE_ALL)).layout
+
+
+def test_columns_go_by_name_in_logs_of_another_order(tmp_path):
+    columns = logged(turn())
+    first = write_csv(tmp_path / "a.csv", columns)
+    second = write_csv(tmp_path / "b.csv", {name: columns[name] for name in sorted(columns)})
+    proposal = propose_map([first, second])
+    assert (proposal.asks, proposal.problems, proposal.imported) == ((), (), 2)
+    one, other = import_logs([first, second], proposal.map(), ".", dry_run=True).trials
+    close(one, other)
+    twice = pd.DataFrame({**columns, "shaft.1": columns["shaft"]}).rename(columns={"shaft.1": "shaft"})
+    twice.to_csv(tmp_path / "a.csv", index=False)
+    twice[twice.columns[::-1].unique()].to_csv(tmp_path / "b.csv", index=False)
+    with pytest.raises(LogError, match="of different kinds"):
+        propose_map([first, second])
 
 
 def test_logs_of_two_kinds(tmp_path):

@@ -41,6 +41,8 @@ class Finder:
     axes: str | None = None
 
     def __init__(self, samples: Sequence[Sample]):
+        # Columns go by name: logs of one kind may have them in another order.
+        samples = [one if one.names == samples[0].names else one.in_order(samples[0]) for one in samples]
         self.samples = list(samples)
         self.first = samples[0]
         for other in samples[1:]:

@@ -66,6 +66,23 @@ class Sample:
         texts = [one[::-1].reset_index(drop=True) for one in self.texts]
         return replace(self, texts=texts, numbers=[one[::-1] for one in self.numbers])
 
+    def in_order(self, other: Sample) -> Sample:
+        """The same with its columns in the order of another sample; as it is where names do not tell them all."""
+        names = [one.strip() for one in other.names]
+        own = [one.strip() for one in self.names]
+        if sorted(own) != sorted(names) or any(isinstance(other.reference(k), int) for k in range(len(names))):
+            return self
+        moved = [own.index(name) for name in names]
+        return replace(
+            self,
+            names=tuple(self.names[k] for k in moved),
+            units=tuple(self.units[k] for k in moved),
+            texts=[self.texts[k] for k in moved],
+            numbers=[self.numbers[k] for k in moved],
+            written=frozenset(to for to, k in enumerate(moved) if k in self.written),
+            sided=frozenset(to for to, k in enumerate(moved) if k in self.sided),
+        )
+
     def reference(self, k: int) -> str | int:
         """How a map names a column: by its name where that is its own, else by its number."""
         name = self.names[k].strip()
@@ -355,7 +372,9 @@ def _separator(lines: Sequence[str]) -> tuple[str, str]:
         dated = sum(_DATED.fullmatch(cell) is not None for cell in cells)
         score = counts.count(usual) / len(counts) * (plain + comma + dated) / max(1, len(cells))
         if score > best[0] + 0.02:
-            best = score, mark, "," if comma > 0.2 * (plain + comma) and mark != "," else "."
+            # Between commas only what is quoted has commas in it: numbers, or thousands of numbers with points.
+            points = sum("." in cell and _NUMBER.fullmatch(cell) is not None for cell in cells) if mark == "," else 0
+            best = score, mark, "," if comma > max(0.2 * (plain + comma), points) else "."
     return best[1], best[2]
 
 

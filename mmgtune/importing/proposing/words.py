@@ -164,7 +164,8 @@ _UNITS = {
     "grad/min": "deg/min", "deg/min": "deg/min", "°/min": "deg/min", "deg/minute": "deg/min", "degpmin": "deg/min",
     "graden/min": "deg/min", "grados/min": "deg/min", "rads": "rad/s", "rad/sec": "rad/s", "radps": "rad/s",
     "rpm": "rpm", "u/min": "rpm", "upm": "rpm", "tr/min": "rpm", "omw/min": "rpm", "giri/min": "rpm", "t/min": "rpm",
-    "min-1": "rpm", "min^-1": "rpm", "rps": "rps", "rev/s": "rps", "u/s": "rps", "tr/s": "rps", "hz": "1/s",
+    "min-1": "rpm", "min^-1": "rpm", "min\u22121": "rpm", "obr/min": "rpm",
+    "varv/min": "rpm", "omdr/min": "rpm", "rps": "rps", "rev/s": "rps", "u/s": "rps", "tr/s": "rps", "hz": "1/s",
     "sek": "s", "sec": "s", "msec": "ms", "metres": "m", "meter": "m", "metros": "m", "米": "m", "秒": "s",
 }  # fmt: skip
 """Names of units beyond those that maps know, as other languages and names without brackets write them."""
@@ -182,7 +183,7 @@ def plain(name: str) -> str:
 @lru_cache(maxsize=4096)
 def quantity_named(name: str) -> str:
     """The quantity that a name speaks of, or one of the words above; "" where it says nothing."""
-    text = plain(name)
+    text = plain(_with_rpm(name))
     if not text or len(text) > 120:
         return ""
     found = next((quantity for quantity, pattern in _PATTERNS if pattern.search(text)), "")
@@ -193,6 +194,13 @@ def quantity_named(name: str) -> str:
         if port != starboard:
             return f"{found}_{'port' if port else 'stbd'}"
     return found
+
+
+def _with_rpm(name: str) -> str:
+    """A name that ends with revolutions a minute, U/min or tr/min, with "rpm" in its place; any other as it is."""
+    words = name[:200].split()
+    turning = words and words[-1][-1] not in ")]" and known_unit(words[-1]) == "rpm"
+    return " ".join([*words[:-1], "rpm"]) if turning else name
 
 
 @lru_cache(maxsize=4096)
@@ -207,7 +215,7 @@ def ordered(name: str) -> str:
     """What an order is of by its name: "delta", "n", or "" for a course, a speed, or nothing that can be told."""
     if quantity_named(name) != ORDER:
         return ""
-    text = plain(name)
+    text = plain(_with_rpm(name))
     if re.search(_TELEGRAPH, text):
         return "n"
     return next((quantity for quantity, pattern in _PATTERNS if quantity in _DRIVES and pattern.search(text)), "")
@@ -230,8 +238,8 @@ def _unit_named(name: str, row: str) -> str:
             return known
     words = re.split(r"[\s_]+", name.strip().lower())
     # A name that is one word alone is no unit: "s", "m" and "deg" are what people call columns.
-    if len(words) == 1 and words[0] in ("rpm", "rps"):
-        return str(words[0])
+    if len(words) == 1 and (words[0] in ("rpm", "rps") or known_unit(words[0]) == "rpm"):
+        return known_unit(words[0])
     for size in (2, 1):
         if len(words) > size and (known := known_unit("/".join(words[-size:]))):
             return known
