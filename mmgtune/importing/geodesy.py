@@ -8,6 +8,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import LogError, Problem
+from ..phrases import counted
 from ..physics.frame import to_ship
 from .mapping import LogMap
 from .record import Record, Series
@@ -35,6 +36,7 @@ def with_local_positions(record: Record, log_map: LogMap) -> Record:
     beyond = finite & (np.abs(lat) > 90.0)
     if beyond.sum() > 0.01 * finite.sum():
         row = int(np.flatnonzero(beyond)[0])
+        _hold_numbers(record, lat[beyond])
         why = f"latitude reaches {largest:.6g} deg, which is beyond a pole; longitude is {lon[row]:.6g} there"
         place = f"{record.path}, at {latitude.t[row]:.6g} s"
         raise LogError(
@@ -77,6 +79,15 @@ def _near(record: Record, t: FloatArray, x: FloatArray, y: FloatArray) -> None:
         x[wild] = y[wild] = np.nan
         record.spikes["x"] = record.spikes.get("x", 0) + int(wild.sum())
         record.notes.append(f"{wild.sum()} positions on another part of the earth were left out")
+
+
+def _hold_numbers(record: Record, beyond: FloatArray) -> None:
+    """Raise LogError where latitudes beyond a pole (n,) are one and the same number, which stands for none."""
+    code = float(beyond[0])
+    if (beyond == code).all() and abs(code) > 360.0:
+        what = f"{counted(len(beyond), 'latitude')} {'is' if len(beyond) == 1 else 'are'} {code:.10g}"
+        fix = f'say missing = ["{code:.10g}"] in [log]'
+        raise LogError(Problem(what, str(record.path), "the number seems to stand for no value", fix))
 
 
 def not_mirrored(columns: dict[str, FloatArray], where: str) -> None:

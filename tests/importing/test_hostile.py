@@ -96,6 +96,9 @@ def test_latitude_and_longitude_swapped(log, columns):
     text = text.replace('y = { column = "east", unit = "m" }', 'longitude = { column = "lon", unit = "deg" }')
     refused(write_csv(log, columns), "latitude and longitude are swapped?", "beyond a pole", text=text)
     columns["lat"], columns["lon"] = columns["lon"].copy(), columns["lat"].copy()
+    lost = np.where(columns["time"] % 20.0 == 0.0, -999.0, columns["lat"])
+    words = ("20 latitudes are -999", "no value", 'missing = ["-999"] in [log]')
+    refused(write_csv(log, {**columns, "lat": lost}), *words, text=text)
     assert "transverse mercator" in said(write_csv(log, columns), text)
     lat, lon = columns["lat"].copy() - 20.0, columns["lon"].copy() - 100.0
     lat[200:], lon[200:] = lon[200:].copy(), lat[200:].copy()

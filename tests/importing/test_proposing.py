@@ -418,6 +418,35 @@ def test_columns_go_by_name_in_logs_of_another_order(tmp_path):
         propose_map([first, second])
 
 
+@pytest.mark.parametrize("code", [-999.0, 9999.0, 999.9, -32768.0])
+def test_numbers_for_no_value(tmp_path, code):
+    """They made latitude and longitude swapped, as one was beyond a pole."""
+    columns = logged(turn())
+    lat, lon = 35.0 + columns.pop("north") * 9e-6, 139.0 + columns.pop("east") * 1.1e-5
+    columns = {"time": columns.pop("time"), "lat": lat, "lon": lon, **columns}
+    gaps = {name: one.copy() for name, one in columns.items()}
+    for name, row in (("lat", 50), ("lon", 60), ("lat", 61), ("heading", 90), ("rudder", 120), ("shaft", 130)):
+        gaps[name][row] = np.nan
+    log = write_csv(tmp_path / "log.csv", {name: np.nan_to_num(one, nan=code) for name, one in gaps.items()})
+    proposal = propose_map([log])
+    assert (proposal.asks, proposal.problems, proposal.imported) == ((), (), 1)
+    assert proposal.map().missing == (f"{code:g}",)
+    assert any(note.startswith(f"{code:g} in 'lat', 'lon', 'heading'") for note in proposal.notes)
+    empty = write_csv(tmp_path / "empty.csv", gaps)
+    plain = propose_map([empty])
+    assert not plain.map().missing
+    trials = [import_logs([one.logs[0]], one.map(), ".", dry_run=True).trials[0] for one in (proposal, plain)]
+    np.testing.assert_array_equal(trials[0].motion, trials[1].motion)
+    counter = write_csv(tmp_path / "log.csv", {**pd.read_csv(log), "count": code - 100.0 + np.arange(400)})
+    assert any("seems to stand for no value, but 'count' holds it" in note for note in propose_map([counter]).notes)
+
+
+def test_numbers_that_are_values(tmp_path):
+    columns = logged(turn())
+    rpm = np.where(columns["time"] > 200.0, 999.0, 970.0) + (columns["time"] % 5.0)
+    assert not propose_map([write_csv(tmp_path / "log.csv", {**columns, "shaft": rpm})]).map().missing
+
+
 def test_logs_of_two_kinds(tmp_path):
     first = write_csv(tmp_path / "a.csv", logged(turn()))
     second = write_csv(tmp_path / "b.csv", {name.upper(): one for name, one in logged(turn()).items()})

@@ -12,13 +12,16 @@ from .find_track import position_and_heading
 from .find_wind import wind
 from .finder import Finder
 from .misnamed import doubt_units
+from .no_values import without_codes
 from .sampling import Sample
 from .unread import unread
 
 
 def found_in(samples: Sequence[Sample]) -> Finder:
     """What the columns of logs of one kind are.  Raises LogError where they differ, or none is time."""
+    samples, said = without_codes(samples)
     find = Finder(samples)
+    find.notes += said
     time(find)
     position_and_heading(find)
     if find.looks:
