@@ -441,6 +441,25 @@ def test_numbers_for_no_value(tmp_path, code):
     assert any("seems to stand for no value, but 'count' holds it" in note for note in propose_map([counter]).notes)
 
 
+def test_whole_degrees_and_minutes_in_columns_of_their_own(tmp_path):
+    columns = logged(turn())
+    north, east = columns.pop("north"), columns.pop("east")
+    columns |= {"lat_deg": 0 * north + 34, "lat_min": 34.6 + north * 5.4e-4}
+    columns |= {"lon_deg": 0 * east + 135, "lon_min": 0.4 + east * 6.6e-4}
+    log = write_csv(tmp_path / "log.csv", columns)
+    proposal = propose_map([log])
+    for one, minutes in (("lat_deg", "lat_min"), ("lon_deg", "lon_min")):
+        said = (
+            f"'{one}' holds whole degrees only, by which the position does not change: the minutes are in '{minutes}'"
+        )
+        assert any(note.startswith(said) for note in proposal.notes)
+    text = MAP.replace('x = { column = "north", unit = "m" }', 'latitude = { column = "lat_deg", unit = "deg" }')
+    text = text.replace('y = { column = "east", unit = "m" }', 'longitude = { column = "lon_deg", unit = "deg" }')
+    assert "the position never changes: latitude and longitude are whole degrees" in refusal(
+        lambda: imported(log, text)
+    )
+
+
 def test_numbers_that_are_values(tmp_path):
     columns = logged(turn())
     rpm = np.where(columns["time"] > 200.0, 999.0, 970.0) + (columns["time"] % 5.0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -43,6 +44,27 @@ def by_name(find: Finder) -> None:
             own["positive"] = f'{MARK} "starboard" or "port": to which side is it positive?'
         asked = any(str(one).startswith(MARK) for one in own.values())
         find.add(Guess(name, k, own, tuple(words), ASKED if asked else LIKELY))
+
+
+def whole_degrees(find: Finder) -> None:
+    """Say where latitude or longitude is whole degrees only, and which column may hold the minutes."""
+    for name in ("latitude", "longitude"):
+        guess = find.guesses.get(name)
+        if guess is None or guess.column is None:
+            continue
+        known = [one[np.isfinite(one)] for one in (sample.numbers[guess.column] for sample in find.samples)]
+        if not all(len(one) and (one == np.round(one)).all() for one in known):
+            continue
+        said = f"{find.shown(guess.column)} holds whole degrees only, by which the position does not change"
+        minutes = [
+            k
+            for k, word in enumerate(find.said)
+            if word == name and k != guess.column and re.search(r"min(ute)?s?\b|'|′", find.first.names[k].lower())
+        ]
+        if minutes:
+            said += f": the minutes are in {find.shown(minutes[0])}"
+        find.notes.append(f"{said}; a map reads positions of one column each, such as 34.57721 or 34 34.6324 N")
+        find.guesses[name] = replace(guess, confidence=ASKED)
 
 
 def _makes_no_sense(find: Finder, name: str) -> bool:

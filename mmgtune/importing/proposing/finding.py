@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from .find_controls import propeller, rudder
 from .find_motion import velocity, yaw_rate
-from .find_rest import by_name, few_digits, missing
+from .find_rest import by_name, few_digits, missing, whole_degrees
 from .find_time import doubt_rates, time
 from .find_track import position_and_heading
 from .find_wind import wind
@@ -32,6 +32,7 @@ def found_in(samples: Sequence[Sample]) -> Finder:
         rudder(find)
         propeller(find)
     by_name(find)
+    whole_degrees(find)
     few_digits(find)
     missing(find)
     unread(find)
