@@ -197,7 +197,7 @@ def _ahead_of_course(looks: Sequence[Look]) -> tuple[float, float]:
 
 
 def _better_heading(find: Finder, scores: Mapping[Track, float], windows: Sequence[Windows]) -> Track:
-    """The likeliest track; of two columns that both follow the course, that which is not the course itfind."""
+    """The likeliest track; of two columns that both follow the course, that which is not the course itself."""
     best = max(scores, key=lambda one: scores[one])
     same = [
         one
