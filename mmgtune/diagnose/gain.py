@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -337,22 +338,30 @@ def _chance(bench: Workbench, trials: Sequence[Trial], point: Point | None = Non
 
 
 def _by_noise(bench: Workbench, n: float) -> tuple[float, float]:
-    """Expectation and deviation of chi-squared of n samples."""
-    variances = np.array([_variance(bench, name) for name in bench.channels])
-    return float(n * variances.sum()), float(np.sqrt(2.0 * n * np.sum(variances**2)))
+    """Expectation and deviation of chi-squared of n samples; noise with a memory has few independent samples."""
+    if _is_freed(bench):
+        squares = n * len(bench.channels)
+        return squares, math.sqrt(2.0 * squares)
+    expected = n * sum(noise.variance for noise in bench.noise.channels.values())
+    variance = 0.0
+    for noise in bench.noise.channels.values():
+        longer = (1.0 + noise.phi**2) / (1.0 - noise.phi**2)
+        variance += 2.0 * n * (noise.white**2 + 2.0 * noise.white * noise.fading + longer * noise.fading**2)
+    return float(expected), math.sqrt(variance)
 
 
-def _variance(bench: Workbench, channel: str) -> float:
-    """What noise alone brings to a square that counts."""
-    return 1.0 if bench.noise.coloured else bench.noise.channels[channel].variance
+def _is_freed(bench: Workbench) -> bool:
+    """Whether residuals are freed of the memory of noise before they are squared.
+
+    What wanders by metres for minutes, as positions of a satellite receiver do, would hide all that a cause explains.
+    Noise that may be an error of the model would be freed of that.
+    """
+    return bench.noise.coloured and not bench.noise.may_be_error
 
 
 def _freeing(bench: Workbench, problem: FitProblem) -> Callable[[FloatArray], FloatArray] | None:
-    """What frees residuals (n_residuals, ...) of the memory of noise; None where it has none.
-
-    What wanders by metres for minutes, as positions of a satellite receiver do, would hide all that a cause explains.
-    """
-    return replace(bench.noise, cases=problem.cases).apply if bench.noise.coloured else None
+    """What frees residuals (n_residuals, ...) of it; None where they are not."""
+    return replace(bench.noise, cases=problem.cases).apply if _is_freed(bench) else None
 
 
 def J_of(bench: Workbench, point: Point, test: Sequence[Trial]) -> float | None:
@@ -384,7 +393,9 @@ def _on(
 def _floor(bench: Workbench, problem: FitProblem, case: int) -> float:
     """Chi-squared that noise alone brings to a case."""
     counts = (problem.cases.weight[case] > 0.0).sum(axis=0)
-    return float(sum(counts[STATES.index(name)] * _variance(bench, name) for name in bench.channels))
+    if _is_freed(bench):
+        return float(counts.sum())
+    return float(sum(counts[STATES.index(name)] * noise.variance for name, noise in bench.noise.channels.items()))
 
 
 def _squares_by_case(bench: Workbench, problem: FitProblem, unit: FloatArray, offsets: FloatArray) -> FloatArray:

@@ -211,7 +211,8 @@ def _slow(bench: Workbench, name: str, level: float, excess: float) -> tuple[flo
         return 0.0, 0.0
     slow = noise.fading * (bench.sigma[STATES.index(name)] / level) ** 2
     independent = sum(trial.n_samples for trial in bench.trials) * (1.0 - noise.phi) / (1.0 + noise.phi)
-    at_most = (1.0 + SLACK + ERRORS * math.sqrt(2.0 / max(independent, 1.0))) * slow
+    errors = 0.0 if bench.noise.may_be_error else ERRORS * math.sqrt(2.0 / max(independent, 1.0))
+    at_most = (1.0 + SLACK + errors) * slow
     found = np.clip([slow, at_most], 0.0, max(excess, 0.0))
     return float(found[0]), float(found[1])
 

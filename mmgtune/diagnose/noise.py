@@ -94,6 +94,12 @@ class NoiseModel:
         """Whether any channel has memory."""
         return any(noise.fading > 0.0 for noise in self.channels.values())
 
+    @property
+    def may_be_error(self) -> bool:
+        """Whether so much more than white noise is left beside positions that it may be an error of the model."""
+        moving = [noise.variance for channel, noise in self.channels.items() if channel not in POSITIONS]
+        return max(moving or [noise.variance for noise in self.channels.values()], default=0.0) > NEAR
+
     def apply(self, values: FloatArray) -> FloatArray:
         """Residuals (n_residuals, ...) or their derivatives with noise of variance 1 and no memory."""
         out = values / self._sigma.reshape(-1, *(1,) * (values.ndim - 1))
@@ -177,9 +183,7 @@ def estimate(
     found = _autocovariances(cases, residuals[:, None])
     counts = {channel: sum(map(len, series)) for channel, series in rows_of_channels(cases).items()}
     model = NoiseModel(cases, {channel: _decompose(found[channel], counts[channel]) for channel in found})
-    moving = [noise.variance for channel, noise in model.channels.items() if channel not in POSITIONS]
-    far = max(moving or [noise.variance for noise in model.channels.values()], default=0.0) > NEAR
-    if fitted is None or far or not model.coloured:
+    if fitted is None or model.may_be_error or not model.coloured:
         return model
     plain = np.random.default_rng(0).standard_normal((len(residuals), DRAWS))
     for _ in range(ROUNDS):

@@ -123,6 +123,11 @@ def test_positions_that_wander_do_not_hide_what_a_cause_explains_of_unseen_trial
     assert abs(gain.excess[:, 1].sum()) < 4.0 * gain.chance
     assert gain.share_removed[0] > 0.9
     assert not gain.remains
+    # A heading that wanders as far may be an error of the model, and is counted with its memory.
+    bench.know(replace(bench.noise, channels=bench.noise.channels | {"psi": noise}))
+    assert bench.noise.may_be_error
+    counted = held_out(Found(base, final, [cause]), Unseen(bench, made[2:]))
+    assert counted.floor == pytest.approx(sum(one.n_samples for one in made[2:]) * (3 * 101.0 + 3.0), rel=0.1)
 
 
 def test_runs_that_the_others_tell_badly_are_too_few():
