@@ -21,6 +21,12 @@ def numbers_of(given: Any) -> FloatArray | None:
         return None
 
 
+def runs_of_true(flags: BoolArray) -> list[tuple[int, int]]:
+    """First place of each unbroken run of what is true of (n,) flags, and the place behind it."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(np.int8), [0]])))
+    return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
+
+
 def robust_deviation(off: FloatArray) -> float:
     """Standard deviation of what is normally distributed about zero, as most of the values do; any may be elsewhere.
 

@@ -9,7 +9,7 @@ from numbers import Real
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, runs_of_true
 from ..errors import LogError, OptionError, Problem, brief
 from ..limits import GRID_FREE, GRID_PER_ROW, GRID_SAMPLES, as_float
 from ..phrases import listed
@@ -157,9 +157,8 @@ def stretches(columns: dict[str, FloatArray], inputs: Sequence[str], fewest: int
     """Parts of a grid in which every input is known, each from its first complete sample; short ones left out."""
     good = np.all([np.isfinite(columns[name]) for name in inputs], axis=0)
     complete = good & np.all([np.isfinite(columns[name]) for name in MEASURED], axis=0)
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], good.astype(np.int8), [0]])))
     found = []
-    for first, last in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+    for first, last in runs_of_true(good):
         rows = np.flatnonzero(complete[first:last])
         if len(rows) >= fewest:
             found.append(slice(first + int(rows[0]), first + int(rows[-1]) + 1))

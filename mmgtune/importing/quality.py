@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, runs_of_true
 from ..errors import LogError, Problem
 from ..inputs import INPUTS
 from ..phrases import counted
@@ -235,10 +235,9 @@ def _changes(trial: Trial, name: str) -> dict[str, Any]:
 
 
 def _gaps(t: FloatArray, values: FloatArray, name: str) -> list[dict[str, Any]]:
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], np.isnan(values).astype(np.int8), [0]])))
     return [
-        {"channel": name, "from_s": float(t[a]), "to_s": float(t[b - 1]), "n_samples": int(b - a)}
-        for a, b in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
+        {"channel": name, "from_s": float(t[a]), "to_s": float(t[b - 1]), "n_samples": b - a}
+        for a, b in runs_of_true(np.isnan(values))
     ]
 
 

@@ -13,6 +13,7 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
+from ..arrays import runs_of_true
 from ..columns import cut as shortened
 from . import ticks
 from .plot import DASHES_OF, Area, Axis, Bar, Dots, Figure, Line, Look, Mark, Panel, Rule, Shapes, Words
@@ -322,9 +323,9 @@ def _mark(mark: Mark, across: Scale, up: Scale, ink: Ink) -> str:
             low, high = up(mark.low), up(mark.high)
             good = np.isfinite(x) & np.isfinite(low) & np.isfinite(high)
             pieces = []
-            for part in _runs(good):
-                there = _pairs(x[part], high[part])
-                back = _pairs(x[part][::-1], low[part][::-1])
+            for first, end in runs_of_true(good):
+                there = _pairs(x[first:end], high[first:end])
+                back = _pairs(x[first:end][::-1], low[first:end][::-1])
                 pieces.append(f"M{there}L{back}Z")
             return f'<path d="{"".join(pieces)}" fill-opacity="{mark.alpha:g}" {ink.paint(fill=mark.color)}/>'
         case Shapes():
@@ -374,17 +375,11 @@ def _line(mark: Line, across: Scale, up: Scale, ink: Ink) -> str:
         keep = np.unique(np.append(np.arange(0, len(x), every), len(x) - 1))
         x, y = x[keep], y[keep]
     good = np.isfinite(x) & np.isfinite(y)
-    path = "".join(f"M{_pairs(x[part], y[part])}" for part in _runs(good))
+    path = "".join(f"M{_pairs(x[a:b], y[a:b])}" for a, b in runs_of_true(good))
     drawn = f'<path d="{path}" stroke-linejoin="round" {_stroke(mark.look, ink)}/>' if path else ""
     if mark.look.marker:
         drawn += _markers(across(mark.x), up(mark.y), mark.look, ink)
     return drawn
-
-
-def _runs(good: Any) -> list[slice]:
-    """Stretches in which all is known."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], np.asarray(good, dtype=np.int8), [0]])))
-    return [slice(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
 
 
 def _pairs(x: FloatArray, y: FloatArray) -> str:

@@ -1,4 +1,4 @@
-"""Gaps in what was measured around a ship."""
+"""Gaps in what was measured, bridged."""
 
 from __future__ import annotations
 

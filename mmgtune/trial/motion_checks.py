@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from ..arrays import BoolArray, FloatArray
+from ..arrays import BoolArray, FloatArray, runs_of_true
 from ..inputs import INPUTS
 from ..phrases import counted
 from ..units import DEG
@@ -95,10 +95,7 @@ def _gaps(trial: Trial, where: str) -> list[Finding]:
 
 def longest_run(rows: BoolArray) -> tuple[int, int]:
     """First row of the longest run of rows (n_samples,) that are so, and the row behind it."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], rows.astype(int), [0]])))
-    begins, ends = edges[::2], edges[1::2]
-    k = int(np.argmax(ends - begins))
-    return int(begins[k]), int(ends[k])
+    return max(runs_of_true(rows), key=lambda run: run[1] - run[0])
 
 
 def full_turns(psi: FloatArray) -> BoolArray:

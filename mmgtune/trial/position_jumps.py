@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, runs_of_true
 from ..physics.frame import to_earth
 from .finding import Finding
+from .gaps import bridged
 from .kinematics import halfway, middle
 from .model import Trial
 from .motion_checks import spikes
@@ -33,13 +34,16 @@ def position_jumps(trial: Trial) -> list[tuple[int, float]]:
     if trial.n_samples < 6 * n:
         return []
     made = to_earth(halfway(trial.psi), middle(trial.u), middle(trial.v_m))
+    ways = bridged(trial.t[:-1], *made)
+    if ways is None:
+        return []
     left = [
-        _without_spikes(position) - np.concatenate([[0.0], np.cumsum(bridged(trial.t[:-1], way) * dt)])
-        for position, way in zip((trial.x, trial.y), made, strict=True)
+        _without_spikes(position) - np.concatenate([[0.0], np.cumsum(way * dt)])
+        for position, way in zip((trial.x, trial.y), ways.T, strict=True)
     ]
     ahead = _line_end(n)
-    for first, last in _gaps(made[0], n):
-        for one in left:
+    for first, last in runs_of_true(np.isnan(made[0])):
+        for one in left if last - first > n else ():
             one[first : last + 1] = np.nan
     # Rows k + n: what lies before predicts the middle of the step to row k + n, and so does what lies after.
     steps = [
@@ -54,19 +58,6 @@ def position_jumps(trial: Trial) -> list[tuple[int, float]]:
     least = max(BEYOND * usual, WAY * float(np.nanpercentile(speed, 90.0)))
     found = _peaks(np.nan_to_num(size), least, n)
     return [(k + n, float(size[k])) for k in found if _stays([one[k : k + 2 * n] for one in left], 0.5 * least)]
-
-
-def bridged(t: FloatArray, values: FloatArray) -> FloatArray:
-    """Values (n,) at times ``t`` with gaps filled between their neighbours; as they are where nothing is known."""
-    known = np.isfinite(values)
-    return np.asarray(np.interp(t, t[known], values[known])) if known.any() else values
-
-
-def _gaps(values: FloatArray, longest: int) -> list[tuple[int, int]]:
-    """First row and the row after the last of gaps of more than ``longest`` rows."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], np.isnan(values).astype(np.int8), [0]])))
-    ends = zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
-    return [(first, last) for first, last in ends if last - first > longest]
 
 
 def _stays(around: list[FloatArray], least: float) -> bool:
@@ -122,7 +113,8 @@ def jump_findings(trial: Trial, where: str) -> list[Finding]:
     row, size = max(found, key=lambda one: one[1])
     times = "once" if len(found) == 1 else f"{len(found)} times"
     speed = bridged(trial.t, np.hypot(trial.u, trial.v_m))
-    went = float(speed[row] * (trial.t[row] - trial.t[row - 1]))
+    assert speed is not None  # a jump is seen beside what velocities make
+    went = float(speed[row, 0] * (trial.t[row] - trial.t[row - 1]))
     return [
         Finding(
             "warning",
