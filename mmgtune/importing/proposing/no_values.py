@@ -27,10 +27,9 @@ def without_codes(samples: Sequence[Sample]) -> tuple[list[Sample], list[str]]:
     far: dict[float, dict[int, int]] = {}
     for sample in samples:
         for k, numbers in enumerate(sample.numbers):
-            for code, count in _codes(numbers).items():
-                if _outside(numbers, code):
-                    of = far.setdefault(code, {})
-                    of[k] = of.get(k, 0) + count
+            for code, count in _codes_outside(numbers).items():
+                of = far.setdefault(code, {})
+                of[k] = of.get(k, 0) + count
     usual = {
         code: k
         for code in far
@@ -76,11 +75,12 @@ def _codes(numbers: FloatArray) -> dict[float, int]:
     return {float(values[k]): int(counts[k]) for k in ends if _CODE.fullmatch(f"{values[k]:.10g}")}
 
 
-def _outside(numbers: FloatArray, code: float) -> bool:
-    """Whether a number lies outside of all of its column that are no codes by more than these spread."""
-    others = numbers[np.isfinite(numbers) & ~np.isin(numbers, list(_codes(numbers)))]
-    if len(others) < 10:
-        return False
+def _codes_outside(numbers: FloatArray) -> dict[float, int]:
+    """Those that lie outside of all of their column that are no codes by more than these spread."""
+    codes = _codes(numbers)
+    others = numbers[np.isfinite(numbers) & ~np.isin(numbers, list(codes))]
+    if not codes or len(others) < 10:
+        return {}
     low, high = np.percentile(others, [1.0, 99.0])
     spread = max(float(high - low), 0.1 * float(max(abs(low), abs(high))))
-    return not low - spread <= code <= high + spread
+    return {code: count for code, count in codes.items() if not low - spread <= code <= high + spread}
