@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Literal
@@ -16,7 +15,7 @@ from ..displayed import Brief
 from ..documents import finite
 from ..fitting.box import group_of
 from ..fitting.comparison import TrialComparison
-from ..fitting.least_squares import fit_offsets
+from ..fitting.least_squares import fit_offsets, squares_by_case
 from ..fitting.problem import FitProblem
 from ..model import Model
 from ..objective import make_objective
@@ -24,6 +23,7 @@ from ..trial import Trial
 from .elsewhere import FIRST, estimated_there, first_part
 from .inputs import DRAWS, changes
 from .intervals import OF_BOX, covariance
+from .noise import ChannelNoise
 from .search import Found
 from .unseen import Beside, Unseen, problem_on
 from .workbench import Point, Workbench
@@ -339,15 +339,13 @@ def _chance(bench: Workbench, trials: Sequence[Trial], point: Point | None = Non
 
 def _by_noise(bench: Workbench, n: float) -> tuple[float, float]:
     """Expectation and deviation of chi-squared of n samples; noise with a memory has few independent samples."""
-    if _is_freed(bench):
-        squares = n * len(bench.channels)
-        return squares, math.sqrt(2.0 * squares)
-    expected = n * sum(noise.variance for noise in bench.noise.channels.values())
+    channels = _counted(bench).values()
+    expected = n * sum(noise.variance for noise in channels)
     variance = 0.0
-    for noise in bench.noise.channels.values():
+    for noise in channels:
         longer = (1.0 + noise.phi**2) / (1.0 - noise.phi**2)
         variance += 2.0 * n * (noise.white**2 + 2.0 * noise.white * noise.fading + longer * noise.fading**2)
-    return float(expected), math.sqrt(variance)
+    return float(expected), float(np.sqrt(variance))
 
 
 def _is_freed(bench: Workbench) -> bool:
@@ -357,6 +355,11 @@ def _is_freed(bench: Workbench) -> bool:
     Noise that may be an error of the model would be freed of that.
     """
     return bench.noise.coloured and not bench.noise.may_be_error
+
+
+def _counted(bench: Workbench) -> Mapping[str, ChannelNoise]:
+    """Noise by channel of the residuals that are squared."""
+    return dict.fromkeys(bench.channels, ChannelNoise()) if _is_freed(bench) else bench.noise.channels
 
 
 def _freeing(bench: Workbench, problem: FitProblem) -> Callable[[FloatArray], FloatArray] | None:
@@ -384,24 +387,14 @@ def _on(
     judged = beside.judged
     floor = np.array([_floor(bench, judged, case) for case in range(len(trials))])
     excess = np.empty((len(trials), 2))
+    freeing = _freeing(bench, beside.scaled), _freeing(bench, judged)
     for k, unit in enumerate(beside.units):
-        offsets = fit_offsets(beside.scaled, unit, whiten=_freeing(bench, beside.scaled))
-        excess[:, k] = _squares_by_case(bench, judged, unit, offsets) - floor
+        offsets = fit_offsets(beside.scaled, unit, whiten=freeing[0])
+        excess[:, k] = squares_by_case(judged, unit, offsets, freeing[1]) - floor
     return compared, np.where(np.isfinite(excess), excess, LOST)
 
 
 def _floor(bench: Workbench, problem: FitProblem, case: int) -> float:
     """Chi-squared that noise alone brings to a case."""
     counts = (problem.cases.weight[case] > 0.0).sum(axis=0)
-    if _is_freed(bench):
-        return float(counts.sum())
-    return float(sum(counts[STATES.index(name)] * noise.variance for name, noise in bench.noise.channels.items()))
-
-
-def _squares_by_case(bench: Workbench, problem: FitProblem, unit: FloatArray, offsets: FloatArray) -> FloatArray:
-    """(n_cases,) chi-squared at a point, not finite where a run left the world."""
-    freeing = _freeing(bench, problem)
-    if freeing is None:
-        return problem.costs_by_case(unit[:, None], offsets[:, None])[:, 0]
-    left = freeing(problem.residuals(unit[:, None], offsets[:, None]).T)
-    return np.array([np.sum(left[rows] ** 2) for rows in problem.rows_of_cases])
+    return float(sum(counts[STATES.index(name)] * noise.variance for name, noise in _counted(bench).items()))

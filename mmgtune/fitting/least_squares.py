@@ -146,16 +146,8 @@ def fit_offsets(
 
     whiten  linear map of residuals (n_residuals, ...) within each case, the squares of which stand for J then
     """
-    point = unit[:, None]
-
-    def costs(offsets: FloatArray) -> FloatArray:
-        if whiten is None:
-            return problem.costs_by_case(point, offsets[:, None])[:, 0]
-        left = whiten(problem.residuals(point, offsets[:, None]).T)
-        return np.array([_squares(left[rows])[0] for rows in problem.rows_of_cases])
-
     best = np.zeros((len(problem.cases), 6))
-    value = costs(best)
+    value = squares_by_case(problem, unit, best, whiten)
     for _ in range(max_iterations):
         residuals, slopes = problem.offset_slopes(unit, best)
         residuals, slopes = flat_where_lost(residuals), flat_where_lost(slopes)
@@ -163,12 +155,23 @@ def fit_offsets(
             residuals, slopes = whiten(residuals), whiten(slopes)
         linear = Quadratic(problem, best, residuals, np.empty((len(residuals), 0)), slopes)
         tried = linear.offsets(np.empty(0))
-        found = costs(tried) + np.sum(problem.prior * tried**2, axis=1)
+        found = squares_by_case(problem, unit, tried, whiten) + np.sum(problem.prior * tried**2, axis=1)
         better = found < value * (1.0 - 1e-9)
         best[better], value[better] = tried[better], found[better]
         if not better.any():
             break
     return best
+
+
+def squares_by_case(
+    problem: FitProblem, unit: FloatArray, offsets: FloatArray, whiten: Callable[[FloatArray], FloatArray] | None
+) -> FloatArray:
+    """(n_cases,) J, or the sums of squares of what ``whiten`` makes of the residuals, at a point with offsets
+    (n_cases, 6); inf where a run diverged."""
+    if whiten is None:
+        return problem.costs_by_case(unit[:, None], offsets[:, None])[:, 0]
+    left = whiten(problem.residuals(unit[:, None], offsets[:, None]).T)
+    return np.array([_squares(left[rows])[0] for rows in problem.rows_of_cases])
 
 
 class _Minimised:
