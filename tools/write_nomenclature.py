@@ -13,7 +13,7 @@ from mmgtune.files import write_text
 
 HEAD = """# Nomenclature
 
-Written by `tools/write_nomenclature.py` from `mmgtune/components.py`. Symbols are those of the papers in plain
+Written by `tools/write_nomenclature.py` from `mmgtune/components`. Symbols are those of the papers in plain
 letters; a trailing `_` stands for the prime. "prime" means dimensionless in the prime system of the MMG standard
 method; a dash means a pure number. A profile names a coefficient by its section, a target by `section.symbol`.
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import mmgtune.components
+import mmgtune.components.registry
 import mmgtune.profile.reading
 from mmgtune.components import ARRANGEMENTS, COMPONENTS, KINDS
 from mmgtune.errors import ProfileError
@@ -31,8 +31,8 @@ SHAFT = '[actuators.n]\nlow = "0 rpm"\nhigh = "120 rpm"\nrate = "1.2 rpm/s"\n'
 def known(monkeypatch):
     """The twin-rudder arrangement and her thruster, as if they stood in the lists of components."""
     kinds = (*KINDS, "thruster")
-    monkeypatch.setattr(mmgtune.components, "ARRANGEMENTS", (*ARRANGEMENTS, TWIN))
-    monkeypatch.setattr(mmgtune.components, "COMPONENTS", (*COMPONENTS, THRUSTER))
+    monkeypatch.setattr(mmgtune.components.registry, "ARRANGEMENTS", (*ARRANGEMENTS, TWIN))
+    monkeypatch.setattr(mmgtune.components.registry, "COMPONENTS", (*COMPONENTS, THRUSTER))
     monkeypatch.setattr(mmgtune.profile.reading, "ARRANGEMENTS", (*ARRANGEMENTS, TWIN))
     monkeypatch.setattr(mmgtune.profile.reading, "KINDS", kinds)
     monkeypatch.setattr(mmgtune.profile.reading, "SECTIONS", (*mmgtune.profile.reading.SECTIONS, "thruster"))
