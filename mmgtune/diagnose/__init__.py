@@ -23,8 +23,9 @@ from typing import Any
 from ..options import DiagnoseOptions
 from .folder import write_diagnosis
 from .planning import plan_diagnosis
-from .result import VERDICTS, Diagnosis
+from .result import Diagnosis
 from .run import diagnose
+from .verdict import VERDICTS
 
 __all__ = ["VERDICTS", "DiagnoseOptions", "Diagnosis", "diagnose", "plan_diagnosis", "write_diagnosis"]
 

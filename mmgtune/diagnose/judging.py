@@ -26,11 +26,12 @@ from .intervals import Estimate, estimates
 from .leftover import Leftover, leftover
 from .legs import Difference
 from .refit import WORTH, Refit, kin_among
-from .result import Diagnosis, Doubted
+from .result import Diagnosis
 from .retuned import retuned, unlike_any
 from .search import Found, Step, rivals_of, step_of
 from .separate import Suggestion, suggest
 from .unseen import Unseen
+from .verdict import Doubted
 from .voyages import Choice
 from .workbench import Point, Workbench
 

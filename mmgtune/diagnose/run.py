@@ -31,10 +31,11 @@ from .judging import Judge
 from .leftover import leftover
 from .legs import LEG_NAMES, Difference, differences
 from .narrow import narrow_box
-from .result import TOLD, Diagnosis
+from .result import Diagnosis
 from .search import search
 from .together import Together
 from .unseen import Unseen
+from .verdict import TOLD
 from .voyages import Choice, looked_at, with_hull_held
 from .workbench import make_workbench
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from mmgtune.backends import Integrator
-from mmgtune.diagnose import DiagnoseOptions, Diagnosis, diagnose
+from mmgtune.diagnose import DiagnoseOptions, Diagnosis, diagnose, saying
 from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.causes import Cause, Trace
 from mmgtune.diagnose.contributions import Contribution, set_aside, squares, takes_the_rest
@@ -623,4 +623,4 @@ def test_a_cause_that_is_alone_and_slight_is_a_trace(suzaku, degrees, before, tr
 def test_how_sure_a_gain_is_stands_beside_it(removed, most, said):
     gain = SimpleNamespace(share_removed=removed, tells_most_runs=most, runs_told=(2, 3))
     seen = SimpleNamespace(gain=gain, options=SimpleNamespace(leeway=0.05), choice=None)
-    assert said in Diagnosis._gained(seen, "it", "on trials not used")
+    assert said in saying._gained(seen, "it", "on trials not used")

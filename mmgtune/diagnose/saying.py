@@ -1,0 +1,186 @@
+"""The answer of a diagnosis in words a captain understands."""
+
+from __future__ import annotations
+
+import math
+
+from .gain import MOST
+from .leftover import change_in_words, in_words
+from .retuned import besides, far_off, weighed
+from .retuned import in_words as moved_in_words
+from .verdict import TOLD, Answer
+
+IMITATED = 0.5
+"""Share of the error removed below which it is said that a hull a little off is part of what it is counted from."""
+
+LARGE = 10.0
+"""Variance beyond noise from which it is told as a multiple of the noise."""
+
+
+def sentence(answer: Answer) -> str:
+    """What is the same in all trials, what differs between voyages, and what all trials together say."""
+    told = [
+        f"{one.sentence} That accounts for {_percent(one.explained)} of the error that one value for all leaves."
+        for one in answer.between
+    ]
+    if answer.verdict == "found" and not answer.causes:
+        return " ".join(["No cause that is the same in all voyages shows.", *told])
+    together = [answer.together.sentence] if answer.together else []
+    first = [answer.contradicted] if answer.contradicted and answer.verdict == "unexplained" else []
+    return " ".join([*first, _of_causes(answer), *told, *together])
+
+
+def _of_causes(answer: Answer) -> str:
+    """What is the same in all trials, in words."""
+    if answer.verdict == "interrupted":
+        known = ", ".join(dict.fromkeys(cause.tag for cause in answer.causes))
+        told = (
+            f"What was tried on by then, not compared with its rivals and not to be relied on: {known}."
+            if known
+            else "No cause was found by then."
+        )
+        return f"The search was stopped before its end, so nothing can be concluded. {told}"
+    if answer.verdict == "none":
+        return _of_none(answer)
+    where = "on trials not used" if answer.gain.held_out == "test" else f"on {answer.gain.words}"
+    if answer.verdict == "unexplained":
+        return _of_the_unknown(answer, where)
+    named = _of_the_named(answer)
+    if all(cause.effect is None for cause in answer.causes):
+        before, after = answer.chi2
+        return (
+            f"{named} With that put right no other cause shows: the error of the re-tuned model falls from "
+            f"{math.sqrt(before):.2g} to {math.sqrt(after):.2g} times the noise of the measurements."
+        )
+    gained = f"{named} {_gained(answer, 'it' if len(answer.causes) == 1 else 'them', where)}"
+    if answer.doubted:
+        gained = f"{gained} {answer.doubted.sentence}"
+    if not any(cause.runs for cause in answer.causes):
+        return gained
+    if not answer.gain.first_part:
+        return f"{gained} The extended profile leaves out what differs between runs."
+    return (
+        f"{gained} What differs between runs was estimated there from the first {100.0 * answer.gain.first_part:.0f} "
+        "% of each run, and the rest was judged; the extended profile leaves it out."
+    )
+
+
+def _of_none(answer: Answer) -> str:
+    """That no cause shows, and what re-tuning took or the log of the inputs leaves open."""
+    if answer.leaves_open:
+        return (
+            f"No cause shows. The re-tuned model leaves {_of_noise(answer.leftover.left_open)} of the sensors, "
+            "no more than what revolutions and rudder angle did between two samples of their log leaves "
+            "open: inputs logged more often would tell more."
+        )
+    alone = ", ".join(dict.fromkeys(one.cause.tag for one in answer.traces if one.contribution.harmful))
+    none = f"what alone shows, {alone}, tells held-out trials worse" if alone else "no cause that was looked for shows"
+    few = ""
+    if answer.gain.too_few and answer.choice is None:
+        few = (
+            f"Fitted to the other runs, it errs by {answer.gain.left:,.2g} times the noise on one left out: these "
+            "are too few for all that is re-tuned."
+        )
+    if far := moved_in_words(answer.moved):
+        said = f"Re-tuning is all it takes: with {far}, the model fits these trials to their noise, and {none}."
+        return " ".join(filter(None, (said, besides(answer.moved), weighed(answer.moved), few)))
+    parts = (
+        f"Nothing is wrong beyond the noise of the measurements: the re-tuned model fits these trials, and {none}.",
+        far_off(answer.moved),
+        weighed(answer.moved),
+        answer.instead.sentence if answer.instead else "",
+        few,
+    )
+    return " ".join(filter(None, parts))
+
+
+def _of_the_unknown(answer: Answer, where: str) -> str:
+    """That something is wrong, the best that is known of it, and how much is left."""
+    tags = " + ".join(dict.fromkeys(cause.tag for cause in answer.causes))
+    if answer.unclear and answer.tells_a_part:
+        summed = " + ".join(dict.fromkeys(tag for tag, _ in answer.contributions))
+        return (
+            f"Something is wrong that this program cannot name. The best partial explanation, {summed}, removes "
+            f"{_explained(answer)} of the error it was found on, but {answer.unclear}: it stands for "
+            "something else, or for more than these trials can tell apart."
+        )
+    if answer.tells_a_part and not answer.leftover.noticed:
+        them = "it was" if len(answer.causes) == 1 else "they were"
+        share = answer.gain.share_removed[0]
+        held_out = f"leaves {_percent(1.0 - share)} of it" if share > 0.0 else "errs more"
+        return (
+            f"Something is wrong that this program cannot name. The best of what is known, {tags}, would "
+            f"remove {_explained(answer)} of the error {them} found on, but the model with it {held_out} {where}."
+        )
+    if answer.misses_test:
+        return (
+            "Something is wrong that this program does not know: the re-tuned model fits the trials looked at, "
+            f"but leaves an error {answer.gain.left:,.3g} times the noise of the sensors on trials kept for "
+            "testing, more than coefficients known no better would."
+        )
+    if answer.of_a_sensor:
+        told = "; ".join(change_in_words(*one) for one in answer.leftover.changed.items())
+        return f"Something is wrong with a sensor, and no known cause shows: {told}."
+    excess = answer.leftover.unknown
+    left = (
+        f"{_of_noise(excess)} of the measurements"
+        if excess < LARGE
+        else f"an error {math.sqrt(1.0 + excess):,.0f} times the noise of the sensors"
+    )
+    told = (
+        f"The best of what is known, {tags}, removes {_explained(answer)} of the error and leaves {left}."
+        if answer.tells_a_part
+        else f"the re-tuned model leaves {left}, and no known cause accounts for it."
+    )
+    offsets = "".join(f" {in_words(*one)}." for one in answer.leftover.offsets.items())
+    return f"Something is wrong that this program does not know{'.' if answer.tells_a_part else ':'} {told}{offsets}"
+
+
+def _of_the_named(answer: Answer) -> str:
+    """The causes, those last of which the trials cannot tell which it is."""
+    unsure = {tag for group in answer.groups for tag in group}
+    sure, doubtful = (
+        " ".join(f"{cause.sentence}." for cause in answer.causes if (cause.tag in unsure) == asked)
+        for asked in (False, True)
+    )
+    if not answer.groups:
+        return sure
+    groups = "; ".join(" or ".join(group) for group in answer.groups)
+    which = "what else there was" if sure else "which it was"
+    return f"{sure} These trials cannot tell {which}: {groups}. If the first: {doubtful}".lstrip()
+
+
+def _explained(answer: Answer) -> str:
+    """How much of the error the causes explain, in words: what is told by less has a share below zero."""
+    return _percent(answer.explained_share) if answer.explained_share > 0.0 else "none"
+
+
+def _gained(answer: Answer, them: str, where: str) -> str:
+    """What adding the causes removes of the error on held-out trials, in a sentence."""
+    share, low, _ = answer.gain.share_removed
+    told, runs = answer.gain.runs_told
+    if answer.gain.tells_most_runs and share < MOST:
+        rest = "the other" if runs == told + 1 else "the others"
+        return (
+            f"Adding {them} removes all of the error in {told} of {runs} runs left out in turn; {rest} "
+            f"show{'s' if runs == told + 1 else ''} coefficients that the rest do not tell."
+        )
+    if share <= 0.0:
+        return (
+            f"How much {'that' if them == 'it' else 'these'} would remove of the error {where} does not show: that "
+            "error is mostly of coefficients which the other trials leave open."
+        )
+    imitated = share < IMITATED and answer.options.leeway > 0.0 and answer.choice is None
+    hull = f", counted from a model whose hull may be {100.0 * answer.options.leeway:.3g} % off" if imitated else ""
+    few = ", and runs are too few to be sure of that" if low < TOLD <= share else ""
+    return f"Adding {them} removes {_percent(share)} of the error {where}{hull}{few}."
+
+
+def _of_noise(variance: float) -> str:
+    """A variance beside that of the noise."""
+    return f"an error with {100.0 * variance:.0f} % of the variance of the noise"
+
+
+def _percent(share: float) -> str:
+    """A share for a sentence; never quite all."""
+    return f"{100.0 * min(share, 0.999):.{0 if share < 0.995 else 1}f} %"
