@@ -8,10 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from .clock import Stamps
 from .mapping import LogMap
-from .table import TIME, Cells, Collector, Table
-from .text import columns_named
+from .rows import Rows, columns_named
+from .table import Table
 
 
 def table_of(
@@ -25,19 +24,9 @@ def table_of(
 
     Raises LogError where the log lacks a column, or a column holds something else than numbers.
     """
-    wanted = columns_named(log_map, list(names), path, where)
-    order = list(wanted)
-    cells, collector = Cells(log_map), Collector([TIME, *order[1:]])
-    stamps = Stamps(log_map.time, path, log_map.decimal)
+    gathered = Rows(path, log_map, names, columns_named(log_map, names, where))
     rows = first + np.arange(len(columns[0]) if columns else 0, dtype=np.int64)
-    values = [
-        stamps.of(columns[wanted[TIME]], rows),
-        *(cells.of(name, columns[wanted[name]], rows) for name in order[1:]),
-    ]
-    collector.add(np.column_stack(values), rows)
-    found, numbers = collector.columns()
-    t = found.pop(TIME)
-    headers = {name: names[k] for name, k in wanted.items()}
-    table = Table(path, t, found, numbers, headers, stamps.clock, unit, [*stamps.notes, *collector.notes()])
-    cells.judge(table, log_map, len(t))
+    gathered.add(columns.__getitem__, rows)
+    table = gathered.table(unit)
+    gathered.judge(table)
     return table

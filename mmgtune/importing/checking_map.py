@@ -50,7 +50,7 @@ def check(made: LogMap, reader: TomlReader) -> None:
     }
     if made.format in meaningless:
         _meaningless(reader, "log", *meaningless[made.format])
-    if made.time.column is None:
+    if not made.time.columns and not isinstance(_table(reader, "time").get("column"), list):
         reader.problem("no column is named for time", "time", fix='write [time] with column = "..." and unit = "s"')
     for name, source in sources.items():
         if source.column is None and source.value is None:

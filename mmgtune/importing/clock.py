@@ -15,9 +15,9 @@ from ..trial.schema import impossible
 from .dates import ORDERS, Dates, is_date, order_told
 from .mapping import TimeSource
 from .numerals import numbers_in
+from .periods import Periods
 from .stopwatch import DIGITS, EITHER, MINUTES, TIME_OF_DAY, of_day, of_digits, of_watch, times_told
 
-DAY, HOUR = 86400.0, 3600.0
 OUTLIERS = 3
 """Rows in a row whose stamps may be off while the clock as a whole is right."""
 NEWEST_FIRST = 0.98
@@ -37,8 +37,7 @@ class Stamps:
         self.orders: tuple[str, ...] = ()
         self.began: dict[str, float] = {}
         self.ended: dict[str, float] = {}
-        self.turns = 0.0
-        self.last = np.nan
+        self.periods = Periods()
 
     @property
     def clock(self) -> bool:
@@ -65,11 +64,11 @@ class Stamps:
         if self.format == "number":
             return numbers_in(text, self.decimal)
         if self.format == DIGITS:
-            return self.over_midnight(of_digits(numbers_in(text, self.decimal)))
+            return self.periods.over_midnight(of_digits(numbers_in(text, self.decimal)))
         if self.format == TIME_OF_DAY:
-            return self.over_midnight(of_day(text))
+            return self.periods.over_midnight(of_day(text))
         if self.format == MINUTES:
-            return self.over_the_hour(of_watch(text))
+            return self.periods.over_the_hour(of_watch(text))
         if self.format in ("date", *ORDERS):
             return self._dated(text, rows)
         stamps = pd.to_datetime(text.str.replace(",", ".", regex=False), errors="coerce", utc=True, format="ISO8601")
@@ -132,32 +131,6 @@ class Stamps:
         if self.origin is None:
             return np.full(len(stamps), np.nan)
         return np.asarray((stamps - self.origin).dt.total_seconds().to_numpy(dtype=np.float64))
-
-    def over_midnight(self, seconds: FloatArray) -> FloatArray:
-        """Seconds of the day (n_rows,) without the fall at midnight; blocks follow each other."""
-        return self._unwrapped(seconds, DAY, back=True)
-
-    def over_the_hour(self, seconds: FloatArray) -> FloatArray:
-        """Seconds of a stopwatch (n_rows,) without the fall after 59:59; blocks follow each other.
-
-        A rise of more than half an hour undoes a fall, but is a gap where there was none.
-        """
-        return self._unwrapped(seconds, HOUR, back=False)
-
-    def _unwrapped(self, seconds: FloatArray, period: float, back: bool) -> FloatArray:
-        """Seconds (n_rows,) without falls of a period; ``back``: it may go back beyond where it began."""
-        out = np.array(seconds)
-        known = np.flatnonzero(np.isfinite(seconds))
-        if len(known):
-            values = seconds[known]
-            before = np.concatenate([[values[0] if np.isnan(self.last) else self.last], values[:-1]])
-            rise = values - before
-            turns = self.turns + np.cumsum(np.where(rise < -period / 2.0, 1.0, 0.0) - (rise > period / 2.0))
-            if not back:
-                turns = turns - np.minimum(0.0, np.minimum.accumulate(turns))
-            out[known] = values + period * turns
-            self.turns, self.last = float(turns[-1]), float(values[-1])
-        return out
 
     def _unreadable(self, text: Any, rows: IntArray, how: str) -> None:
         shown = text.iloc[0] if len(text) else ""

@@ -70,12 +70,18 @@ class Source:
     recover: str | None = None
     line: int = 0
 
+    @property
+    def columns(self) -> dict[str, str | int]:
+        """The log's columns it is read from, by what each holds of it: "" for the quantity itself."""
+        return {} if self.column is None else {"": self.column}
+
 
 @dataclass(frozen=True)
 class TimeSource:
     """Where time comes from.
 
-    column   name or number, as of a Source
+    column   name or number, as of a Source; None where several columns hold a part of it each
+    parts    these columns by the unit of what they hold, such as "h", "min" and "s", the longest first; else empty
     format   one of TIME_FORMATS; "date" where the dates have to show the order of day and month; None where the cells
              have to show it all
     unit     of numbers; None where the header has to say it
@@ -86,12 +92,18 @@ class TimeSource:
     """
 
     column: str | int | None = None
+    parts: dict[str, str | int] = field(default_factory=dict)
     format: str | None = None
     unit: str | None = None
     header_says: str | None = None
     scale: float = 1.0
     recover: str = "auto"
     step: float | None = None
+
+    @property
+    def columns(self) -> dict[str, str | int]:
+        """The log's columns it is read from, by the unit of the part each holds; "" for one that holds it all."""
+        return self.parts or ({} if self.column is None else {"": self.column})
 
 
 @dataclass(frozen=True)

@@ -18,8 +18,9 @@ import numpy as np
 from ..errors import LogError, Problem
 from ..trial.schema import impossible
 from ..units import DEG, KNOT, factors
-from .clock import DAY, put_right
+from .clock import put_right
 from .mapping import LogMap, TimeSource
+from .periods import DAY
 from .quantities import AGAINST, meaning, quantity_of
 from .record import Record, Series, unwrapped
 from .table import MOST_ROWS

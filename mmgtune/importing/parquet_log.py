@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -10,10 +12,9 @@ import numpy as np
 from ..errors import LogError, Problem, reason
 from ..limits import LOG_COLUMNS
 from ..trial.footer import rows_of
-from .clock import Stamps
 from .mapping import LogMap
-from .table import TIME, Cells, Collector, Table
-from .text import columns_named
+from .rows import Rows, Wanted, columns_named
+from .table import Table
 
 BATCH = 100_000
 LONGEST = 200
@@ -31,12 +32,11 @@ def read_parquet(path: Path, log_map: LogMap) -> Table:
         names = list(file.schema_arrow.names)
         LOG_COLUMNS.hold(len(names), str(path), LogError)
         rows_of(file.metadata, path.stat().st_size, str(path), LogError)
-        wanted = columns_named(log_map, names, path, str(path))
-        order = list(wanted)
-        collector, cells, stamps = Collector(order), Cells(log_map), Stamps(log_map.time, path, log_map.decimal)
+        wanted = columns_named(log_map, names, str(path))
+        gathered = Rows(path, log_map, names, wanted)
         row = 1
         _readable(file.schema_arrow, wanted, path)
-        columns = sorted({names[k] for k in wanted.values()})
+        columns = sorted({names[k] for of in wanted.values() for k in of.values()})
         texts = [name for name in columns if is_text(file.schema_arrow.field(name).type)]
         # A text stands in a file once, however many rows repeat it: it is cut before it is repeated.
         file = pq.ParquetFile(path, pre_buffer=False, page_checksum_verification=True, read_dictionary=texts)
@@ -45,28 +45,27 @@ def read_parquet(path: Path, log_map: LogMap) -> Table:
             block = block.to_pandas(use_threads=False)
             rows = np.arange(row, row + len(block), dtype=np.int64)
             row += len(block)
-            t = stamps.of(block[names[wanted[TIME]]], rows)
-            values = [cells.of(name, block[names[wanted[name]]], rows) for name in order[1:]]
-            collector.add(np.column_stack([t, *values]), rows)
+            gathered.add(partial(_column, block, names), rows)
     except (OSError, ValueError, pa.ArrowException) as error:
         why = reason(error)
         raise LogError(Problem("the Parquet log cannot be read", str(path), why, "copy it again")) from error
-    found, numbers = collector.columns()
-    t = found.pop(TIME)
-    headers = {name: names[k] for name, k in wanted.items()}
-    table = Table(path, t, found, numbers, headers, stamps.clock, "row", [*stamps.notes, *collector.notes()])
-    cells.judge(table, log_map, len(t))
+    table = gathered.table("row")
+    gathered.judge(table)
     return table
 
 
-def _readable(schema: Any, wanted: dict[str, int], path: Path) -> None:
+def _column(block: Any, names: Sequence[str], k: int) -> Any:
+    return block[names[k]]
+
+
+def _readable(schema: Any, wanted: Wanted, path: Path) -> None:
     """Raise LogError where a column needed is of a type that holds no numbers, times or texts, or is there twice."""
     import pyarrow as pa
 
     kinds = pa.types
     can = (kinds.is_floating, kinds.is_integer, kinds.is_decimal, kinds.is_boolean, kinds.is_null, kinds.is_temporal)
     problems = []
-    for name, k in wanted.items():
+    for name, k in [(name, k) for name, of in wanted.items() for k in of.values()]:
         kind, header = schema.field(k).type, schema.names[k]
         if not is_text(kind) and not any(one(kind) for one in can):
             what = f"column '{header}' holds {str(kind)[:80]}, not numbers"

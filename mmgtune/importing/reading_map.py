@@ -11,12 +11,14 @@ import numpy as np
 
 from .. import limits, units
 from ..errors import LogError, Problem, among, brief, closest, reason
+from ..phrases import counted
 from ..resources import import_map_names, import_maps, must_be_name
 from ..toml_reading import TomlReader, finite, named, toml_of
 from ..trial.schema import COLUMNS, SOURCES, impossible, known_column
 from .checking_map import check
 from .mapping import ASKS, FORMATS, PROJECTIONS, TABLES, TIME_FORMATS, Cut, LogMap, Source, TimeSource
 from .quantities import QUANTITIES, known_quantity, meaning, quantity_of
+from .time_parts import PARTS, in_order
 
 SCHEMA = 1
 COLUMN_KEYS = ("column", "value", "unit", "header_says", "positive", "zero", "direction", "scale", "offset", "recover")
@@ -286,9 +288,14 @@ class _Reader(TomlReader):
 
     def time(self) -> TimeSource:
         table = self.table("time")
+        parts: dict[str, str | int] = {}
+        if isinstance(table.get("column"), list):
+            parts = self.time_parts(table)
+            table = {key: value for key, value in table.items() if key in ("scale", "step", "recover")}
         recover = self.choice("time", table, "recover", ("auto", "uniform", "never")) or "auto"
         return TimeSource(
             column=self.column("time", table),
+            parts=parts,
             format=self.choice("time", table, "format", TIME_FORMATS),
             unit=self.unit("time", "time", table, "unit", "s"),
             header_says=self.unit("time", "time", table, "header_says", "s"),
@@ -296,6 +303,26 @@ class _Reader(TomlReader):
             recover=recover,
             step=self.quantity("time", "step", "s", least=0.0),
         )
+
+    def time_parts(self, table: dict[str, Any]) -> dict[str, str | int]:
+        """Columns that hold a part of the time each, by the unit of what they hold."""
+        columns, said = table["column"], table.get("unit")
+        example = 'column = ["Hour", "Min", "Sec"] and unit = ["h", "min", "s"]'
+        for key in ("format", "header_says"):
+            if key in table:
+                self.problem(f"'time.{key}' has no meaning for time in several columns", "time", key, fix="remove it")
+        names = [self.column("time", {"column": one}) for one in columns]
+        found = [canonical(one) or "?" for one in said] if isinstance(said, list) else []
+        if said is None:
+            why = "nothing says what they are the parts of time in"
+            self.problem("time has several columns and no units", "time", "column", why, f"write {example}")
+        elif len(found) != len(names) or not in_order(found):
+            what = f"'time.unit' is {brief(said)}, for {counted(len(names), 'column')} of time"
+            why = f"each column has a unit of its own, the longest first: {', '.join(PARTS)}"
+            self.problem(what, "time", "unit", why, f"write {example}")
+        else:
+            return {unit: name for unit, name in zip(found, names, strict=True) if name is not None}
+        return {}
 
     def column(self, name: str, table: dict[str, Any]) -> str | int | None:
         value = table.get("column")

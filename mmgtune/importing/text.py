@@ -12,14 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import LogError, Problem, closest, reason
+from ..errors import LogError, Problem, reason
 from ..files import hold_regular
 from ..limits import LOG_BYTES, LOG_COLUMNS, LOG_LINE
-from .clock import Stamps
-from .headers import find_column
 from .mapping import LogMap
-from .quantities import meaning
-from .table import TIME, Cells, Collector, Table
+from .rows import Rows, columns_named
+from .table import Table
 
 BLOCK = 50_000
 """Rows read at a time."""
@@ -39,10 +37,7 @@ def read_text(path: Path, log_map: LogMap) -> Table:
 
     LOG_BYTES.hold(path.stat().st_size, str(path), LogError)
     layout = look(path, log_map)
-    wanted = columns_named(log_map, layout.names, path, layout.where)
-    names = list(wanted)
-    collector, cells = Collector([TIME, *names[1:]]), Cells(log_map)
-    stamps = Stamps(log_map.time, path, log_map.decimal)
+    gathered = Rows(path, log_map, layout.names, columns_named(log_map, layout.names, layout.where))
     line = layout.first + 1
     dropped: list[str] = []
     try:
@@ -68,30 +63,26 @@ def read_text(path: Path, log_map: LogMap) -> Table:
                 for block in reader:
                     rows = np.arange(line, line + len(block), dtype=np.int64)
                     line += len(block)
-                    t = stamps.of(block[wanted[TIME]], rows)
-                    values = [cells.of(name, block[wanted[name]], rows) for name in names[1:]]
-                    collector.add(np.column_stack([t, *values]), rows)
+                    gathered.add(block.__getitem__, rows)
         dropped = [str(one.message) for one in said if issubclass(one.category, pd.errors.ParserWarning)]
     except (UnicodeDecodeError, UnicodeError) as error:
         raise _undecodable(path, log_map, error) from error
     except (pd.errors.ParserError, pd.errors.EmptyDataError, csv.Error) as error:
         fix = "say delimiter, skip and header in [log] of the map"
         raise LogError(Problem("the log cannot be read as a table", str(path), reason(error), fix)) from error
-    if not collector.seen:
+    if not gathered.collector.seen:
         raise LogError(Problem("the log has no rows", str(path), "only a header was found", "check 'skip' in [log]"))
-    columns, numbers = collector.columns()
-    headers = {name: layout.names[k] for name, k in wanted.items()}
-    t = columns.pop(TIME)
-    table = Table(path, t, columns, numbers, headers, stamps.clock, "line", [*stamps.notes, *collector.notes()])
+    table = gathered.table("line")
     bad = [int(one) for message in dropped for one in re.findall(r"[Ll]ine (\d+)", message)]
     if bad:
         lines = "1 line has" if len(bad) == 1 else f"{len(bad)} lines have"
         was = "was dropped: line" if len(bad) == 1 else "were dropped, the first is line"
         table.notes.append(f"{lines} too many fields and {was} {bad[0]}")
-        if len(bad) > 0.5 * max(1, len(t)):
-            why = f"{len(bad)} of {len(bad) + len(t)} lines have more fields than the header's {len(layout.names)}"
+        if len(bad) > 0.5 * max(1, len(table.t)):
+            share = f"{len(bad)} of {len(bad) + len(table.t)} lines"
+            why = f"{share} have more fields than the header's {len(layout.names)}"
             raise _too_wide(path, bad[0], why)
-    cells.judge(table, log_map, len(t))
+    gathered.judge(table)
     return table
 
 
@@ -186,29 +177,6 @@ def start_of(path: Path) -> bytes:
 def binary(content: bytes) -> bool:
     """Whether bytes are no text in any encoding a logger writes."""
     return b"\0" in content and not content.startswith((b"\xff\xfe", b"\xfe\xff"))
-
-
-def columns_named(log_map: LogMap, names: list[str], path: Path, where: str) -> dict[str, int]:
-    """Position of each quantity's column in the log, time first.  Raises LogError naming all that are not there."""
-    asked: dict[str, Any] = {TIME: log_map.time.column}
-    asked |= {name: source.column for name, source in log_map.sources.items() if source.column is not None}
-    found, problems = {}, []
-    for name, column in asked.items():
-        k = find_column(column, names)
-        if k is None:
-            holds = "time" if name == TIME else meaning(name)
-            if isinstance(column, int):
-                what, fix = f"the log has no column {column}", f"it has {len(names)} columns"
-            else:
-                what = f"column '{column}' is missing from the log"
-                near = closest(column, names)
-                fix = near
-            problems.append(Problem(what, where, f"the map says it holds {holds}", fix))
-        else:
-            found[name] = k
-    if problems:
-        raise LogError(*problems)
-    return found
 
 
 def _too_wide(path: Path, line: int, why: str) -> LogError:

@@ -1,6 +1,7 @@
 """Maps proposed from what logs hold.
 
-sampling    the beginning of a log without a map; words: what names say; clocks: which column is time
+sampling    the beginning of a log without a map; words: what names say
+clocks      which column is time; parted: or which several are
 windows     columns on average and by their change
 bearings    position and heading; look: the motion that follows from them
 motions     yaw rate and velocities; orders: rudder and propeller; winds: true and apparent

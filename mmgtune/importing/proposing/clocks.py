@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ... import units
 from ...arrays import FloatArray
+from ...phrases import listed
 from ..clock import falls
 from ..stopwatch import DIGITS, EITHER, MINUTES, TIME_OF_DAY, in_digits
+from ..time_parts import WORDS
+from .parted import seconds_of, time_parts
 from .sampling import Sample, seconds
 from .words import TIME
 
@@ -33,6 +36,7 @@ class Clock:
     unit    of numbers, "" where it is not known
     score   how much speaks for it; words: what does
     by_name whether its name or header says the unit
+    parts   by unit the columns that hold a part of the time each, ``column`` the first of them; empty for one column
     """
 
     column: int
@@ -41,12 +45,20 @@ class Clock:
     score: float
     words: str
     by_name: bool = False
+    parts: Mapping[str, int] = field(default_factory=dict)
 
 
 def clocks(sample: Sample, said: Sequence[str], units_said: Sequence[str]) -> list[Clock]:
     """Columns that may be time, the likeliest first."""
     found = []
+    parts = time_parts(sample, said, units_said)
+    if parts:
+        held = listed([WORDS[unit] for unit in parts])
+        words = f"together they are {held} of a time that goes on"
+        found.append(Clock(next(iter(parts.values())), "", "s", 1.5, words, parts=parts))
     for k, numbers in enumerate(sample.numbers):
+        if k in parts.values():
+            continue
         named = 1.0 if said[k] == TIME else 0.0 if said[k] in ("", "date") else -0.6
         if np.isfinite(numbers).mean() < 0.5:
             stamps = seconds(sample, k)
@@ -78,8 +90,10 @@ def clocks(sample: Sample, said: Sequence[str], units_said: Sequence[str]) -> li
     return sorted(found, key=lambda one: -one.score)
 
 
-def in_order(sample: Sample, said: Sequence[str]) -> Sample:
+def in_order(sample: Sample, said: Sequence[str], units_said: Sequence[str]) -> Sample:
     """A log whose rows stand newest first by what is called time, turned round; another one as it is."""
+    if (parts := time_parts(sample, said, units_said)) and falls(seconds_of(parts, sample)):
+        return sample.turned_round()
     for k, numbers in enumerate(sample.numbers):
         stamps = None if np.isfinite(numbers).mean() >= 0.5 else seconds(sample, k)
         if falls(numbers if stamps is None else stamps[0]) and (said[k] == TIME or stamps is not None):
@@ -109,6 +123,9 @@ def format_named(sample: Sample, k: int) -> str:
 
 def in_seconds(sample: Sample, clock: Clock, unit: str) -> FloatArray:
     """Stamps (n_rows,) [s]; ``unit`` of numbers, or the format that those are read in that are EITHER."""
+    if clock.parts:
+        t = seconds_of(clock.parts, sample)
+        return t - next(iter(t[np.isfinite(t)]), 0.0)
     if clock.format:
         form = unit if clock.format == EITHER else clock.format if clock.format in CELLS else None
         stamps = seconds(sample, clock.column, form)

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from ...errors import LogError, Problem
+from ...phrases import listed
 from ..dates import ORDERS, Dates, order_told
 from ..stopwatch import DIGITS, EITHER, MINUTES, TIME_OF_DAY
 from .clocks import Clock, clocks, format_named, in_order
@@ -20,7 +21,7 @@ READ_AS = {MINUTES: "minutes and seconds", TIME_OF_DAY: "hours and minutes"}
 
 
 def time(find: Finder) -> None:
-    find.samples = [in_order(one, find.said) for one in find.samples]
+    find.samples = [in_order(one, find.said, find.units_said) for one in find.samples]
     find.first = find.samples[0]
     usable = [k for k, one in enumerate(find.first.numbers) if any(moves(s.numbers[k]) for s in find.samples)]
     votes: dict[tuple[int, str], list[Clock]] = defaultdict(list)
@@ -38,6 +39,9 @@ def time(find: Finder) -> None:
     best = max(votes.values(), key=lambda many: sum(one.score for one in many))
     find.clock = best[0]
     keys: dict[str, Any] = {}
+    if find.clock.parts:
+        parts = find.clock.parts
+        keys |= {"column": [find.first.reference(k) for k in parts.values()], "unit": list(parts)}
     if find.clock.format == DIGITS:
         keys["format"] = DIGITS
     if find.clock.format in ("date", "?"):
@@ -46,10 +50,11 @@ def time(find: Finder) -> None:
     if find.clock.format in READ_AS and any(one.format == EITHER and one.column == column for one in found):
         keys["format"] = find.clock.format
         words.append(f"another log shows that they are {READ_AS[find.clock.format]}")
-    find.used.add(column)
-    dates = [k for k, name in enumerate(find.said) if name == DATE and k != column]
+    find.used |= {column, *find.clock.parts.values()}
+    dates = [k for k, name in enumerate(find.said) if name == DATE and k not in find.used]
     if dates:
-        words.append(f"the date in {find.shown(dates[0])} is not needed: midnight is seen by the clock")
+        shown = listed([find.shown(k) for k in dates], 4)
+        words.append(f"the date in {shown} is not needed: midnight is seen by the clock")
         find.used.update(dates)
     find.numeric = [k for k in usable if k not in find.used]
     if len(find.numeric) > MOST_COLUMNS:
@@ -91,7 +96,7 @@ def time_unit(find: Finder) -> None:
         keys["format"], said = first_number(find)
         asked = keys["format"].startswith(MARK)
         guess = replace(guess, evidence=(*guess.evidence, said), confidence=ASKED if asked else SURE)
-    elif not find.clock.format:
+    elif not find.clock.format and not find.clock.parts:
         keys["unit"] = find.unit
         if find.clock.by_name and find.unit != find.clock.unit:
             keys["header_says"] = find.clock.unit

@@ -132,7 +132,9 @@ _WORDS: tuple[tuple[str, tuple[str, ...]], ...] = (
         r"东",
     )),
     (DATE, (
-        r"\bdate\b", r"datum", r"fecha", r"\bdata\b", r"日付", r"日期", r"\bday\b",
+        r"\bdate\b", r"datum", r"fecha", r"\bdata\b", r"日付", r"日期", r"\b(day|month|year)\b",
+        r"\b(tag|monat|jahr)\b", r"\b(dag|maand|jaar)\b", r"\b(jour|mois|annee)\b", r"\b(dia|mes|ano)\b",
+        r"\b(giorno|mese|anno)\b",
     )),
     (TIME, (
         r"\btime", r"\bt\b", r"zeit", r"\buhr", r"temps", r"tijd", r"tiempo", r"\bhora", r"heure", r"tempo\b",

@@ -43,8 +43,7 @@ def toml_of_map(
         "",
         "[time]",
         *_said(guesses["t"]),
-        f"column = {_value(_reference(guesses['t'], sample))}",
-        *(f"{key} = {_value(value)}" for key, value in guesses["t"].keys.items()),
+        *(f"{key} = {_value(value)}" for key, value in _keys(guesses["t"], sample).items()),
     ]
     for table, keys in tables.items():
         lines += ["", *_wrapped(comments.get(table, "")), f"[{table}]"]
@@ -52,8 +51,7 @@ def toml_of_map(
     lines += ["", "[columns]"]
     for quantity in _in_order(guesses):
         guess = guesses[quantity]
-        keys = {**({"column": _reference(guess, sample)} if guess.column is not None else {}), **guess.keys}
-        lines += [*_said(guess), f"{quantity} = {_value(keys)}"]
+        lines += [*_said(guess), f"{quantity} = {_value(_keys(guess, sample))}"]
     if "antenna" not in tables:
         lines += [
             "",
@@ -73,7 +71,13 @@ def table_of_guesses(guesses: Mapping[str, Guess], sample: Sample) -> list[tuple
     for quantity in ("t", *_in_order(guesses)):
         guess = guesses[quantity]
         column = "-" if guess.column is None else sample.shown(guess.column)
-        told = [str(one) for key, one in guess.keys.items() if key not in ("column", "header_says")]
+        if isinstance(several := guess.keys.get("column"), list):
+            column = ", ".join(f"'{one}'" if isinstance(one, str) else f"column {one}" for one in several)
+        told = [
+            ", ".join(one) if isinstance(one, list) else str(one)
+            for key, one in guess.keys.items()
+            if key not in ("column", "header_says")
+        ]
         counts = ", ".join(one for one in told if not one.startswith("?"))
         rows.append((quantity, column, counts, guess.confidence, "; ".join(guess.evidence)))
     return rows
@@ -96,9 +100,9 @@ def _in_order(guesses: Mapping[str, Guess]) -> list[str]:
     return [*(one for one in _ORDER if one in guesses), *(one for one in guesses if one not in (*_ORDER, "t"))]
 
 
-def _reference(guess: Guess, sample: Sample) -> str | int:
-    assert guess.column is not None
-    return sample.reference(guess.column)
+def _keys(guess: Guess, sample: Sample) -> dict[str, Any]:
+    """All keys of an entry, the column first."""
+    return {**({} if guess.column is None else {"column": sample.reference(guess.column)}), **guess.keys}
 
 
 def _said(guess: Guess) -> list[str]:
@@ -121,4 +125,6 @@ def _value(value: Any) -> str:
         return "{ " + ", ".join(f"{key} = {_value(one)}" for key, one in value.items()) + " }"
     if isinstance(value, bool):
         return "true" if value else "false"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_value, value)) + "]"
     return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value)
