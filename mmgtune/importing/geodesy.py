@@ -46,7 +46,7 @@ def with_local_positions(record: Record, log_map: LogMap) -> Record:
     if len(lat[finite]) > 10 and all((one[finite] == np.round(one[finite])).all() for one in (lat, lon)):
         what = "the position never changes: latitude and longitude are whole degrees"
         why = f"latitude is {lat[finite][0]:g} and longitude {lon[finite][0]:g} at the start"
-        fix = "minutes may be in columns of their own: write both into one column, such as 34 34.6324 N"
+        fix = 'where the minutes are in a column of their own, say minutes = "..." beside its column'
         raise LogError(Problem(what, str(record.path), why, fix))
     origin = log_map.origin or (float(lat[finite][0]), float(lon[finite][0]))
     crs = f"+proj={NAMES[log_map.projection]} +lat_0={origin[0]!r} +lon_0={origin[1]!r} +ellps=WGS84 +units=m +k_0=1"

@@ -55,6 +55,7 @@ class Source:
     offset     added after unit and sign, in the program's unit
     recover    where few digits are printed. "print-resolution": smoothed within them; "yaw-rate": the integral of r,
                its bias and lag fitted, in place of the heading; None: as it is printed
+    parts      further columns of a latitude or longitude by what they hold, one of position_parts.PARTS
     line       line of the map, 0 where unknown
     """
 
@@ -68,12 +69,13 @@ class Source:
     scale: float = 1.0
     offset: float = 0.0
     recover: str | None = None
+    parts: dict[str, str | int] = field(default_factory=dict)
     line: int = 0
 
     @property
     def columns(self) -> dict[str, str | int]:
         """The log's columns it is read from, by what each holds of it: "" for the quantity itself."""
-        return {} if self.column is None else {"": self.column}
+        return {} if self.column is None else {"": self.column, **self.parts}
 
 
 @dataclass(frozen=True)

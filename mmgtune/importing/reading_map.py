@@ -17,11 +17,15 @@ from ..toml_reading import TomlReader, finite, named, toml_of
 from ..trial.schema import COLUMNS, SOURCES, impossible, known_column
 from .checking_map import check
 from .mapping import ASKS, FORMATS, PROJECTIONS, TABLES, TIME_FORMATS, Cut, LogMap, Source, TimeSource
+from .position_parts import HEMISPHERES, PARTS
 from .quantities import QUANTITIES, known_quantity, meaning, quantity_of
-from .time_parts import PARTS, in_order
+from .time_parts import PARTS as TIME_PARTS
+from .time_parts import in_order
 
 SCHEMA = 1
-COLUMN_KEYS = ("column", "value", "unit", "header_says", "positive", "zero", "direction", "scale", "offset", "recover")
+COLUMN_KEYS = (
+    "column", "value", "unit", "header_says", "positive", "zero", "direction", "scale", "offset", "recover", *PARTS,
+)  # fmt: skip
 RECOVER = {"x": ("print-resolution",), "y": ("print-resolution",), "psi": ("yaw-rate",)}
 """What a map may have made up for where few digits are printed."""
 MOST_COUNT = 1000
@@ -318,20 +322,20 @@ class _Reader(TomlReader):
             self.problem("time has several columns and no units", "time", "column", why, f"write {example}")
         elif len(found) != len(names) or not in_order(found):
             what = f"'time.unit' is {brief(said)}, for {counted(len(names), 'column')} of time"
-            why = f"each column has a unit of its own, the longest first: {', '.join(PARTS)}"
+            why = f"each column has a unit of its own, the longest first: {', '.join(TIME_PARTS)}"
             self.problem(what, "time", "unit", why, f"write {example}")
         else:
             return {unit: name for unit, name in zip(found, names, strict=True) if name is not None}
         return {}
 
-    def column(self, name: str, table: dict[str, Any]) -> str | int | None:
-        value = table.get("column")
+    def column(self, name: str, table: dict[str, Any], key: str = "column") -> str | int | None:
+        value = table.get(key)
         if value is None or (isinstance(value, str) and value.strip()):
             return value
         if isinstance(value, int) and not isinstance(value, bool) and 1 <= value <= limits.LOG_COLUMNS.most:
             return value
-        what = f"'{name}.column' is {brief(value)}"
-        self.problem(what, name, "column", fix="write the column's name, or its number counted from 1")
+        what = f"'{name}.{key}' is {brief(value)}"
+        self.problem(what, name, key, fix="write the column's name, or its number counted from 1")
         return None
 
     def sources(self) -> dict[str, Source]:
@@ -371,6 +375,8 @@ class _Reader(TomlReader):
         if "recover" in table and name not in RECOVER:
             what = f"'{where}.recover' is for positions x and y and for the heading"
             self.problem(what, where, "recover", fix="remove it")
+        parts = {key: self.column(where, table, key) for key in PARTS if key in table}
+        self.hold_parts(name, where, table)
         direction = self.choice(where, table, "direction", ("from", "to")) if quantity.points else None
         if quantity.points and "direction" not in table and "value" not in table and "column" in table:
             self.problem(
@@ -390,8 +396,28 @@ class _Reader(TomlReader):
             scale=self.number(where, table, "scale", 1.0),
             offset=offset or 0.0,
             recover=self.choice(where, table, "recover", RECOVER[name]) if name in RECOVER else None,
+            parts={key: column for key, column in parts.items() if column is not None},
             line=self.line(where),
         )
+
+    def hold_parts(self, name: str, where: str, table: dict[str, Any]) -> None:
+        """Note what is wrong about columns of minutes, seconds and hemisphere."""
+        given = [key for key in PARTS if key in table]
+        if given and name not in HEMISPHERES:
+            what = f"'{where}.{given[0]}' is for latitude and longitude"
+            self.problem(what, where, given[0], fix="remove it")
+        elif given and "column" not in table and "value" not in table:
+            fix = 'write column = "..." for the degrees'
+            self.problem(f"'{where}.{given[0]}' is given without the degrees", where, given[0], fix=fix)
+        elif given and canonical(table.get("unit")) not in (None, "deg"):
+            fix = "remove it: the column holds degrees"
+            self.problem(f"'{where}.unit' is {brief(table['unit'])}, beside '{given[0]}'", where, "unit", fix=fix)
+        if "seconds" in given and "minutes" not in given:
+            fix = 'write minutes = "..." too'
+            self.problem(f"'{where}.seconds' is given without minutes", where, "seconds", fix=fix)
+        if "hemisphere" in given and "positive" in table:
+            fix = "remove one of them"
+            self.problem(f"'{where}' has both 'hemisphere' and 'positive'", where, "positive", "both say the sign", fix)
 
     def antenna(self) -> tuple[float, float] | None:
         if "antenna" not in self.data:

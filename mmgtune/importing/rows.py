@@ -36,11 +36,22 @@ class Rows:
             shown = {unit: names[k] for unit, k in wanted[TIME].items()}
             self.stamps = TimeParts(shown, path, log_map.decimal)
 
+    @property
+    def as_texts(self) -> set[int]:
+        """Columns to be read as texts: as whole numbers -0 degrees have no sign."""
+        return {k for name, of in self.wanted.items() if name != TIME and len(of) > 1 for k in of.values()}
+
     def add(self, column: Callable[[int], Any], rows: IntArray) -> None:
         """Take a block: a pandas column for each position, and the numbers of its rows in the file (n_rows,)."""
         times = {part: column(k) for part, k in self.wanted[TIME].items()}
         t = self.stamps.of(times) if isinstance(self.stamps, TimeParts) else self.stamps.of(times[""], rows)
-        values = [self.cells.of(name, column(of[""]), rows) for name, of in self.wanted.items() if name != TIME]
+        values = [
+            self.cells.position_of(name, {part: column(k) for part, k in of.items()}, rows)
+            if len(of) > 1
+            else self.cells.of(name, column(of[""]), rows)
+            for name, of in self.wanted.items()
+            if name != TIME
+        ]
         self.collector.add(np.column_stack([t, *values]), rows)
 
     def table(self, unit: str) -> Table:

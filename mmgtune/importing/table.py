@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,8 @@ from ..units import is_unit
 from .degrees import degrees
 from .mapping import LogMap
 from .numerals import holds_numbers, number_in, numbers_in
+from .position_parts import PARTS as POSITION_PARTS
+from .position_parts import position_of
 from .sides import SIGNED, midships, sided, takes_side
 from .with_units import WITH_UNIT, numbers_with_unit
 
@@ -118,6 +121,7 @@ class Cells:
         self.stated: dict[str, str] = {}
         self.sided: set[str] = set()
         self.plain: dict[str, int] = {}
+        self.parted: dict[str, str] = {}
 
     def of(self, name: str, values: Any, rows: IntArray) -> FloatArray:
         """Numbers (n_rows,) of a pandas column, NaN where a cell holds none."""
@@ -158,6 +162,20 @@ class Cells:
             self.plain.setdefault(name, int(rows[plain[0]]))
         return np.asarray(numbers)
 
+    def position_of(self, name: str, columns: Mapping[str, Any], rows: IntArray) -> FloatArray:
+        """Degrees (n_rows,) of pandas columns that hold a part of a latitude or longitude each, by what they hold."""
+        found = position_of(name, columns, self.decimal, self.missing, self.numbers)
+        self.stated[name] = "deg"
+        wrong = np.any(list(found.wrong.values()), axis=0)
+        if wrong.any():
+            k = int(np.flatnonzero(wrong)[0])
+            cells = [str(one.iloc[k]) for one in columns.values()]
+            shown = next((one for one in cells if is_unit(one)), " ".join(cells))
+            self.parted.setdefault(name, next(reason for reason, of in found.wrong.items() if of[k]))
+            bad = self.bad.setdefault(name, BadCells(0, int(rows[k]), shown[:80]))
+            bad.count += int(wrong.sum())
+        return found.degrees
+
     def judge(self, table: Table, log_map: LogMap, n_rows: int) -> None:
         """Note cells that are no numbers.  Raises LogError where they say that the log is to be read differently."""
         problems = []
@@ -177,6 +195,15 @@ class Cells:
             place = f"{table.path}, {table.unit} {bad.row}, column '{table.headers[name]}'"
             if bad.count == 1 and is_unit(bad.text) and bad.row <= table.rows.min(initial=bad.row):
                 units[bad.row] = f"line {bad.row} holds units"
+                continue
+            if name in self.parted:
+                said = f"{bad.count} of {n_rows} rows make no {name}, the first is '{bad.text}'"
+                if bad.count > 0.5 * n_rows:
+                    fix = f"correct column, {', '.join(POSITION_PARTS)} in [columns.{name}]"
+                    what = f"the columns of '{name}' make no {name}"
+                    problems.append(Problem(what, place, f"{said}: {self.parted[name]}", fix))
+                else:
+                    table.notes.append(f"{said} (line {bad.row}): {self.parted[name]}; taken as gaps")
                 continue
             noun, no_side_said, no_number = _ONE if bad.count == 1 else _SEVERAL
             what = f"{no_side_said if name in self.sided else ''}{no_number}"

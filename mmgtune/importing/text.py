@@ -51,6 +51,7 @@ def read_text(path: Path, log_map: LogMap) -> Table:
                 skiprows=layout.first,
                 sep=r"\s+" if layout.delimiter == " " else layout.delimiter,
                 decimal=log_map.decimal,
+                dtype=dict.fromkeys(gathered.as_texts, "string"),
                 encoding=log_map.encoding,
                 na_values=list(log_map.missing),
                 skip_blank_lines=False,

@@ -448,11 +448,12 @@ def test_whole_degrees_and_minutes_in_columns_of_their_own(tmp_path):
     columns |= {"lon_deg": 0 * east + 135, "lon_min": 0.4 + east * 6.6e-4}
     log = write_csv(tmp_path / "log.csv", columns)
     proposal = propose_map([log])
-    for one, minutes in (("lat_deg", "lat_min"), ("lon_deg", "lon_min")):
-        said = (
-            f"'{one}' holds whole degrees only, by which the position does not change: the minutes are in '{minutes}'"
-        )
-        assert any(note.startswith(said) for note in proposal.notes)
+    assert proposal.asks == proposal.problems == proposal.notes == ()
+    assert [proposal.guesses[one].keys["minutes"] for one in ("latitude", "longitude")] == ["lat_min", "lon_min"]
+    without = write_csv(tmp_path / "whole.csv", {name: one for name, one in columns.items() if "_min" not in name})
+    for one in ("lat_deg", "lon_deg"):
+        said = f"'{one}' holds whole degrees only, by which the position does not change"
+        assert any(note.startswith(said) for note in propose_map([without]).notes)
     text = MAP.replace('x = { column = "north", unit = "m" }', 'latitude = { column = "lat_deg", unit = "deg" }')
     text = text.replace('y = { column = "east", unit = "m" }', 'longitude = { column = "lon_deg", unit = "deg" }')
     assert "the position never changes: latitude and longitude are whole degrees" in refusal(

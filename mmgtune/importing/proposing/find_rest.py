@@ -15,6 +15,7 @@ from ..quantities import known_quantity, meaning, quantity_of
 from ..sides import takes_side
 from .finder import FEW_DIGITS, Finder
 from .guess import ASKED, LIKELY, MARK, Guess
+from .joined import is_whole
 
 
 def by_name(find: Finder) -> None:
@@ -54,20 +55,14 @@ def whole_degrees(find: Finder) -> None:
             continue
         named = [k for k, word in enumerate(find.said) if word == name or k == guess.column]
         minutes = [k for k in named if re.search(r"min(ute)?s?\b|'|′", find.first.names[k].lower())]
-        whole = [k for k in named if k not in minutes and _is_whole(find, k)]
+        whole = [k for k in named if k not in minutes and is_whole(find, k)]
         if not whole or guess.column not in (whole[0], *minutes):
             continue
         said = f"{find.shown(whole[0])} holds whole degrees only, by which the position does not change"
         if minutes:
             said += f": the minutes are in {find.shown(minutes[0])}"
-        find.notes.append(f"{said}; a map reads positions of one column each, such as 34.57721 or 34 34.6324 N")
+        find.notes.append(f'{said}; a map says where they are with minutes = "..." beside the column')
         find.guesses[name] = replace(guess, confidence=ASKED)
-
-
-def _is_whole(find: Finder, k: int) -> bool:
-    """Whether a column holds whole numbers in all logs."""
-    known = [one[np.isfinite(one)] for one in (sample.numbers[k] for sample in find.samples)]
-    return all(len(one) and (one == np.round(one)).all() for one in known)
 
 
 def _makes_no_sense(find: Finder, name: str) -> bool:

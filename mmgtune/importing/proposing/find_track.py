@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from ... import units
+from ...phrases import listed
 from ...trial.kinematics import FITS
 from ...units import DEG
 from ..headers import bare
@@ -96,7 +97,9 @@ def position_and_heading(find: Finder) -> None:
                 said.append(f"it is in {own['unit']}, although its name says {find.units_said[column]}")
         elif find.said[column] == quantity:
             said.append("its name says so")
-        if column in find.first.written:
+        if column in find.parts:
+            said.append(f"{listed([find.shown(k) for k in find.parts[column].values()])} with it")
+        elif column in find.first.written:
             said.append("its cells are in degrees and minutes")
         doubtful = quantity == "psi" and find.said[column] == "cog"
         find.add(Guess(quantity, column, own, tuple(said), LIKELY if doubtful else confidence))

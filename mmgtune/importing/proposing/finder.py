@@ -32,6 +32,7 @@ class Finder:
     units_wrong       units that names say and behaviour refutes, by column; ``units_said`` has "" there
     guesses           by quantity, in the order they were found; guess_t: time, before its unit is known
     used, numeric     columns that are something already, and those whose behaviour can be looked at
+    parts             further columns of what is in several, by the first of them and by what they hold
     looks             logs whose motion is known; unit: of time; axes: of the velocities
     readings          how well the motion fits with time in each unit, or format, that it was tried in
     tables, comments  further tables of the map, and what is said above them
@@ -63,6 +64,7 @@ class Finder:
         self.units_wrong: dict[int, str] = {}
         self.guesses: dict[str, Guess] = {}
         self.used: set[int] = set()
+        self.parts: dict[int, dict[str, int]] = {}
         self.notes: list[str] = []
         self.tables: dict[str, dict[str, Any]] = {}
         self.comments: dict[str, str] = {}
@@ -81,6 +83,9 @@ class Finder:
         """Take a guess, whose column is then nothing else; a name that is wrong in its unit leaves a doubt."""
         if "header_says" in guess.keys and guess.confidence == SURE:
             guess = replace(guess, confidence=LIKELY)
+        if guess.column in self.parts:
+            parts = {part: self.first.reference(k) for part, k in self.parts[guess.column].items()}
+            guess = replace(guess, keys={**parts, **guess.keys})
         self.guesses[guess.quantity] = guess
         if guess.column is not None:
             self.used.add(guess.column)

@@ -11,6 +11,7 @@ from .find_time import doubt_rates, time
 from .find_track import position_and_heading
 from .find_wind import wind
 from .finder import Finder
+from .joined import join_positions
 from .misnamed import doubt_units
 from .no_values import without_codes
 from .sampling import Sample
@@ -22,6 +23,7 @@ def found_in(samples: Sequence[Sample]) -> Finder:
     samples, said = without_codes(samples)
     find = Finder(samples)
     find.notes += said
+    join_positions(find)
     time(find)
     position_and_heading(find)
     if find.looks:
