@@ -474,6 +474,31 @@ def test_logs_of_two_kinds(tmp_path):
         propose_map([first, second])
 
 
+def test_columns_that_only_some_logs_have(tmp_path):
+    columns = logged(turn())
+    more = {"Torque": columns["shaft"] * 2.0, **columns, "Note": "x"}
+    logs = [write_csv(tmp_path / "a.csv", columns), write_csv(tmp_path / "b.csv", more, sep=",")]
+    for given in (logs, logs[::-1]):
+        proposal = propose_map(given)
+        assert proposal.asks == proposal.problems == ()
+        assert "not all logs have 'Torque' and 'Note': left out" in proposal.notes
+        for trial in import_logs(given, proposal.map(), ".", dry_run=True).trials:
+            close(trial, turn())
+    lacking = write_csv(tmp_path / "c.csv", {name: one for name, one in columns.items() if name != "rudder"})
+    assert "of different kinds" in refusal(lambda: propose_map([*logs, lacking]))
+    assert "column 'rudder' is missing from the log" in refusal(
+        lambda: import_logs([*logs, lacking], proposal.map(), ".", dry_run=True)
+    )
+
+
+def test_extra_columns_of_logs_that_are_imported(tmp_path):
+    columns = logged(turn())
+    more = {"Torque [kN m]": "n/a", **columns, "Rudder cmd": columns["rudder"], "Note": "a, b"}
+    logs = [write_csv(tmp_path / "a.csv", columns), write_csv(tmp_path / "b.csv", more)]
+    for trial in import_logs(logs, parse_map(MAP), ".", dry_run=True).trials:
+        close(trial, turn())
+
+
 def test_sentences(tmp_path):
     log = tmp_path / "log.nmea"
     log.write_text("\n".join(nmea(turn())), encoding="ascii")

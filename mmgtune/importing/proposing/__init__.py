@@ -1,6 +1,7 @@
 """Maps proposed from what logs hold.
 
 sampling    the beginning of a log without a map; words: what names say
+common      columns that all logs have
 clocks      which column is time; parted: or which several are
 windows     columns on average and by their change
 joined      latitudes and longitudes in several columns

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from ... import units
-from ...errors import LogError, Problem
 from .clocks import Clock
 from .guess import LIKELY, SURE, Guess
 from .look import Look
@@ -26,7 +25,7 @@ FEW_DIGITS = 4
 
 
 class Finder:
-    """One pass over logs of one kind.
+    """One pass over logs of one kind, with the same columns.
 
     said, units_said  (n_columns,) what names say: a quantity, a unit
     units_wrong       units that names say and behaviour refutes, by column; ``units_said`` has "" there
@@ -42,18 +41,8 @@ class Finder:
     axes: str | None = None
 
     def __init__(self, samples: Sequence[Sample]):
-        # Columns go by name: logs of one kind may have them in another order.
-        samples = [one if one.names == samples[0].names else one.in_order(samples[0]) for one in samples]
         self.samples = list(samples)
         self.first = samples[0]
-        for other in samples[1:]:
-            if other.names != self.first.names:
-                what = "the logs are of different kinds: their columns differ"
-                why = f"{self.first.path} has {len(self.first.names)} columns, {other.path} {len(other.names)}"
-                if len(other.names) == len(self.first.names):
-                    k = next(k for k, name in enumerate(other.names) if name != self.first.names[k])
-                    why = f"column {k + 1} is '{self.first.names[k][:60]}' in one, '{other.names[k][:60]}' in the other"
-                raise LogError(Problem(what, str(other.path), why, "make a map for each kind"))
         below = [row if any(one.units[k] == row for one in samples) else "" for k, row in enumerate(self.first.units)]
         self.said = [quantity_named(name) for name in self.first.names]
         # North and east by a letter each; alone, n is what propellers turn with.

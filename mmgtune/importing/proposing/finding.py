@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ...errors import LogError
+from ...phrases import listed
+from .common import in_common, of_different_kinds
 from .find_controls import propeller, rudder
 from .find_motion import velocity, yaw_rate
 from .find_rest import by_name, few_digits, missing, whole_degrees
@@ -20,9 +23,13 @@ from .unread import unread
 
 def found_in(samples: Sequence[Sample]) -> Finder:
     """What the columns of logs of one kind are.  Raises LogError where they differ, or none is time."""
-    samples, said = without_codes(samples)
-    find = Finder(samples)
+    shared, others = in_common(samples)
+    shared, said = without_codes(shared)
+    find = Finder(shared)
     find.notes += said
+    if others:
+        shown = listed([f"'{name[:60]}'" for name in others], 8)
+        find.notes.append(f"not all logs have {shown}: left out")
     join_positions(find)
     time(find)
     position_and_heading(find)
@@ -37,6 +44,8 @@ def found_in(samples: Sequence[Sample]) -> Finder:
     whole_degrees(find)
     few_digits(find)
     missing(find)
+    if others and any("column" in one.keys and one.column is None for one in find.guesses.values()):
+        raise LogError(of_different_kinds(samples))
     unread(find)
     doubt_rates(find)
     return find

@@ -72,6 +72,11 @@ class Sample:
         own = [one.strip() for one in self.names]
         if sorted(own) != sorted(names) or any(isinstance(other.reference(k), int) for k in range(len(names))):
             return self
+        return self.only(names)
+
+    def only(self, names: Sequence[str]) -> Sample:
+        """The same with columns of these names alone, in their order."""
+        own = [one.strip() for one in self.names]
         moved = [own.index(name) for name in names]
         return replace(
             self,
