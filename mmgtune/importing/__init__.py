@@ -5,8 +5,8 @@ headers         names and units in logs
 forms           what kind of file a log is
 table           columns of a log; rows: those a map names
 text            logs read as tables; parquet_log, workbook, matlab; cells: of what is in memory
-clock           time put right; stopwatch, dates, degrees, numerals, sides: as people write them; periods: what begins
-                anew at midnight
+clock           time put right; stopwatch, dates, degrees, numerals, thousands, sides: as people write them
+periods         what begins anew at midnight
 time_parts      hours, minutes and seconds in columns of their own; position_parts: degrees and minutes
 record          quantities in the program's units, each with its own time; nmea: reading sentences
 digits          made up for where too few are printed; yaw: the heading from its rate; cleaning: spikes

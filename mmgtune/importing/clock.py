@@ -17,6 +17,7 @@ from .mapping import TimeSource
 from .numerals import numbers_in
 from .periods import Periods
 from .stopwatch import DIGITS, EITHER, MINUTES, TIME_OF_DAY, of_day, of_digits, of_watch, times_told
+from .thousands import either_way, first_marked, in_thousands
 
 OUTLIERS = 3
 """Rows in a row whose stamps may be off while the clock as a whole is right."""
@@ -27,10 +28,10 @@ ISO = r"\d{4}-?\d{2}-?\d{2}[T ](?!.*[A-Ya-z]{2}$)"
 
 
 class Stamps:
-    """Turns time cells into numbers, block by block; ``decimal`` is the sign in them."""
+    """Turns time cells into numbers, block by block; ``decimal`` and ``thousands`` are the signs in them."""
 
-    def __init__(self, source: TimeSource, path: Path, decimal: str = "."):
-        self.source, self.path, self.decimal = source, path, decimal
+    def __init__(self, source: TimeSource, path: Path, decimal: str = ".", thousands: str | None = None):
+        self.source, self.path, self.decimal, self.thousands = source, path, decimal, thousands
         self.format = source.format
         self.notes: list[str] = []
         self.origin: Any = None
@@ -62,7 +63,10 @@ class Stamps:
         if self.format is None:
             self.format = self._seen(text, rows)
         if self.format == "number":
-            return numbers_in(text, self.decimal)
+            if self.thousands is None and in_thousands(text, self.decimal) is None:
+                first = first_marked(text, self.decimal)
+                raise LogError(either_way(str(text.iloc[first]), f"{self.path}, line {rows[first]}, time"))
+            return numbers_in(text, self.decimal, self.thousands)
         if self.format == DIGITS:
             return self.periods.over_midnight(of_digits(numbers_in(text, self.decimal)))
         if self.format == TIME_OF_DAY:

@@ -28,7 +28,19 @@ TABLES = {
         "resample",
         "cut",
     ),
-    "log": ("format", "delimiter", "encoding", "decimal", "skip", "header", "fields", "missing", "sheet", "variable"),
+    "log": (
+        "format",
+        "delimiter",
+        "encoding",
+        "decimal",
+        "thousands",
+        "skip",
+        "header",
+        "fields",
+        "missing",
+        "sheet",
+        "variable",
+    ),
     "trial": ("ship", "id", "manoeuvre", "group", "source", "note", "noise"),
     "time": ("column", "format", "unit", "header_says", "scale", "recover", "step"),
     "velocity": ("axes", "point", "shifted"),
@@ -136,6 +148,7 @@ class LogMap:
     some        maps of logs that differ, by the pattern of their names
     sheet       of a workbook, "" for its first that holds rows
     variable    of a MATLAB file, a structure or a matrix that holds the columns; "" where they are variables themselves
+    thousands   what divides thousands, "none" for nothing, None where each column has to show it
     fields      how many a row of a log has, None where the map does not say
     axes        "ship" or "earth": of u and v; None where the map does not say
     point       "midship", "antenna" or "stated": what u and v, or sog and cog, are of; None where the map does not say
@@ -153,6 +166,7 @@ class LogMap:
     delimiter: str | None = None
     encoding: str = "utf-8"
     decimal: str = "."
+    thousands: str | None = None
     skip: int = 0
     header: bool = True
     fields: int | None = None

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from typing import Any
 
 import numpy as np
 
 from ..arrays import FloatArray
+from .thousands import in_thousands, undivided
 
 
 def holds_numbers(column: Any) -> bool:
@@ -17,31 +17,20 @@ def holds_numbers(column: Any) -> bool:
     return pd.api.types.is_numeric_dtype(column.dtype) and not pd.api.types.is_bool_dtype(column.dtype)
 
 
-def numbers_in(texts: Any, decimal: str) -> FloatArray:
+def numbers_in(texts: Any, decimal: str, thousands: str | None = None) -> FloatArray:
     """Numbers (n_rows,) of a pandas column of texts, NaN where one is none.
 
-    decimal  "." or ",": where it is a comma, a point is understood too, as programs that print both do
+    decimal    "." or ",": where it is a comma, a point is understood too, as programs that print both do
+    thousands  what divides thousands, "none" for nothing; None where the column has to show it
     """
     import pandas as pd
 
+    other = "." if decimal == "," else ","
+    divided = in_thousands(texts, decimal) if thousands != "none" else False
+    bare = undivided(texts, decimal) if divided or (divided is None and thousands == other) else texts
     if decimal == ",":
-        bare = texts.str.replace(",", ".", regex=False)
-    else:
-        bare = texts.str.replace(",", "", regex=False) if _in_thousands(texts) else texts
+        bare = bare.str.replace(",", ".", regex=False)
     return np.asarray(pd.to_numeric(bare, errors="coerce").to_numpy(dtype=np.float64, na_value=np.nan))
-
-
-_THOUSANDS = re.compile(r"[-+]?\d{1,3}(,\d{3})+(\.\d*)?")
-_PLAINLY = re.compile(r"[-+]?\d{1,3}(,\d{3})+\.\d*|[-+]?\d{1,3}(,\d{3}){2,}")
-"""Such as 1,001.5 and 1,234,567: a comma that no decimal sign can be."""
-
-
-def _in_thousands(texts: Any) -> bool:
-    """Whether commas divide the thousands of a column: all that have one read so, and some cannot read otherwise."""
-    commas = texts[texts.str.contains(",", regex=False).fillna(False)]
-    return bool(
-        len(commas) and commas.str.fullmatch(_PLAINLY).any() and commas.str.fullmatch(_THOUSANDS).fillna(False).all()
-    )
 
 
 def number_in(text: str, decimal: str) -> float | None:

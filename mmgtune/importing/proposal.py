@@ -89,7 +89,8 @@ class Proposal:
         for key in self.asks:
             name, _, last = key.rpartition(".")
             guess = self.guesses.get(name.removeprefix("columns.")) or self.guesses.get("t" if name == "time" else "")
-            question = str(guess.keys.get(last, "")).removeprefix(ASKS).strip() if guess is not None else ""
+            keys = guess.keys if guess is not None else self.sample.layout if name == "log" and self.sample else {}
+            question = str(keys.get(last, "")).removeprefix(ASKS).strip()
             lines.append(f"asked: {key}{f': {question}' if question else ''}")
         lines += [f"the import would be refused: {one}" for one in self.problems]
         name = path or "MAP.toml"
@@ -152,6 +153,9 @@ def _made(finder: Finder, paths: tuple[Path, ...], left: tuple[str, ...]) -> Pro
         tables["velocity"] = {"axes": finder.axes, **tables.get("velocity", {})}
     text = toml_of_map(guesses, finder.first, len(paths), tables, finder.comments, left, finder.notes)
     asks = tuple(
+        f"log.{key}" for key, value in finder.first.layout.items() if isinstance(value, str) and value.startswith(ASKS)
+    )
+    asks += tuple(
         f"columns.{name}.{key}" if name != "t" else f"time.{key}"
         for name, guess in guesses.items()
         for key, value in guess.keys.items()

@@ -171,6 +171,7 @@ class _Reader(TomlReader):
             delimiter=DELIMITERS.get(self.choice("log", log, "delimiter", tuple(DELIMITERS)) or ""),
             encoding=self.encoding(log),
             decimal=self.choice("log", log, "decimal", (".", ",")) or ".",
+            thousands=self.thousands(log),
             skip=self.count(log, "skip"),
             header=self.flag(log, "header"),
             fields=self.count(log, "fields") or None,
@@ -220,6 +221,13 @@ class _Reader(TomlReader):
         if problem is not None:
             self.problem(problem.what, "trial", "id", problem.why, problem.fix)
         return template
+
+    def thousands(self, log: dict[str, Any]) -> str | None:
+        found = self.choice("log", log, "thousands", (".", ",", "none"))
+        if found is not None and found == log.get("decimal", "."):
+            fix = 'say the other one, or "none"'
+            self.problem("'log.thousands' is the decimal sign", "log", "thousands", "one sign cannot be both", fix)
+        return found
 
     def texts(self, table: dict[str, Any], key: str) -> tuple[str, ...]:
         value = table.get(key, [])

@@ -31,7 +31,7 @@ class Rows:
         self.path, self.log_map, self.wanted, self.names = path, log_map, wanted, names
         self.cells = Cells(log_map)
         self.collector = Collector(list(wanted))
-        self.stamps: Stamps | TimeParts = Stamps(log_map.time, path, log_map.decimal)
+        self.stamps: Stamps | TimeParts = Stamps(log_map.time, path, log_map.decimal, log_map.thousands)
         if log_map.time.parts:
             shown = {unit: names[k] for unit, k in wanted[TIME].items()}
             self.stamps = TimeParts(shown, path, log_map.decimal)

@@ -20,6 +20,7 @@ from .numerals import holds_numbers, number_in, numbers_in
 from .position_parts import PARTS as POSITION_PARTS
 from .position_parts import position_of
 from .sides import SIGNED, midships, sided, takes_side
+from .thousands import either_way, first_marked, in_thousands
 from .with_units import WITH_UNIT, numbers_with_unit
 
 MOST_ROWS = 1_000_000
@@ -115,7 +116,8 @@ class Cells:
 
     def __init__(self, log_map: LogMap):
         self.missing = {*MISSING, *(one.lower() for one in log_map.missing)}
-        self.decimal = log_map.decimal
+        self.decimal, self.thousands = log_map.decimal, log_map.thousands
+        self.doubted: dict[str, BadCells] = {}
         self.numbers = [one for text in log_map.missing if (one := number_in(text, self.decimal)) is not None]
         self.bad: dict[str, BadCells] = {}
         self.stated: dict[str, str] = {}
@@ -132,7 +134,10 @@ class Cells:
         else:
             text = values.astype("string").str.strip()
             # One text in it leaves a column of numbers as texts, decimal commas and all.
-            numbers = numbers_in(text, self.decimal)
+            numbers = numbers_in(text, self.decimal, self.thousands)
+            if self.thousands is None and name not in self.doubted and in_thousands(text, self.decimal) is None:
+                first = first_marked(text, self.decimal)
+                self.doubted[name] = BadCells(1, int(rows[first]), str(text.iloc[first]))
             there = ~text.str.lower().isin(self.missing).to_numpy() & text.notna().to_numpy()
             if name in ("latitude", "longitude") and np.isnan(numbers).any():
                 written = degrees(text)
@@ -179,6 +184,9 @@ class Cells:
     def judge(self, table: Table, log_map: LogMap, n_rows: int) -> None:
         """Note cells that are no numbers.  Raises LogError where they say that the log is to be read differently."""
         problems = []
+        for name, cell in self.doubted.items():
+            place = f"{table.path}, {table.unit} {cell.row}, column '{table.headers[name]}'"
+            problems.append(either_way(cell.text, place))
         table.stated |= self.stated
         table.sided = tuple(name for name in table.columns if name in self.sided)
         no_side, plainly = "only some cells of the column say a side, such as 10 P", "those to starboard positive"

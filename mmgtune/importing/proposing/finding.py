@@ -18,7 +18,7 @@ from .joined import join_positions
 from .misnamed import doubt_units
 from .no_values import without_codes
 from .sampling import Sample
-from .unread import unread
+from .unread import doubt_thousands, unread
 
 
 def found_in(samples: Sequence[Sample]) -> Finder:
@@ -47,5 +47,6 @@ def found_in(samples: Sequence[Sample]) -> Finder:
     if others and any("column" in one.keys and one.column is None for one in find.guesses.values()):
         raise LogError(of_different_kinds(samples))
     unread(find)
+    doubt_thousands(find)
     doubt_rates(find)
     return find

@@ -25,6 +25,7 @@ from ..sides import midships, sided, takes_side
 from ..stopwatch import EITHER, TIME_OF_DAY, are_times, times_told
 from ..table import MISSING
 from ..text import PEEK, Lines, fields_of, start_of
+from ..thousands import in_thousands
 from ..with_units import is_with_unit, numbers_with_unit
 from .words import known_unit, quantity_named
 
@@ -34,7 +35,7 @@ MARKS = ("\t", ";", ",", "|", " ")
 SHOWN = {"\t": "tab", " ": "space"}
 _JAPANESE = re.compile("[\u3040-\u30ff\u4e00-\u9fff]")
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?|-?inf", re.ASCII)
-_COMMA = re.compile(r"[-+]?\d+,\d+([eE][-+]?\d+)?", re.ASCII)
+_COMMA = re.compile(r"[-+]?(\d+|\d{1,3}(\.\d{3})+),\d+([eE][-+]?\d+)?", re.ASCII)
 _DATED = re.compile(r"(\d{1,4}[-./:]\d{1,2}[-./:]\d{1,4}|\d{1,3}:\d{2}|[-+]?\d{1,3}°)[^;|\t,]*(,[^;|\t,]*)?")
 
 
@@ -127,6 +128,8 @@ def _made(path: Path, layout: dict[str, Any], names: Sequence[str], units: Seque
     if layout["format"] != "csv" and any(_has_commas(one) for one in texts):
         layout["decimal"] = ","
     decimal = layout.get("decimal", ".")
+    if any(_divides(one, ",") for one in texts) and (decimal == "," or not any(_has_points(one) for one in texts)):
+        layout["decimal"], layout["thousands"] = (decimal := ","), "."
     units = list(units)
     numbers, written, with_side = [], set(), set()
     for k, text in enumerate(texts):
@@ -135,7 +138,7 @@ def _made(path: Path, layout: dict[str, Any], names: Sequence[str], units: Seque
         elif _holds_dates(text):
             found = np.full(len(text), np.nan)
         else:
-            found = numbers_in(text, decimal)
+            found = numbers_in(text, decimal, layout.get("thousands"))
             clock = are_times(text)
             plain = float(np.isfinite(found).mean()) if len(text) else 1.0
             named = takes_side(quantity_named(names[k]))
@@ -164,6 +167,19 @@ def _holds_dates(column: Any) -> bool:
     import pandas as pd
 
     return bool(pd.api.types.is_datetime64_any_dtype(column.dtype))
+
+
+def _divides(column: Any, decimal: str) -> bool:
+    """Whether points divide the thousands of a column, where the decimal sign is a comma."""
+    return not holds_numbers(column) and not _holds_dates(column) and in_thousands(column, decimal) is True
+
+
+def _has_points(column: Any) -> bool:
+    """Whether a column holds numbers with decimal points that divide no thousands."""
+    if holds_numbers(column) or _holds_dates(column):
+        return False
+    pointed = column.str.fullmatch(r"[-+]?\d*\.\d+").fillna(False)
+    return bool(pointed.mean() > 0.2) and in_thousands(column, ",") is False
 
 
 def _has_commas(column: Any) -> bool:

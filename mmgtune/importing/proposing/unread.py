@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,10 +11,31 @@ from ...phrases import counted
 from ..numerals import numbers_in
 from ..sides import midships
 from ..table import MISSING
+from ..thousands import first_marked, in_thousands
 from .finder import Finder
+from .guess import MARK
 
 READ_AS_NONE = frozenset({"#n/a n/a", "#na", "-1.#ind", "-1.#qnan", "-nan", "1.#ind", "1.#qnan", "<na>"})
 """More texts for no value, in small letters, that readers of tables know."""
+
+
+def doubt_thousands(find: Finder) -> None:
+    """Ask what points in chosen columns are where the decimal sign is a comma and nothing shows it."""
+    layouts = [one.layout for one in find.samples]
+    if any("thousands" in one for one in layouts):
+        find.first = replace(find.first, layout={**find.first.layout, "thousands": "."})
+        return
+    for sample in find.samples:
+        decimal = sample.layout.get("decimal", ".")
+        for k in (one.column for one in find.guesses.values() if one.column is not None):
+            texts = sample.texts[k]
+            if str(texts.dtype) == "string" and in_thousands(texts, decimal) is None:
+                text = texts.iloc[first_marked(texts, decimal)]
+                asks = (
+                    f'{MARK} "." or "none": is {text} in {find.shown(k)} {text.replace(".", "")}, or a decimal point?'
+                )
+                find.first = replace(find.first, layout={**find.first.layout, "thousands": asks})
+                return
 
 
 def unread(find: Finder) -> None:
@@ -35,7 +57,11 @@ def unread(find: Finder) -> None:
             if (zero := there & known & midships(texts)).any():
                 zeros.update(texts[zero].tolist())
             # What is beyond all numbers is told as impossible.
-            bad = there & ~known & np.isnan(numbers_in(texts, sample.layout.get("decimal", ".")))
+            bad = (
+                there
+                & ~known
+                & np.isnan(numbers_in(texts, sample.layout.get("decimal", "."), sample.layout.get("thousands")))
+            )
             if bad.any():
                 lost.update(texts[bad].str.slice(0, 40).tolist())
                 where = where or str(sample.path)
