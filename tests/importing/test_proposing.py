@@ -403,6 +403,18 @@ def test_decimal_commas_in_quotes_between_commas(tmp_path):
     assert "decimal" not in sample_of(write_csv(tmp_path / "log2.csv", thousands, quoting=csv.QUOTE_ALL)).layout
 
 
+def test_a_row_of_units_that_most_columns_lack(tmp_path):
+    """The log was one without names."""
+    log = write_csv(tmp_path / "log.csv", logged(turn()), sep=";")
+    names, _, rest = log.read_text(encoding="utf-8").partition("\n")
+    units = {"heading": "deg", "shaft": "rpm"}
+    log.write_text("\n".join([names, ";".join(units.get(one, "") for one in names.split(";")), rest]), encoding="utf-8")
+    proposal = propose_map(log)
+    assert proposal.asks == proposal.problems == ()
+    assert proposal.map().sources["psi"].column == "heading"
+    close(imported(log, proposal.text), turn())
+
+
 def test_columns_go_by_name_in_logs_of_another_order(tmp_path):
     columns = logged(turn())
     first = write_csv(tmp_path / "a.csv", columns)

@@ -341,10 +341,11 @@ def heading(rows: Sequence[Sequence[str]]) -> tuple[int, int | None, int | None,
     first = next((k for k in filled if k in shares and shares[k] >= max(0.34, 0.6 * usual)), filled[0])
     above = [k for k in filled if k < first][-2:]
     named = [k for k in above if _names(rows[k], width)]
+    # Of units most may be left out.
+    if named[:1] == above[:1] and len(above) == 2 and len(rows[above[1]]) <= width and _are_units(rows[above[1]]):
+        return first, above[0], above[1], width
     if not named or named[-1] != above[-1]:
         return first, None, None, width
-    if len(named) == 2 and _are_units(rows[named[1]]):
-        return first, named[0], named[1], width
     return first, named[-1], None, width
 
 
