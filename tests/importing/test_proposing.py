@@ -692,6 +692,42 @@ def test_of_revolutions_before_and_behind_a_gear_those_behind_it_are_taken(tmp_p
     assert ("an engine before a gear?" in said) == (len(names) == 1)
 
 
+@pytest.mark.parametrize(
+    ("name", "quantity"),
+    [
+        ("Hauptmaschine [U/min]", "n"), ("Main engine [rpm]", "n"), ("ME rpm", "n"), ("Drehzahl Hauptmaschine", "n"),
+        ("ME Speed [rpm]", "n"), ("Engine speed [1/min]", "n"), ("Engine speed", "n"), ("Hoofdmotor [omw/min]", "n"),
+        ("Bb-Maschine [U/min]", "n_port"), ("Régime moteur [tr/min]", "n"), ("Huvudmaskin [varv/min]", "n"),
+        ("Motor vessel speed [kn]", "u"), ("Main engine load [%]", ""), ("ME power [kW]", "other"),
+        ("Main engine cmd [rpm]", "order"), ("Turbocharger [rpm]", "other"), ("Bow thruster [rpm]", "n_bow"),
+        ("Diesel generator 1 [rpm]", "other"), ("Steering pump motor [rpm]", "other"), ("ROT [1/min]", "r"),
+    ],
+)  # fmt: skip
+def test_revolutions_of_engines_by_name(name, quantity):
+    assert quantity_named(name) == quantity
+
+
+@pytest.mark.parametrize("name", ["Hauptmaschine [U/min]", "Main engine [rpm]", "Engine speed [1/min]", "Drehzahl HM"])
+@pytest.mark.parametrize("below", [False, True])
+def test_revolutions_of_an_engine_that_drives_the_propeller_itself(tmp_path, name, below):
+    """They were taken for it by their behaviour, or left out as a speed."""
+    columns = over_ground(suzaku("turn_p35"))
+    columns[name] = columns.pop("shaft")
+    log = write_csv(tmp_path / "log.csv", columns, sep=";")
+    if below:
+        head, _, rest = log.read_text(encoding="utf-8").partition("\n")
+        names = head.split(";")
+        units = ["rpm" if one == name else "deg" if one in ("heading", "rudder") else "" for one in names]
+        shown = [one.partition(" [")[0] for one in names]
+        log.write_text("\n".join([";".join(shown), ";".join(units), rest]), encoding="utf-8")
+    proposal = propose_map(log)
+    guess = proposal.guesses["n"]
+    assert list(columns)[guess.column] == name
+    assert guess.evidence[0] == "its name says so"
+    if "[" in name or below:
+        assert guess.keys["unit"] == "rpm"
+
+
 def test_the_shafts_of_both_sides_are_taken_before_their_engines(tmp_path):
     columns = over_ground(suzaku("turn_p35"))
     shaft = columns.pop("shaft")

@@ -44,7 +44,9 @@ class Finder:
         self.samples = list(samples)
         self.first = samples[0]
         below = [row if any(one.units[k] == row for one in samples) else "" for k, row in enumerate(self.first.units)]
-        self.said = [quantity_named(name) for name in self.first.names]
+        # A unit below a name tells what it is of as one behind it does.
+        shown = [f"{name} [{row}]" if row else name for name, row in zip(self.first.names, below, strict=True)]
+        self.said = [quantity_named(name) for name in shown]
         # North and east by a letter each; alone, n is what propellers turn with.
         letters = {plain(name): k for k, name in enumerate(self.first.names)}
         if {"n", "e"} <= set(letters):

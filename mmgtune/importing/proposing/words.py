@@ -30,7 +30,7 @@ _WORDS: tuple[tuple[str, tuple[str, ...]], ...] = (
     (OTHER, (
         r"thrust\b(?!er)", r"torque", r"power", r"\bkw\b", r"fuel", r"temp", r"pressure", r"druck", r"draft",
         r"draught", r"trim\b", r"heave", r"schub", r"drehmoment", r"leistung", r"poussee", r"couple", r"puissance",
-        r"empuje", r"推力", r"トルク",
+        r"empuje", r"推力", r"トルク", r"turbo", r"generator", r"alternat", r"\bpump", r"\bdg ?\d", r"\bfan\b",
     )),
     (ROLL, (
         r"roll", r"heel", r"kranken", r"krangung", r"rollen", r"gite", r"roulis", r"escora", r"balanceo", r"slinger",
@@ -112,7 +112,8 @@ _WORDS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("n", (
         r"\brpm\b", r"\brps\b", r"\brev", r"\bn\b", r"\bn prop", r"prop", r"shaft", r"drehzahl", r"welle",
         r"schraube", r"toeren", r"schroef", r"\bas\b", r"\btours?\b", r"helice", r"\barbre\b", r"revol", r"giri",
-        r"elica", r"varvtal", r"omdr", r"转速", r"回転", r"회전",
+        r"elica", r"varvtal", r"omdr", r"转速", r"回転", r"회전", r"\bregime\b",
+        r"(engine|motor|maschinen?|machine|\bm ?e) ?(speed|vitesse|geschw)", r"(speed|vitesse) (engine|moteur)",
     )),
     ("v", (
         r"sway", r"\bvm?\b", r"\bvm vel", r"lateral", r"abeam", r"transvers", r"quer", r"dwars", r"travers",
@@ -153,7 +154,7 @@ _SHAFT = re.compile(
     r"shaft|prop|screw|welle|schraube|schroef|\bas\b|helice|\barbre|elica|\bejes?\b|\basse\b|aksel|propell|軸|プロペラ|轴|桨"
 )
 _ENGINE = re.compile(
-    r"\bm ?e\b|engine|motor|moteur|masch|machine|macchina|maquina|diesel|\bhm\b|\bmcr\b|主機|主机|엔진|機関"
+    r"\bm ?e\b|engine|motor|moteur|masch|machine|maskin|macchina|maquina|diesel|\bhm\b|\bmcr\b|主機|主机|엔진|機関"
 )
 
 _UNITS = {
@@ -199,7 +200,11 @@ def quantity_named(name: str) -> str:
 
 
 def _with_rpm(name: str) -> str:
-    """A name that ends with revolutions a minute, U/min or tr/min, with "rpm" in its place; any other as it is."""
+    """A name that ends with revolutions a minute, U/min or [tr/min], with "rpm" in its place; any other as it is."""
+    unit = known_unit(unit_in(name[:200]) or "")
+    # What an engine does once a second is turn; of anything else that may be another rate.
+    if unit in ("rpm", "rps") or (unit == "1/s" and turns(name)):
+        return f"{bare(name[:200])} rpm"
     words = name[:200].split()
     turning = words and words[-1][-1] not in ")]" and known_unit(words[-1]) == "rpm"
     return " ".join([*words[:-1], "rpm"]) if turning else name
