@@ -86,6 +86,12 @@ def columns_named(log_map: LogMap, names: Sequence[str], where: str) -> Wanted:
             else:
                 what, fix = f"column '{column}' is missing from the log", closest(column, names)
             problems.append(Problem(what, where, f"the map says it holds {holds}", fix))
+    for name, of in found.items():
+        twice = next((k for k in of.values() if list(of.values()).count(k) > 1), None)
+        if twice is not None:
+            what = f"column '{names[twice]}' is named twice for {'time' if name == TIME else meaning(name)}"
+            why = "each column holds one part of it"
+            problems.append(Problem(what, where, why, "name another column for one of the parts"))
     if problems:
         raise LogError(*problems)
     return found

@@ -33,6 +33,7 @@ class TimeParts:
         self.names, self.path, self.decimal = names, path, decimal
         self.notes: list[str] = []
         self.periods = Periods()
+        self.seen: dict[str, bool] = {}
 
     def of(self, columns: Mapping[str, Any]) -> FloatArray:
         """Time (n_rows,) [s] of a pandas column for each unit; NaN where a part is missing, or is none.
@@ -55,9 +56,12 @@ class TimeParts:
             what = f"the map says '{self.names[unit]}' is in {unit}, its header says {said}"
             raise LogError(Problem(what, place, "one of them is wrong", "correct 'column' or 'unit' in [time]"))
         known = np.isfinite(values)
+        what = f"the column does not hold the {WORDS[unit]} of a time in several columns"
+        self.seen[unit] = self.seen.get(unit, False) or bool(known.any())
+        if not self.seen[unit]:
+            raise LogError(Problem(what, place, "it has no numbers at all", "correct 'column' and 'unit' in [time]"))
         if odd.sum() > 0.5 * known.sum():
             shown = values[odd][0]
-            what = f"the column does not hold the {WORDS[unit]} of a time in several columns"
             why = f"the first that cannot be is {shown:.10g}; all are to lie within the next longer part"
             if unit != list(self.names)[-1]:
                 why += ", and all but the shortest part to be whole numbers"

@@ -118,12 +118,14 @@ def test_a_row_that_lacks_a_part_has_no_time(tmp_path):
         ('column = ["Hour", ""]\nunit = ["h", "min"]', "'time.column' is"),
         (f'{STAMPS}\nformat = "clock"', "'time.format' has no meaning for time in several columns"),
         (STAMPS.replace("Min", "Minuten"), "column 'Minuten' is missing from the log"),
+        ('column = ["Hour", "Hour"]\nunit = ["h", "min"]', "column 'Hour' is named twice for time"),
+        ('column = ["Hour", "Zone"]\nunit = ["h", "min"]', "it has no numbers at all"),
         ('column = ["rudder", "Min"]\nunit = ["h", "min"]', "does not hold the hours of a time in several columns"),
         ('column = ["Sec", "Hour", "Min"]\nunit = ["h", "min", "s"]', "does not hold the hours"),
     ],
 )
 def test_what_is_wrong_with_columns_of_time_is_told(tmp_path, stamps, told):
-    log = write_csv(tmp_path / "log.csv", clock(turn()))
+    log = write_csv(tmp_path / "log.csv", clock(turn()) | {"Zone": "UTC"})
     (tmp_path / "map.toml").write_text(MAP.replace('column = "time"\nunit = "s"', stamps), encoding="utf-8")
     ended = run("trials", "import", str(log), "--map", "map.toml", "-o", "out", cwd=tmp_path)
     assert ended.code == 2
@@ -277,6 +279,7 @@ def test_rows_that_make_no_position_are_gaps(tmp_path):
         ('minutes = "lat_min"', 'minutes = "lat min"', "column 'lat min' is missing from the log"),
         ('minutes = "lat_min"', 'seconds = "lat_min"', "'columns.latitude.seconds' is given without minutes"),
         ('minutes = "lat_min"', "minutes = 0", "'columns.latitude.minutes' is 0"),
+        ('minutes = "lat_min"', 'minutes = "lat_deg"', "column 'lat_deg' is named twice for geographic latitude"),
         ('minutes = "lat_min"', 'minutes = "shaft"', "minutes and seconds are 60 at most"),
         ('"lat_deg", minutes', '"rate", minutes', "all but the last part are to be whole"),
         ('hemisphere = "lat_NS"', 'hemisphere = "lon_EW"', "the hemisphere is neither N nor S"),
