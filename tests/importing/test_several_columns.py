@@ -209,6 +209,7 @@ def test_degrees_and_minutes_of_all_quarters(tmp_path, origin, signed):
         (("Lat deg", "min", "hemi", "Lon deg", "min.1", "hemi.1"), {"sep": "\t"}),
         (("Breite [deg]", "Breite [min]", "NS", "L\u00e4nge [deg]", "L\u00e4nge [min]", "EW"), {"sep": ";"}),
         (("LAT\u00b0", "LAT'", "LAT H", "LON\u00b0", "LON'", "LON H"), {}),
+        (("Breite Grad", "Breite Min", "N/S", "Laenge Grad", "Laenge Min", "E/W"), {"sep": ";", "decimal": ","}),
     ],
 )
 def test_names_of_degrees_and_minutes(tmp_path, names, how):
