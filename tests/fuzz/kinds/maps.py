@@ -26,6 +26,7 @@ WORDS = (
 
 
 STEPS = ('"1e-9 s"', '"1e-300 s"', '"0.01 s"', '"0.1 s"', '"3 s"', '"1e9 s"', '"1e300 s"')
+LONGITUDE = '\n[columns.longitude]\ncolumn = "ahead"\nminutes = "heading"\nseconds = "rudder"'
 FITTING = (
     ("resample", "step", STEPS),
     ("resample", "gap", ("1.0", "2.5", "1e9", "1e300")),
@@ -44,6 +45,9 @@ FITTING = (
     ("log", "missing", ('["-999", "n/a"]', '["0"]', '[""]')),
     ("log", "delimiter", ('","', '";"', '"space"', '"tab"')),
     ("log", "decimal", ('","',)),
+    ("log", "thousands", ('"."', '","', '"none"')),
+    ("time", 'column = ["rudder", "heading", "time"]\nunit', ('["h", "min", "s"]', '["d", "h", "us"]', '["min"]')),
+    ("time", 'column = ["heading", 1]\nunit', ('["min", "s"]', '["h", "ms"]', '["s", "s"]', '"s"')),
     ("log", "skip", ("0", "1", "50")),
     ("log", "header", ("false", "true")),
     ("log", "encoding", ('"utf-16"', '"cp1252"', '"utf-8-sig"', '"cp037"', '"utf-7"', '"iso2022_jp"')),
@@ -53,6 +57,8 @@ FITTING = (
     ("columns.x", 'column = "north"\nunit = "m"\nrecover', ('"print-resolution"',)),
     ("columns.psi", 'column = "heading"\nunit = "deg"\nrecover', ('"yaw-rate"',)),
     ("columns.delta", 'column = "rudder"\nunit = "deg"\nscale', ("1.0", "1e-9", "-1", "1e300")),
+    ("columns.latitude", 'column = "rudder"\nminutes', (f'"ahead"{LONGITUDE}', f'"heading"{LONGITUDE}', '"north"')),
+    ("columns.latitude", 'column = "ahead"\nhemisphere', (f'"rudder"{LONGITUDE}', f"3{LONGITUDE}")),
     ("columns.n", "value", ('"100 rpm"', '"0 rpm"', '"-1e300 rpm"')),
 )
 """Table, key and values that a map may have."""
@@ -88,8 +94,11 @@ def _fitting(rng: np.random.Generator, lines: list[str]) -> list[str]:
     """A key with a value that it may have, however unwise."""
     name, key, values = pick(rng, FITTING)
     added = f"{key} = {pick(rng, values)}"
-    lines = [line for line in lines if not line.startswith(f"{name.removeprefix('columns.')} = {{")]
+    replaced = ("x", "y") if name == "columns.latitude" else (name.removeprefix("columns."),)
+    lines = [line for line in lines if not line.startswith(tuple(f"{one} = {{" for one in replaced))]
     at = lines.index(f"[{name}]") + 1 if f"[{name}]" in lines else len(lines)
+    if name == "time" and key.startswith("column"):
+        lines = [line for k, line in enumerate(lines) if not (at <= k < at + 2)]
     return [*lines[:at], added, *lines[at:]] if at < len(lines) else [*lines, f"[{name}]", added]
 
 

@@ -19,7 +19,7 @@ from ..mutating import odd_number, odd_text, pick
 from ..small import trials
 from . import Files, Kind
 
-LONG = ("fit", "sweep", "diagnose", "leave-out")
+LONG = ("fit", "sweep", "diagnose", "leave-out", "posterior")
 WORDS = (
     "0.5", "1", "2", "3", "100", "0.2,0.3", "R_0", "R_0,w_P0", "hull.Y_*", "*", "hull.R_0,hull.R_0", "x,y,psi",
     "u:2", "0:20", ":", "5:", "30:10", "nan:nan", "cma-es", "least-squares", "huber", "standardised", "estimated",
@@ -73,7 +73,7 @@ def make(rng: np.random.Generator) -> Files:
         line.append(flag)
         if takes:
             line.append(pick(rng, SUBSTEPS) if flag == "--substeps" else _value(rng))
-    if name[0] in LONG:
+    if ("--dry-run", False) in flags and "--dry-run" not in line:  # what takes long, and what writes
         line += ["--dry-run"]
     if any(flag == "--backend" for flag, _ in flags) and "--backend" not in line:
         line += ["--backend", "numpy"]
