@@ -113,16 +113,22 @@ def sample_of(path: Path) -> Sample:
         raise LogError(Problem("the log is NMEA 0183, whose sentences say what they hold", str(path)))
     sample = reader(path)
     if len(sample.names) < 2 or not any(np.isfinite(one).sum() > 1 for one in sample.numbers):
-        seen = len(sample.names)
-        why = f"{counted(seen, 'column')} {'was' if seen == 1 else 'were'} seen, none with numbers" if seen else ""
-        fix = "give a table with a row for each time and a column for each quantity"
-        raise LogError(Problem("the log is no table of numbers", str(path), why, fix))
+        raise _no_table(path, len(sample.names), "none with numbers")
     return sample
+
+
+def _no_table(path: Path, seen: int, but: str) -> LogError:
+    """What is said of a log without rows of numbers, of which some columns were seen."""
+    why = f"{counted(seen, 'column')} {'was' if seen == 1 else 'were'} seen, {but}" if seen else ""
+    fix = "give a table with a row for each time and a column for each quantity"
+    return LogError(Problem("the log is no table of numbers", str(path), why, fix))
 
 
 def _made(path: Path, layout: dict[str, Any], names: Sequence[str], units: Sequence[str], texts: list[Any]) -> Sample:
     """A sample of columns as they are printed."""
     LOG_COLUMNS.hold(len(names), str(path), LogError)
+    if texts and len(texts[0]) < 2:  # be they thousands, which take long to look at
+        raise _no_table(path, len(names), "with less than two rows")
     texts = [one if holds_numbers(one) or _holds_dates(one) else one.astype("string").str.strip() for one in texts]
     # A table whose cells are texts, exported from somewhere, may have decimal commas in them.
     if layout["format"] != "csv" and any(_has_commas(one) for one in texts):
