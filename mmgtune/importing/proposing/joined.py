@@ -10,7 +10,7 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ..headers import unit_in
-from ..numerals import holds_numbers, number_in
+from ..numerals import number_in
 from ..position_parts import HEMISPHERES, letters_in, position_of
 from ..table import MISSING
 from .finder import Finder
@@ -83,7 +83,7 @@ def _hemisphere(find: Finder, name: str, degrees: int, parts: Collection[int]) -
     """The column of letters nearest to the degrees; None where no column has one wherever there are degrees."""
     found = []
     for k in range(len(find.said)):
-        if k in parts or any(holds_numbers(one.texts[k]) for one in find.samples):
+        if k in parts or any(np.isfinite(one.numbers[k]).any() for one in find.samples):
             continue
         told = [(letters_in(one.texts[k], name) != "").to_numpy(dtype=bool, na_value=False) for one in find.samples]
         needed = [np.isfinite(one.numbers[degrees]) for one in find.samples]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
+from functools import cached_property
 
 import numpy as np
 
@@ -67,12 +68,18 @@ class Windows:
 
     def at_edges(self, values: FloatArray) -> FloatArray:
         """(n_windows + 1,) what values (n_rows,) are around the edges."""
-        half = self._half
-        return np.array([_middle(values[max(0, k - half) : k + half + 1]) for k in self.edges])
+        around = self.edges[:, None] + np.arange(-self._half, self._half + 1)
+        there = (around >= 0) & (around < len(values))
+        return _middles(np.where(there, values[np.where(there, around, 0)], np.nan))
+
+    @cached_property
+    def _times(self) -> FloatArray:
+        """(n_windows + 1,) when the edges are."""
+        return self.at_edges(self.t)
 
     def slope(self, values: FloatArray) -> FloatArray:
         """(n_windows,) change per second."""
-        return np.where(self.pauses, np.nan, np.diff(self.at_edges(values)) / np.diff(self.at_edges(self.t)))
+        return np.where(self.pauses, np.nan, np.diff(self.at_edges(values)) / np.diff(self._times))
 
     def mean(self, values: FloatArray) -> FloatArray:
         """(n_windows,) mean of values (n_rows,)."""
@@ -116,7 +123,8 @@ def _clean(values: FloatArray, turn: float) -> FloatArray:
     return out
 
 
-def _middle(values: FloatArray) -> float:
+def _middles(values: FloatArray) -> FloatArray:
+    """(n,) medians of rows (n, k), without what is NaN; NaN where nothing else is."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
-        return float(np.nanmedian(values)) if len(values) else float("nan")
+        return np.asarray(np.nanmedian(values, axis=1))

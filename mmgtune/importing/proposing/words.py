@@ -64,7 +64,8 @@ _WORDS: tuple[tuple[str, tuple[str, ...]], ...] = (
         r"\blat", r"breite", r"latitud", r"緯度", r"纬度", r"위도",
     )),
     ("longitude", (
-        r"\blon", r"\blng\b", r"l(a|ae)nge\b", r"l(a|ae)ngen(grad|min)", r"longitud", r"lengte", r"経度", r"经度", r"경도",
+        r"\blon", r"\blng\b", r"l(a|ae)nge\b", r"l(a|ae)ngen(grad|min)", r"longitud", r"lengte", r"経度", r"经度",
+        r"경도",
     )),
     ("cog", (
         r"\bcog\b", r"course.*ground", r"kurs.*(grund|grunn)", r"\bkurs u ?g\b", r"\bkug\b", r"\bkueg\b",
