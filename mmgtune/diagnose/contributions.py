@@ -15,6 +15,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..backends import STATES
+from ..effects import SensorEffect
 from ..fitting.least_squares import fit_offsets
 from ..trial import Trial
 from .gain import INDICES, LOST, measured
@@ -55,9 +56,10 @@ DOUBTFUL = 0.02
 """Share of the fall of chi-squared, and of the error removed on held-out trials, up to which a cause that these trials
 do not tell from others is a trace: errors of coefficients that nobody tunes are as large, and look like several."""
 
-LEFT, OF_REST = 0.2, 0.9
+LEFT, OF_REST, BESIDE_SENSORS = 0.2, 0.9, 0.5
 """Error beyond noise, as a share of it, that others must leave, and the share of that which a cause with one value for
-all must remove, for it to be no matter of their form: what a form leaves has no such shape."""
+all must remove, for it to be no matter of their form: what a form leaves has no such shape; beside causes in sensors
+alone, which have no form that could be a little off: a log that shows 1.1 times the speed does so exactly."""
 
 SHOWS, OWN = 0.2, 100.0
 """Error in a channel on held-out trials, over the variance of its noise, and share of what all causes remove there,
@@ -308,7 +310,9 @@ def takes_the_rest(bench: Workbench, found: Found, cause: Hypothesis, fewer: Poi
     rest = fewer.chi2 - n
     if cause.by or cause.effect.one_of_many or rest < LEFT * n:
         return False
-    return fewer.chi2 - found.final.chi2 >= OF_REST * rest
+    others = [one for one in found.causes if one is not cause]
+    exact = bool(others) and all(isinstance(one.effect, SensorEffect) for one in others)
+    return fewer.chi2 - found.final.chi2 >= (BESIDE_SENSORS if exact else OF_REST) * rest
 
 
 def squares(off: FloatArray) -> FloatArray:

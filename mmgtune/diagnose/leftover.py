@@ -32,6 +32,9 @@ from .workbench import Point, Workbench, least_noise
 NOTICED = 0.05
 """Variance beyond the white noise of the sensors, as a share of it, that is worth speaking of."""
 
+CLEARLY = 0.15
+"""The same from which one sensor may be said to err alone: a form that is a little off shows first in the best log."""
+
 NEARLY_ALL, MOST = 0.95, 0.75
 """Share of what all channels have beyond their noise from which it is of one sensor alone; where it is noticed in no
 other channel."""
@@ -131,7 +134,8 @@ class Leftover(Brief):
         whole = sum(max(excess, 0.0) for excess in left.values())
         for own, sensor in SENSORS.items():
             there = sum(max(left.get(name, 0.0), 0.0) for name in own)
-            if beyond.intersection(own) and there > (MOST if beyond.issubset(own) else NEARLY_ALL) * whole:
+            clear = any(left.get(name, 0.0) > CLEARLY for name in own)
+            if clear and there > (MOST if beyond.issubset(own) else NEARLY_ALL) * whole:
                 return sensor
         return ""
 

@@ -32,6 +32,7 @@ class Diagnosis(Answer):
     whereabouts  where the error lives, where nothing explains it; None else
     contradicted what the logs say against each other, in a sentence; told first where the answer is unexplained
     doubted      the sum of causes that the one named was found in, where that is not believed; None else
+    leading      the first of the causes, where these are not believed together and it removes most alone; None else
     together  what was found without the trials kept for testing, where these had to be looked at too; None else
     choice    windows of voyages that were looked at, None for trials; differing: what differs between the voyages
     more      whether much is left beside as many causes as are believed together
@@ -166,6 +167,7 @@ class Diagnosis(Answer):
                 "best_known": [cause.to_dict() for cause in self.causes]
                 if self.verdict in ("unexplained", "interrupted")
                 else [],
+                "leading": self.leading.to_dict() if self.leading else None,
             },
             "whereabouts": self.whereabouts.to_dict() if self.whereabouts else None,
             "doubted": self.doubted.to_dict() if self.doubted else None,

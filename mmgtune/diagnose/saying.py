@@ -102,7 +102,7 @@ def _of_the_unknown(answer: Answer, where: str) -> str:
         return (
             f"Something is wrong that this program cannot name. The best partial explanation, {summed}, removes "
             f"{_explained(answer)} of the error it was found on, but {answer.unclear}: it stands for "
-            "something else, or for more than these trials can tell apart."
+            f"something else, or for more than these trials can tell apart.{_leading(answer)}"
         )
     if answer.tells_a_part and not answer.leftover.noticed:
         them = "it was" if len(answer.causes) == 1 else "they were"
@@ -134,6 +134,15 @@ def _of_the_unknown(answer: Answer, where: str) -> str:
     )
     offsets = "".join(f" {in_words(*one)}." for one in answer.leftover.offsets.items())
     return f"Something is wrong that this program does not know{'.' if answer.tells_a_part else ':'} {told}{offsets}"
+
+
+def _leading(answer: Answer) -> str:
+    """How large the first of causes that are not believed together would be, where it is most of it."""
+    if answer.leading is None:
+        return ""
+    cause, share = answer.leading.cause, min(answer.leading.explained, answer.leading.held_out)
+    words = cause.sentence
+    return f" Most of it, {_percent(share)}, {cause.tag} removes alone; it would be so: {words[0].lower()}{words[1:]}."
 
 
 def _of_the_named(answer: Answer) -> str:

@@ -71,6 +71,10 @@ A_TENTH = 0.1
 BESIDE = 0.02
 """Variance beyond noise, as a share of it, from which a sum of causes leaves more than noise."""
 
+LEADS = 0.8
+"""Share of the error that the first cause of a sum must remove alone, where nothing was fitted too, for its size to be
+told though the sum is not believed."""
+
 FAINT = 0.1
 """Fall of chi-squared per residual that a sum of causes must bring: of less, sums that stand for another cause bring as
 much."""
@@ -103,6 +107,33 @@ class Doubted:
 
 
 @dataclass(frozen=True, eq=False)
+class Leading:
+    """The first of causes that are not believed together, where it alone removes most of the error.
+
+    explained  share of the error that it was found on; held_out: of that where nothing was fitted
+    """
+
+    cause: Cause
+    explained: float
+    held_out: float
+
+    @classmethod
+    def of(cls, whole: Answer, first: Answer) -> Leading | None:
+        """Of the answer that has all, which says how large it is, and that with the first alone, which says how much it
+        does; None where that is little, or its size is not told."""
+        explained, held_out = first.explained_share, first.gain.share_removed[0]
+        if not first.causes or min(explained, held_out) < LEADS:
+            return None
+        cause = next(one for one in whole.causes if one.tag == first.causes[0].tag)
+        return cls(cause, explained, held_out) if cause.sized and not cause.at_ends else None
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        shares = {"share_explained": self.explained, "share_held_out": self.held_out}
+        return {**self.cause.to_dict(), **shares}
+
+
+@dataclass(frozen=True, eq=False)
 class Answer(Plotted):
     """All that a diagnosis found, with what is to be said of it; ``Diagnosis`` says what the fields are."""
 
@@ -130,6 +161,7 @@ class Answer(Plotted):
     interrupted: bool = False
     whereabouts: Whereabouts | None = None
     doubted: Doubted | None = None
+    leading: Leading | None = None
     together: Together | None = None
     moved: tuple[Retuned, ...] = ()
     instead: Instead | None = None
@@ -195,7 +227,7 @@ class Answer(Plotted):
             return not_told if self.gain.share_removed[0] < TOLD else ""
         if self.more or len(brought) >= TOO_MANY:
             return f"it takes {'more than ' if self.more else ''}{len(brought)} terms"
-        if self.chi2[0] - self.chi2[1] < FAINT:
+        if self._faint:
             return "all that they remove is little beside noise, and other sums would"
         if self.leftover.unknown > BESIDE and not self.explains_all:
             return "what they leave is more than noise"
@@ -254,8 +286,15 @@ class Answer(Plotted):
 
     @property
     def is_chance(self) -> bool:
-        """Whether a single cause is not believed whose size may be none, and that removes little."""
-        return len(self.contributions) == 1 and not self.causes[0].sized and bool(self.unclear)
+        """Whether a single cause is not believed whose size may be none, and that removes little, or a sum of causes
+        that removes little beside noise."""
+        nothing = not self.causes[0].sized if len(self.contributions) == 1 else self._faint
+        return nothing and bool(self.unclear)
+
+    @property
+    def _faint(self) -> bool:
+        """Whether causes bring so little that sums which stand for another cause bring as much."""
+        return self.chi2[0] - self.chi2[1] < FAINT
 
     @property
     def of_a_sensor(self) -> bool:

@@ -22,6 +22,7 @@ from mmgtune.diagnose.noise import ChannelNoise
 from mmgtune.diagnose.record import ANSWERS, kind_of, record_of
 from mmgtune.diagnose.search import Found
 from mmgtune.diagnose.unseen import Unseen
+from mmgtune.diagnose.verdict import Leading
 from mmgtune.diagnose.workbench import Point, make_workbench
 from mmgtune.effects import Visited, effects, find_effect
 from mmgtune.profile import load_profile, tuned
@@ -95,10 +96,31 @@ def test_a_cause_that_takes_all_that_others_leave_is_no_matter_of_their_form():
 def test_what_takes_the_rest(rest, taken, by, whole):
     n = 1000
     fewer = SimpleNamespace(chi2=n * (1.0 + rest))
-    found = SimpleNamespace(final=SimpleNamespace(chi2=fewer.chi2 - taken * n * rest))
     cause = SimpleNamespace(by=by, effect=SimpleNamespace(one_of_many=False))
+    current = SimpleNamespace(by="", effect=find_effect("current"))
+    found = SimpleNamespace(final=SimpleNamespace(chi2=fewer.chi2 - taken * n * rest), causes=[current, cause])
     bench = SimpleNamespace(problem=SimpleNamespace(n_residuals=n))
     assert takes_the_rest(bench, found, cause, fewer) == whole
+
+
+@pytest.mark.parametrize(
+    ("beside", "taken", "whole"),
+    [
+        (["speed-scale"], 0.7, True),
+        (["speed-scale", "gyro-bias"], 0.7, True),
+        (["speed-scale"], 0.4, False),
+        (["speed-scale", "current"], 0.7, False),
+        ([], 0.7, False),
+    ],
+)
+def test_beside_sensors_alone_half_of_the_rest_is_no_matter_of_their_form(beside, taken, whole):
+    """A play of 1.2 deg was a trace, a 170th of an error that was that of the speed log, and let the heading err by
+    twice its noise."""
+    fewer, n = SimpleNamespace(chi2=1300.0), 1000
+    play = SimpleNamespace(by="", effect=find_effect("backlash"))
+    causes = [*(SimpleNamespace(by="", effect=find_effect(tag)) for tag in beside), play]
+    found = SimpleNamespace(final=SimpleNamespace(chi2=1300.0 - taken * 300.0), causes=causes)
+    assert takes_the_rest(SimpleNamespace(problem=SimpleNamespace(n_residuals=n)), found, play, fewer) == whole
 
 
 @pytest.mark.parametrize(
@@ -396,9 +418,48 @@ GROUP = (("a", "b"),)
     ],
 )
 def test_a_sum_is_believed_where_each_of_it_is_clear(one, said):
+    one._faint = Diagnosis._faint.fget(one)
     found = Diagnosis.unclear.fget(one)
     assert (found == "") == (said == "")
     assert said in found
+
+
+@pytest.mark.parametrize(
+    ("one", "chance"),
+    [
+        (sum_of(CLEAR, sized=False, removed=0.2), True),
+        (sum_of(CLEAR, removed=0.2), False),
+        (sum_of(CLEAR, CLEAR, before=1.09), True),
+        (sum_of(CLEAR, CLEAR, left=0.03, before=1.12), False),
+    ],
+)
+def test_what_is_little_beside_noise_may_be_chance(one, chance):
+    """Beside noise alone two causes that were not believed made it an error of less than none that nobody knows."""
+    one._faint = Diagnosis._faint.fget(one)
+    one.unclear = Diagnosis.unclear.fget(one)
+    assert Diagnosis.is_chance.fget(one) == chance
+
+
+@pytest.mark.parametrize(
+    ("explained", "held_out", "sized", "leads"),
+    [(0.97, 0.9, True, True), (0.7, 0.9, True, False), (0.97, 0.5, True, False), (0.97, 0.9, False, False)],
+)
+def test_of_a_sum_that_is_not_believed_the_first_is_told_with_its_size_where_it_is_most(
+    explained, held_out, sized, leads
+):
+    """An antenna 110 m aft, beside a form of the hull that nobody knows, was named without its size."""
+    cause = SimpleNamespace(sized=sized, at_ends=False, tag="antenna", sentence="The antenna stood 110 m aft")
+    gain = SimpleNamespace(share_removed=(held_out, 0.0, 1.0))
+    another = SimpleNamespace(sized=True, at_ends=False, tag="hull-term")
+    first = SimpleNamespace(causes=(SimpleNamespace(tag="antenna"),), explained_share=explained, gain=gain)
+    leading = Leading.of(SimpleNamespace(causes=(another, cause)), first)
+    assert (leading is not None) == leads
+    said = saying._leading(SimpleNamespace(leading=leading))
+    assert said == (
+        f" Most of it, {100 * held_out:.0f} %, antenna removes alone; it would be so: the antenna stood 110 m aft."
+        if leads
+        else ""
+    )
 
 
 @pytest.mark.parametrize(
@@ -412,6 +473,7 @@ def test_a_sum_is_believed_where_each_of_it_is_clear(one, said):
     ],
 )
 def test_what_is_beyond_all_takes_three_terms_that_are_not_believed(one, beyond):
+    one._faint = Diagnosis._faint.fget(one)
     one.unclear = Diagnosis.unclear.fget(one)
     assert Diagnosis.is_beyond_all.fget(one) == beyond
 

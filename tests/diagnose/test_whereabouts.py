@@ -186,6 +186,7 @@ def test_an_offset_of_a_log_is_one_number_in_every_run(by_run, found):
         ({"x": 0.20, "y": 0.12, "psi": 0.01, "u": 0.02, "v_m": 0.04, "r": 0.02}, "position"),
         ({"x": 5.2, "y": 10.3, "psi": 5.1, "u": 0.9, "v_m": 0.5, "r": 0.5}, ""),
         ({"x": 0.06, "y": 0.04, "psi": 0.04, "u": 0.04, "v_m": 0.04, "r": 0.04}, ""),
+        ({"x": 0.056, "y": -0.03, "psi": -0.016, "u": 0.011, "v_m": -0.05, "r": 0.007}, ""),
     ],
     ids=[
         "a log",
@@ -197,6 +198,7 @@ def test_an_offset_of_a_log_is_one_number_in_every_run(by_run, found):
         "an antenna that heels",
         "a propeller that ventilates",
         "hardly anything anywhere",
+        "a form a little off, in the best log first",
     ],
 )
 def test_what_is_left_in_one_log_alone_is_of_its_sensor_and_of_no_force(channels, alone):
