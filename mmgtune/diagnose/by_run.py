@@ -14,6 +14,7 @@ from ..arrays import FloatArray
 from ..documents import finite
 from ..effects import Effect, Visited
 from ..fitting.box import AT
+from ..phrases import listed
 from ..trial import Trial, visited_by
 from .intervals import NORMAL, Estimate
 from .runs import IN_WORDS, groups_of, name_of
@@ -197,7 +198,8 @@ class ByRun:
             text += f"{size} in {name_of(self.groups[shown[0]])}, and none for certain in the other {others}"
         else:
             text += range_in_words(min(sizes), max(sizes), self.unit) + self._of_what
-            text += f", and none for certain in {others} of {len(self.groups)}" if shown and others else ""
+            where = [name_of(self.groups[k]) for k in shown]
+            text += f" in {listed(where, 4)}, and none for certain in the other {others}" if shown and others else ""
         return text + self._within() + self._doubted
 
     @property

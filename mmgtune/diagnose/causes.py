@@ -76,6 +76,15 @@ class Cause:
         """Whether all its sizes are at the ends of their ranges: another cause may be what would take them further."""
         return self.runs is None and bool(self._sizes) and all(one.at_end for one in self._sizes.values())
 
+    @property
+    def form_at_end(self) -> list[str]:
+        """Parts of its form that are at the end of their range, in words."""
+        if self.effect is None:
+            return []
+        ended = {full.rpartition(".")[2]: one.value for full, one in self.estimates.items() if one.at_end}
+        fields = self.effect.parameters
+        return [f"{fields[name].label}, {ended[name]:.3g}" for name in self.effect.form if name in ended]
+
     def to_dict(self) -> dict[str, Any]:
         """For JSON; values in the unit named, interval ends null where infinite."""
         fields = self.effect.parameters if self.effect else {}

@@ -12,6 +12,7 @@ from ..backends import STATES
 from ..fitting.one_sided import coverage_notes, followers
 from ..hooks import Hooks
 from ..options import DiagnoseOptions
+from ..phrases import listed
 from ..profile import ShipProfile
 from ..trial import Coverage, Trial
 from .by_run import ByRun
@@ -125,10 +126,12 @@ class Judge:
         left = leftover(bench, found.final) if found.causes or found.finer_step else self.before
         theta, alone = (_targets_of(bench, point) for point in (found.final, found.base))
         coverage = Coverage.of(bench.trials, self.profile.L_pp)
+        causes = _causes(bench, found, sizes, self.unseen.test)
+        notes = (*coverage_notes(bench.model, bench.targets, coverage), *_too_small(bench, found), *_deformed(causes))
         return Diagnosis(
             profile=self.profile,
             options=self.options,
-            causes=tuple(_causes(bench, found, sizes, self.unseen.test)),
+            causes=tuple(causes),
             traces=tuple(_trace(bench, one) for one in self.traces),
             contributions=tuple((h.tag, one) for h, one in zip(found.causes, brought, strict=True)),
             groups=(),
@@ -141,7 +144,7 @@ class Judge:
             theta=theta,
             retuned=alone,
             coverage=coverage,
-            warnings=(*coverage_notes(bench.model, bench.targets, coverage), *_too_small(bench, found)),
+            warnings=notes,
             noise=_noise(bench),
             chi2=(
                 _first(found).chi2 / max(1, bench.problem.n_residuals),
@@ -204,6 +207,16 @@ def _too_small(bench: Workbench, found: Found) -> list[str]:
     tags = dict.fromkeys(refit.hypothesis.tag for refit in (last.refits[0], *last.rivals))
     told = f"Something shows beyond chance that is too small to be told: {' or '.join(tags)}."
     return [f"{told} Of the first of them it would be less than a {1.0 / WORTH:.0f}th of what is worth speaking of."]
+
+
+def _deformed(causes: Sequence[Cause]) -> list[str]:
+    """What is said of causes whose form ended at the end of what is thought possible."""
+    return [
+        f"Of {cause.tag} a part of its form ended at the end of its range ({listed(ended)}): its force is none of "
+        "those that are known, and its size may be off by more than is said."
+        for cause in causes
+        if (ended := cause.form_at_end)
+    ]
 
 
 def _targets_of(bench: Workbench, point: Point) -> dict[str, float]:

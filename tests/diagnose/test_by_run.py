@@ -293,9 +293,15 @@ def test_a_wind_that_is_nearly_the_same_in_each_run_is_said_to_be():
 @pytest.mark.parametrize(("stderr", "apart"), [(0.03, 0.02), (0.03, None), (0.03, 0.05)])
 def test_values_known_no_better_beside_each_other_are_told_alone(stderr, apart):
     found = of_loading((0.99, 0.81, 0.93), stderr, apart)
-    assert "none for certain in 2 of 3" in found.sentence or "in the other 2" in found.sentence
+    assert ", and none for certain in the other 2" in found.sentence
     assert len(found.table()[0]) == 2
     assert found.to_dict()["values"][0]["from_mean"] is None
+
+
+def test_runs_in_which_it_shows_are_named():
+    """A compass that was off on the second of two days was "none for certain in 3 of 6"."""
+    found = of_loading((0.81, 0.99, 0.8, 1.0), 0.03, None)
+    assert found.sentence.endswith(": 0.8 to 0.81 in run0 and run2, and none for certain in the other 2")
 
 
 def test_errors_beside_the_mean_are_free_of_what_all_have_in_common():

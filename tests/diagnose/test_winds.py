@@ -7,7 +7,10 @@ import pytest
 
 from mmgtune.diagnose import DiagnoseOptions, beliefs, winds
 from mmgtune.diagnose.base_fit import base_fit
+from mmgtune.diagnose.causes import Cause
 from mmgtune.diagnose.inputs import DRAWS, changes
+from mmgtune.diagnose.intervals import Estimate
+from mmgtune.diagnose.judging import _deformed
 from mmgtune.diagnose.leftover import leftover
 from mmgtune.diagnose.linear import linearise
 from mmgtune.diagnose.winds import ALONG, other_winds
@@ -139,3 +142,15 @@ def test_what_is_believed_beforehand_is_told():
     assert "12 %" in told["gusts"]
     assert len(told) == 1 + len(wind.form) + 1
     assert beliefs.in_words(0.0, [wind]) == winds.in_words([lag]) == []
+
+
+def test_a_form_at_the_end_of_its_range_is_told():
+    """A wind of 8 m/s on another hull was 6.2 +- 0.7 m/s, with two and a half times the force across."""
+    wind = find_effect("wind")
+    sizes = {"speed": (6.2, 5.5, 6.9), "across": (2.5, 2.1, 2.5), "turning": (1.4, 0.8, 2.0)}
+    estimated = {f"effects.wind.{name}": Estimate(name, *values, 0.1) for name, values in sizes.items()}
+    (said,) = _deformed([Cause("wind", wind, estimated, 0.0, None), Cause("integration-step", None, {}, 0.0, None)])
+    assert "Of wind a part of its form ended at the end of its range (factor on the force across" in said
+    assert "2.5)" in said
+    inside = {name: one for name, one in estimated.items() if not name.endswith("across")}
+    assert not _deformed([Cause("wind", wind, inside, 0.0, None)])
