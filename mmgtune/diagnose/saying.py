@@ -9,6 +9,7 @@ from .leftover import change_in_words, in_words
 from .retuned import besides, far_off, weighed
 from .retuned import in_words as moved_in_words
 from .verdict import TOLD, Answer
+from .wording import percent
 
 IMITATED = 0.5
 """Share of the error removed below which it is said that a hull a little off is part of what it is counted from."""
@@ -20,7 +21,7 @@ LARGE = 10.0
 def sentence(answer: Answer) -> str:
     """What is the same in all trials, what differs between voyages, and what all trials together say."""
     told = [
-        f"{one.sentence} That accounts for {_percent(one.explained)} of the error that one value for all leaves."
+        f"{one.sentence} That accounts for {percent(one.explained)} of the error that one value for all leaves."
         for one in answer.between
     ]
     if answer.verdict == "found" and not answer.causes:
@@ -99,15 +100,16 @@ def _of_the_unknown(answer: Answer, where: str) -> str:
     tags = " + ".join(dict.fromkeys(cause.tag for cause in answer.causes))
     if answer.unclear and answer.tells_a_part:
         summed = " + ".join(dict.fromkeys(tag for tag, _ in answer.contributions))
+        leading = f" {answer.leading.sentence}" if answer.leading else ""
         return (
             f"Something is wrong that this program cannot name. The best partial explanation, {summed}, removes "
             f"{_explained(answer)} of the error it was found on, but {answer.unclear}: it stands for "
-            f"something else, or for more than these trials can tell apart.{_leading(answer)}"
+            f"something else, or for more than these trials can tell apart.{leading}"
         )
     if answer.tells_a_part and not answer.leftover.noticed:
         them = "it was" if len(answer.causes) == 1 else "they were"
         share = answer.gain.share_removed[0]
-        held_out = f"leaves {_percent(1.0 - share)} of it" if share > 0.0 else "errs more"
+        held_out = f"leaves {percent(1.0 - share)} of it" if share > 0.0 else "errs more"
         return (
             f"Something is wrong that this program cannot name. The best of what is known, {tags}, would "
             f"remove {_explained(answer)} of the error {them} found on, but the model with it {held_out} {where}."
@@ -136,15 +138,6 @@ def _of_the_unknown(answer: Answer, where: str) -> str:
     return f"Something is wrong that this program does not know{'.' if answer.tells_a_part else ':'} {told}{offsets}"
 
 
-def _leading(answer: Answer) -> str:
-    """How large the first of causes that are not believed together would be, where it is most of it."""
-    if answer.leading is None:
-        return ""
-    cause, share = answer.leading.cause, min(answer.leading.explained, answer.leading.held_out)
-    words = cause.sentence
-    return f" Most of it, {_percent(share)}, {cause.tag} removes alone; it would be so: {words[0].lower()}{words[1:]}."
-
-
 def _of_the_named(answer: Answer) -> str:
     """The causes, those last of which the trials cannot tell which it is."""
     unsure = {tag for group in answer.groups for tag in group}
@@ -161,7 +154,7 @@ def _of_the_named(answer: Answer) -> str:
 
 def _explained(answer: Answer) -> str:
     """How much of the error the causes explain, in words: what is told by less has a share below zero."""
-    return _percent(answer.explained_share) if answer.explained_share > 0.0 else "none"
+    return percent(answer.explained_share) if answer.explained_share > 0.0 else "none"
 
 
 def _gained(answer: Answer, them: str, where: str) -> str:
@@ -182,14 +175,9 @@ def _gained(answer: Answer, them: str, where: str) -> str:
     imitated = share < IMITATED and answer.options.leeway > 0.0 and answer.choice is None
     hull = f", counted from a model whose hull may be {100.0 * answer.options.leeway:.3g} % off" if imitated else ""
     few = ", and runs are too few to be sure of that" if low < TOLD <= share else ""
-    return f"Adding {them} removes {_percent(share)} of the error {where}{hull}{few}."
+    return f"Adding {them} removes {percent(share)} of the error {where}{hull}{few}."
 
 
 def _of_noise(variance: float) -> str:
     """A variance beside that of the noise."""
     return f"an error with {100.0 * variance:.0f} % of the variance of the noise"
-
-
-def _percent(share: float) -> str:
-    """A share for a sentence; never quite all."""
-    return f"{100.0 * min(share, 0.999):.{0 if share < 0.995 else 1}f} %"

@@ -27,6 +27,7 @@ from .separate import Suggestion
 from .together import Together
 from .voyages import Choice
 from .whereabouts import Whereabouts
+from .wording import percent
 
 VERDICTS = ("none", "found", "not-separable", "unexplained", "interrupted")
 """Codes; people read ``Diagnosis.sentence``."""
@@ -127,10 +128,16 @@ class Leading:
         cause = next(one for one in whole.causes if one.tag == first.causes[0].tag)
         return cls(cause, explained, held_out) if cause.sized and not cause.at_ends else None
 
+    @property
+    def sentence(self) -> str:
+        """How large it would be."""
+        share, words = percent(min(self.explained, self.held_out)), self.cause.sentence
+        return f"Most of it, {share}, would be {self.cause.tag}: {words[0].lower()}{words[1:]}."
+
     def to_dict(self) -> dict[str, Any]:
         """For JSON."""
         shares = {"share_explained": self.explained, "share_held_out": self.held_out}
-        return {**self.cause.to_dict(), **shares}
+        return {**self.cause.to_dict(), **shares, "sentence": self.sentence}
 
 
 @dataclass(frozen=True, eq=False)

@@ -107,12 +107,15 @@ def build(record: DiagnosisRecord) -> Page:
 
 
 def _headline(data: Mapping[str, Any]) -> tuple[str, str]:
-    """The answer; where nothing can be named that alone, and what comes closest to it for later."""
+    """The answer; where nothing can be named that alone, and what comes closest to it for later, but for one cause that
+    is most of it."""
     sentence = clean(data["sentence"])
     if data["verdict"] != "unexplained":
         return sentence, ""
     first, _, rest = sentence.partition(". ")
-    return (f"{first}." if rest else first), rest
+    leading = data["unexplained"].get("leading")
+    most = clean(leading["sentence"]) if leading else ""
+    return " ".join(filter(None, (f"{first}." if rest else first, most))), rest.removesuffix(f" {most}")
 
 
 def _held_out(gain: Mapping[str, Any]) -> str:
