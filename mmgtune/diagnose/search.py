@@ -209,7 +209,8 @@ def look(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis], first
     fitted = Refitting(bench, point, linear, known, given).best(ranked, quick=False)
     refits = believable_first(fitted, bench.options.level)
     if refits and refits[0] is not fitted[0] and fitted[0].by_chance(bench.options.level):
-        refits = refits if _stands_beside(bench, refits[0], fitted[0]) else fitted
+        told = _in_a_form_told(refits, fitted[0], bench.options.level)
+        refits = refits if told or _stands_beside(bench, refits[0], fitted[0]) else fitted
     finer_gain = None
     if first:
         tolerance = unnoticed(bench, point.chi2)
@@ -224,6 +225,13 @@ def look(bench: Workbench, point: Point, hypotheses: Sequence[Hypothesis], first
     rivals = rivals_among(refits) if refits else []
     accepted, reason = decide(bench, refits, rivals)
     return Step(point, linear, ranked, refits, rivals, accepted, reason, finer_gain, evenly)
+
+
+def _in_a_form_told(refits: Sequence[Refit], more: Refit, level: float) -> bool:
+    """Whether what explains more, though by chance perhaps, is another form of the best that is believed, or of what
+    does nearly as well: two rates of a rudder where one is told."""
+    forms = [one for one in refits if one.hypothesis.effect is more.hypothesis.effect and not one.by_chance(level)]
+    return any(one is refits[0] or not refits[0].beats(one) for one in forms)
 
 
 def _stands_beside(bench: Workbench, one: Refit, more: Refit) -> bool:

@@ -94,3 +94,27 @@ def test_one_rate_of_the_rudder_stands_for_two_that_are_alike(monkeypatch, chi2,
     monkeypatch.setattr(search, "_with", lambda *_: there)
     answer = search._in_plainer_form(SimpleNamespace(price=9.0), found, two)
     assert answer == ((one, there) if plainer else None)
+
+
+@pytest.mark.parametrize(
+    ("forms", "told"),
+    [
+        ([("steering-lag", 1800.0, 65.0, 3e-6)], True),
+        ([("clock-offset", 1600.0, 55.0, 1e-6), ("steering-lag", 1800.0, 65.0, 3e-6)], True),
+        ([("clock-offset", 1600.0, 55.0, 1e-6), ("steering-lag", 1800.0, 600.0, 0.4)], False),
+        ([("clock-offset", 5000.0, 55.0, 1e-30), ("steering-lag", 1800.0, 65.0, 3e-6)], False),
+    ],
+    ids=["itself", "a rival", "by chance as well", "far from as good"],
+)
+def test_what_chance_may_bring_is_no_doubt_where_a_plainer_form_of_it_is_told(forms, told):
+    """Two rates of a gear explained more, by chance perhaps, than its one rate or a clock, and nothing was named."""
+    effects_of = {tag: SimpleNamespace(akin=()) for tag in ("steering-lag", "clock-offset")}
+
+    def of(tag, *known):
+        one = fitted(tag, *known)
+        one.hypothesis.effect = effects_of[tag]
+        return one
+
+    best, *others = [of(*form) for form in forms]
+    two_rates = of("steering-lag", 3300.0, 290.0, 0.1)
+    assert search._in_a_form_told([best, two_rates, *others], two_rates, 0.01) == told
