@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray
-from .thousands import in_thousands, undivided
+from .thousands import divider, in_thousands, undivided
 
 
 def holds_numbers(column: Any) -> bool:
@@ -25,9 +25,8 @@ def numbers_in(texts: Any, decimal: str, thousands: str | None = None) -> FloatA
     """
     import pandas as pd
 
-    other = "." if decimal == "," else ","
     divided = in_thousands(texts, decimal) if thousands != "none" else False
-    bare = undivided(texts, decimal) if divided or (divided is None and thousands == other) else texts
+    bare = undivided(texts, decimal) if divided or (divided is None and thousands == divider(decimal)) else texts
     if decimal == ",":
         bare = bare.str.replace(",", ".", regex=False)
     return np.asarray(pd.to_numeric(bare, errors="coerce").to_numpy(dtype=np.float64, na_value=np.nan))

@@ -13,13 +13,18 @@ NEAR, FEWEST = 100.0, 3
 """Numbers without a mark, from so large on and so many different ones, beside which those of four digits have one."""
 
 
+def divider(decimal: str) -> str:
+    """The mark that may divide thousands beside a decimal sign."""
+    return "." if decimal == "," else ","
+
+
 def in_thousands(texts: Any, decimal: str) -> bool | None:
     """Whether the mark that is not the decimal sign divides the thousands of a pandas column of texts.
 
     None where each of its cells can be read either way, such as 1.234 where the decimal sign is a comma: programs that
     print both signs exist.  False where no cell has the mark.
     """
-    mark = "." if decimal == "," else ","
+    mark = divider(decimal)
     marked = texts[texts.str.contains(mark, regex=False).fillna(False)]
     if not len(marked):
         return False
@@ -44,7 +49,7 @@ def in_thousands(texts: Any, decimal: str) -> bool | None:
 
 def undivided(texts: Any, decimal: str) -> Any:
     """A pandas column of texts without the marks that divide thousands; NA where a mark stands elsewhere."""
-    mark = "." if decimal == "," else ","
+    mark = divider(decimal)
     right = rf"[-+]?\d{{1,3}}({re.escape(mark)}\d{{3}})+({re.escape(decimal)}\d*)?"
     odd = texts.str.contains(mark, regex=False).fillna(False) & ~texts.str.fullmatch(right).fillna(False)
     return texts.mask(odd).str.replace(mark, "", regex=False)
@@ -60,7 +65,7 @@ def either_way(text: str, place: str) -> Problem:
 
 def first_marked(texts: Any, decimal: str) -> int:
     """Position of the first cell of a pandas column of texts that has a mark and can be read either way."""
-    mark = "." if decimal == "," else ","
+    mark = divider(decimal)
     return int(texts.str.fullmatch(rf"[-+]?\d{{1,3}}{re.escape(mark)}\d{{3}}").fillna(False).to_numpy().argmax())
 
 

@@ -43,11 +43,7 @@ class TimeParts:
         parts = {unit: _numbers(one, self.decimal) for unit, one in columns.items()}
         for unit, odd in not_parts(parts).items():
             self._hold(unit, parts[unit], odd)
-        t = together(parts)
-        first = next(iter(parts))
-        if first == "h":
-            return self.periods.over_midnight(t)
-        return self.periods.over_the_hour(t) if first == "min" else t
+        return going_on(parts, self.periods)
 
     def _hold(self, unit: str, values: FloatArray, odd: BoolArray) -> None:
         place = f"{self.path}, column '{self.names[unit]}'"
@@ -88,6 +84,14 @@ def together(parts: Mapping[str, FloatArray]) -> FloatArray:
     seconds = units.factors("s")
     odd = not_parts(parts)
     return np.asarray(sum(np.where(odd[unit], np.nan, values) * seconds[unit] for unit, values in parts.items()))
+
+
+def going_on(parts: Mapping[str, FloatArray], periods: Periods) -> FloatArray:
+    """The same without the falls at midnight, or after the hour where parts begin with minutes."""
+    t, first = together(parts), next(iter(parts))
+    if first == "h":
+        return periods.over_midnight(t)
+    return periods.over_the_hour(t) if first == "min" else t
 
 
 def in_order(given: Sequence[str]) -> bool:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ..periods import Periods
-from ..time_parts import not_parts, together
+from ..time_parts import going_on, not_parts
 from .sampling import Sample
 from .words import DATE, TIME, plain
 
@@ -50,8 +50,7 @@ def time_parts(sample: Sample, said: Sequence[str], units_said: Sequence[str]) -
 
 def seconds_of(parts: Mapping[str, int], sample: Sample) -> FloatArray:
     """The time (n_rows,) [s] that columns hold a part of each."""
-    t = together({unit: sample.numbers[k] for unit, k in parts.items()})
-    return Periods().over_midnight(t) if "h" in parts else Periods().over_the_hour(t)
+    return going_on({unit: sample.numbers[k] for unit, k in parts.items()}, Periods())
 
 
 def _is_time(parts: Mapping[str, int], sample: Sample) -> bool:

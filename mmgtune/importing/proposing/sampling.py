@@ -134,7 +134,7 @@ def _made(path: Path, layout: dict[str, Any], names: Sequence[str], units: Seque
     if layout["format"] != "csv" and any(_has_commas(one) for one in texts):
         layout["decimal"] = ","
     decimal = layout.get("decimal", ".")
-    if any(_divides(one, ",") for one in texts) and (decimal == "," or not any(_has_points(one) for one in texts)):
+    if (decimal == "," or not any(_has_points(one) for one in texts)) and any(_divides(one, ",") for one in texts):
         layout["decimal"], layout["thousands"] = (decimal := ","), "."
     units = list(units)
     numbers, written, with_side = [], set(), set()
