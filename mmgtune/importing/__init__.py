@@ -6,8 +6,10 @@ forms           what kind of file a log is
 table           columns of a log; rows: those a map names
 text            logs read as tables; parquet_log, workbook, matlab; cells: of what is in memory
 clock           time put right; stopwatch, dates, degrees, numerals, thousands, sides: as people write them
+seldom          columns that most rows of a merged log have no value of
 periods         what begins anew at midnight
-time_parts      hours, minutes and seconds in columns of their own; position_parts: degrees and minutes
+time_parts      hours, minutes and seconds in columns of their own; position_parts: degrees and minutes;
+                position_pair: latitude and longitude in one
 record          quantities in the program's units, each with its own time; nmea: reading sentences
 digits          made up for where too few are printed; yaw: the heading from its rate; cleaning: spikes
 jumps           records cut where time jumps forward

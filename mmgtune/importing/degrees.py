@@ -19,6 +19,9 @@ ANGLE = (
 _COMPACT = rf"^{_SIDE}\s*(\d{{2,3}})(\d{{2}}[.,]\d+)\s*{_SIDE}$"
 """Degrees and minutes in one, as NMEA 0183 writes them: 5206.0001N."""
 
+DDMM = "ddmm"
+"""Unit of plain numbers that hold degrees and minutes in one: 5206.0001 is 52 deg 6.0001 min."""
+
 _DASHED = rf"^{_SIDE}\s*(\d{{1,3}})\s*-\s*(\d{{1,2}}(?:[.,]\d*)?)\s*['′’]?\s*{_SIDE}$"
 """Degrees and minutes with a dash between, as people write them in lists of positions: 52-06.0001N."""
 
@@ -47,3 +50,10 @@ def degrees(texts: Any) -> FloatArray:
     size = whole + np.nan_to_num(minutes) / 60.0 + np.nan_to_num(seconds) / 3600.0
     negative = side.isin(["S", "W"]).to_numpy(dtype=bool) | (parts[1] == "-").to_numpy(dtype=bool, na_value=False)
     return np.where(right, np.where(negative, -size, size), np.nan)
+
+
+def of_ddmm(numbers: FloatArray) -> FloatArray:
+    """Degrees (n_rows,) of numbers that hold degrees and minutes in one, 5206.0001; NaN where the minutes are 60 or
+    more."""
+    whole, minutes = np.divmod(np.abs(numbers), 100.0)
+    return np.copysign(np.where(minutes < 60.0, whole + minutes / 60.0, np.nan), numbers)

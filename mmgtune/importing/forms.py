@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import zipfile
 from pathlib import Path
 
 from ..errors import LogError, Problem
@@ -13,12 +14,36 @@ from .workbook import OLD
 _WORDS = {b"PAR1": "a Parquet file", b"PK\x03\x04": "a workbook or another archive", b"MATLAB": "a MATLAB file"}
 
 
+_UNPACK = "unpack it first"
+_EXPORT = "export what the trial needs to CSV, with the program that it comes from or the library for it"
+_OTHERS = {
+    rb"\x1f\x8b": ("compressed (gzip)", _UNPACK),
+    rb"BZh[1-9]": ("compressed (bzip2)", _UNPACK),
+    rb"\xfd7zXZ": ("compressed (xz)", _UNPACK),
+    rb"\x28\xb5\x2f\xfd": ("compressed (zstd)", _UNPACK),
+    rb"7z\xbc\xaf|Rar!": ("an archive", _UNPACK),
+    rb"ARROW1|FEA1": ("an Arrow file", "write it as Parquet: pandas.read_feather(...).to_parquet(...)"),
+    rb"#ROSBAG|\x89MCAP": ("a recording of ROS", _EXPORT),
+    rb"(?:UnFin)?MDF ": ("a recording of a measuring system (MDF)", _EXPORT),
+    rb"TDSm": ("a recording of a measuring system (TDMS)", _EXPORT),
+    rb"SQLite format 3": ("a database (SQLite)", "write the table of the log as CSV"),
+    rb"%PDF": ("a document (PDF)", "ask for the numbers themselves"),
+    rb"\s*<(?:\?xml|!DOCTYPE|gpx|kml|html)": (
+        "XML, such as GPX, or a web page",
+        "write it as CSV, with heading, rudder and revolutions beside the track",
+    ),
+    rb"\s*(?:\[\s*)?\{\s*\"": ("JSON", "write it as a table: pandas.read_json(...).to_csv(..., index=False)"),
+}
+"""How files begin that are no logs which are read here: what they are, and what to do."""
+
+
 def form_of(log: Path) -> str:
     """The format of a log: one of ``mapping.FORMATS``.  Raises LogError where it cannot be opened or read here."""
     content = start_of(log)
     if content.startswith(b"PAR1"):
         return "parquet"
     if content.startswith(b"PK\x03\x04"):
+        _hold_workbook(log)
         return "xlsx"
     if content.startswith(OLD):
         why = "it is a workbook of the older kind (.xls), or one with a password"
@@ -28,7 +53,27 @@ def form_of(log: Path) -> str:
         return "mat"
     if re.match(rb"\s*[$!][A-Z]{4,},", content.removeprefix(b"\xef\xbb\xbf")):
         return "nmea"
+    for begins, (kind, fix) in _OTHERS.items():
+        if re.match(begins, content.removeprefix(b"\xef\xbb\xbf")):
+            why = "logs are text tables, Parquet, .xlsx, MATLAB files and NMEA 0183"
+            raise LogError(Problem(f"the log is {kind}", str(log), why, fix))
     return "csv"
+
+
+def _hold_workbook(log: Path) -> None:
+    """Raise LogError for an archive that is whole, and no workbook."""
+    try:
+        with zipfile.ZipFile(log) as archive:
+            names = archive.namelist()
+    except (OSError, ValueError, NotImplementedError, zipfile.BadZipFile):
+        return  # a damaged one is told where it is read
+    if "content.xml" in names:
+        fix = "save it as .xlsx or as CSV"
+        raise LogError(
+            Problem("the log is a spreadsheet in OpenDocument format", str(log), "it is .ods, not .xlsx", fix)
+        )
+    if not any(name.startswith("xl/") for name in names):
+        raise LogError(Problem("the log is a zip archive", str(log), "there is no workbook in it", _UNPACK))
 
 
 def refuse_binary(log: Path, content: bytes, log_map: LogMap) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray
-from .thousands import divider, in_thousands, undivided
+from .thousands import closed, divider, in_thousands, undivided
 
 
 def holds_numbers(column: Any) -> bool:
@@ -25,6 +25,7 @@ def numbers_in(texts: Any, decimal: str, thousands: str | None = None) -> FloatA
     """
     import pandas as pd
 
+    texts = closed(texts)
     divided = in_thousands(texts, decimal) if thousands != "none" else False
     bare = undivided(texts, decimal) if divided or (divided is None and thousands == divider(decimal)) else texts
     if decimal == ",":

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray
+from .degrees import of_ddmm
 from .numerals import holds_numbers, numbers_in
 
 PARTS = ("minutes", "seconds", "hemisphere")
@@ -45,13 +46,19 @@ def letters_in(column: Any, name: str) -> Any:
 
 
 def position_of(
-    name: str, columns: Mapping[str, Any], decimal: str, missing: Collection[str], codes: Collection[float]
+    name: str,
+    columns: Mapping[str, Any],
+    decimal: str,
+    missing: Collection[str],
+    codes: Collection[float],
+    ddmm: bool = False,
 ) -> Position:
     """Degrees of the parts.
 
     name     "latitude" or "longitude"
     columns  pandas columns (n_rows,) by what they hold, "" being the degrees
     missing  texts for no value, in small letters; codes: numbers for none
+    ddmm     whether the column of the degrees holds the minutes too, as in 5206.0001
     """
     sizes, minus, there, unread = [], [], [], []
     for part, column in columns.items():
@@ -59,6 +66,7 @@ def position_of(
         if part != "hemisphere":
             values, negative = _number(column, decimal)
             known = known & ~np.isin(values, list(codes))
+            values = of_ddmm(values) if ddmm else values
             sizes.append(values)
             minus.append(negative)
             unread.append(np.isnan(values))

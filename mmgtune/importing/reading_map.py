@@ -16,6 +16,7 @@ from ..resources import import_map_names, import_maps, must_be_name
 from ..toml_reading import TomlReader, finite, named, toml_of
 from ..trial.schema import COLUMNS, SOURCES, impossible, known_column
 from .checking_map import check
+from .degrees import DDMM
 from .mapping import ASKS, FORMATS, PROJECTIONS, TABLES, TIME_FORMATS, Cut, LogMap, Source, TimeSource
 from .position_parts import HEMISPHERES, PARTS
 from .quantities import QUANTITIES, known_quantity, meaning, quantity_of
@@ -362,7 +363,9 @@ class _Reader(TomlReader):
 
     def unit(self, name: str, where: str, table: dict[str, Any], key: str, target: str) -> str | None:
         """A unit of what has another, as the program writes it; None where none is said."""
-        found, known = canonical(table.get(key)), units.factors(target)
+        found, known = canonical(table.get(key)), dict.fromkeys(units.factors(target))
+        if name in HEMISPHERES and key == "unit":
+            known[DDMM] = None
         if found is None or found in known:
             return found
         of = f"unit of {'time' if name == 'time' else repr(name)}"
@@ -417,7 +420,7 @@ class _Reader(TomlReader):
         elif given and "column" not in table and "value" not in table:
             fix = 'write column = "..." for the degrees'
             self.problem(f"'{where}.{given[0]}' is given without the degrees", where, given[0], fix=fix)
-        elif given and canonical(table.get("unit")) not in (None, "deg"):
+        elif given and canonical(table.get("unit")) not in (None, "deg", *([DDMM] if given == ["hemisphere"] else [])):
             fix = "remove it: the column holds degrees"
             self.problem(f"'{where}.unit' is {brief(table['unit'])}, beside '{given[0]}'", where, "unit", fix=fix)
         if "seconds" in given and "minutes" not in given:

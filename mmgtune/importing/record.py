@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from .. import units
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray
 from ..errors import LogError, Problem
 from ..trial.schema import impossible
+from .degrees import DDMM
 from .digits import print_step, within_digits
 from .headers import unit_in
 from .mapping import LogMap, Source, TimeSource
 from .quantities import AGAINST, known_quantity, meaning
+from .seldom import is_seldom
 from .table import TIME, Table
 
+PAIRS = (("latitude", "longitude"), ("x", "y"), ("u", "v"))
+"""Quantities that are read together."""
 FEW = 4
 """Significant digits up to which a column is looked at as to whether they suffice."""
 FEWEST_PRINTED = 40
@@ -36,6 +41,11 @@ class Series:
     values: FloatArray
     printed: FloatArray | None = None
     coarse: FloatArray | None = None
+
+    def at(self, rows: BoolArray) -> Series:
+        """The same at some of its rows (n_samples,)."""
+        printed, coarse = (None if one is None else one[rows] for one in (self.printed, self.coarse))
+        return Series(self.t[rows], self.values[rows], printed, coarse)
 
     @property
     def step(self) -> float:
@@ -106,7 +116,7 @@ def unit_of(name: str, table: Table, source: Source | TimeSource, target: str, v
     header, stated = table.headers[name], source.unit
     known = units.factors(target)
     if in_cells := table.stated.get(name):
-        if stated not in (None, in_cells):
+        if stated not in (None, in_cells, DDMM):
             what, why = f"the map says '{header}' is in {stated}, its cells say {in_cells}", "one of them is wrong"
             raise LogError(Problem(what, place, why, "correct the map's unit or remove it"))
         if in_cells not in known:
@@ -191,7 +201,21 @@ def record_of(table: Table, log_map: LogMap, t: FloatArray, rows: slice) -> Reco
         )
     if problems:
         raise LogError(*problems)
-    return Record(table.path, series, notes=notes, coarse=coarse)
+    return Record(table.path, as_logged(series), notes=notes, coarse=coarse)
+
+
+def as_logged(series: Mapping[str, Series]) -> dict[str, Series]:
+    """Series by quantity, those logged more seldom than rows are written without the rows that have no value.
+
+    The two of a position or velocity keep the same rows.
+    """
+    found = dict(series)
+    pairs = [pair for pair in PAIRS if set(pair) <= set(found)]
+    for names in [*pairs, *((name,) for name in found if not any(name in pair for pair in pairs))]:
+        known = np.any([np.isfinite(found[name].values) for name in names], axis=0)
+        if is_seldom(known):
+            found |= {name: found[name].at(known) for name in names}
+    return found
 
 
 def few_digits(printed: FloatArray, unit: str) -> Coarse | None:

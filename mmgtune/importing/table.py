@@ -14,11 +14,12 @@ import numpy.typing as npt
 from ..arrays import FloatArray, IntArray
 from ..errors import LogError, Problem
 from ..units import is_unit
-from .degrees import degrees
+from .degrees import DDMM, degrees, of_ddmm
 from .mapping import LogMap
 from .numerals import holds_numbers, number_in, numbers_in
+from .position_pair import pair_in
+from .position_parts import HEMISPHERES, position_of
 from .position_parts import PARTS as POSITION_PARTS
-from .position_parts import position_of
 from .sides import SIGNED, midships, sided, takes_side
 from .thousands import either_way, first_marked, in_thousands
 from .with_units import WITH_UNIT, numbers_with_unit
@@ -124,6 +125,9 @@ class Cells:
         self.sided: set[str] = set()
         self.plain: dict[str, int] = {}
         self.parted: dict[str, str] = {}
+        places = [log_map.sources[name].column for name in HEMISPHERES if name in log_map.sources]
+        self.paired = HEMISPHERES if len(places) == 2 and places[0] is not None and places[0] == places[1] else {}
+        self.ddmm = {name for name, source in log_map.sources.items() if source.unit == DDMM}
 
     def of(self, name: str, values: Any, rows: IntArray) -> FloatArray:
         """Numbers (n_rows,) of a pandas column, NaN where a cell holds none."""
@@ -139,7 +143,9 @@ class Cells:
                 first = first_marked(text, self.decimal)
                 self.doubted[name] = BadCells(1, int(rows[first]), str(text.iloc[first]))
             there = ~text.str.lower().isin(self.missing).to_numpy() & text.notna().to_numpy()
-            if name in ("latitude", "longitude") and np.isnan(numbers).any():
+            if name in self.paired:
+                numbers, self.stated[name], says_more = pair_in(text)[name], "deg", True
+            elif name in HEMISPHERES and np.isnan(numbers).any():
                 written = degrees(text)
                 # One way of writing in a column: a plain number among others is of no known unit.
                 if np.isfinite(written).any():
@@ -161,15 +167,27 @@ class Cells:
                 bad.count += int(wrong.sum())
         for number in self.numbers:
             numbers = np.where(numbers == number, np.nan, numbers)
+        if name in self.ddmm and not says_more:
+            numbers, self.stated[name], says_more = self._of_ddmm(name, numbers, rows), "deg", True
         if side_said:
             self.sided.add(name)
         elif not says_more and (plain := np.flatnonzero(np.abs(numbers) > 0.0)).size:
             self.plain.setdefault(name, int(rows[plain[0]]))
         return np.asarray(numbers)
 
+    def _of_ddmm(self, name: str, numbers: FloatArray, rows: IntArray) -> FloatArray:
+        """Degrees of numbers that hold degrees and minutes in one; what is none is noted."""
+        found = of_ddmm(numbers)
+        wrong = np.flatnonzero(np.isnan(found) & np.isfinite(numbers))
+        if len(wrong):
+            bad = self.bad.setdefault(name, BadCells(0, int(rows[wrong[0]]), f"{numbers[wrong[0]]:.10g}"))
+            bad.count += len(wrong)
+            self.parted.setdefault(name, "minutes are less than 60")
+        return found
+
     def position_of(self, name: str, columns: Mapping[str, Any], rows: IntArray) -> FloatArray:
         """Degrees (n_rows,) of pandas columns that hold a part of a latitude or longitude each, by what they hold."""
-        found = position_of(name, columns, self.decimal, self.missing, self.numbers)
+        found = position_of(name, columns, self.decimal, self.missing, self.numbers, name in self.ddmm)
         self.stated[name] = "deg"
         wrong = np.any(list(found.wrong.values()), axis=0)
         if wrong.any():
@@ -207,7 +225,8 @@ class Cells:
             if name in self.parted:
                 said = f"{bad.count} of {n_rows} rows make no {name}, the first is '{bad.text}'"
                 if bad.count > 0.5 * n_rows:
-                    fix = f"correct column, {', '.join(POSITION_PARTS)} in [columns.{name}]"
+                    keys = ("unit", "hemisphere") if name in self.ddmm else POSITION_PARTS
+                    fix = f"correct column, {', '.join(keys)} in [columns.{name}]"
                     what = f"the columns of '{name}' make no {name}"
                     problems.append(Problem(what, place, f"{said}: {self.parted[name]}", fix))
                 else:

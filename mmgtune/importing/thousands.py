@@ -1,4 +1,4 @@
-"""Whether marks in numbers divide their thousands: 12.345,67 and 1,234,567.8."""
+"""Marks that divide the thousands of numbers: 12'345, 12 345, and perhaps 12.345,67 and 1,234,567.8."""
 
 from __future__ import annotations
 
@@ -11,6 +11,18 @@ ALL = 0.98
 """Share of the cells from which all are meant: a few are damaged."""
 NEAR, FEWEST = 100.0, 3
 """Numbers without a mark, from so large on and so many different ones, beside which those of four digits have one."""
+
+
+APART = "'’ \u00a0\u2009\u202f"
+"""Marks that divide thousands wherever they stand in a number: an apostrophe and blanks of all kinds."""
+CLOSED = rf"[-+]?[1-9]\d{{0,2}}(?:[{APART}]\d{{3}})+"
+"""Whole numbers so divided."""
+
+
+def closed(texts: Any) -> Any:
+    """A pandas column of texts without apostrophes and blanks that divide thousands."""
+    divided = texts.str.fullmatch(rf"{CLOSED}([.,]\d*)?").fillna(False)
+    return texts.mask(divided, texts.str.replace(f"[{APART}]", "", regex=True)) if divided.any() else texts
 
 
 def divider(decimal: str) -> str:

@@ -1,13 +1,15 @@
 """Hostile logs: each is refused with what, where, why and the fix, or its faults are marked; all logs are generated."""
 
 import re
+import zipfile
 from functools import reduce
 from operator import xor
 
 import numpy as np
+import pandas as pd
 import pytest
 
-from mmgtune.errors import OutputError
+from mmgtune.errors import LogError, OutputError
 from mmgtune.importing import import_logs, load_map, parse_map, propose_map
 from mmgtune.importing.nmea import checksum
 from mmgtune.trial import read_trial
@@ -49,6 +51,52 @@ def test_empty_binary_and_absent(log, tmp_path):
     refused(tmp_path / "nowhere.csv", "cannot be opened")
     (tmp_path / "cut.parquet").write_bytes(b"PAR1" + b"x" * 50)
     refused(tmp_path / "cut.parquet", "Parquet log cannot be read")
+
+
+@pytest.mark.parametrize(
+    ("name", "told", "fix"),
+    [
+        ("log.csv.gz", "compressed (gzip)", "unpack it first"),
+        ("log.zip", "a zip archive", "unpack it first"),
+        ("log.ods", "a spreadsheet in OpenDocument format", "save it as .xlsx or as CSV"),
+        ("log.json", "JSON", "pandas.read_json"),
+        ("log.jsonl", "JSON", "pandas.read_json"),
+        ("log.feather", "an Arrow file", "pandas.read_feather"),
+        ("log.gpx", "XML, such as GPX", "beside the track"),
+        ("log.bag", "a recording of ROS", "export what the trial needs to CSV"),
+        ("log.sqlite", "a database (SQLite)", "as CSV"),
+    ],
+)
+def test_other_kinds_of_files_are_called_by_their_names(columns, tmp_path, name, told, fix):
+    frame = pd.DataFrame(dict(columns))
+    log = tmp_path / name
+    kind = name.rpartition(".")[2]
+    if kind in ("gz", "zip"):
+        frame.to_csv(log)
+    elif kind in ("json", "jsonl"):
+        frame.to_json(log, orient="records", lines=kind == "jsonl")
+    elif kind == "feather":
+        frame.to_feather(log)
+    elif kind == "ods":
+        with zipfile.ZipFile(log, "w") as archive:
+            archive.writestr("mimetype", "application/vnd.oasis.opendocument.spreadsheet")
+            archive.writestr("content.xml", "<table/>")
+    elif kind == "gpx":
+        log.write_text('<?xml version="1.0"?><gpx><trk/></gpx>', encoding="utf-8")
+    else:
+        log.write_bytes({"bag": b"#ROSBAG V2.0\n" + bytes(99), "sqlite": b"SQLite format 3" + bytes(99)}[kind])
+    refused(log, f"the log is {told}", name, fix)
+    with pytest.raises(LogError, match=re.escape(f"the log is {told}")):
+        propose_map(log)
+
+
+def test_a_row_for_each_value_is_told(columns, tmp_path):
+    frame = pd.DataFrame(dict(columns)).rename(columns={"heading": "gyro/heading", "rudder": "steering/rudder_angle"})
+    log = tmp_path / "log.csv"
+    frame.melt("time", var_name="signal").sort_values("time").to_csv(log, index=False)
+    with pytest.raises(LogError, match="a row for each value: 'signal' says of what it is") as caught:
+        propose_map(log)
+    assert "a column for each of them" in str(caught.value)
 
 
 def test_missing_column_names_the_closest(log, columns):

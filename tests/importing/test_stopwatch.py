@@ -6,9 +6,10 @@ import pytest
 
 from mmgtune.errors import LogError
 from mmgtune.importing import import_logs, parse_map, propose_map
+from mmgtune.importing.periods import Periods
 from mmgtune.importing.stopwatch import times_told
 
-from .made import UNITLESS, close, imported, refusal, write_csv
+from .made import UNITLESS, close, imported, logged, refusal, turn, write_csv
 
 VELOCITIES = ("ahead", "abeam")
 
@@ -155,3 +156,24 @@ def test_a_gap_is_no_hour_that_was_set_back(tmp_path, columns):
     stamps[200] = "00:00"
     trial = imported(write_csv(tmp_path / "log.csv", {**columns, "time": stamps}), UNITLESS)
     assert trial.duration == columns["time"][-1]
+
+
+def test_a_clock_of_twelve_hours_goes_on_at_one(tmp_path):
+    """A column of AM and PM beside it is not needed."""
+    trial = turn()
+    columns = logged(trial)
+    stamps = pd.Timestamp("2026-05-01 12:57:03") + pd.to_timedelta(columns.pop("time"), unit="s")
+    log = write_csv(
+        tmp_path / "log.csv",
+        {"Time": stamps.strftime("%I:%M:%S"), "AM/PM": stamps.strftime("%p"), **columns},
+    )
+    proposal = propose_map(log)
+    assert proposal.asks == proposal.problems == ()
+    assert proposal.imported == 1
+    close(imported(log, proposal.text), trial)
+
+
+def test_a_clock_of_24_hours_that_is_set_back_to_one_does_not_go_on():
+    seconds = np.array([12.9, 12.99, 1.01, 1.02, 13.0]) * 3600.0
+    assert np.array_equal(Periods().over_midnight(seconds), seconds)
+    assert np.allclose(np.diff(Periods().over_midnight(seconds[:4])) / 3600.0, [0.09, 0.02, 0.01])

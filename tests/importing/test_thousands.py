@@ -119,3 +119,24 @@ def test_a_sign_that_would_be_both(tmp_path):
     ended = run("trials", "import", "log.csv", "--map", "map.toml", "-o", "out", cwd=tmp_path)
     assert ended.code == 2
     assert "'log.thousands' is the decimal sign" in ended.err
+
+
+@pytest.mark.parametrize("mark", ["'", "\u2019", " ", "\u00a0", "\u202f"])
+def test_apostrophes_and_blanks_divide_thousands(tmp_path, mark):
+    columns = far()
+    plain = imported(write_csv(tmp_path / "plain.csv", columns))
+    for decimal, how in ((".", {}), (",", {"sep": ";"})):
+        texts = {
+            name: [f"{one:,.6f}".translate({ord(","): mark, ord("."): decimal}) for one in values]
+            for name, values in columns.items()
+        }
+        log = write_csv(tmp_path / "log.csv", texts, **how)
+        proposal = propose_map(log)
+        assert proposal.asks == proposal.problems == ()
+        assert proposal.map().decimal == decimal
+        close(imported(log, proposal.text), plain, 1e-4)
+
+
+def test_blanks_that_divide_no_thousands():
+    texts = pd.Series(["12 34", "1 2345", "0 123", "12 345", "-1'234.5"], dtype="string")
+    assert np.array_equal(numbers_in(texts, "."), [np.nan, np.nan, np.nan, 12345.0, -1234.5], equal_nan=True)

@@ -87,7 +87,9 @@ def position_and_heading(find: Finder) -> None:
     speed = np.median([one.usual_speed for one in find.looks])
     for (quantity, own), column in zip(keys.items(), (track.x, track.y, track.psi), strict=True):
         partner = track.y if column == track.x else track.x
-        said = [f"with {find.shown(partner)} it makes a course that follows the heading, at {speed:.3g} m/s"]
+        both = find.shown(partner) == find.shown(column)
+        with_it = "its cells hold both, which make" if both else f"with {find.shown(partner)} it makes"
+        said = [f"{with_it} a course that follows the heading, at {speed:.3g} m/s"]
         if quantity == "psi":
             said = [words.get(track, "the course follows it"), *led]
             if find.units_said[column] == own["unit"]:
@@ -95,11 +97,11 @@ def position_and_heading(find: Finder) -> None:
             elif _against_its_name(find, track):
                 own |= {"header_says": find.units_said[column]}
                 said.append(f"it is in {own['unit']}, although its name says {find.units_said[column]}")
-        elif find.said[column] == quantity:
+        elif find.said[column] == quantity and not both:
             said.append("its name says so")
         if column in find.parts:
             said.append(f"{listed([find.shown(k) for k in find.parts[column].values()])} with it")
-        elif column in find.first.written:
+        elif column in find.first.written and not both:
             said.append("its cells are in degrees and minutes")
         doubtful = quantity == "psi" and find.said[column] == "cog"
         find.add(Guess(quantity, column, own, tuple(said), LIKELY if doubtful else confidence))

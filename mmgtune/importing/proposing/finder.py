@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ... import units
+from ..degrees import DDMM
 from .clocks import Clock
 from .guess import LIKELY, SURE, Guess
 from .look import Look
@@ -32,6 +33,7 @@ class Finder:
     guesses           by quantity, in the order they were found; guess_t: time, before its unit is known
     used, numeric     columns that are something already, and those whose behaviour can be looked at
     parts             further columns of what is in several, by the first of them and by what they hold
+    ddmm              columns of degrees and minutes in one number
     looks             logs whose motion is known; unit: of time; axes: of the velocities
     readings          how well the motion fits with time in each unit, or format, that it was tried in
     tables, comments  further tables of the map, and what is said above them
@@ -56,6 +58,7 @@ class Finder:
         self.guesses: dict[str, Guess] = {}
         self.used: set[int] = set()
         self.parts: dict[int, dict[str, int]] = {}
+        self.ddmm: set[int] = set()
         self.notes: list[str] = []
         self.tables: dict[str, dict[str, Any]] = {}
         self.comments: dict[str, str] = {}
@@ -77,6 +80,8 @@ class Finder:
         if guess.column in self.parts:
             parts = {part: self.first.reference(k) for part, k in self.parts[guess.column].items()}
             guess = replace(guess, keys={**parts, **guess.keys})
+        if guess.column in self.ddmm:
+            guess = replace(guess, keys={**guess.keys, "unit": DDMM})
         self.guesses[guess.quantity] = guess
         if guess.column is not None:
             self.used.add(guess.column)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Collection
 from dataclasses import replace
@@ -9,26 +10,29 @@ from dataclasses import replace
 import numpy as np
 
 from ...arrays import FloatArray
+from ..degrees import of_ddmm
 from ..headers import unit_in
 from ..numerals import number_in
+from ..position_pair import MOST, pair_in
 from ..position_parts import HEMISPHERES, letters_in, position_of
 from ..table import MISSING
 from .finder import Finder
 from .sampling import Sample
-from .words import TIME
+from .words import DATE, TIME
 
 _NAMES = {"minutes": re.compile(r"min(ute)?s?\b|minut|'|′"), "seconds": re.compile(r"sec(ond)?s?\b|sek|\"|″|''")}
 _UNITS = {"minutes": ("min",), "seconds": ("s",)}
-MOST = {"latitude": 90.0, "longitude": 180.0}
 
 
 def join_positions(find: Finder) -> None:
     """Put together latitudes and longitudes that stand in several columns; the first of them stands for all."""
+    _divide_pairs(find)
+    _read_ddmm(find)
     for name in HEMISPHERES:
         parts = _parts(find, name)
         if len(parts) < 2:
             continue
-        found = [_together(sample, name, parts) for sample in find.samples]
+        found = [_together(sample, name, parts, parts[""] in find.ddmm) for sample in find.samples]
         degrees = [np.isfinite(sample.numbers[parts[""]]) for sample in find.samples]
         if sum(np.isfinite(one).sum() for one in found) < 0.9 * sum(one.sum() for one in degrees):
             continue
@@ -37,6 +41,53 @@ def join_positions(find: Finder) -> None:
         find.first = find.samples[0]
         find.parts[first] = {part: k for part, k in parts.items() if part}
         find.used.update(others)
+
+
+def _divide_pairs(find: Finder) -> None:
+    """Take columns whose cells hold a latitude and a longitude each for two, where no other columns are called so."""
+    if set(HEMISPHERES) & set(find.said):
+        return
+    for k in range(len(find.said)):
+        columns = [one.texts[k] for one in find.samples]
+        if any(str(one.dtype) != "string" for one in columns) or find.said[k] in (TIME, DATE):
+            continue
+        halves = [list(pair_in(one).values()) for one in columns]
+        told = sum(int(np.isfinite(latitude).sum()) for latitude, _ in halves)
+        if told < 10 or told < 0.9 * sum(int(one.notna().sum()) for one in columns):
+            continue
+        find.samples = [one.divided(k, pair) for one, pair in zip(find.samples, halves, strict=True)]
+        find.first = find.samples[0]
+        find.said[k] = "latitude"
+        find.said.append("longitude")
+        find.units_said.append("")
+        return
+
+
+def _read_ddmm(find: Finder) -> None:
+    """Turn latitudes and longitudes that hold degrees and minutes in one number, as NMEA 0183 has them, into degrees.
+
+    One of the two beyond its largest angle shows it of both.
+    """
+    named = {name: [k for k, word in enumerate(find.said) if word == name] for name in HEMISPHERES}
+    pairs = itertools.product(*named.values())
+    for pair in pairs:
+        whole = {k: np.concatenate([one.numbers[k] for one in find.samples]) for k in pair}
+        known = {k: values[np.isfinite(values)] for k, values in whole.items()}
+        can = [
+            len(known[k]) and np.all(np.abs(of_ddmm(known[k])) <= MOST[name])
+            for name, k in zip(named, pair, strict=True)
+        ]
+        must = [np.max(np.abs(known[k]), initial=0.0) > MOST[name] for name, k in zip(named, pair, strict=True)]
+        if all(can) and any(must):
+            find.samples = [_in_degrees(one, pair) for one in find.samples]
+            find.first = find.samples[0]
+            find.ddmm.update(pair)
+            return
+
+
+def _in_degrees(sample: Sample, columns: Collection[int]) -> Sample:
+    numbers = [of_ddmm(one) if k in columns else one for k, one in enumerate(sample.numbers)]
+    return replace(sample, numbers=numbers, written=sample.written | {*columns})
 
 
 def _parts(find: Finder, name: str) -> dict[str, int]:
@@ -93,11 +144,11 @@ def _hemisphere(find: Finder, name: str, degrees: int, parts: Collection[int]) -
     return min(found, key=lambda k: abs(k - degrees), default=None)
 
 
-def _together(sample: Sample, name: str, parts: dict[str, int]) -> FloatArray:
+def _together(sample: Sample, name: str, parts: dict[str, int], ddmm: bool) -> FloatArray:
     """Degrees (n_rows,) of the parts."""
     codes = [one for text in sample.layout.get("missing", ()) if (one := number_in(text, ".")) is not None]
     columns = {part: sample.texts[k] for part, k in parts.items()}
-    return position_of(name, columns, sample.layout.get("decimal", "."), MISSING, codes).degrees
+    return position_of(name, columns, sample.layout.get("decimal", "."), MISSING, codes, ddmm).degrees
 
 
 def _joined(sample: Sample, first: int, others: Collection[int], degrees: FloatArray) -> Sample:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import re
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,7 @@ import numpy as np
 from ...arrays import FloatArray
 from ...errors import LogError, Problem, reason
 from ...limits import LOG_BYTES, LOG_COLUMNS, LOG_LINE
-from ...phrases import counted
+from ...phrases import counted, listed
 from ..degrees import degrees
 from ..forms import form_of, refuse_binary
 from ..mapping import LogMap, TimeSource
@@ -25,17 +25,21 @@ from ..sides import midships, sided, takes_side
 from ..stopwatch import EITHER, TIME_OF_DAY, are_times, times_told
 from ..table import MISSING
 from ..text import PEEK, Lines, fields_of, start_of
-from ..thousands import in_thousands
+from ..thousands import CLOSED, in_thousands
 from ..with_units import is_with_unit, numbers_with_unit
 from .words import known_unit, quantity_named
 
 ROWS = 60_000
 """Rows of a log that are looked at."""
+MOST_SIGNALS = 500
+"""Names of signals that a column may hold."""
+_PATH = re.compile(r"[./_:]")
+"""What divides the name of a signal."""
 MARKS = ("\t", ";", ",", "|", " ")
 SHOWN = {"\t": "tab", " ": "space"}
 _JAPANESE = re.compile("[\u3040-\u30ff\u4e00-\u9fff]")
-_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?|-?inf", re.ASCII)
-_COMMA = re.compile(r"[-+]?(\d+|\d{1,3}(\.\d{3})+),\d+([eE][-+]?\d+)?", re.ASCII)
+_NUMBER = re.compile(rf"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?|{CLOSED}(\.\d*)?|-?inf", re.ASCII)
+_COMMA = re.compile(rf"([-+]?(\d+|\d{{1,3}}(\.\d{{3}})+)|{CLOSED}),\d+([eE][-+]?\d+)?", re.ASCII)
 _DATED = re.compile(r"(\d{1,4}[-./:]\d{1,2}[-./:]\d{1,4}|\d{1,3}:\d{2}|[-+]?\d{1,3}°)[^;|\t,]*(,[^;|\t,]*)?")
 
 
@@ -50,6 +54,7 @@ class Sample:
     numbers  (n_rows,) of every column, NaN where a cell is no number
     written  columns whose cells are positions in degrees and minutes
     sided    columns whose cells say the side, such as 35.0S; starboard is positive
+    second   columns that are the second half of another one, whose cells hold a latitude and a longitude each
     """
 
     path: Path
@@ -60,6 +65,7 @@ class Sample:
     numbers: list[FloatArray]
     written: frozenset[int] = frozenset()
     sided: frozenset[int] = frozenset()
+    second: Mapping[int, int] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
 
     def turned_round(self) -> Sample:
@@ -74,6 +80,20 @@ class Sample:
         if sorted(own) != sorted(names) or any(isinstance(other.reference(k), int) for k in range(len(names))):
             return self
         return self.only(names)
+
+    def divided(self, k: int, halves: Sequence[FloatArray]) -> Sample:
+        """The same with a column whose cells hold two numbers (n_rows,) each as two, the second behind all others."""
+        last = len(self.names)
+        numbers = [halves[0] if i == k else one for i, one in enumerate(self.numbers)]
+        return replace(
+            self,
+            names=(*self.names, ""),
+            units=(*self.units, ""),
+            texts=[*self.texts, self.texts[k]],
+            numbers=[*numbers, halves[1]],
+            written=self.written | {k, last},
+            second={**self.second, last: k},
+        )
 
     def only(self, names: Sequence[str]) -> Sample:
         """The same with columns of these names alone, in their order."""
@@ -91,6 +111,7 @@ class Sample:
 
     def reference(self, k: int) -> str | int:
         """How a map names a column: by its name where that is its own, else by its number."""
+        k = self.second.get(k, k)
         name = self.names[k].strip()
         if not name or len(name) > 200 or not name.isprintable() or self.layout.get("header") is False:
             return k + 1
@@ -100,6 +121,7 @@ class Sample:
 
     def shown(self, k: int) -> str:
         """A column for people, by its number where it has no name or shares it."""
+        k = self.second.get(k, k)
         name = self.names[k].strip()
         alone = name and sum(one.strip() == name for one in self.names) == 1
         return f"'{name[:60]}'" if alone else f"column {k + 1}"
@@ -114,7 +136,23 @@ def sample_of(path: Path) -> Sample:
     sample = reader(path)
     if len(sample.names) < 2 or not any(np.isfinite(one).sum() > 1 for one in sample.numbers):
         raise _no_table(path, len(sample.names), "none with numbers")
+    _hold_wide(sample)
     return sample
+
+
+def _hold_wide(sample: Sample) -> None:
+    """Raise LogError for a log that has a row for each value, and a column that says of what it is."""
+    for k, texts in enumerate(sample.texts):
+        if holds_numbers(texts) or _holds_dates(texts) or np.isfinite(sample.numbers[k]).any():
+            continue
+        several = texts.dropna().unique()[: MOST_SIGNALS + 1].tolist()
+        known = [one for one in several if quantity_named(_PATH.sub(" ", one))]
+        if len(known) < 2 or len(several) > MOST_SIGNALS or texts.count() < 5 * len(several):
+            continue
+        what = f"the log has a row for each value: {sample.shown(k)} says of what it is"
+        shown = listed([f"'{one[:40]}'" for one in several], 4)
+        fix = "write a row for each time and a column for each of them, such as by pivot_table of pandas"
+        raise LogError(Problem(what, str(sample.path), f"such as {shown}", fix))
 
 
 def _no_table(path: Path, seen: int, but: str) -> LogError:

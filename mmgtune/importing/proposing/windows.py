@@ -13,11 +13,14 @@ from ...trial.motion_checks import spikes
 from ..clock import uniform
 from ..mapping import TimeSource
 from ..record import unwrapped
+from ..seldom import held
 
 MOST = 120
 """Windows of a log."""
 ROWS = 12_000
 """Rows that are looked at, spread over the log."""
+HELD = 3.0
+"""For so many of its usual steps a value of a column logged seldom stands."""
 PAUSE = 10.0
 """Usual steps from row to row; over a longer one a log paused, and what a ship did meanwhile is not in it."""
 
@@ -26,7 +29,8 @@ class Windows:
     """A log in windows of equal numbers of rows; what a window is over a pause longer than itself is not known.
 
     t        (n_rows,) time [s], strictly increasing
-    columns  (n_rows,) each, spikes taken out, angles that wrap unwrapped
+    columns  (n_rows,) each, what is logged seldom held from one value to the next, spikes taken out, angles that wrap
+             unwrapped
     periods  of each column: what it wraps by (360 or 2 pi, in its own unit), 0 where it does not
     """
 
@@ -36,15 +40,17 @@ class Windows:
         known = np.isfinite(t)
         best = np.maximum.accumulate(np.where(known, t, -np.inf))
         kept = np.flatnonzero(known & (np.concatenate([[True], t[1:] > best[:-1]])))
-        kept = kept[:: max(1, len(kept) // ROWS)]
+        columns = [held(one[kept], HELD) for one in columns]
+        every = max(1, len(kept) // ROWS)
+        kept, columns = kept[::every], [one[::every] for one in columns]
         self.t = t[kept]
         self.rows = kept
         resumed = np.zeros(len(kept), bool)
         if len(kept) > 1:
             steps = np.diff(self.t)
             resumed[1:] = steps > PAUSE * np.median(steps)
-        self.periods = [period(one[kept], resumed) for one in columns]
-        self.columns = [_clean(one[kept], turn) for one, turn in zip(columns, self.periods, strict=True)]
+        self.periods = [period(one, resumed) for one in columns]
+        self.columns = [_clean(one, turn) for one, turn in zip(columns, self.periods, strict=True)]
         count = int(np.clip(len(kept) // 6, 2, MOST))
         self.edges = np.unique(np.linspace(0, max(1, len(kept) - 1), count + 1).astype(np.intp))
         self.pauses = self._pauses(resumed)

@@ -59,6 +59,8 @@ FITTING = (
     ("columns.delta", 'column = "rudder"\nunit = "deg"\nscale', ("1.0", "1e-9", "-1", "1e300")),
     ("columns.latitude", 'column = "rudder"\nminutes', (f'"ahead"{LONGITUDE}', f'"heading"{LONGITUDE}', '"north"')),
     ("columns.latitude", 'column = "ahead"\nhemisphere', (f'"rudder"{LONGITUDE}', f"3{LONGITUDE}")),
+    ("columns.latitude", 'column = "ahead"\nunit', (f'"ddmm"{LONGITUDE}', f'"ddmm"\nhemisphere = "rudder"{LONGITUDE}')),
+    ("columns.latitude", "column", ('"ahead"\n[columns.longitude]\ncolumn = "ahead"',)),
     ("columns.n", "value", ('"100 rpm"', '"0 rpm"', '"-1e300 rpm"')),
 )
 """Table, key and values that a map may have."""
