@@ -59,6 +59,8 @@ from .measures import Reference as Reference
 from .measures import distance_measures as distance_measures
 from .measures import reference_of as reference_of
 from .model import Model as Model
+from .motions import breakdown as breakdown
+from .motions import track_of as track_of
 from .networks import load_network as load_network
 from .networks import save_network as save_network
 from .options import CompareModelsOptions as CompareModelsOptions
@@ -104,10 +106,9 @@ from .profile import ShipProfile as ShipProfile
 from .profile import load_profile as load_profile
 from .repeating import repeat as repeat
 from .report import render as render
+from .scores import score as score
 from .simulating import Simulated as Simulated
 from .simulating import simulate as simulate
-from .simulation import breakdown as breakdown
-from .simulation import track_of as track_of
 from .trial import Trial as Trial
 from .trial import TrialSet as TrialSet
 from .trial import load_trials as load_trials
@@ -116,7 +117,6 @@ from .trial import trial_of as trial_of
 from .trial import write_trial as write_trial
 from .validating import Validation as Validation
 from .validating import validate as validate
-from .validation import score as score
 from .voyages import VoyageValidation as VoyageValidation
 from .voyages import validate_voyages as validate_voyages
 from .voyages import write_voyages as write_voyages

@@ -28,9 +28,9 @@ from .predictor import Predictor, Sampling, Uncertain, particles_of, profile_of
 from .provenance import made_by
 from .recording import MOST, write_motions
 from .run_folders import MOTIONS
+from .scores import L_MSE, TrialScore, by_manoeuvre, by_member, by_run, off_by, score, window_scores
 from .trial import Trial, TrialSet
 from .validating import Scorable, predictors_of, sigma_of
-from .validation import L_MSE, TrialScore, by_manoeuvre, by_member, by_run, off_by, score, window_scores
 
 RESULT = "model_comparison.json"
 

@@ -15,13 +15,13 @@ from .documents import write_json
 from .errors import OptionError, Problem
 from .files import path_of, refuse_existing
 from .given import ShipGiven, ship_of
+from .motions import breakdown
 from .options import SimulateOptions
 from .physics.prime import force_unit, moment_unit
 from .physics.quantities import STATES
 from .profile import ShipProfile
 from .profile.changing import scale_of
 from .simulating import simulate
-from .simulation import breakdown
 from .units import DEG
 
 RESULT = "comparison.json"

@@ -25,10 +25,10 @@ from .manoeuvres import Track, manoeuvre_kind, turning_indices, zigzag_indices
 from .manoeuvres.summary import indices_of
 from .measures import UNITS, Reference, distance_measures, reference_of
 from .model import Model
+from .motions import Motion, motions, ordered_angles, sized, track_if_whole, trial_indices
 from .networks import named_ship
 from .objective import Objective, make_objective, weights_of
 from .predictor import Predictor, as_predictor
-from .simulation import Motion, motions, ordered_angles, sized, track_if_whole, trial_indices
 from .trial import Trial
 
 

@@ -11,12 +11,12 @@ import numpy as np
 from .documents import write_json
 from .files import path_of, refuse_existing, write_text
 from .inputs import INPUTS
+from .motions import Motion, orders_of, simulate_trials
 from .physics.quantities import STATES
 from .predictor import Predictor, profile_of
 from .provenance import made_by
 from .run_folders import MOTIONS
 from .simulating import Simulated
-from .simulation import Motion, orders_of, simulate
 from .tables import write_table
 from .trial import Trial, TrialSet
 from .validating import Validation
@@ -98,7 +98,7 @@ def write_motions(models: Mapping[str, Predictor], pieces: Sequence[Trial], fold
     for trial in pieces:
         _add(columns, trial.id, "measured", trial.t, trial.motion, trial.inputs(names))
     for called, predictor in models.items():
-        for motion in _first_members(simulate(predictor, pieces)):
+        for motion in _first_members(simulate_trials(predictor, pieces)):
             given = dict(zip(predictor.inputs, motion.controls.T, strict=True))
             driven = np.column_stack([given.get(name, np.full(len(motion.t), np.nan)) for name in names])
             _add(columns, motion.id, called, motion.t, motion.states, driven)

@@ -28,10 +28,10 @@ from .manoeuvres import (
 )
 from .manoeuvres.judged import JUDGED
 from .model import Model
+from .motions import Motion, ordered_angles, track_if_whole
 from .networks import named_ship
 from .orders import LONGEST_STEP, Helmsman, Sailing, TurningOrder, ZigzagOrder, run_manoeuvres
 from .predictor import PhysicsPredictor, Predictor, as_predictor, stepper_of
-from .simulation import Motion, ordered_angles, track_if_whole
 from .trial import Trial
 from .units import DEG
 

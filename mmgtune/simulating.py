@@ -21,6 +21,7 @@ from .manoeuvres.criteria import Criterion, check_stopping
 from .manoeuvres.stopping import stopping_indices
 from .manoeuvres.summary import criteria_of, indices_of
 from .model import Model
+from .motions import Motion, as_trial
 from .networks import named_ship
 from .options import SimulateOptions
 from .options.choice import must_be
@@ -28,7 +29,6 @@ from .options.orders import ORDERS
 from .orders import Helmsman, Sailing, Straight, TurningOrder, ZigzagOrder, possible_approach, run_manoeuvres, sample_of
 from .predictor import PhysicsPredictor, Predictor, as_predictor, noted, profile_of
 from .profile import ShipProfile
-from .simulation import Motion, as_trial
 from .stated import no_reverse
 from .steering import APPROACH, STEP
 from .trial import Coverage, write_trial

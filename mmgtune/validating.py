@@ -20,9 +20,9 @@ from .options.choice import must_be
 from .predictor import Predictor, as_predictor, noted, particles_of, profile_of, words_of
 from .profile.doubts import Doubt
 from .repeating import Repeated, document, repetitions
+from .scores import L_MSE, TrialScore, score, summary, window_scores
 from .stated import IndexComparison, compare_stated, physics_of, possible
 from .trial import Trial, TrialSet, oddities
-from .validation import L_MSE, TrialScore, score, summary, window_scores
 
 Scorable = ShipGiven | Model | Predictor
 """What can be scored: a profile, its path or bundled name, a model, or any predictor."""

@@ -7,9 +7,9 @@ from mmgtune.backends import Integrator
 from mmgtune.errors import TrialError
 from mmgtune.fitting import FitOptions, fit
 from mmgtune.model import Model
+from mmgtune.motions import as_trial, breakdown, simulate_trials
 from mmgtune.orders import TurningOrder, run_manoeuvre
 from mmgtune.profile import load_profile, with_effects
-from mmgtune.simulation import as_trial, breakdown, simulate
 from mmgtune.trial import load_trials, read_trial, write_trial
 from tests.runs import states, turn
 from tests.twin import sail, twin, with_controls, with_value
@@ -72,7 +72,7 @@ def test_orders_trials_files_and_forces_follow_the_names(ship, tmp_path):
     assert {"hull_X", "rudder_port_N", "rudder_stbd_F_N", "thruster_Y", "delta_stbd", "n_bow"} <= set(trial.extra)
     again = read_trial(write_trial(trial, tmp_path / "turn.parquet"))
     np.testing.assert_allclose(again.inputs(ship.inputs), motion.controls)
-    repeated = simulate(ship, [again], integrator=RK4)[0]
+    repeated = simulate_trials(ship, [again], integrator=RK4)[0]
     assert np.abs(repeated.states[:, :2] - motion.states[:, :2]).max() < 0.05 * ship.L_pp
     assert breakdown(ship, motion.states, motion.controls).thruster.Y[-1] == 0.0
 
@@ -80,7 +80,7 @@ def test_orders_trials_files_and_forces_follow_the_names(ship, tmp_path):
 def test_a_trial_without_an_input_says_which(ship):
     trial = load_trials("suzaku").trials["turn_p35"]
     with pytest.raises(TrialError, match=r"(?s)'delta_port'.*port rudder angle"):
-        simulate(ship, [trial])
+        simulate_trials(ship, [trial])
 
 
 def test_its_coefficients_are_fitted(ship, tmp_path):

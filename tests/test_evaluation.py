@@ -12,14 +12,14 @@ from mmgtune.fitting import fit, leave_out
 from mmgtune.fitting.setting import make_setting
 from mmgtune.measures import distance_measures, reference_of
 from mmgtune.metrics import METRICS
+from mmgtune.motions import as_trial, simulate_trials
 from mmgtune.objective import make_objective, spread
 from mmgtune.options import FitOptions, LeaveOutOptions, ValidateOptions
 from mmgtune.orders import TurningOrder, run_manoeuvre
 from mmgtune.profile import ShipProfile
-from mmgtune.simulation import as_trial, simulate
+from mmgtune.scores import score
 from mmgtune.trial import TrialSet, write_trial
 from mmgtune.validating import validate
-from mmgtune.validation import score
 from tests.command import run
 from tests.fitting.conftest import make_set
 
@@ -66,7 +66,7 @@ def test_leaving_out_and_validation_have_the_same_scores(suzaku, trials):
 
 def test_the_records_by_hand(suzaku, trials):
     every = list(trials.trials.values())
-    for trial, motion, record in zip(every, simulate(suzaku, every), evaluate(suzaku, every), strict=True):
+    for trial, motion, record in zip(every, simulate_trials(suzaku, every), evaluate(suzaku, every), strict=True):
         assert np.array_equal(record.states, motion.states)
         difference = (motion.states - trial.motion)[1:]
         for k, (name, value) in enumerate(record.rms.items()):
@@ -83,7 +83,10 @@ def test_runge_kutta_is_the_default_everywhere(suzaku):
     assert Integrator().name == "rk4"
     assert FitOptions().make_integrator() == Integrator()
     trial = next(iter(make_set(suzaku).trials.values()))
-    (default,), (rk4,) = simulate(suzaku, [trial]), simulate(suzaku, [trial], integrator=Integrator("rk4"))
+    (default,), (rk4,) = (
+        simulate_trials(suzaku, [trial]),
+        simulate_trials(suzaku, [trial], integrator=Integrator("rk4")),
+    )
     assert np.array_equal(default.states, rk4.states)
 
 

@@ -18,15 +18,15 @@ from mmgtune.diagnose.evidence import short_horizon
 from mmgtune.errors import OptionError
 from mmgtune.evaluation import evaluate
 from mmgtune.metrics import METRICS
+from mmgtune.motions import as_trial, simulate_trials
 from mmgtune.options import ValidateOptions
 from mmgtune.orders import TurningOrder, ZigzagOrder, run_manoeuvre
 from mmgtune.predictor import AT_ONCE, Prediction, Restarted, Steerable, as_predictor, portions, predicted
 from mmgtune.profile import with_effects
 from mmgtune.repeating import repeat
-from mmgtune.simulation import as_trial, simulate
+from mmgtune.scores import L_MSE
 from mmgtune.trial import TrialSet
 from mmgtune.validating import validate
-from mmgtune.validation import L_MSE
 
 RAD = math.radians(1.0)
 
@@ -108,7 +108,7 @@ def test_check_measures_it(sailed):
 
 def test_evidence_and_simulation_take_it(sailed):
     trials = list(sailed.trials.values())
-    assert [motion.member for motion in simulate(Nomoto(), trials)] == [0, 1, 2, 0, 1, 2]
+    assert [motion.member for motion in simulate_trials(Nomoto(), trials)] == [0, 1, 2, 0, 1, 2]
     rms = [short_horizon(Nomoto(), trials, window=30.0, member=k).pooled_rms[5] for k in (0, 2)]
     assert rms[0] != rms[1]
 
@@ -281,7 +281,7 @@ def test_inputs_of_a_trial_have_the_names_of_columns(sailed):
 @pytest.mark.parametrize("wrong", ["suzaku", 3.0, None])
 def test_what_is_no_ship_is_refused(wrong, sailed):
     with pytest.raises(OptionError, match="is no ship"):
-        simulate(wrong, list(sailed.trials.values()))
+        simulate_trials(wrong, list(sailed.trials.values()))
 
 
 def test_the_integrator_is_named(suzaku):

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from mmgtune.evaluation import evaluate
+from mmgtune.motions import as_trial, trial_indices
 from mmgtune.orders import TurningOrder, ZigzagOrder, run_manoeuvre
 from mmgtune.repeating import Repeated, repeat, summary
-from mmgtune.simulation import as_trial, trial_indices
 from mmgtune.trial import write_trial
 from mmgtune.trial.schema import ATTRIBUTES
 from tests.command import run

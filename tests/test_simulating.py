@@ -9,10 +9,10 @@ import pytest
 
 import mmgtune
 from mmgtune.errors import OptionError
+from mmgtune.motions import Motion, as_trial, breakdown
 from mmgtune.options import SimulateOptions
 from mmgtune.predictor import PhysicsPredictor
 from mmgtune.resources import folder
-from mmgtune.simulation import Motion, as_trial, breakdown
 from mmgtune.stated import compare_stated
 from mmgtune.trial import TrialSet
 from mmgtune.trial.index_trial import IndexTrial, Stated

@@ -10,10 +10,10 @@ import numpy as np
 from mmgtune.backends import Integrator, pad
 from mmgtune.components import Arrangement, Component, Field
 from mmgtune.model import Model
+from mmgtune.motions import Motion, as_trial
 from mmgtune.physics.kinematics import flow
 from mmgtune.physics.quantities import Flow, Force, Lanes, PropellerOut, RudderOut, WakeOut
 from mmgtune.profile import Coefficient, Section, load_profile
-from mmgtune.simulation import Motion, as_trial
 from mmgtune.trial import write_trial
 from tests.runs import states, turn
 

@@ -24,13 +24,13 @@ import numpy as np
 
 from mmgtune.errors import TrialError
 from mmgtune.manoeuvres import turning_indices
+from mmgtune.motions import motions, track_of
 from mmgtune.options import PosteriorOptions
 from mmgtune.particles import Particles
 from mmgtune.posterior import posterior
 from mmgtune.posterior.room import make_room
 from mmgtune.predictor import PhysicsPredictor
 from mmgtune.profile import ShipProfile, load_profile
-from mmgtune.simulation import motions, track_of
 from mmgtune.trial import Trial
 from tests.hidden.cases import LADDER, TYPICAL, Case, null, single, unknown
 from tests.hidden.plant import SILENT, simulate

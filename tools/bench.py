@@ -37,13 +37,13 @@ from mmgtune.learning.starting import first_weights, scales_of
 from mmgtune.learning.task import make_task
 from mmgtune.learning.training import Plan, Trainer, batch
 from mmgtune.model import Model
+from mmgtune.motions import as_trial
 from mmgtune.objective import spread
 from mmgtune.options import HybridOptions, LearnOptions
 from mmgtune.orders import TurningOrder, run_manoeuvre
 from mmgtune.profile import load_profile
-from mmgtune.simulation import as_trial
+from mmgtune.scores import score
 from mmgtune.trial import load_trials, write_trial
-from mmgtune.validation import score
 from tools.generate_voyage import make_voyage
 
 STEPS = 600

@@ -52,7 +52,7 @@ from mmgtune.backends import Integrator
 from mmgtune.model import Model
 from mmgtune.profile import load_profile
 from mmgtune.trial import Trial
-from mmgtune.validation import score
+from mmgtune.scores import score
 
 model = Model(load_profile("suzaku"))
 t = np.arange(1201) * 0.1

@@ -36,8 +36,8 @@ from mmgtune.objective import spread
 from mmgtune.options import SAMPLINGS, EnsembleOptions
 from mmgtune.predictor import cases_from
 from mmgtune.run_folders import CHECKPOINTS
+from mmgtune.scores import window_scores
 from mmgtune.trial import TrialSet, load_trials
-from mmgtune.validation import window_scores
 
 SHIP = "vectwin_3m"
 SETS = {"B": "test-b", "ZT": "test-zt", "R": "test-r"}

@@ -23,8 +23,8 @@ import numpy as np
 
 from mmgtune.files import write_text
 from mmgtune.fitting import FitOptions, Information, SisterClass, fit, information_of, pooled
+from mmgtune.motions import simulate_trials
 from mmgtune.profile import ShipProfile, load_profile, tuned
-from mmgtune.simulation import simulate
 from mmgtune.trial import Trial, TrialSet
 from tools.generate_fleet import sailed, sister
 from tools.generate_suzaku_trials import SHIP
@@ -54,7 +54,7 @@ def tuning_set(trials: dict[str, Trial], n: int, ship: str) -> TrialSet:
 def off_track(ship: ShipProfile, trials: Sequence[Trial]) -> float:
     """Root mean square distance from the measured tracks [m], mean over trials."""
     found = []
-    for trial, motion in zip(trials, simulate(ship, list(trials)), strict=True):
+    for trial, motion in zip(trials, simulate_trials(ship, list(trials)), strict=True):
         found.append(float(np.sqrt(np.mean(np.sum((motion.states[:, :2] - trial.motion[:, :2]) ** 2, axis=1)))))
     return float(np.mean(found))
 

@@ -23,8 +23,8 @@ import numpy as np
 from mmgtune.arrays import FloatArray
 from mmgtune.backends import Integrator
 from mmgtune.files import write_text
+from mmgtune.motions import as_trial, simulate_trials
 from mmgtune.profile import ShipProfile, load_profile, tuned, with_effects
-from mmgtune.simulation import as_trial, simulate
 from mmgtune.trial import Trial, write_trial
 from mmgtune.units import DEG
 
@@ -119,7 +119,7 @@ def sailed(
         manoeuvre = "turning" if name.startswith("turn") else "zigzag"
         still = {"x": zero, "y": zero, "v_m": zero, "r": zero}
         asked = Trial(id=name, ship=ship.id, manoeuvre=manoeuvre, source="generated", t=t, **still, **known)
-        (motion,) = simulate(real, [asked], integrator=Integrator("rk4"))
+        (motion,) = simulate_trials(real, [asked], integrator=Integrator("rk4"))
         noise = quiet * np.array(list(NOISE.values())) * rng.standard_normal(motion.states.shape)
         shown = as_trial(ship, replace(motion, states=motion.states + noise))
         note = "Generated, not measured: a made-up sister of SUZAKU" + ("." if calm else ", with sensor noise.")

@@ -17,9 +17,9 @@ from pathlib import Path
 import numpy as np
 
 from mmgtune.files import write_text
+from mmgtune.motions import Motion
 from mmgtune.orders import Helmsman, TurningOrder, ZigzagOrder, run_manoeuvre
 from mmgtune.profile import load_profile, tuned
-from mmgtune.simulation import Motion
 from mmgtune.trial import Trial, write_trial
 
 SHIP = {

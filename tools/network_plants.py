@@ -34,8 +34,8 @@ from mmgtune.options.learning import HybridOptions
 from mmgtune.orders import TurningOrder, ZigzagOrder, run_manoeuvre
 from mmgtune.predictor import as_predictor
 from mmgtune.profile import ShipProfile, load_profile, tuned, with_effects
+from mmgtune.scores import L_MSE, score
 from mmgtune.trial import Trial, TrialSet
-from mmgtune.validation import L_MSE, score
 
 SOURCE = "plant of a study"
 

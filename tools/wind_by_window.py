@@ -20,8 +20,8 @@ from mmgtune.backends import STATES, Integrator, get_backend
 from mmgtune.model import Model
 from mmgtune.objective import cases_of, make_objective, spread
 from mmgtune.profile import load_profile
+from mmgtune.scores import score
 from mmgtune.trial import Trial, load_trials, measured_wind
-from mmgtune.validation import score
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -13,9 +13,9 @@ from ..backends import Integrator
 from ..errors import OptionError, Problem, all_of, among, brief, kind_of, must_be_a
 from ..given import ShipGiven, TrialsGiven, trials_of
 from ..metrics import METRICS
+from ..motions import orders_of
 from ..predictor import PhysicsPredictor, Predictor
 from ..profile.doubts import in_words
-from ..simulation import orders_of
 from ..trial import TrialSet
 from .baseline import Baseline, Recorded, read_baseline, write_baseline
 from .blame import changed_coefficients

@@ -17,7 +17,7 @@ from .progress import Progress
 if TYPE_CHECKING:
     from ..fitting import Plan
     from ..learning import Learned, LearnedEnsemble, LearnedHybrid
-    from ..validation import TrialScore
+    from ..scores import TrialScore
 
 app = App(
     help="Train networks that predict the motion of a ship, and hold them against other models.",
@@ -241,7 +241,7 @@ def _shown(value: float | None) -> str:
 
 
 def _by_kind(scores: Sequence[TrialScore]) -> list[str]:
-    from ..validation import L_MSE, by_manoeuvre, by_member
+    from ..scores import L_MSE, by_manoeuvre, by_member
 
     found = []
     for kind, of in by_manoeuvre(scores).items():

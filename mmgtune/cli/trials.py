@@ -88,9 +88,9 @@ def inspect(
 
       mmgtune trials inspect suzaku
     """
+    from ..motions import trial_indices
     from ..profile import load_profile
     from ..resources import profile_names
-    from ..simulation import trial_indices
     from ..trial import load_trials
     from ..trial.describe import describe
     from ..trial.index_trial import shown_index

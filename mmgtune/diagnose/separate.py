@@ -15,9 +15,9 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..backends import STATES
+from ..motions import Motion, as_trial
 from ..objective import Objective, cases_of
 from ..orders import Helmsman, Straight, TurningOrder, Weave, ZigzagOrder, run_manoeuvre
-from ..simulation import Motion, as_trial
 from ..trial import Trial
 from ..units import DEG
 from .workbench import Point, Workbench

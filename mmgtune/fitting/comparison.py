@@ -13,8 +13,8 @@ from ..backends import STATES
 from ..displayed import inert
 from ..documents import finite
 from ..evaluation import TrialRecord, records
+from ..motions import Motion
 from ..objective import Objective
-from ..simulation import Motion
 from ..trial import Trial
 from .least_squares import fit_offsets
 from .problem import FitProblem

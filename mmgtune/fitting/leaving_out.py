@@ -31,11 +31,11 @@ from ..profile import ShipProfile
 from ..profile.doubts import Doubt, in_words
 from ..repeating import Repeated, document, repetitions
 from ..run_folders import MOTIONS
+from ..scores import L_MSE, TrialScore, by_manoeuvre, improvement, off_by, score_of
 from ..stated import IndexComparison, compare_stated
 from ..tables import write_table
 from ..threads import blas_on_one_thread
 from ..trial import Coverage, Trial, TrialSet, oddities
-from ..validation import L_MSE, TrialScore, by_manoeuvre, improvement, off_by, score_of
 from .comparison import TrialComparison
 from .extending import held_words, settled, tune_trials
 from .folder import motions_table

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..model import Model
-from ..simulation import breakdown
+from ..motions import breakdown
 from .orders import together
 
 STEP = np.radians(5.0)

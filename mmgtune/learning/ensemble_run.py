@@ -28,7 +28,7 @@ from ..networks.ensemble import Ensemble, EnsemblePredictor, Part
 from ..networks.feedforward import Layers, Standards
 from ..options.choice import must_be
 from ..options.learning import EnsembleOptions
-from ..validation import TrialScore
+from ..scores import TrialScore
 from .choosing import Single
 from .ensemble import EnsembleAim, MemberStandards, Trainable, first_member
 from .keeping import Kept

@@ -11,6 +11,7 @@ from ..arrays import FloatArray
 from ..documents import finite_values, write_json
 from ..errors import must_be_a
 from ..files import path_of, refuse_existing
+from ..motions import simulate_trials
 from ..networks import (
     Ensemble,
     EnsemblePredictor,
@@ -24,9 +25,8 @@ from ..objective import spread
 from ..predictor import Predictor, as_predictor
 from ..resources import MODEL
 from ..run_folders import CHECKPOINTS
-from ..simulation import simulate
+from ..scores import score, summary
 from ..trial import Trial
-from ..validation import score, summary
 from .choosing import pieces_of
 from .ensemble_run import LearnedEnsemble
 from .hybrid_run import LearnedHybrid
@@ -176,7 +176,7 @@ def drawn(
                 "members": [
                     _motion(motion.states[every])
                     for model in models
-                    for motion in simulate(model, [of])
+                    for motion in simulate_trials(model, [of])
                     if not motion.diverged
                 ],
             }

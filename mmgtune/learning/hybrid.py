@@ -16,8 +16,8 @@ from ..model import Model
 from ..networks.hybrid import HybridLanes
 from ..networks.motion import SIDES, mirror
 from ..networks.residual import Ranges, ResidualWeights, seen
+from ..scores import L_MSE, by_manoeuvre, score
 from ..trial import Trial
-from ..validation import L_MSE, by_manoeuvre, score
 from .choosing import Chooser, Single, Squares, from_origin, pieces_of, squares_of
 from .gains import Runs, relative
 from .samples import Samples

@@ -24,8 +24,8 @@ from ..options.choice import must_be
 from ..options.learning import HybridOptions
 from ..predictor import as_predictor
 from ..profile import ShipProfile
+from ..scores import TrialScore, score
 from ..trial import Trial
-from ..validation import TrialScore, score
 from .choosing import pieces_of
 from .gains import Gain, Trained, curve_of, gains_of
 from .hybrid import HybridAim, ResidualLoss, first_residual, ranges_of

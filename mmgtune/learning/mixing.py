@@ -31,8 +31,8 @@ from ..profile import ShipProfile
 from ..profile.changing import joined
 from ..provenance import made_by
 from ..resources import MODEL
+from ..scores import L_MSE, by_manoeuvre, score
 from ..trial import Trial, TrialSet
-from ..validation import L_MSE, by_manoeuvre, score
 from .choosing import pieces_of
 
 RESULT = "mixture.json"

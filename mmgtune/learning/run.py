@@ -22,8 +22,8 @@ from ..networks.recurrent import Scales, Weights
 from ..options.choice import must_be
 from ..options.learning import LearnOptions
 from ..predictor import Predictor
+from ..scores import TrialScore, score
 from ..trial import Trial
-from ..validation import TrialScore, score
 from .aims import RecurrentAim
 from .choosing import pieces_of
 from .keeping import Kept

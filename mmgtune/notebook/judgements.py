@@ -58,7 +58,7 @@ def validation(result: Validation) -> View:
 def _validated(result: Validation) -> Mapping[str, list[Line]]:
     """Trials, or windows of them, as measured and as each model has them."""
     found: dict[str, list[Line]] = {one.id: [measured(one)] for one in result.pieces}
-    from ..simulation import motions
+    from ..motions import motions
 
     for model in result.profiles:
         for run in motions(model.predictor, result.pieces):

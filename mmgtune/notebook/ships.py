@@ -16,9 +16,9 @@ from .view import Line, Row, View
 
 if TYPE_CHECKING:
     from ..evaluation import TrialRecord
+    from ..motions import Motion
     from ..profile import ShipProfile
     from ..simulating import Simulated
-    from ..simulation import Motion
     from ..trial import IndexTrial, Trial, TrialSet
 
 FIRST = ("advance_m", "tactical_diameter_m", "overshoot_1_deg")

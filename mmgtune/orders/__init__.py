@@ -15,7 +15,7 @@ from ..backends import get_ready_backend
 from ..errors import parts_of
 from ..given import ShipGiven, ship_of
 from ..model import Model
-from ..simulation import Motion, sized
+from ..motions import Motion, sized
 from .helmsmen import Helmsman, SpiralOrder, Straight, TurningOrder, Weave, ZigzagOrder, in_radians
 from .ordering import order_by_order, serves
 from .possible import possible_approach

@@ -17,8 +17,8 @@ from ..errors import OptionError, Problem, brief, kind_of, must_be_a, reason
 from ..inputs import Role
 from ..limits import TRIAL_SAMPLES
 from ..model import Model
+from ..motions import Motion
 from ..profile import ShipProfile
-from ..simulation import Motion
 from .helmsmen import Helmsman, is_number, positive
 
 FINE = 0.01

@@ -9,12 +9,12 @@ from dataclasses import dataclass, replace
 from ..arrays import FloatArray
 from ..inputs import INPUTS
 from ..model import Model
+from ..motions import as_trial
 from ..options.planning import KINDS
 from ..orders import Helmsman, Sailing, SpiralOrder, Straight, TurningOrder, Weave, ZigzagOrder, run_manoeuvres
 from ..predicting.asked import Approach
 from ..profile import ShipProfile
 from ..simulating import turn_name, zigzag_name
-from ..simulation import as_trial
 from ..stated import no_reverse
 from ..trial import Trial
 from ..trial.schema import MOTION

@@ -18,9 +18,9 @@ from ..hooks import Hooks
 from ..made_from import identity_of, make_provenance
 from ..options import LeaveOutOptions, ParticleOptions, PosteriorOptions
 from ..profile import ShipProfile, tuned
+from ..scores import window_scores
 from ..threads import blas_on_one_thread
 from ..trial import Trial
-from ..validation import window_scores
 from .run import posterior
 
 

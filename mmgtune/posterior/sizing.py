@@ -18,8 +18,8 @@ from ..displayed import Brief
 from ..fitting.journal import remembered
 from ..hooks import Hooks
 from ..manoeuvres import manoeuvre_kind
+from ..motions import track_if_whole
 from ..predictor import PhysicsPredictor, cases_from
-from ..simulation import track_if_whole
 from ..trial import Trial
 from ..units import DEG
 from .local import Mode, Windowed, find_mode, particles_about

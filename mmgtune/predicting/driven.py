@@ -14,12 +14,12 @@ from ..errors import OptionError, TrialError
 from ..evaluation import Measured, TrialRecord
 from ..inputs import INPUTS
 from ..manoeuvres.summary import indices_of
+from ..motions import Motion
 from ..orders import sample_of
 from ..predictor import Predictor, cases_from, draught_of, portions, predicted
-from ..simulation import Motion
+from ..scores import window_scores
 from ..stated import no_reverse
 from ..trial import Trial
-from ..validation import window_scores
 from .asked import Approach, actuators_of, hold_reached, profile_behind
 from .order_list import OrderList
 from .reading import Values, of_records

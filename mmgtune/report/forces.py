@@ -31,7 +31,7 @@ class Ship:
         """The motion with X and Y [N] and N [N m] of the model, as they are where nothing is known of the water."""
         import numpy as np
 
-        from ..simulation import breakdown
+        from ..motions import breakdown
 
         if self.model is None or not all(name in motion for name in self.model.inputs):
             return motion

@@ -18,9 +18,9 @@ from mmgtune.fitting import FitOptions, fit
 from mmgtune.measures import distance_measures, reference_of
 from mmgtune.metrics import METRICS
 from mmgtune.model import Model
+from mmgtune.motions import simulate_trials
 from mmgtune.networks import save_network
 from mmgtune.profile import parse_profile, with_effects
-from mmgtune.simulation import simulate
 from mmgtune.trial import TrialSet, load_trials
 from tests.networks.made import network
 
@@ -30,7 +30,7 @@ def test_metrics_are_those_of_the_fit_and_of_the_measures(ship, data):
     found = measure(Model(ship), list(data.trials.values()), list(METRICS))[0]
     fitted = fit(ship, data, FitOptions(method="least-squares", starts=1))
     J = {one.trial.id: one.J["before"] for one in fitted.compared}
-    for trial, motion in zip(data.trials.values(), simulate(ship, list(data.trials.values())), strict=True):
+    for trial, motion in zip(data.trials.values(), simulate_trials(ship, list(data.trials.values())), strict=True):
         values = found[trial.id]
         assert values["J"] == pytest.approx(J[trial.id], rel=1e-9)
         for name, value in distance_measures(trial.motion, motion.states, reference_of(trial.motion)).items():
@@ -44,7 +44,7 @@ def test_metrics_are_those_of_the_fit_and_of_the_measures(ship, data):
 def test_a_model_has_no_error_on_its_own_trials(ship, data):
     own = [
         replace(trial, **{name: motion.channel(name) for name in ("x", "y", "psi", "u", "v_m", "r")})
-        for trial, motion in zip(data.trials.values(), simulate(ship, list(data.trials.values())), strict=True)
+        for trial, motion in zip(data.trials.values(), simulate_trials(ship, list(data.trials.values())), strict=True)
     ]
     (found,) = measure(Model(ship), own, list(METRICS))
     assert {"advance", "tactical_diameter"} <= set(found["turn_p35"])

@@ -8,8 +8,8 @@ from mmgtune.diagnose import DiagnoseOptions
 from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.workbench import make_workbench
 from mmgtune.fitting.least_squares import fit_offsets
+from mmgtune.motions import simulate_trials
 from mmgtune.profile import tuned
-from mmgtune.simulation import simulate
 from mmgtune.trial import Trial, load_trials
 from tests.diagnose.sensors import NOISE, logged
 
@@ -33,7 +33,7 @@ def runs(profile, seed, turn, weave):
     ):
         start = {"x": zero, "y": zero, "psi": zero + k, "u": zero + 3.0, "v_m": zero, "r": zero}
         trial = Trial(f"run_{k}", "suzaku", "", "generated", t, **start, n=zero + 1.7, delta=np.radians(delta))
-        (motion,) = simulate(ship, [trial], integrator=Integrator("rk4"))
+        (motion,) = simulate_trials(ship, [trial], integrator=Integrator("rk4"))
         found.append(logged(trial, motion, rng, GOOD))
     return found
 

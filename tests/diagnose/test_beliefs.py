@@ -12,8 +12,8 @@ from mmgtune.diagnose.intervals import estimates
 from mmgtune.diagnose.linear import Tuned, linearise
 from mmgtune.diagnose.workbench import Point, make_workbench
 from mmgtune.model import Model
+from mmgtune.motions import simulate_trials
 from mmgtune.profile import load_profile, tuned
-from mmgtune.simulation import simulate
 from mmgtune.trial import load_trials
 from tests.diagnose.sensors import logged
 
@@ -27,7 +27,7 @@ def sailed():
     off = {name: profile.value(name) * (1.0 + 0.04 * rng.standard_normal()) for name in names}
     trials = [load_trials("suzaku").trials[name] for name in ("turn_p35", "turn_m20", "zigzag_20")]
     made = []
-    for trial, motion in zip(trials, simulate(tuned(profile, off, {}, {}, "made"), trials), strict=True):
+    for trial, motion in zip(trials, simulate_trials(tuned(profile, off, {}, {}, "made"), trials), strict=True):
         made.append(logged(trial, motion, rng))
     return profile, made
 

@@ -25,8 +25,8 @@ from mmgtune.diagnose.unseen import Unseen
 from mmgtune.diagnose.verdict import Leading
 from mmgtune.diagnose.workbench import Point, make_workbench
 from mmgtune.effects import Visited, effects, find_effect
+from mmgtune.motions import simulate_trials
 from mmgtune.profile import load_profile, tuned
-from mmgtune.simulation import simulate as simulate_trials
 from mmgtune.trial import load_trials, visited_by
 from mmgtune.units import DEG
 from tests.diagnose.sensors import logged

@@ -18,8 +18,8 @@ from mmgtune.diagnose.refit import Refit
 from mmgtune.diagnose.wording import parameters_in_words
 from mmgtune.effects import effects, find_effect
 from mmgtune.errors import OptionError
+from mmgtune.motions import simulate_trials
 from mmgtune.profile import load_profile, parse_profile, with_effects
-from mmgtune.simulation import simulate as simulate_trials
 from mmgtune.trial import load_trials
 from tests.command import run
 from tests.diagnose.sensors import logged

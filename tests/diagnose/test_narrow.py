@@ -11,8 +11,8 @@ from mmgtune.diagnose.base_fit import base_fit
 from mmgtune.diagnose.narrow import narrow_box
 from mmgtune.diagnose.search import Found
 from mmgtune.diagnose.workbench import make_workbench
+from mmgtune.motions import simulate_trials
 from mmgtune.profile import tuned
-from mmgtune.simulation import simulate
 from mmgtune.trial import load_trials
 from tests.diagnose.sensors import logged
 
@@ -24,7 +24,7 @@ def test_a_resistance_beyond_the_box_is_said(suzaku, monkeypatch, times, said):
     rng = np.random.default_rng(1)
     trials = [load_trials("suzaku").trials[name] for name in ("turn_p35", "turn_m20", "zigzag_20")]
     made = []
-    for trial, motion in zip(trials, simulate(fouled, trials, integrator=Integrator("rk4")), strict=True):
+    for trial, motion in zip(trials, simulate_trials(fouled, trials, integrator=Integrator("rk4")), strict=True):
         made.append(logged(trial, motion, rng))
     bench = make_workbench(profile, made, DiagnoseOptions())
     base = base_fit(bench)

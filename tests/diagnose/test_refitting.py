@@ -16,8 +16,8 @@ from mmgtune.diagnose.screening import scores
 from mmgtune.diagnose.search import _as_given as as_given
 from mmgtune.diagnose.workbench import make_workbench
 from mmgtune.fitting.least_squares import LeastSquaresResult
+from mmgtune.motions import simulate_trials
 from mmgtune.profile import load_profile, with_effects
-from mmgtune.simulation import simulate
 from mmgtune.trial import load_trials
 from tests.diagnose.sensors import logged
 
@@ -33,7 +33,7 @@ def first_look(hidden, effects):
     rng = np.random.default_rng(7)
     trials = [load_trials("suzaku").trials[name] for name in ("turn_p35", "turn_m20", "zigzag_20")]
     ship = with_effects(profile, hidden, "made") if hidden else profile
-    made = [logged(trial, motion, rng) for trial, motion in zip(trials, simulate(ship, trials), strict=True)]
+    made = [logged(trial, motion, rng) for trial, motion in zip(trials, simulate_trials(ship, trials), strict=True)]
     options = DiagnoseOptions(effects=effects)
     known = known_causes(profile, made, options)
     bench = make_workbench(profile, made, options, [name for one in known for name in one.names])

@@ -7,9 +7,9 @@ import pytest
 
 from mmgtune.diagnose import DiagnoseOptions, diagnose
 from mmgtune.diagnose.separate import holds, menu
+from mmgtune.motions import simulate_trials as sailed
 from mmgtune.orders import run_manoeuvre
 from mmgtune.profile import load_profile, with_effects
-from mmgtune.simulation import simulate as sailed
 from mmgtune.trial import load_trials
 from tests.diagnose.sensors import logged
 from tests.hidden.cases import Case, null

@@ -16,8 +16,8 @@ from mmgtune.diagnose.noise import ChannelNoise
 from mmgtune.diagnose.search import Found
 from mmgtune.diagnose.unseen import Beside, Unseen
 from mmgtune.diagnose.workbench import Point, Workbench, make_workbench
+from mmgtune.motions import simulate_trials
 from mmgtune.profile import load_profile, with_effects
-from mmgtune.simulation import simulate as simulate_trials
 from mmgtune.trial import load_trials
 from tests.diagnose.sensors import NOISE, logged
 from tests.hidden.cases import of_runs

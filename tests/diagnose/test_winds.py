@@ -17,9 +17,9 @@ from mmgtune.diagnose.winds import ALONG, other_winds
 from mmgtune.diagnose.workbench import TOLERANCE, make_workbench
 from mmgtune.effects import find_effect
 from mmgtune.model import Model
+from mmgtune.motions import simulate_trials
 from mmgtune.physics.quantities import Surroundings
 from mmgtune.profile import load_profile, with_effects
-from mmgtune.simulation import simulate
 from mmgtune.trial import load_trials
 from mmgtune.units import DEG
 from tests.diagnose.sensors import logged
@@ -36,7 +36,7 @@ def sailed():
     windy = with_effects(profile, {"wind": {"speed": 8.0, "direction": 40.0 * DEG, **OFF}}, "made")
     trials = [load_trials("suzaku").trials[name] for name in ("turn_p35", "turn_m20", "zigzag_20")]
     made = []
-    for trial, motion in zip(trials, simulate(windy, trials), strict=True):
+    for trial, motion in zip(trials, simulate_trials(windy, trials), strict=True):
         made.append(logged(trial, motion, rng))
     return profile, made
 
@@ -120,7 +120,7 @@ def test_gusts_are_no_unknown_cause(sailed):
     for trial in trials:
         gusts = 1.0 + 0.08 * np.sqrt(2.0) * np.sin(0.04 * trial.t + rng.uniform(0.0, 6.0))
         air = {"wind_speed": 8.0 * gusts, "wind_dir": np.full(trial.n_samples, 40.0 * DEG)}
-        (motion,) = simulate(windy, [replace(trial, extra=air)])
+        (motion,) = simulate_trials(windy, [replace(trial, extra=air)])
         made.append(logged(trial, motion, rng))
     bench, point, found = wind_on(profile, made)
     assert found["effects.wind.direction"] == pytest.approx(40.0 * DEG, abs=8.0 * DEG)

@@ -71,14 +71,14 @@ from pathlib import Path
 import numpy as np
 from mmgtune.model import Model
 from mmgtune.profile import load_profile, with_effects
-from mmgtune.simulation import simulate, as_trial
+from mmgtune.motions import simulate_trials, as_trial
 from mmgtune.backends import Integrator
 from mmgtune.trial import load_trials, write_trial
 ship = load_profile("suzaku")
 pulled = with_effects(ship, {"tug": {"pull": 3000.0}}, "a test")
 rng = np.random.default_rng(5)
 trials = list(load_trials("suzaku").trials.values())[:4]
-for trial, motion in zip(trials, simulate(pulled, trials, integrator=Integrator("rk4")), strict=True):
+for trial, motion in zip(trials, simulate_trials(pulled, trials, integrator=Integrator("rk4")), strict=True):
     noisy = motion.states + rng.normal(size=motion.states.shape) * [0.3, 0.3, 0.002, 0.02, 0.02, 0.0005]
     run = as_trial(ship, dataclasses.replace(motion, states=noisy))
     write_trial(run, Path(sys.argv[1]) / f"{run.id}.parquet")

@@ -10,10 +10,10 @@ from mmgtune.backends import Integrator, pad
 from mmgtune.circumstances import notes_on
 from mmgtune.effects import FactorsEffect, effects, find_effect
 from mmgtune.model import Model
+from mmgtune.motions import simulate_trials
 from mmgtune.physics.quantities import UNKNOWN, State
 from mmgtune.physics.regressions.stawave1 import added_resistance, from_ahead, height_limit
 from mmgtune.profile import load_profile, parse_profile, with_effects
-from mmgtune.simulation import simulate
 from mmgtune.trial import load_trials, windows
 from tests.backends.test_agree import zigzag_like
 from tests.runs import measured, states
@@ -74,8 +74,8 @@ def test_a_current_that_grows_is_one_measured_to_grow():
     measured = replace(trial, extra=noted)
     logs = {one.id: one.extra for one in (measured, *windows(measured, 100.0))}
     for part in (trial, windows(trial, 100.0)[2]):
-        (expected,) = simulate(by_log, [replace(part, extra=logs[part.id])], integrator=Integrator("rk4"))
-        (found,) = simulate(with_effects(ship, {"current": tide}, "test"), [part], integrator=Integrator("rk4"))
+        (expected,) = simulate_trials(by_log, [replace(part, extra=logs[part.id])], integrator=Integrator("rk4"))
+        (found,) = simulate_trials(with_effects(ship, {"current": tide}, "test"), [part], integrator=Integrator("rk4"))
         np.testing.assert_allclose(found.states, expected.states, rtol=1e-6, atol=1e-6)
 
 

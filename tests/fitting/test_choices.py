@@ -9,7 +9,7 @@ from mmgtune.errors import OptionError
 from mmgtune.fitting import FitOptions, LeaveOutOptions, fit, leave_out, make_problem, plan_leave_out
 from mmgtune.fitting.leaving_out import leaving_out
 from mmgtune.fitting.setting import make_setting
-from mmgtune.simulation import as_trial, simulate
+from mmgtune.motions import as_trial, simulate_trials
 from mmgtune.trial import TrialSet, write_trial
 from tests.command import run
 
@@ -103,7 +103,7 @@ def test_nothing_is_left_out_where_nothing_would_be_left(suzaku, clean):
 
 
 def test_trials_of_the_profile_itself_leave_nothing_to_tune(suzaku, clean):
-    made = [as_trial(suzaku.profile, one) for one in simulate(suzaku, list(clean.trials.values())[:3])]
+    made = [as_trial(suzaku.profile, one) for one in simulate_trials(suzaku, list(clean.trials.values())[:3])]
     found = fit(suzaku.profile, made, QUICK)
     assert found.J_before == found.J == 0.0
     assert found.certificate.starts_agreeing == found.certificate.starts

@@ -11,11 +11,10 @@ from mmgtune.cli.fit import next_steps
 from mmgtune.fitting import fit
 from mmgtune.fitting.one_sided import coverage_notes, followers, tied
 from mmgtune.model import Model, Tie
+from mmgtune.motions import as_trial, simulate_trials
 from mmgtune.options import FitOptions, SimulateOptions
 from mmgtune.profile import load_profile, parse_profile, tuned
 from mmgtune.simulating import simulate
-from mmgtune.simulation import as_trial
-from mmgtune.simulation import simulate as simulate_trials
 from mmgtune.trial import Coverage, TrialSet, load_trials
 
 BOTH = ("rudder.gamma_Rp", "rudder.gamma_Rn")

@@ -11,9 +11,9 @@ from mmgtune.fitting import FitOptions, LeaveOutOptions, fit, leave_out, make_pr
 from mmgtune.fitting.least_squares import _asked
 from mmgtune.fitting.weighing import weigh
 from mmgtune.model import Model
+from mmgtune.motions import as_trial
 from mmgtune.orders import TurningOrder, run_manoeuvre
 from mmgtune.profile import load_profile, tuned
-from mmgtune.simulation import as_trial
 from mmgtune.stated import UNREACHED, residuals, simulated
 from mmgtune.trial import TrialSet, load_trials, write_trial
 from mmgtune.trial.index_trial import IndexTrial, Stated

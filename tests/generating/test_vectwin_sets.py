@@ -9,9 +9,9 @@ from mmgtune.errors import OptionError, OutputError
 from mmgtune.generating import make_trials, sets, writing
 from mmgtune.generating.pilot import Berthing, Joystick
 from mmgtune.model import Model
+from mmgtune.motions import simulate_trials
 from mmgtune.options import MakeOptions
 from mmgtune.profile import load_profile
-from mmgtune.simulation import simulate
 from mmgtune.trial import check_trials, load_trials
 from mmgtune.units import DEG
 from tests.command import run
@@ -85,7 +85,7 @@ def test_the_truth_is_the_profile(folder, name):
     """Simulated with the logged inputs and the logged wind, trials come out as they are."""
     ship = load_profile("vectwin_3m")
     trials = [*load_trials(folder / name / "truth").trials.values()]
-    for trial, motion in zip(trials, simulate(ship, trials), strict=True):
+    for trial, motion in zip(trials, simulate_trials(ship, trials), strict=True):
         assert np.abs(motion.states - trial.motion).max() < 1e-9
 
 
@@ -166,7 +166,7 @@ def test_the_ship_at_full_scale_is_her_own_profile(tmp_path):
     true, shown = load_trials(tmp_path / "test-r" / "truth"), load_trials(tmp_path / "test-r")
     assert true.ship == ship.id == "vectwin_150m"
     trials = [*true.trials.values()]
-    for trial, motion in zip(trials, simulate(ship, trials), strict=True):
+    for trial, motion in zip(trials, simulate_trials(ship, trials), strict=True):
         assert np.abs(motion.states - trial.motion).max() < 1e-8
     assert next(iter(shown.trials.values())).noise["r"] == pytest.approx(0.01 * DEG)
     assert max(one.u[0] for one in trials) <= 0.3 * 50.0**0.5

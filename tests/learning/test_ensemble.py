@@ -26,9 +26,9 @@ from mmgtune.networks.feedforward import dense, evaluated
 from mmgtune.options.learning import EnsembleOptions
 from mmgtune.profile import load_profile
 from mmgtune.report import render
+from mmgtune.scores import window_scores
 from mmgtune.trial import TrialSet
 from mmgtune.validating import validate
-from mmgtune.validation import window_scores
 
 from .sailed import NOISE, SHIP, noisy, sailed
 

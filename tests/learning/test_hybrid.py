@@ -26,8 +26,8 @@ from mmgtune.report import render
 from mmgtune.report.common import rms_errors
 from mmgtune.report.hybrid_page import HybridRecord, build
 from mmgtune.report.wording import shown
+from mmgtune.scores import L_MSE
 from mmgtune.trial import load_trials
-from mmgtune.validation import L_MSE
 
 pytestmark = pytest.mark.xdist_group("hybrids")
 
@@ -168,8 +168,8 @@ def test_resumed_equals_not_interrupted(tmp_path, trained):
 
 def test_where_nothing_is_missing_it_says_no_gain():
     """Trials simulated by the profile itself: whatever a network adds is wrong."""
-    from mmgtune.simulation import as_trial
-    from mmgtune.simulation import simulate as simulated
+    from mmgtune.motions import as_trial
+    from mmgtune.motions import simulate_trials as simulated
     from mmgtune.trial import TrialSet
 
     data = load_trials("suzaku")

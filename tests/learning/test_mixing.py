@@ -12,11 +12,11 @@ from mmgtune.cli import app
 from mmgtune.cli.learn_mixture import notes, summary
 from mmgtune.errors import OptionError, OutputError
 from mmgtune.learning import learn_mixture, write_learned
+from mmgtune.motions import as_trial, simulate_trials
 from mmgtune.networks import Hybrid, Mixture, MixturePredictor, Network, load_network, save_network
 from mmgtune.networks.hybrid import silent
 from mmgtune.options import MixtureOptions
 from mmgtune.profile import load_profile
-from mmgtune.simulation import as_trial, simulate
 from mmgtune.trial import TrialSet, load_trials, write_trial
 from tests.command import run
 from tests.networks.made import network
@@ -38,7 +38,7 @@ def made(parts):
     plant = MixturePredictor(Mixture(silent(parts[0]), (parts[1],), 0.4))
     found = {}
     for trial in list(load_trials("suzaku").trials.values())[:3]:
-        found[trial.id] = replace(as_trial(plant, simulate(plant, [trial])[0]), id=trial.id, manoeuvre="turning")
+        found[trial.id] = replace(as_trial(plant, simulate_trials(plant, [trial])[0]), id=trial.id, manoeuvre="turning")
     return TrialSet(found, tuple(found), (), ship="suzaku")
 
 
@@ -54,12 +54,12 @@ def test_where_no_mixture_helps_the_better_part_is_kept(parts):
     """Trials that the model of forces sailed itself."""
     profile, net = parts
     trial = next(iter(load_trials("suzaku").trials.values()))
-    own = as_trial(MixturePredictor(Mixture(silent(profile), (net,), 1e-9)), simulate(profile, [trial])[0])
+    own = as_trial(MixturePredictor(Mixture(silent(profile), (net,), 1e-9)), simulate_trials(profile, [trial])[0])
     data = TrialSet({own.id: own}, (own.id,), (), ship="suzaku")
     assert isinstance(learn_mixture(profile, net, data, FEW).model, Hybrid)
     alone = as_trial(
         MixturePredictor(Mixture(silent(profile), (net,), 0.5)),
-        simulate(MixturePredictor(Mixture(silent(profile), (net.member(0),), 1.0 - 1e-12)), [trial])[0],
+        simulate_trials(MixturePredictor(Mixture(silent(profile), (net.member(0),), 1.0 - 1e-12)), [trial])[0],
     )
     data = TrialSet({alone.id: alone}, (alone.id,), (), ship="suzaku")
     assert isinstance(learn_mixture(profile, net.member(0), data, FEW).model, Network)
@@ -86,7 +86,7 @@ def test_several_networks_drive_her_together(parts, other):
     net = replace(net, facts={"trials": {"licence": "MIT", "sources": ["generated"], "learned_from": ["x_2"]}})
     plant = MixturePredictor(Mixture(silent(profile), (net, other), 0.4))
     trial = next(iter(load_trials("suzaku").trials.values()))
-    sailed = replace(as_trial(plant, simulate(plant, [trial])[0]), id="x_1", manoeuvre="turning")
+    sailed = replace(as_trial(plant, simulate_trials(plant, [trial])[0]), id="x_1", manoeuvre="turning")
     result = learn_mixture(profile, [net, other], sailed, FEW)
     assert result.share == 0.4
     assert result.network is None
@@ -112,7 +112,7 @@ def test_where_one_of_several_networks_does_best_alone_it_is_kept(parts, other):
     one = other.member(1)
     plant = MixturePredictor(Mixture(silent(profile), (one,), 1.0 - 1e-12))
     trial = next(iter(load_trials("suzaku").trials.values()))
-    sailed = as_trial(plant, simulate(plant, [trial])[0])
+    sailed = as_trial(plant, simulate_trials(plant, [trial])[0])
     result = learn_mixture(profile, (net, one), sailed, FEW)
     assert (result.share, result.network) == (1.0, 2)
     assert isinstance(result.model, Network)
@@ -190,7 +190,7 @@ def test_the_command_takes_several_networks_and_then_trials(parts, other, tmp_pa
     save_network(replace(other, step=0.5), tmp_path / "fine.safetensors")
     plant = MixturePredictor(Mixture(silent(parts[0]), (parts[1], other), 0.4))
     for trial in list(load_trials("suzaku").trials.values())[:2]:
-        sailed = replace(as_trial(plant, simulate(plant, [trial])[0]), id=trial.id, manoeuvre="turning")
+        sailed = replace(as_trial(plant, simulate_trials(plant, [trial])[0]), id=trial.id, manoeuvre="turning")
         write_trial(sailed, tmp_path / "sailed" / f"{trial.id}.parquet")
     mixture = ("learn", "mixture", "suzaku", "net.safetensors")
     done = run(*mixture, "other", "sailed", "--share", "0.2,0.4", "--out", "mixed", cwd=tmp_path)

@@ -15,13 +15,13 @@ from mmgtune.learning.reading import mass_matrix, read_network
 from mmgtune.learning.samples import samples_of
 from mmgtune.learning.selecting import select
 from mmgtune.model import Model
+from mmgtune.motions import breakdown
 from mmgtune.networks.hybrid import Hybrid, HybridPredictor
 from mmgtune.networks.residual import SIDES, ResidualWeights, _layers
 from mmgtune.physics.quantities import UNKNOWN
 from mmgtune.physics.rigid_body import accelerations
 from mmgtune.predictor import as_predictor
 from mmgtune.profile import load_profile, tuned, with_effects
-from mmgtune.simulation import breakdown
 from mmgtune.trial import load_trials, windows
 
 MEMORY, STEP, WIDTH = 13.0, 1.0, 64

@@ -24,9 +24,9 @@ from mmgtune.learning.training import Plan, Trainer
 from mmgtune.networks import NetworkPredictor, load_network
 from mmgtune.options.learning import HybridOptions, LearnOptions
 from mmgtune.report import render
+from mmgtune.scores import L_MSE, by_manoeuvre
 from mmgtune.trial import load_trials
 from mmgtune.validating import validate
-from mmgtune.validation import L_MSE, by_manoeuvre
 
 pytestmark = pytest.mark.xdist_group("networks")
 
@@ -71,8 +71,8 @@ def test_the_score_that_chose_is_that_of_validate(trained, tmp_path):
     write_learned(trained, tmp_path)
     data = load_trials("suzaku")
     chosen = {trial.id for trial in trained.task.split.choose}
+    from mmgtune.scores import L_MSE, by_manoeuvre, score
     from mmgtune.trial import TrialSet
-    from mmgtune.validation import L_MSE, by_manoeuvre, score
 
     network = load_network(tmp_path / "model.safetensors")
     pieces = TrialSet({id: data.trials[id] for id in chosen}, tuple(chosen), ()).in_windows(60.0).trials.values()

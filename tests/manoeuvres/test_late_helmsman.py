@@ -7,10 +7,10 @@ import pytest
 
 from mmgtune.manoeuvres import criteria_of, indices_of, zigzag_indices
 from mmgtune.model import Model
+from mmgtune.motions import as_trial, track_of
 from mmgtune.orders import ZigzagOrder, run_manoeuvre
 from mmgtune.profile import load_profile
 from mmgtune.repeating import repeat
-from mmgtune.simulation import as_trial, track_of
 
 from .made import DEG
 

@@ -12,8 +12,8 @@ from mmgtune.backends import pad
 from mmgtune.errors import NetworkError, OptionError, TrialError
 from mmgtune.networks import EnsemblePredictor, load_network, named_ship, save_network
 from mmgtune.predictor import Paired, Predictor, Steerable, Uncertain
+from mmgtune.scores import score
 from mmgtune.trial import load_trials
-from mmgtune.validation import score
 
 from .made import ensemble
 from .test_predicting import a_case, predict

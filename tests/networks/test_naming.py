@@ -106,9 +106,9 @@ def test_a_silent_hybrid_is_in_the_current_that_its_profile_is_in():
 
     import numpy as np
 
+    from mmgtune.motions import simulate_trials
     from mmgtune.networks.hybrid import HybridPredictor, silent
     from mmgtune.profile import with_effects
-    from mmgtune.simulation import simulate
 
     ship = with_effects(load_profile("suzaku"), {"current": {"measured": 1.0}}, "a test")
     trial = load_trials("suzaku").trials["turn_p35"]
@@ -116,6 +116,6 @@ def test_a_silent_hybrid_is_in_the_current_that_its_profile_is_in():
     at = {"current_speed_at_1m": still, "current_dir_at_1m": nothing}
     at |= {"current_speed_at_30m": nothing, "current_dir_at_30m": nothing}
     trial = replace(trial, extra={**trial.extra, **at})
-    (alone,), (beside,) = simulate(ship, [trial]), simulate(HybridPredictor(silent(ship)), [trial])
+    (alone,), (beside,) = simulate_trials(ship, [trial]), simulate_trials(HybridPredictor(silent(ship)), [trial])
     np.testing.assert_allclose(beside.states, alone.states, atol=1e-9)
     assert np.ptp(alone.states[:, 0]) > 100.0

@@ -8,11 +8,11 @@ from scipy.integrate import solve_ivp
 
 from mmgtune.backends import Integrator, pad
 from mmgtune.model import Model
+from mmgtune.motions import as_trial, simulate_trials
 from mmgtune.physics.frame import to_ship
 from mmgtune.physics.mmg import carried, rates
 from mmgtune.physics.quantities import Force, State
 from mmgtune.profile import load_profile, with_effects
-from mmgtune.simulation import as_trial, simulate
 from mmgtune.trial import Trial, load_trials
 from tests.runs import measured, states, turn
 
@@ -168,14 +168,14 @@ def test_a_trial_with_columns_of_the_current(following, ship):
     )  # fmt: skip
     east = {"current_speed": np.full(len(t), 0.5), "current_dir": np.full(len(t), np.pi / 2.0)}
     flowing = replace(trial, v_m=still + 0.5, extra=east)
-    (drifted,) = simulate(following, [flowing], backend="numpy")
-    (straight,) = simulate(Model(ship), [trial], backend="numpy")
+    (drifted,) = simulate_trials(following, [flowing], backend="numpy")
+    (straight,) = simulate_trials(Model(ship), [trial], backend="numpy")
     assert drifted.channel("y") - straight.channel("y") == pytest.approx(0.5 * t, abs=1e-3)
     both = Model(with_effects(ship, {"current": {"north": 0.2, "measured": 1.0}}, "a test"))
-    (measured_counts,) = simulate(both, [flowing], backend="numpy")
+    (measured_counts,) = simulate_trials(both, [flowing], backend="numpy")
     assert np.array_equal(measured_counts.states, drifted.states)
-    (stands_in,) = simulate(both, [trial], backend="numpy")
-    (alone,) = simulate(with_effects(ship, {"current": {"north": 0.2}}, "a test"), [trial], backend="numpy")
+    (stands_in,) = simulate_trials(both, [trial], backend="numpy")
+    (alone,) = simulate_trials(with_effects(ship, {"current": {"north": 0.2}}, "a test"), [trial], backend="numpy")
     assert np.array_equal(stands_in.states, alone.states)
 
 
@@ -187,7 +187,7 @@ def test_forces_along_a_run_are_those_through_the_water(following, ship):
     steady = with_effects(ship, {"current": {"north": 0.8 * np.cos(2.0), "east": 0.8 * np.sin(2.0)}}, "a test")
     written = []
     for model, run in ((following, flowing), (Model(steady), trial)):
-        (motion,) = simulate(model, [run], backend="numpy")
+        (motion,) = simulate_trials(model, [run], backend="numpy")
         written.append(as_trial(model.profile, motion, with_forces=True))
     assert written[0].extra["hull_Y"] == pytest.approx(written[1].extra["hull_Y"], rel=1e-9, abs=1e-6)
     assert written[0].extra["hull_N"] == pytest.approx(written[1].extra["hull_N"], rel=1e-9, abs=1e-6)

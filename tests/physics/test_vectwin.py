@@ -9,11 +9,11 @@ import pytest
 
 from mmgtune.backends import Integrator, pad
 from mmgtune.model import Model
+from mmgtune.motions import breakdown
 from mmgtune.physics.actuation import actuated, approach_rate, moved
 from mmgtune.physics.rudder.kang import AMIDSHIPS, stalling_normal_force
 from mmgtune.physics.stochastic_wind import deviation, sigma_of, wind_step
 from mmgtune.profile import load_profile
-from mmgtune.simulation import breakdown
 from mmgtune.units import DEG
 from tests.runs import states
 

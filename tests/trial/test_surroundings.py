@@ -37,7 +37,7 @@ from mmgtune.effects import FlowEffect, Parameter
 from mmgtune.model import Model
 from mmgtune.physics.frame import to_ship
 from mmgtune.profile import Coefficient, Section, load_profile
-from mmgtune.simulation import simulate
+from mmgtune.motions import simulate_trials
 from mmgtune.trial import load_trials
 
 class Stream(NamedTuple):
@@ -57,9 +57,9 @@ if __name__ == "__main__":
     trial = load_trials("suzaku").trials["turn_p35"]
     flowing = replace(trial, extra={"stream": 0.5 + 0.1 * np.sin(trial.t / 30.0)})
     rk4 = Integrator("rk4")
-    a, b = (simulate(model, [flowing], integrator=rk4, backend=name)[0].states for name in ("compiled", "numpy"))
+    a, b = (simulate_trials(model, [flowing], integrator=rk4, backend=name)[0].states for name in ("compiled", "numpy"))
     assert np.allclose(a, b, rtol=1e-9, atol=1e-9), "back ends differ"
-    still = simulate(model, [trial], integrator=rk4)[0].states
+    still = simulate_trials(model, [trial], integrator=rk4)[0].states
     drifted = (a - still)[-1, 1]
     assert drifted > 0.3 * trial.duration, drifted
     print("drifts")

@@ -11,9 +11,9 @@ from mmgtune.model import Model
 from mmgtune.objective import spread
 from mmgtune.predictor import PhysicsPredictor, Prediction
 from mmgtune.profile import load_profile
+from mmgtune.scores import L_MSE, score
 from mmgtune.trial import windows
 from mmgtune.units import DEG
-from mmgtune.validation import L_MSE, score
 from mmgtune.voyages.scores import cases_for, score_windows, windows_of
 from mmgtune.voyages.spread import Spread
 from mmgtune.voyages.table import Gathered

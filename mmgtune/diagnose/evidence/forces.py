@@ -11,10 +11,10 @@ from scipy.interpolate import CubicSpline
 from ...arrays import FloatArray
 from ...backends import LaneModel
 from ...model import Model
+from ...motions import breakdown
 from ...physics.prime import force_unit, moment_unit
 from ...physics.quantities import HELD, Forces, Ship, Surroundings
 from ...physics.rigid_body import accelerations
-from ...simulation import breakdown
 from ...trial import Trial, surroundings
 from ...trial.kinematics import white_noise
 from .smoothing import Smoothed, smooth

@@ -10,10 +10,10 @@ from mmgtune.diagnose.evidence import residual_forces
 from mmgtune.diagnose.evidence.forces import measured, needed_force, time_since_order
 from mmgtune.diagnose.evidence.smoothing import smooth
 from mmgtune.model import Model
+from mmgtune.motions import simulate_trials
 from mmgtune.physics.quantities import Surroundings
 from mmgtune.physics.rigid_body import accelerations
 from mmgtune.profile import with_effects
-from mmgtune.simulation import simulate
 from mmgtune.trial import load_trials, surroundings
 from tests.diagnose.evidence.conftest import WIND
 from tests.diagnose.evidence.made import DEG, NOISE, make_trials, turn_order, zigzag_order
@@ -86,7 +86,7 @@ def test_what_was_measured_around_the_ship_acts_as_in_the_simulation(suzaku):
             "depth": 40.0 - 0.05 * t,
         }
         logged = replace(still, extra=extra)
-        (motion,) = simulate(ship, [logged], integrator=Integrator("rk4", 4), backend="numpy")
+        (motion,) = simulate_trials(ship, [logged], integrator=Integrator("rk4", 4), backend="numpy")
         trial = replace(logged, **dict(zip(STATES, motion.states.T, strict=True)))
         found = residual_forces(Model(ship), trial)
         assert np.all(np.sqrt(np.mean(found.prime**2, axis=0)) < 2e-4)
@@ -99,7 +99,7 @@ def test_water_carried_along_in_shallow_water_is_set_in_motion_too(suzaku):
     depth = 1.5 * suzaku.profile.value("particulars.d")
     ship = with_effects(suzaku.profile, {"shallow-water": {"depth": depth, "inertia": 0.8}}, "a test")
     deep = make_trials(suzaku, noise=0.0)[1]
-    (motion,) = simulate(ship, [deep], integrator=Integrator("rk4", 4), backend="numpy")
+    (motion,) = simulate_trials(ship, [deep], integrator=Integrator("rk4", 4), backend="numpy")
     trial = replace(deep, **dict(zip(STATES, motion.states.T, strict=True)))
     found = residual_forces(Model(ship), trial)
     assert np.all(np.sqrt(np.mean(found.prime**2, axis=0)) < 2e-4)

@@ -7,7 +7,7 @@ import pytest
 
 from mmgtune.backends import Integrator
 from mmgtune.diagnose.evidence import short_horizon
-from mmgtune.simulation import simulate
+from mmgtune.motions import simulate_trials
 
 RK4 = Integrator("rk4")
 
@@ -43,7 +43,7 @@ def test_windows_cover_every_sample_but_the_first(suzaku, plain):
 
 def test_one_long_window_is_a_simulation_from_the_smoothed_state(suzaku, plain):
     found = short_horizon(suzaku, plain[:1], window=1e4)
-    whole = simulate(suzaku, plain[:1])[0].states - plain[0].motion
+    whole = simulate_trials(suzaku, plain[:1])[0].states - plain[0].motion
     # Both run through the whole trial; they differ by the noise of the first sample and what grows of it.
     assert np.sqrt(np.mean((found.residuals[0] - whole)[1:, 3:] ** 2)) < 0.05
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from mmgtune.simulation import trial_indices
+from mmgtune.motions import trial_indices
 from mmgtune.trial import check_trial, load_trials, windows, write_trial
 from mmgtune.trial.describe import describe
 from tests.trial.made import made

@@ -98,7 +98,7 @@ class Motion(Plotted):
         return self.controls[:, of].mean(axis=1) if of else np.zeros(len(self.t))
 
 
-def simulate(
+def simulate_trials(
     ship: Predictor | ShipProfile | Model,
     trials: Sequence[Trial],
     *,
@@ -108,7 +108,7 @@ def simulate(
     """Simulate each trial from its first measured state with its measured inputs.
 
     integrator  "rk4", or "euler" at the trial's own step as Suyama et al. 2023 do
-    backend     "compiled" or "numpy"; they agree to rounding
+    backend     one of ``options.BACKENDS``; they agree to rounding
     -> trial by trial, and of each all members
     Never raises for a run that diverges: it is marked so.
     """

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from mmgtune.backends import STATES
+from mmgtune.motions import simulate_trials
 from mmgtune.objective import default_scales, spread
-from mmgtune.simulation import simulate
+from mmgtune.scores import L_MSE, TrialScore, by_manoeuvre, by_run, improvement, score
 from mmgtune.trial import write_trial
-from mmgtune.validation import L_MSE, TrialScore, by_manoeuvre, by_run, improvement, score
 from tests.command import run
 from tests.fitting.conftest import make_set
 
@@ -31,7 +31,7 @@ def test_both_measures_by_hand(suzaku):
     trials = list(make_set(suzaku, noise=1.0).trials.values())[:2]
     sigma = spread(trials)
     found = score(suzaku, trials, sigma)
-    for trial, motion, one in zip(trials, simulate(suzaku, trials), found, strict=True):
+    for trial, motion, one in zip(trials, simulate_trials(suzaku, trials), found, strict=True):
         difference = dict(zip(STATES, (motion.states - trial.motion)[1:].T, strict=True))
         squares = sum((difference[name] / sigma[name]) ** 2 for name in STATES)
         assert pytest.approx(np.mean(squares), rel=1e-9) == one.L_MSE
@@ -49,7 +49,7 @@ def test_a_gap_in_one_channel_leaves_the_others(suzaku):
     (found,) = score(suzaku, [replace(trial, x=x)], sigma)
     assert found.n_samples == whole.n_samples == trial.n_samples - 1
     assert found.counts == {**whole.counts, "x": trial.n_samples - 11}
-    (motion,) = simulate(suzaku, [trial])
+    (motion,) = simulate_trials(suzaku, [trial])
     lost = np.sum((motion.states - trial.motion)[50:60, 0] ** 2)
     assert pytest.approx(whole.J - lost / 83.0**2, rel=1e-12) == found.J
     parts = {name: whole.squares[name] / whole.counts[name] for name in STATES}
