@@ -47,7 +47,7 @@ class Diagnosis(Answer):
 
     def sentence(self) -> str:
         """The answer in words a captain understands."""
-        return saying.sentence(self)
+        return saying.said(self).sentence
 
     def _assumptions(self) -> list[dict[str, Any]]:
         """What the profile assumes, and what the search believed beforehand."""
@@ -140,6 +140,8 @@ class Diagnosis(Answer):
             "interrupted": self.interrupted,
             "verdict": self.verdict,
             "sentence": self.sentence(),
+            "headline": saying.said(self).headline,
+            "explained": saying.said(self).explained,
             "warnings": list(self.warnings),
             "coverage": self.coverage.to_dict() if self.coverage else {},
             "record": self.record.to_dict() if self.record else None,

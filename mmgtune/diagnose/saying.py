@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from .gain import MOST
 from .leftover import change_in_words, in_words
@@ -18,21 +19,55 @@ LARGE = 10.0
 """Variance beyond noise from which it is told as a multiple of the noise."""
 
 
-def sentence(answer: Answer) -> str:
+class Said(NamedTuple):
+    """An answer in pieces: what stands alone at the head of a page, what explains it, the cause that would be most of
+    what cannot be named, if one is, and what is said beside."""
+
+    first: str
+    why: str = ""
+    leading: str = ""
+    beside: str = ""
+
+    @property
+    def headline(self) -> str:
+        """The answer without what explains it."""
+        return " ".join(filter(None, (self.first, self.leading)))
+
+    @property
+    def explained(self) -> str:
+        """What explains the headline, and what is said beside."""
+        return " ".join(filter(None, (self.why, self.beside)))
+
+    @property
+    def sentence(self) -> str:
+        """All of it."""
+        return " ".join(filter(None, self))
+
+
+def said(answer: Answer) -> Said:
     """What is the same in all trials, what differs between voyages, and what all trials together say."""
     told = [
         f"{one.sentence} That accounts for {percent(one.explained)} of the error that one value for all leaves."
         for one in answer.between
     ]
     if answer.verdict == "found" and not answer.causes:
-        return " ".join(["No cause that is the same in all voyages shows.", *told])
-    together = [answer.together.sentence] if answer.together else []
-    first = [answer.contradicted] if answer.contradicted and answer.verdict == "unexplained" else []
-    return " ".join([*first, _of_causes(answer), *told, *together])
+        return Said(" ".join(["No cause that is the same in all voyages shows.", *told]))
+    more = [*told, *([answer.together.sentence] if answer.together else [])]
+    if answer.verdict != "unexplained":
+        return Said(" ".join([_of_causes(answer), *more]))
+    unknown = _of_the_unknown(answer)
+    pieces = [answer.contradicted, unknown.first] if answer.contradicted else [unknown.first]
+    first, *why = [*pieces, unknown.why]
+    return Said(first, " ".join(filter(None, why)), unknown.leading, " ".join(more))
+
+
+def _where(answer: Answer) -> str:
+    """On which trials the gain was measured."""
+    return "on trials not used" if answer.gain.held_out == "test" else f"on {answer.gain.words}"
 
 
 def _of_causes(answer: Answer) -> str:
-    """What is the same in all trials, in words."""
+    """What is the same in all trials, in words, where that can be named."""
     if answer.verdict == "interrupted":
         known = ", ".join(dict.fromkeys(cause.tag for cause in answer.causes))
         told = (
@@ -43,9 +78,6 @@ def _of_causes(answer: Answer) -> str:
         return f"The search was stopped before its end, so nothing can be concluded. {told}"
     if answer.verdict == "none":
         return _of_none(answer)
-    where = "on trials not used" if answer.gain.held_out == "test" else f"on {answer.gain.words}"
-    if answer.verdict == "unexplained":
-        return _of_the_unknown(answer, where)
     named = _of_the_named(answer)
     if all(cause.effect is None for cause in answer.causes):
         before, after = answer.chi2
@@ -53,7 +85,7 @@ def _of_causes(answer: Answer) -> str:
             f"{named} With that put right no other cause shows: the error of the re-tuned model falls from "
             f"{math.sqrt(before):.2g} to {math.sqrt(after):.2g} times the noise of the measurements."
         )
-    gained = f"{named} {_gained(answer, 'it' if len(answer.causes) == 1 else 'them', where)}"
+    gained = f"{named} {_gained(answer, 'it' if len(answer.causes) == 1 else 'them', _where(answer))}"
     if answer.doubted:
         gained = f"{gained} {answer.doubted.sentence}"
     if not any(cause.runs for cause in answer.causes):
@@ -95,47 +127,49 @@ def _of_none(answer: Answer) -> str:
     return " ".join(filter(None, parts))
 
 
-def _of_the_unknown(answer: Answer, where: str) -> str:
+_CANNOT_NAME = "Something is wrong that this program cannot name."
+
+
+def _of_the_unknown(answer: Answer) -> Said:
     """That something is wrong, the best that is known of it, and how much is left."""
     tags = " + ".join(dict.fromkeys(cause.tag for cause in answer.causes))
     if answer.unclear and answer.tells_a_part:
         summed = " + ".join(dict.fromkeys(tag for tag, _ in answer.contributions))
-        leading = f" {answer.leading.sentence}" if answer.leading else ""
-        return (
-            f"Something is wrong that this program cannot name. The best partial explanation, {summed}, removes "
-            f"{_explained(answer)} of the error it was found on, but {answer.unclear}: it stands for "
-            f"something else, or for more than these trials can tell apart.{leading}"
+        best = (
+            f"The best partial explanation, {summed}, removes {_explained(answer)} of the error it was found on, but "
+            f"{answer.unclear}: it stands for something else, or for more than these trials can tell apart."
         )
+        return Said(_CANNOT_NAME, best, answer.leading.sentence if answer.leading else "")
     if answer.tells_a_part and not answer.leftover.noticed:
         them = "it was" if len(answer.causes) == 1 else "they were"
         share = answer.gain.share_removed[0]
         held_out = f"leaves {percent(1.0 - share)} of it" if share > 0.0 else "errs more"
-        return (
-            f"Something is wrong that this program cannot name. The best of what is known, {tags}, would "
-            f"remove {_explained(answer)} of the error {them} found on, but the model with it {held_out} {where}."
+        best = (
+            f"The best of what is known, {tags}, would remove {_explained(answer)} of the error {them} found on, but "
+            f"the model with it {held_out} {_where(answer)}."
         )
+        return Said(_CANNOT_NAME, best)
     if answer.misses_test:
-        return (
+        return Said(
             "Something is wrong that this program does not know: the re-tuned model fits the trials looked at, "
             f"but leaves an error {answer.gain.left:,.3g} times the noise of the sensors on trials kept for "
             "testing, more than coefficients known no better would."
         )
     if answer.of_a_sensor:
         told = "; ".join(change_in_words(*one) for one in answer.leftover.changed.items())
-        return f"Something is wrong with a sensor, and no known cause shows: {told}."
+        return Said(f"Something is wrong with a sensor, and no known cause shows: {told}.")
     excess = answer.leftover.unknown
     left = (
         f"{_of_noise(excess)} of the measurements"
         if excess < LARGE
         else f"an error {math.sqrt(1.0 + excess):,.0f} times the noise of the sensors"
     )
-    told = (
-        f"The best of what is known, {tags}, removes {_explained(answer)} of the error and leaves {left}."
-        if answer.tells_a_part
-        else f"the re-tuned model leaves {left}, and no known cause accounts for it."
-    )
-    offsets = "".join(f" {in_words(*one)}." for one in answer.leftover.offsets.items())
-    return f"Something is wrong that this program does not know{'.' if answer.tells_a_part else ':'} {told}{offsets}"
+    offsets = [f"{in_words(*one)}." for one in answer.leftover.offsets.items()]
+    unknown = "Something is wrong that this program does not know"
+    if answer.tells_a_part:
+        best = f"The best of what is known, {tags}, removes {_explained(answer)} of the error and leaves {left}."
+        return Said(f"{unknown}.", " ".join([best, *offsets]))
+    return Said(f"{unknown}: the re-tuned model leaves {left}, and no known cause accounts for it.", " ".join(offsets))
 
 
 def _of_the_named(answer: Answer) -> str:

@@ -94,7 +94,7 @@ def build(record: DiagnosisRecord) -> Page:
     return Page(
         title=f"{ship}: diagnosis",
         eyebrow=f"{ship} · {_WORDS.get(data['verdict'], clean(data['verdict']))}",
-        verdict=_headline(data)[0],
+        verdict=clean(data.get("headline") or data["sentence"]),
         banners=generated_banner(data["trials"]),
         warnings=(
             *(("The search was interrupted; this is what was known by then.",) if data.get("interrupted") else ()),
@@ -104,18 +104,6 @@ def build(record: DiagnosisRecord) -> Page:
         cards=_cards(record),
         sections=tuple(section for section in sections if section is not None),
     )
-
-
-def _headline(data: Mapping[str, Any]) -> tuple[str, str]:
-    """The answer; where nothing can be named that alone, and what comes closest to it for later, but for one cause that
-    is most of it."""
-    sentence = clean(data["sentence"])
-    if data["verdict"] != "unexplained":
-        return sentence, ""
-    first, _, rest = sentence.partition(". ")
-    leading = data["unexplained"].get("leading")
-    most = clean(leading["sentence"]) if leading else ""
-    return " ".join(filter(None, (f"{first}." if rest else first, most))), rest.removesuffix(f" {most}")
 
 
 def _held_out(gain: Mapping[str, Any]) -> str:
@@ -237,7 +225,7 @@ def _causes(data: Mapping[str, Any]) -> Section | None:
         blocks += unexplained.traces(data)
         return Section("causes", "Causes", tuple(blocks)) if blocks else None
     if not data["causes"]:
-        closest = _headline(data)[1]
+        closest = clean(data.get("explained") or "")
         blocks += [Prose((closest,))] if closest else []
         blocks.append(
             Prose(("None of these can be relied on while something unknown is at work besides.",), tone="warning")

@@ -667,6 +667,32 @@ def test_a_cause_that_is_alone_and_slight_is_a_trace(suzaku, degrees, before, tr
     assert [one.slight for one in brought] == ([] if trace else [False])
 
 
+def test_what_is_most_of_what_cannot_be_named_stands_in_the_headline():
+    """An abbreviation in the first sentence cut the headline in two when it was found by its full stop."""
+    most = SimpleNamespace(sentence="Most of it, approx. 81 %, would be antenna.")
+    seen = SimpleNamespace(
+        between=(),
+        verdict="unexplained",
+        causes=(SimpleNamespace(tag="antenna"),),
+        contributions=(("antenna", None), ("hull-term", None)),
+        explained_share=0.99,
+        together=SimpleNamespace(sentence="All trials together say more."),
+        contradicted="",
+        unclear="one of them is a trace",
+        tells_a_part=True,
+        leading=most,
+    )
+    said = saying.said(seen)
+    assert said.headline == f"{said.first} {most.sentence}"
+    assert said.explained == f"{said.why} All trials together say more."
+    assert said.why.startswith("The best partial explanation, antenna + hull-term, removes 99 %")
+    assert said.sentence == f"{said.first} {said.why} {most.sentence} All trials together say more."
+    seen.leading, seen.together, seen.contradicted = None, None, "Logs contradict each other, approx. by 3 deg."
+    said = saying.said(seen)
+    assert said.headline == seen.contradicted
+    assert said.explained.startswith("Something is wrong that this program cannot name. The best")
+
+
 @pytest.mark.parametrize(
     ("removed", "most", "said"),
     [

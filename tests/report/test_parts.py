@@ -218,17 +218,6 @@ def test_what_explains_most_alone_need_not_be_the_answer() -> None:
     assert labels == ["wind (speed, direction)", "current (4 values, of each run)", "current (4 values)"]
 
 
-def test_what_is_most_of_what_cannot_be_named_stands_in_the_headline() -> None:
-    most = "Most of it, 81 %, would be antenna: position and velocities are those of an antenna 112 m aft of midship."
-    rest = "The best partial explanation, antenna + hull-term, removes 99 %."
-    data = {"verdict": "unexplained", "sentence": f"It cannot be named. {rest} {most}"}
-    leads = data | {"unexplained": {"leading": {"sentence": most}}}
-    assert diagnosis_page._headline(leads) == (f"It cannot be named. {most}", rest)
-    alone = data | {"sentence": f"It cannot be named. {rest}", "unexplained": {"leading": None}}
-    assert diagnosis_page._headline(alone) == ("It cannot be named.", rest)
-    assert diagnosis_page._headline(alone | {"unexplained": {}}) == ("It cannot be named.", rest)  # of earlier versions
-
-
 def test_nothing_found_shows_the_model_it_speaks_of() -> None:
     t = np.arange(3.0)
     still = {name: np.zeros(3) for name in ("x", "y", "psi", "u", "v_m", "r")}
