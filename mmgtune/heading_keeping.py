@@ -155,7 +155,6 @@ def kept(predictor: Predictor, ship: ShipProfile, gains: FloatArray, options: He
     Orders are given at every step from each member's own motion.
     """
     assert isinstance(predictor, Fleet)  # looked at before
-    assert ship.approach is not None
     inputs = [INPUTS[name] for name in predictor.inputs]
     rudders = [k for k, one in enumerate(inputs) if one.role == "rudder"]
     gears = _gears(ship, [inputs[k].name for k in rudders])
@@ -168,7 +167,7 @@ def kept(predictor: Predictor, ship: ShipProfile, gains: FloatArray, options: He
     steps = max(1, round(options.duration / (predictor.own_step or options.step)))
     h, goal = options.duration / steps, options.turn * DEG
     controls = np.zeros((members, n * n, len(inputs)))
-    controls[:, :, [k for k, one in enumerate(inputs) if one.role == "propeller"]] = ship.approach.n
+    controls[:, :, [k for k, one in enumerate(inputs) if one.role == "propeller"]] = ship.require_approach().n
     run = predictor.under_way(np.broadcast_to(state, (members, n * n, 6)), controls)
     still, rudder = np.array([UNKNOWN._replace(wind_known=1.0)]), np.zeros((members, n * n))
     score = np.zeros((members, n * n))

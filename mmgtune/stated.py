@@ -180,15 +180,13 @@ def physics_of(predictor: Predictor) -> PhysicsPredictor:
 
 
 def _march(model: Model, theta: FloatArray, trials: Sequence[IndexTrial], backend: str) -> list[FloatArray]:
-    approach = model.profile.approach
     n_candidates = theta.shape[1]
 
     def lanes(values: Sequence[Any]) -> Any:
         return np.repeat(np.array(values), n_candidates)
 
-    # ``possible`` has seen to it that what is not given is in the profile.
-    speed = [one.approach_speed or approach.speed for one in trials]  # type: ignore[union-attr]
-    n = [one.n or approach.n for one in trials]  # type: ignore[union-attr]
+    speed = [one.approach_speed or model.profile.require_approach().speed for one in trials]
+    n = [one.n or model.profile.require_approach().n for one in trials]
     checks = [np.inf if one.check is None else one.check for one in trials]
     astern = [n_0 if one.astern is None else one.astern for one, n_0 in zip(trials, n, strict=True)]
     orders = Orders(

@@ -193,8 +193,8 @@ def new(
         c.print_json({**facts, "options": options.to_dict(), **amounts, "doubts": doubts})
         return
     c.show(f"wrote {file}: {ship.name}, {len(ship.names())} coefficients, {len(ship.targets)} of them free in a fit")
-    assert ship.approach is not None  # particulars have a speed
-    speed, n = ship.approach.speed / KNOT, ship.approach.n * 60.0
+    approach = ship.require_approach()
+    speed, n = approach.speed / KNOT, approach.n * 60.0
     c.show(f"approach at {speed:.4g} kn with {n:.4g} rpm")
     c.say_doubts(ship.doubts())
 

@@ -42,8 +42,7 @@ class Joystick:
         port_at, stbd_at = (grid.ravel() for grid in np.meshgrid(*angles, indexing="ij"))
         apart = port_at <= stbd_at + 1e-9  # no rudder is turned towards the other
         self.port, self.stbd = port_at[apart], stbd_at[apart]
-        assert model.profile.approach is not None
-        n = np.full(len(self.port), model.profile.approach.n)
+        n = np.full(len(self.port), model.profile.require_approach().n)
         controls = np.column_stack([n, self.port, self.stbd, 0.0 * n])
         self.X = np.empty((len(SPEEDS), len(n)))
         self.N = np.empty_like(self.X)

@@ -65,7 +65,7 @@ def sail(
     as in Wakita et al., section 5.1.
     """
     profile, inputs = model.profile, model.arrangement.inputs
-    assert profile.approach is not None  # every ship that trials are made of has one
+    approach = profile.require_approach()
     n_lanes = start.shape[1]
     steps = max(1, round(sample / step))
     h = sample / steps
@@ -78,7 +78,7 @@ def sail(
     low, high, rate = (np.array([[getattr(one, name)] for one in actuators]) for name in ("low", "high", "rate"))
 
     def driven(moved: FloatArray) -> FloatArray:
-        rows = np.full((len(inputs), n_lanes), profile.approach.n)  # type: ignore[union-attr]
+        rows = np.full((len(inputs), n_lanes), approach.n)
         rows[moving] = moved
         return rows
 

@@ -71,8 +71,7 @@ def _berthing(
 def _standard(
     model: Model, rng: np.random.Generator, seconds: FloatArray, headings: FloatArray
 ) -> tuple[Commander, FloatArray]:
-    approach = model.profile.approach
-    assert approach is not None
+    approach = model.profile.require_approach()
     angle = np.array(ANGLES) * DEG
     none = np.full(len(ANGLES), np.inf)
     both = np.concatenate([angle, angle])

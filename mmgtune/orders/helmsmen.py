@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from numbers import Integral, Real
 from typing import Protocol
 
@@ -109,8 +109,8 @@ class ZigzagOrder:
     heading: float
     at: float = 20.0
     legs: int = 5
-    _side: float = 0.0
-    _given: int = 0
+    _side: float = field(default=0.0, init=False, repr=False, compare=False)
+    _given: int = field(default=0, init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Raises OptionError for angles that are 0 or must be degrees, and for what makes no sense."""
@@ -145,7 +145,7 @@ class SpiralOrder:
     hold: float
     steps: int = 9
     at: float = 20.0
-    _t: float = 0.0
+    _t: float = field(default=0.0, init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Raises OptionError for an angle that is 0 or must be degrees, and for what makes no sense."""

@@ -98,17 +98,8 @@ class Sailing:
 
     def approach(self, profile: ShipProfile) -> tuple[float, float]:
         """Speed [m/s] and revolutions [1/s] of the approach.  Raises OptionError where they are not known."""
-        if (self.speed is None or self.n is None) and profile.approach is None:
-            raise OptionError(
-                Problem(
-                    "the approach condition is not known",
-                    str(profile.path or profile.id),
-                    "the profile has no [approach] section",
-                    "add one, or give speed and rpm",
-                )
-            )
-        U_0 = self.speed if self.speed is not None else profile.approach.speed  # type: ignore[union-attr]
-        n_0 = self.n if self.n is not None else profile.approach.n  # type: ignore[union-attr]
+        U_0 = self.speed if self.speed is not None else profile.require_approach().speed
+        n_0 = self.n if self.n is not None else profile.require_approach().n
         if not U_0 > 0.0:
             raise OptionError(Problem(f"the approach speed is {U_0:g} m/s", "speed", fix="give a speed above 0"))
         return U_0, n_0

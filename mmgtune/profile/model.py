@@ -10,7 +10,7 @@ from typing import Any
 
 from ..components import ARRANGEMENTS, Arrangement, Component, split_name
 from ..displayed import Brief, Displayed
-from ..errors import Problem, ProfileError, among, must_be_a
+from ..errors import OptionError, Problem, ProfileError, among, must_be_a
 from ..inputs import INPUTS
 from ..physics.actuation import moved
 from ..units import DIMENSIONLESS
@@ -142,6 +142,13 @@ class ShipProfile(Displayed):
         """What moves an input: its own actuator, else the steering gear for a rudder; None where orders act at once."""
         gear = self.steering_gear.actuator if self.steering_gear and INPUTS[name].role == "rudder" else None
         return self.actuators.get(name, gear)
+
+    def require_approach(self) -> Approach:
+        """Speed and revolutions of the approach.  Raises OptionError where the profile has none."""
+        if self.approach is None:
+            what, why = "the approach condition is not known", "the profile has no [approach] section"
+            raise OptionError(Problem(what, str(self.path or self.id), why, "add one, or give speed and rpm"))
+        return self.approach
 
     def __hash__(self) -> int:
         """The same of profiles that are equal."""
