@@ -27,9 +27,16 @@ LISTED = 3
 WEIGHED = ("particulars.",)
 """What has leeway that a user can weigh or work out: mass and inertia, with what moves along of the water."""
 
-DRIVES, IMPLAUSIBLE = ("propeller.", "wake."), 0.25
-"""Coefficients of thrust, which balances resistance, and the share of its pre-determined value by which one may have
-moved: beyond that the whole balance is where no ship's is, and none of its numbers is told as hers."""
+IMPLAUSIBLE = 0.25
+"""Share of thrust, or of the flow to the propeller, by which one of their coefficients may have moved it: beyond that
+the balance with resistance is where no ship's is, and none of its numbers is told as hers."""
+
+TAKEN_OFF = ("propeller.t_P", "wake.w_P0")
+"""Fractions that are taken off a whole: a change from 0.06 to 0.08 takes a fiftieth off the thrust."""
+
+IN_DRIFT, OTHER_SHAPE = "wake.", 1.0
+"""Coefficients of how the wake changes as the ship drifts, and the share of its pre-determined value by which one may
+have moved: straight ahead, where resistance is told, they do not act."""
 
 SURE = 3.0
 """Standard errors by which it must be further than that: a dozen targets are looked at."""
@@ -152,8 +159,17 @@ def _targets(moved: Sequence[Retuned]) -> list[Retuned]:
 
 def _astray(moved: Sequence[Retuned]) -> bool:
     """Whether what drives the ship moved so far that resistance may only have followed."""
-    drive = [one for one in moved if one.name.startswith(DRIVES)]
-    return any(abs(one.after - one.before) > IMPLAUSIBLE * abs(one.before) for one in drive)
+    return any(_off_drive(one) for one in moved)
+
+
+def _off_drive(one: Retuned) -> bool:
+    """Whether a coefficient moved thrust, or the flow to the propeller, to where no ship's is."""
+    change = abs(one.after - one.before)
+    if one.name in TAKEN_OFF:
+        return change > IMPLAUSIBLE * abs(1.0 - one.before)
+    if one.name.startswith(IN_DRIFT):
+        return change > OTHER_SHAPE * abs(one.before)
+    return one.name.startswith("propeller.") and change > IMPLAUSIBLE * abs(one.before)
 
 
 def besides(moved: Sequence[Retuned]) -> str:
@@ -177,8 +193,8 @@ def _together(moved: Sequence[Retuned]) -> str:
     if not followed or not _astray(moved):
         return ""
     return (
-        f"Re-tuning moved {_changes(followed)}, but what drives the ship by more than {100.0 * IMPLAUSIBLE:.0f} % "
-        "with it: these trials do not tell one from the other, so that neither is named."
+        f"Re-tuning moved {_changes(followed)}, but what drives the ship with it, to where no ship's is: "
+        "these trials do not tell one from the other, so that neither is named."
     )
 
 

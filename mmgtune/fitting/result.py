@@ -209,8 +209,8 @@ class FitResult(Plotted):
 
     def verdict_of_stated(self) -> str:
         """What became of the stated indices, in one sentence."""
-        tests = [one for one in self.stated if one.role == "test"]
-        chosen = tests or [one for one in self.stated if one.role == "tune"]
+        tests = [one for one in self.stated if one.role != "tune"]
+        chosen = tests or self.stated
         before, after = (float(np.sqrt(np.mean([one.off(k) ** 2 for one in chosen]))) for k in ("before", "after"))
         which = "not used for tuning" if tests else "it was tuned to"
         last = "." if tests else "; there are no test trials to confirm it."

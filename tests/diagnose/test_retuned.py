@@ -57,6 +57,10 @@ def test_words():
         ("wake.w_P0", 0.6, True),
         ("wake.w_P0", 0.7, False),
         ("wake.C_1", -0.1, False),
+        ("wake.C_1", 0.8, True),  # in drift alone
+        ("propeller.t_P", 0.62, True),  # a quarter of itself, but an eighth of thrust
+        ("propeller.t_P", 0.65, False),
+        ("propeller.k_0", 0.65, False),
         ("rudder.kappa", 0.9, True),
     ],
 )
@@ -77,7 +81,8 @@ def test_what_else_is_far_off_is_told_where_nothing_is_wrong():
     )
     drive = Retuned("wake.w_P0", "wake", "1", 0.5, 0.7, 0.01)
     assert far_off([moved(0.7, 0.01), drive]).startswith(
-        "Re-tuning moved resistance going straight (R_0) by +40 %, but what drives the ship by more than 25 % with it:"
+        "Re-tuning moved resistance going straight (R_0) by +40 %, but what drives the ship with it, to where no "
+        "ship's is: these trials do not tell one from the other"
     )
 
 

@@ -30,6 +30,7 @@ STRONG = {
     "rudder-offset": {"angle": 0.02},
     "governor-lag": {"time_constant": 40.0},
     "rpm-scale": {"factor": 1.03},
+    "thrust": {"factor": 0.9},
     "current": {"north": 0.2, "east": -0.1},
     "wind-drift": {"along": 0.02, "across": -0.005},
     "flap": {"factor": 0.9},

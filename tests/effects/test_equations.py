@@ -413,6 +413,11 @@ def test_factors_on_polynomials(numbers):
     assert {name[10:14] for name in found} == {"C_PY", "C_PN"}
     for name, value in found.items():
         assert value == pytest.approx(numbers[name] * (1.4 if "C_PY" in name else 0.7))
+    thrust = find_effect("thrust")
+    found = thrust.function(numbers, thrust.params(0.9))
+    assert {name: value / numbers[name] for name, value in found.items()} == pytest.approx(
+        {f"propeller.K_T{power}": 0.9 for power in range(4)}
+    )
     flap = find_effect("flap")
     for name, value in flap.function(numbers, flap.params(0.8)).items():
         assert name.startswith("rudder.flap[")

@@ -198,6 +198,7 @@ LADDER: dict[str, Draw] = {
         _degrees(_plain("rate_limit", (100.0, 30.0, 8.0, 3.5, 2.0))),
     ),
     "rpm-scale": _factor("factor", _motion(0.05)),
+    "thrust": _factor("factor", _motion(0.12)),
     "flap": _factor("factor", _motion(0.2)),
     "clock-offset": _signed("seconds", _motion(3.0)),
     "current": _vector(("north", "east"), _motion(0.15)),
@@ -244,7 +245,7 @@ LADDER: dict[str, Draw] = {
 }
 """By tag, the effect at five levels: below visible, hardly, small, typical, and well above."""
 
-DRAWN = [tag for tag in LADDER if tag not in ("water-log", "steady-force", "hull-asymmetry")]
+DRAWN = [tag for tag in LADDER if tag not in ("water-log", "steady-force", "hull-asymmetry", "thrust")]
 """Those that pairs and triples are drawn from: as when they were first drawn, so that results stay comparable."""
 
 

@@ -144,7 +144,7 @@ def propeller_and_rudder(s, u, v, r, n, delta):
     tip = 0.7 * np.pi * n * s.D_P
     square = u_P**2 + tip**2
     p = min(max(np.degrees(np.arctan2(u_P, tip)), -10.0), 40.0)
-    K_T = 3.31e-6 * p**3 - 3.72e-4 * p**2 - 2.60e-3 * p + 0.167
+    K_T = s.thrust * (3.31e-6 * p**3 - 3.72e-4 * p**2 - 2.60e-3 * p + 0.167)
     C_PY = -2.83e-5 * p**2 + 6.04e-4 * p - 1.28e-2
     C_PN = -2.48e-4 * p - 1.70e-3 if p < 20.0 else -1.86e-4 * p + 4.03e-3
     disc = 0.5 * s.rho * 0.25 * np.pi * s.D_P**2 * square

@@ -113,6 +113,7 @@ NULL: dict[str, dict[str, float]] = {
     "governor-lag": {"time_constant": 0.0},
     "engine-droop": {"share": 0.0},
     "rpm-scale": {"factor": 1.0},
+    "thrust": {"factor": 1.0},
     "flap": {"factor": 1.0},
     "clock-offset": {"seconds": 0.0},
     "current": {"north": 0.0, "east": 0.0, "north_rate": 0.0, "east_rate": 0.0},
@@ -181,6 +182,7 @@ def coefficients(ship: Mapping[str, float], effects: Parameters) -> np.void:
     p["governor_lag"] = e["governor-lag"]["time_constant"]
     p["engine_droop"] = e["engine-droop"]["share"]
     p["rpm_scale"], p["flap_scale"] = e["rpm-scale"]["factor"], e["flap"]["factor"]
+    p["thrust"] = e["thrust"]["factor"]
     p.update({f"current_{name}": value for name, value in e["current"].items()})
     p["wind_speed"], p["wind_direction"] = e["wind"]["speed"], e["wind"]["direction"]
     p["wave_force"], p["wave_direction"] = e["wave-drift"]["force"], e["wave-drift"]["direction"]
