@@ -109,3 +109,29 @@ def test_what_is_no_position(text):
     found = pair_in(pd.Series([text], dtype="string"))
     assert np.isnan(found["latitude"]).all()
     assert np.isnan(found["longitude"]).all()
+
+
+@pytest.mark.parametrize("sep", ["\t", ";", ","])
+def test_blanks_within_cells_divide_no_columns(tmp_path, sep):
+    """Dates and times, 5.0 P and 34.5 N: by blanks more of the fields were numbers, and the rudder lost its side."""
+    trial = turn()
+    columns = fixed(trial, (-33.5, -70.0001))
+    stamps = (pd.Timestamp("2026-05-04 08:00:00") + pd.to_timedelta(columns.pop("time"), unit="s")).strftime(
+        "%Y-%m-%d %H:%M:%S.0"
+    )
+    written = {
+        "Date/Time UTC": stamps,
+        "lat": [f"{abs(one):.9f} S" for one in columns["lat"]],
+        "lon": [f"{abs(one):.9f} W" for one in columns["lon"]],
+        "rudder": [f"{abs(one):.6f} {'S' if one > 0.0 else 'P'}" for one in columns["rudder"]],
+    }
+    log = write_csv(
+        tmp_path / "log.csv", {**written, **{k: v for k, v in columns.items() if k not in written}}, sep=sep
+    )
+    proposal = propose_map(log)
+    assert proposal.asks == proposal.problems == ()
+    assert "its cells say the side" in "; ".join(proposal.guesses["delta"].evidence)
+    back = imported(log, proposal.text)
+    assert np.abs(back.delta - trial.delta).max() < 1e-6
+    plain = one_column(tmp_path, {"time": trial.t, **columns})
+    assert np.abs(back.x - plain.x).max() < 1e-3

@@ -35,6 +35,8 @@ MOST_SIGNALS = 500
 """Names of signals that a column may hold."""
 _PATH = re.compile(r"[./_:]")
 """What divides the name of a signal."""
+HEAD, ALMOST = 20, 0.95
+"""Lines that names may stand in, and share of lines with as many fields from which a mark divides them."""
 MARKS = ("\t", ";", ",", "|", " ")
 SHOWN = {"\t": "tab", " ": "space"}
 _JAPANESE = re.compile("[\u3040-\u30ff\u4e00-\u9fff]")
@@ -426,6 +428,7 @@ def _separator(lines: Sequence[str]) -> tuple[str, str]:
     body = [line for line in lines if line.strip()]
     body = body[len(body) // 4 :][:120]
     best: tuple[float, str, str] = (-1.0, ",", ".")
+    divided_by_header = False
     for mark in MARKS:
         rows = [fields_of(line, mark) for line in body]
         counts = [len(row) for row in rows]
@@ -437,6 +440,12 @@ def _separator(lines: Sequence[str]) -> tuple[str, str]:
         comma = sum(_COMMA.fullmatch(cell) is not None for cell in cells)
         dated = sum(_DATED.fullmatch(cell) is not None for cell in cells)
         score = counts.count(usual) / len(counts) * (plain + comma + dated) / max(1, len(cells))
+        if mark == " " and divided_by_header:
+            break  # blanks may stand in cells, such as those of dates and of 5.0 P
+        named = any(
+            len(row) == usual and _names(row, usual) for row in (fields_of(line, mark) for line in lines[:HEAD])
+        )
+        divided_by_header = divided_by_header or (named and usual > 2 and counts.count(usual) > ALMOST * len(counts))
         if score > best[0] + 0.02:
             # Between commas only what is quoted has commas in it: numbers, or thousands of numbers with points.
             points = sum("." in cell and _NUMBER.fullmatch(cell) is not None for cell in cells) if mark == "," else 0
