@@ -119,8 +119,11 @@ class Trace:
         if self.alike:
             told = f"too little to be told: {' or '.join((self.cause.tag, *self.alike))}, or coefficients that are off"
             return f"There is a trace of one more, {told}. If the first: {self.words[0].lower()}{self.words[1:]}."
-        harmful = self.contribution.harmful
-        why = "held-out trials are told no better with it" if harmful else "it changes nothing that would be noticed"
+        why = "it changes nothing that would be noticed"
+        if self.contribution.like_hull:
+            why = "a hull further off than believed would explain it as well"
+        elif self.contribution.harmful:
+            why = "held-out trials are told no better with it"
         return f"There is a trace of one more, left out as {why}: {self.words[0].lower()}{self.words[1:]}."
 
     @property

@@ -23,6 +23,7 @@ from .hypotheses import Hypothesis
 from .intervals import Estimate, estimates
 from .leftover import Leftover
 from .linear import typical
+from .of_hull import AS_WELL, explained_by_hull
 from .refit import WORTH
 from .search import Found, step_of, without
 from .unseen import Beside, Unseen
@@ -79,6 +80,7 @@ class Contribution:
     whole    whether it removes nearly all of what the others leave, which no form of theirs would let it
     bends    whether it has values of each run, which bend to what is elsewhere, on held-out trials too
     slight   whether it is alone, of a size that is not worth speaking of, and nothing is noticed without it
+    of_hull  share of what it explains that a hull further off than believed would explain; see ``explained_by_hull``
 
     Where ``seen`` is enough to tell that it is no trace, the others are not asked for: NaN and empty.
     """
@@ -92,6 +94,12 @@ class Contribution:
     whole: bool = False
     bends: bool = False
     slight: bool = False
+    of_hull: float = 0.0
+
+    @property
+    def like_hull(self) -> bool:
+        """Whether it is not told from a hull further off than believed."""
+        return self.of_hull >= AS_WELL
 
     @property
     def harmful(self) -> bool:
@@ -113,6 +121,8 @@ class Contribution:
 
         Nor is it more than a trace where the others, a little off in their form, would leave as much.
         """
+        if self.like_hull:
+            return True
         if self.channels is None or self.indices is None:
             return self.slight
         if self.harmful:
@@ -203,6 +213,7 @@ def set_aside(
         brought = [_alone(found, unseen)]
     if len(brought) == 1 and not before.noticed and size_of(bench, found.final, found.causes[0]) < WORTH:
         brought = [replace(brought[0], slight=True)]
+    brought = _beside_hull(bench, found, fewer, brought)
     while any(one.unnoticed for one in brought):
         k = min((i for i, one in enumerate(brought) if one.unnoticed), key=lambda i: brought[i].seen)
         cause = found.causes[k]
@@ -210,8 +221,19 @@ def set_aside(
         found.final = fewer[k] if fewer else without(bench, found.final, cause)
         del found.causes[k]
         fewer = _fewer(bench, found)
-        brought = _brought(bench, found, fewer, unseen)
+        brought = _beside_hull(bench, found, fewer, _brought(bench, found, fewer, unseen))
     return traces, brought
+
+
+def _beside_hull(
+    bench: Workbench, found: Found, fewer: Sequence[Point], brought: Sequence[Contribution]
+) -> list[Contribution]:
+    """Contributions with what a hull further off would explain of each cause."""
+    points = fewer or [found.base] * len(found.causes)
+    return [
+        replace(one, of_hull=explained_by_hull(bench, cause, point, found.final.chi2))
+        for one, cause, point in zip(brought, found.causes, points, strict=True)
+    ]
 
 
 def size_of(bench: Workbench, point: Point, cause: Hypothesis) -> float:

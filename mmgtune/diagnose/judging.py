@@ -26,6 +26,7 @@ from .instead import instead_of_tuning
 from .intervals import Estimate, estimates
 from .leftover import Leftover, leftover
 from .legs import Difference
+from .of_hull import in_words as explained_in_words
 from .refit import WORTH, Refit, kin_among
 from .result import Diagnosis
 from .retuned import retuned, unlike_any
@@ -127,7 +128,14 @@ class Judge:
         theta, alone = (_targets_of(bench, point) for point in (found.final, found.base))
         coverage = Coverage.of(bench.trials, self.profile.L_pp)
         causes = _causes(bench, found, sizes, self.unseen.test)
-        notes = (*coverage_notes(bench.model, bench.targets, coverage), *_too_small(bench, found), *_deformed(causes))
+        asked = [*zip(found.causes, brought, strict=True), *((one.hypothesis, one.contribution) for one in self.traces)]
+        of_hull = [said for cause, one in asked if (said := explained_in_words(bench, cause.tag, one.of_hull))]
+        notes = (
+            *coverage_notes(bench.model, bench.targets, coverage),
+            *_too_small(bench, found),
+            *_deformed(causes),
+            *of_hull,
+        )
         return Diagnosis(
             profile=self.profile,
             options=self.options,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from ..phrases import listed
 from .gain import MOST
 from .leftover import change_in_words, in_words
 from .retuned import besides, far_off, weighed
@@ -107,7 +108,10 @@ def _of_none(answer: Answer) -> str:
             "open: inputs logged more often would tell more."
         )
     alone = ", ".join(dict.fromkeys(one.cause.tag for one in answer.traces if one.contribution.harmful))
+    like_hull = listed([one.cause.tag for one in answer.traces if one.contribution.like_hull])
     none = f"what alone shows, {alone}, tells held-out trials worse" if alone else "no cause that was looked for shows"
+    if like_hull:
+        none = f"what alone shows, {like_hull}, a hull further off than believed would explain as well"
     few = ""
     if answer.gain.too_few and answer.choice is None:
         few = (
