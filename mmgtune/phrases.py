@@ -10,6 +10,17 @@ def counted(amount: int, noun: str, plural: str = "") -> str:
     return f"{amount} {noun if amount == 1 else plural or noun + 's'}"
 
 
+def in_percent(part: float, counted: bool = False) -> str:
+    """A share of a whole in percent, "93 %": never below 0 nor, of what is measured, quite all.
+
+    Whole numbers, and tenths from 99.5 %, where they tell something.
+
+    counted  whether it is a share of things that were counted, of which all may be meant
+    """
+    part = 1.0 if counted and part >= 1.0 else min(max(part, 0.0), 0.999)
+    return f"{100.0 * part:.{0 if part < 0.995 or part == 1.0 else 1}f} %"
+
+
 def listed(words: Sequence[str], most: int | None = None) -> str:
     """Words as a phrase: "a, b and c"; "" for none.
 

@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ..phrases import listed
+from ..phrases import in_percent, listed
 from .gain import MOST
 from .leftover import change_in_words, in_words
 from .retuned import besides, far_off, weighed
 from .retuned import in_words as moved_in_words
 from .verdict import TOLD, Answer
-from .wording import percent
 
 IMITATED = 0.5
 """Share of the error removed below which it is said that a hull a little off is part of what it is counted from."""
@@ -48,7 +47,7 @@ class Said(NamedTuple):
 def said(answer: Answer) -> Said:
     """What is the same in all trials, what differs between voyages, and what all trials together say."""
     told = [
-        f"{one.sentence} That accounts for {percent(one.explained)} of the error that one value for all leaves."
+        f"{one.sentence} That accounts for {in_percent(one.explained)} of the error that one value for all leaves."
         for one in answer.between
     ]
     if answer.verdict == "found" and not answer.causes:
@@ -147,7 +146,7 @@ def _of_the_unknown(answer: Answer) -> Said:
     if answer.tells_a_part and not answer.leftover.noticed:
         them = "it was" if len(answer.causes) == 1 else "they were"
         share = answer.gain.share_removed[0]
-        held_out = f"leaves {percent(1.0 - share)} of it" if share > 0.0 else "errs more"
+        held_out = f"leaves {in_percent(1.0 - share)} of it" if share > 0.0 else "errs more"
         best = (
             f"The best of what is known, {tags}, would remove {_explained(answer)} of the error {them} found on, but "
             f"the model with it {held_out} {_where(answer)}."
@@ -192,7 +191,7 @@ def _of_the_named(answer: Answer) -> str:
 
 def _explained(answer: Answer) -> str:
     """How much of the error the causes explain, in words: what is told by less has a share below zero."""
-    return percent(answer.explained_share) if answer.explained_share > 0.0 else "none"
+    return in_percent(answer.explained_share) if answer.explained_share > 0.0 else "none"
 
 
 def _gained(answer: Answer, them: str, where: str) -> str:
@@ -213,7 +212,7 @@ def _gained(answer: Answer, them: str, where: str) -> str:
     imitated = share < IMITATED and answer.options.leeway > 0.0 and answer.choice is None
     hull = f", counted from a model whose hull may be {100.0 * answer.options.leeway:.3g} % off" if imitated else ""
     few = ", and runs are too few to be sure of that" if low < TOLD <= share else ""
-    return f"Adding {them} removes {percent(share)} of the error {where}{hull}{few}."
+    return f"Adding {them} removes {in_percent(share)} of the error {where}{hull}{few}."
 
 
 def _of_noise(variance: float) -> str:

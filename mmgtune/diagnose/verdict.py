@@ -11,6 +11,7 @@ from typing import Any
 
 from ..displayed import Plotted
 from ..options import DiagnoseOptions
+from ..phrases import in_percent
 from ..profile import ShipProfile
 from ..trial import Coverage
 from . import winds
@@ -27,7 +28,6 @@ from .separate import Suggestion
 from .together import Together
 from .voyages import Choice
 from .whereabouts import Whereabouts
-from .wording import percent
 
 VERDICTS = ("none", "found", "not-separable", "unexplained", "interrupted")
 """Codes; people read ``Diagnosis.sentence``."""
@@ -131,7 +131,7 @@ class Leading:
     @property
     def sentence(self) -> str:
         """How large it would be."""
-        share, words = percent(min(self.explained, self.held_out)), self.cause.sentence
+        share, words = in_percent(min(self.explained, self.held_out)), self.cause.sentence
         return f"Most of it, {share}, would be {self.cause.tag}: {words[0].lower()}{words[1:]}."
 
     def to_dict(self) -> dict[str, Any]:

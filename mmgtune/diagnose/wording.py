@@ -80,8 +80,3 @@ def parameters_in_words(effect: Effect, estimates: Mapping[str, Estimate]) -> di
             if length > error:  # else it may be any
                 found[direction] = f"{math.degrees(math.atan2(east.value, north.value)) % 360.0:.0f}°"
     return found
-
-
-def percent(share: float) -> str:
-    """A share for a sentence; never quite all."""
-    return f"{100.0 * min(share, 0.999):.{0 if share < 0.995 else 1}f} %"

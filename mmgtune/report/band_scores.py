@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from .blocks import Prose, Section, Table, cells
-from .wording import NONE, clean, number, shown
+from .wording import NONE, clean, share, shown
 
 MEANING_OF_ONE = (
     "L_fit is the mean squared distance from what was measured over the noise that a trial states (Wakita et al., "
@@ -41,17 +41,14 @@ SCORE_HEADS = (
 def score_cells(scores: Mapping[str, Any]) -> list[str]:
     """A row of scores as texts, in the order of ``SCORE_HEADS``."""
 
-    def held(value: Any) -> str:
-        return NONE if number(value) is None else f"{100.0 * value:.0f} %"
-
     windows = str(scores["windows"])
     if scores["windows_lost"]:
         windows += f", {scores['windows_lost']} lost"
     return [
         windows,
         *(shown(scores[name], 3) for name in ("L_fit", "L_Eucl", "L_Maha", "correlation", "CRPS")),
-        held(scores["coverage_50"]),
-        held(scores["coverage_90"]),
+        share(scores["coverage_50"], counted=True),
+        share(scores["coverage_90"], counted=True),
         shown(scores["sharpness"], 3),
     ]
 

@@ -16,7 +16,7 @@ from .common import picture
 from .load import Kind
 from .plot import Axis, Bar, Dots, Figure, Look, Mark, Panel
 from .tables import pairs
-from .wording import NONE, clean, count, fixed, shown
+from .wording import NONE, clean, count, fixed, share, shown
 
 _WORDS = {"single": "first member", "mean": "mean of members", "worst": "worst member"}
 _SHADES = (
@@ -104,9 +104,9 @@ def _least(rows: Sequence[Sequence[float]]) -> tuple[int, int]:
 
 def _cards(models: Sequence[Mapping[str, Any]]) -> tuple[Card, ...]:
     return tuple(
-        Card(f"Overrated, {words}", f"{shown(100 * share, 2)} %", note=clean(model["name"]))
+        Card(f"Overrated, {words}", share(part, counted=True), note=clean(model["name"]))
         for model in models[:2]
-        for words, share, _ in dict.fromkeys((shares_of(model)[0], shares_of(model)[-1]))
+        for words, part, _ in dict.fromkeys((shares_of(model)[0], shares_of(model)[-1]))
     )
 
 
@@ -141,8 +141,8 @@ def _figure(record: HeadingRecord) -> Figure:
         x, y = Axis("K_D [deg s/rad]", edges[0], edges[-1], grid=False), Axis("K_P [deg/rad]", edges[0], edges[-1])
         panels.append(Panel(tuple(marks), x, y, title, 0.9))
     legend: list[tuple[str, Look | tuple[str, float]]] = [
-        (f"{shown(_score(share, low, high), 3)} rad s", (_SHADES[round(share * (len(_SHADES) - 1))], 1.0))
-        for share in (0.0, 0.25, 0.5, 0.75, 1.0)
+        (f"{shown(_score(part, low, high), 3)} rad s", (_SHADES[round(part * (len(_SHADES) - 1))], 1.0))
+        for part in (0.0, 0.25, 0.5, 0.75, 1.0)
     ]
     legend.append(("promises more than is true", Look("ink", 0.0, marker="x", size=6.0)))
     alt = "Scores of gains in the true system and in simulators"
@@ -170,13 +170,13 @@ def _row(row: Sequence[float], edges: Sequence[float], k: int, low: float, high:
 
 def _shade(value: float, low: float, high: float) -> int:
     """Place of a score in the map of colours; by ratios, since the worst members lie far above all that is true."""
-    share = math.log(value / low) / math.log(high / low) if 0.0 < low < high else (value - low) / ((high - low) or 1.0)
-    return round(share * (len(_SHADES) - 1))
+    part = math.log(value / low) / math.log(high / low) if 0.0 < low < high else (value - low) / ((high - low) or 1.0)
+    return round(part * (len(_SHADES) - 1))
 
 
-def _score(share: float, low: float, high: float) -> float:
+def _score(part: float, low: float, high: float) -> float:
     """Score at a share of the map of colours, the inverse of ``_shade``."""
-    return low * (high / low) ** share if 0.0 < low < high else low + share * (high - low)
+    return low * (high / low) ** part if 0.0 < low < high else low + part * (high - low)
 
 
 def _made(data: Mapping[str, Any]) -> Section:

@@ -268,7 +268,7 @@ def _bands(data: Mapping[str, Any]) -> Section | None:
         )
         return Table(id, caption, (first, *heads), rows, range(1, 1 + len(heads)), about)
 
-    said = NONE if held is None else share(held)
+    said = share(held, counted=True)
     sentence = f"Bands of 90 % drawn from the other trials hold {said} of what was measured on those left out."
     runs = table("bands-by-run", "By run", "run", bands["by_run"])
     return Section(

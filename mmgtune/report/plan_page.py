@@ -16,7 +16,7 @@ from .load import Kind
 from .plot import Axis, Bar, Figure, Look, Mark, Panel, Rule
 from .svg import LETTERS
 from .tables import pairs
-from .wording import NONE, clean, count, fixed, percent, sentence, shown
+from .wording import NONE, clean, count, fixed, percent, sentence, share, shown
 
 _BARS = 20
 """Trials drawn, those that tell most."""
@@ -152,7 +152,7 @@ def _made(data: Mapping[str, Any]) -> Section:
         ("particles", clean(data["model"])),
         ("profile's hash (SHA-256)", clean(data["sha256"] or NONE)),
         ("particles that answer", f"{data['question']['particles']}"),
-        ("share told by straight lines", f"{100.0 * data['linear_share']:.0f} %"),
+        ("share told by straight lines", share(data["linear_share"])),
         ("command", clean(made["command"] or NONE)),
         ("made by", f"mmgtune {clean(made['mmgtune'])}, {clean(made['created'])}"),
         ("time", f"{shown(data['wall_s'], 3)} s"),

@@ -16,7 +16,7 @@ from .common import doubts, picture
 from .load import Kind, columns_in
 from .plot import LOOKS, Look
 from .tables import pairs
-from .wording import NONE, PRINCIPAL, clean, count, number, run_words, shown
+from .wording import NONE, PRINCIPAL, clean, count, number, run_words, share, shown
 
 if TYPE_CHECKING:
     from ..arrays import FloatArray
@@ -142,12 +142,12 @@ def _lead(record: PredictRecord) -> tuple[str, ...]:
 def _verdict(record: PredictRecord) -> str:
     scores = record.data["scores"]
     if scores and number(scores["coverage_90"]) is not None:
-        held, widest = 100.0 * scores["coverage_90"], 100.0 * scores["widest"]
-        meant = min(90.0, widest)
-        word = "too narrow" if held < meant - 5.0 else "wider than needed" if held > meant + 5.0 else "about right"
+        held, meant = scores["coverage_90"], min(0.9, scores["widest"])
+        word = "too narrow" if held < meant - 0.05 else "wider than needed" if held > meant + 0.05 else "about right"
         return (
-            f"The bands that are to hold {meant:.0f} % hold {held:.0f} % of what was measured: they are {word}. "
-            f"Half of it is to lie in the inner ones, and {100.0 * scores['coverage_50']:.0f} % does."
+            f"The bands that are to hold {share(meant)} hold {share(held, counted=True)} of what was measured: "
+            f"they are {word}. "
+            f"Half of it is to lie in the inner ones, and {share(scores['coverage_50'], counted=True)} does."
         )
     said: list[str] = []
     for run in record.runs:
@@ -171,7 +171,7 @@ def _cards(record: PredictRecord) -> tuple[Card, ...]:
     if scores:
         for level in (50, 90):
             if number(scores[f"coverage_{level}"]) is not None:
-                held = f"{100.0 * scores[f'coverage_{level}']:.0f}\u00a0%"
+                held = share(scores[f"coverage_{level}"], counted=True)
                 note = f"of the measured samples; {level}\u00a0% is right"
                 cards.append(Card(f"Held by bands of {level}\u00a0%", held, note=note))
         return tuple(cards[:4])

@@ -8,7 +8,7 @@ from typing import Any
 
 from ..arrays import FloatArray
 from .plot import Axis, Bar, Color, Figure, Line, Look, Mark, Panel, Rule, Words, model_look
-from .wording import clean, number
+from .wording import clean, number, share
 
 SHADES: tuple[tuple[Color, float], ...] = (("after", 0.5), ("box", 1.0), ("before", 0.5))
 """Fill of the three classes and how dense it is: letters can be read on each, on light paper and on dark."""
@@ -28,11 +28,11 @@ def classes_figure(names: Sequence[str], counts: Sequence[Sequence[int]], classe
     for row, of in enumerate(counts):
         total, left = max(sum(of), 1), 0.0
         for size, (fill, density) in zip(of, SHADES, strict=True):
-            share = 100.0 * size / total
-            marks.append(Bar((left, left + share), (row - 0.31, row + 0.31), fill, density))
-            if share >= 9.0:
-                marks.append(Words(left + share / 2.0, row, f"{share:.0f}\u00a0%"))
-            left += share
+            width = 100.0 * size / total
+            marks.append(Bar((left, left + width), (row - 0.31, row + 0.31), fill, density))
+            if width >= 9.0:
+                marks.append(Words(left + width / 2.0, row, share(size / total, counted=True)))
+            left += width
     ticks = tuple((float(k), cut(name)) for k, name in enumerate(names))
     y = Axis(low=len(names) - 0.5, high=-0.5, ticks=ticks, grid=False)
     panel = Panel(tuple(marks), Axis("share of windows [%]", 0.0, 100.0), y, shape=-(36.0 * len(names) + 45.0))
@@ -51,12 +51,12 @@ def distributions(values: Mapping[str, FloatArray], limits: Sequence[float], cla
     legend, ends = [], []
     for place, (name, all_of) in enumerate(values.items()):
         of = np.sort(all_of[~np.isnan(all_of)])
-        share = 100.0 * np.arange(1, len(of) + 1) / max(len(of), 1)
+        below = 100.0 * np.arange(1, len(of) + 1) / max(len(of), 1)
         finite = np.isfinite(of) & (of > 0.0)
         if not finite.any():
             continue
         look = without_marker(model_look(place))
-        marks.append(Line(of[finite], share[finite], look))
+        marks.append(Line(of[finite], below[finite], look))
         legend.append((cut(name, 30), look))
         ends += [of[finite][0], of[finite][-1]]
     marks += [Rule(limit, Look("muted", 1.0, "dash")) for limit in limits]

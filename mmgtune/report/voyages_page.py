@@ -117,9 +117,9 @@ def _cards(record: VoyagesRecord) -> tuple[Card, ...]:
         cards.append(Card(words, f"{shown(other['median'], 3)} m", note="median of the windows"))
     names = record.data["classes"]["names"]
     good = sum(first["classes"][one] for one in names[:2])
-    total = 100.0 * good / max(1, sum(first["classes"].values()))
+    total = good / max(1, sum(first["classes"].values()))
     note = f"of the windows, {name}; median cVDM {_percent(whole['median'])}"
-    cards.append(Card("Optimal or satisfactory", f"{total:.0f}\u00a0%", note=note))
+    cards.append(Card("Optimal or satisfactory", share(total, counted=True), note=note))
     most = first["where"][0] if first.get("where") else None
     if most is not None:
         note = f"{share(most['explained'])} of the variance of log cVDM"
@@ -210,11 +210,10 @@ def _compared(data: Mapping[str, Any]) -> Section:
         interval = one.get("cVDM_difference_ci95")
         difference = number(one.get("cVDM_difference"))
         tone = "" if not interval or interval[0] <= 0.0 <= interval[1] else "bad" if interval[0] > 0.0 else "good"
-        share = number(one.get("share_second_better"))
         rows.append(
             cells(
                 f"{clean(one['second'])} against {clean(one['first'])}",
-                f"{100.0 * share:.0f} %" if share is not None else NONE,
+                share(one.get("share_second_better"), counted=True),
                 Cell(_signed(difference), tone),
                 f"{_signed(interval[0])} to {_signed(interval[1])}" if interval else NONE,
                 shown(one["windows"], 7),
@@ -311,7 +310,7 @@ def _panel(record: VoyagesRecord, row: Mapping[str, Any]) -> dict[str, Any]:
         models[str(one["profile"])] = [_point(by_ends.get((b["low"], b["high"]))) for b in row["bins"]]
     title = clean(row["words"]) + ("" if named else f" [{unit}]")
     return {
-        "title": f"{_brief(title)}: {100.0 * (number(row['explained']) or 0.0):.0f}\u00a0%",
+        "title": f"{_brief(title)}: {share(number(row['explained']) or 0.0)}",
         "labels": [figures.bin_label(one, factor) for one in row["bins"]],
         "counts": [shown(one["windows"], 7) for one in row["bins"]],
         "models": models,
@@ -332,8 +331,7 @@ def _point(one: Mapping[str, Any] | None) -> tuple[float | None, float | None, f
 
 def _explained(one: Mapping[str, Any], feature: str) -> str:
     row = next((other for other in one["where"] if other["feature"] == feature), None)
-    share = number(row["explained"]) if row else None
-    return NONE if share is None else f"{100.0 * share:.1f}\u00a0%"
+    return share(row["explained"]) if row else NONE
 
 
 def _bins(one: Mapping[str, Any]) -> Table:

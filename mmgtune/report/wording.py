@@ -8,9 +8,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from .. import phrases
 from ..manoeuvres.named import BY_KEY
 from ..options import in_flags
-from ..phrases import counted, listed
+from ..phrases import listed
 from ..units import DEG, shown_in
 
 MINUS = "\u2212"
@@ -157,18 +158,13 @@ def percent(value: float | None) -> str:
     return f"{'+' if value > 0 else MINUS}{text}\u00a0%"
 
 
-def share(value: Any) -> str:
-    """A share of a whole as percent: never below 0 nor, of what is measured, quite all; a dash where there is none.
+def share(value: Any, counted: bool = False) -> str:
+    """A share of a whole as percent, by the rule of ``phrases.in_percent``; a dash where there is none.
 
-    Whole numbers, and tenths from 99.5 %, where they tell something: the one way in which sentences, cards and tables
-    write the same result.
+    The one way in which sentences, cards and tables write the same result.
     """
     size = number(value)
-    if size is None:
-        return NONE
-    part = min(max(size, 0.0), 0.999)
-    text = f"{100.0 * part:.{0 if part < 0.995 else 1}f}"
-    return f"{text}\u00a0%"
+    return NONE if size is None else phrases.in_percent(size, counted).replace(" %", UNIT_PERCENT)
 
 
 def span(low: Any, high: Any) -> str:
@@ -246,7 +242,7 @@ def run_words(name: Any) -> str:
     return f"zigzag {rudder}/{heading or rudder}" + ("" if side == "p" else " to port")
 
 
-count = counted
+count = phrases.counted
 
 
 def short(name: str) -> str:

@@ -13,6 +13,7 @@ from mmgtune.model import Model
 from mmgtune.predicting import predict, write_prediction
 from mmgtune.profile import load_profile
 from mmgtune.report import render
+from mmgtune.report.wording import share
 from tests.browser import chromium
 from tests.report.test_browser import OVERFLOW, Visit
 
@@ -55,4 +56,4 @@ def test_what_it_says_is_what_was_found(browser: Any, page: Path) -> None:
         assert f"{advance['mean']:.1f} ± {advance['half_width']:.1f}" in row
         assert f"{advance['measured']:.1f}" in row
         all_of = visit.page.locator("#scores-table tr", has_text="all").inner_text()
-        assert f"{100.0 * document['scores']['coverage_90']:.0f} %" in all_of
+        assert share(document["scores"]["coverage_90"], counted=True) in all_of

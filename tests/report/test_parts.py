@@ -66,6 +66,11 @@ def test_shares_are_written_in_one_way(value: float | None, text: str | None) ->
     assert wording.share(value) == ("–" if text is None else f"{text}\u00a0%")
 
 
+@pytest.mark.parametrize(("part", "text"), [(1.0, "100"), (0.99996, "99.9"), (0.5, "50"), (0.0, "0")])
+def test_all_of_what_is_counted_may_be_meant(part: float, text: str) -> None:
+    assert wording.share(part, counted=True) == f"{text}\u00a0%"
+
+
 def test_an_interval_of_one_number_is_said_once() -> None:
     assert wording.span(0.9999, 1.0) == "99.9\u00a0% or more"
     assert wording.span(0.941, 0.943) == "94\u00a0%, either end"
