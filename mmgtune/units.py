@@ -14,6 +14,9 @@ from .errors import OptionError, Problem, reason
 DEG = math.pi / 180.0
 KNOT = 1852.0 / 3600.0
 
+NORMAL_95 = 1.96
+"""Half width of a 95 % interval of a normal distribution, in standard deviations."""
+
 _FACTORS: dict[str, dict[str, float]] = {
     "m": {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "km": 1e3, "ft": 0.3048, "NM": 1852.0},
     "m^2": {"m^2": 1.0, "cm^2": 1e-4},

@@ -9,7 +9,7 @@ import typer
 
 from ..errors import OptionError, Problem, among
 from ..options import DiagnoseOptions, in_flags
-from ..units import in_time
+from ..units import NORMAL_95, in_time
 from . import common as c
 from . import completing
 from .exitcodes import ExitCode
@@ -134,7 +134,7 @@ def _by_voyage(one: Difference) -> list[str]:
     rows = []
     for name, values, errors in zip(one.voyages, one.values, one.stderr, strict=True):
         told = (
-            f"{parameter} {value:7.3f} +- {1.96 * error:.3f}"
+            f"{parameter} {value:7.3f} +- {NORMAL_95 * error:.3f}"
             for parameter, value, error in zip(one.quantity.parameters, values, errors, strict=True)
         )
         rows.append(f"  {name:<{width}}  {'   '.join(told)}")

@@ -16,7 +16,8 @@ from ..effects import Effect, Visited
 from ..fitting.box import AT
 from ..phrases import listed
 from ..trial import Trial, visited_by
-from .intervals import NORMAL, Estimate
+from ..units import NORMAL_95
+from .intervals import Estimate
 from .runs import IN_WORDS, groups_of, name_of
 from .wording import error_in_words, quantity, range_in_words
 
@@ -194,7 +195,7 @@ class ByRun:
             text = f"The {subject} was much the same in each {word}: "
         if len(shown) == 1 and others:
             value, error = self.size(shown[0])
-            size = quantity(value, None if error is None else NORMAL * error, self.unit) + self._of_what
+            size = quantity(value, None if error is None else NORMAL_95 * error, self.unit) + self._of_what
             text += f"{size} in {name_of(self.groups[shown[0]])}, and none for certain in the other {others}"
         else:
             text += range_in_words(min(sizes), max(sizes), self.unit) + self._of_what
@@ -213,7 +214,7 @@ class ByRun:
         """From the least to the largest, with what is common to all errors told once."""
         sizes = [self.size(k)[0] for k in range(len(self.groups))]
         common = max(error or 0.0 for _, error in map(self.size, range(len(self.groups))))
-        half, between = (error_in_words(NORMAL * error, self.unit) for error in (common, beside))
+        half, between = (error_in_words(NORMAL_95 * error, self.unit) for error in (common, beside))
         of_all = range_in_words(min(sizes), max(sizes), self.unit) + self._of_what
         return f"{of_all}, known to ± {between} beside each other and to ± {half} all together"
 
@@ -247,10 +248,10 @@ class ByRun:
         for k, label in enumerate(self.groups):
             value, error = self.size(k)
             direction = self.towards(k)
-            size = quantity(value, None if error is None else NORMAL * error, self.unit) + self._of_what
+            size = quantity(value, None if error is None else NORMAL_95 * error, self.unit) + self._of_what
             rows.append((name_of(label), size, *(() if direction is None else (_degrees(*direction),))))
             if (apart := self.from_mean(k)) is not None:
-                rows[-1] += (quantity(apart[0], None if apart[1] is None else NORMAL * apart[1], self.unit),)
+                rows[-1] += (quantity(apart[0], None if apart[1] is None else NORMAL_95 * apart[1], self.unit),)
         return rows
 
     @property
@@ -315,5 +316,5 @@ def _along_a_line(at: FloatArray, values: FloatArray) -> bool:
 
 
 def _degrees(angle: float, error: float | None) -> str:
-    half = "" if error is None or not math.isfinite(error) else f" ± {math.degrees(NORMAL * error):.0f}"
-    return f"{math.degrees(angle):03.0f}{half}°" if not half or NORMAL * (error or 0.0) < math.pi else "any"
+    half = "" if error is None or not math.isfinite(error) else f" ± {math.degrees(NORMAL_95 * error):.0f}"
+    return f"{math.degrees(angle):03.0f}{half}°" if not half or NORMAL_95 * (error or 0.0) < math.pi else "any"

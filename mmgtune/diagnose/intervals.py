@@ -9,11 +9,9 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..fitting.box import base_of, group_of
+from ..units import NORMAL_95
 from .linear import linearise, unit_of
 from .workbench import Point, Workbench
-
-NORMAL = 1.96
-"""Deviations either side of a 95 % interval."""
 
 AT_END = 0.01
 """Share of an interval on one side of its value from which that is at an end of its range."""
@@ -116,15 +114,15 @@ def _in_units(bench: Workbench, point: Point, names: Sequence[str], covariance: 
         sd = float(np.sqrt(along @ spread @ along))
         turn = float(np.sqrt(across @ spread @ across)) / max(length, 1e-300)
         towards = float(values[j]) % (2.0 * np.pi)
-        found[names[i]] = Estimate(names[i], length, max(0.0, length - NORMAL * sd), length + NORMAL * sd, sd)
-        found[names[j]] = Estimate(names[j], towards, towards - NORMAL * turn, towards + NORMAL * turn, turn)
+        found[names[i]] = Estimate(names[i], length, max(0.0, length - NORMAL_95 * sd), length + NORMAL_95 * sd, sd)
+        found[names[j]] = Estimate(names[j], towards, towards - NORMAL_95 * turn, towards + NORMAL_95 * turn, turn)
     for i, name in enumerate(names):
         if name in found:
             continue
         ends = np.repeat(unit[:, None], 2, axis=1)
-        ends[i] = np.clip([unit[i] - NORMAL * deviation[i], unit[i] + NORMAL * deviation[i]], 0.0, 1.0)
+        ends[i] = np.clip([unit[i] - NORMAL_95 * deviation[i], unit[i] + NORMAL_95 * deviation[i]], 0.0, 1.0)
         low, high = sorted(float(end) for end in box.from_unit(ends)[i])
-        stderr = 0.5 * (high - low) / NORMAL if np.isfinite(high) else None
+        stderr = 0.5 * (high - low) / NORMAL_95 if np.isfinite(high) else None
         found[name] = Estimate(name, float(values[i]), low, high if np.isfinite(high) else None, stderr)
     for name, spread_of_one in _apart(names, covariance).items():
         i = names.index(name)

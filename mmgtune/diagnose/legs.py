@@ -19,8 +19,8 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..fitting.quadratic import flat_where_lost
+from ..units import NORMAL_95
 from . import noise as noises
-from .intervals import NORMAL
 from .linear import STEP, basis, blocks_of, offset_derivatives
 from .refit import ENOUGH
 from .wording import quantity
@@ -134,7 +134,7 @@ def _current(one: Difference) -> str:
     if one.pattern == "one" and one.common:
         (north, e_north), (east, e_east) = one.common
         towards = math.degrees(math.atan2(east, north)) % 360.0
-        size = quantity(math.hypot(north, east), NORMAL * max(e_north, e_east), "m/s")
+        size = quantity(math.hypot(north, east), NORMAL_95 * max(e_north, e_east), "m/s")
         return f"One current sets through all voyages, of {size} towards {towards:.0f}°: none shows to differ."
     return "No current shows in these voyages beyond what was measured."
 
@@ -144,7 +144,7 @@ def _resistance(one: Difference) -> str:
     if one.pattern == "trend":
         ((slope, error),) = one.trend
         word = "grew" if slope > 0.0 else "fell"
-        size = quantity(100.0 * abs(slope), 100.0 * NORMAL * error, "%")
+        size = quantity(100.0 * abs(slope), 100.0 * NORMAL_95 * error, "%")
         return f"Resistance {word} by {size} per voyage ({n} voyages)."
     if one.pattern == "each":
         off = 100.0 * (one.values - 1.0)

@@ -11,7 +11,8 @@ import numpy as np
 from ..components import split_name
 from ..documents import finite
 from ..phrases import listed
-from .intervals import NORMAL, covariance
+from ..units import NORMAL_95
+from .intervals import covariance
 from .workbench import Point, Workbench
 
 FAR = 0.1
@@ -89,7 +90,7 @@ class Retuned:
         assert self.change is not None
         assert self.deviation is not None
         symbol, side = self.name.rpartition(".")[2], "above" if self.change > 0.0 else "below"
-        size, error = 100.0 * abs(self.change), 100.0 * NORMAL * self.deviation
+        size, error = 100.0 * abs(self.change), 100.0 * NORMAL_95 * self.deviation
         digits = 0 if error >= 1.0 else 1
         return f"{self.label} ({symbol}) {size:.{digits}f} ± {error:.{digits}f} % {side} its pre-determined value"
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..units import DIMENSIONLESS
+from ..units import DIMENSIONLESS, NORMAL_95
 from .ships import measured, simulated
 from .view import Line, Room, Row, View
 
@@ -52,7 +52,7 @@ def rooms(result: FitResult) -> list[Room]:
     found = []
     for row in result.coefficients():
         size = (row["high"] or 0.0) - (row["low"] or 0.0)
-        reach = 1.96 * row["stderr"] / size if row["stderr"] is not None and size > 0.0 else None
+        reach = NORMAL_95 * row["stderr"] / size if row["stderr"] is not None and size > 0.0 else None
         found.append(Room(row["name"], row["value"], row["position"], reach, row["at_bound"] or "", row["determined"]))
     return found
 
@@ -127,8 +127,8 @@ def posterior(result: Posterior) -> View:
 def _left_open(result: Posterior) -> list[Room]:
     """The numbers that trials say most of, in the middle 95 % of what was thought of them before."""
     values, room = result.particles.values, result.room
-    before = 1.96 * room.deviation
-    reach = 1.96 * values.std(axis=1) / (2.0 * before)
+    before = NORMAL_95 * room.deviation
+    reach = NORMAL_95 * values.std(axis=1) / (2.0 * before)
     median = np.median(values, axis=1)
     position = 0.5 + (median - room.centre) / (2.0 * before)
     return [

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from ..units import DIMENSIONLESS, read_as
+from ..units import DIMENSIONLESS, NORMAL_95, read_as
 from . import advice, findings, measures, motion_block, unexplained
 from .blocks import Block, Card, Cell, Commands, Fold, Nothing, Page, Prose, Section, Table, cells
 from .common import assumptions, cards_of_misfit, doubts, generated_banner, picture, provenance
@@ -20,7 +20,6 @@ from .tables import described, tone
 from .wording import (
     CHANNELS,
     NONE,
-    NORMAL,
     UNIT_PERCENT,
     beyond_noise,
     change,
@@ -205,7 +204,7 @@ def _head(name: str, unit: str) -> str:
 
 def _with_error(value: Mapping[str, Any]) -> tuple[str, str]:
     error = number(value["stderr"])
-    return (shown(value["value"], 3), NONE if error is None else shown(1.96 * error, 2)) if error else (NONE, NONE)
+    return (shown(value["value"], 3), NONE if error is None else shown(NORMAL_95 * error, 2)) if error else (NONE, NONE)
 
 
 def _causes(data: Mapping[str, Any]) -> Section | None:
@@ -283,7 +282,7 @@ def _retuned(data: Mapping[str, Any]) -> Section | None:
     lines = []
     for row in rows:
         error, before = number(row["stderr"]), row["pre_determined"]
-        half = None if error is None or not before else 100.0 * NORMAL * error / abs(before)
+        half = None if error is None or not before else 100.0 * NORMAL_95 * error / abs(before)
         lines.append(
             cells(
                 short(clean(row["name"])),

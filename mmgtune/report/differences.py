@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from ..units import DIMENSIONLESS
+from ..units import DIMENSIONLESS, NORMAL_95
 from .plot import Axis, Bar, Dots, Figure, Line, Look, Mark, Panel, Rule
-from .wording import NORMAL, clean, number
+from .wording import clean, number
 
 LONGEST = 14
 """Letters of a name that are written under the axis."""
@@ -48,12 +48,12 @@ def _panel(one: Mapping[str, Any], name: str) -> Panel:
     elif one["pattern"] == "one" and common:
         value, error = _number(common[name]["value"]), _number(common[name]["stderr"])
         if np.isfinite(error):
-            ends = value - NORMAL * error, value + NORMAL * error
+            ends = value - NORMAL_95 * error, value + NORMAL_95 * error
             marks.append(Bar((-0.6, len(rows) - 0.4), ends, "before", 0.15))
         marks.append(Rule(value, _BELIEVED, upright=False))
     marks.append(Rule(1.0 if one["relative_to_mean"] else 0.0, Look("muted", 1.0), upright=False))
     for place in np.flatnonzero(known):
-        ends = values[place] - NORMAL * errors[place], values[place] + NORMAL * errors[place]
+        ends = values[place] - NORMAL_95 * errors[place], values[place] + NORMAL_95 * errors[place]
         marks.append(Line((float(place), float(place)), ends, Look("after", 1.3)))
     marks.append(Dots(at[known], values[known], _EACH))
     ticks = tuple((float(k), clean(row["voyage"])[-LONGEST:]) for k, row in enumerate(rows))

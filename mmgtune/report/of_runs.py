@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from ..units import DIMENSIONLESS, read_as
+from ..units import DIMENSIONLESS, NORMAL_95, read_as
 from .blocks import Block, Prose, Table, cells
-from .wording import NONE, NORMAL, clean, number, shown
+from .wording import NONE, clean, number, shown
 
 
 def of_runs(cause: Mapping[str, Any]) -> list[Block]:
@@ -53,4 +53,4 @@ def parameters_of(candidate: Mapping[str, Any]) -> list[str]:
 
 def _half(stderr: Any, factor: float) -> str:
     error = number(stderr)
-    return NONE if error is None else shown(NORMAL * factor * error, 2)
+    return NONE if error is None else shown(NORMAL_95 * factor * error, 2)

@@ -16,9 +16,6 @@ from ..units import DEG, shown_in
 
 MINUS = "\u2212"
 NONE = "\u2013"
-NORMAL = 1.96
-"""Half width of a 95 % interval, in standard errors."""
-
 UNIT_PERCENT = "\u00a0%"
 LARGE = 10.0
 """Variance over that of the noise from which people think in multiples of the noise."""
