@@ -32,7 +32,7 @@ class Counter:
 
 @dataclass(frozen=True, eq=False)
 class FitProblem:
-    """Model, cases, targets, box and terms.  Nothing of it changes: ``with_...`` and ``held`` give another problem.
+    """Model, cases, targets, box and terms.  ``with_...`` and ``held`` give another problem; only ``counter`` changes.
 
     sigma    (n_cases, 6) deviations of the measured initial states where these are estimated, None where they are held
     offsets  (n_cases, 6) offsets of the initial states in use where a call gives none
@@ -80,7 +80,7 @@ class FitProblem:
         return replace(self, weight=weight)
 
     def with_cases(self, cases: Cases) -> Self:
-        """The same trials weighed otherwise."""
+        """Other cases, such as the same trials with other weights or inputs; what is given by case must fit them."""
         return replace(self, cases=cases)
 
     def with_integrator(self, integrator: Integrator) -> Self:
