@@ -24,7 +24,10 @@ from .predictor import Predictor, as_predictor, cases_from, draught_of, portions
 from .trial import Trial
 
 DRAWS = 2000
-"""Times runs are drawn anew for an interval."""
+"""Times runs are drawn again for an interval."""
+
+SEED = 1
+"""Of these draws."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -256,24 +259,22 @@ def _share_gone(before: float, after: float) -> float:
 def improvement(
     before: Sequence[TrialScore],
     after: Sequence[TrialScore],
-    measure: Callable[[Sequence[TrialScore]], float] = L_MSE,
-    seed: int = 1,
 ) -> tuple[float, tuple[float, float] | None]:
-    """Share of an error that is gone, and its 95 % interval by drawing runs anew; None with fewer than three runs.
+    """Share of L_MSE that is gone, and its 95 % interval by drawing runs anew; None with fewer than three runs.
 
     before, after  scores of the same trials by two models
     """
-    share = _share_gone(measure(before), measure(after))
+    share = _share_gone(L_MSE(before), L_MSE(after))
     old, new = by_run(before), by_run(after)
     runs = list(old)
     if len(runs) < 3:
         return share, None
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(SEED)
     drawn = []
     for _ in range(DRAWS):
         chosen = rng.integers(len(runs), size=len(runs))
-        a = measure([score for k in chosen for score in new[runs[k]]])
-        b = measure([score for k in chosen for score in old[runs[k]]])
+        a = L_MSE([score for k in chosen for score in new[runs[k]]])
+        b = L_MSE([score for k in chosen for score in old[runs[k]]])
         drawn.append(_share_gone(b, a))
     low, high = np.percentile(drawn, [2.5, 97.5])
     return share, (float(low), float(high))

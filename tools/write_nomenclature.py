@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from mmgtune.components import COMPONENTS, Component
-from mmgtune.effects import BUILT_IN
+from mmgtune.effects import BUILT_IN, Parameter
 from mmgtune.files import write_text
 
 HEAD = """# Nomenclature
@@ -34,7 +34,8 @@ EFFECTS = """
 ## Effects
 
 What can differ between a ship and her model. A profile has them as tables `[effects.<tag>]`, a target names a
-parameter as `effects.<tag>.<symbol>`. They act in this order of the data flow.
+parameter as `effects.<tag>.<symbol>`. They act in this order of the data flow. The last column says what limits the
+range in which a search looks for a parameter.
 """
 
 
@@ -54,13 +55,22 @@ def nomenclature() -> str:
 def table(component: Component) -> list[str]:
     """Sources and fields of a component or effect."""
     parts = [f"{'; '.join(component.cites)}\n\n"] if component.cites else []
-    parts.append("| symbol | unit | meaning | where a profile leaves it out |\n|---|---|---|---|\n")
+    searched = any(isinstance(field, Parameter) for field in component.fields.values())
+    heads = (
+        "symbol",
+        "unit",
+        "meaning",
+        "where a profile leaves it out",
+        *(("limit of the search",) if searched else ()),
+    )
+    parts.append(f"| {' | '.join(heads)} |\n|{'---|' * len(heads)}\n")
     for symbol, field in component.fields.items():
         default = "must be given" if field.default is None else f"{field.default:g}"
         if field.choices:
             default = next(word for word, value in field.choices.items() if value == field.default)
         label = field.label.replace("|", "\\|")
-        parts.append(f"| `{symbol}` | {field.unit} | {label} | {default} |\n")
+        limit = f" {field.bounds_source or '-'} |" if isinstance(field, Parameter) else ""
+        parts.append(f"| `{symbol}` | {field.unit} | {label} | {default} |{limit}\n")
     return parts
 
 

@@ -16,9 +16,6 @@ from .scores import covered, crps, squared_error, squared_mahalanobis, standardi
 LEVELS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95)
 """Nominal shares at which bands are held against what they hold."""
 
-SHOWN = (0.5, 0.9)
-"""Those that tables have."""
-
 VELOCITIES = slice(3, 6)
 """u, v_m, r among the states: what L_Eucl and L_Maha are about (Wakita et al., eq. 30)."""
 

@@ -9,7 +9,6 @@ import numpy as np
 
 from ..fitting.box import parameter_of
 from .causes import Detectability
-from .hypotheses import Hypothesis
 from .linear import Linear, typical
 from .refit import ENOUGH, WORTH
 from .screening import NEVER, angles
@@ -20,7 +19,7 @@ TWINS = 3
 """Most similar effects listed for each."""
 
 
-def detectability(bench: Workbench, step: Step, known: Sequence[Hypothesis]) -> list[Detectability]:
+def detectability(bench: Workbench, step: Step) -> list[Detectability]:
     """The table for every named hypothesis, from the first look."""
     named = [s for s in step.scores if not s.hypothesis.effect.one_of_many and not s.hypothesis.by]
     cosine = angles(step.linear, [s.hypothesis for s in named])

@@ -46,7 +46,7 @@ class Judge:
     """What every answer of one diagnosis shares.
 
     profile, options, provenance  as given
-    known     hypotheses that were looked for; asked: those and the ones that do the same as a target
+    asked     hypotheses that were looked for, and those that do the same as a target
     unseen    what answers are judged by: the trials kept for testing, or each run in turn
     before    what the model without any cause leaves
     traces    what was set aside
@@ -58,7 +58,6 @@ class Judge:
     options: DiagnoseOptions
     provenance: Mapping[str, Any]
     hooks: Hooks
-    known: Sequence[Hypothesis]
     asked: Sequence[Hypothesis]
     unseen: Unseen
     before: Leftover
@@ -144,7 +143,7 @@ class Judge:
             contributions=tuple((h.tag, one) for h, one in zip(found.causes, brought, strict=True)),
             groups=(),
             candidates=tuple(_candidates(bench, found, self.unseen.test)),
-            detectability=tuple(detectability(bench, found.steps[0], self.known)) if found.steps else (),
+            detectability=tuple(detectability(bench, found.steps[0])) if found.steps else (),
             suggestion=None,
             gain=held_out(found, self.unseen),
             leftover=left,

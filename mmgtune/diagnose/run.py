@@ -138,7 +138,7 @@ def _looked_at(
         differing = differences(bench, found.final, choice.voyages)
     hooks.on_phase("gathering the evidence")
     asked = [*known, *in_place]
-    judge = Judge(bench, profile, options, provenance, hooks, known, asked, unseen, before, traces, choice, differing)
+    judge = Judge(bench, profile, options, provenance, hooks, asked, unseen, before, traces, choice, differing)
     result, found = judge.answer(found, brought)
     doubtful = result.verdict != "none" or result.leaves_open
     left_out = not_looked_for(profile, options.effects) if doubtful else []

@@ -42,6 +42,9 @@ SETTLED = 4
 FIRST_STEPS = 1
 """Steps before a start is given up for what the linear problem promises: far from its end that says little."""
 
+OFFSET_ITERATIONS = 12
+"""Most iterations of the initial states alone, with the targets held."""
+
 AHEAD = 0.1
 """Share of a step at which its second derivative is taken."""
 
@@ -136,7 +139,6 @@ def solve(
 def fit_offsets(
     problem: FitProblem,
     unit: FloatArray,
-    max_iterations: int = 12,
     whiten: Callable[[FloatArray], FloatArray] | None = None,
 ) -> FloatArray:
     """Offsets (n_cases, 6) of the initial states that fit best with the targets held at ``unit`` (n_targets,).
@@ -148,7 +150,7 @@ def fit_offsets(
     """
     best = np.zeros((len(problem.cases), 6))
     value = squares_by_case(problem, unit, best, whiten)
-    for _ in range(max_iterations):
+    for _ in range(OFFSET_ITERATIONS):
         residuals, slopes = problem.offset_slopes(unit, best)
         residuals, slopes = flat_where_lost(residuals), flat_where_lost(slopes)
         if whiten is not None:

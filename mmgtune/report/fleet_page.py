@@ -131,7 +131,7 @@ def _ships(data: Mapping[str, Any]) -> Section:
         ordered = _ordered(data, rows)
         dates = sorted({one["date"] for one in rows})[-COLUMNS:]
         if place == 0:
-            blocks.append(_picture(data, rows, ordered, dates, marks))
+            blocks.append(_picture(rows, ordered, dates, marks))
         table = _table(name, rows, ordered[:SHIPS], dates, place)
         blocks.append(table if place == 0 else Fold(f"Ships and dates: {clean(name)}", (table,)))
     return Section("ships", "Ships over time", tuple(blocks))
@@ -149,7 +149,6 @@ def _ordered(data: Mapping[str, Any], rows: Sequence[Mapping[str, Any]]) -> list
 
 
 def _picture(
-    data: Mapping[str, Any],
     rows: Sequence[Mapping[str, Any]],
     ships: Sequence[str],
     dates: Sequence[str],

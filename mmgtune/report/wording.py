@@ -97,9 +97,9 @@ def number(value: Any) -> float | None:
     return float(value)
 
 
-def coefficient_text(value: Any, digits: int = 4) -> str:
+def coefficient_text(value: Any) -> str:
     """A coefficient's number, which is infinite where JSON has null: an effect that is absent only there."""
-    return "∞" if value is None else shown(value, digits)
+    return "∞" if value is None else shown(value)
 
 
 def shown(value: Any, digits: int = 4) -> str:

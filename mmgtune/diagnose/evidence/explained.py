@@ -13,6 +13,9 @@ from .forces import ResidualForces
 NODES = 5
 """Nodes of the function fitted to a variable: four degrees of freedom beside the mean, for every variable."""
 
+BLOCK = 60.0
+"""Length of the blocks of residual forces of trials [s]."""
+
 FEWEST_BLOCKS = 3
 """Blocks below which nothing can be predicted from the others."""
 
@@ -66,36 +69,35 @@ def share_explained(
     }
 
 
-def explain_forces(forces: Sequence[ResidualForces], *, block: float = 60.0) -> dict[str, dict[str, float]]:
+def explain_forces(forces: Sequence[ResidualForces]) -> dict[str, dict[str, float]]:
     """Shares of the residual forces of trials together that each of ``ResidualForces.variables`` explains.
 
-    block  length of the blocks for ``share_explained`` [s]
     -> {"dX": {"heading": share, ...}, "dY", "dN", "dX'", "dY'", "dN'"}, each residual weighed by its noise
 
     A force like that of wind is a function in newtons, one like the hull's in prime values: what is behind a residual
     shows best in the one or the other.
 
-    Raises ValueError for no trials or a block that is not positive, and where these last fewer than three blocks.
+    Raises ValueError for no trials, and where these last fewer than three blocks.
     """
-    if not forces or not block > 0.0:
-        raise ValueError("there are no trials" if not forces else f"a block of {block:g} s is not positive")
+    if not forces:
+        raise ValueError("there are no trials")
     parts = [f.variables for f in forces]
     variables = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-    blocks = _blocks(forces, block)
+    blocks = _blocks(forces)
     return {
         name: share_explained(values, variables, blocks=blocks, weights=_weights(noise))
         for name, values, noise in _pooled(forces)
     }
 
 
-def can_be_explained(forces: Sequence[ResidualForces], *, block: float = 60.0) -> bool:
+def can_be_explained(forces: Sequence[ResidualForces]) -> bool:
     """Whether trials last long enough together for ``explain_forces``."""
-    return bool(forces) and len(np.unique(_blocks(forces, block))) >= FEWEST_BLOCKS
+    return bool(forces) and len(np.unique(_blocks(forces))) >= FEWEST_BLOCKS
 
 
-def _blocks(forces: Sequence[ResidualForces], block: float) -> IntArray:
-    """(n,) label of each sample: trials one after the other, each in blocks of so many seconds."""
-    numbers = [np.floor((f.time - f.time[0]) / block).astype(int) for f in forces]
+def _blocks(forces: Sequence[ResidualForces]) -> IntArray:
+    """(n,) label of each sample: trials one after the other, each in blocks."""
+    numbers = [np.floor((f.time - f.time[0]) / BLOCK).astype(int) for f in forces]
     firsts = np.cumsum([0, *(number[-1] + 1 for number in numbers[:-1])])
     return np.concatenate([number + first for number, first in zip(numbers, firsts, strict=True)])
 

@@ -66,7 +66,6 @@ def short_horizon(
     window: float = 60.0,
     member: int = 0,
     integrator: Integrator = Integrator(),
-    backend: str = "compiled",
 ) -> ShortHorizon:
     """Restart the simulation from smoothed measured states every ``window`` [s]: all windows of all trials at once.
 
@@ -79,13 +78,13 @@ def short_horizon(
     most in the heading.
 
     Raises ValueError for no trials, a window that is not positive or no longer than every step, and a trial that has
-    too few samples to smooth; OptionError for an unknown back end.
+    too few samples to smooth.
     """
     if not trials:
         raise ValueError("there are no trials")
     if not window > 0.0:
         raise ValueError(f"a window of {window:g} s is not positive")
-    predictor = as_predictor(ship, integrator=integrator, backend=backend)
+    predictor = as_predictor(ship, integrator=integrator)
     motions = [smooth(trial) for trial in trials]
     windows = [(i, part) for i, motion in enumerate(motions) for part in _windows(motion, window)]
     if not windows:

@@ -118,7 +118,7 @@ def _shafts_among(find: Finder, columns: Sequence[int], remark: str = "") -> boo
     per_column: dict[tuple[int, str], list[float]] = defaultdict(list)
     delta = find.guesses.get("delta") or find.guesses.get("delta_port")
     for look in find.looks:
-        found = shafts(look, columns, find.units_said, _rudder_angle(find, look, delta))
+        found = shafts(look, columns, find.units_said, _rudder_angle(look, delta))
         for place, one in enumerate(found):
             ranks[one.column] += 1.0 / (1.0 + place) + (2.0 if find.said[one.column].startswith("n") else 0.0)
             for unit, way in one.advance.items():
@@ -176,7 +176,7 @@ def _unit_said(find: Finder, k: int) -> str:
     return find.units_said[k].replace("1/s", "rps")
 
 
-def _rudder_angle(find: Finder, look: Look, delta: Guess | None) -> float:
+def _rudder_angle(look: Look, delta: Guess | None) -> float:
     """Largest usual rudder angle [rad] of a log; that of a turning circle where none is known."""
     if delta is None or delta.column is None:
         return 35.0 * DEG

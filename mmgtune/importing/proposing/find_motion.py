@@ -76,7 +76,7 @@ def velocity(find: Finder) -> None:
     }  # fmt: skip
     best = min(scores, key=lambda one: scores[one], default=None)
     if best is not None and np.median(votes[best]) < ROUGH:
-        _both(find, best, scores, float(np.median(votes[best])), among)
+        _both(find, best, scores, float(np.median(votes[best])))
     if "u" not in find.guesses:
         ground_speed(find, [k for k in among if k not in find.used])
     if "u" not in find.guesses and "sog" not in find.guesses:
@@ -90,9 +90,7 @@ def _named(find: Finder, first: int, second: int) -> float:
     return float(0.6**agrees * 2.0**against)
 
 
-def _both(
-    find: Finder, key: tuple[Any, ...], scores: Mapping[tuple[Any, ...], float], miss: float, among: list[int]
-) -> None:
+def _both(find: Finder, key: tuple[Any, ...], scores: Mapping[tuple[Any, ...], float], miss: float) -> None:
     axes, first, second, unit, minus, second_minus = key
     # Of other readings those that count: other axes, another sign of the second, of the same columns.
     rivals = [score for one, score in scores.items() if {one[1], one[2]} == {first, second} and one[:2] != key[:2]]
@@ -154,7 +152,7 @@ def ground_speed(find: Finder, among: Sequence[int]) -> None:
     if best is None or best[0] == psi:
         return
     named = find.said[best[0]] == "cog"
-    wide = [_turns_as_far(find, look, best) for look in find.looks]
+    wide = [_turns_as_far(look, best) for look in find.looks]
     if not (named or (scores[best] < 0.7 * max(drift, 2.0 * DEG) and np.median(wide) > 0.7)) or scores[best] > 0.6:
         return
     speeds_found: dict[tuple[int, str], list[float]] = defaultdict(list)
@@ -188,7 +186,7 @@ def ground_speed(find: Finder, among: Sequence[int]) -> None:
     find.add(Guess("cog", best[0], {**own, "positive": "clockwise"}, (said,)))
 
 
-def _turns_as_far(find: Finder, look: Look, key: tuple[int, str]) -> float:
+def _turns_as_far(look: Look, key: tuple[int, str]) -> float:
     angle = look.mean(key[0]) * units.factors("rad")[key[1]]
     course = np.arctan2(look.east, look.north)
     course = np.unwrap(course[np.isfinite(course)])

@@ -27,7 +27,7 @@ def by_name(find: Finder) -> None:
             continue
         quantity = known_quantity(name)
         own: dict[str, Any] = {}
-        said = find.units_said[k] or _usual_unit(find, name)
+        said = find.units_said[k] or _usual_unit(name)
         known = units.factors(quantity.unit)
         if k not in find.first.written:
             short = [one for one in ("m", "m/s", "kn", "deg", "rad", "rpm", "rps", "deg/s", "deg/min") if one in known]
@@ -86,7 +86,7 @@ def _makes_no_sense(find: Finder, name: str) -> bool:
     return (name == "delta" and "delta_port" in have) or (name == "n" and "n_port" in have)
 
 
-def _usual_unit(find: Finder, name: str) -> str:
+def _usual_unit(name: str) -> str:
     """The unit of a quantity where only one is usual."""
     return {"latitude": "deg", "longitude": "deg", "x": "m", "y": "m", "depth": "m", "wave_height": "m"}.get(name, "")
 
@@ -122,13 +122,13 @@ def missing(find: Finder) -> None:
     have = set(find.guesses)
     if not {"x", "y"} <= have and not {"latitude", "longitude"} <= have:
         for name in ("x", "y"):
-            find.guesses.setdefault(name, _asked(find, name))
+            find.guesses.setdefault(name, _asked(name))
     for name, pair in (("psi", ()), ("n", ("n_port", "n_stbd")), ("delta", ("delta_port", "delta_stbd"))):
         if name not in have and not (pair and set(pair) <= have):
-            find.guesses[name] = _asked(find, name)
+            find.guesses[name] = _asked(name)
 
 
-def _asked(find: Finder, name: str) -> Guess:
+def _asked(name: str) -> Guess:
     item = INPUTS.get(name)
     more = ', or value = "1.5 rps" where it is constant' if item is not None and item.unit == "1/s" else ""
     more = ', or value = "0 deg" where it is constant' if item is not None and item.unit == "rad" else more

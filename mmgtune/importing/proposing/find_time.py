@@ -45,7 +45,7 @@ def time(find: Finder) -> None:
     if find.clock.format == DIGITS:
         keys["format"] = DIGITS
     if find.clock.format in ("date", "?"):
-        date_order(find, keys, best)
+        date_order(find, keys)
     column, words = find.clock.column, [best[0].words]
     if find.clock.format in READ_AS and any(one.format == EITHER and one.column == column for one in found):
         keys["format"] = find.clock.format
@@ -66,7 +66,7 @@ def time(find: Finder) -> None:
     find.guess_t = Guess("t", column, keys, tuple(words), ASKED if asked else SURE)
 
 
-def date_order(find: Finder, keys: dict[str, Any], found: list[Clock]) -> None:
+def date_order(find: Finder, keys: dict[str, Any]) -> None:
     """Which of day and month stands first, over all logs."""
     possible = set(ORDERS)
     told = set()
